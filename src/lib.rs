@@ -1,0 +1,3 @@
+//! Accurate long-time rotation of rigid bodies.
+
+pub mod num;

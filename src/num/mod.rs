@@ -1,0 +1,8 @@
+//! Numbers: the scalars that every kernel is written over, and functions of them. No physics.
+
+pub mod dd;
+pub mod real;
+pub mod trig;
+
+pub use dd::Dd;
+pub use real::{Precise, Real};

@@ -1,0 +1,98 @@
+//! The two traits that kernels are generic over.
+
+use core::fmt::Debug;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::Dd;
+use super::trig;
+
+/// A scalar that explicit kernels are written over.
+///
+/// There is no ordering: a kernel cannot branch on a value, so one text serves `f64`, [`Dd`] and, later,
+/// several bodies side by side. An iteration ends on [`magnitude`](Real::magnitude), the worst lane as `f64`.
+pub trait Real:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The scalar nearest to `x`.
+    fn of(x: f64) -> Self;
+    /// Square root; NaN of a negative number.
+    fn sqrt(self) -> Self;
+    /// Sine and cosine of an angle in radians, the same bits on every CPU.
+    fn sin_cos(self) -> (Self, Self);
+    /// |x| as `f64`; of several lanes the largest, NaN if one is NaN.
+    fn magnitude(self) -> f64;
+}
+
+/// A scalar that can be compared, rounded and turned into an angle: `f64` and [`Dd`].
+pub trait Precise: Real + PartialOrd {
+    /// Unit roundoff of one operation.
+    const ROUNDOFF: f64;
+    /// Nearest value of this type.
+    fn from_dd(x: Dd) -> Self;
+    /// The same value, exactly.
+    fn to_dd(self) -> Dd;
+    /// Nearest `f64`.
+    fn to_f64(self) -> f64;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// Nearest integer, ties away from zero.
+    fn round(self) -> Self;
+    /// Angle of the point (x, y) = (`x`, `self`) in (−π, π].
+    fn atan2(self, x: Self) -> Self;
+    /// e to the power of `self`.
+    fn exp(self) -> Self;
+    /// Natural logarithm; NaN of a negative number.
+    fn ln(self) -> Self;
+}
+
+impl Real for f64 {
+    fn of(x: f64) -> Self {
+        x
+    }
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        trig::sin_cos(self)
+    }
+    fn magnitude(self) -> f64 {
+        f64::abs(self)
+    }
+}
+
+impl Precise for f64 {
+    const ROUNDOFF: f64 = f64::EPSILON / 2.0;
+    fn from_dd(x: Dd) -> Self {
+        x.to_f64()
+    }
+    fn to_dd(self) -> Dd {
+        Dd::of(self)
+    }
+    fn to_f64(self) -> f64 {
+        self
+    }
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    fn round(self) -> Self {
+        f64::round(self)
+    }
+    fn atan2(self, x: Self) -> Self {
+        libm::atan2(self, x)
+    }
+    fn exp(self) -> Self {
+        libm::exp(self)
+    }
+    fn ln(self) -> Self {
+        libm::log(self)
+    }
+}
