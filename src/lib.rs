@@ -1,3 +1,8 @@
 //! Accurate long-time rotation of rigid bodies.
 
+pub mod body;
+pub mod flow;
+pub mod method;
 pub mod num;
+pub mod observe;
+pub mod rotation;

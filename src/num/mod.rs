@@ -2,6 +2,7 @@
 
 pub mod dd;
 pub mod real;
+pub mod sum;
 pub mod trig;
 
 pub use dd::Dd;

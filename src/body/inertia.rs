@@ -1,0 +1,353 @@
+//! Inertia tensors, checked at the door.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use thiserror::Error;
+
+use super::principal::{frame_quaternion, principal_axes};
+use crate::num::{Dd, Real};
+use crate::rotation::{Quat, Vec3};
+
+/// Rounding that a tensor may show, relative to its trace: symmetry and triangle inequalities are judged up to it.
+const ROUNDING: f64 = 1e-12;
+
+/// Why a tensor is not the inertia of a body.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum InertiaError {
+    /// An entry is not a finite number.
+    #[error("inertia has the entry {value}; every entry must be a finite number")]
+    NotFinite {
+        /// The offending value.
+        value: f64,
+    },
+    /// The tensor is not symmetric.
+    #[error(
+        "inertia tensor is not symmetric: I_{row}{column} = {upper} but I_{column}{row} = {lower}, apart by {:.3e} of the trace; \
+         I_jk = -sum m x_j x_k is the same both ways",
+        relative
+    )]
+    NotSymmetric {
+        /// Axis name of the first index.
+        row: char,
+        /// Axis name of the second index.
+        column: char,
+        /// Entry above the diagonal.
+        upper: f64,
+        /// Entry below the diagonal.
+        lower: f64,
+        /// Their difference over the trace.
+        relative: f64,
+    },
+    /// A principal moment is zero or negative.
+    #[error(
+        "principal moments {}, {}, {}: each must be positive (a moment is a sum of mass times distance squared)",
+        moments[0],
+        moments[1],
+        moments[2]
+    )]
+    NotPositive {
+        /// The principal moments.
+        moments: [f64; 3],
+    },
+    /// Two moments together are less than the third.
+    #[error(
+        "principal moments {}, {}, {} violate I{} + I{} >= I{} by {} ({:.3} % of the largest); no mass distribution has them",
+        moments[0], moments[1], moments[2], pair[0] + 1, pair[1] + 1, largest + 1, excess, percent
+    )]
+    Triangle {
+        /// The principal moments.
+        moments: [f64; 3],
+        /// The two that are too small, from 0.
+        pair: [usize; 2],
+        /// The one that is too large, from 0.
+        largest: usize,
+        /// By how much, in the unit of the moments.
+        excess: f64,
+        /// The same in per cent of the largest moment.
+        percent: f64,
+    },
+}
+
+/// Which principal moments agree, up to rounding (1e-12 of the trace).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// All three differ.
+    Asymmetric,
+    /// The two larger moments agree: elongated, like a rod. The axes of the pair are arbitrary.
+    Prolate,
+    /// The two smaller moments agree: flattened, like a disk. The axes of the pair are arbitrary.
+    Oblate,
+    /// All three agree, as of a sphere or a cube. All axes are arbitrary.
+    Spherical,
+}
+
+/// The inertia tensor of a rigid body about a stated point, kg m² (or any consistent unit), in body axes.
+///
+/// Valid by construction: finite, symmetric, positive, and ½ tr(I)·1 − I ⪰ 0, which in principal axes are the
+/// triangle inequalities. There is no absolute tolerance: a molecule and an asteroid are both ordinary bodies.
+///
+/// ```
+/// use polhode::body::{Inertia, Symmetry};
+/// use nalgebra::Matrix3;
+///
+/// let box_like = Inertia::from_moments([3.0, 1.0, 2.5])?;
+/// assert_eq!(box_like.principal_moments(), [1.0, 2.5, 3.0]); // ascending
+/// assert_eq!(box_like.symmetry(), Symmetry::Asymmetric);
+///
+/// // tensor entries carry the minus sign: I_xy = -∫ x y dm
+/// let tilted = Inertia::from_tensor(Matrix3::new(2.0, -0.1, 0.0, -0.1, 3.0, 0.2, 0.0, 0.2, 4.0))?;
+/// assert!(tilted.principal_moments()[0] < 2.0);
+///
+/// let error = Inertia::from_moments([1.0, 2.0, 4.0]).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "principal moments 1, 2, 4 violate I1 + I2 >= I3 by 1 (25.000 % of the largest); no mass distribution has them"
+/// );
+/// # Ok::<(), polhode::body::InertiaError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inertia {
+    tensor: Matrix3<f64>,
+    /// A power of two, the exponent of the largest moment: what follows is divided by it.
+    scale: f64,
+    moments: [Dd; 3],
+    /// Takes coordinates along the kernel's principal axes to body coordinates; the identity for typed moments.
+    frame: Quat<Dd>,
+}
+
+impl Inertia {
+    /// From principal moments: the k-th belongs to the k-th body axis, in any order.
+    ///
+    /// # Errors
+    /// A moment that is not finite or not positive, or moments that break a triangle inequality.
+    pub fn from_moments(moments: [f64; 3]) -> Result<Self, InertiaError> {
+        check_finite(&moments)?;
+        if moments.iter().any(|&i| i <= 0.0) {
+            return Err(InertiaError::NotPositive { moments });
+        }
+        let scale = power_of_two_below(moments[0].max(moments[1]).max(moments[2]));
+        check_triangle(moments.map(|i| i / scale), scale)?;
+        Ok(Inertia {
+            tensor: Matrix3::from_diagonal(&Vector3::from(moments)),
+            scale,
+            moments: moments.map(|i| Dd::of(i / scale)),
+            frame: Quat::identity(),
+        })
+    }
+
+    /// From a full tensor, entries `I_xy = −∫ x y dm`.
+    ///
+    /// Differences across the diagonal below 1e-12 of the trace are taken for rounding and averaged.
+    ///
+    /// # Errors
+    /// Entries that are not finite, a tensor that is not symmetric, moments that are not positive or break a
+    /// triangle inequality.
+    pub fn from_tensor(tensor: Matrix3<f64>) -> Result<Self, InertiaError> {
+        check_finite(tensor.as_slice())?;
+        let largest = tensor.amax();
+        if largest == 0.0 {
+            return Err(InertiaError::NotPositive { moments: [0.0; 3] });
+        }
+        let scale = power_of_two_below(largest);
+        let scaled = tensor / scale;
+        let trace = scaled.trace().abs();
+        for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+            let difference = (scaled[(row, column)] - scaled[(column, row)]).abs();
+            if difference > ROUNDING * trace {
+                return Err(InertiaError::NotSymmetric {
+                    row: ['x', 'y', 'z'][row],
+                    column: ['x', 'y', 'z'][column],
+                    upper: tensor[(row, column)],
+                    lower: tensor[(column, row)],
+                    relative: difference / trace,
+                });
+            }
+        }
+        let entry = |i: usize, j: usize| Dd::sum(scaled[(i, j)], scaled[(j, i)]) * Dd::of(0.5);
+        let (moments, axes) = principal_axes([0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))));
+        let rounded = moments.map(Dd::hi);
+        if rounded[0] <= 0.0 {
+            return Err(InertiaError::NotPositive { moments: rounded.map(|i| i * scale) });
+        }
+        check_triangle(rounded, scale)?;
+        // the largest moment, not the largest entry, sets the scale of everything that follows
+        let rescale = power_of_two_below(rounded[2]);
+        Ok(Inertia {
+            tensor: (tensor + tensor.transpose()) * 0.5,
+            scale: scale * rescale,
+            moments: moments.map(|i| i / Dd::of(rescale)),
+            frame: frame_quaternion(axes),
+        })
+    }
+
+    /// From diagonal moments and CAD products `+∫ x y dm`, in the order xy, xz, yz.
+    ///
+    /// # Errors
+    /// As [`from_tensor`](Self::from_tensor).
+    pub fn from_products(diagonal: [f64; 3], products: [f64; 3]) -> Result<Self, InertiaError> {
+        let [xx, yy, zz] = diagonal;
+        let [xy, xz, yz] = products;
+        Self::from_tensor(Matrix3::new(xx, -xy, -xz, -xy, yy, -yz, -xz, -yz, zz))
+    }
+
+    /// The tensor in body axes.
+    pub fn tensor(&self) -> Matrix3<f64> {
+        self.tensor
+    }
+
+    /// Principal moments, ascending.
+    pub fn principal_moments(&self) -> [f64; 3] {
+        let mut moments = self.moments.map(|i| i.hi() * self.scale);
+        moments.sort_by(f64::total_cmp);
+        moments
+    }
+
+    /// The rotation that takes coordinates along the principal axes (moments ascending, right-handed) to body axes.
+    ///
+    /// Of the first two axes the largest component is positive. Where [`symmetry`](Self::symmetry) reports a
+    /// degenerate pair, its axes are one choice among infinitely many.
+    pub fn principal_axes(&self) -> UnitQuaternion<f64> {
+        let diagonal = |i: usize, j: usize| if i == j { self.moments[i] } else { Dd::of(0.0) };
+        let (_, axes) = principal_axes([0, 1, 2].map(|i| [0, 1, 2].map(|j| diagonal(i, j))));
+        let q = self.frame * frame_quaternion(axes);
+        Quat::from_components(q.components().map(Dd::hi)).into()
+    }
+
+    /// Which principal moments agree.
+    pub fn symmetry(&self) -> Symmetry {
+        let mut moments = self.moments.map(Dd::hi);
+        moments.sort_by(f64::total_cmp);
+        let [low, middle, high] = moments;
+        let rounding = ROUNDING * (low + middle + high);
+        match (middle - low <= rounding, high - middle <= rounding) {
+            (true, true) => Symmetry::Spherical,
+            (true, false) => Symmetry::Oblate,
+            (false, true) => Symmetry::Prolate,
+            (false, false) => Symmetry::Asymmetric,
+        }
+    }
+
+    /// The tensor without its size: what free motion can tell of it.
+    pub fn shape(&self) -> InertiaShape {
+        InertiaShape { tensor: self.tensor / self.scale / (self.tensor / self.scale).trace() }
+    }
+
+    /// Angular momentum `I ω` of the angular velocity `omega_body`, both in body axes.
+    pub fn momentum(&self, omega_body: Vector3<f64>) -> Vector3<f64> {
+        self.tensor * omega_body
+    }
+
+    /// The power of two by which the kernels divide moments and momenta.
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Moments along the kernel's axes, divided by [`scale`](Self::scale).
+    pub(crate) fn scaled_moments(&self) -> [Dd; 3] {
+        self.moments
+    }
+
+    /// Takes coordinates along the kernel's axes to body coordinates.
+    pub(crate) fn frame(&self) -> Quat<Dd> {
+        self.frame
+    }
+
+    /// `I ω` along the kernel's axes, divided by the scale: exact products of the given doubles, in double-double.
+    pub(crate) fn scaled_momentum(&self, omega_body: Vec3<f64>) -> Vec3<Dd> {
+        let omega = self.frame.rotate_back(Vec3::of(omega_body));
+        omega.times(Vec3(self.moments))
+    }
+}
+
+/// The dimensionless part of an inertia tensor: trace 1.
+///
+/// Motion without a torque determines a tensor only up to its scale, so a fit from it returns this type and
+/// nothing that could be mistaken for kg m².
+#[derive(Clone, Debug, PartialEq)]
+pub struct InertiaShape {
+    tensor: Matrix3<f64>,
+}
+
+impl InertiaShape {
+    /// The shape of a tensor of any size.
+    ///
+    /// # Errors
+    /// As [`Inertia::from_tensor`].
+    pub fn from_tensor(tensor: Matrix3<f64>) -> Result<Self, InertiaError> {
+        Ok(Inertia::from_tensor(tensor)?.shape())
+    }
+
+    /// The tensor with trace 1, in body axes.
+    pub fn tensor(&self) -> Matrix3<f64> {
+        self.tensor
+    }
+
+    /// The inertia of this shape whose trace is `trace`, kg m².
+    ///
+    /// # Errors
+    /// A trace that is not a positive finite number.
+    pub fn with_trace(&self, trace: f64) -> Result<Inertia, InertiaError> {
+        Inertia::from_tensor(self.tensor * trace)
+    }
+}
+
+fn check_finite(values: &[f64]) -> Result<(), InertiaError> {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(&value) => Err(InertiaError::NotFinite { value }),
+        None => Ok(()),
+    }
+}
+
+/// The triangle inequalities for moments divided by `scale`.
+fn check_triangle(scaled: [f64; 3], scale: f64) -> Result<(), InertiaError> {
+    let rounding = ROUNDING * (scaled[0] + scaled[1] + scaled[2]);
+    for (largest, pair) in [(0, [1, 2]), (1, [0, 2]), (2, [0, 1])] {
+        let excess = (Dd::of(scaled[largest]) - Dd::sum(scaled[pair[0]], scaled[pair[1]])).hi();
+        if excess > rounding {
+            return Err(InertiaError::Triangle {
+                moments: scaled.map(|i| i * scale),
+                pair,
+                largest,
+                excess: excess * scale,
+                percent: 100.0 * excess / scaled[largest],
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The largest power of two not above `x`, of a positive finite number; exact, also for subnormal `x`.
+fn power_of_two_below(x: f64) -> f64 {
+    let bits = x.to_bits();
+    match bits >> 52 {
+        0 => f64::from_bits(1 << (63 - bits.leading_zeros())),
+        exponent => f64::from_bits(exponent << 52),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn power_of_two_is_exact_over_the_whole_range() {
+        for (x, power) in [
+            (1.0, 1.0),
+            (1.999, 1.0),
+            (0.75, 0.5),
+            (3e-310, f64::from_bits(1 << 45)),
+            (1e308, f64::from_bits(2046 << 52)),
+        ] {
+            assert_eq!(power_of_two_below(x), power);
+        }
+    }
+
+    #[test]
+    fn scaling_the_mass_by_a_power_of_two_changes_no_bit_inside() {
+        let tensor = Matrix3::new(2.0, -0.1, 0.03, -0.1, 3.0, 0.2, 0.03, 0.2, 4.1);
+        let tiny = 1.0 / f64::from(1_u32 << 20) / f64::from(1_u32 << 20);
+        let (a, b) = (Inertia::from_tensor(tensor).unwrap(), Inertia::from_tensor(tensor * tiny).unwrap());
+        assert_eq!(a.scaled_moments(), b.scaled_moments());
+        assert_eq!(a.frame(), b.frame());
+        assert_eq!(a.scale() * tiny, b.scale());
+    }
+}

@@ -1,0 +1,12 @@
+//! Rotations: vectors and quaternions that kernels are written over, and distances between attitudes.
+//!
+//! Attitudes are unit quaternions, **scalar first, active, body → space**: `v_space = q v_body q*`.
+//! Increments multiply on the right: `q ← q ∘ p`.
+
+mod distance;
+mod quaternion;
+mod vec3;
+
+pub use distance::rotation_angle;
+pub use quaternion::Quat;
+pub use vec3::Vec3;
