@@ -6,3 +6,4 @@ pub mod method;
 pub mod num;
 pub mod observe;
 pub mod rotation;
+pub mod run;

@@ -120,12 +120,23 @@ impl Inertia {
     /// # Errors
     /// A moment that is not finite or not positive, or moments that break a triangle inequality.
     pub fn from_moments(moments: [f64; 3]) -> Result<Self, InertiaError> {
+        let inertia = Self::from_positive_moments(moments)?;
+        check_triangle(moments.map(|i| i / inertia.scale), inertia.scale)?;
+        Ok(inertia)
+    }
+
+    /// From three positive numbers that may break a triangle inequality.
+    ///
+    /// No body has such moments, but Euler's equations are defined for them, and published test problems use them.
+    ///
+    /// # Errors
+    /// A moment that is not finite or not positive.
+    pub fn from_positive_moments(moments: [f64; 3]) -> Result<Self, InertiaError> {
         check_finite(&moments)?;
         if moments.iter().any(|&i| i <= 0.0) {
             return Err(InertiaError::NotPositive { moments });
         }
         let scale = power_of_two_below(moments[0].max(moments[1]).max(moments[2]));
-        check_triangle(moments.map(|i| i / scale), scale)?;
         Ok(Inertia {
             tensor: Matrix3::from_diagonal(&Vector3::from(moments)),
             scale,

@@ -1,7 +1,9 @@
 //! Exact flows: the atoms that splitting methods are composed of, and the references they are judged by.
 
+mod free_body;
 mod turn;
 
+pub use free_body::{FreeMotion, TimeError};
 pub use turn::{AxisTurn, turn};
 
 use crate::body::State;

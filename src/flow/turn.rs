@@ -25,26 +25,36 @@ impl<S: Real> AxisTurn<S> {
 impl<S: Real> Flow<S> for AxisTurn<S> {
     fn flow(&self, t: S, x: &mut State<S>) {
         let mut carry = Carry::default();
-        turn(x, &mut carry, self.axis, t * self.half_rate);
+        let half_rate_time = t * self.half_rate;
+        match self.axis {
+            0 => turn::<0, S>(x, &mut carry, half_rate_time),
+            1 => turn::<1, S>(x, &mut carry, half_rate_time),
+            _ => turn::<2, S>(x, &mut carry, half_rate_time),
+        }
         carry.renormalize(x);
     }
 }
 
-/// Turns `x` about `axis` by the angle `2 · half_rate_time · m_axis`, rounding errors carried.
+/// Turns `x` about `AXIS` by the angle `2 · half_rate_time · m_AXIS`, rounding errors carried.
 ///
 /// The momentum turns by `v = 2 sin²` and `w = 2 sin cos` of the *half* angle, both from the same sine: then
 /// `v² + w² − 2v` is a rounding error of random sign, and |m| walks at random instead of drifting. The quaternion
-/// takes the same sine and cosine, so that `q m q*` keeps its direction.
+/// takes the same sine and cosine, so that `q m q*` keeps its direction. The axis is a constant so that the state
+/// stays in registers.
 #[inline]
-pub fn turn<S: Real>(x: &mut State<S>, carry: &mut Carry<S>, axis: usize, half_rate_time: S) {
-    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+pub fn turn<const AXIS: usize, S: Real>(x: &mut State<S>, carry: &mut Carry<S>, half_rate_time: S) {
+    let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
     let m = x.momentum_body;
-    let (s, c) = (m[axis] * half_rate_time).sin_cos();
+    let (s, c) = (m[AXIS] * half_rate_time).sin_cos();
     let twice = s + s;
     let (v, w) = (twice * s, twice * c);
     carry.add_component(x, j, w * m[k] - v * m[j]);
     carry.add_component(x, k, -(w * m[j]) - v * m[k]);
-    let q = x.attitude;
-    let along = Quat::new(S::of(0.0), Vec3::unit(axis) * s);
-    carry.add_attitude(x, q * along - q * (S::of(1.0) - c));
+    // q ∘ (c, s e_i) − q, without the products by zero
+    let (q, less) = (x.attitude, S::of(1.0) - c);
+    let mut change = Quat::new(-(s * q.v[AXIS]) - less * q.w, Vec3::zero());
+    change.v[AXIS] = s * q.w - less * q.v[AXIS];
+    change.v[j] = s * q.v[k] - less * q.v[j];
+    change.v[k] = -(s * q.v[j]) - less * q.v[k];
+    carry.add_attitude(x, change);
 }

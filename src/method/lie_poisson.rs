@@ -62,9 +62,27 @@ impl<S: Real> Method<S> for LiePoisson {
 impl<S: Real> Step<S> for LiePoissonStep<S> {
     #[inline]
     fn step(&mut self, x: &mut State<S>) {
-        for k in [0, 1, 2, 1, 0] {
-            turn(x, &mut self.carry, self.axes[k], self.half_rates[k]);
+        match self.axes {
+            [0, 1, _] => self.turns::<0, 1, 2>(x),
+            [0, ..] => self.turns::<0, 2, 1>(x),
+            [1, 0, _] => self.turns::<1, 0, 2>(x),
+            [1, ..] => self.turns::<1, 2, 0>(x),
+            [_, 0, _] => self.turns::<2, 0, 1>(x),
+            _ => self.turns::<2, 1, 0>(x),
         }
         self.carry.renormalize(x);
+    }
+}
+
+impl<S: Real> LiePoissonStep<S> {
+    #[inline]
+    fn turns<const OUTER: usize, const MIDDLE: usize, const INNER: usize>(&mut self, x: &mut State<S>) {
+        let [outer, middle, inner] = self.half_rates;
+        let carry = &mut self.carry;
+        turn::<OUTER, S>(x, carry, outer);
+        turn::<MIDDLE, S>(x, carry, middle);
+        turn::<INNER, S>(x, carry, inner);
+        turn::<MIDDLE, S>(x, carry, middle);
+        turn::<OUTER, S>(x, carry, outer);
     }
 }

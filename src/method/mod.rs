@@ -22,7 +22,7 @@ use thiserror::Error;
 
 use crate::body::{Body, State};
 use crate::num::Real;
-use crate::observe::Monitor;
+use crate::observe::{BLOCK, Monitor};
 
 /// A family of maps Φ_h, one for each body and step size.
 pub trait Method<S: Real>: Claimed {
@@ -70,11 +70,19 @@ pub trait Advance: Send {
 
 impl<T: Step<f64> + Send> Advance for T {
     fn advance(&mut self, x: &mut State<f64>, steps: u64, monitor: &mut Monitor) -> u64 {
-        for taken in 0..steps {
+        let mut taken = 0;
+        let mut block = [*x; BLOCK];
+        while taken < steps {
+            let wanted = (steps - taken).min(BLOCK as u64) as usize;
             let before = *x;
-            self.step(x);
-            if !monitor.observe(x) {
-                *x = before;
+            for state in &mut block[..wanted] {
+                self.step(x);
+                *state = *x;
+            }
+            let finite = monitor.observe(&block[..wanted]);
+            taken += finite as u64;
+            if finite < wanted {
+                *x = if finite == 0 { before } else { block[finite - 1] };
                 return taken;
             }
         }

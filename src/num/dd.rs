@@ -45,7 +45,9 @@ pub struct Dd {
 
 impl Dd {
     /// π.
-    pub const PI: Dd = Dd { hi: core::f64::consts::PI, lo: 1.224646799147353207e-16 };
+    pub const PI: Dd = Dd { hi: core::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };
+    /// 2π.
+    pub const TAU: Dd = Dd { hi: core::f64::consts::TAU, lo: 2.449_293_598_294_706_4e-16 };
     /// 0.
     pub const ZERO: Dd = Dd { hi: 0.0, lo: 0.0 };
     /// 1.
@@ -75,6 +77,11 @@ impl Dd {
     }
 }
 
+impl From<f64> for Dd {
+    fn from(x: f64) -> Dd {
+        Dd::of(x)
+    }
+}
 impl Add for Dd {
     type Output = Dd;
     #[inline]

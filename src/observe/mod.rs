@@ -7,4 +7,4 @@ mod monitor;
 
 pub use drift::{Drift, secular_drift};
 pub use invariants::Invariants;
-pub use monitor::{Errors, Monitor};
+pub use monitor::{BLOCK, Errors, Monitor};

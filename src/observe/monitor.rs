@@ -2,7 +2,8 @@
 
 use super::invariants::energy;
 use crate::body::{Body, State};
-use crate::num::{Dd, Real};
+use crate::num::dd::{two_prod, two_sum};
+use crate::num::{Dd, Precise, Real};
 use crate::rotation::Vec3;
 
 /// Relative errors of the invariants against the start; 0 for a body at rest.
@@ -18,102 +19,99 @@ pub struct Errors {
 
 /// Watches every step of a run: the largest error of each invariant, and how often the body flipped.
 ///
-/// A step is first looked at in `f64`, with a bound on what rounding may have hidden; only where that cannot rule
-/// out a new maximum is the invariant evaluated in double-double. The maxima are therefore those of the
-/// double-double invariants at every step, at a fraction of their cost.
+/// Steps come in blocks. A block is first looked at in plain `f64`, with a bound on what rounding may have hidden;
+/// only where that cannot rule out a new maximum are the errors evaluated with error-free transformations, to
+/// about 1e-30. Both loops are branch-free over the block, so that the compiler can vectorise them.
 #[derive(Clone, Debug)]
 pub struct Monitor {
-    inverse_moments: Vec3<f64>,
-    inverse_moments_dd: Vec3<Dd>,
+    inverse_moments: Vec3<Dd>,
     energy: Dd,
     momentum_squared: Dd,
     momentum_space: Vec3<Dd>,
-    start: [f64; 5], // E, |m|², L of the start, rounded
-    slack: [f64; 3],
     worst: Errors,
     flips: Flips,
+    loud: u32, // blocks since the last plain look, while plain looks do not help
 }
 
-/// Changes of sign of the momentum along the middle axis.
-#[derive(Clone, Copy, Debug)]
-struct Flips {
-    axis: usize,
-    positive: Option<bool>,
-    count: u64,
-}
+/// How many steps a run takes between two looks at them.
+pub const BLOCK: usize = 32;
 
-/// Bounds on the error of the `f64` evaluations, in units of roundoff of E, |m|² and |L|: 3, 3 and 14 rounded
-/// operations deep, the start's own rounding included.
+/// After a plain look that ruled nothing out, the next is taken this many blocks later.
+const LOUD: u32 = 16;
+
+/// Bounds on the rounding error of the plain evaluations of E, |m|² and |L|, in units of roundoff: three, three and
+/// some fourteen operations deep, the rounded start included.
 const DEPTH: [f64; 3] = [6.0, 5.0, 24.0];
+
+/// E − E₀, |m|² − |m₀|² and |L − L₀| of one state.
+type Differences = [f64; 3];
 
 impl Monitor {
     /// Begins at the state `x` as kernels see it.
     pub fn new(body: &Body, x: &State<f64>) -> Self {
-        let inverse_moments_dd = body.inverse_moments();
-        let dd = State::<Dd>::of(*x);
-        let (energy, momentum_squared) =
-            (energy(inverse_moments_dd, dd.momentum_body), dd.momentum_body.norm_squared());
-        let momentum_space = dd.momentum_space();
-        let size = [energy.hi(), momentum_squared.hi(), momentum_squared.hi().sqrt()];
-        let mut monitor = Monitor {
-            inverse_moments: body.inverse_moments(),
-            inverse_moments_dd,
-            energy,
-            momentum_squared,
-            momentum_space,
-            start: [
-                energy.hi(),
-                momentum_squared.hi(),
-                momentum_space[0].hi(),
-                momentum_space[1].hi(),
-                momentum_space[2].hi(),
-            ],
-            slack: [0, 1, 2].map(|k| DEPTH[k] * f64::EPSILON / 2.0 * size[k]),
+        let inverse_moments = body.inverse_moments();
+        let start = State::<Dd>::of(*x);
+        let mut flips = Flips { axis: middle_axis(body.moments()), positive: None, count: 0 };
+        flips.observe(x.momentum_body);
+        Monitor {
+            inverse_moments,
+            energy: energy(inverse_moments, start.momentum_body),
+            momentum_squared: start.momentum_body.norm_squared(),
+            momentum_space: start.momentum_space(),
             worst: Errors::default(),
-            flips: Flips { axis: middle_axis(body.moments()), positive: None, count: 0 },
-        };
-        monitor.flips.observe(x.momentum_body);
-        monitor
+            flips,
+            loud: 0,
+        }
     }
 
-    /// Takes note of a step. `false` if the state is not finite: then it is not counted.
-    #[inline]
-    pub fn observe(&mut self, x: &State<f64>) -> bool {
-        let m = x.momentum_body;
-        let e = (energy(self.inverse_moments, m) - self.start[0]).abs() + self.slack[0];
-        let m2 = (m.norm_squared() - self.start[1]).abs() + self.slack[1];
-        let l = x.momentum_space() - Vec3([self.start[2], self.start[3], self.start[4]]);
-        let l2 = l.norm() + self.slack[2];
-        let quiet = e <= self.worst.energy * self.start[0]
-            && m2 <= self.worst.momentum * self.start[1]
-            && l2 * l2 <= self.worst.momentum_vector * self.worst.momentum_vector * self.start[1];
-        // a NaN is never quiet
-        if !quiet && !self.record(x) {
-            return false;
+    /// Takes note of consecutive steps, at most [`BLOCK`]; returns how many come before the first state that is
+    /// not finite, and counts only those.
+    pub fn observe(&mut self, states: &[State<f64>]) -> usize {
+        let reference = Reference::of(self);
+        if self.loud == 0 && self.is_quiet(&reference, states) {
+            return self.count(states);
         }
-        self.flips.observe(m);
-        true
+        self.loud = (self.loud + 1) % LOUD;
+        let mut states = states;
+        let mut found = largest(states, |x| reference.compensated(x));
+        if !found.iter().all(|d| d.is_finite()) {
+            let holds = |x: &&State<f64>| reference.compensated(x).iter().all(|d| d.is_finite());
+            states = &states[..states.iter().take_while(holds).count()];
+            found = largest(states, |x| reference.compensated(x));
+        }
+        let now = self.errors_of(found);
+        self.worst = Errors {
+            energy: self.worst.energy.max(now.energy),
+            momentum: self.worst.momentum.max(now.momentum),
+            momentum_vector: self.worst.momentum_vector.max(now.momentum_vector),
+        };
+        self.count(states)
+    }
+
+    /// Whether plain evaluation rules out a new maximum; never with a NaN.
+    fn is_quiet(&self, reference: &Reference, states: &[State<f64>]) -> bool {
+        let (plain, slack) = (largest(states, |x| reference.plain(x)), reference.slack());
+        let e = self.errors_of([0, 1, 2].map(|k| plain[k] + slack[k]));
+        e.energy <= self.worst.energy
+            && e.momentum <= self.worst.momentum
+            && e.momentum_vector <= self.worst.momentum_vector
+    }
+
+    fn count(&mut self, states: &[State<f64>]) -> usize {
+        for x in states {
+            self.flips.observe(x.momentum_body);
+        }
+        states.len()
     }
 
     /// Errors of the state `x` itself, in double-double.
     pub fn errors(&self, x: &State<f64>) -> Errors {
         let x = State::<Dd>::of(*x);
-        let m = x.momentum_body;
-        let ratio = |difference: Dd, reference: Dd| match reference.hi() {
-            0.0 => difference.hi().abs(), // at rest, where nothing moves
-            _ => (difference / reference).hi().abs(),
-        };
-        let m2 = m.norm_squared();
-        // ||m| − |m₀|| / |m₀| without a difference of roots
-        let both = self.momentum_squared + (m2 * self.momentum_squared).sqrt();
-        Errors {
-            energy: ratio(energy(self.inverse_moments_dd, m) - self.energy, self.energy),
-            momentum: ratio(m2 - self.momentum_squared, both),
-            momentum_vector: ratio(
-                (x.momentum_space() - self.momentum_space).norm(),
-                self.momentum_squared.sqrt(),
-            ),
-        }
+        self.errors_of([
+            (energy(self.inverse_moments, x.momentum_body) - self.energy).magnitude(),
+            (x.momentum_body.norm_squared() - self.momentum_squared).magnitude(),
+            (x.momentum_space() - self.momentum_space).norm().magnitude(),
+        ])
     }
 
     /// The largest errors so far.
@@ -126,22 +124,149 @@ impl Monitor {
         self.flips.count
     }
 
-    #[cold]
-    fn record(&mut self, x: &State<f64>) -> bool {
-        if !x.is_finite() {
-            return false;
+    fn errors_of(&self, [e, m2, l]: Differences) -> Errors {
+        let squared = self.momentum_squared.hi();
+        if squared == 0.0 {
+            return Errors::default(); // at rest nothing moves
         }
-        let now = self.errors(x);
-        if !(now.energy.is_finite() && now.momentum.is_finite() && now.momentum_vector.is_finite()) {
-            return false;
+        // ||m| − |m₀|| = ||m|² − |m₀|²| / (|m| + |m₀|); the sign of the difference is not known here, and to first
+        // order does not matter: the smaller root gives the larger error
+        let relative = m2 / squared;
+        Errors {
+            energy: e / self.energy.hi(),
+            momentum: relative / (1.0 + (1.0 - relative.min(1.0)).sqrt()),
+            momentum_vector: l / squared.sqrt(),
         }
-        self.worst = Errors {
-            energy: self.worst.energy.max(now.energy),
-            momentum: self.worst.momentum.max(now.momentum),
-            momentum_vector: self.worst.momentum_vector.max(now.momentum_vector),
-        };
-        true
     }
+}
+
+/// The invariants of the start, leading and trailing parts side by side.
+struct Reference {
+    inverse_moments: [Vec3<f64>; 2],
+    energy: [f64; 2],
+    momentum_squared: [f64; 2],
+    momentum_space: [Vec3<f64>; 2],
+}
+
+impl Reference {
+    fn of(monitor: &Monitor) -> Self {
+        let parts = |x: Dd| [x.hi(), x.lo()];
+        let vector = |v: Vec3<Dd>| [Vec3(v.0.map(Dd::hi)), Vec3(v.0.map(Dd::lo))];
+        Reference {
+            inverse_moments: vector(monitor.inverse_moments),
+            energy: parts(monitor.energy),
+            momentum_squared: parts(monitor.momentum_squared),
+            momentum_space: vector(monitor.momentum_space),
+        }
+    }
+
+    #[inline]
+    fn plain(&self, x: &State<f64>) -> Differences {
+        let m = x.momentum_body;
+        let l = x.momentum_space() - self.momentum_space[0];
+        [
+            (energy(self.inverse_moments[0], m) - self.energy[0]).abs(),
+            (m.norm_squared() - self.momentum_squared[0]).abs(),
+            l.norm(),
+        ]
+    }
+
+    fn slack(&self) -> Differences {
+        let size = [self.energy[0], self.momentum_squared[0], self.momentum_squared[0].sqrt()];
+        [0, 1, 2].map(|k| DEPTH[k] * f64::ROUNDOFF * size[k])
+    }
+
+    #[inline]
+    fn compensated(&self, x: &State<f64>) -> Differences {
+        let m = x.momentum_body;
+        let [high, low] = self.inverse_moments;
+        let mut twice_energy = Sum::minus([2.0 * self.energy[0], 2.0 * self.energy[1]]);
+        let mut squared = Sum::minus(self.momentum_squared);
+        for k in 0..3 {
+            let (p, e) = two_prod(m[k], m[k]);
+            squared.add(p, e);
+            let (s, f) = two_prod(p, high[k]);
+            twice_energy.add(s, f + (e * high[k] + p * low[k]));
+        }
+
+        // L = (w² − |v|²) m + 2 (v·m) v + 2 w (v × m), not divided by |q|²
+        let (w, v) = (x.attitude.w, x.attitude.v);
+        let mut diagonal = Sum::default();
+        diagonal.add_product(w, w);
+        let mut along = Sum::default();
+        for k in 0..3 {
+            diagonal.add_product(-v[k], v[k]);
+            along.add_product(v[k], m[k]);
+        }
+        let mut difference = [0.0; 3];
+        for (k, difference) in difference.iter_mut().enumerate() {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            let mut cross = Sum::default();
+            cross.add_product(v[i], m[j]);
+            cross.add_product(-v[j], m[i]);
+            let mut l = Sum::minus([self.momentum_space[0][k], self.momentum_space[1][k]]);
+            l.add_scaled(diagonal, m[k]);
+            l.add_scaled(along, 2.0 * v[k]);
+            l.add_scaled(cross, 2.0 * w);
+            *difference = l.value();
+        }
+        [0.5 * twice_energy.value().abs(), squared.value().abs(), Vec3(difference).norm()]
+    }
+}
+
+/// A sum and what rounding took from it.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    high: f64,
+    low: f64,
+}
+
+impl Sum {
+    #[inline]
+    fn minus([high, low]: [f64; 2]) -> Self {
+        Sum { high: -high, low: -low }
+    }
+    #[inline]
+    fn add(&mut self, high: f64, low: f64) {
+        let (s, e) = two_sum(self.high, high);
+        self.high = s;
+        self.low += e + low;
+    }
+    #[inline]
+    fn add_product(&mut self, a: f64, b: f64) {
+        let (p, e) = two_prod(a, b);
+        self.add(p, e);
+    }
+    #[inline]
+    fn add_scaled(&mut self, other: Sum, factor: f64) {
+        let (p, e) = two_prod(other.high, factor);
+        self.add(p, e + other.low * factor);
+    }
+    #[inline]
+    fn value(self) -> f64 {
+        self.high + self.low
+    }
+}
+
+/// The largest of each difference over the states; NaN where one is NaN.
+#[inline]
+fn largest(states: &[State<f64>], differences: impl Fn(&State<f64>) -> Differences) -> Differences {
+    let mut worst = [0.0; 3];
+    for x in states {
+        let now = differences(x);
+        for k in 0..3 {
+            worst[k] = if now[k] <= worst[k] { worst[k] } else { now[k] };
+        }
+    }
+    worst
+}
+
+/// Changes of sign of the momentum along the middle axis.
+#[derive(Clone, Copy, Debug)]
+struct Flips {
+    axis: usize,
+    positive: Option<bool>,
+    count: u64,
 }
 
 impl Flips {
