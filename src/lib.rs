@@ -1,6 +1,7 @@
 //! Accurate long-time rotation of rigid bodies.
 
 pub mod body;
+pub mod catalog;
 pub mod flow;
 pub mod method;
 pub mod num;

@@ -72,7 +72,7 @@ struct Circulation {
     norm: Dd,           // G
     parameter: Dd,      // k²
     complement: Dd,     // k'²
-    half_period: Dd,    // 2K; not finite on the separatrix
+    half_period: Dd,    // 2K; infinite on the separatrix
     phase: Dd,          // of the start, reduced to [−K, K]
     flipped: bool,      // whether that took half a turn
     rate: Dd,           // ν
@@ -120,6 +120,11 @@ impl FreeMotion {
     /// From a state at t = 0 as kernels see it.
     pub fn new(body: &Body, start: State<Dd>) -> Self {
         FreeMotion { body: body.clone(), start, kind: Kind::of(body, start.momentum_body) }
+    }
+
+    /// The body that moves.
+    pub fn body(&self) -> &Body {
+        &self.body
     }
 
     /// The state at time `t` (s, of either sign), body axes.
@@ -244,7 +249,11 @@ impl Circulation {
                 at_start: Dd::ZERO,
             },
         };
-        if half_period.hi().is_finite() {
+        if complement == Dd::ZERO {
+            // the integral of the third kind is elementary there: its part linear in u joins the rate
+            let linear = Dd::of(3.0) * factor / (Dd::ONE - characteristic);
+            circulation.twist.rate = secular - signed(linear * rate);
+        } else {
             let complete = carlson_rj(Dd::ZERO, complement, Dd::ONE, Dd::ONE - characteristic);
             let pi = if about_c { Dd::PI } else { Dd::ZERO };
             circulation.twist.per_half_turn = signed(Dd::of(2.0) * factor * complete - pi);
@@ -257,8 +266,7 @@ impl Circulation {
     /// The turn since the start and the momentum at time `t`.
     fn at<S: Precise>(&self, t: Dd) -> (Quat<S>, Vec3<S>) {
         let u = self.phase + self.rate * t;
-        let on_separatrix = !self.half_period.hi().is_finite();
-        let half_turns = if on_separatrix { Dd::ZERO } else { (u / self.half_period).round() };
+        let half_turns = if self.complement == Dd::ZERO { Dd::ZERO } else { (u / self.half_period).round() };
         let reduced = if half_turns == Dd::ZERO { u } else { u - half_turns * self.half_period };
         let (sn, cn, dn) = jacobi(S::from_dd(reduced), S::from_dd(self.complement));
 
@@ -286,8 +294,13 @@ impl Circulation {
         let [amp_a, amp_b, amp_c] = self.amplitude.map(S::from_dd);
         let twist = &self.twist;
         let d2 = S::from_dd(self.complement) + S::from_dd(self.parameter) * y * y;
-        let p = S::of(1.0) - S::from_dd(twist.characteristic) * x * x;
-        let third_kind = S::from_dd(twist.factor) * x * x * x * carlson_rj(y * y, d2, S::of(1.0), p);
+        let (one, n, factor) = (S::of(1.0), S::from_dd(twist.characteristic), S::from_dd(twist.factor));
+        let third_kind = if self.complement == Dd::ZERO {
+            let root = (-n).sqrt();
+            -(S::of(3.0) * factor / ((one - n) * root) * (root * x).atan2(one))
+        } else {
+            factor * x * x * x * carlson_rj(y * y, d2, one, one - n * x * x)
+        };
         let (bx, cy) = (amp_b * x, amp_c * y);
         if twist.about_c {
             third_kind - bx.atan2(cy)

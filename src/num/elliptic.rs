@@ -96,9 +96,9 @@ pub fn complete_k<S: Precise>(complement: S) -> S {
 pub fn jacobi<S: Precise>(u: S, complement: S) -> (S, S, S) {
     let one = S::of(1.0);
     if complement.magnitude() == 0.0 {
-        let e = u.abs().exp();
-        let sech = S::of(2.0) / (e + one / e);
-        let tanh = (e - one / e) / (e + one / e);
+        let e = (-u.abs()).exp();
+        let sech = S::of(2.0) * e / (one + e * e);
+        let tanh = (one - e * e) / (one + e * e);
         return (if u < S::of(0.0) { -tanh } else { tanh }, sech, sech);
     }
     let mut means = [(one, one); 16];

@@ -1,0 +1,202 @@
+//! Named bodies with their sources, for tests, benches and experiments alike.
+//!
+//! Moments are in kg m² where the body has a size and dimensionless where only ratios are known; free motion does
+//! not tell the difference. Each comes with the start that the experiments give it.
+
+use crate::body::Inertia;
+
+/// A body that everyone can ask for by name.
+#[derive(Clone, Debug)]
+pub struct NamedBody {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What it is.
+    pub summary: &'static str,
+    /// Where its moments come from.
+    pub source: &'static str,
+    /// `kg m^2`, or `ratio` where only ratios are known.
+    pub unit: &'static str,
+    /// Its inertia, in principal axes.
+    pub inertia: Inertia,
+    /// Angular velocity of the reference motion, body axes, rad/s.
+    pub omega_body: [f64; 3],
+}
+
+struct Entry {
+    name: &'static str,
+    summary: &'static str,
+    source: &'static str,
+    unit: &'static str,
+    moments: [f64; 3],
+    omega_body: [f64; 3],
+}
+
+const SI: &str = "kg m^2";
+const RATIO: &str = "ratio";
+
+/// All bodies, real ones first.
+///
+/// ```
+/// let names: Vec<_> = polhode::catalog::bodies().iter().map(|body| body.name).collect();
+/// assert_eq!(names[0], "toutatis");
+/// ```
+pub fn bodies() -> Vec<NamedBody> {
+    entries().into_iter().filter_map(Entry::build).collect()
+}
+
+/// The body called `name`.
+pub fn body(name: &str) -> Option<NamedBody> {
+    entries().into_iter().find(|entry| entry.name == name).and_then(Entry::build)
+}
+
+impl Entry {
+    fn build(self) -> Option<NamedBody> {
+        let Entry { name, summary, source, unit, moments, omega_body } = self;
+        let inertia = Inertia::from_moments(moments).ok()?;
+        Some(NamedBody { name, summary, source, unit, inertia, omega_body })
+    }
+}
+
+fn entries() -> [Entry; 11] {
+    // °/day to rad/s
+    const DEGREE_PER_DAY: f64 = core::f64::consts::PI / 180.0 / 86_400.0;
+    [
+        Entry {
+            name: "toutatis",
+            summary: "asteroid 4179 Toutatis, tumbling about its long axis; ratios of moments",
+            source: "Takahashi, Busch and Scheeres, Astron. J. 146 (2013) 95; spin of 1992-11-09",
+            unit: RATIO,
+            moments: [1.0, 3.0836, 3.235],
+            omega_body: [-98.5 * DEGREE_PER_DAY, 14.5 * DEGREE_PER_DAY, 33.7 * DEGREE_PER_DAY],
+        },
+        Entry {
+            name: "racket",
+            summary: "tennis racket, thrown to turn about its middle axis; ratios of moments",
+            source: "fit to tosses of a racket with a gyroscope (data: doi 10.14288/1.0448943); axes handle, face, normal",
+            unit: RATIO,
+            moments: [0.0389, 0.4619, 0.4993],
+            omega_body: [0.3, 15.0, 0.2],
+        },
+        Entry {
+            name: "t-handle",
+            summary: "aluminium T: bar 80 mm and stem 40 mm, 10 mm thick; flips when spun about the middle axis",
+            source: "closed form of two solid cylinders, 2700 kg/m^3; axes stem, bar, normal",
+            unit: SI,
+            moments: t_handle(),
+            omega_body: [0.02, 20.0, 0.01],
+        },
+        Entry {
+            name: "phone",
+            summary: "telephone as a uniform box, 146.7 x 71.5 x 7.7 mm, 164 g, tossed about its middle axis",
+            source: "closed form of a solid box; axes along length, width, thickness",
+            unit: SI,
+            moments: solid_box(0.164, [0.1467, 0.0715, 0.0077]),
+            omega_body: [0.2, 10.0, 0.3],
+        },
+        Entry {
+            name: "water",
+            summary: "water molecule as three point masses, a planar body of 1e-47 kg m^2",
+            source: "OH 95.72 pm, angle 104.52 degrees: Benedict, Gailar and Plyler, J. Chem. Phys. 24 (1956) 1139; axes a, b, c",
+            unit: SI,
+            moments: water(),
+            omega_body: [2.0e13, 1.0e13, 0.5e13],
+        },
+        Entry {
+            name: "spacecraft",
+            summary: "SPHERES satellite of the space station, nearly symmetric",
+            source: "CAD values of the SPHERES satellites as quoted by Setterfield, MIT thesis (2018)",
+            unit: SI,
+            moments: [2.41e-2, 2.34e-2, 2.01e-2],
+            omega_body: [0.3, 1.0, 0.4],
+        },
+        Entry {
+            name: "textbook",
+            summary: "moments 1, 2, 3: planar, and the body of most published comparisons",
+            source: "by definition",
+            unit: RATIO,
+            moments: [1.0, 2.0, 3.0],
+            omega_body: [0.4, 1.0, -0.3],
+        },
+        Entry {
+            name: "dyadic",
+            summary: "moments 5/8, 3/4, 1, exact in binary, so that input rounding masks nothing",
+            source: "dyadic twin of the driver of Hairer and Vilmart, J. Phys. A 39 (2006) 13225",
+            unit: RATIO,
+            moments: [0.625, 0.75, 1.0],
+            omega_body: [2.8, 0.5, -0.875],
+        },
+        Entry {
+            name: "prolate",
+            summary: "symmetric and elongated",
+            source: "by definition",
+            unit: RATIO,
+            moments: [1.0, 1.0, 0.25],
+            omega_body: [0.3, 0.0, 1.0],
+        },
+        Entry {
+            name: "oblate",
+            summary: "symmetric and flat: a disk",
+            source: "by definition",
+            unit: RATIO,
+            moments: [1.0, 1.0, 2.0],
+            omega_body: [0.3, 0.0, 1.0],
+        },
+        Entry {
+            name: "sphere",
+            summary: "all moments equal: turns about a fixed axis whatever the spin",
+            source: "by definition",
+            unit: RATIO,
+            moments: [1.0, 1.0, 1.0],
+            omega_body: [0.3, 0.5, 1.0],
+        },
+    ]
+}
+
+/// Moments of a uniform box about its centre, m (b² + c²)/12 and cyclic.
+fn solid_box(mass: f64, [a, b, c]: [f64; 3]) -> [f64; 3] {
+    [b * b + c * c, a * a + c * c, a * a + b * b].map(|sum| mass * sum / 12.0)
+}
+
+/// A bar along y and a stem along x that ends on its middle, both solid cylinders of radius 5 mm.
+fn t_handle() -> [f64; 3] {
+    let (density, radius) = (2700.0, 0.005);
+    let (bar, stem) = (0.08, 0.04);
+    let mass = |length: f64| density * core::f64::consts::PI * radius * radius * length;
+    let along = |length: f64| mass(length) * radius * radius / 2.0;
+    let across = |length: f64| mass(length) * (3.0 * radius * radius + length * length) / 12.0;
+    // both turn with the reduced mass about the common centre; their centres are half a stem and a radius apart
+    let distance = radius + stem / 2.0;
+    let apart = mass(bar) * mass(stem) / (mass(bar) + mass(stem)) * distance * distance;
+    [across(bar) + along(stem), along(bar) + across(stem) + apart, across(bar) + across(stem) + apart]
+}
+
+/// Two hydrogen atoms and an oxygen atom: planar, so the third moment is the sum of the others.
+fn water() -> [f64; 3] {
+    const UNIT: f64 = 1.660_539_068_92e-27; // kg, CODATA 2022
+    let (hydrogen, oxygen, bond) = (1.007_825_031_9 * UNIT, 15.994_914_619_6 * UNIT, 95.72e-12);
+    let (sin, cos) = libm::sincos(104.52 / 2.0 * core::f64::consts::PI / 180.0);
+    let (half_width, height) = (bond * sin, bond * cos);
+    let across = 2.0 * hydrogen * half_width * half_width;
+    let along = 2.0 * hydrogen * oxygen / (2.0 * hydrogen + oxygen) * height * height;
+    // axis a joins the hydrogen atoms, b is the symmetry axis
+    [along, across, along + across]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_entry_is_a_valid_body() {
+        assert_eq!(bodies().len(), entries().len());
+    }
+
+    #[test]
+    fn water_has_the_moments_of_its_spectrum() {
+        // h/(8π² c B) of the equilibrium rotational constants is near 1.02, 1.92, 2.94 in 1e-47 kg m²
+        let moments = body("water").unwrap().inertia.principal_moments();
+        for (moment, expected) in moments.into_iter().zip([1.02e-47, 1.92e-47, 2.94e-47]) {
+            approx::assert_relative_eq!(moment, expected, max_relative = 0.01);
+        }
+    }
+}
