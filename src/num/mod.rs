@@ -1,4 +1,14 @@
 //! Numbers: the scalars that every kernel is written over, and functions of them. No physics.
+//!
+//! * [`real`]: the two traits, [`Real`] for explicit kernels and [`Precise`] for what must compare or round;
+//! * [`dd`]: double-double numbers [`Dd`], 106 bits, for constants, references and invariants;
+//! * [`trig`]: sine and cosine in `f64`, the same bits on every CPU;
+//! * [`elliptic`]: Carlson's integrals and Jacobi's functions;
+//! * [`sum`]: compensated sums;
+//! * [`expansion`]: exact sums and products of a few numbers.
+//!
+//! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
+//! same input gives the same bits on every CPU and at every optimisation level.
 
 pub mod dd;
 pub mod elliptic;
@@ -10,3 +20,4 @@ pub mod trig;
 pub use dd::Dd;
 pub use expansion::Expansion;
 pub use real::{Precise, Real};
+pub use sum::Compensated;

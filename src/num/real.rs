@@ -50,6 +50,8 @@ pub trait Precise: Real + PartialOrd {
     fn atan2(self, x: Self) -> Self;
     /// e to the power of `self`.
     fn exp(self) -> Self;
+    /// e to the power of `self`, minus one, without cancellation.
+    fn exp_m1(self) -> Self;
     /// Natural logarithm; NaN of a negative number.
     fn ln(self) -> Self;
 }
@@ -91,6 +93,9 @@ impl Precise for f64 {
     }
     fn exp(self) -> Self {
         libm::exp(self)
+    }
+    fn exp_m1(self) -> Self {
+        libm::expm1(self)
     }
     fn ln(self) -> Self {
         libm::log(self)

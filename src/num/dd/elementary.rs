@@ -1,0 +1,145 @@
+//! Sine, cosine, arctangent, exponential and logarithm of double-double numbers.
+//!
+//! Each follows one plan: reduce the argument exactly, sum a Taylor polynomial whose last terms need only
+//! `f64`, or start from the `f64` function and correct it once through its inverse.
+
+use super::{Dd, two_prod};
+use crate::num::Expansion;
+use crate::num::real::Real;
+
+/// Coefficients that matter: 0.79ⁿ/n! drops below 2⁻¹⁰⁷ at n = 28.
+const DEGREE: usize = 29;
+
+/// From this degree on a term of the series is so small beside the first that an `f64` carries it.
+const LIGHT: usize = 17;
+
+/// 1/n!; every factorial up to 29! is exact in 106 bits.
+const INVERSE_FACTORIAL: [Dd; DEGREE + 1] = {
+    let mut table = [Dd::ONE; DEGREE + 1];
+    let mut factorial = Dd::ONE;
+    let mut n = 1;
+    while n <= DEGREE {
+        factorial = factorial.times_f64(n as f64);
+        table[n] = Dd::ONE.over(factorial);
+        n += 1;
+    }
+    table
+};
+
+/// π/2 in 318 bits.
+const HALF_PI: [f64; 6] = [
+    1.5707963267948966,
+    6.123233995736766e-17,
+    -1.4973849048591698e-33,
+    5.562271104316826e-50,
+    2.836115989820158e-66,
+    8.724931080676243e-84,
+];
+
+/// ln 2 beyond [`Dd::LN_2`].
+const LN_2_TAIL: f64 = 5.707708438416212e-34;
+
+/// Σ signⁿ xⁿ/(first + n·stride)! for all n up to [`DEGREE`].
+#[inline]
+fn series(x: Dd, first: usize, stride: usize) -> Dd {
+    let mut n = first + (DEGREE - first) / stride * stride;
+    let mut light = 0.0;
+    while n >= LIGHT {
+        light = INVERSE_FACTORIAL[n].hi + x.hi * light;
+        n -= stride;
+    }
+    let mut sum = Dd::of(light);
+    while n > first {
+        sum = INVERSE_FACTORIAL[n] + x * sum;
+        n -= stride;
+    }
+    INVERSE_FACTORIAL[first] + x * sum
+}
+
+/// Sine and cosine; undefined from 2¹⁰⁰ on, where neighbouring numbers are more than 10⁻² apart.
+pub(super) fn sin_cos(x: Dd) -> (Dd, Dd) {
+    if x.hi.abs() <= core::f64::consts::FRAC_PI_4 {
+        return sin_cos_kernel(x);
+    }
+    if !(x.hi.abs() < 1.2676506002282294e30) {
+        return (Dd::of(f64::NAN), Dd::of(f64::NAN));
+    }
+    let quarters = (x / Dd::FRAC_PI_2 + 0.5).floor();
+    let (s, c) = sin_cos_kernel(minus_half_pi(x, quarters));
+    match quarters.rem_euclid(4.0) {
+        0.0 => (s, c),
+        1.0 => (c, -s),
+        2.0 => (-s, -c),
+        _ => (-c, s),
+    }
+}
+
+/// x − n π/2, rounded once: it may be 10³² times smaller than x.
+fn minus_half_pi(x: Dd, n: Dd) -> Dd {
+    let words = HALF_PI.iter().flat_map(|&word| [two_prod(-n.lo, word), two_prod(-n.hi, word)]);
+    let terms = words.flat_map(|(product, error)| [product, error]).filter(|&term| term != 0.0);
+    Expansion::sum([x.hi, x.lo].into_iter().chain(terms)).to_dd()
+}
+
+fn sin_cos_kernel(x: Dd) -> (Dd, Dd) {
+    if x.hi == 0.0 {
+        return (x, Dd::ONE);
+    }
+    let minus_square = -(x * x);
+    (x + x * minus_square * series(minus_square, 3, 2), minus_square * series(minus_square, 2, 2) + 1.0)
+}
+
+/// The `f64` angle, turned to the x-axis and corrected by the small angle that is left.
+pub(super) fn atan2(y: Dd, x: Dd) -> Dd {
+    let angle = libm::atan2(y.hi, x.hi);
+    if angle.is_nan() {
+        return Dd::of(angle);
+    }
+    if y.hi == 0.0 || x.hi == 0.0 || y.hi.is_infinite() || x.hi.is_infinite() {
+        return Dd::FRAC_PI_4 * (angle / core::f64::consts::FRAC_PI_4).round();
+    }
+    let exponent = libm::ilogb(y.hi.abs().max(x.hi.abs()));
+    let (y, x) = (y.scaled(-exponent), x.scaled(-exponent));
+    let (s, c) = Dd::of(angle).sin_cos();
+    let rest = y * c - x * s;
+    Dd::sum(angle, rest.hi / (x.hi * c.hi + y.hi * s.hi))
+}
+
+pub(super) fn exp(x: Dd) -> Dd {
+    let (n, r) = match reduced(x) {
+        Ok(reduced) => reduced,
+        Err(limit) => return Dd::of(limit),
+    };
+    (r * series(r, 1, 1) + 1.0).scaled(n)
+}
+
+pub(super) fn exp_m1(x: Dd) -> Dd {
+    if x.hi.abs() < 0.35 {
+        return if x.hi == 0.0 { x } else { x * series(x, 1, 1) };
+    }
+    exp(x) - 1.0
+}
+
+/// (n, x − n ln 2) with a rest of at most ½ ln 2, or the limit of the exponential at ±∞.
+fn reduced(x: Dd) -> Result<(i32, Dd), f64> {
+    let value = libm::exp(x.hi);
+    if value == 0.0 || !value.is_finite() {
+        return Err(value);
+    }
+    let n = (x.hi / core::f64::consts::LN_2).round();
+    let rest = x - Dd::product(n, Dd::LN_2.hi) - Dd::product(n, Dd::LN_2.lo) - n * LN_2_TAIL;
+    Ok((n as i32, rest))
+}
+
+/// ln x = n ln 2 + y + ln(m e^−y) with x = 2ⁿ m and y the `f64` logarithm of m; near 1 nothing cancels.
+pub(super) fn ln(x: Dd) -> Dd {
+    if !(x.hi > 0.0 && x.hi.is_finite()) {
+        return Dd::of(libm::log(x.hi));
+    }
+    let n = libm::ilogb(x.hi * core::f64::consts::FRAC_1_SQRT_2) + 1;
+    let m = x.scaled(-n);
+    let y = libm::log(m.hi);
+    let rest = (m - 1.0) + m * exp_m1(Dd::of(-y));
+    let log = Dd::sum(y, rest.hi - 0.5 * rest.hi * rest.hi);
+    Dd::LN_2 * f64::from(n) + log
+}
