@@ -1,0 +1,42 @@
+//! Error growth against the number of steps: largest errors of the invariants, and attitude error against the exact
+//! motion of the same start. Prints CSV; `cargo bench --bench drift -- 1000000000` takes as many steps.
+
+#![allow(clippy::expect_used)]
+
+use polhode::body::{Body, State};
+use polhode::catalog;
+use polhode::flow::FreeMotion;
+use polhode::method::catalogue;
+use polhode::num::Dd;
+use polhode::rotation::rotation_angle;
+use polhode::run::{Run, RunError, Schedule};
+
+fn main() {
+    let total = std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(1_000_000);
+    let dyadic = catalog::body("dyadic").expect("in the catalogue");
+    let body = Body::free(dyadic.inertia);
+    let start = body.state(Default::default(), dyadic.omega_body.into()).expect("a valid start");
+    println!("method,steps,energy_error,momentum_error,momentum_vector_error,attitude_error,status");
+    for method in catalogue() {
+        let mut run = Run::new(method.as_ref(), &body, &start, 1.0 / 64.0).expect("a valid run");
+        let exact = FreeMotion::new(&body, State::of(run.start()));
+        for sample in run.samples(Schedule::logarithmic(total, 1)) {
+            let (sample, status) = match sample {
+                Ok(sample) => (sample, "ok"),
+                Err(RunError::Diverged { last } | RunError::Unsolved { last, .. }) => (*last, "diverged"),
+                Err(error) => unreachable!("the run was valid: {error}"),
+            };
+            let attitude = State::<Dd>::of(sample.inside).attitude;
+            let error = rotation_angle(attitude, exact.inside_at::<Dd>(sample.elapsed).attitude).hi();
+            let worst = sample.worst;
+            println!(
+                "{},{},{:e},{:e},{:e},{error:e},{status}",
+                method.name(),
+                sample.steps,
+                worst.energy,
+                worst.momentum,
+                worst.momentum_vector
+            );
+        }
+    }
+}
