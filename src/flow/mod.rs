@@ -1,9 +1,10 @@
 //! Exact flows: the atoms that splitting methods are composed of, and the references they are judged by.
 
+mod circulation;
 mod free_body;
 mod turn;
 
-pub use free_body::{FreeMotion, TimeError};
+pub use free_body::{FreeBody, FreeMotion, TimeError};
 pub use turn::{AxisTurn, turn};
 
 use crate::body::State;
