@@ -76,3 +76,22 @@ fn double_double_states_are_exact_to_conditioning() {
         assert!(momentum.0 < 1e-20, "momentum error {:.2e}: {}", momentum.0, momentum.1);
     }
 }
+
+#[test]
+fn flips_are_counted_as_the_momentum_changes_sign() {
+    let inertia = Inertia::from_moments([1.0, 2.0, 3.0]).unwrap();
+    for omega in [[0.4, 1.0, -0.3], [-0.4, -1.0, 0.3], [0.01, 1.0, 0.02], [1.0, 0.5, 0.1]] {
+        let motion = FreeMotion::from_omega(&inertia, Default::default(), omega.into()).unwrap();
+        for direction in [1.0, -1.0] {
+            let (mut before, mut count) = (omega[1] > 0.0, 0);
+            for n in 1..=4000 {
+                let t = direction * 0.05 * f64::from(n);
+                let now = motion.at(t).unwrap().momentum_body[1] > 0.0;
+                count += u64::from(now != before);
+                before = now;
+                assert_eq!(motion.flips(Dd::from(t)), count, "omega {omega:?}, t = {t}");
+            }
+            assert!(count > 10);
+        }
+    }
+}

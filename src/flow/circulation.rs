@@ -144,6 +144,22 @@ impl<S: Precise> Circulation<S> {
         (self.phase + self.rate * t).magnitude() < 1.5
     }
 
+    /// How often m_b changes sign between the start and `t`.
+    pub(super) fn flips(&self, t: S) -> u64 {
+        let (start, end) = (self.phase, self.phase + self.rate * t);
+        match self.period {
+            // sn is zero at the multiples of 2K
+            Some(Period { half, .. }) => {
+                let floor = |x: S| {
+                    let nearest = (x / half).round();
+                    if nearest * half > x { nearest - S::of(1.0) } else { nearest }
+                };
+                (floor(end) - floor(start)).magnitude() as u64
+            }
+            None => u64::from((start < S::of(0.0)) != (end < S::of(0.0))),
+        }
+    }
+
     /// The turn since the start and the momentum at time `t`, evaluated in `T`; phases are reduced in `S`.
     pub(super) fn at<T: Precise>(&self, t: S) -> (Quat<T>, Vec3<T>) {
         let u = self.phase + self.rate * t;

@@ -99,6 +99,14 @@ impl FreeMotion {
         Ok(self.body.leave(&self.inside_at::<f64>(Dd::from(t))))
     }
 
+    /// How often the momentum along the axis of the middle moment changes sign between the start and time `t` (s).
+    pub fn flips(&self, t: Dd) -> u64 {
+        match &self.kind {
+            Kind::Circulating(polhode) => polhode.flips(t),
+            Kind::Rest | Kind::Steady { .. } => 0,
+        }
+    }
+
     /// The state at time `t` as kernels see it, in `f64` or double-double; the phases are reduced in
     /// double-double in either case. The quaternion is the continuous lift from the start: it does not jump from
     /// `q` to `−q`.

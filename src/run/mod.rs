@@ -65,6 +65,8 @@ pub struct Sample {
     pub energy: f64,
     /// |m|, kg m²/s.
     pub momentum: f64,
+    /// (E − E₀) / E₀ of this state, with its sign.
+    pub energy_change: f64,
     /// Errors of this state.
     pub errors: Errors,
     /// The largest errors over every step so far.
@@ -174,6 +176,7 @@ impl Run {
             omega_body: self.body.omega_body(&self.state),
             energy: invariants.energy.hi() * scale,
             momentum: invariants.momentum_squared.sqrt().hi() * scale,
+            energy_change: self.monitor.energy_change(&self.state),
             errors: self.monitor.errors(&self.state),
             worst: self.monitor.worst(),
             flips: self.monitor.flips(),
