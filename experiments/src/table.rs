@@ -116,7 +116,7 @@ impl Column {
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     /// File name without ending.
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     /// What the rows say, one sentence.
     pub(crate) caption: String,
     /// The quantities.
@@ -131,8 +131,28 @@ macro_rules! row {
 pub(crate) use row;
 
 impl Table {
-    pub(crate) fn new(name: &'static str, caption: impl Into<String>, columns: Vec<Column>) -> Self {
-        Self { name, caption: caption.into(), columns, rows: Vec::new() }
+    pub(crate) fn new(name: impl Into<String>, caption: impl Into<String>, columns: Vec<Column>) -> Self {
+        Self { name: name.into(), caption: caption.into(), columns, rows: Vec::new() }
+    }
+
+    /// The rows that `keep` chooses, for readers of documents; the columns named in `hide` are left out there.
+    pub(crate) fn view(
+        &self,
+        name: impl Into<String>,
+        caption: impl Into<String>,
+        hide: &[&str],
+        keep: impl Fn(&[Cell]) -> bool,
+    ) -> Self {
+        let shown = |column: &Column| Column {
+            shown: column.shown && !hide.contains(&column.name),
+            ..column.clone()
+        };
+        Self {
+            name: name.into(),
+            caption: caption.into(),
+            columns: self.columns.iter().map(shown).collect(),
+            rows: self.rows.iter().filter(|row| keep(row)).cloned().collect(),
+        }
     }
 
     /// Adds a row; a short one ends in empty cells.

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::body::{Body, State, StateError};
 use crate::method::{Advance, AnyMethod, StepError};
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Precise};
 use crate::observe::{Errors, Invariants, Monitor};
 
 /// An implicit solve that ends further than this from its equation, relative, is no solution. Rounding alone
@@ -175,7 +175,7 @@ impl Run {
             inside: self.state,
             omega_body: self.body.omega_body(&self.state),
             energy: invariants.energy.hi() * scale,
-            momentum: invariants.momentum_squared.sqrt().hi() * scale,
+            momentum: invariants.momentum().hi() * scale,
             energy_change: self.monitor.energy_change(&self.state),
             errors: self.monitor.errors(&self.state),
             worst: self.monitor.worst(),
