@@ -68,7 +68,7 @@ fn columns() -> Vec<Column> {
     vec![
         Column::new("body", "", "name in the catalogue of bodies"),
         Column::new("method", "", "name in the catalogue of methods"),
-        Column::new("h", "s", "step").heading("h (s)").latex("$h$ (s)").digits(2),
+        Column::new("h", "s", "step").latex("$h$").digits(2),
         Column::new("angle_per_step", "rad", "h times the angular velocity at the start").hidden(),
         Column::new("steps", "", "steps taken").hidden(),
         Column::new("energy_error", "", "max |E - E0| / |E0| over every step").heading("energy").digits(2),
