@@ -329,7 +329,7 @@ impl Precise for Dd {
         if self.hi.is_sign_negative() { -self } else { self }
     }
     fn round(self) -> Self {
-        let size = Precise::abs(self);
+        let size = self.abs();
         let below = size.floor();
         let nearest = if size - below < Dd::exact(0.5) { below } else { below + 1.0 };
         if self.hi < 0.0 { -nearest } else { nearest }

@@ -4,12 +4,14 @@
 //! * [`dd`]: double-double numbers [`Dd`], 106 bits, for constants, references and invariants;
 //! * [`trig`]: sine and cosine in `f64`, the same bits on every CPU;
 //! * [`sum`]: compensated sums;
-//! * [`expansion`]: exact sums and products of a few numbers.
+//! * [`expansion`]: exact sums and products of a few numbers;
+//! * [`elliptic`]: elliptic integrals and functions.
 //!
 //! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
 //! same input gives the same bits on every CPU and at every optimisation level.
 
 pub mod dd;
+pub mod elliptic;
 pub mod expansion;
 pub mod real;
 pub mod sum;

@@ -35,7 +35,7 @@ const HALF_PI: [f64; 4] =
 /// Adding and subtracting it rounds to an integer, whose last bits stand last in the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
 
-/// Sine and cosine of `x` radians; NaN unless `x` is finite.
+/// Sine and cosine of `x` radians; NaN unless `x` is finite. The sine of −0 is +0.
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() <= FRAC_PI_4 { kernel::<false>(x, 0.0) } else { reduced(x) }
@@ -43,7 +43,7 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
 
 #[inline(never)]
 fn reduced(x: f64) -> (f64, f64) {
-    if !(x.abs() < 1_048_576.0) {
+    if x.is_nan() || x.abs() >= 1_048_576.0 {
         return libm::sincos(x);
     }
     let shifted = x * FRAC_2_PI + ROUNDER;

@@ -28,7 +28,7 @@ const INVERSE_FACTORIAL: [Dd; DEGREE + 1] = {
 
 /// π/2 in 318 bits.
 const HALF_PI: [f64; 6] = [
-    1.5707963267948966,
+    core::f64::consts::FRAC_PI_2,
     6.123233995736766e-17,
     -1.4973849048591698e-33,
     5.562271104316826e-50,
@@ -61,7 +61,7 @@ pub(super) fn sin_cos(x: Dd) -> (Dd, Dd) {
     if x.hi.abs() <= core::f64::consts::FRAC_PI_4 {
         return sin_cos_kernel(x);
     }
-    if !(x.hi.abs() < 1.2676506002282294e30) {
+    if x.hi.is_nan() || x.hi.abs() >= 1.2676506002282294e30 {
         return (Dd::of(f64::NAN), Dd::of(f64::NAN));
     }
     let quarters = (x / Dd::FRAC_PI_2 + 0.5).floor();
@@ -140,6 +140,6 @@ pub(super) fn ln(x: Dd) -> Dd {
     let m = x.scaled(-n);
     let y = libm::log(m.hi);
     let rest = (m - 1.0) + m * exp_m1(Dd::of(-y));
-    let log = Dd::sum(y, rest.hi - 0.5 * rest.hi * rest.hi);
+    let log = rest - Dd::product(rest.hi, 0.5 * rest.hi) + y;
     Dd::LN_2 * f64::from(n) + log
 }
