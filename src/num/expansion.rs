@@ -9,10 +9,10 @@
 //!
 //! ```
 //! use polhode::num::Expansion;
-//! let [a, b, c, d] = [0.1, 0.3, 0.2, 0.15].map(Expansion::from);
+//! let [a, b, c, d] = [0.3, 0.7, 0.21, 1.0].map(Expansion::from);
 //! let determinant = &(&a * &b) - &(&c * &d);
-//! assert_eq!(0.1 * 0.3 - 0.2 * 0.15, 0.0);
-//! assert_eq!(determinant.to_dd().hi(), -5.551115123125793e-19);
+//! assert_eq!(0.3 * 0.7 - 0.21 * 1.0, 0.0);
+//! assert_eq!(determinant.to_dd().hi(), -1.3322676295501878e-17);
 //! ```
 //!
 //! Source: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric
