@@ -41,19 +41,19 @@ const LN_2_TAIL: f64 = 5.707708438416212e-34;
 
 /// Σ signⁿ xⁿ/(first + n·stride)! for all n up to [`DEGREE`].
 #[inline]
-fn series(x: Dd, first: usize, stride: usize) -> Dd {
-    let mut n = first + (DEGREE - first) / stride * stride;
+fn series<const FIRST: usize, const STRIDE: usize>(x: Dd) -> Dd {
+    let mut n = FIRST + (DEGREE - FIRST) / STRIDE * STRIDE;
     let mut light = 0.0;
     while n >= LIGHT {
         light = INVERSE_FACTORIAL[n].hi + x.hi * light;
-        n -= stride;
+        n -= STRIDE;
     }
     let mut sum = Dd::of(light);
-    while n > first {
+    while n > FIRST {
         sum = INVERSE_FACTORIAL[n] + x * sum;
-        n -= stride;
+        n -= STRIDE;
     }
-    INVERSE_FACTORIAL[first] + x * sum
+    INVERSE_FACTORIAL[FIRST] + x * sum
 }
 
 /// Sine and cosine; undefined from 2¹⁰⁰ on, where neighbouring numbers are more than 10⁻² apart.
@@ -86,7 +86,7 @@ fn sin_cos_kernel(x: Dd) -> (Dd, Dd) {
         return (x, Dd::ONE);
     }
     let minus_square = -(x * x);
-    (x + x * minus_square * series(minus_square, 3, 2), minus_square * series(minus_square, 2, 2) + 1.0)
+    (x + x * minus_square * series::<3, 2>(minus_square), minus_square * series::<2, 2>(minus_square) + 1.0)
 }
 
 /// The `f64` angle, turned to the x-axis and corrected by the small angle that is left.
@@ -110,12 +110,12 @@ pub(super) fn exp(x: Dd) -> Dd {
         Ok(reduced) => reduced,
         Err(limit) => return Dd::of(limit),
     };
-    (r * series(r, 1, 1) + 1.0).scaled(n)
+    (r * series::<1, 1>(r) + 1.0).scaled(n)
 }
 
 pub(super) fn exp_m1(x: Dd) -> Dd {
     if x.hi.abs() < 0.35 {
-        return if x.hi == 0.0 { x } else { x * series(x, 1, 1) };
+        return if x.hi == 0.0 { x } else { x * series::<1, 1>(x) };
     }
     exp(x) - 1.0
 }
