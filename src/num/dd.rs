@@ -156,6 +156,13 @@ impl Dd {
         Dd::quick(s, e + f)
     }
 
+    /// The sum with a number smaller than half of `self`, whose error then is no larger than in `+`.
+    #[inline]
+    const fn plus_smaller(self, b: Dd) -> Dd {
+        let (s, e) = quick_two_sum(self.hi, b.hi);
+        Dd::quick(s, e + (self.lo + b.lo))
+    }
+
     #[inline]
     const fn plus_f64(self, b: f64) -> Dd {
         let (s, e) = two_sum(self.hi, b);

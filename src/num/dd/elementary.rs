@@ -50,10 +50,10 @@ fn series<const FIRST: usize, const STRIDE: usize>(x: Dd) -> Dd {
     }
     let mut sum = Dd::of(light);
     while n > FIRST {
-        sum = INVERSE_FACTORIAL[n] + x * sum;
+        sum = INVERSE_FACTORIAL[n].plus_smaller(x * sum);
         n -= STRIDE;
     }
-    INVERSE_FACTORIAL[FIRST] + x * sum
+    INVERSE_FACTORIAL[FIRST].plus_smaller(x * sum)
 }
 
 /// Sine and cosine; undefined from 2¹⁰⁰ on, where neighbouring numbers are more than 10⁻² apart.
@@ -74,8 +74,13 @@ pub(super) fn sin_cos(x: Dd) -> (Dd, Dd) {
     }
 }
 
-/// x − n π/2, rounded once: it may be 10³² times smaller than x.
+/// x − n π/2. Next to a zero, where it may be 10³² times smaller than x, the difference is formed exactly.
 fn minus_half_pi(x: Dd, n: Dd) -> Dd {
+    let [first, second, third, ..] = HALF_PI;
+    let rest = x - Dd::product(n.hi, first) - Dd::product(n.hi, second) - n.hi * third;
+    if n.lo == 0.0 && rest.hi.abs() > 1e-12 * n.hi.abs() {
+        return rest;
+    }
     let words = HALF_PI.iter().flat_map(|&word| [two_prod(-n.lo, word), two_prod(-n.hi, word)]);
     let terms = words.flat_map(|(product, error)| [product, error]).filter(|&term| term != 0.0);
     Expansion::sum([x.hi, x.lo].into_iter().chain(terms)).to_dd()
