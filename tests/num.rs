@@ -183,35 +183,26 @@ fn trig_errors() -> Worst {
 
 /// The documentation's tables: file, text.
 fn accuracy_tables() -> [(&'static str, String); 3] {
-    let note = "Bits do not depend on the machine, so neither do these figures; `cargo test --test num` measures them again\nand compares.";
+    let again = "The figures are the same on every machine; `cargo test --test num`\nmeasures them again.";
     let dd = dd_errors().table("| function | arguments | largest relative error, 1e-32 |");
     let trig = trig_errors().table("| x | sin, ulp | cos, ulp |");
     let integrals = integral_errors().table("| integral | arguments | `f64`, 1e-16 | `Dd`, 1e-32 |");
     let functions = function_errors().table(
         "| by | function | arguments | `f64`, 1e-16 | … over condition | `Dd`, 1e-32 | … over condition |",
     );
-    [
-        (
-            "dd",
-            format!(
-                "# Measured accuracy\n\nAgainst mpmath with 150 digits, at the arguments of tests/data/num/dd.csv. {note}\n\n{dd}"
-            ),
-        ),
-        (
-            "trig",
-            format!(
-                "# Measured accuracy\n\nAgainst `Dd`, at 50 000 random arguments in each range. {note}\n\n{trig}"
-            ),
-        ),
-        (
-            "elliptic",
-            format!(
-                "# Measured accuracy\n\nLargest relative errors against mpmath with 150 digits, at the arguments of\ntests/data/num/elliptic.csv. {note}\n\n{integrals}\n\
-                 Functions of u: where u f'(u)/f(u), the condition, is large, the rounding of u alone costs that many units;\n\
-                 the columns *over condition* are divided by one plus it.\n\n{functions}"
-            ),
-        ),
-    ]
+    let dd = format!(
+        "Against mpmath with 150 digits, at the arguments of tests/data/num/dd.csv; 0.00 means the nearest number\n\
+         everywhere. {again}\n\n{dd}"
+    );
+    let trig = format!("Against `Dd`, at 50 000 random arguments in each range. {again}\n\n{trig}");
+    let elliptic = format!(
+        "Largest relative errors against mpmath with 150 digits, at the arguments of\n\
+         tests/data/num/elliptic.csv. {again}\n\n{integrals}\n\
+         Functions of u: where u f'(u)/f(u), the condition, is large, the rounding of u alone costs that many units;\n\
+         the columns *over condition* are divided by one plus it.\n\n{functions}"
+    );
+    [("dd", dd), ("trig", trig), ("elliptic", elliptic)]
+        .map(|(name, text)| (name, format!("# Measured accuracy\n\n{text}")))
 }
 
 #[test]
@@ -236,10 +227,10 @@ fn write_accuracy_tables() {
 
 #[test]
 fn errors_are_a_few_units_in_the_last_place() {
-    dd_errors().assert_below(&[5.0]);
+    dd_errors().assert_below(&[7.0]);
     trig_errors().assert_below(&[0.8, 0.8]);
-    integral_errors().assert_below(&[6.0, 7.0]);
-    function_errors().assert_below(&[f64::INFINITY, 6.0, f64::INFINITY, 6.0]);
+    integral_errors().assert_below(&[9.0, 9.0]);
+    function_errors().assert_below(&[f64::INFINITY, 6.5, f64::INFINITY, 6.5]);
 }
 
 // -------------------------------------------------------------------------------- double-double numbers

@@ -4,17 +4,19 @@
 //! |---|---|
 //! | `+` `−` of two `Dd`, also when they cancel | 3 · 2⁻¹⁰⁶ |
 //! | `×` | 7 · 2⁻¹⁰⁶ |
-//! | `÷` | 10 · 2⁻¹⁰⁶ |
-//! | `sqrt` | 4 · 2⁻¹⁰⁶ |
+//! | `÷` | 4 · 2⁻¹⁰⁶ |
+//! | `sqrt` | 25/8 · 2⁻¹⁰⁶ |
 //!
-//! The bounds are those of M. Joldes, J.-M. Muller, V. Popescu, Tight and rigorous error bounds for basic
-//! building blocks of double-word arithmetic, ACM Trans. Math. Softw. 44 (2017) 15res (algorithms 6, 11,
-//! 17 and, for the root, V. Lefèvre et al., ACM Trans. Math. Softw. 49 (2023) 1); measured figures follow.
+//! Sources: M. Joldes, J.-M. Muller, V. Popescu, Tight and rigorous error bounds for basic building blocks of
+//! double-word arithmetic, ACM Trans. Math. Softw. 44 (2017) 15res, algorithms 6 (sum), 10 (product), 4 and 7
+//! (with an `f64`); V. Lefèvre, N. Louvet, J.-M. Muller, J. Picot, L. Rideau, Accurate calculation of Euclidean
+//! norms using double-word arithmetic, ACM Trans. Math. Softw. 49 (2023) 1 (root). The quotient is summed from
+//! three `f64` quotients; its bound follows from those of the product and the sum with an `f64`.
 //!
-//! They hold while the trailing parts neither under- nor overflow: for results between 2⁻⁹⁶⁸ and 2¹⁰²³.
-//! Below, the trailing part fades until a `Dd` is as precise as an `f64`; above, the result is ±∞. Infinite
-//! and undefined results have a zero trailing part and follow the rules of `f64`.
-//!
+//! The bounds hold while no trailing part under- or overflows: for arguments and results between 2⁻⁹⁶⁸ and
+//! 2¹⁰²³. Below, the trailing part fades until a `Dd` is as precise as an `f64`; above, results turn to ±∞.
+//! Infinite and undefined results have a zero trailing part and follow the rules of `f64`; a zero keeps its
+//! sign, except that a sum that is zero is +0.
 #![doc = include_str!("accuracy/dd.md")]
 
 mod elementary;

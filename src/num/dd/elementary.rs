@@ -36,10 +36,13 @@ const HALF_PI: [f64; 6] = [
     8.724931080676243e-84,
 ];
 
+/// 2¹⁰⁰: up to here the number of quarter turns is an exact `Dd`.
+const FAR: f64 = (1u128 << 100) as f64;
+
 /// ln 2 beyond [`Dd::LN_2`].
 const LN_2_TAIL: f64 = 5.707708438416212e-34;
 
-/// Σ signⁿ xⁿ/(first + n·stride)! for all n up to [`DEGREE`].
+/// Σ xᵏ/(FIRST + k STRIDE)!, k = 0, 1, …, up to [`DEGREE`].
 #[inline]
 fn series<const FIRST: usize, const STRIDE: usize>(x: Dd) -> Dd {
     let mut n = FIRST + (DEGREE - FIRST) / STRIDE * STRIDE;
@@ -56,12 +59,12 @@ fn series<const FIRST: usize, const STRIDE: usize>(x: Dd) -> Dd {
     INVERSE_FACTORIAL[FIRST].plus_smaller(x * sum)
 }
 
-/// Sine and cosine; undefined from 2¹⁰⁰ on, where neighbouring numbers are more than 10⁻² apart.
+/// Sine and cosine; undefined from [`FAR`] on, where neighbouring numbers are more than 10⁻² apart.
 pub(super) fn sin_cos(x: Dd) -> (Dd, Dd) {
     if x.hi.abs() <= core::f64::consts::FRAC_PI_4 {
         return sin_cos_kernel(x);
     }
-    if x.hi.is_nan() || x.hi.abs() >= 1.2676506002282294e30 {
+    if x.hi.is_nan() || x.hi.abs() >= FAR {
         return (Dd::of(f64::NAN), Dd::of(f64::NAN));
     }
     let quarters = (x / Dd::FRAC_PI_2 + 0.5).floor();

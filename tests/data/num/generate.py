@@ -59,7 +59,7 @@ def dd_rows():
         }[function]()
         return [function, regime, *a, *b, result]
 
-    for _ in range(15):
+    for _ in range(30):
         a, b = near(either(1e-3, 1e3)), near(either(1e-3, 1e3))
         yield row("add", "sizes 1e-3 to 1e3", a, b)
         for function in ("mul", "div"):
@@ -67,7 +67,7 @@ def dd_rows():
             yield row(function, "sizes 1e-140 to 1e140", near(either(1e-140, 1e140)), near(either(1e-140, 1e140)))
         yield row("add", "cancelling", a, near(-a[0] * (1 + 2.0 ** RANDOM.randint(-60, -20))))
         yield row("sqrt", "1e-280 to 1e300", near(abs(either(1e-280, 1e300))))
-    for _ in range(12):
+    for _ in range(24):
         for function in ("sin", "cos"):
             yield row(function, "below π/4", near(either(1e-12, 0.78)))
             yield row(function, "to 100", near(either(0.8, 100)))
@@ -131,13 +131,13 @@ def carlson_rows():
         return abs(either(low, high))
 
     for regime, low, high in [("sizes 1e-1 to 1e1", 1e-1, 1e1), ("sizes 1e-20 to 1e20", 1e-20, 1e20)]:
-        for _ in range(10):
+        for _ in range(20):
             x, y, z, p = (size(low, high) for _ in range(4))
             yield row("r_f", regime, x, y, z)
             yield row("r_c", regime, x, y)
             yield row("r_j", regime, x, y, z, p)
             yield row("r_d", regime, x, y, z)
-    for _ in range(6):
+    for _ in range(12):
         m1, p = size(1e-40, 1), 1 + size(1e-6, 1e6)
         yield row("r_f", "complete (0 m1 1)", 0, m1, 1)
         yield row("r_d", "complete (0 m1 1)", 0, m1, 1)
