@@ -7,7 +7,7 @@
 
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_4};
 
-use super::dd::{quick_two_sum, two_sum};
+use super::dd::two_sum;
 
 // Interpolation on [0, (π/4)²] of (sin x − x)/x³ and (cos x − 1 + x²/2)/x⁴ in powers of x², made by
 // tests/data/num/kernel.py; the errors left in sin x / x and cos x are below 2⁻⁵⁸.
@@ -50,8 +50,7 @@ fn reduced(x: f64) -> (f64, f64) {
     let n = shifted - ROUNDER;
     let (r, e1) = two_sum(x - n * HALF_PI[0], -n * HALF_PI[1]);
     let (r, e2) = two_sum(r, -n * HALF_PI[2]);
-    let (r, tail) = quick_two_sum(r, (e1 + e2) - n * HALF_PI[3]);
-    let (s, c) = kernel::<true>(r, tail);
+    let (s, c) = kernel::<true>(r, (e1 + e2) - n * HALF_PI[3]);
     match shifted.to_bits() & 3 {
         0 => (s, c),
         1 => (c, -s),
@@ -60,7 +59,7 @@ fn reduced(x: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine of x + tail for |x| ≤ π/4, the tail below one unit in its last place.
+/// Sine and cosine of x + tail for |x| ≤ π/4, the tail no more than a few units in its last place.
 #[inline(always)]
 fn kernel<const TAIL: bool>(x: f64, tail: f64) -> (f64, f64) {
     let z = x * x;

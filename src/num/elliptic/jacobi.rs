@@ -17,13 +17,13 @@ pub struct Modulus<S> {
 }
 
 impl<S: Precise> Modulus<S> {
-    /// The modulus of the complementary parameter m1 in [0, 1]; its readings are NaN outside.
+    /// The modulus of the complementary parameter m1 ≥ 0; its readings are NaN for a negative one.
     pub fn new(m1: S) -> Self {
         let mut ladder = [(S::of(1.0), m1.sqrt()); STEPS];
         let mut steps = 1;
         while steps < STEPS {
             let (a, b) = ladder[steps - 1];
-            if (a - b).to_f64() <= S::ROUNDOFF.sqrt() * a.to_f64() {
+            if (a - b).magnitude() <= S::ROUNDOFF.sqrt() * a.magnitude() {
                 break;
             }
             ladder[steps] = ((a + b) * S::of(0.5), (a * b).sqrt());
