@@ -190,8 +190,9 @@ impl Dd {
         }
         let r = self.plus(b.times_f64(q).negated());
         let q2 = r.hi / b.hi;
-        let r = r.plus(b.times_f64(q2).negated());
-        Dd::quick(q, q2).plus_f64(r.hi / b.hi)
+        let (p, e) = two_prod(b.hi, q2);
+        let r = ((r.hi - p) - e) + (r.lo - b.lo * q2);
+        Dd::quick(q, q2).plus_f64(r / b.hi)
     }
 }
 

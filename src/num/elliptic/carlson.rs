@@ -20,11 +20,11 @@ fn together<S: Precise, const N: usize>(mean: f64, arguments: [S; N]) -> bool {
     !arguments.iter().any(|x| (mean - x.to_f64()).abs() > limit)
 }
 
-/// Σ coefficientₖ termₖ / denominator.
-fn series<S: Precise, const N: usize>(denominator: f64, terms: [(f64, S); N]) -> S {
-    let sum =
-        terms.iter().rev().fold(S::of(0.0), |sum, &(coefficient, term)| sum + S::of(coefficient) * term);
-    sum / S::of(denominator)
+/// (denominator + Σ coefficientₖ termₖ) / (denominator · scale).
+fn series<S: Precise, const N: usize>(denominator: f64, terms: [(f64, S); N], scale: S) -> S {
+    let add = |sum: S, &(coefficient, term): &(f64, S)| sum + S::of(coefficient) * term;
+    let sum = S::of(denominator) + terms.iter().rev().fold(S::of(0.0), add);
+    sum / (S::of(denominator) * scale)
 }
 
 /// R_F(x, y, z) = ½ ∫₀^∞ dt / √((t+x)(t+y)(t+z)) for x, y, z ≥ 0; infinite when two of them are zero.
@@ -42,10 +42,9 @@ pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
     let (x, y) = ((mean - x) / mean, (mean - y) / mean);
     let z = -(x + y);
     let (e2, e3) = (x * y - z * z, x * y * z);
-    let sum = series(
+    series(
         240_240.0,
         [
-            (240_240.0, S::of(1.0)),
             (-24_024.0, e2),
             (17_160.0, e3),
             (10_010.0, e2 * e2),
@@ -54,8 +53,8 @@ pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
             (-5_775.0, e2 * e2 * e2),
             (15_015.0, e2 * e2 * e3),
         ],
-    );
-    sum / mean.sqrt()
+        mean.sqrt(),
+    )
 }
 
 /// R_C(x, y) = R_F(x, y, y) for x ≥ 0 and y > 0; infinite at y = 0.
@@ -70,10 +69,9 @@ pub fn r_c<S: Precise>(mut x: S, mut y: S) -> S {
     let mean = (x + y + y) / S::of(3.0);
     let s = (y - mean) / mean;
     let (s2, s3) = (s * s, s * s * s);
-    let sum = series(
+    series(
         80_080.0,
         [
-            (80_080.0, S::of(1.0)),
             (24_024.0, s2),
             (11_440.0, s3),
             (30_030.0, s2 * s2),
@@ -81,8 +79,8 @@ pub fn r_c<S: Precise>(mut x: S, mut y: S) -> S {
             (61_215.0, s3 * s3),
             (90_090.0, s3 * s3 * s),
         ],
-    );
-    sum / mean.sqrt()
+        mean.sqrt(),
+    )
 }
 
 /// R_J(x, y, z, p) = 3/2 ∫₀^∞ dt / ((t+p) √((t+x)(t+y)(t+z))) for x, y, z ≥ 0, at most one of them zero, and
@@ -134,10 +132,9 @@ fn third_kind<S: Precise>(mean: S, x: S, y: S, z: S) -> S {
     let e3 = product + S::of(2.0) * p * (e2 + S::of(2.0) * p2);
     let e4 = (S::of(2.0) * product + p * (e2 + S::of(3.0) * p2)) * p;
     let e5 = product * p2;
-    let sum = series(
+    series(
         4_084_080.0,
         [
-            (4_084_080.0, S::of(1.0)),
             (-875_160.0, e2),
             (680_680.0, e3),
             (417_690.0, e2 * e2),
@@ -150,6 +147,6 @@ fn third_kind<S: Precise>(mean: S, x: S, y: S, z: S) -> S {
             (675_675.0, e2 * e2 * e3),
             (-540_540.0, e3 * e4 + e2 * e5),
         ],
-    );
-    sum / (mean * mean.sqrt())
+        mean * mean.sqrt(),
+    )
 }
