@@ -86,9 +86,9 @@ impl Propagate {
         let mut monitor = Monitor::new(body, &rounded(&start));
         for &t in times {
             let elapsed = Dd::from(t) - Dd::from(self.start_time);
-            let x = motion.inside_at::<f64>(elapsed);
+            let exact = motion.inside_at_dd(elapsed);
+            let x = rounded(&exact);
             monitor.observe(&[x]);
-            let exact = motion.inside_at::<Dd>(elapsed);
             let error = rotation_angle(State::<Dd>::of(x).attitude, exact.attitude).hi();
             table.push(self::row(body, t, &x, monitor.worst(), error));
         }
@@ -122,7 +122,7 @@ impl Propagate {
                 }
                 Err(error) => return Err(Error::Input(error.to_string())),
             };
-            let there = exact.inside_at::<Dd>(sample.elapsed);
+            let there = exact.inside_at_dd(sample.elapsed);
             let error = rotation_angle(State::<Dd>::of(sample.inside).attitude, there.attitude).hi();
             table.push(self::row(body, t, &sample.inside, sample.worst, error));
         }

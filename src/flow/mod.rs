@@ -2,6 +2,9 @@
 
 mod circulation;
 mod free_body;
+mod phase;
+mod polhode;
+mod theta;
 mod turn;
 
 pub use free_body::{FreeBody, FreeMotion, TimeError};
