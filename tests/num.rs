@@ -382,6 +382,39 @@ fn sine_and_cosine_are_the_same_bits_everywhere() {
     );
 }
 
+// ---------------------------------------------------------------------------------- elliptic functions
+
+#[test]
+fn limits_of_the_modulus_are_reached() {
+    for m1 in [1e-100, 1e-300, 5e-324] {
+        // K = ln(4/√m1) to O(m1 ln m1).
+        let (wide, narrow) = (Modulus::new(Dd::from(m1)).quarter_period(), Modulus::new(m1).quarter_period());
+        let expected = (Dd::from(16.0).ln() - Dd::from(m1).ln()) * 0.5;
+        assert!(relative_error(wide, expected) < if m1 > 1e-290 { 1e-31 } else { 1e-17 }, "{m1}");
+        assert!(relative_error(narrow.into(), expected) < 1e-15, "{m1}");
+    }
+    let separatrix = Modulus::new(0.0);
+    assert_eq!(separatrix.quarter_period(), f64::INFINITY);
+    assert_eq!(separatrix.sn_cn_dn(-800.0), (-1.0, 0.0, 0.0));
+    assert_eq!(separatrix.sn_cn_dn(0.0), (0.0, 1.0, 1.0));
+    assert_eq!(incomplete(1.0, 0.0, 1.0, 0.0), f64::INFINITY);
+    for m1 in [-1e-3, f64::NAN] {
+        let modulus = Modulus::new(m1);
+        assert!(modulus.quarter_period().is_nan() && modulus.sn_cn_dn(0.5).1.is_nan());
+    }
+}
+
+#[test]
+fn integrals_of_undefined_arguments_end() {
+    assert_eq!(r_f(0.0, 0.0, 1.0), f64::INFINITY);
+    assert_eq!([r_c(1.0, 0.0), r_j(1.0, 1.0, 1.0, 0.0), r_d(1.0, 1.0, 0.0)], [f64::INFINITY; 3]);
+    assert!(
+        [r_f(-1.0, 1.0, 1.0), r_c(f64::NAN, 1.0), r_j(1.0, 1.0, f64::NAN, 1.0), r_d(1.0, -1.0, 1.0)]
+            .iter()
+            .all(|value| value.is_nan())
+    );
+}
+
 // ---------------------------------------------------------------------------- sums and exact expansions
 
 #[test]

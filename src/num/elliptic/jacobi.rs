@@ -17,7 +17,8 @@ pub struct Modulus<S> {
 }
 
 impl<S: Precise> Modulus<S> {
-    /// The modulus of the complementary parameter m1 ≥ 0; its readings are NaN for a negative one.
+    /// The modulus of the complementary parameter m1 in [0, 1], or not far above, where m is negative. A negative or
+    /// undefined m1 makes all readings NaN.
     pub fn new(m1: S) -> Self {
         let mut ladder = [(S::of(1.0), m1.sqrt()); STEPS];
         let mut steps = 1;
@@ -83,7 +84,7 @@ fn hyperbolic<S: Precise>(u: S) -> (S, S, S) {
     (if u < S::of(0.0) { -tanh } else { tanh }, sech, sech)
 }
 
-/// (sn u, cn u, dn u) of any real argument, for the complementary parameter m1 in [0, 1].
+/// (sn u, cn u, dn u) of any real argument, for a complementary parameter as in [`Modulus::new`].
 ///
 /// Everything is done in double-double, so in `f64` the results are right to the last place for |u| up to about
 /// 10¹², next to the zeros of cn too. Where one m1 serves many arguments, [`Modulus`] is many times faster.
