@@ -119,9 +119,11 @@ impl Body {
 
     /// Angular velocity ω = I⁻¹ m in body axes, rad/s, of a kernel's state.
     pub fn omega_body<S: Precise>(&self, x: &State<S>) -> Vector3<f64> {
-        let momentum = Vec3(x.momentum_body.0.map(S::to_dd));
-        let omega = self.inertia.frame().rotate(momentum.times(self.inverse_moments()));
-        Vec3(omega.0.map(Dd::hi)).into()
+        let mut omega = x.momentum_body.times(self.inverse_moments());
+        if !self.inertia.is_along_principal_axes() {
+            omega = Quat::from_components(self.inertia.frame().components().map(S::from_dd)).rotate(omega);
+        }
+        Vec3(omega.0.map(S::to_f64)).into()
     }
 
     /// The power of two that a kernel's moments, momenta and energies are to be multiplied with.

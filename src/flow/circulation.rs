@@ -84,9 +84,24 @@ impl<S: Precise> Circulation<S> {
         self
     }
 
-    /// Whether the phase at `t` lies within π/2 ≤ K, where no period is needed.
+    /// Whether the phase at `t` lies within a quarter period of zero, as that of the start does.
     pub(super) fn is_near(&self, t: S) -> bool {
-        (self.phase + self.polhode.rate * t).magnitude() < 1.5
+        (self.phase + self.polhode.rate * t).abs() <= self.modulus.quarter_period()
+    }
+
+    /// 2K, a half period of the phase; `None` on the separatrix.
+    pub(super) fn half_period(&self) -> Option<S> {
+        self.period.map(|period| period.half)
+    }
+
+    /// Mean rate of the twist ψ, rad/s.
+    pub(super) fn mean_twist_rate(&self) -> S {
+        match self.period {
+            Some(Period { half, twist }) => {
+                self.twist_rate - self.polhode.delta * twist * self.polhode.rate / half
+            }
+            None => self.twist_rate,
+        }
     }
 
     /// How often m_b changes sign between the start and `t`.

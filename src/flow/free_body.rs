@@ -6,9 +6,10 @@ use thiserror::Error;
 use std::sync::OnceLock;
 
 use super::Flow;
+use super::character::{AtRest, Character};
 use super::circulation::Circulation;
 use super::phase::{Spin, turn};
-use super::polhode::{Polhode, exact_separation, rounded_separation};
+use super::polhode::{Polhode, ascending, exact_separation, rounded_separation};
 use super::theta::Theta;
 use crate::body::{Body, Inertia, State, StateError};
 use crate::num::{Dd, Precise};
@@ -128,6 +129,41 @@ impl FreeMotion {
         Ok(self.body.leave(&self.inside_at(t)))
     }
 
+    /// The states at many `times`, body axes.
+    ///
+    /// # Errors
+    /// The first time that is not finite.
+    pub fn at_many(&self, times: &[f64]) -> Result<Vec<State<f64>>, TimeError> {
+        times.iter().map(|&t| self.at(t)).collect()
+    }
+
+    /// The angular velocity at time `t`, body axes, rad/s.
+    ///
+    /// # Errors
+    /// A time that is not finite.
+    pub fn omega_at(&self, t: f64) -> Result<Vector3<f64>, TimeError> {
+        if !t.is_finite() {
+            return Err(TimeError { t });
+        }
+        Ok(self.body.omega_body(&self.inside_at(t)))
+    }
+
+    /// Periods, mode and distance to the separatrix.
+    ///
+    /// # Errors
+    /// A body at rest has none of these.
+    pub fn character(&self) -> Result<Character, AtRest> {
+        match &self.kind {
+            Kind::Rest => Err(AtRest),
+            Kind::Steady(spin) => {
+                let moments: Vec3<Dd> = self.body.moments();
+                let moment = self.start.momentum_body.norm() / spin.rate();
+                Ok(Character::steady(spin.rate(), moment, moments[ascending(moments)[1]]))
+            }
+            Kind::Circulating(orbit) => Ok(Character::circulating(&orbit.polhode, orbit.precise())),
+        }
+    }
+
     /// How often the momentum along the axis of the middle moment changes sign between the start and time `t` (s).
     pub fn flips(&self, t: Dd) -> u64 {
         match &self.kind {
@@ -181,8 +217,8 @@ fn steady<S: Precise>(moments: Vec3<S>, m: Vec3<S>, norm: S) -> (Vec3<S>, S) {
 
 /// The exact flow of the free body, set up anew from the state at each call, in the state's own scalar.
 ///
-/// The drift between the kicks of a splitting. Only products and differences of `S` go into it, so very close to
-/// the separatrix a long step loses what [`FreeMotion`] keeps; a step below a quarter period loses nothing.
+/// The drift between the kicks of a splitting. Only products and differences of `S` go into it: in `f64` a turn of
+/// one radian is good to 1e-14 rad, the worst next to the separatrix, where the phase is long.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeBody<S> {
     moments: Vec3<S>,

@@ -1,5 +1,6 @@
 //! Exact flows: the atoms that splitting methods are composed of, and the references they are judged by.
 
+mod character;
 mod circulation;
 mod free_body;
 mod phase;
@@ -7,6 +8,7 @@ mod polhode;
 mod theta;
 mod turn;
 
+pub use character::{AtRest, Character, Mode};
 pub use free_body::{FreeBody, FreeMotion, TimeError};
 pub use turn::{AxisTurn, turn};
 

@@ -50,6 +50,11 @@ impl Spin {
         Spin { axis, rate, half_angle: Phase::new(rate / (Dd::TAU * 2.0), Dd::ZERO) }
     }
 
+    /// rad/s.
+    pub(super) fn rate(&self) -> Dd {
+        self.rate
+    }
+
     /// The turn since the start; `None` after too many turns for `f64` pairs.
     #[inline]
     pub(super) fn quick(&self, t: f64) -> Option<Quat<f64>> {
