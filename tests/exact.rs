@@ -1,5 +1,7 @@
 //! The exact free motion against fixtures of 36 digits (tests/data/free_body, mpmath) in every regime.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 mod fixtures;
 
 use fixtures::{FreeCase, free_body};

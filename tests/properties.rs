@@ -1,5 +1,7 @@
 //! Laws over random valid bodies and starts.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use polhode::body::{Body, Inertia, State};
 use polhode::flow::FreeMotion;
 use polhode::method::method;

@@ -3,6 +3,18 @@
 //! The attitude is a swing, which takes the momentum to the axis that it circulates about, and a twist ψ about that
 //! axis: no frame that becomes singular, no inverse sine, no branch that closes on the separatrix (methods.md §6.2).
 //! Notation as in [`polhode`](super::polhode).
+//!
+//! # Where printed formulas do not serve
+//! - *On the separatrix* (k' = 0) the twist contains R_J(0, 0, 1, p), which diverges. There sn u = tanh u, and with
+//!   p = −n and s = tanh u the integral of the third kind is elementary:
+//!   `∫ n s²/(1 − n s²) du = −p/(1 + p) [u − atan(√p s)/√p]`, because du = ds/(1 − s²) splits the integrand into
+//!   1/(1 − s²) and 1/(1 + p s²). The part linear in u joins the rate of the twist.
+//! - *Rate of the twist at u = 0.* `ψ' = G/I_a + (2H − G²/I_a)/(G + A)` cancels for rods; the same over one
+//!   denominator, `(2H + GA/I_a)/(G + A)`, is a sum of positive terms.
+//! - *Celledoni, Fassò, Säfström and Zanna* (SIAM J. Sci. Comput. 30 (2008) 2084) print wrong signs and a separatrix
+//!   case that covers only half of it, as Leroy's note in the sources of Principia found; nothing here is taken from
+//!   them. *TOMS algorithm 903* prints for its example 4 a quaternion that is off in the tenth digit: compare
+//!   `tests/data/free_body/reference.csv`, scenario E4.
 
 use super::phase::reduce;
 use super::polhode::Polhode;

@@ -346,7 +346,7 @@ fn dual(polhode: &Polhode<Dd>) -> Built {
         flip * amp_c * t2 / t4 * kappa
     };
     let term = |n: u32| {
-        let sign = if polhode.about_smallest || n % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if polhode.about_smallest || n.is_multiple_of(2) { 1.0 } else { -1.0 };
         power(q, n * n) * scale * if n == 0 { 1.0 } else { 2.0 * sign }
     };
     theta.least = polynomial([0, 1, 2, 3, 4].map(term), T);
