@@ -134,7 +134,7 @@ fn after_a_period_the_momentum_is_back_and_the_axis_has_precessed() {
             a - l * (a.dot(&l) / l.norm_squared())
         };
         let (a, b) = (across(&before), across(&after));
-        let angle = a.cross(&b).dot(&l.normalize()).atan2(a.dot(&b));
+        let angle = libm::atan2(a.cross(&b).dot(&l.normalize()), a.dot(&b));
         let turns = (character.precession_rate.unwrap() * period - angle) / std::f64::consts::TAU;
         assert!((turns - turns.round()).abs() < 1e-13, "{turns}");
         assert_eq!(character.mode == Mode::LongAxis, axis == 0);

@@ -341,14 +341,19 @@ fn timing() -> Result<Table, Error> {
         let times: Vec<f64> = (0..100_000).map(|n| 12.345 * f64::from(n)).collect();
         let best =
             |repeat: usize, work: &dyn Fn()| (0..repeat).map(|_| seconds(work)).fold(f64::INFINITY, f64::min);
-        let set_up_time = best(200, &|| (0..10).for_each(|_| drop(std::hint::black_box(set_up())))) / 10.0;
+        let set_up_time = best(200, &|| (0..10).for_each(|_| discard(set_up()))) / 10.0;
         let burst = &times[..256];
         let at_time =
             best(500, &|| burst.iter().for_each(|&t| drop(std::hint::black_box(motion.at(t))))) / 256.0;
-        let many = best(5, &|| drop(std::hint::black_box(motion.at_many(&times))));
+        let many = best(5, &|| discard(motion.at_many(&times)));
         table.push(row![name, complement, set_up_time * 1e9, at_time * 1e9, many * 1e3]);
     }
     Ok(table)
+}
+
+/// Makes sure that the value is worked out.
+fn discard<T>(value: T) {
+    let _ = std::hint::black_box(value);
 }
 
 fn seconds(work: &dyn Fn()) -> f64 {
