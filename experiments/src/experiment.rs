@@ -153,7 +153,9 @@ fn write(experiment: &Experiment, scale: Scale, report: &Report, folder: &Path) 
     for table in report.tables.iter().chain(&report.data).chain(&report.timing) {
         staging.write(&format!("{}.csv", table.name), table.csv().as_bytes())?;
     }
-    for table in report.tables.iter().chain(&report.views) {
+    // a view may be one of the tables, shown alone
+    let also = report.views.iter().filter(|view| report.tables.iter().all(|table| table.name != view.name));
+    for table in report.tables.iter().chain(also) {
         staging.write(&format!("{}.md", table.name), table.markdown().as_bytes())?;
         staging.write(&format!("{}.tex", table.name), table.latex().as_bytes())?;
     }

@@ -76,7 +76,7 @@ fn main() -> ExitCode {
     match run(CommandLine::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            error::tell("error", &error.to_string());
             ExitCode::from(error.exit_code())
         }
     }

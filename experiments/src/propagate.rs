@@ -13,12 +13,20 @@ use polhode::run::{Run, RunError};
 
 use crate::arguments::{Times, number, positive, regular, times};
 use crate::body_arguments::{BodyArguments, StartArguments};
-use crate::error::Error;
+use crate::error::{Error, warn};
 use crate::files::emit;
 use crate::table::{Column, Format, Table, row};
 
+/// Of the phase, double-double keeps 106 bits; ten of them shall be left after the whole turns.
+const MOST_RADIANS: f64 = 7.9e28; // 2⁹⁶
+
+const USAGE: &str = "polhode propagate <BODY> --omega <wx,wy,wz> <TIMES> [OPTIONS]
+  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
+  TIMES: --times <t1,t2,...> | --until <T> --every <DT>";
+
 /// One body to given times: attitude, angular velocity and errors at each
 #[derive(Args, Clone, Debug)]
+#[command(override_usage = USAGE)]
 pub(crate) struct Propagate {
     #[command(flatten)]
     body: BodyArguments,
@@ -26,13 +34,13 @@ pub(crate) struct Propagate {
     start: StartArguments,
     /// Output times, s
     #[arg(long, value_name = "t1,t2,...", value_parser = times, allow_hyphen_values = true,
-          required_unless_present = "until", conflicts_with_all = ["until", "every"])]
+          conflicts_with_all = ["until", "every"])]
     times: Option<Times>,
     /// Last output time, s, with --every
-    #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true, requires = "every")]
+    #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true)]
     until: Option<f64>,
     /// Distance of output times, s, with --until
-    #[arg(long, value_name = "DT", value_parser = number, allow_hyphen_values = true, requires = "until")]
+    #[arg(long, value_name = "DT", value_parser = number, allow_hyphen_values = true)]
     every: Option<f64>,
     /// Time of the start, s
     #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0")]
@@ -74,13 +82,37 @@ impl Propagate {
             (None, Some(until), Some(every)) => {
                 Ok(regular(self.start_time, until, every).map_err(Error::Input)?.collect())
             }
-            _ => Err(Error::Input("--times: missing; give --times t1,t2,... or --until T --every DT".into())),
+            (None, Some(until), None) => Err(Error::Input(format!(
+                "--until: '{until:?}': needs the distance of the rows; give --every DT too"
+            ))),
+            (None, None, Some(every)) => Err(Error::Input(format!(
+                "--every: '{every:?}': needs the last output time; give --until T too"
+            ))),
+            (None, None, None) => {
+                Err(Error::Input("--times: missing; give --times t1,t2,... or --until T --every DT".into()))
+            }
         }
+    }
+
+    fn times_flag(&self) -> &'static str {
+        if self.until.is_some() { "--until" } else { "--times" }
     }
 
     fn exact(&self, body: &Body, start: State<Dd>, times: &[f64], table: &mut Table) -> Result<(), Error> {
         if self.step.is_some() {
-            return Err(Error::Input("--step: has no meaning with --method exact; leave it out".into()));
+            return Err(Error::Input(
+                "--step: has no meaning with --method exact, which needs none; leave it out, or name a method".into(),
+            ));
+        }
+        let speed = body.omega_body(&rounded(&start)).norm();
+        for &t in times {
+            let angle = ((t - self.start_time) * speed).abs();
+            if angle.is_nan() || angle > MOST_RADIANS {
+                return Err(Error::Input(format!(
+                    "{}: '{t:?}': the body has turned {angle:.1e} rad by then, of which no computed digit is left; stay below {MOST_RADIANS:.0e} rad",
+                    self.times_flag()
+                )));
+            }
         }
         let motion = FreeMotion::new(body, start);
         let mut monitor = Monitor::new(body, &rounded(&start));
@@ -108,10 +140,10 @@ impl Propagate {
             .map_err(|error| Error::Input(format!("--step: {error}")))?;
         let speed = body.omega_body(&start).norm();
         if h * speed > 1.0 {
-            eprintln!(
-                "warning: --step {h} turns the body by {:.2} rad a step; above 1 rad expect little of any stepping method",
+            warn(&format!(
+                "--step: '{h:?}': turns the body by {:?} rad a step; above 1 rad expect little of any stepping method, take a smaller one",
                 h * speed
-            );
+            ));
         }
         let exact = FreeMotion::new(body, State::of(run.start()));
         for (&t, n) in times.iter().zip(steps) {
@@ -136,7 +168,12 @@ impl Propagate {
                 known.insert(0, "exact".into());
                 Error::unknown_name("--method", "method", &name, known.iter().map(String::as_str))
             }
-            error => Error::Input(format!("--method: {error}")),
+            UnknownMethod::Argument { name, rule } => Error::input(
+                "--method",
+                &name,
+                "has an argument that it cannot take",
+                &format!("allowed: {rule}"),
+            ),
         })
     }
 
@@ -148,20 +185,21 @@ impl Propagate {
         for &t in times {
             if t < before {
                 return Err(Error::Input(format!(
-                    "--times: {t} comes after {before}; a stepping method wants ascending times from --start-time on"
+                    "{}: {t:?} comes after {before:?}; a stepping method wants ascending times from --start-time on, use --method exact or sort them",
+                    self.times_flag()
                 )));
             }
             before = t;
             let n = ((t - start) / h).round();
             if n >= 9_007_199_254_740_992.0 {
                 return Err(Error::Input(format!(
-                    "--step: {h} takes {n:e} steps to t = {t}; at most 2^53 can be counted"
+                    "--step: '{h:?}': takes {n:e} steps to t = {t:?}, and at most 2^53 can be counted; take a larger step"
                 )));
             }
             let reached = (Dd::from(start) + Dd::product(n, h)).to_f64();
             if (reached - t).abs() > 4.0 * ulp(t.abs().max(start.abs()).max(h)) {
                 return Err(Error::Input(format!(
-                    "--step: {h} does not divide the output time {t}; the nearest time that it reaches is {reached}"
+                    "--step: '{h:?}': does not reach the output time {t:?} in whole steps; the nearest time that it reaches is {reached:?}"
                 )));
             }
             counts.push(n as u64);

@@ -20,7 +20,7 @@ pub enum StateError {
     },
     /// The spin is too large or too small for its energy to be a double.
     #[error(
-        "angular velocity {omega} rad/s with this inertia puts the energy outside the range of a double; change the units"
+        "angular velocity {omega:?} rad/s with this inertia puts the energy outside the range of a double; change the units"
     )]
     OutOfRange {
         /// Largest component of the angular velocity, rad/s.

@@ -58,10 +58,14 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             Column::new("step_ns", "ns", "the same per step").heading("ns/step"),
         ],
     );
-    let axes = ("steps", "error");
-    let mut energy = Figure::log_log("energy", "Largest relative energy error so far", axes.0, axes.1);
+    let mut energy = Figure::log_log(
+        "energy",
+        format!("Energy over {steps} steps"),
+        "steps",
+        "largest relative energy error so far",
+    );
     let mut attitude =
-        Figure::log_log("attitude", "Attitude error against the exact motion (rad)", axes.0, axes.1);
+        Figure::log_log("attitude", format!("Attitude over {steps} steps"), "steps", "attitude error (rad)");
     for (name, found) in METHODS.into_iter().zip(found) {
         let (rows, seconds) = found?;
         let curve = |column: usize| {
