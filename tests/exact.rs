@@ -6,7 +6,7 @@ mod fixtures;
 
 use fixtures::{FreeCase, free_body};
 use polhode::body::{Body, Inertia, State};
-use polhode::flow::{AtRest, Flow, FreeBody, FreeMotion, Mode};
+use polhode::flow::{AtRest, Flow, FreeBody, FreeMotion, Mode, TimeError};
 use polhode::num::{Dd, Precise, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 
@@ -151,7 +151,10 @@ fn rest_and_steady_turns_have_no_periods() {
     let steady = of([0.0, -0.5, 0.0]).character().unwrap();
     assert_eq!((steady.mode, steady.spin, steady.separatrix_distance), (Mode::Steady, 0.5, 0.0));
     assert_eq!(steady.polhode_period, None);
-    assert!(of([1.0, 2.0, 3.0]).at(f64::NAN).is_err());
+    assert!(matches!(of([1.0, 2.0, 3.0]).at(f64::NAN), Err(TimeError::NotFinite { .. })));
+    assert!(matches!(of([1.0, 2.0, 3.0]).at(1e29), Err(TimeError::OutOfReach { .. })));
+    let far = of([1.0, 2.0, 3.0]);
+    assert!(far.at(0.99 * far.reach()).unwrap().is_finite());
     assert!(of([1.0, 2.0, 3.0]).at_many(&[0.0, f64::INFINITY]).is_err());
 }
 

@@ -17,9 +17,6 @@ use crate::error::{Error, warn};
 use crate::files::emit;
 use crate::table::{Column, Format, Table, row};
 
-/// Of the phase, double-double keeps 106 bits; ten of them shall be left after the whole turns.
-const MOST_RADIANS: f64 = 7.9e28; // 2⁹⁶
-
 const USAGE: &str = "polhode propagate <BODY> --omega <wx,wy,wz> <TIMES> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
   TIMES: --times <t1,t2,...> | --until <T> --every <DT>";
@@ -104,17 +101,14 @@ impl Propagate {
                 "--step: has no meaning with --method exact, which needs none; leave it out, or name a method".into(),
             ));
         }
-        let speed = body.omega_body(&rounded(&start)).norm();
-        for &t in times {
-            let angle = ((t - self.start_time) * speed).abs();
-            if angle.is_nan() || angle > MOST_RADIANS {
-                return Err(Error::Input(format!(
-                    "{}: '{t:?}': the body has turned {angle:.1e} rad by then, of which no computed digit is left; stay below {MOST_RADIANS:.0e} rad",
-                    self.times_flag()
-                )));
-            }
-        }
         let motion = FreeMotion::new(body, start);
+        for &t in times {
+            let elapsed = t - self.start_time;
+            // an overflow of the difference is out of reach too
+            motion
+                .at(elapsed)
+                .map_err(|error| Error::Input(format!("{}: {t:?}: {error}", self.times_flag())))?;
+        }
         let mut monitor = Monitor::new(body, &rounded(&start));
         for &t in times {
             let elapsed = Dd::from(t) - Dd::from(self.start_time);

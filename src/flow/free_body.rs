@@ -34,15 +34,33 @@ pub struct FreeMotion {
     body: Body,
     start: State<Dd>,
     kind: Kind,
+    reach: f64,
 }
 
-/// The time asked for is not a number.
+/// Why there is no state at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("time {t} s is not a finite number")]
-pub struct TimeError {
-    /// The time, s.
-    pub t: f64,
+pub enum TimeError {
+    /// The time is not a number.
+    #[error("time {t} s is not a finite number")]
+    NotFinite {
+        /// The time, s.
+        t: f64,
+    },
+    /// The phase has lost its digits.
+    #[error(
+        "after {t} s the phase has no digits left: it is known to 106 bits, and the body has turned \
+         further than 2^96 rad; times up to {reach:e} s can be answered"
+    )]
+    OutOfReach {
+        /// The time, s.
+        t: f64,
+        /// The largest time that has an answer, s.
+        reach: f64,
+    },
 }
+
+/// Of the 106 bits of a phase in rad, ten are to be left after the whole turns.
+const MOST_RADIANS: f64 = 79_228_162_514_264_337_593_543_950_336.0; // 2⁹⁶
 
 /// What becomes of the momentum in the body.
 #[derive(Clone, Debug)]
@@ -110,7 +128,9 @@ impl FreeMotion {
             let (axis, rate) = steady(moments, momentum, norm);
             Kind::Steady(Box::new(Spin::new(axis, rate)))
         };
-        FreeMotion { body: body.clone(), start, kind }
+        // no part of the phase runs faster than G/I_l
+        let reach = MOST_RADIANS * (moments[ascending(moments)[0]] / norm).to_f64();
+        FreeMotion { body: body.clone(), start, kind, reach }
     }
 
     /// The body that moves.
@@ -121,18 +141,31 @@ impl FreeMotion {
     /// The state at time `t` (s, of either sign), body axes.
     ///
     /// # Errors
-    /// A time that is not finite.
+    /// A time that is not finite, or beyond [`reach`](Self::reach).
     pub fn at(&self, t: f64) -> Result<State<f64>, TimeError> {
-        if !t.is_finite() {
-            return Err(TimeError { t });
-        }
+        self.check(t)?;
         Ok(self.body.leave(&self.inside_at(t)))
+    }
+
+    /// The largest |t| at which the phase still has digits, s: some 2⁹⁶ rad; infinite at rest.
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    fn check(&self, t: f64) -> Result<(), TimeError> {
+        if !t.is_finite() {
+            Err(TimeError::NotFinite { t })
+        } else if t.abs() > self.reach {
+            Err(TimeError::OutOfReach { t, reach: self.reach })
+        } else {
+            Ok(())
+        }
     }
 
     /// The states at many `times`, body axes.
     ///
     /// # Errors
-    /// The first time that is not finite.
+    /// As [`at`](Self::at), of the first time that has no state.
     pub fn at_many(&self, times: &[f64]) -> Result<Vec<State<f64>>, TimeError> {
         times.iter().map(|&t| self.at(t)).collect()
     }
@@ -140,11 +173,9 @@ impl FreeMotion {
     /// The angular velocity at time `t`, body axes, rad/s.
     ///
     /// # Errors
-    /// A time that is not finite.
+    /// As [`at`](Self::at).
     pub fn omega_at(&self, t: f64) -> Result<Vector3<f64>, TimeError> {
-        if !t.is_finite() {
-            return Err(TimeError { t });
-        }
+        self.check(t)?;
         Ok(self.body.omega_body(&self.inside_at(t)))
     }
 
@@ -172,7 +203,7 @@ impl FreeMotion {
         }
     }
 
-    /// The state at the finite time `t` (s) as kernels see it.
+    /// The state at time `t` (s), finite and within [`reach`](Self::reach), as kernels see it.
     ///
     /// The quaternion is the continuous lift from the start: it does not jump from `q` to `−q`.
     #[inline]
