@@ -48,7 +48,7 @@ pub enum TimeError {
     },
     /// The phase has lost its digits.
     #[error(
-        "after {t} s the phase has no digits left: it is known to 106 bits, and the body has turned \
+        "after {t:e} s the phase has no digits left: it is known to 106 bits, and the body has turned \
          further than 2^96 rad; times up to {reach:e} s can be answered"
     )]
     OutOfReach {
@@ -208,6 +208,9 @@ impl FreeMotion {
     /// The quaternion is the continuous lift from the start: it does not jump from `q` to `−q`.
     #[inline]
     pub fn inside_at(&self, t: f64) -> State<f64> {
+        if t == 0.0 {
+            return rounded(&self.start);
+        }
         let quick = match &self.kind {
             Kind::Circulating(orbit) => orbit.quick.at(t),
             Kind::Steady(spin) => spin.quick(t).map(|turn| {
@@ -224,6 +227,9 @@ impl FreeMotion {
 
     /// The same in double-double, by an independent form of the solution.
     pub fn inside_at_dd(&self, t: Dd) -> State<Dd> {
+        if t == Dd::ZERO {
+            return self.start;
+        }
         let (turn, momentum_body) = match &self.kind {
             Kind::Circulating(orbit) => orbit.precise().at(t),
             Kind::Steady(spin) => (spin.precise(t), self.start.momentum_body),
