@@ -56,6 +56,8 @@ pub(crate) struct Experiment {
 pub(crate) struct Report {
     /// Deterministic rows, in full precision.
     pub(crate) tables: Vec<Table>,
+    /// Rows that only programs read: CSV alone.
+    pub(crate) data: Vec<Table>,
     /// Parts of them for readers; where there are none, the tables themselves are shown.
     pub(crate) views: Vec<Table>,
     pub(crate) figures: Vec<Figure>,
@@ -148,7 +150,7 @@ pub(crate) fn run(names: &[String], scale: Scale, out: &Path) -> Result<(), Erro
 
 fn write(experiment: &Experiment, scale: Scale, report: &Report, folder: &Path) -> Result<(), Error> {
     let staging = Staging::new(folder)?;
-    for table in report.tables.iter().chain(&report.timing) {
+    for table in report.tables.iter().chain(&report.data).chain(&report.timing) {
         staging.write(&format!("{}.csv", table.name), table.csv().as_bytes())?;
     }
     // a view may be one of the tables, shown alone

@@ -17,9 +17,6 @@ use crate::error::{Error, warn};
 use crate::files::emit;
 use crate::table::{Column, Format, Table, row};
 
-/// Of the phase, double-double keeps 106 bits; ten of them shall be left after the whole turns.
-const MOST_RADIANS: f64 = 7.9e28; // 2⁹⁶
-
 const USAGE: &str = "polhode propagate <BODY> --omega <wx,wy,wz> <TIMES> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
   TIMES: --times <t1,t2,...> | --until <T> --every <DT>";
@@ -104,23 +101,20 @@ impl Propagate {
                 "--step: has no meaning with --method exact, which needs none; leave it out, or name a method".into(),
             ));
         }
-        let speed = body.omega_body(&rounded(&start)).norm();
-        for &t in times {
-            let angle = ((t - self.start_time) * speed).abs();
-            if angle.is_nan() || angle > MOST_RADIANS {
-                return Err(Error::Input(format!(
-                    "{}: '{t:?}': the body has turned {angle:.1e} rad by then, of which no computed digit is left; stay below {MOST_RADIANS:.0e} rad",
-                    self.times_flag()
-                )));
-            }
-        }
         let motion = FreeMotion::new(body, start);
+        for &t in times {
+            let elapsed = t - self.start_time;
+            // an overflow of the difference is out of reach too
+            motion
+                .at(elapsed)
+                .map_err(|error| Error::Input(format!("{}: {t:?}: {error}", self.times_flag())))?;
+        }
         let mut monitor = Monitor::new(body, &rounded(&start));
         for &t in times {
             let elapsed = Dd::from(t) - Dd::from(self.start_time);
-            let x = motion.inside_at::<f64>(elapsed);
+            let exact = motion.inside_at_dd(elapsed);
+            let x = rounded(&exact);
             monitor.observe(&[x]);
-            let exact = motion.inside_at::<Dd>(elapsed);
             let error = rotation_angle(State::<Dd>::of(x).attitude, exact.attitude).hi();
             table.push(self::row(body, t, &x, monitor.worst(), error));
         }
@@ -154,7 +148,7 @@ impl Propagate {
                 }
                 Err(error) => return Err(Error::Input(error.to_string())),
             };
-            let there = exact.inside_at::<Dd>(sample.elapsed);
+            let there = exact.inside_at_dd(sample.elapsed);
             let error = rotation_angle(State::<Dd>::of(sample.inside).attitude, there.attitude).hi();
             table.push(self::row(body, t, &sample.inside, sample.worst, error));
         }

@@ -275,8 +275,8 @@ fn numbers_are_refused_by_place_value_and_rule() {
     refused("propagate --body dyadic --omega 1,NaN,0 --times 1", &["--omega", "item 2", "finite"]);
     refused(&with("--times 1 --attitude 1,0,0"), &["--attitude", "3 given, 4 needed"]);
     refused(&with("--times 1 --attitude 0,0,-0,0"), &["--attitude", "zero quaternion", "1,0,0,0"]);
-    refused(&with("--times 1e300"), &["--times", "1e300", "digit", "stay below"]);
-    refused(&with("--times 1e308 --start-time -1e308"), &["--times", "1e308", "digit"]);
+    refused(&with("--times 1e300"), &["--times", "1e300", "digits", "can be answered"]);
+    refused(&with("--times 1e308 --start-time -1e308"), &["--times", "1e308", "not a finite number"]);
 }
 
 #[test]

@@ -164,7 +164,7 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
         angles.push(last.elapsed.hi() * speed);
         changes.push(last.energy_change);
     }
-    let there = exact.inside_at::<Dd>(last.elapsed);
+    let there = exact.inside_at_dd(last.elapsed);
     let attitude = rotation_angle(State::<Dd>::of(last.inside).attitude, there.attitude).hi();
     let slope = secular_drift(&angles, &changes).filter(|_| status == "ok");
     let flips = exact.flips(last.elapsed);

@@ -107,7 +107,7 @@ fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
     let mut rows = Vec::new();
     for sample in run.samples(Schedule::logarithmic(steps, 4)) {
         let sample = sample.map_err(|e| failed(&e))?;
-        let there = exact.inside_at::<Dd>(sample.elapsed);
+        let there = exact.inside_at_dd(sample.elapsed);
         let attitude = rotation_angle(State::<Dd>::of(sample.inside).attitude, there.attitude).hi();
         let worst = sample.worst;
         rows.push(
