@@ -1,5 +1,7 @@
 //! The article names only files that exist or that publishing makes, and no result is typed into it.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fs;
 use std::path::PathBuf;
 
@@ -45,7 +47,7 @@ fn arguments<'a>(text: &'a str, command: &str) -> Vec<&'a str> {
 fn is_generated(name: &str) -> bool {
     name.strip_prefix("generated/").is_some_and(|name| {
         let made_by = |experiment: &&str| name.starts_with(&format!("{experiment}-"));
-        name == "methods" || EXPERIMENTS.iter().any(|experiment| made_by(&experiment))
+        name == "methods" || EXPERIMENTS.iter().any(|experiment| made_by(experiment))
     })
 }
 
