@@ -47,7 +47,7 @@ fn arguments<'a>(text: &'a str, command: &str) -> Vec<&'a str> {
 fn is_generated(name: &str) -> bool {
     name.strip_prefix("generated/").is_some_and(|name| {
         let made_by = |experiment: &&str| name.starts_with(&format!("{experiment}-"));
-        name == "methods" || EXPERIMENTS.iter().any(|experiment| made_by(experiment))
+        name == "methods" || EXPERIMENTS.iter().any(made_by)
     })
 }
 
