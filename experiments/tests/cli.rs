@@ -473,6 +473,14 @@ fn experiments_repeat_bit_for_bit_and_can_be_published() {
         assert!(!text.contains("NaN") && !text.contains(",inf"), "{name}");
     }
 
+    // the committed ones come from another profile and, it may be, another processor
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/smoke");
+    for (name, bytes) in deterministic(&first).iter().filter(|(name, _)| name.ends_with(".csv")) {
+        let same = fs::read(committed.join(name)).is_ok_and(|committed| committed == *bytes);
+        let remedy = "experiment run all --scale smoke --out experiments/results, and read the difference";
+        assert!(same, "{name} is not the committed one; if that is intended: {remedy}");
+    }
+
     // a project whose committed results are these
     let root = scratch.0.join("project");
     let results = root.join("experiments/results");
