@@ -1,12 +1,19 @@
-//! Bodies: inertia tensors, states of rotation, and the frame in which kernels see them.
+//! Bodies: inertia tensors and where they come from, states of rotation, and the frame in which kernels see them.
 
 mod carry;
+mod distribution;
 mod frame;
 mod inertia;
+mod mass;
 mod principal;
+mod solids;
 mod state;
+mod tensor;
 
 pub use carry::Carry;
+pub use distribution::{DistributionError, Region, integrate};
 pub use frame::{Body, StateError};
 pub use inertia::{Inertia, InertiaError, InertiaShape, Symmetry};
+pub use mass::{Amount, Class, MassError, MassProperties};
+pub use solids::Solid;
 pub use state::State;
