@@ -361,7 +361,7 @@ fn rotating(tensor: Matrix3<f64>) -> Result<Inertia, InertiaError> {
 }
 
 /// The laws of a tensor of mass, of which moments may be zero.
-fn check_tensor(tensor: &Matrix3<f64>) -> Result<(), InertiaError> {
+pub(super) fn check_tensor(tensor: &Matrix3<f64>) -> Result<(), InertiaError> {
     check_symmetric(tensor)?;
     let spectrum = Spectrum::of(tensor)?;
     let moments = spectrum.moments.map(Dd::hi);

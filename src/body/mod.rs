@@ -2,9 +2,11 @@
 
 mod carry;
 mod distribution;
+mod doctor;
 mod frame;
 mod inertia;
 mod mass;
+mod mesh;
 mod principal;
 mod solids;
 mod state;
@@ -12,8 +14,10 @@ mod tensor;
 
 pub use carry::Carry;
 pub use distribution::{DistributionError, Region, integrate};
+pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Verdict, diagnose};
 pub use frame::{Body, StateError};
 pub use inertia::{Inertia, InertiaError, InertiaShape, Symmetry};
 pub use mass::{Amount, Class, MassError, MassProperties};
+pub use mesh::{Edge, Mesh, MeshError};
 pub use solids::Solid;
 pub use state::State;

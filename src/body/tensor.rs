@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 
 use super::inertia::InertiaError;
 use super::principal::principal_axes;
-use crate::num::{Dd, Real};
+use crate::num::Dd;
 use crate::rotation::{Quat, Vec3};
 
 /// The entries [j][k]; both triangles are kept.
@@ -98,12 +98,6 @@ impl Spectrum {
     pub(super) fn trace(&self) -> f64 {
         (self.moments[0] + self.moments[1] + self.moments[2]).hi()
     }
-
-    /// How far the sum of two moments exceeds the third, divided by the scale; the k-th without the k-th moment.
-    pub(super) fn margins(&self) -> [f64; 3] {
-        let [a, b, c] = self.moments;
-        [b + c - a, a + c - b, a + b - c].map(Dd::hi)
-    }
 }
 
 /// The largest power of two not above `x`, of a positive finite number; exact, also for subnormal `x`.
@@ -118,6 +112,7 @@ pub(super) fn power_of_two_below(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::Real;
 
     #[test]
     fn power_of_two_is_exact_over_the_whole_range() {
