@@ -59,15 +59,15 @@ pub struct Misfit {
 /// use polhode::body::{Cause, Evidence, Verdict, diagnose};
 ///
 /// // a designer's +∫ x y dm typed where tensor entries belong
-/// let typed = Matrix3::new(0.7, 0.3, 0.3, 0.3, 0.7, 0.3, 0.3, 0.3, 0.7);
+/// let typed = Matrix3::new(0.75, 0.3125, 0.3125, 0.3125, 0.75, 0.3125, 0.3125, 0.3125, 0.75);
 /// let found = diagnose(typed, &Evidence::default())?;
 /// assert_eq!(found.verdict, Verdict::Invalid);
 /// assert_eq!(
 ///     found.violation.unwrap().to_string(),
-///     "principal moments 0.4, 0.4, 1.3 violate I1 + I2 >= I3 by 0.5 (38.462 % of the largest); no mass distribution has them"
+///     "principal moments 0.4375, 0.4375, 1.375 violate I1 + I2 >= I3 by 0.5 (36.364 % of the largest); no mass distribution has them"
 /// );
 /// assert_eq!(found.causes[0].cause, Cause::ProductSigns);
-/// assert_eq!(found.causes[0].corrected[(0, 1)], -0.3);
+/// assert_eq!(found.causes[0].corrected[(0, 1)], -0.3125);
 /// # Ok::<(), polhode::body::MassError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
