@@ -5,7 +5,7 @@ mod nearest;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::inertia::{InertiaError, check_symmetric};
+use super::inertia::{InertiaError, ROUNDING, check_symmetric};
 use super::mass::{MassError, check_tensor, finite, positive};
 use super::tensor::{Spectrum, Tensor};
 pub use causes::{Cause, Entry};
@@ -193,14 +193,16 @@ impl Evidence {
         let tilt = if diagonal > 0.0 { 8.0 * products / diagonal } else { 0.0 };
         let size = match (self.fill(tensor), self.mass) {
             // half or twice the second moments of a box are ordinary
-            (Some(fill), _) => {
-                fill.map(|r| square(libm::log(r.max(1e-12)) / libm::log(2.0)) / 2.0).iter().sum()
-            }
+            (Some(fill), _) => fill.map(|r| square(libm::log(r.max(1e-12)) / libm::log(2.0))).iter().sum(),
             (None, Some(mass)) => {
                 let edges = second.map(|j| (12.0 * j * (spectrum.scale / mass)).sqrt());
                 let density = mass / (edges[0] * edges[1] * edges[2]);
                 // between foam and lead; flat bodies have any
-                let beyond = if flatness >= 4.0 { 1.0 } else { (50.0 / density).max(density / 20_000.0) };
+                let beyond = if second[2] <= ROUNDING * second[0] {
+                    1.0
+                } else {
+                    (50.0 / density).max(density / 20_000.0)
+                };
                 square(libm::log(beyond.max(1.0)))
             }
             (None, None) => 0.0,

@@ -99,7 +99,7 @@ pub enum MeshError {
     #[error("the mesh has more than {} vertices", closed::LIMIT)]
     TooLarge,
     /// An edge bounds one triangle only.
-    #[error("the mesh is open: {edges} edges bound one triangle only, the first is {edge}")]
+    #[error("the mesh is open; edges with one triangle only: {edges}, the first is {edge}")]
     Open {
         /// How many.
         edges: usize,
@@ -108,7 +108,7 @@ pub enum MeshError {
     },
     /// More than two triangles meet in an edge.
     #[error(
-        "the mesh is not manifold: {edges} edges bound more than two triangles, the first is {edge}, in {uses}"
+        "the mesh is not manifold; edges with more than two triangles: {edges}, the first is {edge}, with {uses}"
     )]
     NonManifold {
         /// How many.
@@ -120,7 +120,7 @@ pub enum MeshError {
     },
     /// Two neighbours turn in opposite senses.
     #[error(
-        "triangles are not consistently oriented: {edges} edges are run through twice in the same direction, \
+        "the triangles are not consistently oriented; edges run through twice in one direction: {edges}, \
          the first is {edge}; one of its two triangles is turned over"
     )]
     Orientation {
@@ -186,7 +186,7 @@ impl core::fmt::Display for Edge {
 /// let open = Mesh::new(faces[..3].to_vec()).unwrap_err();
 /// assert_eq!(
 ///     open.to_string(),
-///     "the mesh is open: 3 edges bound one triangle only, the first is edge (0, 1, 0)-(1, 0, 0) of triangle 1"
+///     "the mesh is open; edges with one triangle only: 3, the first is edge (0, 1, 0)-(1, 0, 0) of triangle 1"
 /// );
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
