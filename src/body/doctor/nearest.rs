@@ -24,7 +24,8 @@ pub(super) fn nearest_valid(matrix: &Matrix3<f64>) -> (Matrix3<f64>, f64) {
         }
         sum.hi()
     };
-    let nearest = Matrix3::from_fn(|i, j| entry(i.min(j), i.max(j)));
+    let is_tip = projected[2] == Dd::ZERO;
+    let nearest = if is_tip { Matrix3::zeros() } else { Matrix3::from_fn(|i, j| entry(i.min(j), i.max(j))) };
     let skew = (scaled - scaled.transpose()) * 0.5;
     let distance = (skew.norm_squared() + Vec3(shifts).norm_squared().hi()).sqrt();
     (nearest * spectrum.scale, distance * spectrum.scale)
