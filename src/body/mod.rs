@@ -15,6 +15,7 @@ mod tensor;
 pub use carry::Carry;
 pub use distribution::{DistributionError, Region, integrate};
 pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Verdict, diagnose};
+pub(crate) use frame::of_dd;
 pub use frame::{Body, StateError};
 pub use inertia::{Inertia, InertiaError, InertiaShape, Symmetry};
 pub use mass::{Amount, Class, MassError, MassProperties};
