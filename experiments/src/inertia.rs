@@ -90,11 +90,16 @@ enum Form {
 impl Inertia {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let given = self.given()?;
+        if self.about.is_some() && given.iter().any(|body| body.mass.is_none()) {
+            let rule = "missing: --about moves a tensor by M (R^2 1 - R R^T)";
+            return Err(Error::input("--mass", "", rule, "give --mass M"));
+        }
+        let point = self.about.map(Vector3::from);
         let mut bodies = Vec::new();
         for body in given {
-            bodies.push(
-                Examined::of(body, self.about.map(Vector3::from)).map_err(|error| self.refused(error))?,
-            );
+            let name = if body.name.is_empty() { String::new() } else { format!(" of '{}'", body.name) };
+            let refused = |error| Error::Input(format!("{} {}{name}: {error}", self.shape, self.argument));
+            bodies.push(Examined::of(body, point).map_err(refused)?);
         }
         let terminal = || self.out.is_none() && std::io::IsTerminal::is_terminal(&std::io::stdout());
         let form = self.format.unwrap_or_else(|| if terminal() { Form::Table } else { Form::Csv });

@@ -10,6 +10,9 @@ use super::mass::{MassError, check_tensor, finite, positive};
 use super::tensor::{Spectrum, Tensor};
 pub use causes::{Cause, Entry};
 
+/// Densities within e^±14 of water's, from a thousandth of a kg/m³ to that of no known matter, accuse nobody.
+const ORDINARY: f64 = 14.0;
+
 /// What is known of the body besides its tensor; everything is optional, and every item tells more causes apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Evidence {
@@ -116,12 +119,13 @@ pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, 
     let violation = check_tensor(&tensor).err();
     let misfit = evidence.misfit(&tensor);
     let broken = violation.is_some() || misfit.is_some();
-    let accepted = if broken { f64::INFINITY } else { evidence.oddness(&tensor) - 1.0 };
+    // a valid tensor is believed unless another one is clearly less odd
+    let accepted = if broken { f64::INFINITY } else { evidence.oddness(&tensor, ORDINARY) - 1.0 };
     let mut causes: Vec<Explanation> = causes::candidates(&tensor, evidence)
         .into_iter()
         .filter(|(_, corrected, _)| check_tensor(corrected).is_ok() && evidence.misfit(corrected).is_none())
         .map(|(cause, corrected, rareness)| {
-            let cost = rareness + evidence.oddness(&corrected);
+            let cost = rareness + evidence.oddness(&corrected, 0.0);
             Explanation { cause, corrected, cost }
         })
         .filter(|explanation| explanation.cost < accepted)
@@ -180,32 +184,30 @@ impl Evidence {
         Some([0, 1, 2].map(|k| 12.0 * (half - tensor[(k, k)]) / (mass * extents[k] * extents[k])))
     }
 
-    /// How odd a body of this tensor is: 0 for a compact body that fills its extents and whose axes are principal.
-    fn oddness(&self, tensor: &Matrix3<f64>) -> f64 {
+    /// How odd a body of this tensor is: 0 for a compact body of ordinary size whose axes are principal.
+    ///
+    /// Without extents the density of the equivalent box tells the size; up to e^`tolerance` from water's it is ordinary.
+    fn oddness(&self, tensor: &Matrix3<f64>, tolerance: f64) -> f64 {
         let spectrum = Spectrum::of_finite(tensor);
         let second = second_moments(&spectrum);
         let square = |x: f64| x * x;
-        // e⁻⁴ of the largest second moment is as flat as a plate for this purpose
+        // from e⁻⁴ on a body is as flat as a plate
         let flatness =
             if second[0] > 0.0 { -libm::log((second[2] / second[0]).max(libm::exp(-4.0))) } else { 4.0 };
         let products = square(tensor[(0, 1)]) + square(tensor[(0, 2)]) + square(tensor[(1, 2)]);
         let diagonal = square(tensor[(0, 0)]) + square(tensor[(1, 1)]) + square(tensor[(2, 2)]);
         let tilt = if diagonal > 0.0 { 8.0 * products / diagonal } else { 0.0 };
+        let is_flat = second[2] <= ROUNDING * second[0];
         let size = match (self.fill(tensor), self.mass) {
             // half or twice the second moments of a box are ordinary
             (Some(fill), _) => fill.map(|r| square(libm::log(r.max(1e-12)) / libm::log(2.0))).iter().sum(),
-            (None, Some(mass)) => {
+            (None, Some(mass)) if !is_flat => {
                 let edges = second.map(|j| (12.0 * j * (spectrum.scale / mass)).sqrt());
                 let density = mass / (edges[0] * edges[1] * edges[2]);
-                // between foam and lead; flat bodies have any
-                let beyond = if second[2] <= ROUNDING * second[0] {
-                    1.0
-                } else {
-                    (50.0 / density).max(density / 20_000.0)
-                };
-                square(libm::log(beyond.max(1.0)))
+                let orders = libm::log(density / 1000.0).abs();
+                if orders <= tolerance { 0.0 } else { square(orders) / 8.0 }
             }
-            (None, None) => 0.0,
+            _ => 0.0,
         };
         0.5 * flatness + tilt + size
     }

@@ -12,8 +12,8 @@ pub(super) struct Examined {
     pub(super) diagnosis: Diagnosis,
     /// In the axes of the frame; of unit mass if none is known, and absent if no body has the tensor.
     pub(super) body: Option<MassProperties>,
-    /// A point and the tensor about it.
-    pub(super) about: Option<(Vector3<f64>, Matrix3<f64>)>,
+    /// A point and the tensor about it, if there is one.
+    pub(super) about: Option<(Vector3<f64>, Option<Matrix3<f64>>)>,
 }
 
 impl Examined {
@@ -27,7 +27,11 @@ impl Examined {
             center_of_mass: Some(given.turn.inverse() * given.center_of_mass),
             extents: given.extents,
         };
-        let diagnosis = diagnose(given.tensor, &evidence)?;
+        let mut diagnosis = diagnose(given.tensor, &evidence)?;
+        if given.computed && diagnosis.verdict == Verdict::Suspicious {
+            diagnosis.verdict = Verdict::Valid;
+            diagnosis.causes.clear();
+        }
         if let Some(law @ InertiaError::NotSymmetric { .. }) = &diagnosis.violation {
             return Err(MassError::Inertia(law.clone()));
         }
@@ -39,14 +43,7 @@ impl Examined {
                 Some(body.turned(given.turn).moved(given.center_of_mass)?)
             }
         };
-        let about = match (body, point, given.mass) {
-            (Some(body), Some(point), Some(_)) => Some((point, body.tensor_about(point))),
-            (_, Some(_), None) => {
-                // the parallel-axis term is a multiple of it
-                return Err(MassError::NotPositive { quantity: "mass, which --about needs,", value: 0.0 });
-            }
-            _ => None,
-        };
+        let about = point.map(|point| (point, body.map(|body| body.tensor_about(point))));
         Ok(Examined { given, diagnosis, body, about })
     }
 
@@ -85,23 +82,23 @@ impl Examined {
         if found.causes.is_empty() {
             text += "\n  no single mistake of the kinds that are tested explains it";
         }
-        let nearest = six(&found.nearest).map(|x| x.to_string()).join(",");
-        let _ = write!(
-            text,
-            "\n  nearest valid tensor: {nearest}\n    Frobenius distance {:.6e}, {:.3} % of its norm",
-            found.distance,
-            percent(found.distance, self.given.tensor.norm())
-        );
+        if found.distance > 0.0 {
+            let nearest = six(&found.nearest).map(|x| x.to_string()).join(",");
+            let percent = 100.0 * found.distance / self.given.tensor.norm();
+            let _ = write!(
+                text,
+                "\n  nearest valid tensor: {nearest}\n    Frobenius distance {:.6e}, {percent:.3} % of its norm",
+                found.distance
+            );
+        }
         let [a, b, c] = found.equivalent_box;
         let unit = if self.given.mass.is_some() { "m" } else { "(relative)" };
-        let _ = write!(text, "\n  its box: {a:.6} x {b:.6} x {c:.6} {unit}, along the principal axes");
+        let _ = write!(
+            text,
+            "\n  box of that inertia: {a:.6} x {b:.6} x {c:.6} {unit}, along the principal axes"
+        );
         text
     }
-}
-
-/// A share in per cent; nothing of nothing is nothing.
-fn percent(part: f64, whole: f64) -> f64 {
-    if part == 0.0 { 0.0 } else { 100.0 * part / whole }
 }
 
 /// Ixx, Iyy, Izz, Ixy, Ixz, Iyz, without signed zeros.

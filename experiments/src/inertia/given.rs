@@ -21,6 +21,8 @@ pub(super) struct Given {
     pub(super) tensor: Matrix3<f64>,
     /// Along the axes of the tensor.
     pub(super) extents: Option<[f64; 3]>,
+    /// Whether the tensor was computed here, so that there is no mistake of a user's to look for.
+    pub(super) computed: bool,
 }
 
 impl Given {
@@ -33,6 +35,7 @@ impl Given {
             turn: UnitQuaternion::identity(),
             tensor,
             extents: None,
+            computed: false,
         }
     }
 
@@ -41,6 +44,7 @@ impl Given {
         Self {
             mass: Some(body.mass()),
             center_of_mass: body.center_of_mass(),
+            computed: true,
             ..Self::of_tensor(body.tensor())
         }
     }

@@ -49,9 +49,13 @@ fn quantities(examined: &Examined) -> Vec<(&'static str, &'static str, Cell)> {
     let mut add = |names: &[&'static str], unit, values: &[f64]| {
         list.extend(names.iter().zip(values).map(|(&name, &value)| (name, unit, Cell::from(value + 0.0))));
     };
-    add(&["center_x", "center_y", "center_z"], "m", center.as_slice());
-    add(&["Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"], "kg m^2", &tensor);
-    add(&["I1", "I2", "I3"], "kg m^2", &moments);
+    add(&["center_of_mass_x", "center_of_mass_y", "center_of_mass_z"], "m", center.as_slice());
+    add(
+        &["inertia_xx", "inertia_yy", "inertia_zz", "inertia_xy", "inertia_xz", "inertia_yz"],
+        "kg m^2",
+        &tensor,
+    );
+    add(&["moment_1", "moment_2", "moment_3"], "kg m^2", &moments);
     match axes {
         Some(axes) => add(&["axes_w", "axes_x", "axes_y", "axes_z"], "", &axes),
         None => add(&["axes_w", "axes_x", "axes_y", "axes_z"], "", &[f64::NAN; 4]),
@@ -70,7 +74,7 @@ fn quantities(examined: &Examined) -> Vec<(&'static str, &'static str, Cell)> {
     if let Some((point, tensor)) = &examined.about {
         add(&["point_x", "point_y", "point_z"], "m", point.as_slice());
         let names = ["about_xx", "about_yy", "about_zz", "about_xy", "about_xz", "about_yz"];
-        add(&names, "kg m^2", &six(tensor));
+        add(&names, "kg m^2", &tensor.as_ref().map_or([f64::NAN; 6], six)); // an empty cell
     }
     list
 }
@@ -151,7 +155,10 @@ fn json(examined: &Examined) -> String {
         entries.insert(0, ("name", examined.given.name.as_str().into()));
     }
     if let Some((point, tensor)) = &examined.about {
-        entries.push(("about", json!({"point": vector(point.as_slice()), "inertia": matrix(tensor)})));
+        entries.push((
+            "about",
+            json!({"point": vector(point.as_slice()), "inertia": tensor.as_ref().map(matrix)}),
+        ));
     }
     let lines: Vec<String> = entries.iter().map(|(name, value)| format!("  \"{name}\": {value}")).collect();
     format!("{{\n{}\n}}", lines.join(",\n"))

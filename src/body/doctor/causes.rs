@@ -127,8 +127,9 @@ impl fmt::Display for Cause {
             Cause::Order(order) => write!(f, "the six numbers are in the order {order}"),
             Cause::Swapped(a, b) => write!(f, "{a} and {b} are exchanged"),
             Cause::DecimalSlip { entry, power } => {
-                let (size, times) = if *power > 0 { ("large", power) } else { ("small", &-power) };
-                write!(f, "{entry} is 10^{times} times too {size}: a decimal slip")
+                let (size, zeros) = if *power > 0 { ("large", power) } else { ("small", &-power) };
+                let times = 10_u64.pow(zeros.unsigned_abs());
+                write!(f, "{entry} is {times} times too {size}: a decimal slip")
             }
             Cause::SecondMoments => {
                 write!(f, "second moments int x_j x_k dm (a covariance), not inertia: I = tr(J) 1 - J")
@@ -200,7 +201,7 @@ pub(super) fn candidates(given: &Matrix3<f64>, evidence: &Evidence) -> Vec<(Caus
         }
     }
     for entry in ENTRIES {
-        for (power, ten, rareness) in [(1, 10.0, 3.5), (2, 100.0, 4.5), (3, 1000.0, 4.5)] {
+        for (power, ten, rareness) in [(1, 10.0, 3.5), (2, 100.0, 4.5), (3, 1000.0, 5.5)] {
             let value = get(given, entry);
             found.push((Cause::DecimalSlip { entry, power }, set(*given, entry, value / ten), rareness));
             let power = -power;
