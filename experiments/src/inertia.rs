@@ -12,7 +12,7 @@ use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
 use polhode::body::{Amount, InertiaError, MassError, MassProperties, Mesh, MeshError, Solid, Verdict};
 
-use crate::arguments::{list, number, numbers, positive};
+use crate::arguments::{list, numbers, positive};
 use crate::error::{Error, warn};
 use crate::files::{emit, read};
 use examined::Examined;
@@ -215,7 +215,7 @@ impl Inertia {
                     return Err(Error::Input(format!("{place}: {law}")));
                 }
                 Err(error) => {
-                    let rule = format!("a tensor about {point:?} cannot be this small: {error}");
+                    let rule = format!("about --given-about it cannot be this small: {error}");
                     return Err(Error::Failed(format!("{place}: {rule}")));
                 }
             };
@@ -256,9 +256,4 @@ fn scaled(mesh: &Mesh, amount: Amount, unit: f64) -> Result<MassProperties, Mass
     };
     let body = mesh.with(amount)?;
     MassProperties::new(body.mass(), body.center_of_mass() * unit, body.tensor() * (unit * unit))
-}
-
-/// A finite number of a file, or why it is none.
-fn parsed(text: &str) -> Result<f64, String> {
-    number(text)
 }

@@ -199,8 +199,10 @@ impl Evidence {
         let tilt = if diagonal > 0.0 { 8.0 * products / diagonal } else { 0.0 };
         let is_flat = second[2] <= ROUNDING * second[0];
         let size = match (self.fill(tensor), self.mass) {
-            // half or twice the second moments of a box are ordinary
-            (Some(fill), _) => fill.map(|r| square(libm::log(r.max(1e-12)) / libm::log(2.0))).iter().sum(),
+            // real bodies are emptier than a box: most have a third to one and a half of its second moments
+            (Some(fill), _) => {
+                fill.map(|r| square(libm::log(r.max(1e-12) / 0.7) / libm::log(2.5))).iter().sum()
+            }
             (None, Some(mass)) if !is_flat => {
                 let edges = second.map(|j| (12.0 * j * (spectrum.scale / mass)).sqrt());
                 let density = mass / (edges[0] * edges[1] * edges[2]);

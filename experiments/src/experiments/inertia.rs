@@ -104,7 +104,6 @@ fn spheres(finest: usize, failures: &mut Vec<String>) -> Result<(Table, Figure),
         vec![
             Column::new("triangles", "", "of the mesh"),
             Column::new("h", "m", "edge of the squares of the cube before they are cut and blown up")
-                
                 .latex("$h$"),
             Column::new("volume_error", "", "relative").heading("volume"),
             Column::new("volume_order", "", "log2 of the ratio to the error at twice h")

@@ -8,6 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::{read_mesh, scaled};
+use crate::arguments::number;
 use crate::error::Error;
 use crate::files::read;
 
@@ -79,7 +80,8 @@ impl Part<'_> {
                 let file =
                     self.text("file")?.ok_or_else(|| self.missing("file", "name an STL or OBJ file"))?;
                 let folder = self.file.path.parent().unwrap_or(Path::new("."));
-                let mesh = read_mesh(&folder.join(file))?;
+                let mesh = read_mesh(&folder.join(file));
+                let mesh = mesh.map_err(|error| self.at("file", &error.to_string()))?;
                 let unit = self.positive("length_unit")?.unwrap_or(1.0);
                 self.check(scaled(&mesh, self.amount()?, unit), "file")?
             }
@@ -97,12 +99,16 @@ impl Part<'_> {
                 let mass = self.positive("mass")?.ok_or_else(|| self.missing("mass", "give it in kg"))?;
                 self.check(MassProperties::point(mass, Vector3::zeros()), "mass")?
             }
-            solid => {
-                self.only(&["mass", "density", "size"], shape)?;
+            name => {
                 let size = self.list("size")?.unwrap_or_default();
-                let solid = Solid::named(solid, &size);
-                let key = if matches!(solid, Err(MassError::UnknownShape { .. })) { "shape" } else { "size" };
-                let solid = self.check(solid, key)?;
+                let solid = match Solid::named(name, &size) {
+                    Err(MassError::UnknownShape { name, known }) => {
+                        let message = format!("no such shape '{name}'; known: {known}, mesh, tensor, point");
+                        return Err(self.at("shape", &message));
+                    }
+                    other => self.check(other, "size")?,
+                };
+                self.only(&["mass", "density", "size"], name)?;
                 self.check(solid.with(self.amount()?), "size")?
             }
         };
@@ -133,9 +139,7 @@ impl Part<'_> {
         let common = ["name", "shape", "at", "turn"];
         let foreign = self.keys.keys().find(|key| {
             let key = key.get_ref().as_ref();
-            !common.contains(&key)
-                && !own.contains(&key)
-                && Solid::names().chain(["mesh", "tensor", "point"]).any(|s| s == shape)
+            !common.contains(&key) && !own.contains(&key)
         });
         match foreign {
             Some(key) => {
@@ -188,7 +192,7 @@ impl Part<'_> {
             DeValue::Float(float) => float.as_str(),
             other => return Err(self.at(key, &format!("{} given, a number needed", other.type_str()))),
         };
-        super::parsed(text).map_err(|error| self.at(key, &error))
+        number(text).map_err(|error| self.at(key, &error))
     }
 
     fn check<T>(&self, result: Result<T, MassError>, key: &str) -> Result<T, Error> {

@@ -7,6 +7,7 @@ use polhode::num::trig::sin_cos;
 use roxmltree::{Document, Node};
 
 use super::given::Given;
+use crate::arguments::number;
 use crate::error::Error;
 
 /// Every link of a URDF model.
@@ -99,7 +100,7 @@ impl Element<'_, '_> {
     /// The numbers of an attribute, if it is there.
     fn optional<const N: usize>(&self, attribute: &str) -> Result<Option<[f64; N]>, Error> {
         let Some(text) = self.node.attribute(attribute) else { return Ok(None) };
-        let numbers: Result<Vec<f64>, String> = text.split_whitespace().map(super::parsed).collect();
+        let numbers: Result<Vec<f64>, String> = text.split_whitespace().map(number).collect();
         let numbers = numbers.map_err(|error| self.error(&format!("{attribute}: {error}")))?;
         let found = numbers.len();
         numbers
