@@ -6,7 +6,7 @@ use crate::body::{Body, Carry, State};
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 
-/// Implicit midpoint (methods.md §5.1).
+/// Implicit midpoint.
 ///
 /// Φ_h: `m' = m + h m̄ × I⁻¹m̄` with `m̄ = ½(m + m')`, then `q' = q ∘ cay(h/2 I⁻¹m̄)`.
 /// Keeps energy and |m|, being quadratic, and L, because the same Cayley map turns m' back into m. It keeps the
