@@ -1,5 +1,7 @@
 //! The doctor: spoiled tensors whose true cause it must name first, and healthy ones that it must leave alone.
 
+#![allow(clippy::unwrap_used)]
+
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::body::{Amount, Evidence, Inertia, InertiaError, MassProperties, Solid, Verdict, diagnose};
 
@@ -85,8 +87,10 @@ fn parallel_axis_term(patient: &Patient) -> Matrix3<f64> {
 const BY_ROWS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 const VOIGT: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
 
-/// What a test case spoils, the true cause, and whether its tensor comes back.
-fn cases() -> Vec<(&'static str, Matrix3<f64>, Evidence, &'static str, Matrix3<f64>)> {
+/// A name, the spoiled tensor, what is known of the body, the true cause, the true tensor.
+type Case = (&'static str, Matrix3<f64>, Evidence, &'static str, Matrix3<f64>);
+
+fn cases() -> Vec<Case> {
     let nothing = Evidence::default();
     let mass_only = |p: &Patient| Evidence { mass: p.evidence.mass, ..nothing };
     let without_extents = |p: &Patient| Evidence { extents: None, ..p.evidence };

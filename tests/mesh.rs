@@ -1,5 +1,7 @@
 //! Mass properties of meshes: exact boxes, the rate at which polyhedra approach a sphere, and what is refused.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fmt::Write;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};

@@ -215,7 +215,7 @@ impl Inertia {
                     return Err(Error::Input(format!("{place}: {law}")));
                 }
                 Err(error) => {
-                    let rule = format!("about --given-about it cannot be this small: {error}");
+                    let rule = format!("too small for a tensor about --given-about: {error}");
                     return Err(Error::Failed(format!("{place}: {rule}")));
                 }
             };

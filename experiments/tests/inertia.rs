@@ -2,6 +2,8 @@
 //!
 //! `POLHODE_BLESS=1 cargo test -p polhode-experiments --test inertia` rewrites the golden files; read the difference.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
