@@ -113,8 +113,16 @@ fn with(flags: &str) -> String {
 
 #[test]
 fn help_is_everywhere_and_fits_into_80_columns() {
-    let commands =
-        ["", "propagate", "methods", "experiment", "experiment list", "experiment run", "experiment publish"];
+    let commands = [
+        "",
+        "propagate",
+        "methods",
+        "inertia",
+        "experiment",
+        "experiment list",
+        "experiment run",
+        "experiment publish",
+    ];
     for command in commands {
         for flag in ["--help", "-h"] {
             let text = output(&format!("{command} {flag}"));
