@@ -250,7 +250,7 @@ fn broken_meshes_name_an_edge() {
     );
     assert_eq!(
         message(cube(1)[1..].to_vec()),
-        "the mesh is open; edges with one triangle only: 3, the first is edge (0, 0, 0)-(0, 1, 1) of triangle 1"
+        "the mesh is open; edges with one triangle only: 3, the first is edge (0, 1, 1)-(0, 0, 0) of triangle 1"
     );
     let inside_out = cube(1).iter().map(|&[a, b, c]| [a, c, b]).collect();
     assert!(

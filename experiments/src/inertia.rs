@@ -141,7 +141,7 @@ impl Inertia {
             "tensor" => single(self.tensor()?),
             "mesh" => single(Given::body(self.mesh(path)?)),
             "parts" => single(Given::body(parts::read_parts(path)?)),
-            "json" => single(given::from_json(path, &read(path, "name a JSON file of this command")?)?),
+            "json" => given::from_json(path, &read(path, "name a JSON file of this command")?),
             "urdf" => xml::urdf(path, &read(path, "name a URDF file")?),
             "mjcf" => xml::mjcf(path, &read(path, "name an MJCF file")?),
             _ => {

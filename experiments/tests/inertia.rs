@@ -298,6 +298,10 @@ fn models_are_examined_link_by_link() {
     let answer = scratch.run("urdf robot.urdf --format mjcf --out model.xml");
     assert_eq!((answer.code, answer.out.as_str()), (1, ""));
     assert!(!scratch.0.join("model.xml").exists());
+    // several bodies are an array, which is read back as the same bodies
+    let array = scratch.run("urdf robot.urdf --format json").out;
+    scratch.file("robot.json", &array);
+    assert_eq!(scratch.run("json robot.json --format json").out, array);
     // a quarter turn about z: x of the inertial frame is y of the link, and I_xy changes its sign
     scratch.file("base.urdf", ROBOT.split("  <link name=\"arm\">").next().unwrap().to_owned() + "</robot>");
     let inertia = numbers(&scratch.json("urdf base.urdf")["inertia"]);

@@ -90,7 +90,7 @@ impl Region {
     ) -> Result<MassProperties, DistributionError> {
         self.check()?;
         let region = *self;
-        integrate(
+        integrate_mass(
             |u| {
                 let (at, volume) = region.element(u);
                 let rho = density(at);
@@ -170,10 +170,10 @@ fn spherical(r: f64, u: [f64; 3]) -> (Vector3<f64>, f64) {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::body::integrate;
+/// use polhode::body::integrate_mass;
 /// use polhode::num::trig::sin_cos;
 /// // half a hoop of 1 kg and radius 1
-/// let half_hoop = integrate(
+/// let half_hoop = integrate_mass(
 ///     |[u, _, _]| {
 ///         let (sin, cos) = sin_cos(core::f64::consts::PI * u);
 ///         Ok((Vector3::new(cos, sin, 0.0), 1.0))
@@ -183,7 +183,7 @@ fn spherical(r: f64, u: [f64; 3]) -> (Vector3<f64>, f64) {
 /// assert!((half_hoop.center_of_mass().y - 2.0 / core::f64::consts::PI).abs() < 1e-14);
 /// # Ok::<(), polhode::body::DistributionError>(())
 /// ```
-pub fn integrate(
+pub fn integrate_mass(
     element: impl Fn([f64; 3]) -> Result<(Vector3<f64>, f64), DistributionError>,
     tolerance: f64,
 ) -> Result<MassProperties, DistributionError> {

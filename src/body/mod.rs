@@ -13,7 +13,7 @@ mod state;
 mod tensor;
 
 pub use carry::Carry;
-pub use distribution::{DistributionError, Region, integrate};
+pub use distribution::{DistributionError, Region, integrate_mass};
 pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Verdict, diagnose};
 pub(crate) use frame::of_dd;
 pub use frame::{Body, StateError};

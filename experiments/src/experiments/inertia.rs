@@ -7,7 +7,7 @@ mod shapes;
 use std::time::Instant;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use polhode::body::{Amount, MassProperties, Mesh, MeshError, Solid, integrate};
+use polhode::body::{Amount, MassProperties, Mesh, MeshError, Solid, integrate_mass};
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};
@@ -67,7 +67,8 @@ fn solids(failures: &mut Vec<String>) -> Result<Table, Error> {
     );
     for (solid, [x, y, z]) in shapes::ALL {
         let body = solid.with(Amount::Density(1.0)).map_err(|error| failed(&error))?;
-        let found = integrate(|u| Ok(shapes::element(solid, u)), 1e-14).map_err(|error| failed(&error))?;
+        let found =
+            integrate_mass(|u| Ok(shapes::element(solid, u)), 1e-14).map_err(|error| failed(&error))?;
         let moments = body.tensor().diagonal();
         let mut difference = (found.mass() / body.mass() - 1.0).abs();
         for k in 0..3 {
@@ -207,7 +208,7 @@ fn mesh(triangles: impl Iterator<Item = [Vector3<f64>; 3]>) -> Result<Mesh, Erro
 fn timing(n: usize) -> Result<Table, Error> {
     let mut table = Table::new(
         "timing",
-        "Time to read a binary STL from memory, check it and integrate over it. Depends on the machine.",
+        "Time to read a binary STL from memory, check it and integrate_mass over it. Depends on the machine.",
         vec![
             Column::new("triangles", "", "of the file"),
             Column::new("megabytes", "MB", "of the file").heading("size"),

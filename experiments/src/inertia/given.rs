@@ -53,24 +53,32 @@ impl Given {
 /// What this command writes as JSON, as far as it says what the body is.
 #[derive(Deserialize)]
 struct Written {
+    #[serde(default)]
+    name: String,
     mass: Option<f64>,
     #[serde(default)]
     center_of_mass: [f64; 3],
     inertia: [[f64; 3]; 3],
 }
 
-/// From the JSON that this command writes.
-pub(super) fn from_json(path: &Path, text: &str) -> Result<Given, Error> {
-    let written: Written = serde_json::from_str(text).map_err(|error| {
+/// From the JSON that this command writes: an object, or an array of them.
+pub(super) fn from_json(path: &Path, text: &str) -> Result<Vec<Given>, Error> {
+    let written: Result<Vec<Written>, _> = if text.trim_start().starts_with('[') {
+        serde_json::from_str(text)
+    } else {
+        serde_json::from_str(text).map(|one| vec![one])
+    };
+    let written = written.map_err(|error| {
         Error::Input(format!(
             "{}: {error}; needed: \"inertia\": [[3x3]], and \"mass\" and \"center_of_mass\": [3] if known",
             path.display()
         ))
     })?;
-    let tensor = Matrix3::from_fn(|j, k| written.inertia[j][k]);
-    Ok(Given {
+    let given = |written: Written| Given {
+        name: written.name,
         mass: written.mass,
         center_of_mass: written.center_of_mass.into(),
-        ..Given::of_tensor(tensor)
-    })
+        ..Given::of_tensor(Matrix3::from_fn(|j, k| written.inertia[j][k]))
+    };
+    Ok(written.into_iter().map(given).collect())
 }

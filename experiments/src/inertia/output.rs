@@ -147,7 +147,8 @@ fn json(examined: &Examined) -> String {
         ("verdict", examined.verdict().into()),
         ("trouble", examined.trouble().into()),
         ("causes", causes.into()),
-        ("nearest", matrix(&found.nearest)),
+        // in the axes it was typed in, like the causes; of a valid tensor it is the tensor itself
+        ("nearest", matrix(&body.map_or(found.nearest, MassProperties::tensor))),
         ("distance", found.distance.into()),
         ("equivalent_box", vector(&found.equivalent_box)),
     ];
