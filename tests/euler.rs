@@ -74,7 +74,8 @@ fn every_gimbal_lock_is_flagged_and_right() {
     for sequence in EulerSequence::ALL {
         let locks = if is_proper(sequence) { [0.0, PI] } else { [FRAC_PI_2, -FRAC_PI_2] };
         for lock in locks {
-            for (first, third) in [(0.0, 0.0), (0.3, 0.0), (0.0, 2.9), (1.25, -0.7), (-3.0, -2.0), (PI, 1.0)] {
+            for (first, third) in [(0.0, 0.0), (0.3, 0.0), (0.0, 2.9), (1.25, -0.7), (-3.0, -2.0), (PI, 1.0)]
+            {
                 let q = sequence.attitude([first, lock, third]);
                 let found = sequence.angles(q);
                 assert!(found.locked, "{sequence} at {lock}");

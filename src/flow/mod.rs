@@ -2,9 +2,11 @@
 
 mod circulation;
 mod free_body;
+mod kick;
 mod turn;
 
 pub use free_body::{FreeBody, FreeMotion, TimeError};
+pub use kick::Kick;
 pub use turn::{AxisTurn, turn};
 
 use crate::body::State;
