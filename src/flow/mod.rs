@@ -1,12 +1,16 @@
 //! Exact flows: the atoms that splitting methods are composed of, and the references they are judged by.
 
 mod circulation;
+mod complex;
 mod free_body;
 mod kick;
+mod lagrange_top;
+mod nutation;
 mod turn;
 
 pub use free_body::{FreeBody, FreeMotion, TimeError};
 pub use kick::Kick;
+pub use lagrange_top::{LagrangeError, LagrangeTop};
 pub use turn::{AxisTurn, turn};
 
 use crate::body::State;
