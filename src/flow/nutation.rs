@@ -93,8 +93,17 @@ impl Start {
         }
     }
 
-    /// Turning points y₁ ≥ y₂ and w₃, from the quadratic that is left when the best separated zero is divided out.
+    /// x₁, x₂, x₃, y₁, y₂ and w₃. Where x₁ or y₂ vanishes, the axis passes through the vertical: their products with
+    /// the others, e²/b and d²/b, give them to their own precision.
     fn zeros(&self) -> ([Dd; 3], [Dd; 2], Dd) {
+        let ([_, x2, x3], [y1, y2], w3) = self.separated_zeros();
+        let x1 = self.e * self.e / (self.b * x2 * x3);
+        let y2 = if y2 < w3 { self.d * self.d / (self.b * y1 * w3) } else { y2 };
+        ([x1, x2, x3], [y1, y2], w3)
+    }
+
+    /// The same from the quadratic that is left when the best separated zero is divided out.
+    fn separated_zeros(&self) -> ([Dd; 3], [Dd; 2], Dd) {
         let Start { b, a, e, d, x, y, transverse, .. } = *self;
         let two = Dd::of(2.0);
         // b y³ − p2 y² − p1 y + d² has the zeros y₁, y₂, −w₃
