@@ -1,5 +1,7 @@
 //! Euler angles: all twelve sequences against products of elementary turns, in and out of gimbal lock.
 
+#![allow(clippy::unwrap_used)]
+
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};

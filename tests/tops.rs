@@ -1,5 +1,7 @@
 //! Heavy tops against fixtures of 32 digits (tests/data/tops, mpmath).
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 mod fixtures;
 
 use fixtures::{TopCase, tops};
@@ -44,12 +46,27 @@ fn is_symmetric(case: &TopCase) -> bool {
     LagrangeTop::new(&body, start).is_ok()
 }
 
-fn closed_form<S: Precise>(print: bool) -> f64 {
+/// The scalars in which the closed form is evaluated.
+trait Evaluated: Precise {
+    fn state(top: &LagrangeTop, t: f64) -> State<Self>;
+}
+impl Evaluated for f64 {
+    fn state(top: &LagrangeTop, t: f64) -> State<f64> {
+        top.inside_at(t)
+    }
+}
+impl Evaluated for Dd {
+    fn state(top: &LagrangeTop, t: f64) -> State<Dd> {
+        top.inside_at_dd(Dd::from(t))
+    }
+}
+
+fn closed_form<S: Evaluated>(print: bool) -> f64 {
     let mut worst = 0.0_f64;
     for case in tops("reference.csv").iter().filter(|case| is_symmetric(case)) {
         let (body, start) = problem(case);
         let top = LagrangeTop::new(&body, start).unwrap();
-        let [attitude, momentum] = errors(case, &body, &top.inside_at::<S>(Dd::from(case.free.t)));
+        let [attitude, momentum] = errors(case, &body, &S::state(&top, case.free.t));
         if print {
             println!("{:22} t = {:6}: {attitude:.1e} rad, {momentum:.1e}", case.free.scenario, case.free.t);
         }
@@ -78,7 +95,7 @@ fn the_closed_form_in_double_double_is_exact_to_conditioning() {
 fn residual(top: &LagrangeTop, t: f64, rate: f64) -> f64 {
     let body = top.body();
     let h = libm::exp2(libm::round(libm::log2(0.000_1 / rate)));
-    let at = |k: f64| top.inside_at::<Dd>(Dd::from(t) + Dd::of(k * h));
+    let at = |k: f64| top.inside_at_dd(Dd::from(t) + Dd::of(k * h));
     let difference = |k: f64| at(k) + at(-k) * Dd::of(-1.0);
     let slope = (difference(1.0) * Dd::of(45.0) + difference(2.0) * Dd::of(-9.0) + difference(3.0))
         * (Dd::ONE / Dd::of(60.0 * h));
@@ -117,7 +134,7 @@ fn the_closed_form_solves_the_equations_of_motion_at_every_scale() {
                             worst = (found, format!("c {weight:e}, tilt {tilt:e}, omega {omega:?}, t {t}"));
                         }
                     }
-                    let back = top.inside_at::<Dd>(Dd::ZERO);
+                    let back = top.inside_at_dd(Dd::ZERO);
                     let off = (back.attitude - start.attitude.normalized()).magnitude();
                     assert!(
                         off < 1e-15,
@@ -178,7 +195,7 @@ fn readings_are_those_of_the_integrals() {
         close(top.nutation_period().unwrap(), period);
         close(top.precession_per_nutation().unwrap(), advance);
         // at a turning point all energy is potential
-        let energy = top.body().energy(&top.inside_at::<Dd>(Dd::ZERO));
+        let energy = top.body().energy(&top.inside_at_dd(Dd::ZERO));
         for tilt in [highest, lowest] {
             assert!((top.effective_potential(tilt) / energy - 1.0).abs() < 1e-13, "{name}");
         }
@@ -237,14 +254,14 @@ fn published_problems_are_met_by_stepping() {
 
 #[test]
 fn composed_kick_drift_has_no_secular_energy_and_keeps_vertical_momentum_to_round_off() {
-    for name in ["E3-asymmetric", "E3-symmetric", "E10"] {
+    for (name, steps) in [("E3-asymmetric", 100_000), ("E3-symmetric", 1_000_000), ("E10", 1_000_000)] {
         let case = tops("reference.csv").into_iter().find(|case| case.free.scenario == name).unwrap();
         let (body, start) = problem(&case);
         let start = body.leave(&start);
         let mut run = Run::new(method("kick-drift:4").unwrap().as_ref(), &body, &start, 0.01).unwrap();
         let (mut times, mut changes) = (Vec::new(), Vec::new());
         let mut last = None;
-        for sample in run.samples(Schedule::every(50, 1_000_000)) {
+        for sample in run.samples(Schedule::every(50, steps)) {
             let sample = sample.unwrap();
             times.push(sample.elapsed.hi());
             changes.push(sample.energy_change);
@@ -252,9 +269,9 @@ fn composed_kick_drift_has_no_secular_energy_and_keeps_vertical_momentum_to_roun
         }
         let (drift, worst) = (secular_drift(&times, &changes).unwrap(), last.unwrap());
         println!("{name}: {drift:?}, {worst:?}");
-        //TMP
+        assert!(!drift.is_secular(), "{name}: {drift:?}");
         assert!(worst.energy < 1e-8, "{name}: {worst:?}");
-        assert!(worst.momentum_z.unwrap() < 1e-10, "{name}: {worst:?}");
+        assert!(worst.momentum_z.unwrap() < 1e-13, "{name}: {worst:?}");
     }
 }
 
@@ -289,9 +306,9 @@ fn kovalevskayas_and_goryachev_chaplygins_constants_stand() {
         let states = along([2.0, 2.0, 1.0], weight, q, [0.7, -0.4, 0.9], h);
         spread(states.iter().map(kovalevskaya))
     };
-    let (coarse, fine) = (constants(0.04), constants(0.02));
+    let (coarse, fine) = (constants(0.02), constants(0.01));
     println!("Kovalevskaya {coarse:.1e} {fine:.1e}");
-    assert!(fine < 1e-5 && (libm::log2(coarse / fine) - 4.0).abs() < 0.3, "{coarse:.1e}, {fine:.1e}");
+    assert!(fine < 1e-8 && libm::log2(coarse / fine) > 3.8, "{coarse:.1e}, {fine:.1e}");
 
     // m·Γ = 0: no moment about the vertical
     let up = Quat::from_components(q).normalized().rotate_back(Vec3::unit(2));
@@ -299,7 +316,7 @@ fn kovalevskayas_and_goryachev_chaplygins_constants_stand() {
     let chaplygin =
         |(w, up): &(Vec3<f64>, Vec3<f64>)| w[2] * (w[0] * w[0] + w[1] * w[1]) - weight * w[0] * up[2];
     let constants = |h| spread(along([4.0, 4.0, 1.0], weight, q, m.0, h).iter().map(chaplygin));
-    let (coarse, fine) = (constants(0.04), constants(0.02));
+    let (coarse, fine) = (constants(0.02), constants(0.01));
     println!("Goryachev and Chaplygin {coarse:.1e} {fine:.1e}");
-    assert!(fine < 1e-5 && (libm::log2(coarse / fine) - 4.0).abs() < 0.3, "{coarse:.1e}, {fine:.1e}");
+    assert!(fine < 1e-8 && libm::log2(coarse / fine) > 3.8, "{coarse:.1e}, {fine:.1e}");
 }

@@ -19,7 +19,7 @@ pub(crate) fn number(text: &str) -> Result<f64, String> {
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match number(text)? {
         value if value > 0.0 => Ok(value),
-        value => Err(format!("{value} is not positive; it must be above zero")),
+        value => Err(format!("{value:?} is not positive; give a number above zero")),
     }
 }
 
@@ -36,15 +36,17 @@ pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     })
 }
 
-/// A quaternion w,x,y,z of any non-zero norm, as typed.
+/// A quaternion w,x,y,z of any non-zero norm; as typed, but for a power of two that keeps its square in range.
 pub(crate) fn quaternion(text: &str) -> Result<[f64; 4], String> {
     let q = numbers(text)?;
     if q == [0.0; 4] {
         return Err(
-            "the zero quaternion is no rotation; any other norm is fine, 1,0,0,0 is no rotation".into()
+            "the zero quaternion has no direction; any other norm is fine, and 1,0,0,0 is the attitude unturned".into()
         );
     }
-    Ok(q)
+    let largest = q.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let exponent = libm::ilogb(largest);
+    Ok(q.map(|x| libm::scalbn(x, -exponent)))
 }
 
 /// Output times as typed, a value of its own because clap reads `Vec` as a repeated flag.
@@ -56,12 +58,15 @@ pub(crate) fn times(text: &str) -> Result<Times, String> {
     list(text).map(Times)
 }
 
+/// Rows of one run, which stand in memory until all are known: somewhat over a gigabyte.
+const MOST_ROWS: f64 = 2e6;
+
 /// The times `start`, `start + every`, … up to `until`.
 ///
 /// `until` itself is among them, as typed, when it lies within 4 ulp of a multiple.
 ///
 /// # Errors
-/// `every` zero or pointing away from `until`, and counts beyond 2⁵³, where n · `every` repeats itself.
+/// `every` zero or pointing away from `until`, and more than [`MOST_ROWS`].
 pub(crate) fn regular(
     start: f64,
     until: f64,
@@ -73,13 +78,13 @@ pub(crate) fn regular(
     }
     if span != 0.0 && span.signum() != every.signum() {
         return Err(format!(
-            "--every: '{every}': steps away from --until {until} (start time {start}); change its sign"
+            "--every: '{every:?}': steps away from --until {until:?} (start time {start:?}); change its sign"
         ));
     }
     let rows = span / every;
-    if rows.is_nan() || rows > 9_007_199_254_740_992.0 {
+    if rows.is_nan() || rows > MOST_ROWS {
         return Err(format!(
-            "--every: '{every}': {rows:.0e} rows up to --until {until}; give a larger distance"
+            "--every: '{every:?}': {rows:.0e} rows up to --until {until:?}, and at most {MOST_ROWS:e} are kept; give a larger distance"
         ));
     }
     let ulp = f64::EPSILON * until.abs().max(start.abs()).max(every.abs());
@@ -107,9 +112,11 @@ mod tests {
         assert_eq!(message("1,x,3"), "item 2: 'x' is not a number; write it like 0.5 or 1e-3");
         assert!(message("1,2,nan").starts_with("item 3: 'nan' is not a finite number"));
         assert!(message("1,2,1e999").starts_with("item 3: '1e999' is not a finite number"));
-        assert_eq!(positive("0").unwrap_err(), "0 is not positive; it must be above zero");
+        assert_eq!(positive("0").unwrap_err(), "0.0 is not positive; give a number above zero");
         assert!(quaternion("0,0,-0,0").unwrap_err().contains("zero quaternion"));
-        assert_eq!(quaternion("0,0,0,1e-300"), Ok([0.0, 0.0, 0.0, 1e-300]));
+        assert_eq!(quaternion("0,-5e-324,0,0"), Ok([0.0, -1.0, 0.0, 0.0]));
+        assert_eq!(quaternion("1.5e308,0,0,1.5e308").map(|q| q[0] == q[3] && q[0] < 2.0), Ok(true));
+        assert_eq!(quaternion("1,0.1,0,0"), Ok([1.0, 0.1, 0.0, 0.0]));
     }
 
     #[test]

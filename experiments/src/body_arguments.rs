@@ -20,7 +20,7 @@ pub(crate) struct BodyArguments {
     /// Tensor entries in body axes, I_xy = -sum m x y
     #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = numbers::<6>, allow_hyphen_values = true)]
     inertia: Option<[f64; 6]>,
-    /// A body of the catalogue: toutatis, racket, t-handle, phone, water, spacecraft, textbook, dyadic, prolate, oblate, sphere
+    /// Inertia of a body of the catalogue: toutatis, racket, t-handle, phone, water, spacecraft, textbook, dyadic, prolate, oblate, sphere
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
 }

@@ -1,6 +1,7 @@
 //! What can go wrong on the command line, and how it is told.
 
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::io::Write as _;
 
 /// A message for standard error and the exit code that goes with it.
 #[derive(Debug, thiserror::Error)]
@@ -45,6 +46,16 @@ impl Error {
             Self::Input(_) => 2,
         }
     }
+}
+
+/// A remark on standard error; the run goes on.
+pub(crate) fn warn(message: &str) {
+    tell("warning", message);
+}
+
+/// A line on standard error. Where nobody listens (`2>&1 | head`), nothing is said.
+pub(crate) fn tell(kind: &str, message: &str) {
+    let _ = writeln!(std::io::stderr(), "{kind}: {message}");
 }
 
 /// The known name with the fewest edits from `name`, if more than half of the letters are right.

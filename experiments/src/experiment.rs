@@ -56,6 +56,8 @@ pub(crate) struct Experiment {
 pub(crate) struct Report {
     /// Deterministic rows, in full precision.
     pub(crate) tables: Vec<Table>,
+    /// Rows that only programs read: CSV alone.
+    pub(crate) data: Vec<Table>,
     /// Parts of them for readers; where there are none, the tables themselves are shown.
     pub(crate) views: Vec<Table>,
     pub(crate) figures: Vec<Figure>,
@@ -148,10 +150,12 @@ pub(crate) fn run(names: &[String], scale: Scale, out: &Path) -> Result<(), Erro
 
 fn write(experiment: &Experiment, scale: Scale, report: &Report, folder: &Path) -> Result<(), Error> {
     let staging = Staging::new(folder)?;
-    for table in report.tables.iter().chain(&report.timing) {
+    for table in report.tables.iter().chain(&report.data).chain(&report.timing) {
         staging.write(&format!("{}.csv", table.name), table.csv().as_bytes())?;
     }
-    for table in report.tables.iter().chain(&report.views) {
+    // a view may be one of the tables, shown alone
+    let also = report.views.iter().filter(|view| report.tables.iter().all(|table| table.name != view.name));
+    for table in report.tables.iter().chain(also) {
         staging.write(&format!("{}.md", table.name), table.markdown().as_bytes())?;
         staging.write(&format!("{}.tex", table.name), table.latex().as_bytes())?;
     }

@@ -8,9 +8,11 @@ mod experiments;
 mod figure;
 mod files;
 mod methods;
+mod motion;
 mod propagate;
 mod provenance;
 mod publish;
+mod random;
 mod table;
 
 use std::path::PathBuf;
@@ -38,6 +40,7 @@ enum Command {
     #[command(subcommand)]
     Experiment(ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
+    Motion(motion::Motion),
     Methods(methods::Methods),
 }
 
@@ -73,7 +76,7 @@ fn main() -> ExitCode {
     match run(CommandLine::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            error::tell("error", &error.to_string());
             ExitCode::from(error.exit_code())
         }
     }
@@ -87,6 +90,7 @@ fn run(command: Command) -> Result<(), Error> {
         }
         Command::Experiment(ExperimentCommand::Publish { root }) => publish::run(&root),
         Command::Propagate(propagate) => propagate.run(),
+        Command::Motion(motion) => motion.run(),
         Command::Methods(methods) => methods.run(),
     }
 }

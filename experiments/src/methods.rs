@@ -55,7 +55,7 @@ pub(crate) fn table() -> Table {
         "yes",
         "yes",
         "1 evaluation at any time",
-        "swing and twist with Carlson's integrals"
+        "Jacobi, J. reine angew. Math. 39 (1850) 293; two theta functions, constants in double-double"
     ]);
     for method in catalogue() {
         let claims = method.claims();

@@ -13,12 +13,17 @@ use polhode::run::{Run, RunError};
 
 use crate::arguments::{Times, number, positive, regular, times};
 use crate::body_arguments::{BodyArguments, StartArguments};
-use crate::error::Error;
+use crate::error::{Error, warn};
 use crate::files::emit;
 use crate::table::{Column, Format, Table, row};
 
+const USAGE: &str = "polhode propagate <BODY> --omega <wx,wy,wz> <TIMES> [OPTIONS]
+  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
+  TIMES: --times <t1,t2,...> | --until <T> --every <DT>";
+
 /// One body to given times: attitude, angular velocity and errors at each
 #[derive(Args, Clone, Debug)]
+#[command(override_usage = USAGE)]
 pub(crate) struct Propagate {
     #[command(flatten)]
     body: BodyArguments,
@@ -26,13 +31,13 @@ pub(crate) struct Propagate {
     start: StartArguments,
     /// Output times, s
     #[arg(long, value_name = "t1,t2,...", value_parser = times, allow_hyphen_values = true,
-          required_unless_present = "until", conflicts_with_all = ["until", "every"])]
+          conflicts_with_all = ["until", "every"])]
     times: Option<Times>,
     /// Last output time, s, with --every
-    #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true, requires = "every")]
+    #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true)]
     until: Option<f64>,
     /// Distance of output times, s, with --until
-    #[arg(long, value_name = "DT", value_parser = number, allow_hyphen_values = true, requires = "until")]
+    #[arg(long, value_name = "DT", value_parser = number, allow_hyphen_values = true)]
     every: Option<f64>,
     /// Time of the start, s
     #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0")]
@@ -74,21 +79,42 @@ impl Propagate {
             (None, Some(until), Some(every)) => {
                 Ok(regular(self.start_time, until, every).map_err(Error::Input)?.collect())
             }
-            _ => Err(Error::Input("--times: missing; give --times t1,t2,... or --until T --every DT".into())),
+            (None, Some(until), None) => Err(Error::Input(format!(
+                "--until: '{until:?}': needs the distance of the rows; give --every DT too"
+            ))),
+            (None, None, Some(every)) => Err(Error::Input(format!(
+                "--every: '{every:?}': needs the last output time; give --until T too"
+            ))),
+            (None, None, None) => {
+                Err(Error::Input("--times: missing; give --times t1,t2,... or --until T --every DT".into()))
+            }
         }
+    }
+
+    fn times_flag(&self) -> &'static str {
+        if self.until.is_some() { "--until" } else { "--times" }
     }
 
     fn exact(&self, body: &Body, start: State<Dd>, times: &[f64], table: &mut Table) -> Result<(), Error> {
         if self.step.is_some() {
-            return Err(Error::Input("--step: has no meaning with --method exact; leave it out".into()));
+            return Err(Error::Input(
+                "--step: has no meaning with --method exact, which needs none; leave it out, or name a method".into(),
+            ));
         }
         let motion = FreeMotion::new(body, start);
+        for &t in times {
+            let elapsed = t - self.start_time;
+            // an overflow of the difference is out of reach too
+            motion
+                .at(elapsed)
+                .map_err(|error| Error::Input(format!("{}: {t:?}: {error}", self.times_flag())))?;
+        }
         let mut monitor = Monitor::new(body, &rounded(&start));
         for &t in times {
             let elapsed = Dd::from(t) - Dd::from(self.start_time);
-            let x = motion.inside_at::<f64>(elapsed);
+            let exact = motion.inside_at_dd(elapsed);
+            let x = rounded(&exact);
             monitor.observe(&[x]);
-            let exact = motion.inside_at::<Dd>(elapsed);
             let error = rotation_angle(State::<Dd>::of(x).attitude, exact.attitude).hi();
             table.push(self::row(body, t, &x, monitor.worst(), error));
         }
@@ -108,10 +134,10 @@ impl Propagate {
             .map_err(|error| Error::Input(format!("--step: {error}")))?;
         let speed = body.omega_body(&start).norm();
         if h * speed > 1.0 {
-            eprintln!(
-                "warning: --step {h} turns the body by {:.2} rad a step; above 1 rad expect little of any stepping method",
+            warn(&format!(
+                "--step: '{h:?}': turns the body by {:?} rad a step; above 1 rad expect little of any stepping method, take a smaller one",
                 h * speed
-            );
+            ));
         }
         let exact = FreeMotion::new(body, State::of(run.start()));
         for (&t, n) in times.iter().zip(steps) {
@@ -122,7 +148,7 @@ impl Propagate {
                 }
                 Err(error) => return Err(Error::Input(error.to_string())),
             };
-            let there = exact.inside_at::<Dd>(sample.elapsed);
+            let there = exact.inside_at_dd(sample.elapsed);
             let error = rotation_angle(State::<Dd>::of(sample.inside).attitude, there.attitude).hi();
             table.push(self::row(body, t, &sample.inside, sample.worst, error));
         }
@@ -136,7 +162,12 @@ impl Propagate {
                 known.insert(0, "exact".into());
                 Error::unknown_name("--method", "method", &name, known.iter().map(String::as_str))
             }
-            error => Error::Input(format!("--method: {error}")),
+            UnknownMethod::Argument { name, rule } => Error::input(
+                "--method",
+                &name,
+                "has an argument that it cannot take",
+                &format!("allowed: {rule}"),
+            ),
         })
     }
 
@@ -148,20 +179,21 @@ impl Propagate {
         for &t in times {
             if t < before {
                 return Err(Error::Input(format!(
-                    "--times: {t} comes after {before}; a stepping method wants ascending times from --start-time on"
+                    "{}: {t:?} comes after {before:?}; a stepping method wants ascending times from --start-time on, use --method exact or sort them",
+                    self.times_flag()
                 )));
             }
             before = t;
             let n = ((t - start) / h).round();
             if n >= 9_007_199_254_740_992.0 {
                 return Err(Error::Input(format!(
-                    "--step: {h} takes {n:e} steps to t = {t}; at most 2^53 can be counted"
+                    "--step: '{h:?}': takes {n:e} steps to t = {t:?}, and at most 2^53 can be counted; take a larger step"
                 )));
             }
             let reached = (Dd::from(start) + Dd::product(n, h)).to_f64();
             if (reached - t).abs() > 4.0 * ulp(t.abs().max(start.abs()).max(h)) {
                 return Err(Error::Input(format!(
-                    "--step: {h} does not divide the output time {t}; the nearest time that it reaches is {reached}"
+                    "--step: '{h:?}': does not reach the output time {t:?} in whole steps; the nearest time that it reaches is {reached:?}"
                 )));
             }
             counts.push(n as u64);

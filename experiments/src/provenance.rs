@@ -35,7 +35,7 @@ pub(crate) fn describe(experiment: &str, scale: Scale, report: &Report) -> Strin
     let meaning = |unit: &str, meaning: &str| {
         if unit.is_empty() { meaning.into() } else { format!("{meaning} [{unit}]") }
     };
-    let tables = report.tables.iter().chain(&report.timing).map(|table| {
+    let tables = report.tables.iter().chain(&report.data).chain(&report.timing).map(|table| {
         let columns = table.columns.iter().map(|c| (c.name, meaning(c.unit, c.meaning))).collect();
         (format!("{}.csv", table.name), Columns { caption: table.caption.clone(), columns })
     });

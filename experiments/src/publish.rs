@@ -2,7 +2,7 @@
 //!
 //! A block in README.md between `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced
 //! by that table of the committed results of paper scale; every LaTeX table and CSV goes to paper/generated, headed by
-//! the experiment, commit and scale that made it.
+//! the experiment, commit and scale that made it. A block `<!-- begin generated: methods -->` holds the catalogue.
 
 use std::path::Path;
 
@@ -10,8 +10,10 @@ use serde::Deserialize;
 
 use crate::error::Error;
 use crate::files::{read, replace};
+use crate::methods;
 
 const RESULTS: &str = "experiments/results/paper";
+const METHODS: &str = "methods";
 const REMEDY: &str = "run `polhode experiment run all --scale paper --out experiments/results` first";
 
 #[derive(Deserialize)]
@@ -44,6 +46,8 @@ pub(crate) fn run(root: &Path) -> Result<(), Error> {
             format!("% {head}\n{head}%\n"),
         ));
     }
+    let head = format!("% catalogue of methods, version {}\n", env!("CARGO_PKG_VERSION"));
+    files.push((generated.join("methods.tex"), head + &methods::table().latex()));
     // all is known before the first file is touched
     std::fs::create_dir_all(&generated)
         .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", generated.display())))?;
@@ -87,7 +91,10 @@ fn with_blocks_filled(text: &str, results: &Path) -> Result<String, Error> {
         let (marker, _) = block.split_once('\n').ok_or_else(unclosed)?;
         let name = marker.trim_start_matches(BEGIN).trim_end_matches("-->").trim();
         let end = block.find(END).ok_or_else(unclosed)?;
-        let table = read(&results.join(format!("{name}.md")), REMEDY)?;
+        let table = match name {
+            METHODS => methods::table().markdown(),
+            _ => read(&results.join(format!("{name}.md")), REMEDY)?,
+        };
         out += &format!("{before}{marker}\n{table}{END}");
         rest = &block[end + END.len()..];
     }
@@ -104,6 +111,9 @@ mod tests {
         let scratch = Scratch::new("publish");
         std::fs::create_dir(scratch.path().join("drift")).unwrap();
         std::fs::write(scratch.path().join("drift/table.md"), "| new |\n").unwrap();
+        let catalogue =
+            with_blocks_filled("<!-- begin generated: methods -->\n<!-- end generated -->", scratch.path());
+        assert!(catalogue.unwrap().contains("| rattle |"));
         let text = "a\n<!-- begin generated: drift/table -->\n| old |\n<!-- end generated -->\nb\n";
         let filled = with_blocks_filled(text, scratch.path()).unwrap();
         assert_eq!(filled, text.replace("old", "new"));

@@ -4,7 +4,7 @@ mod markup;
 mod print;
 mod rounded;
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 /// One value of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -181,10 +181,10 @@ impl Table {
 
     /// An array of objects, a row a line; an empty cell is null.
     pub(crate) fn json(&self) -> String {
+        let entry =
+            |(column, cell): (&Column, &Cell)| format!("{}:{}", Value::from(column.name), cell.json());
         let object = |row: &Vec<Cell>| {
-            let entries =
-                self.columns.iter().zip(row).map(|(column, cell)| (column.name.to_string(), cell.json()));
-            format!("  {}", Value::Object(entries.collect::<Map<_, _>>()))
+            format!("  {{{}}}", self.columns.iter().zip(row).map(entry).collect::<Vec<_>>().join(","))
         };
         let rows: Vec<String> = self.rows.iter().map(object).collect();
         if rows.is_empty() { "[]\n".into() } else { format!("[\n{}\n]\n", rows.join(",\n")) }

@@ -8,6 +8,7 @@ mod principal;
 mod state;
 
 pub use carry::Carry;
+pub(crate) use frame::of_dd;
 pub use frame::{Body, StateError};
 pub use gravity::{Gravity, vertical};
 pub use inertia::{Inertia, InertiaError, InertiaShape, Symmetry};

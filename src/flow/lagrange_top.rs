@@ -4,8 +4,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::TimeError;
-use super::circulation::{cast, reduce};
-use super::nutation::Nutation;
+use super::free_body::MOST_RADIANS;
+use super::nutation::{Nutation, cast};
+use super::phase::reduce;
 use crate::body::{Body, State, StateError};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
@@ -139,20 +140,41 @@ impl LagrangeTop {
     /// The state at time `t` (s, of either sign), body axes.
     ///
     /// # Errors
-    /// A time that is not finite.
+    /// A time that is not finite, or beyond [`reach`](Self::reach).
     pub fn at(&self, t: f64) -> Result<State<f64>, TimeError> {
         if !t.is_finite() {
-            return Err(TimeError { t });
+            return Err(TimeError::NotFinite { t });
         }
-        Ok(self.body.leave(&self.inside_at::<f64>(Dd::from(t))))
+        if t.abs() > self.reach() {
+            return Err(TimeError::OutOfReach { t, reach: self.reach() });
+        }
+        Ok(self.body.leave(&self.inside_at(t)))
     }
 
-    /// The state at time `t` as kernels see it, in `f64` or double-double; phases are reduced in double-double in
-    /// either case. The quaternion is the continuous lift from the start.
-    pub fn inside_at<S: Precise>(&self, t: Dd) -> State<S> {
+    /// The largest |t| at which the phases still have digits, s: some 2⁹⁶ rad.
+    pub fn reach(&self) -> f64 {
+        let smaller = if self.axial < self.transverse { self.axial } else { self.transverse };
+        let omega = self.start.momentum_body * (Dd::ONE / smaller);
+        let fastest = omega.norm().hi() + (self.weight / self.transverse).sqrt().hi();
+        MOST_RADIANS / fastest
+    }
+
+    /// The state at time `t` (s), finite and within [`reach`](Self::reach), as kernels see it.
+    ///
+    /// Phases are reduced in double-double. The quaternion is the continuous lift from the start.
+    pub fn inside_at(&self, t: f64) -> State<f64> {
+        self.evaluate(Dd::from(t))
+    }
+
+    /// The same in double-double.
+    pub fn inside_at_dd(&self, t: Dd) -> State<Dd> {
+        self.evaluate(t)
+    }
+
+    fn evaluate<S: Precise>(&self, t: Dd) -> State<S> {
         let m3 = self.start.momentum_body[2];
         let turn = |rate: Dd| {
-            let (sin, cos) = cast::<Dd, S>(reduce(rate * t, Dd::TAU * 2.0) * Dd::of(0.5)).sin_cos();
+            let (sin, cos) = cast::<S>(reduce(rate * t, Dd::TAU * 2.0) * Dd::of(0.5)).sin_cos();
             Quat::new(cos, Vec3::unit(2) * sin)
         };
         let (attitude, momentum) = match &self.motion {
@@ -163,7 +185,7 @@ impl LagrangeTop {
             Motion::Nutating(nutation) => {
                 let spin = turn(m3 / self.axial - m3 / self.transverse);
                 let (q, q_rate) = nutation.at::<S>(t);
-                let mut m = (q.conjugate() * q_rate).v * cast::<Dd, S>(self.transverse * 2.0);
+                let mut m = (q.conjugate() * q_rate).v * cast::<S>(self.transverse * 2.0);
                 m[2] = cast(m3);
                 (q * spin, spin.rotate_back(m))
             }

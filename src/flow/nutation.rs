@@ -18,9 +18,9 @@
 //! part that jumps there is taken out of the integral (DLMF 19.7.9): its arc tangent multiplies with |α| to something
 //! linear in sn, cn and dn, and what remains in the integral is smooth.
 
-use super::circulation::{cast, reduce};
 use super::complex::Complex;
-use crate::num::elliptic::{carlson_rf, carlson_rj, complete_k, jacobi};
+use super::phase::reduce;
+use crate::num::elliptic::{Modulus, incomplete, r_j};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -180,7 +180,7 @@ impl Nutation {
         let between = x3 - x1;
         let rate = (b * between).sqrt() * Dd::of(0.5);
         let (parameter, complement) = (span / between, (w3 + y2) / between);
-        let half = (complement.hi() > 0.0).then(|| complete_k(complement));
+        let half = (complement.hi() > 0.0).then(|| Modulus::new(complement).quarter_period());
 
         let mut nutation = Nutation {
             rate,
@@ -241,7 +241,7 @@ impl Nutation {
     /// q and q' at time `t`.
     pub(super) fn at<T: Precise>(&self, t: Dd) -> (Quat<T>, Quat<T>) {
         let (alpha, beta) = self.parameters::<T>(t);
-        let lacking = |z: Complex<Dd>| Complex::new(cast::<Dd, T>(z.re), cast(z.im));
+        let lacking = |z: Complex<Dd>| Complex::new(cast::<T>(z.re), cast(z.im));
         let (alpha_start, beta_start) = (lacking(self.alpha_start), lacking(self.beta_start));
         let join = |alpha: Complex<T>, beta: Complex<T>| {
             let (alpha, beta) = (alpha * alpha_start, beta * beta_start);
@@ -274,16 +274,19 @@ impl Nutation {
         }
         let size = (sn * sn + cn * cn).sqrt();
         (sn, cn) = (sn / size, cn / size);
-        let cn2 = cn * cn;
-        sn * carlson_rf(cn2, self.complement + self.parameter * cn2, Dd::ONE)
+        incomplete(sn, cn, self.parameter, self.complement)
     }
 
     /// α and β without the phases of the start.
     fn parameters<T: Precise>(&self, t: Dd) -> (Moving<T>, Moving<T>) {
         let tau = self.phase + self.rate * t;
+        let modulus = Modulus::<T>::new(cast(self.complement));
+        let evaluate = |u: Dd| {
+            let (sn, cn, dn) = modulus.sn_cn_dn(cast(u));
+            Jacobi { u: cast(u), sn, cn, dn }
+        };
         let Some(half) = self.half else {
-            let (sn, cn, dn) = jacobi(cast::<Dd, T>(tau), T::of(0.0));
-            let from_lowest = Jacobi { u: cast(tau), sn, cn, dn };
+            let from_lowest = evaluate(tau);
             return (self.alpha(from_lowest), self.homoclinic_beta(from_lowest));
         };
         let periods = (tau / (half * Dd::of(2.0))).round();
@@ -291,14 +294,10 @@ impl Nutation {
         let side = if tau < Dd::ZERO { -Dd::ONE } else { Dd::ONE };
         let sigma = tau - side * half;
         let beta_periods = if tau < Dd::ZERO { periods - Dd::ONE } else { periods };
-        let evaluate = |u: Dd| {
-            let (sn, cn, dn) = jacobi(cast::<Dd, T>(u), cast(self.complement));
-            Jacobi { u: cast(u), sn, cn, dn }
-        };
         // a quarter period on or back: sn → ±cd, cn → ∓k' sd, dn → k' nd
-        let k = cast::<Dd, T>(self.complement.sqrt());
+        let k = modulus.complementary_modulus();
         let quarter = |f: Jacobi<T>, u: Dd, side: Dd| {
-            let side = cast::<Dd, T>(side);
+            let side = cast::<T>(side);
             Jacobi { u: cast(u), sn: side * f.cn / f.dn, cn: -(side * k * f.sn / f.dn), dn: k / f.dn }
         };
         let (from_lowest, from_highest) = if tau.abs() < sigma.abs() {
@@ -311,7 +310,7 @@ impl Nutation {
         let advanced = |f: Moving<T>, sign: Dd, advance: Dd, periods: Dd, jumps: bool| {
             let odd = jumps && periods.rem_euclid(2.0) != 0.0;
             let angle = reduce(sign_of(sign) * advance * periods, Dd::TAU);
-            let turn = Complex::phase(cast::<Dd, T>(angle)).scaled(T::of(if odd { -1.0 } else { 1.0 }));
+            let turn = Complex::phase(cast::<T>(angle)).scaled(T::of(if odd { -1.0 } else { 1.0 }));
             Moving { value: f.value * turn, rate: f.rate * turn }
         };
         (
@@ -335,10 +334,10 @@ impl Nutation {
         let [x1, x2, x3] = self.x;
         let rate = self.e.abs() / (self.rate * Dd::of(2.0));
         if self.alpha_jumps() {
-            cast::<Dd, T>(rate / (x3 - x1)) * self.third_kind(f, x1 / (x3 - x1))
+            cast::<T>(rate / (x3 - x1)) * self.third_kind(f, x1 / (x3 - x1))
         } else {
             let n = (x2 - x1) / x1;
-            cast::<Dd, T>(rate / x1) * (f.u - cast::<Dd, T>(n) * self.third_kind(f, n))
+            cast::<T>(rate / x1) * (f.u - cast::<T>(n) * self.third_kind(f, n))
         }
     }
 
@@ -351,16 +350,16 @@ impl Nutation {
         }
         if self.beta_jumps() {
             let r = y2 / w3;
-            cast::<Dd, T>(-(rate / w3)) * (f.u - cast::<Dd, T>(Dd::ONE + r) * self.third_kind(f, r))
+            cast::<T>(-(rate / w3)) * (f.u - cast::<T>(Dd::ONE + r) * self.third_kind(f, r))
         } else {
             let n = self.parameter * w3 / y2;
-            cast::<Dd, T>(rate / y2) * (f.u - cast::<Dd, T>(self.parameter + n) * self.third_kind(f, n))
+            cast::<T>(rate / y2) * (f.u - cast::<T>(self.parameter + n) * self.third_kind(f, n))
         }
     }
 
     /// ∫ sn²/(1 + n sn²) from 0, n ≥ 0.
     fn third_kind<T: Precise>(&self, f: Jacobi<T>, n: Dd) -> T {
-        let (one, n) = (T::of(1.0), cast::<Dd, T>(n));
+        let (one, n) = (T::of(1.0), cast::<T>(n));
         if self.half.is_none() {
             // sn = tanh
             let root = n.sqrt();
@@ -368,55 +367,55 @@ impl Nutation {
             return (f.u - arc) / (one + n);
         }
         let s2 = f.sn * f.sn;
-        f.sn * s2 * carlson_rj(f.cn * f.cn, f.dn * f.dn, one, one + n * s2) / T::of(3.0)
+        f.sn * s2 * r_j(f.cn * f.cn, f.dn * f.dn, one, one + n * s2) / T::of(3.0)
     }
 
     fn alpha<T: Precise>(&self, f: Jacobi<T>) -> Moving<T> {
-        let sign = cast::<Dd, T>(sign_of(self.e));
+        let sign = cast::<T>(sign_of(self.e));
         let phase = Complex::phase(sign * self.alpha_phase(f));
         let [x1, x2, x3] = self.x;
         let Jacobi { sn, cn, dn, .. } = f;
         if !self.alpha_jumps() {
-            let x = cast::<Dd, T>(x1) + cast::<Dd, T>(self.span) * sn * sn;
+            let x = cast::<T>(x1) + cast::<T>(self.span) * sn * sn;
             return self.bounded(phase.scaled((x * T::of(0.5)).sqrt()), self.u_rate(f), self.e);
         }
         // α = e^{iJ} (√(x₁(x₃ − x₁)) cn dn ± i √(x₂x₃) sn) / √(2M), M = x₃ − x₁ + x₁ sn²
-        let (p, q) = (cast::<Dd, T>((x1 * (x3 - x1)).sqrt()), sign * cast((x2 * x3).sqrt()));
-        let x1 = cast::<Dd, T>(x1);
-        let m = cast::<Dd, T>(x3 - self.x[0]) + x1 * sn * sn;
+        let (p, q) = (cast::<T>((x1 * (x3 - x1)).sqrt()), sign * cast((x2 * x3).sqrt()));
+        let x1 = cast::<T>(x1);
+        let m = cast::<T>(x3 - self.x[0]) + x1 * sn * sn;
         let value = Complex::new(p * cn * dn, q * sn);
-        let k2 = cast::<Dd, T>(self.parameter);
+        let k2 = cast::<T>(self.parameter);
         let derivative = Complex::new(-(p * sn * (dn * dn + k2 * cn * cn)), q * cn * dn);
-        let phase_rate = sign * cast::<Dd, T>(self.e.abs() / (self.rate * Dd::of(2.0))) * sn * sn / m;
+        let phase_rate = sign * cast::<T>(self.e.abs() / (self.rate * Dd::of(2.0))) * sn * sn / m;
         self.quotient(phase, value, derivative, phase_rate, x1, m, f)
     }
 
     fn beta<T: Precise>(&self, f: Jacobi<T>) -> Moving<T> {
-        let sign = cast::<Dd, T>(sign_of(self.d));
+        let sign = cast::<T>(sign_of(self.d));
         let phase = Complex::phase(sign * self.beta_phase(f));
         let ([y1, y2], w3) = (self.y, self.w3);
         let Jacobi { sn, cn, dn, .. } = f;
         if !self.beta_jumps() {
-            let y = (cast::<Dd, T>(y2) + cast::<Dd, T>(self.parameter * w3) * sn * sn) * T::of(0.5);
+            let y = (cast::<T>(y2) + cast::<T>(self.parameter * w3) * sn * sn) * T::of(0.5);
             return self.bounded(phase.scaled(y.sqrt() / dn), self.u_rate_from_highest(f), self.d);
         }
         // β = e^{iJ} (√y₂ cn ± i √(y₁w₃/(u₃ − u₁)) (1 + r) sd) / √(2M), M = 1 + r sn², r = y₂/w₃
         let between = y1 + w3;
         let r = y2 / w3;
-        let p = cast::<Dd, T>(y2.sqrt());
+        let p = cast::<T>(y2.sqrt());
         let q = sign * cast((y1 * w3 / between).sqrt() * (Dd::ONE + r));
-        let m = T::of(1.0) + cast::<Dd, T>(r) * sn * sn;
+        let m = T::of(1.0) + cast::<T>(r) * sn * sn;
         let value = Complex::new(p * cn, q * sn / dn);
         let derivative = Complex::new(-(p * sn * dn), q * cn / (dn * dn));
         let coefficient = self.d.abs() / (self.rate * Dd::of(2.0) * w3);
-        let phase_rate = -(sign * cast::<Dd, T>(coefficient) * cn * cn / m);
+        let phase_rate = -(sign * cast::<T>(coefficient) * cn * cn / m);
         self.quotient(phase, value, derivative, phase_rate, cast(r), m, f)
     }
 
     /// β where u₂ and u₃ are both 1: √(y₁/2) sech τ.
     fn homoclinic_beta<T: Precise>(&self, f: Jacobi<T>) -> Moving<T> {
-        let size = cast::<Dd, T>((self.y[0] * Dd::of(0.5)).sqrt());
-        let rate = -(size * cast::<Dd, T>(self.rate) * f.sn * f.cn);
+        let size = cast::<T>((self.y[0] * Dd::of(0.5)).sqrt());
+        let rate = -(size * cast::<T>(self.rate) * f.sn * f.cn);
         let real = |x: T| Complex::new(x, T::of(0.0));
         Moving { value: real(size * f.cn), rate: real(rate) }
     }
@@ -442,22 +441,27 @@ impl Nutation {
     /// A parameter that stays clear of 0, with (|α|²)' = ½ `size_rate` and |α|² (arg α)' = ¼ `momentum`.
     fn bounded<T: Precise>(&self, value: Complex<T>, size_rate: T, momentum: Dd) -> Moving<T> {
         let quarter = T::of(0.25);
-        let product = Complex::new(size_rate * quarter, cast::<Dd, T>(momentum) * quarter);
+        let product = Complex::new(size_rate * quarter, cast::<T>(momentum) * quarter);
         Moving { value, rate: product * value.inverse_conjugate() }
     }
 
     /// (1 + u)' from functions of τ.
     fn u_rate<T: Precise>(&self, f: Jacobi<T>) -> T {
-        cast::<Dd, T>(Dd::of(2.0) * self.rate * self.span) * f.sn * f.cn * f.dn
+        cast::<T>(Dd::of(2.0) * self.rate * self.span) * f.sn * f.cn * f.dn
     }
 
     /// (1 − u)' from functions of σ: sn cn dn of τ is −k'² sn cn/dn³ of σ.
     fn u_rate_from_highest<T: Precise>(&self, f: Jacobi<T>) -> T {
         let size = Dd::of(2.0) * self.rate * self.span * self.complement;
-        cast::<Dd, T>(size) * f.sn * f.cn / (f.dn * f.dn * f.dn)
+        cast::<T>(size) * f.sn * f.cn / (f.dn * f.dn * f.dn)
     }
 }
 
 fn sign_of(x: Dd) -> Dd {
     if x < Dd::ZERO { -Dd::ONE } else { Dd::ONE }
+}
+
+/// The same number in another scalar.
+pub(super) fn cast<T: Precise>(x: Dd) -> T {
+    T::from_dd(x)
 }

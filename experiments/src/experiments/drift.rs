@@ -13,6 +13,7 @@ use polhode::run::{Run, RunError, Sample, Schedule};
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};
+use crate::figure::{Figure, Series};
 use crate::table::{Cell, Column, Table, row};
 
 const BODIES: [&str; 7] = ["textbook", "toutatis", "racket", "t-handle", "phone", "water", "spacecraft"];
@@ -55,9 +56,33 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             timing.push(row![method.name(), step_time(&textbook, method.as_ref())?]);
         }
     }
+    report.figures.push(figure(&drift));
     report.tables.push(drift);
     report.timing = Some(timing);
     Ok(report)
+}
+
+/// What a method keeps against how right it is: every body and step is a point.
+fn figure(drift: &Table) -> Figure {
+    let mut figure = Figure::log_log(
+        "drift",
+        "Every body at two steps; runs that diverged are left out",
+        "attitude error at the end (rad)",
+        "largest relative energy error",
+    )
+    .scatter();
+    for method in catalogue() {
+        let point = |row: &Vec<Cell>| match (&row[1], &row[5], &row[8], &row[14]) {
+            (Cell::Text(name), Cell::Number(energy), Cell::Number(attitude), Cell::Text(status))
+                if *name == method.name() && status == "ok" =>
+            {
+                Some((*attitude, *energy))
+            }
+            _ => None,
+        };
+        figure.series.push(Series::new(method.name(), drift.rows().iter().filter_map(point).collect()));
+    }
+    figure
 }
 
 fn caption(steps: u64) -> String {
@@ -68,7 +93,7 @@ fn columns() -> Vec<Column> {
     vec![
         Column::new("body", "", "name in the catalogue of bodies"),
         Column::new("method", "", "name in the catalogue of methods"),
-        Column::new("h", "s", "step").heading("h (s)").latex("$h$ (s)").digits(2),
+        Column::new("h", "s", "step").latex("$h$").digits(2),
         Column::new("angle_per_step", "rad", "h times the angular velocity at the start").hidden(),
         Column::new("steps", "", "steps taken").hidden(),
         Column::new("energy_error", "", "max |E - E0| / |E0| over every step").heading("energy").digits(2),
@@ -140,7 +165,7 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
         angles.push(last.elapsed.hi() * speed);
         changes.push(last.energy_change);
     }
-    let there = exact.inside_at::<Dd>(last.elapsed);
+    let there = exact.inside_at_dd(last.elapsed);
     let attitude = rotation_angle(State::<Dd>::of(last.inside).attitude, there.attitude).hi();
     let slope = secular_drift(&angles, &changes).filter(|_| status == "ok");
     let flips = exact.flips(last.elapsed);

@@ -58,10 +58,14 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             Column::new("step_ns", "ns", "the same per step").heading("ns/step"),
         ],
     );
-    let axes = ("steps", "error");
-    let mut energy = Figure::log_log("energy", "Largest relative energy error so far", axes.0, axes.1);
+    let mut energy = Figure::log_log(
+        "energy",
+        format!("Energy over {steps} steps"),
+        "steps",
+        "largest relative energy error so far",
+    );
     let mut attitude =
-        Figure::log_log("attitude", "Attitude error against the exact motion (rad)", axes.0, axes.1);
+        Figure::log_log("attitude", format!("Attitude over {steps} steps"), "steps", "attitude error (rad)");
     for (name, found) in METHODS.into_iter().zip(found) {
         let (rows, seconds) = found?;
         let curve = |column: usize| {
@@ -103,7 +107,7 @@ fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
     let mut rows = Vec::new();
     for sample in run.samples(Schedule::logarithmic(steps, 4)) {
         let sample = sample.map_err(|e| failed(&e))?;
-        let there = exact.inside_at::<Dd>(sample.elapsed);
+        let there = exact.inside_at_dd(sample.elapsed);
         let attitude = rotation_angle(State::<Dd>::of(sample.inside).attitude, there.attitude).hi();
         let worst = sample.worst;
         rows.push(

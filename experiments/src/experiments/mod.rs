@@ -1,6 +1,7 @@
 //! The experiments, one file each.
 
 mod drift;
+mod exact;
 mod long_run;
 mod order;
 
@@ -17,6 +18,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "order",
         question: "whether each method converges with the order it claims",
         run: order::run,
+    },
+    Experiment {
+        name: "exact",
+        question: "how exact the exact motion is, in every regime and at any time",
+        run: exact::run,
     },
     Experiment {
         name: "long-run",

@@ -33,7 +33,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         format!("Errors of attitude and momentum after {SPAN} s by step, dyadic body, in double-double."),
         vec![
             Column::new("method", "", "name in the catalogue"),
-            Column::new("h", "s", "step").heading("h (s)").latex("$h$ (s)"),
+            Column::new("h", "s", "step").latex("$h$"),
             Column::new("attitude_error", "rad", "angle between computed and exact attitude")
                 .heading("attitude"),
             Column::new("attitude_order", "", "log2 of the ratio to the error at twice the step")
