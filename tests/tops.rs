@@ -4,9 +4,11 @@
 
 mod fixtures;
 
+use core::f64::consts::PI;
+
 use fixtures::{TopCase, tops};
 use polhode::body::{Body, Inertia, State};
-use polhode::flow::{LagrangeError, LagrangeTop};
+use polhode::flow::{Casimir, Flow, FreeMotion, LagrangeError, LagrangeTop, SymmetricTop};
 use polhode::method::method;
 use polhode::num::{Dd, Precise, Real};
 use polhode::observe::secular_drift;
@@ -37,7 +39,7 @@ fn errors<S: Precise>(case: &TopCase, body: &Body, x: &State<S>) -> [f64; 2] {
     let momentum = Vec3(case.free.momentum);
     // the lift is continuous: the sign of q is part of the answer
     let same_sheet = (q - exact).magnitude() < 1.0;
-    let attitude = if same_sheet { rotation_angle(q, exact).hi() } else { 2.0 * core::f64::consts::PI };
+    let attitude = if same_sheet { rotation_angle(q, exact).hi() } else { 2.0 * PI };
     [attitude, ((m - momentum).norm() / momentum.norm()).hi()]
 }
 
@@ -61,33 +63,30 @@ impl Evaluated for Dd {
     }
 }
 
-fn closed_form<S: Evaluated>(print: bool) -> f64 {
+fn closed_form<S: Evaluated>() -> f64 {
     let mut worst = 0.0_f64;
     for case in tops("reference.csv").iter().filter(|case| is_symmetric(case)) {
         let (body, start) = problem(case);
         let top = LagrangeTop::new(&body, start).unwrap();
         let [attitude, momentum] = errors(case, &body, &S::state(&top, case.free.t));
-        if print {
-            println!("{:22} t = {:6}: {attitude:.1e} rad, {momentum:.1e}", case.free.scenario, case.free.t);
-        }
+        println!("{:22} t = {:6}: {attitude:.1e} rad, {momentum:.1e}", case.free.scenario, case.free.t);
         worst = worst.max(attitude).max(momentum);
-        if attitude.is_nan() || momentum.is_nan() {
-            worst = f64::INFINITY;
-        }
+        assert!(attitude.is_finite() && momentum.is_finite(), "{}", case.free.scenario);
     }
     worst
 }
 
 #[test]
 fn the_closed_form_is_exact_in_every_regime() {
-    let worst = closed_form::<f64>(true);
-    assert!(worst < 1e-12, "{worst:.1e}");
+    let worst = closed_form::<f64>();
+    assert!(worst < 1e-14, "{worst:.1e}");
 }
 
 #[test]
 fn the_closed_form_in_double_double_is_exact_to_conditioning() {
-    let worst = closed_form::<Dd>(true);
-    assert!(worst < 1e-14, "{worst:.1e}");
+    // steady precession is a double zero of the cubic: its turning points have half the digits
+    let worst = closed_form::<Dd>();
+    assert!(worst < 2e-16, "{worst:.1e}");
 }
 
 /// Largest violation of Euler's equations and of q' = ½ q ω along the motion at `t`, relative to the fastest rate,
@@ -116,7 +115,7 @@ fn the_closed_form_solves_the_equations_of_motion_at_every_scale() {
         let inertia = Inertia::from_moments([1.25, 1.25, 0.75]).unwrap();
         let body = Body::heavy(inertia, [0.0, 0.0, weight].into()).unwrap();
         let falling = libm::sqrt(weight);
-        for tilt in [0.0, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 2.0, 3.0, 3.14159, core::f64::consts::PI] {
+        for tilt in [0.0, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 2.0, 3.0, 3.141, PI] {
             for spin in [0.0, 1e-3, 0.7, -2.0, 3.0, 40.0, 1e6] {
                 for (across, along) in
                     [(0.0, 0.0), (1e-9, 0.0), (0.3, 0.0), (0.0, -0.6), (1.0, 2.0), (-1e6, 1e3)]
@@ -130,7 +129,8 @@ fn the_closed_form_solves_the_equations_of_motion_at_every_scale() {
                     for t in [0.0, 1.3, -70.0] {
                         let found = residual(&top, t / rate, rate);
                         count += 1;
-                        if !(found <= worst.0) {
+                        assert!(found.is_finite());
+                        if found > worst.0 {
                             worst = (found, format!("c {weight:e}, tilt {tilt:e}, omega {omega:?}, t {t}"));
                         }
                     }
@@ -161,8 +161,8 @@ fn readings_are_those_of_the_integrals() {
         (
             "generic",
             0.281_250_944_725_356_84,
-            1.744_758_611_782_057_1,
-            4.246_493_898_974_807_2,
+            1.744_758_611_782_057,
+            4.246_493_898_974_807,
             2.738_270_332_894_198_6,
         ),
         (
@@ -175,7 +175,7 @@ fn readings_are_those_of_the_integrals() {
         (
             "spherical-pendulum",
             0.854_905_800_490_770_3,
-            2.890_514_453_280_400_7,
+            2.890_514_453_280_401,
             3.331_518_470_103_636_4,
             4.823_327_910_741_519,
         ),
@@ -184,7 +184,7 @@ fn readings_are_those_of_the_integrals() {
             0.374_073_105_125_423_6,
             0.913_091_044_513_088_4,
             2.605_690_916_454_430_8,
-            2.003_150_655_323_625_7,
+            2.003_150_655_323_626,
         ),
     ] {
         let top = top(name);
@@ -202,7 +202,7 @@ fn readings_are_those_of_the_integrals() {
     }
     assert_eq!(top("sleeping").nutation_period(), None);
     assert_eq!(top("sleeping").turning_points(), [0.0; 2]);
-    assert_eq!(top("hanging-spin").turning_points(), [core::f64::consts::PI; 2]);
+    assert_eq!(top("hanging-spin").turning_points(), [PI; 2]);
 }
 
 #[test]
@@ -319,4 +319,82 @@ fn kovalevskayas_and_goryachev_chaplygins_constants_stand() {
     let (coarse, fine) = (constants(0.02), constants(0.01));
     println!("Goryachev and Chaplygin {coarse:.1e} {fine:.1e}");
     assert!(fine < 1e-8 && libm::log2(coarse / fine) > 3.8, "{coarse:.1e}, {fine:.1e}");
+}
+
+#[test]
+fn every_top_of_the_catalogue_is_a_lagrange_top_that_nutates() {
+    for named in polhode::catalog::tops() {
+        let [w, x, y, z] = named.attitude;
+        let attitude = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+        let body = named.body().unwrap();
+        let top = LagrangeTop::from_omega(&body, attitude, named.omega_body.into()).unwrap();
+        let [upper, lower] = top.turning_points();
+        assert!(lower > upper, "{}", named.name);
+        // fast tops nutate near |L|/A
+        if named.name != "bruls-cardona" {
+            let start = body.state(attitude, named.omega_body.into()).unwrap();
+            let l = start.momentum().norm();
+            let across = body.inertia().tensor()[(0, 0)];
+            let expected = (2.0 * PI) * across / l;
+            let found = top.nutation_period().unwrap();
+            assert!((found / expected - 1.0).abs() < 0.12, "{}: {found} s, {expected} s", named.name);
+        }
+    }
+}
+
+#[test]
+fn two_turns_move_a_symmetric_body_as_its_free_motion_does() {
+    for moments in [[1.0, 1.0, 0.25], [1.25, 0.75, 0.75], [1.0, 1.75, 1.0], [1.5, 1.5, 1.5]] {
+        let body = Body::free(Inertia::from_moments(moments).unwrap());
+        let start =
+            body.enter_omega(Quat::from_components([0.9, 0.3, -0.2, 0.4]), Vec3([0.4, -0.7, 1.1])).unwrap();
+        let flow = SymmetricTop::<Dd>::new(&body).unwrap();
+        let motion = FreeMotion::new(&body, start);
+        for t in [0.0, 1e-9, 0.5, -3.0, 20.0] {
+            let mut x = start;
+            flow.flow(Dd::of(t), &mut x);
+            let exact = motion.inside_at_dd(Dd::of(t));
+            let off = (x.attitude - exact.attitude).magnitude()
+                + (x.momentum_body - exact.momentum_body).magnitude();
+            assert!(off < 1e-28, "{moments:?}, t = {t}: {off:.1e}");
+        }
+    }
+    assert!(SymmetricTop::<f64>::new(&Body::free(Inertia::from_moments([1.0, 1.5, 2.0]).unwrap())).is_none());
+}
+
+#[test]
+fn a_ball_turns_about_its_momentum() {
+    let body = Body::free(Inertia::from_moments([0.75; 3]).unwrap());
+    let start = body.enter_omega(Quat::identity(), Vec3([0.3, 0.6, -0.6])).unwrap();
+    let mut x = start;
+    Casimir::new(body.inverse_moments::<Dd>()[0]).flow(Dd::of(2.0), &mut x);
+    // |ω| = 0.9: an angle of 1.8 rad about ω
+    let angle = (rotation_angle(start.attitude, x.attitude) - Dd::of(1.8)).magnitude();
+    assert!(angle < 1e-15 && x.momentum_body == start.momentum_body, "{angle:.1e}");
+    let mut rest = State { momentum_body: Vec3::zero(), ..start };
+    Casimir::new(Dd::ONE).flow(Dd::of(2.0), &mut rest);
+    assert_eq!(rest.attitude, start.attitude);
+}
+
+#[test]
+fn the_sleeping_top_wakes_below_its_threshold_only() {
+    // ω₃² = 4 A c/C² = 17.78
+    let inertia = Inertia::from_moments([1.25, 1.25, 0.75]).unwrap();
+    let body = Body::heavy(inertia, [0.0, 0.0, 1.0].into()).unwrap();
+    let threshold = libm::sqrt(4.0 * 1.25) / 0.75;
+    let (sin, cos) = libm::sincos(0.5e-3);
+    let attitude = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(cos, sin, 0.0, 0.0));
+    let largest_tilt = |factor: f64| {
+        let start = body.state(attitude, [0.0, 0.0, threshold * factor].into()).unwrap();
+        let exact = LagrangeTop::from_state(&body, &start).unwrap().turning_points()[1];
+        let mut run = Run::new(method("kick-drift:4").unwrap().as_ref(), &body, &start, 0.02).unwrap();
+        let stepped = run.samples(Schedule::every(1, 20_000)).fold(0.0_f64, |tilt, sample| {
+            let up = sample.unwrap().state.attitude.rotate_back(Vec3::unit(2));
+            tilt.max(libm::atan2(libm::hypot(up[0], up[1]), up[2]))
+        });
+        assert!((stepped / exact - 1.0).abs() < 1e-3, "{factor}: {stepped} by steps, {exact} exactly");
+        exact
+    };
+    assert!(largest_tilt(1.01) < 0.01);
+    assert!(largest_tilt(0.99) > 0.1);
 }

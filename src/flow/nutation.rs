@@ -163,10 +163,11 @@ fn largest_zero([p, q, r]: [Dd; 3]) -> Dd {
         let value = ((z + p) * z + q) * z + r;
         let slope = (z * Dd::of(3.0) + p * Dd::of(2.0)) * z + q;
         let next = z - value / slope;
-        if !(next < z) {
+        if next < z {
+            z = next;
+        } else {
             break;
         }
-        z = next;
     }
     z
 }
