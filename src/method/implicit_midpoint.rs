@@ -65,16 +65,13 @@ impl<S: Real> Step<S> for ImplicitMidpointStep<S> {
     #[inline]
     fn step(&mut self, x: &mut State<S>) {
         let m = x.momentum_body;
-        let up = self.gravity.map(|gravity| (vertical(x.attitude), gravity.weight_moment));
-        let increment = |middle: Vec3<S>| {
-            let omega = middle.times(self.inverse_moments);
-            let mut rate = middle.cross(omega);
-            if let Some((up, weight_moment)) = up {
-                rate = rate + middle_vertical(up, omega * (self.h * self.half)).cross(weight_moment);
+        let (delta, residual) = match &self.gravity {
+            None => {
+                let increment = |middle: Vec3<S>| middle.cross(middle.times(self.inverse_moments)) * self.h;
+                iterate(increment(m), |delta| increment(m + delta * self.half))
             }
-            rate * self.h
+            Some(gravity) => self.heavy(gravity, x),
         };
-        let (delta, residual) = iterate(increment(m), |delta| increment(m + delta * self.half));
         self.worst_residual = self.worst_residual.max(residual);
         let c = (m + delta * self.half).times(self.inverse_moments) * (self.h * self.half);
         self.carry.add_momentum(x, delta);
@@ -83,6 +80,20 @@ impl<S: Real> Step<S> for ImplicitMidpointStep<S> {
 
     fn worst_residual(&self) -> f64 {
         self.worst_residual
+    }
+}
+
+impl<S: Real> ImplicitMidpointStep<S> {
+    /// The change of m under gravity, and the residual; apart, so that the free step stays in registers.
+    #[inline(never)]
+    fn heavy(&self, gravity: &Gravity<S>, x: &State<S>) -> (Vec3<S>, f64) {
+        let (m, up) = (x.momentum_body, vertical(x.attitude));
+        let increment = |middle: Vec3<S>| {
+            let omega = middle.times(self.inverse_moments);
+            let torque = middle_vertical(up, omega * (self.h * self.half)).cross(gravity.weight_moment);
+            (middle.cross(omega) + torque) * self.h
+        };
+        iterate(increment(m), |delta| increment(m + delta * self.half))
     }
 }
 
