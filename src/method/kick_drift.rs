@@ -79,7 +79,7 @@ impl<S: Precise> Step<S> for KickDriftStep<S> {
                 }
             }
         }
-        self.carry.renormalize(x);
+        self.carry.end_step(x);
         self.kick.carried(self.half, x, &mut self.carry);
     }
 }

@@ -2,6 +2,7 @@
 
 mod drift;
 mod exact;
+mod inertia;
 mod long_run;
 mod order;
 
@@ -28,5 +29,10 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "long-run",
         question: "what grows over very many steps, and how fast",
         run: long_run::run,
+    },
+    Experiment {
+        name: "inertia",
+        question: "whether inertia tensors are right: closed forms, meshes, the lecture's statements, the doctor",
+        run: inertia::run,
     },
 ];
