@@ -79,5 +79,5 @@ pub(super) fn cayley_turn<S: Real>(x: &mut State<S>, carry: &mut Carry<S>, c: Ve
     let root = alpha.sqrt();
     let less_one = Quat::new(-(squared / (alpha + root)), c * (S::of(1.0) / root));
     carry.add_attitude(x, x.attitude * less_one);
-    carry.renormalize(x);
+    carry.end_step(x);
 }

@@ -67,7 +67,7 @@ impl<S: Real> Step<S> for LiePoissonStep<S> {
             [_, 0, _] => self.turns::<2, 0, 1>(x),
             _ => self.turns::<2, 1, 0>(x),
         }
-        self.carry.renormalize(x);
+        self.carry.end_step(x);
     }
 }
 
