@@ -34,8 +34,8 @@ fn main() {
                 method.name(),
                 sample.steps,
                 worst.energy,
-                worst.momentum,
-                worst.momentum_vector
+                worst.momentum.unwrap_or_default(),
+                worst.momentum_vector.unwrap_or_default()
             );
         }
     }

@@ -1,9 +1,10 @@
 //! Named bodies with their sources, for tests, benches and experiments alike.
 //!
 //! Moments are in kg m² where the body has a size and dimensionless where only ratios are known; free motion does
-//! not tell the difference. Each comes with the start that the experiments give it.
+//! not tell the difference. Each comes with the start that the experiments give it. Tops have a fixed point, which
+//! their moments are about, and a weight.
 
-use crate::body::Inertia;
+use crate::body::{Body, Inertia, StateError};
 
 /// A body that everyone can ask for by name.
 #[derive(Clone, Debug)]
@@ -18,8 +19,22 @@ pub struct NamedBody {
     pub unit: &'static str,
     /// Its inertia, in principal axes.
     pub inertia: Inertia,
+    /// Weight times centre of mass, body axes, N m; zero for a free body.
+    pub weight_moment: [f64; 3],
+    /// Attitude at the start of the reference motion, w, x, y, z.
+    pub attitude: [f64; 4],
     /// Angular velocity of the reference motion, body axes, rad/s.
     pub omega_body: [f64; 3],
+}
+
+impl NamedBody {
+    /// The body with its weight.
+    ///
+    /// # Errors
+    /// None of the catalogue's.
+    pub fn body(&self) -> Result<Body, StateError> {
+        Body::heavy(self.inertia.clone(), self.weight_moment.into())
+    }
 }
 
 struct Entry {
@@ -31,10 +46,17 @@ struct Entry {
     omega_body: [f64; 3],
 }
 
+/// A body with a fixed point.
+struct Top {
+    entry: Entry,
+    weight_moment: [f64; 3],
+    attitude: [f64; 4],
+}
+
 const SI: &str = "kg m^2";
 const RATIO: &str = "ratio";
 
-/// All bodies, real ones first.
+/// All free bodies, real ones first.
 ///
 /// ```
 /// let names: Vec<_> = polhode::catalog::bodies().iter().map(|body| body.name).collect();
@@ -44,7 +66,25 @@ pub fn bodies() -> Vec<NamedBody> {
     entries().into_iter().filter_map(Entry::build).collect()
 }
 
-/// The body called `name`.
+/// All tops, toys first.
+pub fn tops() -> Vec<NamedBody> {
+    top_entries().into_iter().filter_map(Top::build).collect()
+}
+
+/// The top called `name`.
+///
+/// ```
+/// use polhode::flow::LagrangeTop;
+/// let wheel = polhode::catalog::top("bicycle-wheel").ok_or("not in the catalogue")?;
+/// let motion = LagrangeTop::from_omega(&wheel.body()?, Default::default(), wheel.omega_body.into())?;
+/// assert!(motion.nutation_period().is_none()); // upright, it sleeps
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn top(name: &str) -> Option<NamedBody> {
+    top_entries().into_iter().find(|top| top.entry.name == name).and_then(Top::build)
+}
+
+/// The free body called `name`.
 pub fn body(name: &str) -> Option<NamedBody> {
     entries().into_iter().find(|entry| entry.name == name).and_then(Entry::build)
 }
@@ -53,7 +93,15 @@ impl Entry {
     fn build(self) -> Option<NamedBody> {
         let Entry { name, summary, source, unit, moments, omega_body } = self;
         let inertia = Inertia::from_moments(moments).ok()?;
-        Some(NamedBody { name, summary, source, unit, inertia, omega_body })
+        let (weight_moment, attitude) = ([0.0; 3], [1.0, 0.0, 0.0, 0.0]);
+        Some(NamedBody { name, summary, source, unit, inertia, weight_moment, attitude, omega_body })
+    }
+}
+
+impl Top {
+    fn build(self) -> Option<NamedBody> {
+        let Top { entry, weight_moment, attitude } = self;
+        Some(NamedBody { weight_moment, attitude, ..entry.build()? })
     }
 }
 
@@ -152,6 +200,80 @@ fn entries() -> [Entry; 11] {
     ]
 }
 
+/// Standard gravity, m/s².
+const GRAVITY: f64 = 9.806_65;
+
+fn top_entries() -> [Top; 4] {
+    // turned about x by the angle in rad
+    let tilted = |angle: f64| {
+        let (sin, cos) = libm::sincos(0.5 * angle);
+        [cos, sin, 0.0, 0.0]
+    };
+    let degrees = core::f64::consts::PI / 180.0;
+    [
+        Top {
+            entry: Entry {
+                name: "gyroscope",
+                summary: "toy gyroscope: brass disk of 100 g, 30 mm radius, 40 mm above the tip, tilted by 30 degrees",
+                source: "closed form of a solid disk, 8 mm thick, about the tip; frame neglected; axes across, across, axle",
+                unit: SI,
+                moments: disk_on_axle(0.1, [0.030, 0.008], 0.040),
+                omega_body: [0.0, 0.0, 400.0],
+            },
+            weight_moment: [0.0, 0.0, 0.1 * GRAVITY * 0.040],
+            attitude: tilted(30.0 * degrees),
+        },
+        Top {
+            entry: Entry {
+                name: "bicycle-wheel",
+                summary: "bicycle wheel of 1.5 kg hung by one end of its level axle, 120 mm from the hub",
+                source: "closed form of a hoop of 310 mm radius about the end of the axle; axes across, across, axle",
+                unit: SI,
+                moments: hoop_on_axle(1.5, 0.310, 0.120),
+                omega_body: [0.0, 0.0, 25.0],
+            },
+            weight_moment: [0.0, 0.0, 1.5 * GRAVITY * 0.120],
+            attitude: tilted(90.0 * degrees),
+        },
+        Top {
+            entry: Entry {
+                name: "simo-wong",
+                summary: "fast top next to upright, a test problem of structural dynamics",
+                source: "Simo and Wong, Int. J. Numer. Meth. Engng. 31 (1991) 19",
+                unit: SI,
+                moments: [5.0, 5.0, 1.0],
+                omega_body: [0.0, 0.0, 50.0],
+            },
+            weight_moment: [0.0, 0.0, 20.0],
+            attitude: tilted(0.05),
+        },
+        Top {
+            entry: Entry {
+                name: "bruls-cardona",
+                summary: "top that starts with its axis level, a test problem of multibody dynamics",
+                source: "Bruls and Cardona, J. Comput. Nonlinear Dyn. 5 (2010) 031002; moments about the fixed point",
+                unit: SI,
+                moments: [15.234_375, 0.468_75, 15.234_375],
+                omega_body: [0.0, 150.0, -4.615_38],
+            },
+            weight_moment: [0.0, 15.0 * 9.81, 0.0],
+            attitude: tilted(0.0),
+        },
+    ]
+}
+
+/// Moments of a solid disk of a radius and a thickness about a point on its axis at a distance.
+fn disk_on_axle(mass: f64, [radius, thickness]: [f64; 2], distance: f64) -> [f64; 3] {
+    let across = mass * ((3.0 * radius * radius + thickness * thickness) / 12.0 + distance * distance);
+    [across, across, mass * radius * radius / 2.0]
+}
+
+/// Moments of a thin hoop about a point on its axis at a distance.
+fn hoop_on_axle(mass: f64, radius: f64, distance: f64) -> [f64; 3] {
+    let across = mass * (radius * radius / 2.0 + distance * distance);
+    [across, across, mass * radius * radius]
+}
+
 /// Moments of a uniform box about its centre, m (b² + c²)/12 and cyclic.
 fn solid_box(mass: f64, [a, b, c]: [f64; 3]) -> [f64; 3] {
     [b * b + c * c, a * a + c * c, a * a + b * b].map(|sum| mass * sum / 12.0)
@@ -189,6 +311,8 @@ mod tests {
     #[test]
     fn every_entry_is_a_valid_body() {
         assert_eq!(bodies().len(), entries().len());
+        assert_eq!(tops().len(), top_entries().len());
+        assert!(bodies().iter().chain(&tops()).all(|named| named.body().is_ok()));
     }
 
     #[test]

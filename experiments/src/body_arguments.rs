@@ -20,28 +20,53 @@ pub(crate) struct BodyArguments {
     /// Tensor entries in body axes, I_xy = -sum m x y
     #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = numbers::<6>, allow_hyphen_values = true)]
     inertia: Option<[f64; 6]>,
-    /// Inertia of a body of the catalogue: toutatis, racket, t-handle, phone, water, spacecraft, textbook, dyadic, prolate, oblate, sphere
+    /// Inertia, and weight moment if any, of a body of the catalogue: toutatis, racket, t-handle, phone, water, spacecraft, textbook, dyadic, prolate, oblate, sphere, and the tops gyroscope, bicycle-wheel, simo-wong, bruls-cardona
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
 }
 
 impl BodyArguments {
-    /// The body that the flags describe.
-    pub(crate) fn body(&self) -> Result<Body, Error> {
+    /// The body that the flags describe, with the catalogue's weight moment or `weight_moment` in its place.
+    pub(crate) fn heavy(&self, weight_moment: Option<[f64; 3]>) -> Result<Body, Error> {
+        let (inertia, own) = self.described()?;
+        let moment = weight_moment.unwrap_or(own);
+        if moment == [0.0; 3] {
+            return Ok(Body::free(inertia));
+        }
+        Body::heavy(inertia, moment.into()).map_err(|error| Error::Input(format!("--weight-moment: {error}")))
+    }
+
+    /// The same for what only free bodies do.
+    pub(crate) fn free(&self) -> Result<Body, Error> {
+        let (inertia, own) = self.described()?;
+        if own != [0.0; 3] {
+            let name = self.body.as_deref().unwrap_or_default();
+            return Err(Error::input(
+                "--body",
+                name,
+                "is a top under gravity, and only free bodies have a polhode",
+                "name a free body, or give its --moments to see what it would do without weight",
+            ));
+        }
+        Ok(Body::free(inertia))
+    }
+
+    /// Inertia, and the weight moment that the catalogue has with it.
+    fn described(&self) -> Result<(Inertia, [f64; 3]), Error> {
         let refused =
             |flag: &str, error: polhode::body::InertiaError| Error::Input(format!("{flag}: {error}"));
-        let inertia = if let Some(moments) = self.moments {
-            Inertia::from_moments(moments).map_err(|error| refused("--moments", error))?
+        if let Some(moments) = self.moments {
+            Ok((Inertia::from_moments(moments).map_err(|error| refused("--moments", error))?, [0.0; 3]))
         } else if let Some([xx, yy, zz, xy, xz, yz]) = self.inertia {
             let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-            Inertia::from_tensor(tensor).map_err(|error| refused("--inertia", error))?
+            Ok((Inertia::from_tensor(tensor).map_err(|error| refused("--inertia", error))?, [0.0; 3]))
         } else {
             let name = self.body.as_deref().unwrap_or_default();
             let known: Vec<&str> = catalog::bodies().iter().map(|body| body.name).collect();
-            let found = catalog::body(name);
-            found.ok_or_else(|| Error::unknown_name("--body", "body", name, known.iter().copied()))?.inertia
-        };
-        Ok(Body::free(inertia))
+            let found = catalog::body(name)
+                .ok_or_else(|| Error::unknown_name("--body", "body", name, known.iter().copied()))?;
+            Ok((found.inertia, found.weight_moment))
+        }
     }
 }
 

@@ -14,6 +14,7 @@ mod propagate;
 mod provenance;
 mod publish;
 mod random;
+mod reference;
 mod table;
 
 use std::path::PathBuf;

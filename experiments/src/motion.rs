@@ -27,7 +27,7 @@ pub(crate) struct Motion {
 
 impl Motion {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        let body = self.body.body()?;
+        let body = self.body.free()?;
         let motion = FreeMotion::new(&body, self.start.inside(&body)?);
         let character = motion.character().map_err(|error| Error::Input(format!("--omega: {error}")))?;
         let mode = match character.mode {

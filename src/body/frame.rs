@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use super::{Inertia, State};
+use super::{Gravity, Inertia, State};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -26,9 +26,20 @@ pub enum StateError {
         /// Largest component of the angular velocity, rad/s.
         omega: f64,
     },
+    /// The weight moment is too large or too small beside the inertia.
+    #[error(
+        "weight moment {weight_moment} N m beside moments of inertia of {moment}: the rate of falling is outside the range \
+         of a double; change the units"
+    )]
+    WeightOutOfRange {
+        /// Size of the weight moment, N m.
+        weight_moment: f64,
+        /// Largest moment of inertia, to a power of two.
+        moment: f64,
+    },
 }
 
-/// A rigid body and what acts on it; here nothing does.
+/// A rigid body and what acts on it: nothing, or uniform gravity about a fixed point.
 ///
 /// A user's state refers to the body axes that the inertia was given in; kernels work along principal axes with
 /// moments and momenta divided by a power of two, so that fourth powers neither over- nor underflow and a change
@@ -37,17 +48,74 @@ pub enum StateError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     inertia: Inertia,
+    /// Along a kernel's axes and in its scale.
+    gravity: Option<Gravity<Dd>>,
 }
 
 impl Body {
     /// A body on which no torque acts.
     pub fn free(inertia: Inertia) -> Self {
-        Body { inertia }
+        Body { inertia, gravity: None }
+    }
+
+    /// A body with a fixed point, the origin, under uniform gravity along −Z of space.
+    ///
+    /// `inertia` is about the fixed point; `weight_moment` is the weight M g times the centre of mass, N m, in body
+    /// axes. The potential is U = c·Γ and the torque Γ × c, Γ = Qᵀ e_z. Without weight moment the body is free.
+    ///
+    /// # Errors
+    /// Components that are not finite, or a size that no double has beside the inertia.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::body::{Body, Inertia};
+    /// let top = Body::heavy(Inertia::from_moments([1.0, 1.0, 0.25])?, Vector3::new(0.0, 0.0, 2.0))?;
+    /// let start = top.state(UnitQuaternion::identity(), Vector3::new(0.0, 0.0, 4.0))?;
+    /// assert_eq!(top.energy(&top.enter(&start)?), 4.0); // 2 J of spin, 2 J of height
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn heavy(inertia: Inertia, weight_moment: Vector3<f64>) -> Result<Self, StateError> {
+        let given = Vec3::from(weight_moment);
+        check("weight moment", &given.0)?;
+        if given == Vec3::zero() {
+            return Ok(Body::free(inertia));
+        }
+        let scaled = Vec3(given.0.map(|c| c / inertia.scale()));
+        if !clear(scaled.magnitude()) {
+            let (weight_moment, moment) = (given.magnitude(), inertia.scale());
+            return Err(StateError::WeightOutOfRange { weight_moment, moment });
+        }
+        let weight_moment = inertia.frame().rotate_back(Vec3::of(scaled));
+        Ok(Body { inertia, gravity: Some(Gravity { weight_moment }) })
     }
 
     /// Its inertia.
     pub fn inertia(&self) -> &Inertia {
         &self.inertia
+    }
+
+    /// Gravity along a kernel's axes and in its scale; `None` for a free body.
+    pub fn gravity<S: Real>(&self) -> Option<Gravity<S>> {
+        self.gravity.map(|g| Gravity { weight_moment: Vec3(g.weight_moment.0.map(of_dd)) })
+    }
+
+    /// Kinetic and potential energy, J, of a kernel's state.
+    pub fn energy<S: Precise>(&self, x: &State<S>) -> f64 {
+        let x = State {
+            attitude: Quat::from_components(x.attitude.components().map(S::to_dd)),
+            momentum_body: Vec3(x.momentum_body.0.map(S::to_dd)),
+        };
+        self.scaled_energy(&x).hi() * self.scale()
+    }
+
+    /// ½ m·I⁻¹m + U in a kernel's scale.
+    pub(crate) fn scaled_energy(&self, x: &State<Dd>) -> Dd {
+        let m = x.momentum_body;
+        let kinetic = m.times(self.inverse_moments()).dot(m) * Dd::of(0.5);
+        match self.gravity {
+            Some(gravity) => kinetic + gravity.potential(x.attitude),
+            None => kinetic,
+        }
     }
 
     /// The state with angular velocity `omega_body` (rad/s, body axes): m = I ω.
@@ -145,8 +213,7 @@ impl Body {
         let omega = inside.momentum_body.times(self.inverse_moments());
         let twice_energy = inside.momentum_body.dot(omega).hi();
         let energy = twice_energy * self.inertia.scale();
-        // Dekker products of squares need the exponent to stay clear of both ends
-        let clear = |x: f64| x == 0.0 || (1e-240..1e240).contains(&x.abs());
+        let clear = |x: f64| x == 0.0 || clear(x);
         let at_rest = omega.0.iter().all(|w| w.hi() == 0.0);
         if clear(twice_energy) && clear(energy) && (at_rest || energy != 0.0) {
             Ok(())
@@ -154,6 +221,11 @@ impl Body {
             Err(StateError::OutOfRange { omega: omega.magnitude() })
         }
     }
+}
+
+/// Dekker products of squares need the exponent to stay clear of both ends.
+fn clear(x: f64) -> bool {
+    (1e-240..1e240).contains(&x.abs())
 }
 
 /// A double-double in any scalar, rounded once where it has fewer digits.

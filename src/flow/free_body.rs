@@ -60,7 +60,7 @@ pub enum TimeError {
 }
 
 /// Of the 106 bits of a phase in rad, ten are to be left after the whole turns.
-const MOST_RADIANS: f64 = 79_228_162_514_264_337_593_543_950_336.0; // 2⁹⁶
+pub(super) const MOST_RADIANS: f64 = 79_228_162_514_264_337_593_543_950_336.0; // 2⁹⁶
 
 /// What becomes of the momentum in the body.
 #[derive(Clone, Debug)]

@@ -1,15 +1,27 @@
 //! Exact flows: the atoms that splitting methods are composed of, and the references they are judged by.
 
+mod casimir;
 mod character;
 mod circulation;
+mod complex;
 mod free_body;
+mod kick;
+mod lagrange_top;
+mod nutation;
 mod phase;
 mod polhode;
+mod short_drift;
+mod symmetric_top;
 mod theta;
 mod turn;
 
+pub use casimir::Casimir;
 pub use character::{AtRest, Character, Mode};
 pub use free_body::{FreeBody, FreeMotion, TimeError};
+pub use kick::Kick;
+pub use lagrange_top::{LagrangeError, LagrangeTop};
+pub use short_drift::ShortDrift;
+pub use symmetric_top::SymmetricTop;
 pub use turn::{AxisTurn, turn};
 
 use crate::body::State;

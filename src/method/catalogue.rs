@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use super::{
-    Advance, AxisOrder, Claimed, ExplicitEuler, ImplicitMidpoint, LiePoisson, Method, Rattle, Rk4,
-    SemiImplicitEuler, Step, StepError,
+    Advance, AxisOrder, Claimed, Composed, ExplicitEuler, ImplicitMidpoint, KickDrift, LiePoisson, Method,
+    Rattle, Rk4, SUZUKI_4, SemiImplicitEuler, Step, StepError,
 };
 use crate::body::{Body, State};
 use crate::num::Dd;
@@ -26,11 +26,21 @@ pub trait AnyMethod: Claimed + Send + Sync {
 
 impl<M: Method<f64> + Method<Dd> + Send + Sync> AnyMethod for M {
     fn prepare_f64(&self, h: f64, body: &Body, x: &State<f64>) -> Result<Box<dyn Advance>, StepError> {
+        accepts(self, body)?;
         Ok(Box::new(self.prepare(h, body, x)?))
     }
     fn prepare_dd(&self, h: f64, body: &Body, x: &State<Dd>) -> Result<Box<dyn Step<Dd>>, StepError> {
+        accepts(self, body)?;
         Ok(Box::new(self.prepare(h, body, x)?))
     }
+}
+
+/// Refuses a heavy body for a method without torque.
+fn accepts(method: &impl Claimed, body: &Body) -> Result<(), StepError> {
+    if body.gravity::<f64>().is_some() && method.claims().potential.is_none() {
+        return Err(StepError::Torque { method: method.name() });
+    }
+    Ok(())
 }
 
 /// Every method, in the order in which tables show them.
@@ -43,6 +53,8 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(ImplicitMidpoint),
         Box::new(Rattle),
         Box::new(LiePoisson { axes: None }),
+        Box::new(KickDrift),
+        Box::new(Composed { base: KickDrift, scheme: SUZUKI_4 }),
     ]
 }
 
@@ -65,6 +77,7 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         })?;
         return Ok(Box::new(LiePoisson { axes: Some(order) }));
     }
+    let name = if name == "kick-drift:2" { "kick-drift" } else { name };
     let mut known = catalogue();
     if let Some(position) = known.iter().position(|method| method.name() == name) {
         return Ok(known.swap_remove(position));
@@ -74,7 +87,11 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
     {
         return Err(UnknownMethod::Argument {
             name: name.into(),
-            rule: "none: this method takes no argument",
+            rule: if head == "kick-drift" {
+                "2 or 4, its order"
+            } else {
+                "none: this method takes no argument"
+            },
         });
     }
     Err(UnknownMethod::Name { name: name.into() })

@@ -13,6 +13,10 @@ pub struct Claims {
     pub poisson: bool,
     /// What it keeps of free motion.
     pub free: Kept,
+    /// Whether free motion is followed without any error of discretisation; the order then speaks of heavy bodies.
+    pub exact_when_free: bool,
+    /// What it keeps of the motion in a potential; `None` refuses bodies with a weight moment.
+    pub potential: Option<KeptHeavy>,
     /// Work per step.
     pub cost: Cost,
     /// Where it comes from.
@@ -32,7 +36,18 @@ pub struct Kept {
     pub norm: bool,
 }
 
-/// What becomes of the energy of free motion.
+/// What is constant along the numerical solution in the potential of gravity, in exact arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KeptHeavy {
+    /// The energy.
+    pub energy: Energy,
+    /// The vertical component of L in space, p_φ of a top.
+    pub momentum_z: bool,
+    /// |q| = 1.
+    pub norm: bool,
+}
+
+/// What becomes of the energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Energy {
     /// Constant.
@@ -50,8 +65,10 @@ pub enum Cost {
     RightSides(u32),
     /// Turns about an axis, one sine and cosine each.
     Turns(u32),
-    /// Solution of three nonlinear equations by iteration.
-    Solve,
+    /// Exact motions of the free body.
+    Drifts(u32),
+    /// Solutions of three nonlinear equations by iteration.
+    Solves(u32),
 }
 
 impl fmt::Display for Energy {
@@ -70,7 +87,10 @@ impl fmt::Display for Cost {
             Cost::RightSides(1) => f.write_str("1 right side"),
             Cost::RightSides(n) => write!(f, "{n} right sides"),
             Cost::Turns(n) => write!(f, "{n} turns"),
-            Cost::Solve => f.write_str("3 equations solved"),
+            Cost::Drifts(1) => f.write_str("1 exact drift"),
+            Cost::Drifts(n) => write!(f, "{n} exact drifts"),
+            Cost::Solves(1) => f.write_str("3 equations solved"),
+            Cost::Solves(n) => write!(f, "3 equations solved {n} times"),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The implicit midpoint rule on m, with the Cayley map on the attitude.
 
 use super::stagnation::iterate;
-use super::{Claimed, Claims, Cost, Energy, Kept, Method, Step, StepError, usable};
-use crate::body::{Body, Carry, State};
+use super::{Claimed, Claims, Cost, Energy, Kept, KeptHeavy, Method, Step, StepError, usable};
+use crate::body::{Body, Carry, Gravity, State, vertical};
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 
@@ -11,6 +11,9 @@ use crate::rotation::{Quat, Vec3};
 /// Φ_h: `m' = m + h m̄ × I⁻¹m̄` with `m̄ = ½(m + m')`, then `q' = q ∘ cay(h/2 I⁻¹m̄)`.
 /// Keeps energy and |m|, being quadratic, and L, because the same Cayley map turns m' back into m. It keeps the
 /// Lie–Poisson bracket only to O(h²): conservation is not accuracy.
+///
+/// Under gravity `Γ̄ × c` joins the right side, `Γ̄ = ½(Γ + Γ')`. The Cayley map moves Γ by the midpoint rule too, so
+/// that energy and L_z = m·Γ, quadratic in (m, Γ), are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImplicitMidpoint;
 
@@ -20,6 +23,7 @@ pub struct ImplicitMidpointStep<S> {
     h: S,
     half: S,
     inverse_moments: Vec3<S>,
+    gravity: Option<Gravity<S>>,
     carry: Carry<S>,
     worst_residual: f64,
 }
@@ -34,7 +38,9 @@ impl Claimed for ImplicitMidpoint {
             symmetric: true,
             poisson: false,
             free: Kept { energy: Energy::Exact, momentum: true, momentum_space: true, norm: true },
-            cost: Cost::Solve,
+            exact_when_free: false,
+            potential: Some(KeptHeavy { energy: Energy::Exact, momentum_z: true, norm: true }),
+            cost: Cost::Solves(1),
             source: "Austin, Krishnaprasad and Wang, J. Comput. Phys. 107 (1993) 105; Lewis and Simo, J. Nonlinear Sci. 4 (1994) 253",
         }
     }
@@ -48,6 +54,7 @@ impl<S: Real> Method<S> for ImplicitMidpoint {
             h,
             half: S::of(0.5),
             inverse_moments: body.inverse_moments(),
+            gravity: body.gravity(),
             carry: Carry::default(),
             worst_residual: 0.0,
         })
@@ -58,8 +65,13 @@ impl<S: Real> Step<S> for ImplicitMidpointStep<S> {
     #[inline]
     fn step(&mut self, x: &mut State<S>) {
         let m = x.momentum_body;
-        let increment = |middle: Vec3<S>| middle.cross(middle.times(self.inverse_moments)) * self.h;
-        let (delta, residual) = iterate(increment(m), |delta| increment(m + delta * self.half));
+        let (delta, residual) = match &self.gravity {
+            None => {
+                let increment = |middle: Vec3<S>| middle.cross(middle.times(self.inverse_moments)) * self.h;
+                iterate(increment(m), |delta| increment(m + delta * self.half))
+            }
+            Some(gravity) => self.heavy(gravity, x),
+        };
         self.worst_residual = self.worst_residual.max(residual);
         let c = (m + delta * self.half).times(self.inverse_moments) * (self.h * self.half);
         self.carry.add_momentum(x, delta);
@@ -69,6 +81,26 @@ impl<S: Real> Step<S> for ImplicitMidpointStep<S> {
     fn worst_residual(&self) -> f64 {
         self.worst_residual
     }
+}
+
+impl<S: Real> ImplicitMidpointStep<S> {
+    /// The change of m under gravity, and the residual; apart, so that the free step stays in registers.
+    #[inline(never)]
+    fn heavy(&self, gravity: &Gravity<S>, x: &State<S>) -> (Vec3<S>, f64) {
+        let (m, up) = (x.momentum_body, vertical(x.attitude));
+        let increment = |middle: Vec3<S>| {
+            let omega = middle.times(self.inverse_moments);
+            let torque = middle_vertical(up, omega * (self.h * self.half)).cross(gravity.weight_moment);
+            (middle.cross(omega) + torque) * self.h
+        };
+        iterate(increment(m), |delta| increment(m + delta * self.half))
+    }
+}
+
+/// ½(Γ + Γ'), Γ' the vertical after the turn with the Cayley vector c: the solution of `Γ̄ = Γ + Γ̄ × c`.
+#[inline]
+fn middle_vertical<S: Real>(up: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
+    (up + up.cross(c) + c * c.dot(up)) * (S::of(1.0) / (S::of(1.0) + c.norm_squared()))
 }
 
 /// `q ← q ∘ (1, c)/√(1 + |c|²)`, rounding carried: `p₀ − 1 = −|c|²/(α + √α)` has no cancellation.

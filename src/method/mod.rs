@@ -4,7 +4,9 @@
 mod axis_order;
 mod catalogue;
 mod claims;
+mod composition;
 mod implicit_midpoint;
+mod kick_drift;
 mod lie_poisson;
 mod rattle;
 mod runge_kutta;
@@ -12,8 +14,10 @@ mod stagnation;
 
 pub use axis_order::AxisOrder;
 pub use catalogue::{AnyMethod, UnknownMethod, catalogue, method};
-pub use claims::{Claims, Cost, Energy, Kept};
+pub use claims::{Claims, Cost, Energy, Kept, KeptHeavy};
+pub use composition::{Composed, SUZUKI_4, Scheme};
 pub use implicit_midpoint::ImplicitMidpoint;
+pub use kick_drift::KickDrift;
 pub use lie_poisson::LiePoisson;
 pub use rattle::Rattle;
 pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
@@ -100,14 +104,22 @@ impl<T: Step<f64> + Send> Advance for T {
     }
 }
 
-/// Why a method cannot take steps of this size.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+/// Why a method cannot take steps of this size, or of this body.
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum StepError {
     /// The step is zero or not finite.
     #[error("step {h} is not usable; it must be a finite number of seconds other than 0")]
     NotAStep {
         /// The step asked for, s.
         h: f64,
+    },
+    /// The body has a weight moment, the method no torque.
+    #[error(
+        "method {method:?} is for free bodies and this one has a weight moment; take kick-drift, for one"
+    )]
+    Torque {
+        /// Name of the method.
+        method: String,
     },
 }
 

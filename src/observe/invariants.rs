@@ -4,10 +4,12 @@ use crate::body::{Body, State};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
-/// The quantities that free motion keeps, in double-double, along a kernel's axes and in its scale.
+/// The quantities that motion keeps, in double-double, along a kernel's axes and in its scale.
+///
+/// Free motion keeps them all; under gravity the energy and the vertical component of L are left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Invariants {
-    /// Kinetic energy ½ m·I⁻¹m.
+    /// Energy ½ m·I⁻¹m + U.
     pub energy: Dd,
     /// |m|².
     pub momentum_squared: Dd,
@@ -20,7 +22,7 @@ impl Invariants {
     pub fn of(body: &Body, x: &State<f64>) -> Self {
         let x = State::<Dd>::of(*x);
         Invariants {
-            energy: energy(body.inverse_moments(), x.momentum_body),
+            energy: body.scaled_energy(&x),
             momentum_squared: x.momentum_body.norm_squared(),
             momentum_space: x.momentum_space(),
         }
@@ -30,9 +32,4 @@ impl Invariants {
     pub fn momentum(&self) -> Dd {
         self.momentum_squared.sqrt()
     }
-}
-
-/// ½ m·I⁻¹m.
-pub(super) fn energy<S: Real>(inverse_moments: Vec3<S>, m: Vec3<S>) -> S {
-    m.times(inverse_moments).dot(m) * S::of(0.5)
 }

@@ -1,36 +1,90 @@
 //! The largest errors over every step of a run.
 
-use super::invariants::energy;
-use crate::body::{Body, State};
+use crate::body::{Body, Gravity, State};
 use crate::num::dd::{two_prod, two_sum};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::Vec3;
 
-/// Relative errors of the invariants against the start; 0 for a body at rest.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Relative errors of the invariants against the start; 0 for a free body at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// |E − E₀| / |E₀|.
+    /// |E − E₀| / |E₀|; under gravity |E − E₀| / (T₀ + |c|), c the weight moment.
     pub energy: f64,
-    /// ||m| − |m₀|| / |m₀|.
-    pub momentum: f64,
-    /// |L − L₀| / |L₀|, L in space.
-    pub momentum_vector: f64,
+    /// ||m| − |m₀|| / |m₀|; under gravity |m| is not kept.
+    pub momentum: Option<f64>,
+    /// |L − L₀| / |L₀|, L in space; under gravity it is not kept.
+    pub momentum_vector: Option<f64>,
+    /// |L_z − L_z0| / √(2 I (T₀ + |c|)), z of space, I the largest moment; only under gravity.
+    pub momentum_z: Option<f64>,
+}
+
+impl Errors {
+    fn none(heavy: bool) -> Self {
+        let (free, heavy) = if heavy { (None, Some(0.0)) } else { (Some(0.0), None) };
+        Errors { energy: 0.0, momentum: free, momentum_vector: free, momentum_z: heavy }
+    }
+
+    fn max(self, other: Self) -> Self {
+        let max = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a.max(b));
+        Errors {
+            energy: self.energy.max(other.energy),
+            momentum: max(self.momentum, other.momentum),
+            momentum_vector: max(self.momentum_vector, other.momentum_vector),
+            momentum_z: max(self.momentum_z, other.momentum_z),
+        }
+    }
+
+    fn is_finite(self) -> bool {
+        let finite = |e: Option<f64>| e.is_none_or(f64::is_finite);
+        self.energy.is_finite()
+            && finite(self.momentum)
+            && finite(self.momentum_vector)
+            && finite(self.momentum_z)
+    }
+
+    /// Whether no error of `self` exceeds that of `other`; not with a NaN.
+    fn within(self, other: Self) -> bool {
+        let within = |a: Option<f64>, b: Option<f64>| a.zip(b).is_none_or(|(a, b)| a <= b);
+        self.energy <= other.energy
+            && within(self.momentum, other.momentum)
+            && within(self.momentum_vector, other.momentum_vector)
+            && within(self.momentum_z, other.momentum_z)
+    }
 }
 
 /// Watches every step of a run: the largest error of each invariant, and how often the body flipped.
 ///
 /// Steps come in blocks. A block is first looked at in plain `f64`, with a bound on what rounding may have hidden;
 /// only where that cannot rule out a new maximum are the errors evaluated with error-free transformations, to
-/// about 1e-30. Both loops are branch-free over the block, so that the compiler can vectorise them.
+/// about 1e-30. Both loops are branch-free over the block, so that the compiler can vectorise them. Under gravity
+/// every step is evaluated in double-double.
 #[derive(Clone, Debug)]
 pub struct Monitor {
     inverse_moments: Vec3<Dd>,
+    heavy: Option<Heavy>,
     energy: Dd,
     momentum_squared: Dd,
     momentum_space: Vec3<Dd>,
     worst: Errors,
     flips: Flips,
     loud: u32, // blocks since the last plain look, while plain looks do not help
+}
+
+/// Gravity, and what errors under it are measured by.
+#[derive(Clone, Copy, Debug)]
+struct Heavy {
+    gravity: Gravity<Dd>,
+    energy: f64,
+    momentum: f64,
+}
+
+impl Heavy {
+    fn of(body: &Body, kinetic: Dd) -> Option<Self> {
+        let gravity = body.gravity::<Dd>()?;
+        let energy = (kinetic + gravity.weight_moment.norm()).hi();
+        let largest = body.moments::<f64>().magnitude();
+        Some(Heavy { gravity, energy, momentum: (2.0 * largest * energy).sqrt() })
+    }
 }
 
 /// How many steps a run takes between two looks at them.
@@ -51,14 +105,17 @@ impl Monitor {
     pub fn new(body: &Body, x: &State<f64>) -> Self {
         let inverse_moments = body.inverse_moments();
         let start = State::<Dd>::of(*x);
+        let kinetic = kinetic(inverse_moments, start.momentum_body);
+        let heavy = Heavy::of(body, kinetic);
         let mut flips = Flips { axis: middle_axis(body.moments()), positive: None, count: 0 };
         flips.observe(x.momentum_body);
         Monitor {
             inverse_moments,
-            energy: energy(inverse_moments, start.momentum_body),
+            heavy,
+            energy: body.scaled_energy(&start),
             momentum_squared: start.momentum_body.norm_squared(),
             momentum_space: start.momentum_space(),
-            worst: Errors::default(),
+            worst: Errors::none(heavy.is_some()),
             flips,
             loud: 0,
         }
@@ -67,6 +124,9 @@ impl Monitor {
     /// Takes note of consecutive steps, at most [`BLOCK`]; returns how many come before the first state that is
     /// not finite, and counts only those.
     pub fn observe(&mut self, states: &[State<f64>]) -> usize {
+        if self.heavy.is_some() {
+            return self.observe_heavy(states);
+        }
         let reference = Reference::of(self);
         if self.loud == 0 && self.is_quiet(&reference, states) {
             return self.count(states);
@@ -79,22 +139,26 @@ impl Monitor {
             states = &states[..states.iter().take_while(holds).count()];
             found = largest(states, |x| reference.compensated(x));
         }
-        let now = self.errors_of(found);
-        self.worst = Errors {
-            energy: self.worst.energy.max(now.energy),
-            momentum: self.worst.momentum.max(now.momentum),
-            momentum_vector: self.worst.momentum_vector.max(now.momentum_vector),
-        };
+        self.worst = self.worst.max(self.errors_of(found));
         self.count(states)
+    }
+
+    fn observe_heavy(&mut self, states: &[State<f64>]) -> usize {
+        for (n, x) in states.iter().enumerate() {
+            let now = self.errors(x);
+            if !now.is_finite() {
+                return n;
+            }
+            self.worst = self.worst.max(now);
+            self.flips.observe(x.momentum_body);
+        }
+        states.len()
     }
 
     /// Whether plain evaluation rules out a new maximum; never with a NaN.
     fn is_quiet(&self, reference: &Reference, states: &[State<f64>]) -> bool {
         let (plain, slack) = (largest(states, |x| reference.plain(x)), reference.slack());
-        let e = self.errors_of([0, 1, 2].map(|k| plain[k] + slack[k]));
-        e.energy <= self.worst.energy
-            && e.momentum <= self.worst.momentum
-            && e.momentum_vector <= self.worst.momentum_vector
+        self.errors_of([0, 1, 2].map(|k| plain[k] + slack[k])).within(self.worst)
     }
 
     fn count(&mut self, states: &[State<f64>]) -> usize {
@@ -107,20 +171,31 @@ impl Monitor {
     /// Errors of the state `x` itself, in double-double.
     pub fn errors(&self, x: &State<f64>) -> Errors {
         let x = State::<Dd>::of(*x);
+        let e = (self.energy_of(&x) - self.energy).magnitude();
+        if let Some(heavy) = self.heavy {
+            let z = (x.momentum_space()[2] - self.momentum_space[2]).magnitude();
+            let momentum_z = Some(z / heavy.momentum);
+            return Errors { energy: e / heavy.energy, momentum_z, ..Errors::none(true) };
+        }
         self.errors_of([
-            (energy(self.inverse_moments, x.momentum_body) - self.energy).magnitude(),
+            e,
             (x.momentum_body.norm_squared() - self.momentum_squared).magnitude(),
             (x.momentum_space() - self.momentum_space).norm().magnitude(),
         ])
     }
 
-    /// (E − E₀) / E₀ of the state `x`, with its sign; 0 at rest.
+    /// (E − E₀) / E₀ of the state `x`, with its sign; 0 at rest. Under gravity relative to T₀ + |c|.
     pub fn energy_change(&self, x: &State<f64>) -> f64 {
-        let m = State::<Dd>::of(*x).momentum_body;
-        if self.energy.hi() == 0.0 {
+        let scale = self.heavy.map_or(self.energy, |heavy| Dd::of(heavy.energy));
+        if scale.hi() == 0.0 {
             return 0.0;
         }
-        ((energy(self.inverse_moments, m) - self.energy) / self.energy).hi()
+        ((self.energy_of(&State::of(*x)) - self.energy) / scale).hi()
+    }
+
+    fn energy_of(&self, x: &State<Dd>) -> Dd {
+        let kinetic = kinetic(self.inverse_moments, x.momentum_body);
+        self.heavy.map_or(kinetic, |heavy| kinetic + heavy.gravity.potential(x.attitude))
     }
 
     /// The largest errors so far.
@@ -136,15 +211,16 @@ impl Monitor {
     fn errors_of(&self, [e, m2, l]: Differences) -> Errors {
         let squared = self.momentum_squared.hi();
         if squared == 0.0 {
-            return Errors::default(); // at rest nothing moves
+            return Errors::none(false); // at rest nothing moves
         }
         // ||m| − |m₀|| = ||m|² − |m₀|²| / (|m| + |m₀|); the sign of the difference is not known here, and to first
         // order does not matter: the smaller root gives the larger error
         let relative = m2 / squared;
         Errors {
             energy: e / self.energy.hi(),
-            momentum: relative / (1.0 + (1.0 - relative.min(1.0)).sqrt()),
-            momentum_vector: l / squared.sqrt(),
+            momentum: Some(relative / (1.0 + (1.0 - relative.min(1.0)).sqrt())),
+            momentum_vector: Some(l / squared.sqrt()),
+            momentum_z: None,
         }
     }
 }
@@ -174,7 +250,7 @@ impl Reference {
         let m = x.momentum_body;
         let l = x.momentum_space() - self.momentum_space[0];
         [
-            (energy(self.inverse_moments[0], m) - self.energy[0]).abs(),
+            (kinetic(self.inverse_moments[0], m) - self.energy[0]).abs(),
             (m.norm_squared() - self.momentum_squared[0]).abs(),
             l.norm(),
         ]
@@ -291,6 +367,11 @@ impl Flips {
         }
         self.positive = Some(positive);
     }
+}
+
+/// ½ m·I⁻¹m.
+fn kinetic<S: Real>(inverse_moments: Vec3<S>, m: Vec3<S>) -> S {
+    m.times(inverse_moments).dot(m) * S::of(0.5)
 }
 
 fn middle_axis(moments: Vec3<f64>) -> usize {

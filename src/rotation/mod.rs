@@ -4,9 +4,11 @@
 //! Increments multiply on the right: `q ← q ∘ p`.
 
 mod distance;
+mod euler;
 mod quaternion;
 mod vec3;
 
 pub use distance::rotation_angle;
+pub use euler::{EulerAngles, EulerSequence, EulerSequenceError};
 pub use quaternion::Quat;
 pub use vec3::Vec3;

@@ -17,7 +17,7 @@ pub struct Halving {
     pub momentum_error: f64,
 }
 
-/// Errors after the time `span` for steps `span / 2^k`, k in `exponents`, integrated in double-double.
+/// Errors of free motion after the time `span` for steps `span / 2^k`, k in `exponents`, integrated in double-double.
 ///
 /// `start` is a state as kernels see it; `span` should be a power of two, so that every step is exact.
 ///
@@ -31,6 +31,21 @@ pub fn halvings(
     exponents: core::ops::Range<u32>,
 ) -> Result<Vec<Halving>, StepError> {
     let exact = FreeMotion::new(body, *start).inside_at_dd(Dd::from(span));
+    halvings_against(&exact, method, body, start, span, exponents)
+}
+
+/// As [`halvings`], for any body, against the state `exact` at the time `span`.
+///
+/// # Errors
+/// As [`halvings`], or a body that the method is not for.
+pub fn halvings_against(
+    exact: &State<Dd>,
+    method: &dyn AnyMethod,
+    body: &Body,
+    start: &State<Dd>,
+    span: f64,
+    exponents: core::ops::Range<u32>,
+) -> Result<Vec<Halving>, StepError> {
     exponents
         .map(|k| {
             let steps = 1_u64 << k;

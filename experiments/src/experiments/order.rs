@@ -25,7 +25,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let errors = halvings(method.as_ref(), &body, &start, SPAN, 4..finest + 1);
         errors.map(|errors| (method, errors)).map_err(|error| failed(&error))
     };
-    let series = context.in_parallel(catalogue(), measure);
+    let stepping = catalogue().into_iter().filter(|method| !method.claims().exact_when_free).collect();
+    let series = context.in_parallel(stepping, measure);
 
     let mut errors = Table::new(
         "errors",

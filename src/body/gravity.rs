@@ -1,0 +1,35 @@
+//! Uniform gravity on a body with a fixed point.
+
+use crate::num::Real;
+use crate::rotation::{Quat, Vec3};
+
+/// The vertical in body axes, Γ = Qᵀ e_z, upwards; as long as |q|².
+#[inline]
+pub fn vertical<S: Real>(attitude: Quat<S>) -> Vec3<S> {
+    let (w, Vec3([x, y, z])) = (attitude.w, attitude.v);
+    let two = S::of(2.0);
+    Vec3([two * (x * z - w * y), two * (y * z + w * x), (w * w + z * z) - (x * x + y * y)])
+}
+
+/// Uniform gravity along −Z of space, on a body whose origin is fixed.
+///
+/// The weight moment c is the weight M g times the centre of mass in body axes, N m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gravity<S> {
+    /// Weight moment c in body axes.
+    pub weight_moment: Vec3<S>,
+}
+
+impl<S: Real> Gravity<S> {
+    /// Potential energy U = c·Γ.
+    #[inline]
+    pub fn potential(&self, attitude: Quat<S>) -> S {
+        self.weight_moment.dot(vertical(attitude))
+    }
+
+    /// Torque Γ × c in body axes: it has no part along the vertical.
+    #[inline]
+    pub fn torque(&self, attitude: Quat<S>) -> Vec3<S> {
+        vertical(attitude).cross(self.weight_moment)
+    }
+}

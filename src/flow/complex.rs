@@ -1,0 +1,55 @@
+//! Complex numbers, as far as the Cayley–Klein parameters of a top need them.
+
+use core::ops::{Add, Mul};
+
+use crate::num::Real;
+
+/// `re + i im`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Complex<S> {
+    pub(super) re: S,
+    pub(super) im: S,
+}
+
+impl<S: Real> Complex<S> {
+    pub(super) fn new(re: S, im: S) -> Self {
+        Complex { re, im }
+    }
+
+    /// e^{iφ}.
+    pub(super) fn phase(angle: S) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Complex::new(cos, sin)
+    }
+
+    pub(super) fn conjugate(self) -> Self {
+        Complex::new(self.re, -self.im)
+    }
+
+    pub(super) fn norm_squared(self) -> S {
+        self.re * self.re + self.im * self.im
+    }
+
+    pub(super) fn scaled(self, k: S) -> Self {
+        Complex::new(self.re * k, self.im * k)
+    }
+
+    /// 1 / conjugate: `self / |self|²`.
+    pub(super) fn inverse_conjugate(self) -> Self {
+        self.scaled(S::of(1.0) / self.norm_squared())
+    }
+}
+
+impl<S: Real> Add for Complex<S> {
+    type Output = Self;
+    fn add(self, b: Self) -> Self {
+        Complex::new(self.re + b.re, self.im + b.im)
+    }
+}
+
+impl<S: Real> Mul for Complex<S> {
+    type Output = Self;
+    fn mul(self, b: Self) -> Self {
+        Complex::new(self.re * b.re - self.im * b.im, self.re * b.im + self.im * b.re)
+    }
+}

@@ -1,0 +1,286 @@
+//! Lagrange's top: a symmetric heavy body, its motion at any time.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use thiserror::Error;
+
+use super::TimeError;
+use super::free_body::MOST_RADIANS;
+use super::nutation::{Nutation, cast};
+use super::phase::reduce;
+use crate::body::{Body, State, StateError};
+use crate::num::{Dd, Precise, Real};
+use crate::rotation::{Quat, Vec3};
+
+/// What may be rounding in equal moments (of their sum) and in the direction of the weight moment.
+const ROUNDING: f64 = 1e-12;
+
+/// Why a body is not a Lagrange top.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum LagrangeError {
+    /// There is no weight moment.
+    #[error("the body is free: it has no weight moment; its exact motion is that of the free body")]
+    Free,
+    /// No two principal moments agree.
+    #[error(
+        "principal moments {}, {}, {}: no two agree, the closest differ by {:.3e} of their sum (at most {ROUNDING:e}); a Lagrange top \
+         is symmetric",
+        moments[0], moments[1], moments[2], relative
+    )]
+    NotSymmetric {
+        /// The principal moments, in the order of the principal axes that kernels use.
+        moments: [f64; 3],
+        /// Smallest difference over the sum.
+        relative: f64,
+    },
+    /// The weight moment is not on the symmetry axis.
+    #[error(
+        "the weight moment is {angle:.3e} rad off the symmetry axis (at most {ROUNDING:e}); a Lagrange top has it on the axis"
+    )]
+    OffAxis {
+        /// Angle between weight moment and symmetry axis, rad.
+        angle: f64,
+    },
+    /// The start is not usable.
+    #[error(transparent)]
+    State(#[from] StateError),
+}
+
+/// The motion of one symmetric heavy top from one start: constants worked out once, then any time in O(1).
+///
+/// The sleeping top, starts and passages through the vertical, turning points and the separatrix of the sleeping top
+/// are ordinary starts. The weight may be on either side of the fixed point, and a body of spherical inertia may have
+/// its weight moment in any direction.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Inertia};
+/// use polhode::flow::LagrangeTop;
+///
+/// let body = Body::heavy(Inertia::from_moments([1.25, 1.25, 0.75])?, Vector3::new(0.0, 0.0, 2.0))?;
+/// let tilted = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5);
+/// let top = LagrangeTop::from_omega(&body, tilted, Vector3::new(0.0, 0.0, 20.0))?;
+/// let later = top.at(1e6)?;
+/// assert!((later.momentum().z - 15.0).abs() < 1e-12); // the spin about the axis stays
+/// let [upper, lower] = top.turning_points();
+/// assert!((upper - 0.5).abs() < 1e-12 && lower > upper); // it falls from the cusp
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct LagrangeTop {
+    body: Body,
+    /// Takes coordinates with e₃ along the weight moment to a kernel's axes.
+    frame: Quat<Dd>,
+    transverse: Dd, // A
+    axial: Dd,      // C
+    weight: Dd,     // |c|
+    start: State<Dd>,
+    motion: Motion,
+}
+
+#[derive(Clone, Debug)]
+enum Motion {
+    /// The axis rests on the vertical: upright, asleep or about to fall, or hanging.
+    Vertical,
+    Nutating(Box<Nutation>),
+}
+
+impl LagrangeTop {
+    /// From the attitude and the angular velocity (rad/s, body axes) at t = 0; the product I ω is formed exactly.
+    ///
+    /// # Errors
+    /// A body that is not a Lagrange top, with the condition that fails and by how much; components that are not
+    /// finite, or an energy outside the range of a double.
+    pub fn from_omega(
+        body: &Body,
+        attitude: UnitQuaternion<f64>,
+        omega_body: Vector3<f64>,
+    ) -> Result<Self, LagrangeError> {
+        Self::new(body, body.enter_omega(attitude.into(), omega_body.into())?)
+    }
+
+    /// From a state at t = 0, body axes.
+    ///
+    /// # Errors
+    /// As [`from_omega`](Self::from_omega).
+    pub fn from_state(body: &Body, start: &State<f64>) -> Result<Self, LagrangeError> {
+        Self::new(body, body.enter(start)?)
+    }
+
+    /// From a state at t = 0 as kernels see it.
+    ///
+    /// # Errors
+    /// A body that is not a Lagrange top.
+    pub fn new(body: &Body, start: State<Dd>) -> Result<Self, LagrangeError> {
+        let weight_moment = body.gravity::<Dd>().ok_or(LagrangeError::Free)?.weight_moment;
+        let (axis, transverse, axial) = symmetry_axis(body, weight_moment)?;
+        let frame = shortest_turn(axis);
+        let weight = weight_moment.norm();
+        let attitude = start.attitude.normalized() * frame;
+        let momentum_body = frame.rotate_back(start.momentum_body);
+        let start = State { attitude, momentum_body };
+
+        let ([m1, m2, _], Quat { w, v }) = (momentum_body.0, attitude);
+        let zero = |x: Dd| x.hi() == 0.0;
+        let vertical = (zero(v[0]) && zero(v[1])) || (zero(w) && zero(v[2]));
+        let motion = if vertical && zero(m1) && zero(m2) {
+            Motion::Vertical
+        } else {
+            let b = weight * Dd::of(2.0) / transverse;
+            let omega = momentum_body * (Dd::ONE / transverse);
+            Motion::Nutating(Box::new(Nutation::new(b, attitude, omega)))
+        };
+        Ok(LagrangeTop { body: body.clone(), frame, transverse, axial, weight, start, motion })
+    }
+
+    /// The body that moves.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// The state at time `t` (s, of either sign), body axes.
+    ///
+    /// # Errors
+    /// A time that is not finite, or beyond [`reach`](Self::reach).
+    pub fn at(&self, t: f64) -> Result<State<f64>, TimeError> {
+        if !t.is_finite() {
+            return Err(TimeError::NotFinite { t });
+        }
+        if t.abs() > self.reach() {
+            return Err(TimeError::OutOfReach { t, reach: self.reach() });
+        }
+        Ok(self.body.leave(&self.inside_at(t)))
+    }
+
+    /// The largest |t| at which the phases still have digits, s: some 2⁹⁶ rad.
+    pub fn reach(&self) -> f64 {
+        let smaller = if self.axial < self.transverse { self.axial } else { self.transverse };
+        let omega = self.start.momentum_body * (Dd::ONE / smaller);
+        let fastest = omega.norm().hi() + (self.weight / self.transverse).sqrt().hi();
+        MOST_RADIANS / fastest
+    }
+
+    /// The state at time `t` (s), finite and within [`reach`](Self::reach), as kernels see it.
+    ///
+    /// Phases are reduced in double-double. The quaternion is the continuous lift from the start.
+    pub fn inside_at(&self, t: f64) -> State<f64> {
+        self.evaluate(Dd::from(t))
+    }
+
+    /// The same in double-double.
+    pub fn inside_at_dd(&self, t: Dd) -> State<Dd> {
+        self.evaluate(t)
+    }
+
+    fn evaluate<S: Precise>(&self, t: Dd) -> State<S> {
+        let m3 = self.start.momentum_body[2];
+        let turn = |rate: Dd| {
+            let (sin, cos) = cast::<S>(reduce(rate * t, Dd::TAU * 2.0) * Dd::of(0.5)).sin_cos();
+            Quat::new(cos, Vec3::unit(2) * sin)
+        };
+        let (attitude, momentum) = match &self.motion {
+            Motion::Vertical => {
+                let q = Quat::from_components(self.start.attitude.components().map(S::from_dd));
+                (q * turn(m3 / self.axial), Vec3(self.start.momentum_body.0.map(S::from_dd)))
+            }
+            Motion::Nutating(nutation) => {
+                let spin = turn(m3 / self.axial - m3 / self.transverse);
+                let (q, q_rate) = nutation.at::<S>(t);
+                let mut m = (q.conjugate() * q_rate).v * cast::<S>(self.transverse * 2.0);
+                m[2] = cast(m3);
+                (q * spin, spin.rotate_back(m))
+            }
+        };
+        let frame = Quat::from_components(self.frame.components().map(S::from_dd));
+        State { attitude: attitude * frame.conjugate(), momentum_body: frame.rotate(momentum) }
+    }
+
+    /// Smallest and largest tilt of the weight moment from the vertical, rad.
+    pub fn turning_points(&self) -> [f64; 2] {
+        let tilt = |(x, y): (Dd, Dd)| (positive_root(y).atan2(positive_root(x)) * 2.0).hi();
+        match &self.motion {
+            Motion::Vertical => {
+                let up = self.start.attitude.w.hi() != 0.0 || self.start.attitude.v[2].hi() != 0.0;
+                [if up { 0.0 } else { core::f64::consts::PI }; 2]
+            }
+            Motion::Nutating(nutation) => {
+                let [lowest, highest] = nutation.turning_points();
+                [tilt(highest), tilt(lowest)]
+            }
+        }
+    }
+
+    /// Time from one largest tilt to the next, s; `None` where the axis does not come back: on the vertical and on
+    /// the separatrix of the sleeping top.
+    pub fn nutation_period(&self) -> Option<f64> {
+        match &self.motion {
+            Motion::Vertical => None,
+            Motion::Nutating(nutation) => nutation.period().map(Dd::hi),
+        }
+    }
+
+    /// Advance of the azimuth φ over one [nutation](Self::nutation_period), rad. Where the axis passes through the
+    /// vertical, φ jumps there by π, by convention forwards.
+    pub fn precession_per_nutation(&self) -> Option<f64> {
+        match &self.motion {
+            Motion::Vertical => None,
+            Motion::Nutating(nutation) => nutation.precession().map(Dd::hi),
+        }
+    }
+
+    /// Potential energy, J, of the motion in the tilt θ (rad) alone: with ½ A θ'² it sums to the energy.
+    ///
+    /// `(p_φ − p_ψ cos θ)²/(2 A sin²θ) + p_ψ²/(2 C) + |c| cos θ`; infinite at the poles that cannot be reached.
+    pub fn effective_potential(&self, tilt: f64) -> f64 {
+        let m = self.start.momentum_body;
+        let up = self.start.attitude.rotate_back(Vec3::unit(2));
+        let (vertical, along) = (m.dot(up), m[2]);
+        let (sin, cos) = Dd::of(tilt).sin_cos();
+        let off = vertical - along * cos;
+        let turning =
+            if off.hi() == 0.0 { Dd::ZERO } else { off * off / (self.transverse * sin * sin * 2.0) };
+        let energy = turning + along * along / (self.axial * 2.0) + self.weight * cos;
+        energy.hi() * self.body.scale()
+    }
+}
+
+/// Unit vector along the weight moment, transverse and axial moment.
+fn symmetry_axis(body: &Body, weight_moment: Vec3<Dd>) -> Result<(Vec3<Dd>, Dd, Dd), LagrangeError> {
+    let i = body.moments::<Dd>();
+    let direction = weight_moment * (Dd::ONE / weight_moment.norm());
+    let trace = i[0] + i[1] + i[2];
+    let apart = |axis: usize| ((i[(axis + 1) % 3] - i[(axis + 2) % 3]) / trace).magnitude();
+    let mean = |axis: usize| (i[(axis + 1) % 3] + i[(axis + 2) % 3]) * 0.5;
+    if (0..3).all(|axis| apart(axis) <= ROUNDING) {
+        let moment = trace / 3.0;
+        return Ok((direction, moment, moment));
+    }
+    let mut axis = 0;
+    for other in 1..3 {
+        if apart(other) < apart(axis) {
+            axis = other;
+        }
+    }
+    if apart(axis) > ROUNDING {
+        let moments = i.0.map(|moment| moment.hi() * body.scale());
+        return Err(LagrangeError::NotSymmetric { moments, relative: apart(axis) });
+    }
+    let across = direction.cross(Vec3::unit(axis)).norm();
+    if across.hi() > ROUNDING {
+        return Err(LagrangeError::OffAxis { angle: across.atan2(direction[axis].abs()).hi() });
+    }
+    let sign = if direction[axis] < Dd::ZERO { -Dd::ONE } else { Dd::ONE };
+    Ok((Vec3::unit(axis) * sign, mean(axis), i[axis]))
+}
+
+/// The shortest turn that takes e₃ to the unit vector `direction`.
+fn shortest_turn(direction: Vec3<Dd>) -> Quat<Dd> {
+    let along = direction[2] + 1.0;
+    if along.hi() <= 0.0 {
+        return Quat::new(Dd::ZERO, Vec3::unit(0));
+    }
+    Quat::new(along, Vec3::unit(2).cross(direction)).normalized()
+}
+
+fn positive_root(x: Dd) -> Dd {
+    if x > Dd::ZERO { x.sqrt() } else { Dd::ZERO }
+}
