@@ -208,7 +208,7 @@ fn mesh(triangles: impl Iterator<Item = [Vector3<f64>; 3]>) -> Result<Mesh, Erro
 fn timing(n: usize) -> Result<Table, Error> {
     let mut table = Table::new(
         "timing",
-        "Time to read a binary STL from memory, check it and integrate_mass over it. Depends on the machine.",
+        "Time to read a binary STL from memory, check it and integrate over it. Depends on the machine.",
         vec![
             Column::new("triangles", "", "of the file"),
             Column::new("megabytes", "MB", "of the file").heading("size"),

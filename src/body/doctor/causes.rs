@@ -175,7 +175,7 @@ pub(super) fn candidates(given: &Matrix3<f64>, evidence: &Evidence) -> Vec<(Caus
     }
     if let Some(term) = parallel_axis_term(evidence) {
         found.push((Cause::AboutOrigin, given - term, 1.5));
-        found.push((Cause::SubtractedTwice, given + term, 1.5));
+        found.push((Cause::SubtractedTwice, given + term, 3.0));
     }
     if let Some(mass) = evidence.mass {
         // without a mass no size is wrong
