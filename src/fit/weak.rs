@@ -1,0 +1,456 @@
+//! The weak form of Euler's equation: nothing is differentiated.
+//!
+//! J ω' + ω × J ω = 0, multiplied by a test function φ of compact support and integrated by parts, is
+//! ∫ (−φ' J ω + φ ω × J ω) dt = 0: linear in J, and free of bias to first order in the noise of ω.
+//!
+//! The noise n of the samples enters test m as Σ_i A_mi n_i with A_mi = w_i (−φ'_m J + φ_m ([ω]ₓ J − [J ω]ₓ)), so the
+//! residuals have the banded covariance C = Σ_i A_mi A_m'iᵀ (times σ²). Each round solves the least-squares problem
+//! weighted by C⁻¹ at the samples ω − n̂ that the round before left on the constraints, n̂ = Aᵀ C⁻¹ r. Its fixed
+//! point minimises |n|² subject to the weak equations (Gauss–Helmert), which weights at the raw samples do not.
+//!
+//! | here | meaning |
+//! |---|---|
+//! | G, g | residual r = G x + g, x the five coordinates of J |
+//! | H | Gᵀ C⁻¹ G: information, in units of 1/σ² |
+//! | V | what the noise in G adds to H, in expectation and in units of 1/σ²: H/σ² − V is what the motion tells |
+
+use faer::Mat;
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+use super::banded::Banded;
+use super::coordinates::{Coordinates, Form, basis, tensor};
+use super::quadrature;
+
+/// Test functions per radius.
+const TESTS_PER_RADIUS: f64 = 4.0;
+/// Fewest samples in the support of one test function.
+const SAMPLES_PER_TEST: f64 = 8.0;
+
+/// One stretch of samples without gaps, in units of the root mean square rate and its inverse.
+#[derive(Clone, Debug)]
+pub(super) struct Stretch {
+    pub(super) times: Vec<f64>,
+    pub(super) rates: Vec<Vector3<f64>>,
+    weights: Vec<f64>,
+}
+
+impl Stretch {
+    pub(super) fn new(times: Vec<f64>, rates: Vec<Vector3<f64>>) -> Self {
+        let weights = quadrature::weights(&times);
+        Stretch { times, rates, weights }
+    }
+
+    pub(super) fn duration(&self) -> f64 {
+        self.times.last().zip(self.times.first()).map_or(0.0, |(b, a)| b - a)
+    }
+
+    /// Its first `count` samples.
+    pub(super) fn head(&self, count: usize) -> Stretch {
+        Stretch::new(self.times[..count].to_vec(), self.rates[..count].to_vec())
+    }
+}
+
+/// The test functions of one stretch: φ = (1 − u²)⁴, u = (t − centre)/radius, centres evenly spaced.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tests {
+    first: f64,
+    spacing: f64,
+    radius: f64,
+    pub(super) count: usize,
+    /// How many neighbours on one side a test overlaps.
+    reach: usize,
+}
+
+impl Tests {
+    /// `None` where the stretch is shorter than one test function, or has too few samples for it.
+    pub(super) fn new(stretch: &Stretch, radius: f64) -> Option<Tests> {
+        let duration = stretch.duration();
+        let samples = stretch.times.len() as f64;
+        // a radius that was cut from this very duration may exceed half of it by rounding
+        if 2.0 * radius > duration * (1.0 + 1e-9) || samples * 2.0 * radius < SAMPLES_PER_TEST * duration {
+            return None;
+        }
+        let room = (duration - 2.0 * radius).max(0.0);
+        // nudged off the ties, so that a change of units cannot change the count
+        let steps = (TESTS_PER_RADIUS * room / radius + 1e-6).round();
+        let count = steps as usize + 1;
+        let spacing = if count > 1 { room / steps } else { radius };
+        let overlap = if count > 1 { (2.0 * radius / spacing - 1e-9) as usize } else { 0 };
+        Some(Tests { first: stretch.times[0] + radius, spacing, radius, count, reach: overlap.min(count - 1) })
+    }
+
+    /// The tests that are not zero at `t`.
+    fn at(&self, t: f64) -> core::ops::Range<usize> {
+        let low = ((t - self.radius - self.first) / self.spacing).ceil().max(0.0) as usize;
+        let high = ((t + self.radius - self.first) / self.spacing).floor();
+        if high < 0.0 { 0..0 } else { low..(high as usize + 1).min(self.count) }
+    }
+
+    /// φ_m and φ'_m at `t`.
+    fn value(&self, m: usize, t: f64) -> (f64, f64) {
+        let u = (t - self.first - m as f64 * self.spacing) / self.radius;
+        let v = (1.0 - u * u).max(0.0);
+        (v * v * v * v, -8.0 * u * v * v * v / self.radius)
+    }
+}
+
+/// The weighted pairs (w φ', w φ) of the tests that see one sample; at most 2·reach + 1 of them.
+struct Seen {
+    first: usize,
+    count: usize,
+    slope: [f64; 24],
+    value: [f64; 24],
+}
+
+impl Seen {
+    fn new(tests: &Tests, t: f64, weight: f64) -> Seen {
+        let range = tests.at(t);
+        let count = range.len().min(24);
+        let mut seen = Seen { first: range.start, count, slope: [0.0; 24], value: [0.0; 24] };
+        for (k, m) in range.take(count).enumerate() {
+            let (value, slope) = tests.value(m, t);
+            seen.slope[k] = weight * slope;
+            seen.value[k] = weight * value;
+        }
+        seen
+    }
+}
+
+impl Seen {
+    /// Σ over pairs of tests of the blocks Z of `inverse`, weighted by slope·slope, slope·value and value·value; in
+    /// the second the row belongs to the value. Lower halves only are summed, then mirrored.
+    fn sums(&self, inverse: &Banded) -> [Matrix3<f64>; 3] {
+        let [mut aa, mut ab, mut ba, mut bb] = [Matrix3::<f64>::zeros(); 4];
+        for s in 0..self.count {
+            let (a, b) = (self.slope[s], self.value[s]);
+            for p in 0..3 {
+                let row = 3 * (self.first + s) + p;
+                let entries = inverse.row(row, 3 * self.first, row);
+                let (mut slopes, mut values) = ([0.0; 3], [0.0; 3]);
+                for (s2, block) in entries.chunks(3).enumerate() {
+                    for (q, z) in block.iter().enumerate() {
+                        slopes[q] += z * self.slope[s2];
+                        values[q] += z * self.value[s2];
+                    }
+                }
+                let half = 0.5 * inverse.get(row, row);
+                slopes[p] += half * a;
+                values[p] += half * b;
+                for q in 0..3 {
+                    aa[(p, q)] += a * slopes[q];
+                    ab[(p, q)] += b * slopes[q];
+                    ba[(p, q)] += a * values[q];
+                    bb[(p, q)] += b * values[q];
+                }
+            }
+        }
+        [aa + aa.transpose(), ab + ba.transpose(), bb + bb.transpose()]
+    }
+}
+
+/// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
+fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
+    w.cross_matrix() * b - (b * w).cross_matrix()
+}
+
+/// The weak equations of one stretch, linearised at samples `rates` − `noise` and tensor J, whitened by L⁻¹.
+pub(super) struct Linearised {
+    tests: Tests,
+    factor: Banded,
+    /// L⁻¹ [G | g], a column each.
+    columns: [Vec<f64>; 6],
+}
+
+impl Linearised {
+    /// `None` where the covariance is not positive, as for a tensor far from physical.
+    pub(super) fn new(stretch: &Stretch, noise: &[Vector3<f64>], j: &Matrix3<f64>, tests: Tests) -> Option<Self> {
+        let size = 3 * tests.count;
+        let mut covariance = Banded::zeros(size, 3 * tests.reach + 2);
+        let mut columns: [Vec<f64>; 6] = core::array::from_fn(|_| vec![0.0; size]);
+        let bases: [Matrix3<f64>; 6] = core::array::from_fn(|k| if k < 5 { basis(k) } else { Matrix3::identity() / 3.0 });
+        let jj = j * j;
+        for i in 0..stretch.times.len() {
+            let seen = Seen::new(&tests, stretch.times[i], stretch.weights[i]);
+            let w = stretch.rates[i] - noise[i];
+            let products = bases.map(|b| b * w);
+            let crosses = products.map(|p| w.cross(&p));
+            let k = cross_derivative(j, &w);
+            let (jn, kn) = (j * noise[i], k * noise[i]);
+            let (jk, kk) = (j * k.transpose(), k * k.transpose());
+            for s in 0..seen.count {
+                let (a, b) = (seen.slope[s], seen.value[s]);
+                let row = 3 * (seen.first + s);
+                for c in 0..3 {
+                    for l in 0..6 {
+                        columns[l][row + c] += b * crosses[l][c] - a * products[l][c];
+                    }
+                    columns[5][row + c] += b * kn[c] - a * jn[c];
+                }
+                for p in 0..3 {
+                    let by_slope = Vector3::from_fn(|q, _| a * jj[(p, q)] - b * jk[(q, p)]);
+                    let by_value = Vector3::from_fn(|q, _| b * kk[(p, q)] - a * jk[(p, q)]);
+                    let entries = covariance.row_mut(row + p, 3 * seen.first, row + p + 1);
+                    for (s2, block) in entries.chunks_mut(3).enumerate() {
+                        for (q, entry) in block.iter_mut().enumerate() {
+                            *entry += seen.slope[s2] * by_slope[q] + seen.value[s2] * by_value[q];
+                        }
+                    }
+                }
+            }
+        }
+        if !covariance.factor() {
+            return None;
+        }
+        for column in &mut columns {
+            covariance.forward(column);
+        }
+        Some(Linearised { tests, factor: covariance, columns })
+    }
+
+    /// Whitened residuals at `x`.
+    pub(super) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
+        (0..3 * self.tests.count)
+            .map(|row| self.columns[5][row] + (0..5).map(|k| self.columns[k][row] * x[k]).sum::<f64>())
+            .collect()
+    }
+
+    /// The noise n̂ = Aᵀ C⁻¹ r that carries the samples onto the weak equations of `x`.
+    pub(super) fn noise(&self, stretch: &Stretch, old: &[Vector3<f64>], j: &Matrix3<f64>, x: &Coordinates) -> Vec<Vector3<f64>> {
+        let mut multipliers = self.residuals(x);
+        self.factor.backward(&mut multipliers);
+        (0..stretch.times.len())
+            .map(|i| {
+                let seen = Seen::new(&self.tests, stretch.times[i], stretch.weights[i]);
+                let (mut slopes, mut values) = (Vector3::zeros(), Vector3::zeros());
+                for s in 0..seen.count {
+                    let row = 3 * (seen.first + s);
+                    let m = Vector3::new(multipliers[row], multipliers[row + 1], multipliers[row + 2]);
+                    slopes += m * seen.slope[s];
+                    values += m * seen.value[s];
+                }
+                let k = cross_derivative(j, &(stretch.rates[i] - old[i]));
+                k.transpose() * values - j * slopes
+            })
+            .collect()
+    }
+
+    /// V of this stretch.
+    pub(super) fn inflation(&self, stretch: &Stretch, noise: &[Vector3<f64>]) -> Form {
+        let inverse = self.factor.inverse_band();
+        let bases: [Matrix3<f64>; 5] = core::array::from_fn(basis);
+        let mut sum = Form::zeros();
+        for i in 0..stretch.times.len() {
+            let seen = Seen::new(&self.tests, stretch.times[i], stretch.weights[i]);
+            let [aa, ab, bb] = seen.sums(&inverse);
+            let ba = ab.transpose();
+            let w = stretch.rates[i] - noise[i];
+            let k = bases.map(|b| cross_derivative(&b, &w));
+            // Σ tr Z D_l D_kᵀ with D_k = −φ' B_k + φ K_k
+            for l in 0..5 {
+                let from_slope = bases[l] * aa - k[l] * ba;
+                let from_value = k[l] * bb - bases[l] * ab;
+                for m in 0..=l {
+                    // tr(M Nᵀ) is the entry by entry product
+                    sum[(l, m)] += from_slope.dot(&bases[m]) + from_value.dot(&k[m]);
+                }
+            }
+        }
+        sum.fill_upper_triangle_with_lower_triangle();
+        sum
+    }
+}
+
+/// min |R x + z|²: what all stretches say together.
+pub(super) struct Stacked {
+    /// Upper triangular, Rᵀ R = H.
+    pub(super) root: Form,
+    pub(super) z: Coordinates,
+    /// Sum of squares of the whitened residuals that no x removes.
+    pub(super) misfit: f64,
+    /// Equations.
+    pub(super) rows: usize,
+}
+
+impl Stacked {
+    /// The triangle of all whitened rows, without forming their squares.
+    pub(super) fn new(stretches: &[Linearised]) -> Stacked {
+        let rows: usize = stretches.iter().map(|s| 3 * s.tests.count).sum();
+        let mut stack = Mat::<f64>::zeros(rows.max(6), 6);
+        let mut first = 0;
+        for s in stretches {
+            for (k, column) in s.columns.iter().enumerate() {
+                for (i, value) in column.iter().enumerate() {
+                    stack[(first + i, k)] = *value;
+                }
+            }
+            first += 3 * s.tests.count;
+        }
+        let qr = stack.qr();
+        let r = qr.thin_R();
+        Stacked {
+            root: Form::from_fn(|i, k| if i <= k { r[(i, k)] } else { 0.0 }),
+            z: Coordinates::from_fn(|i, _| r[(i, 5)]),
+            misfit: r[(5, 5)] * r[(5, 5)],
+            rows,
+        }
+    }
+
+    pub(super) fn information(&self) -> Form {
+        self.root.transpose() * self.root
+    }
+
+    /// The x that makes |R x + z|² + ridge |x|² least.
+    fn ridge(&self, ridge: f64) -> Option<Coordinates> {
+        let regular = self.information() + Form::identity() * ridge;
+        Some(-regular.cholesky()?.solve(&(self.root.transpose() * self.z)))
+    }
+
+    /// The x that makes |R x + z| least.
+    pub(super) fn minimiser(&self) -> Option<Coordinates> {
+        self.root.solve_upper_triangular(&-self.z)
+    }
+}
+
+/// The weak estimate of a record: where its rounds ended.
+pub(super) struct Weak {
+    pub(super) radius: f64,
+    pub(super) x: Coordinates,
+    pub(super) stacked: Stacked,
+    /// V.
+    pub(super) inflation: Form,
+    /// Whitened residuals of each stretch that is long enough, with its index.
+    pub(super) residuals: Vec<(usize, Vec<f64>)>,
+}
+
+/// Rounds at the final radius.
+const ROUNDS: usize = 3;
+
+struct Rounds<'a> {
+    used: Vec<(usize, &'a Stretch, Tests)>,
+    noise: Vec<Vec<Vector3<f64>>>,
+    x: Coordinates,
+}
+
+impl<'a> Rounds<'a> {
+    fn new(stretches: &'a [Stretch], radius: f64, x: Coordinates) -> Option<Self> {
+        let used: Vec<_> = stretches
+            .iter()
+            .enumerate()
+            .filter_map(|(k, s)| Tests::new(s, radius).map(|tests| (k, s, tests)))
+            .collect();
+        let rows: usize = used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
+        if rows < 6 {
+            return None;
+        }
+        let noise = used.iter().map(|(_, s, _)| vec![Vector3::zeros(); s.times.len()]).collect();
+        Some(Rounds { used, noise, x })
+    }
+
+    fn linearise(&self) -> Option<Vec<Linearised>> {
+        let j = tensor(&self.x);
+        self.used.iter().zip(&self.noise).map(|((_, s, tests), n)| Linearised::new(s, n, &j, *tests)).collect()
+    }
+
+    /// One round; `ridge` keeps x finite before it is known that the record determines it.
+    fn round(&mut self, ridge: f64) -> Option<()> {
+        let parts = self.linearise()?;
+        let x = Stacked::new(&parts).ridge(ridge)?;
+        let j = tensor(&self.x);
+        for ((part, (_, s, _)), noise) in parts.iter().zip(&self.used).zip(&mut self.noise) {
+            *noise = part.noise(s, noise, &j, &x);
+        }
+        self.x = x;
+        Some(())
+    }
+
+    fn inflation(&self, parts: &[Linearised]) -> Form {
+        parts.iter().zip(&self.used).zip(&self.noise).map(|((p, (_, s, _)), n)| p.inflation(s, n)).sum()
+    }
+}
+
+/// What a radius promises: the trace of the covariance (H/σ² − V)⁻¹ (H/σ²) (H/σ² − V)⁻¹.
+pub(super) fn covariance(information: &Form, inflation: &Form, variance: f64) -> Option<Form> {
+    let noisy = information / variance;
+    let inverse = (noisy - inflation).cholesky()?.inverse();
+    Some(inverse * noisy * inverse)
+}
+
+/// Radii to choose from, ascending: doubling from half the time in which the body turns by one radian.
+fn candidates(stretches: &[Stretch]) -> Vec<f64> {
+    let longest = stretches.iter().map(Stretch::duration).fold(0.0, f64::max);
+    let samples: usize = stretches.iter().map(|s| s.times.len()).sum();
+    let duration: f64 = stretches.iter().map(Stretch::duration).sum();
+    let lowest = (SAMPLES_PER_TEST * duration / samples as f64).max(0.5);
+    let mut radii: Vec<f64> =
+        (0..6).scan(lowest, |r, _| Some(core::mem::replace(r, 2.0 * *r))).filter(|r| 4.0 * r <= longest).collect();
+    if radii.is_empty() {
+        radii.push(0.25 * longest);
+    }
+    radii
+}
+
+/// The radius of least predicted covariance, and the coordinates it was judged at.
+fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinates)> {
+    let radii = candidates(stretches);
+    let mut start = Coordinates::zeros();
+    let mut pilot = Rounds::new(stretches, radii[radii.len() / 2], start)?;
+    for _ in 0..2 {
+        if pilot.round(variance).is_none() {
+            break;
+        }
+        start = pilot.x;
+    }
+    let mut best = (f64::INFINITY, radii[radii.len() / 2]);
+    for radius in radii {
+        let Some(rounds) = Rounds::new(stretches, radius, start) else { continue };
+        let Some(parts) = rounds.linearise() else { continue };
+        let information = Stacked::new(&parts).information();
+        let trace = covariance(&information, &rounds.inflation(&parts), variance).map_or(f64::INFINITY, |c| c.trace());
+        if trace < best.0 {
+            best = (trace, radius);
+        }
+    }
+    Some((best.1, start))
+}
+
+/// Samples on which the radius is chosen: more would not change it.
+const PILOT_SAMPLES: usize = 40_000;
+
+/// The weak estimate; `variance` is that of the noise in units of the mean square rate.
+///
+/// `None` where no stretch carries enough test functions.
+pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64) -> Option<Weak> {
+    let (radius, start) = match radius {
+        Some(radius) => (radius, Coordinates::zeros()),
+        None => choose_radius(&pilot(stretches), variance)?,
+    };
+    let mut rounds = Rounds::new(stretches, radius, start)?;
+    for _ in 0..ROUNDS {
+        rounds.round(variance)?;
+    }
+    let parts = rounds.linearise()?;
+    let stacked = Stacked::new(&parts);
+    let inflation = rounds.inflation(&parts);
+    let x = stacked.minimiser().unwrap_or(rounds.x);
+    let residuals = rounds.used.iter().zip(&parts).map(|((k, _, _), p)| (*k, p.residuals(&x))).collect();
+    Some(Weak { radius, x, stacked, inflation, residuals })
+}
+
+/// The first stretches, up to a number of samples.
+fn pilot(stretches: &[Stretch]) -> Vec<Stretch> {
+    let mut left = PILOT_SAMPLES;
+    let mut chosen = Vec::new();
+    for s in stretches {
+        let count = left.min(s.times.len());
+        if count > 3 {
+            chosen.push(if count < s.times.len() { s.head(count) } else { s.clone() });
+        }
+        left -= count;
+    }
+    chosen
+}
+
+/// The matrix that takes coordinates to the entries xx, yy, zz, xy, xz, yz.
+pub(super) fn entries_of_coordinates() -> SMatrix<f64, 6, 5> {
+    SMatrix::from_fn(|row, k| basis(k)[super::coordinates::ENTRIES[row]])
+}
