@@ -4,8 +4,10 @@ mod coordinates;
 mod error;
 mod identifiability;
 mod qp;
+mod record;
 mod quadrature;
 mod weak;
+pub use record::{RateUnit, Reading, Record, RecordError, Segment, TimeUnit};
 
 #[cfg(test)]
 mod proto {
