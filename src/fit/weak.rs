@@ -24,7 +24,7 @@ use super::quadrature;
 /// Test functions per radius.
 const TESTS_PER_RADIUS: f64 = 4.0;
 /// Fewest samples in the support of one test function.
-const SAMPLES_PER_TEST: f64 = 8.0;
+pub(super) const SAMPLES_PER_TEST: f64 = 8.0;
 
 /// One stretch of samples without gaps, in units of the root mean square rate and its inverse.
 #[derive(Clone, Debug)]
@@ -84,6 +84,10 @@ impl Tests {
         let low = ((t - self.radius - self.first) / self.spacing).ceil().max(0.0) as usize;
         let high = ((t + self.radius - self.first) / self.spacing).floor();
         if high < 0.0 { 0..0 } else { low..(high as usize + 1).min(self.count) }
+    }
+
+    fn centres(&self) -> Vec<f64> {
+        (0..self.count).map(|m| self.first + m as f64 * self.spacing).collect()
     }
 
     /// φ_m and φ'_m at `t`.
@@ -149,7 +153,7 @@ impl Seen {
 }
 
 /// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
-fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
+pub(super) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
     w.cross_matrix() * b - (b * w).cross_matrix()
 }
 
@@ -274,17 +278,21 @@ pub(super) struct Stacked {
 impl Stacked {
     /// The triangle of all whitened rows, without forming their squares.
     pub(super) fn new(stretches: &[Linearised]) -> Stacked {
-        let rows: usize = stretches.iter().map(|s| 3 * s.tests.count).sum();
-        let mut stack = Mat::<f64>::zeros(rows.max(6), 6);
-        let mut first = 0;
-        for s in stretches {
-            for (k, column) in s.columns.iter().enumerate() {
-                for (i, value) in column.iter().enumerate() {
-                    stack[(first + i, k)] = *value;
-                }
-            }
-            first += 3 * s.tests.count;
+        let columns = |k: usize| stretches.iter().flat_map(move |s| s.columns[k].iter().copied());
+        let rows = stretches.iter().map(|s| 3 * s.tests.count).sum();
+        let mut stack = Mat::<f64>::zeros(usize::max(rows, 6), 6);
+        for k in 0..6 {
+            columns(k).enumerate().for_each(|(i, value)| stack[(i, k)] = value);
         }
+        Stacked::triangle(&stack, rows)
+    }
+
+    /// The same of unweighted rows.
+    pub(super) fn of_rows(rows: &[[f64; 6]]) -> Stacked {
+        Stacked::triangle(&Mat::from_fn(rows.len().max(6), 6, |i, k| rows.get(i).map_or(0.0, |row| row[k])), rows.len())
+    }
+
+    fn triangle(stack: &Mat<f64>, rows: usize) -> Stacked {
         let qr = stack.qr();
         let r = qr.thin_R();
         Stacked {
@@ -318,12 +326,12 @@ pub(super) struct Weak {
     pub(super) stacked: Stacked,
     /// V.
     pub(super) inflation: Form,
-    /// Whitened residuals of each stretch that is long enough, with its index.
-    pub(super) residuals: Vec<(usize, Vec<f64>)>,
+    /// Whitened residuals of each stretch that is long enough: its index, the tests' centres, three values each.
+    pub(super) residuals: Vec<(usize, Vec<f64>, Vec<f64>)>,
 }
 
 /// Rounds at the final radius.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 4;
 
 struct Rounds<'a> {
     used: Vec<(usize, &'a Stretch, Tests)>,
@@ -432,12 +440,13 @@ pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64
     let stacked = Stacked::new(&parts);
     let inflation = rounds.inflation(&parts);
     let x = stacked.minimiser().unwrap_or(rounds.x);
-    let residuals = rounds.used.iter().zip(&parts).map(|((k, _, _), p)| (*k, p.residuals(&x))).collect();
+    let used = rounds.used.iter().zip(&parts);
+    let residuals = used.map(|((k, _, tests), p)| (*k, tests.centres(), p.residuals(&x))).collect();
     Some(Weak { radius, x, stacked, inflation, residuals })
 }
 
 /// The first stretches, up to a number of samples.
-fn pilot(stretches: &[Stretch]) -> Vec<Stretch> {
+pub(super) fn pilot(stretches: &[Stretch]) -> Vec<Stretch> {
     let mut left = PILOT_SAMPLES;
     let mut chosen = Vec::new();
     for s in stretches {
