@@ -11,7 +11,7 @@ use super::qp::{self, ActiveConstraint, Bound, Certificate, LIMIT};
 use super::record::Record;
 use super::scale::{Known, inertia_covariance};
 use super::torque_free::{Drift, Whiteness, drifts};
-use super::weak::{self, SAMPLES_PER_TEST, Stretch, Weak, entries_of_coordinates};
+use super::weak::{self, Failure, SAMPLES_PER_TEST, Stretch, Weak, entries_of_coordinates};
 use crate::body::{Inertia, InertiaShape};
 
 /// What the user may fix; the default leaves everything to the record.
@@ -178,13 +178,16 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     if 3.0 * variance > 0.25 {
         return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
     }
-    let too_few = || FitError::TooFewSamples {
-        samples: record.samples(),
-        segments: record.segments.len(),
-        longest: stretches.iter().map(|s| s.times.len()).max().unwrap_or(0),
-        needed: 2 * SAMPLES_PER_TEST as usize,
-    };
-    let weak = weak::estimate(&stretches, settings.radius.map(|r| r * rms), variance).ok_or_else(too_few)?;
+    let singular = || FitError::Solver { status: "the residuals have no positive covariance".into() };
+    let weak = weak::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| match failure {
+        Failure::TooShort => FitError::TooFewSamples {
+            samples: record.samples(),
+            segments: record.segments.len(),
+            longest: stretches.iter().map(|s| s.times.len()).max().unwrap_or(0),
+            needed: 2 * SAMPLES_PER_TEST as usize,
+        },
+        Failure::Singular => singular(),
+    })?;
     let dof = weak.stacked.rows - 5;
     let misfit = weak.stacked.misfit / variance / dof.max(1) as f64;
     let better = if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
@@ -194,6 +197,9 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let identifiability = identify(&weak, &stretches, variance);
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
+    }
+    if !weak.settled {
+        return Err(singular());
     }
     let inflated = variance * misfit.max(1.0);
     let free = weak::covariance(&weak.stacked.information(), &weak.inflation, inflated)
@@ -231,7 +237,7 @@ fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<(f64
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
-        let Some(weak) = weak::estimate(&scaled, None, variance) else { continue };
+        let Ok(weak) = weak::estimate(&scaled, None, variance) else { continue };
         let dof = weak.stacked.rows - 5;
         let value = weak.stacked.misfit / variance / dof.max(1) as f64;
         if value < least {

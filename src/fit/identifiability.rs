@@ -78,8 +78,8 @@ fn words(
     if rank == 0 {
         return (vec!["no ratio and no axis is determined: the motion does not stand out of its noise".into()], Vec::new());
     }
-    // three spins about different axes leave diagonal tensors open, of which the scatter is one
-    let frame = if spread[1] > 0.05 * spread[2] { eigen(commuting(null, scatter)).1 } else { eigen(*estimate).1 };
+    let common = common_frame(null);
+    let frame = common.unwrap_or_else(|| eigen(*estimate).1);
     if rank <= 2 && spread[1] <= 0.05 * spread[2] {
         return (
             vec![
@@ -89,6 +89,16 @@ fn words(
             ],
             vec![format!("{} is a principal axis, numbered 1 here", axis(&main))],
         );
+    }
+    let known = (0..3)
+        .map(|k| frame.column(k).into_owned())
+        .enumerate()
+        .filter(|(_, v)| null.iter().all(|t| (t * v - v * v.dot(&(t * v))).norm() < 0.1))
+        .map(|(k, v)| format!("{} is a principal axis, numbered {} here", axis(&v), k + 1))
+        .collect();
+    if common.is_some() && rank == 3 {
+        let open = "the ratios I1/I2 and I2/I3 are undetermined: the record holds only pure spins about principal axes";
+        return (vec![open.into()], known);
     }
     let mut open = Vec::new();
     for tensor in null {
@@ -109,21 +119,22 @@ fn words(
             ));
         }
     }
-    let known = (0..3)
-        .filter(|&k| {
-            null.iter().all(|t| {
-                let v: Vector3<f64> = frame.column(k).into_owned();
-                let image = t * v;
-                (image - v * v.dot(&image)).norm() < 0.1
-            })
-        })
-        .map(|k| format!("{} is a principal axis, numbered {} here", axis(&frame.column(k).into_owned()), k + 1))
-        .collect();
     (open, known)
 }
 
-/// The part of `scatter` that the null space contains, or `scatter` itself: its eigenvectors name the axes.
-fn commuting(null: &[Matrix3<f64>], scatter: &Matrix3<f64>) -> Matrix3<f64> {
-    let part: Matrix3<f64> = null.iter().map(|t| t * t.dot(scatter)).sum();
-    if part.norm() > 0.1 * scatter.norm() { part } else { *scatter }
+/// The axes that diagonalise all of `null`, if there are such.
+fn common_frame(null: &[Matrix3<f64>]) -> Option<Matrix3<f64>> {
+    // one of these has three distinct eigenvalues, whose axes are the only candidates
+    let sums = null.iter().flat_map(|a| null.iter().flat_map(move |b| [*a, a + b, a - b]));
+    let gap = |m: &Matrix3<f64>| {
+        let (values, _) = eigen(*m);
+        (values[1] - values[0]).min(values[2] - values[1])
+    };
+    let best = sums.max_by(|a, b| gap(a).total_cmp(&gap(b)))?;
+    let (_, frame) = eigen(best);
+    let off = |t: &Matrix3<f64>| {
+        let n = frame.transpose() * t * frame;
+        n[(0, 1)].abs().max(n[(0, 2)].abs()).max(n[(1, 2)].abs())
+    };
+    null.iter().all(|t| off(t) < 0.1).then_some(frame)
 }

@@ -10,7 +10,7 @@
 //!
 //! | here | meaning |
 //! |---|---|
-//! | G, g | residual r = G x + g, x the five coordinates of J |
+//! | r, G | residuals of the weak equations, and their derivatives with respect to the coordinates x of J |
 //! | H | Gᵀ C⁻¹ G: information, in units of 1/σ² |
 //! | V | what the noise in G adds to H, in expectation and in units of 1/σ²: H/σ² − V is what the motion tells |
 
@@ -161,17 +161,20 @@ pub(super) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f6
 pub(super) struct Linearised {
     tests: Tests,
     factor: Banded,
-    /// L⁻¹ [G | g], a column each.
+    /// The coordinates that the last column is the residual of: what is left of x is small, and so is its rounding.
+    origin: Coordinates,
+    /// L⁻¹ [G | r], a column each.
     columns: [Vec<f64>; 6],
 }
 
 impl Linearised {
     /// `None` where the covariance is not positive, as for a tensor far from physical.
-    pub(super) fn new(stretch: &Stretch, noise: &[Vector3<f64>], j: &Matrix3<f64>, tests: Tests) -> Option<Self> {
+    pub(super) fn new(stretch: &Stretch, noise: &[Vector3<f64>], origin: Coordinates, tests: Tests) -> Option<Self> {
+        let j = &tensor(&origin);
         let size = 3 * tests.count;
         let mut covariance = Banded::zeros(size, 3 * tests.reach + 2);
         let mut columns: [Vec<f64>; 6] = core::array::from_fn(|_| vec![0.0; size]);
-        let bases: [Matrix3<f64>; 6] = core::array::from_fn(|k| if k < 5 { basis(k) } else { Matrix3::identity() / 3.0 });
+        let bases: [Matrix3<f64>; 6] = core::array::from_fn(|k| if k < 5 { basis(k) } else { *j });
         let jj = j * j;
         for i in 0..stretch.times.len() {
             let seen = Seen::new(&tests, stretch.times[i], stretch.weights[i]);
@@ -208,13 +211,14 @@ impl Linearised {
         for column in &mut columns {
             covariance.forward(column);
         }
-        Some(Linearised { tests, factor: covariance, columns })
+        Some(Linearised { tests, factor: covariance, origin, columns })
     }
 
     /// Whitened residuals at `x`.
     pub(super) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
+        let step = x - self.origin;
         (0..3 * self.tests.count)
-            .map(|row| self.columns[5][row] + (0..5).map(|k| self.columns[k][row] * x[k]).sum::<f64>())
+            .map(|row| self.columns[5][row] + (0..5).map(|k| self.columns[k][row] * step[k]).sum::<f64>())
             .collect()
     }
 
@@ -264,11 +268,12 @@ impl Linearised {
     }
 }
 
-/// min |R x + z|²: what all stretches say together.
+/// min |R (x − origin) + z|²: what all stretches say together.
 pub(super) struct Stacked {
+    origin: Coordinates,
     /// Upper triangular, Rᵀ R = H.
     pub(super) root: Form,
-    pub(super) z: Coordinates,
+    z: Coordinates,
     /// Sum of squares of the whitened residuals that no x removes.
     pub(super) misfit: f64,
     /// Equations.
@@ -284,18 +289,19 @@ impl Stacked {
         for k in 0..6 {
             columns(k).enumerate().for_each(|(i, value)| stack[(i, k)] = value);
         }
-        Stacked::triangle(&stack, rows)
+        Stacked::triangle(&stack, rows, stretches.first().map_or(Coordinates::zeros(), |s| s.origin))
     }
 
     /// The same of unweighted rows.
     pub(super) fn of_rows(rows: &[[f64; 6]]) -> Stacked {
-        Stacked::triangle(&Mat::from_fn(rows.len().max(6), 6, |i, k| rows.get(i).map_or(0.0, |row| row[k])), rows.len())
+        Stacked::triangle(&Mat::from_fn(rows.len().max(6), 6, |i, k| rows.get(i).map_or(0.0, |row| row[k])), rows.len(), Coordinates::zeros())
     }
 
-    fn triangle(stack: &Mat<f64>, rows: usize) -> Stacked {
+    fn triangle(stack: &Mat<f64>, rows: usize, origin: Coordinates) -> Stacked {
         let qr = stack.qr();
         let r = qr.thin_R();
         Stacked {
+            origin,
             root: Form::from_fn(|i, k| if i <= k { r[(i, k)] } else { 0.0 }),
             z: Coordinates::from_fn(|i, _| r[(i, 5)]),
             misfit: r[(5, 5)] * r[(5, 5)],
@@ -307,22 +313,40 @@ impl Stacked {
         self.root.transpose() * self.root
     }
 
-    /// The x that makes |R x + z|² + ridge |x|² least.
+    /// The x that makes |R (x − origin) + z|² + ridge |x|² least.
     fn ridge(&self, ridge: f64) -> Option<Coordinates> {
-        let regular = self.information() + Form::identity() * ridge;
-        Some(-regular.cholesky()?.solve(&(self.root.transpose() * self.z)))
+        // above the rounding of R, where the record tells nothing and has no noise either
+        let weight = ridge.sqrt().max(1e-11 * self.root.norm());
+        let mut stack = SMatrix::<f64, 10, 6>::zeros();
+        stack.fixed_view_mut::<5, 5>(0, 0).copy_from(&self.root);
+        stack.fixed_view_mut::<5, 1>(0, 5).copy_from(&self.z);
+        stack.fixed_view_mut::<5, 5>(5, 0).copy_from(&(Form::identity() * weight));
+        stack.fixed_view_mut::<5, 1>(5, 5).copy_from(&(self.origin * weight));
+        let r = stack.qr().r();
+        let step = r.fixed_view::<5, 5>(0, 0).solve_upper_triangular(&-r.fixed_view::<5, 1>(0, 5))?;
+        Some(self.origin + step)
     }
 
-    /// The x that makes |R x + z| least.
+    /// The x that makes |R (x − origin) + z| least.
     pub(super) fn minimiser(&self) -> Option<Coordinates> {
-        self.root.solve_upper_triangular(&-self.z)
+        Some(self.origin + self.root.solve_upper_triangular(&-self.z)?)
     }
+}
+
+/// Why there is no weak estimate.
+pub(super) enum Failure {
+    /// No stretch carries enough test functions.
+    TooShort,
+    /// A covariance has no factor.
+    Singular,
 }
 
 /// The weak estimate of a record: where its rounds ended.
 pub(super) struct Weak {
     pub(super) radius: f64,
     pub(super) x: Coordinates,
+    /// Whether the rounds ended where they should; else it is good for one question only: what is undetermined.
+    pub(super) settled: bool,
     pub(super) stacked: Stacked,
     /// V.
     pub(super) inflation: Form,
@@ -355,8 +379,7 @@ impl<'a> Rounds<'a> {
     }
 
     fn linearise(&self) -> Option<Vec<Linearised>> {
-        let j = tensor(&self.x);
-        self.used.iter().zip(&self.noise).map(|((_, s, tests), n)| Linearised::new(s, n, &j, *tests)).collect()
+        self.used.iter().zip(&self.noise).map(|((_, s, tests), n)| Linearised::new(s, n, self.x, *tests)).collect()
     }
 
     /// One round; `ridge` keeps x finite before it is known that the record determines it.
@@ -371,12 +394,22 @@ impl<'a> Rounds<'a> {
         Some(())
     }
 
+    fn finish(&self, settled: bool) -> Option<Weak> {
+        let parts = self.linearise()?;
+        let stacked = Stacked::new(&parts);
+        let x = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite())).unwrap_or(self.x);
+        let used = self.used.iter().zip(&parts);
+        let residuals = used.map(|((k, _, tests), p)| (*k, tests.centres(), p.residuals(&x))).collect();
+        let radius = self.used.first()?.2.radius;
+        Some(Weak { radius, x, inflation: self.inflation(&parts), stacked, residuals, settled })
+    }
+
     fn inflation(&self, parts: &[Linearised]) -> Form {
         parts.iter().zip(&self.used).zip(&self.noise).map(|((p, (_, s, _)), n)| p.inflation(s, n)).sum()
     }
 }
 
-/// What a radius promises: the trace of the covariance (H/σ² − V)⁻¹ (H/σ²) (H/σ² − V)⁻¹.
+/// The covariance (H/σ² − V)⁻¹ (H/σ²) (H/σ² − V)⁻¹ of an estimate at this information.
 pub(super) fn covariance(information: &Form, inflation: &Form, variance: f64) -> Option<Form> {
     let noisy = information / variance;
     let inverse = (noisy - inflation).cholesky()?.inverse();
@@ -412,8 +445,11 @@ fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinat
     for radius in radii {
         let Some(rounds) = Rounds::new(stretches, radius, start) else { continue };
         let Some(parts) = rounds.linearise() else { continue };
-        let information = Stacked::new(&parts).information();
-        let trace = covariance(&information, &rounds.inflation(&parts), variance).map_or(f64::INFINITY, |c| c.trace());
+        let stacked = Stacked::new(&parts);
+        // a misfit counts as noise, so that radii too short for the sampling or too long for the torques lose
+        let misfit = stacked.misfit / variance / (stacked.rows - 5) as f64;
+        let spread = covariance(&stacked.information(), &rounds.inflation(&parts), variance * misfit.max(1.0));
+        let trace = spread.map_or(f64::INFINITY, |c| c.trace());
         if trace < best.0 {
             best = (trace, radius);
         }
@@ -425,24 +461,17 @@ fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinat
 const PILOT_SAMPLES: usize = 40_000;
 
 /// The weak estimate; `variance` is that of the noise in units of the mean square rate.
-///
-/// `None` where no stretch carries enough test functions.
-pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64) -> Option<Weak> {
+pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64) -> Result<Weak, Failure> {
     let (radius, start) = match radius {
         Some(radius) => (radius, Coordinates::zeros()),
-        None => choose_radius(&pilot(stretches), variance)?,
+        None => choose_radius(&pilot(stretches), variance).ok_or(Failure::TooShort)?,
     };
-    let mut rounds = Rounds::new(stretches, radius, start)?;
-    for _ in 0..ROUNDS {
-        rounds.round(variance)?;
-    }
-    let parts = rounds.linearise()?;
-    let stacked = Stacked::new(&parts);
-    let inflation = rounds.inflation(&parts);
-    let x = stacked.minimiser().unwrap_or(rounds.x);
-    let used = rounds.used.iter().zip(&parts);
-    let residuals = used.map(|((k, _, tests), p)| (*k, tests.centres(), p.residuals(&x))).collect();
-    Some(Weak { radius, x, stacked, inflation, residuals })
+    let mut rounds = Rounds::new(stretches, radius, start).ok_or(Failure::TooShort)?;
+    let settled = (0..ROUNDS).try_for_each(|_| rounds.round(variance)).and_then(|()| rounds.finish(true));
+    // a record that determines too little may drive J out of all bounds; at the sphere it can at least be asked what it knows
+    settled
+        .or_else(|| Rounds::new(stretches, radius, Coordinates::zeros())?.finish(false))
+        .ok_or(Failure::Singular)
 }
 
 /// The first stretches, up to a number of samples.
