@@ -14,8 +14,10 @@
 //! | H | Gᵀ C⁻¹ G: information, in units of 1/σ² |
 //! | V | what the noise in G adds to H, in expectation and in units of 1/σ²: H/σ² − V is what the motion tells |
 
+use std::rc::Rc;
+
 use faer::Mat;
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector4};
 
 use super::banded::Banded;
 use super::coordinates::{Coordinates, Form, basis, tensor};
@@ -51,7 +53,7 @@ impl Stretch {
 }
 
 /// The test functions of one stretch: φ = (1 − u²)⁴, u = (t − centre)/radius, centres evenly spaced.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Tests {
     first: f64,
     spacing: f64,
@@ -59,6 +61,8 @@ pub(super) struct Tests {
     pub(super) count: usize,
     /// How many neighbours on one side a test overlaps.
     reach: usize,
+    /// Cubics q(u) of each test, with which φ' + φ q/radius sums by parts exactly: see [`by_parts`](Self::by_parts).
+    corrections: Rc<[Vector4<f64>]>,
 }
 
 impl Tests {
@@ -76,7 +80,40 @@ impl Tests {
         let count = steps as usize + 1;
         let spacing = if count > 1 { room / steps } else { radius };
         let overlap = if count > 1 { (2.0 * radius / spacing - 1e-9) as usize } else { 0 };
-        Some(Tests { first: stretch.times[0] + radius, spacing, radius, count, reach: overlap.min(count - 1) })
+        let mut tests = Tests {
+            first: stretch.times[0] + radius,
+            spacing,
+            radius,
+            count,
+            reach: overlap.min(count - 1),
+            corrections: vec![Vector4::zeros(); count].into(),
+        };
+        tests.corrections = tests.by_parts(stretch);
+        Some(tests)
+    }
+
+    /// The cubics q that make Σ w (φ' + φ q/radius) p + Σ w φ p' = 0 for every cubic p.
+    ///
+    /// It is by this identity that the weak form rests on Euler's equation; a quadrature alone obeys it up to its error,
+    /// which a short support or irregular times would make a bias.
+    fn by_parts(&self, stretch: &Stretch) -> Rc<[Vector4<f64>]> {
+        let mut sums = vec![(Matrix4::<f64>::zeros(), Vector4::<f64>::zeros()); self.count];
+        for (&t, &weight) in stretch.times.iter().zip(&stretch.weights) {
+            for m in self.at(t) {
+                let (value, slope) = self.value(m, t);
+                let u = self.position(m, t);
+                let powers = Vector4::new(1.0, u, u * u, u * u * u);
+                let slopes = Vector4::new(0.0, 1.0, 2.0 * u, 3.0 * u * u);
+                sums[m].0 += powers * powers.transpose() * (weight * value);
+                sums[m].1 -= powers * (weight * slope * self.radius) + slopes * (weight * value);
+            }
+        }
+        sums.into_iter().map(|(m, b)| m.cholesky().map_or(Vector4::zeros(), |m| m.solve(&b))).collect()
+    }
+
+    /// u of test `m` at `t`.
+    fn position(&self, m: usize, t: f64) -> f64 {
+        (t - self.first - m as f64 * self.spacing) / self.radius
     }
 
     /// The tests that are not zero at `t`.
@@ -92,7 +129,7 @@ impl Tests {
 
     /// φ_m and φ'_m at `t`.
     fn value(&self, m: usize, t: f64) -> (f64, f64) {
-        let u = (t - self.first - m as f64 * self.spacing) / self.radius;
+        let u = self.position(m, t);
         let v = (1.0 - u * u).max(0.0);
         (v * v * v * v, -8.0 * u * v * v * v / self.radius)
     }
@@ -113,7 +150,9 @@ impl Seen {
         let mut seen = Seen { first: range.start, count, slope: [0.0; 24], value: [0.0; 24] };
         for (k, m) in range.take(count).enumerate() {
             let (value, slope) = tests.value(m, t);
-            seen.slope[k] = weight * slope;
+            let (u, q) = (tests.position(m, t), &tests.corrections[m]);
+            let correction = value / tests.radius * (q[0] + u * (q[1] + u * (q[2] + u * q[3])));
+            seen.slope[k] = weight * (slope + correction);
             seen.value[k] = weight * value;
         }
         seen
@@ -315,8 +354,8 @@ impl Stacked {
 
     /// The x that makes |R (x − origin) + z|² + ridge |x|² least.
     fn ridge(&self, ridge: f64) -> Option<Coordinates> {
-        // above the rounding of R, where the record tells nothing and has no noise either
-        let weight = ridge.sqrt().max(1e-11 * self.root.norm());
+        // far above the rounding of R, where the record tells nothing and has no noise either; only weights are at stake
+        let weight = ridge.sqrt().max(1e-7 * self.root.norm());
         let mut stack = SMatrix::<f64, 10, 6>::zeros();
         stack.fixed_view_mut::<5, 5>(0, 0).copy_from(&self.root);
         stack.fixed_view_mut::<5, 1>(0, 5).copy_from(&self.z);
@@ -379,7 +418,7 @@ impl<'a> Rounds<'a> {
     }
 
     fn linearise(&self) -> Option<Vec<Linearised>> {
-        self.used.iter().zip(&self.noise).map(|((_, s, tests), n)| Linearised::new(s, n, self.x, *tests)).collect()
+        self.used.iter().zip(&self.noise).map(|((_, s, tests), n)| Linearised::new(s, n, self.x, tests.clone())).collect()
     }
 
     /// One round; `ridge` keeps x finite before it is known that the record determines it.
