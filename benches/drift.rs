@@ -27,7 +27,7 @@ fn main() {
                 Err(error) => unreachable!("the run was valid: {error}"),
             };
             let attitude = State::<Dd>::of(sample.inside).attitude;
-            let error = rotation_angle(attitude, exact.inside_at::<Dd>(sample.elapsed).attitude).hi();
+            let error = rotation_angle(attitude, exact.inside_at_dd(sample.elapsed).attitude).hi();
             let worst = sample.worst;
             println!(
                 "{},{},{:e},{:e},{:e},{error:e},{status}",

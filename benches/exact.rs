@@ -24,6 +24,12 @@ fn exact(criterion: &mut Criterion) {
             });
         });
     }
+    let body = catalog::body("textbook").expect("in the catalogue");
+    let motion = FreeMotion::from_omega(&body.inertia, Default::default(), body.omega_body.into());
+    let motion = motion.expect("a valid start");
+    let times: Vec<f64> = (0..100_000).map(|n| 12.345 * f64::from(n)).collect();
+    group.sample_size(20);
+    group.bench_function("at_many, 1e5 epochs", |b| b.iter(|| motion.at_many(black_box(&times))));
     group.finish();
 }
 

@@ -79,11 +79,11 @@ fn entries() -> [Entry; 11] {
         },
         Entry {
             name: "t-handle",
-            summary: "aluminium T: bar 80 mm and stem 40 mm, 10 mm thick; flips when spun about the middle axis",
+            summary: "aluminium T: bar 80 mm and stem 40 mm, 10 mm thick; flips when spun about its stem",
             source: "closed form of two solid cylinders, 2700 kg/m^3; axes stem, bar, normal",
             unit: SI,
             moments: t_handle(),
-            omega_body: [0.02, 20.0, 0.01],
+            omega_body: [20.0, 0.02, 0.01],
         },
         Entry {
             name: "phone",

@@ -1,10 +1,12 @@
 //! The exact free motion against fixtures of 36 digits (tests/data/free_body, mpmath) in every regime.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 mod fixtures;
 
 use fixtures::{FreeCase, free_body};
 use polhode::body::{Body, Inertia, State};
-use polhode::flow::FreeMotion;
+use polhode::flow::{AtRest, Flow, FreeBody, FreeMotion, Mode, TimeError};
 use polhode::num::{Dd, Precise, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 
@@ -24,11 +26,11 @@ fn motion(case: &FreeCase) -> FreeMotion {
 }
 
 /// Largest attitude error (rad) and momentum error (of |m|) over the cases of `file`, with the worst case's name.
-fn worst<S: Precise>(file: &str) -> [(f64, String); 2] {
+fn worst<S: Precise>(file: &str, at: impl Fn(&FreeMotion, f64) -> State<S>) -> [(f64, String); 2] {
     let mut worst = [(0.0, String::new()), (0.0, String::new())];
     for case in free_body(file) {
         let motion = motion(&case);
-        let x = motion.inside_at::<S>(Dd::from(case.t));
+        let x = at(&motion, case.t);
         let scale = Dd::of(motion.body().scale());
         let q = Quat::from_components(x.attitude.components().map(S::to_dd));
         let m = Vec3(x.momentum_body.0.map(|m| m.to_dd() * scale));
@@ -54,7 +56,7 @@ fn worst<S: Precise>(file: &str) -> [(f64, String); 2] {
 #[test]
 fn f64_states_are_exact_to_1e_14_in_every_regime_at_any_time() {
     for file in ["fixtures.csv", "reference.csv"] {
-        let [attitude, momentum] = worst::<f64>(file);
+        let [attitude, momentum] = worst(file, |motion, t| motion.inside_at(t));
         println!(
             "{file}: attitude {:.2e} rad, {}; momentum {:.2e}, {}",
             attitude.0, attitude.1, momentum.0, momentum.1
@@ -67,12 +69,108 @@ fn f64_states_are_exact_to_1e_14_in_every_regime_at_any_time() {
 #[test]
 fn double_double_states_are_exact_to_conditioning() {
     for file in ["fixtures.csv", "reference.csv"] {
-        let [attitude, momentum] = worst::<Dd>(file);
+        let [attitude, momentum] = worst(file, |motion, t| motion.inside_at_dd(Dd::from(t)));
         println!(
             "{file}: attitude {:.2e} rad, {}; momentum {:.2e}, {}",
             attitude.0, attitude.1, momentum.0, momentum.1
         );
         assert!(attitude.0 < 1e-20, "attitude error {:.2e} rad: {}", attitude.0, attitude.1);
         assert!(momentum.0 < 1e-20, "momentum error {:.2e}: {}", momentum.0, momentum.1);
+    }
+}
+
+#[test]
+fn flips_are_counted_as_the_momentum_changes_sign() {
+    let inertia = Inertia::from_moments([1.0, 2.0, 3.0]).unwrap();
+    for omega in [[0.4, 1.0, -0.3], [-0.4, -1.0, 0.3], [0.01, 1.0, 0.02], [1.0, 0.5, 0.1]] {
+        let motion = FreeMotion::from_omega(&inertia, Default::default(), omega.into()).unwrap();
+        for direction in [1.0, -1.0] {
+            let (mut before, mut count) = (omega[1] > 0.0, 0);
+            for n in 1..=4000 {
+                let t = direction * 0.05 * f64::from(n);
+                let now = motion.at(t).unwrap().momentum_body[1] > 0.0;
+                count += u64::from(now != before);
+                before = now;
+                assert_eq!(motion.flips(Dd::from(t)), count, "omega {omega:?}, t = {t}");
+            }
+            assert!(count > 10);
+        }
+    }
+}
+
+#[test]
+fn a_symmetric_top_precesses_at_l_over_i() {
+    // the lecture's 17.5, prolate and oblate: the axis goes round L at L/I
+    for (moments, mode) in [([1.0, 1.0, 0.25], Mode::LongAxis), ([1.0, 1.0, 1.75], Mode::ShortAxis)] {
+        let inertia = Inertia::from_moments(moments).unwrap();
+        let omega = [0.3, 0.4, 1.25];
+        let character =
+            FreeMotion::from_omega(&inertia, Default::default(), omega.into()).unwrap().character().unwrap();
+        let l = nalgebra::Vector3::new(0.3, 0.4, 1.25 * moments[2]).norm();
+        assert_eq!(character.mode, mode);
+        approx::assert_relative_eq!(character.precession_rate.unwrap(), l, max_relative = 1e-15);
+        let body_cone = (1.0 - moments[2]).abs() * 1.25;
+        approx::assert_relative_eq!(
+            character.polhode_period.unwrap(),
+            std::f64::consts::TAU / body_cone,
+            max_relative = 1e-15
+        );
+    }
+}
+
+#[test]
+fn after_a_period_the_momentum_is_back_and_the_axis_has_precessed() {
+    let inertia = Inertia::from_moments([1.0, 2.0, 2.5]).unwrap();
+    for (omega, axis) in [([1.0, 0.2, 0.1], 0), ([0.1, -0.3, -0.9], 2), ([0.1, 1.0, 0.15], 2)] {
+        let motion = FreeMotion::from_omega(&inertia, Default::default(), omega.into()).unwrap();
+        let character = motion.character().unwrap();
+        let period = character.polhode_period.unwrap();
+        let (before, after) = (motion.at(0.25).unwrap(), motion.at(0.25 + period).unwrap());
+        approx::assert_relative_eq!(before.momentum(), after.momentum(), max_relative = 1e-13);
+        let l = before.rotation() * before.momentum();
+        let e = nalgebra::Vector3::ith(axis, 1.0);
+        let across = |x: &State<f64>| {
+            let a = x.rotation() * e;
+            a - l * (a.dot(&l) / l.norm_squared())
+        };
+        let (a, b) = (across(&before), across(&after));
+        let angle = libm::atan2(a.cross(&b).dot(&l.normalize()), a.dot(&b));
+        let turns = (character.precession_rate.unwrap() * period - angle) / std::f64::consts::TAU;
+        assert!((turns - turns.round()).abs() < 1e-13, "{turns}");
+        assert_eq!(character.mode == Mode::LongAxis, axis == 0);
+        assert_eq!(character.separatrix_distance < 0.0, axis == 0);
+    }
+}
+
+#[test]
+fn rest_and_steady_turns_have_no_periods() {
+    let inertia = Inertia::from_moments([1.0, 2.0, 2.5]).unwrap();
+    let of = |omega: [f64; 3]| FreeMotion::from_omega(&inertia, Default::default(), omega.into()).unwrap();
+    assert_eq!(of([0.0; 3]).character(), Err(AtRest));
+    assert_eq!(of([0.0; 3]).at(1e300).unwrap(), of([0.0; 3]).at(0.0).unwrap());
+    let steady = of([0.0, -0.5, 0.0]).character().unwrap();
+    assert_eq!((steady.mode, steady.spin, steady.separatrix_distance), (Mode::Steady, 0.5, 0.0));
+    assert_eq!(steady.polhode_period, None);
+    assert!(matches!(of([1.0, 2.0, 3.0]).at(f64::NAN), Err(TimeError::NotFinite { .. })));
+    assert!(matches!(of([1.0, 2.0, 3.0]).at(1e29), Err(TimeError::OutOfReach { .. })));
+    let far = of([1.0, 2.0, 3.0]);
+    assert!(far.at(0.99 * far.reach()).unwrap().is_finite());
+    assert!(of([1.0, 2.0, 3.0]).at_many(&[0.0, f64::INFINITY]).is_err());
+}
+
+#[test]
+fn the_flow_of_a_splitting_agrees_with_the_motion() {
+    for case in free_body("fixtures.csv").iter().filter(|case| case.t.abs() <= 1.0) {
+        let exact = motion(case);
+        let mut x = exact.inside_at(0.0);
+        let mut precise = exact.inside_at_dd(Dd::ZERO);
+        FreeBody::<f64>::new(exact.body()).flow(case.t, &mut x);
+        FreeBody::<Dd>::new(exact.body()).flow(Dd::from(case.t), &mut precise);
+        let there = exact.inside_at_dd(Dd::from(case.t));
+        let angle = rotation_angle(State::<Dd>::of(x).attitude, there.attitude).hi();
+        let turned = exact.character().map_or(0.0, |c| c.spin * case.t.abs());
+        assert!(angle < 1e-14 * (1.0 + turned), "{}: {angle:e} after {turned} rad", case.scenario);
+        let angle = rotation_angle(precise.attitude, there.attitude).hi();
+        assert!(angle < 1e-29 * (1.0 + turned), "{}: {angle:e} after {turned} rad", case.scenario);
     }
 }

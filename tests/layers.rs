@@ -1,5 +1,7 @@
 //! Imports obey the order of the layers: num ← rotation ← body ← flow ← observe ← method ← run.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -20,7 +20,7 @@ pub enum StateError {
     },
     /// The spin is too large or too small for its energy to be a double.
     #[error(
-        "angular velocity {omega} rad/s with this inertia puts the energy outside the range of a double; change the units"
+        "angular velocity {omega:?} rad/s with this inertia puts the energy outside the range of a double; change the units"
     )]
     OutOfRange {
         /// Largest component of the angular velocity, rad/s.
@@ -104,20 +104,26 @@ impl Body {
 
     /// The state `x` of a kernel in body axes.
     pub fn leave<S: Precise>(&self, x: &State<S>) -> State<f64> {
-        let frame = self.inertia.frame();
-        let attitude = Quat::from_components(x.attitude.components().map(S::to_dd)) * frame.conjugate();
-        let momentum = frame.rotate(Vec3(x.momentum_body.0.map(S::to_dd)));
+        let (mut attitude, mut momentum) = (x.attitude, x.momentum_body);
+        if !self.inertia.is_along_principal_axes() {
+            let frame = Quat::from_components(self.inertia.frame().components().map(S::from_dd));
+            attitude = attitude * frame.conjugate();
+            momentum = frame.rotate(momentum);
+        }
+        let scale = self.inertia.scale();
         State {
-            attitude: Quat::from_components(attitude.components().map(Dd::hi)),
-            momentum_body: Vec3(momentum.0.map(|m| m.hi() * self.inertia.scale())),
+            attitude: Quat::from_components(attitude.components().map(S::to_f64)),
+            momentum_body: Vec3(momentum.0.map(|m| m.to_f64() * scale)),
         }
     }
 
     /// Angular velocity ω = I⁻¹ m in body axes, rad/s, of a kernel's state.
     pub fn omega_body<S: Precise>(&self, x: &State<S>) -> Vector3<f64> {
-        let momentum = Vec3(x.momentum_body.0.map(S::to_dd));
-        let omega = self.inertia.frame().rotate(momentum.times(self.inverse_moments()));
-        Vec3(omega.0.map(Dd::hi)).into()
+        let mut omega = x.momentum_body.times(self.inverse_moments());
+        if !self.inertia.is_along_principal_axes() {
+            omega = Quat::from_components(self.inertia.frame().components().map(S::from_dd)).rotate(omega);
+        }
+        Vec3(omega.0.map(S::to_f64)).into()
     }
 
     /// The power of two that a kernel's moments, momenta and energies are to be multiplied with.

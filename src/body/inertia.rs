@@ -257,6 +257,11 @@ impl Inertia {
         self.moments
     }
 
+    /// Whether the kernel's axes are the body's.
+    pub(crate) fn is_along_principal_axes(&self) -> bool {
+        self.frame == Quat::identity()
+    }
+
     /// Takes coordinates along the kernel's axes to body coordinates.
     pub(crate) fn frame(&self) -> Quat<Dd> {
         self.frame

@@ -7,6 +7,7 @@ mod principal;
 mod state;
 
 pub use carry::Carry;
+pub(crate) use frame::of_dd;
 pub use frame::{Body, StateError};
 pub use inertia::{Inertia, InertiaError, InertiaShape, Symmetry};
 pub use state::State;

@@ -194,7 +194,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     if let Some((factor, hint, better)) = better.filter(|b| b.2 < 0.1 * misfit) {
         return Err(FitError::Units { factor, hint, misfit, better });
     }
-    let identifiability = identify(&weak, &stretches, variance);
+    let identifiability = identify(&weak, &stretches, variance).ok_or_else(singular)?;
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
     }
@@ -248,15 +248,17 @@ fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<(f64
     best
 }
 
-fn identify(weak: &Weak, stretches: &[Stretch], variance: f64) -> Identifiability {
+fn identify(weak: &Weak, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
     let mut scatter = Matrix3::zeros();
     let mut count = 0.0;
     for w in stretches.iter().flat_map(|s| &s.rates) {
         scatter += w * w.transpose();
         count += 1.0;
     }
-    let noisy = weak.stacked.information() / variance;
-    Identifiability::new(&noisy, &weak.inflation, weak.stacked.rows, &(scatter / count), &tensor(&weak.x))
+    let (singular, directions) = weak.stacked.spectrum()?;
+    let spectrum = (singular / variance.sqrt(), directions);
+    let (rows, j) = (weak.stacked.rows, tensor(&weak.x));
+    Some(Identifiability::new(&spectrum, &weak.inflation, rows, &(scatter / count), &j))
 }
 
 /// What the report is drawn from.

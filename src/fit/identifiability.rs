@@ -27,16 +27,22 @@ pub struct Identifiability {
 }
 
 impl Identifiability {
-    /// From the information of the noisy record, and what noise alone adds to it (both in inverse variances), over
-    /// `rows` equations; `scatter` is the mean of ω ωᵀ and `estimate` the tensor so far.
-    pub(super) fn new(noisy: &Form, noise: &Form, rows: usize, scatter: &Matrix3<f64>, estimate: &Matrix3<f64>) -> Self {
-        let (values, vectors) = eigen(noisy - noise);
+    /// From the singular values of the whitened equations with their directions, and what noise alone adds to the
+    /// information, over `rows` equations; `scatter` is the mean of ω ωᵀ and `estimate` the tensor so far.
+    pub(super) fn new(
+        (singular, directions): &(Coordinates, Form),
+        noise: &Form,
+        rows: usize,
+        scatter: &Matrix3<f64>,
+        estimate: &Matrix3<f64>,
+    ) -> Self {
         let mut deviations = [0.0; 5];
         let mut null_tensors = Vec::new();
         for k in 0..5 {
-            let direction: Coordinates = vectors.column(4 - k).into_owned();
-            let value = values[4 - k];
-            let fluctuation = direction.dot(&(noise * direction)) * (2.0 / rows as f64).sqrt();
+            let direction: Coordinates = directions.column(k).into_owned();
+            let by_noise = direction.dot(&(noise * direction));
+            let value = singular[k] * singular[k] - by_noise;
+            let fluctuation = by_noise * (2.0 / rows as f64).sqrt();
             deviations[k] = if value > 0.0 { 1.0 / value.sqrt() } else { f64::INFINITY };
             if deviations[k] > VAGUE || value < SIGNIFICANT * fluctuation {
                 null_tensors.push(trace_free(&direction));

@@ -352,6 +352,13 @@ impl Stacked {
         self.root.transpose() * self.root
     }
 
+    /// Singular values of R, descending, and the directions they belong to: the eigenvalues of H without its squares.
+    pub(super) fn spectrum(&self) -> Option<(Coordinates, Form)> {
+        let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
+        let (values, directions) = (svd.S().column_vector(), svd.V());
+        Some((Coordinates::from_fn(|k, _| values[k]), Form::from_fn(|i, k| directions[(i, k)])))
+    }
+
     /// The x that makes |R (x − origin) + z|² + ridge |x|² least.
     fn ridge(&self, ridge: f64) -> Option<Coordinates> {
         // far above the rounding of R, where the record tells nothing and has no noise either; only weights are at stake

@@ -1,9 +1,14 @@
 //! Exact flows: the atoms that splitting methods are composed of, and the references they are judged by.
 
+mod character;
 mod circulation;
 mod free_body;
+mod phase;
+mod polhode;
+mod theta;
 mod turn;
 
+pub use character::{AtRest, Character, Mode};
 pub use free_body::{FreeBody, FreeMotion, TimeError};
 pub use turn::{AxisTurn, turn};
 

@@ -1,7 +1,7 @@
 //! The variational Lie–Poisson splitting: three turns about the principal axes.
 
 use super::{AxisOrder, Claimed, Claims, Cost, Energy, Kept, Method, Step, StepError, usable};
-use crate::body::{Body, Carry, State};
+use crate::body::{Body, Carry, State, of_dd};
 use crate::flow::turn;
 use crate::num::{Dd, Real};
 
@@ -49,10 +49,7 @@ impl<S: Real> Method<S> for LiePoisson {
         let h = usable(h)?;
         let axes = self.axes.unwrap_or_else(|| AxisOrder::best(body.moments())).axes();
         let inverse = body.inverse_moments::<Dd>();
-        let rate = |axis: usize, time: f64| {
-            let rate = inverse[axis] * Dd::of(0.5 * time);
-            S::of(rate.hi()) + S::of(rate.lo())
-        };
+        let rate = |axis: usize, time: f64| of_dd(inverse[axis] * (0.5 * time));
         let [outer, middle, inner] = axes;
         let half_rates = [rate(outer, 0.5 * h), rate(middle, 0.5 * h), rate(inner, h)];
         Ok(LiePoissonStep { axes, half_rates, carry: Carry::default() })

@@ -10,7 +10,7 @@
 use super::implicit_midpoint::cayley_turn;
 use super::stagnation::iterate;
 use super::{Claimed, Claims, Cost, Energy, Kept, Method, Step, StepError, usable};
-use crate::body::{Body, Carry, State};
+use crate::body::{Body, Carry, State, of_dd};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
@@ -56,7 +56,7 @@ impl<S: Real> Method<S> for Rattle {
         let h = usable(h)?;
         let moments: Vec3<Dd> = body.moments();
         let differences = cyclic(|_, j, k| moments[j] - moments[k]);
-        let round = |v: Vec3<Dd>| Vec3(v.0.map(|x| S::of(x.hi()) + S::of(x.lo())));
+        let round = |v: Vec3<Dd>| Vec3(v.0.map(of_dd));
         Ok(RattleStep {
             half: round(body.inverse_moments::<Dd>() * Dd::of(0.5 * h)),
             differences: round(differences),

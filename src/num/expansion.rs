@@ -9,10 +9,10 @@
 //!
 //! ```
 //! use polhode::num::Expansion;
-//! let [a, b] = [0.3, 0.09].map(Expansion::from);
-//! let difference = &(&a * &a) - &b;
-//! assert_eq!(0.3 * 0.3 - 0.09, 0.0);
-//! assert_eq!(difference.to_dd().hi(), -3.3306690738754695e-18);
+//! let [a, b, c, d] = [0.3, 0.7, 0.21, 1.0].map(Expansion::from);
+//! let determinant = &(&a * &b) - &(&c * &d);
+//! assert_eq!(0.3 * 0.7 - 0.21 * 1.0, 0.0);
+//! assert_eq!(determinant.to_dd().hi(), -1.3322676295501878e-17);
 //! ```
 //!
 //! Source: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric

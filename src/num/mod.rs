@@ -3,9 +3,9 @@
 //! * [`real`]: the two traits, [`Real`] for explicit kernels and [`Precise`] for what must compare or round;
 //! * [`dd`]: double-double numbers [`Dd`], 106 bits, for constants, references and invariants;
 //! * [`trig`]: sine and cosine in `f64`, the same bits on every CPU;
-//! * [`elliptic`]: Carlson's integrals and Jacobi's functions;
 //! * [`sum`]: compensated sums;
-//! * [`expansion`]: exact sums and products of a few numbers.
+//! * [`expansion`]: exact sums and products of a few numbers;
+//! * [`elliptic`]: elliptic integrals and functions.
 //!
 //! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
 //! same input gives the same bits on every CPU and at every optimisation level.

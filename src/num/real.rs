@@ -57,15 +57,19 @@ pub trait Precise: Real + PartialOrd {
 }
 
 impl Real for f64 {
+    #[inline]
     fn of(x: f64) -> Self {
         x
     }
+    #[inline]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
+    #[inline]
     fn sin_cos(self) -> (Self, Self) {
         trig::sin_cos(self)
     }
+    #[inline]
     fn magnitude(self) -> f64 {
         f64::abs(self)
     }
@@ -73,30 +77,39 @@ impl Real for f64 {
 
 impl Precise for f64 {
     const ROUNDOFF: f64 = f64::EPSILON / 2.0;
+    #[inline]
     fn from_dd(x: Dd) -> Self {
         x.to_f64()
     }
+    #[inline]
     fn to_dd(self) -> Dd {
         Dd::of(self)
     }
+    #[inline]
     fn to_f64(self) -> f64 {
         self
     }
+    #[inline]
     fn abs(self) -> Self {
         f64::abs(self)
     }
+    #[inline]
     fn round(self) -> Self {
         f64::round(self)
     }
+    #[inline]
     fn atan2(self, x: Self) -> Self {
         libm::atan2(self, x)
     }
+    #[inline]
     fn exp(self) -> Self {
         libm::exp(self)
     }
+    #[inline]
     fn exp_m1(self) -> Self {
         libm::expm1(self)
     }
+    #[inline]
     fn ln(self) -> Self {
         libm::log(self)
     }

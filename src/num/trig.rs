@@ -7,7 +7,7 @@
 
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_4};
 
-use super::dd::{quick_two_sum, two_sum};
+use super::dd::two_sum;
 
 // Interpolation on [0, (π/4)²] of (sin x − x)/x³ and (cos x − 1 + x²/2)/x⁴ in powers of x², made by
 // tests/data/num/kernel.py; the errors left in sin x / x and cos x are below 2⁻⁵⁸.
@@ -35,7 +35,7 @@ const HALF_PI: [f64; 4] =
 /// Adding and subtracting it rounds to an integer, whose last bits stand last in the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
 
-/// Sine and cosine of `x` radians; NaN unless `x` is finite.
+/// Sine and cosine of `x` radians; NaN unless `x` is finite. The sine of −0 is +0.
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() <= FRAC_PI_4 { kernel::<false>(x, 0.0) } else { reduced(x) }
@@ -43,15 +43,14 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
 
 #[inline(never)]
 fn reduced(x: f64) -> (f64, f64) {
-    if !(x.abs() < 1_048_576.0) {
+    if x.is_nan() || x.abs() >= 1_048_576.0 {
         return libm::sincos(x);
     }
     let shifted = x * FRAC_2_PI + ROUNDER;
     let n = shifted - ROUNDER;
     let (r, e1) = two_sum(x - n * HALF_PI[0], -n * HALF_PI[1]);
     let (r, e2) = two_sum(r, -n * HALF_PI[2]);
-    let (r, tail) = quick_two_sum(r, (e1 + e2) - n * HALF_PI[3]);
-    let (s, c) = kernel::<true>(r, tail);
+    let (s, c) = kernel::<true>(r, (e1 + e2) - n * HALF_PI[3]);
     match shifted.to_bits() & 3 {
         0 => (s, c),
         1 => (c, -s),
@@ -60,7 +59,7 @@ fn reduced(x: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine of x + tail for |x| ≤ π/4, the tail below one unit in its last place.
+/// Sine and cosine of x + tail for |x| ≤ π/4, the tail no more than a few units in its last place.
 #[inline(always)]
 fn kernel<const TAIL: bool>(x: f64, tail: f64) -> (f64, f64) {
     let z = x * x;
@@ -80,4 +79,26 @@ fn kernel<const TAIL: bool>(x: f64, tail: f64) -> (f64, f64) {
 #[inline(always)]
 fn polynomial(z: f64, z2: f64, c: [f64; 6]) -> f64 {
     (c[0] + z * c[1]) + z2 * ((c[2] + z * c[3]) + z2 * (c[4] + z * c[5]))
+}
+
+/// Sine and cosine of 2π (x + low), |x| ≤ ½, `low` a few units in the last place of 1 at most.
+///
+/// Quarter turns are taken off exactly, so a phase counted in turns meets no rounded π before it is small.
+#[inline]
+pub fn sin_cos_turns(x: f64, low: f64) -> (f64, f64) {
+    let shifted = 4.0 * x + ROUNDER;
+    let rest = (x - 0.25 * (shifted - ROUNDER)) + low;
+    let (s, c) = kernel::<false>(rest * core::f64::consts::TAU, 0.0);
+    let quadrant = shifted.to_bits() & 3;
+    // without branches: the quadrant of a random phase cannot be predicted
+    let odd = quadrant & 1 == 1;
+    let (s, c) = if odd { (c, s) } else { (s, c) };
+    let signed = |x: f64, negative: u64| f64::from_bits(x.to_bits() ^ (negative << 63));
+    (signed(s, quadrant >> 1), signed(c, (quadrant ^ (quadrant >> 1)) & 1))
+}
+
+/// The integer nearest to `x`, |x| < 2⁵¹; ties to even.
+#[inline]
+pub fn nearest(x: f64) -> f64 {
+    (x + ROUNDER) - ROUNDER
 }

@@ -25,6 +25,11 @@ impl Invariants {
             momentum_space: x.momentum_space(),
         }
     }
+
+    /// |m|.
+    pub fn momentum(&self) -> Dd {
+        self.momentum_squared.sqrt()
+    }
 }
 
 /// ½ m·I⁻¹m.

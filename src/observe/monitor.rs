@@ -114,6 +114,15 @@ impl Monitor {
         ])
     }
 
+    /// (E − E₀) / E₀ of the state `x`, with its sign; 0 at rest.
+    pub fn energy_change(&self, x: &State<f64>) -> f64 {
+        let m = State::<Dd>::of(*x).momentum_body;
+        if self.energy.hi() == 0.0 {
+            return 0.0;
+        }
+        ((energy(self.inverse_moments, m) - self.energy) / self.energy).hi()
+    }
+
     /// The largest errors so far.
     pub fn worst(&self) -> Errors {
         self.worst

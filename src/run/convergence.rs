@@ -30,7 +30,7 @@ pub fn halvings(
     span: f64,
     exponents: core::ops::Range<u32>,
 ) -> Result<Vec<Halving>, StepError> {
-    let exact = FreeMotion::new(body, *start).inside_at::<Dd>(Dd::from(span));
+    let exact = FreeMotion::new(body, *start).inside_at_dd(Dd::from(span));
     exponents
         .map(|k| {
             let steps = 1_u64 << k;

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::body::{Body, State, StateError};
 use crate::method::{Advance, AnyMethod, StepError};
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Precise};
 use crate::observe::{Errors, Invariants, Monitor};
 
 /// An implicit solve that ends further than this from its equation, relative, is no solution. Rounding alone
@@ -65,6 +65,8 @@ pub struct Sample {
     pub energy: f64,
     /// |m|, kg m²/s.
     pub momentum: f64,
+    /// (E − E₀) / E₀ of this state, with its sign.
+    pub energy_change: f64,
     /// Errors of this state.
     pub errors: Errors,
     /// The largest errors over every step so far.
@@ -173,7 +175,8 @@ impl Run {
             inside: self.state,
             omega_body: self.body.omega_body(&self.state),
             energy: invariants.energy.hi() * scale,
-            momentum: invariants.momentum_squared.sqrt().hi() * scale,
+            momentum: invariants.momentum().hi() * scale,
+            energy_change: self.monitor.energy_change(&self.state),
             errors: self.monitor.errors(&self.state),
             worst: self.monitor.worst(),
             flips: self.monitor.flips(),

@@ -28,7 +28,7 @@ const INVERSE_FACTORIAL: [Dd; DEGREE + 1] = {
 
 /// π/2 in 318 bits.
 const HALF_PI: [f64; 6] = [
-    1.5707963267948966,
+    core::f64::consts::FRAC_PI_2,
     6.123233995736766e-17,
     -1.4973849048591698e-33,
     5.562271104316826e-50,
@@ -36,32 +36,35 @@ const HALF_PI: [f64; 6] = [
     8.724931080676243e-84,
 ];
 
+/// 2¹⁰⁰: up to here the number of quarter turns is an exact `Dd`.
+const FAR: f64 = (1u128 << 100) as f64;
+
 /// ln 2 beyond [`Dd::LN_2`].
 const LN_2_TAIL: f64 = 5.707708438416212e-34;
 
-/// Σ signⁿ xⁿ/(first + n·stride)! for all n up to [`DEGREE`].
+/// Σ xᵏ/(FIRST + k STRIDE)!, k = 0, 1, …, up to [`DEGREE`].
 #[inline]
-fn series(x: Dd, first: usize, stride: usize) -> Dd {
-    let mut n = first + (DEGREE - first) / stride * stride;
+fn series<const FIRST: usize, const STRIDE: usize>(x: Dd) -> Dd {
+    let mut n = FIRST + (DEGREE - FIRST) / STRIDE * STRIDE;
     let mut light = 0.0;
     while n >= LIGHT {
         light = INVERSE_FACTORIAL[n].hi + x.hi * light;
-        n -= stride;
+        n -= STRIDE;
     }
     let mut sum = Dd::of(light);
-    while n > first {
-        sum = INVERSE_FACTORIAL[n] + x * sum;
-        n -= stride;
+    while n > FIRST {
+        sum = INVERSE_FACTORIAL[n].plus_smaller(x * sum);
+        n -= STRIDE;
     }
-    INVERSE_FACTORIAL[first] + x * sum
+    INVERSE_FACTORIAL[FIRST].plus_smaller(x * sum)
 }
 
-/// Sine and cosine; undefined from 2¹⁰⁰ on, where neighbouring numbers are more than 10⁻² apart.
+/// Sine and cosine; undefined from [`FAR`] on, where neighbouring numbers are more than 10⁻² apart.
 pub(super) fn sin_cos(x: Dd) -> (Dd, Dd) {
     if x.hi.abs() <= core::f64::consts::FRAC_PI_4 {
         return sin_cos_kernel(x);
     }
-    if !(x.hi.abs() < 1.2676506002282294e30) {
+    if x.hi.is_nan() || x.hi.abs() >= FAR {
         return (Dd::of(f64::NAN), Dd::of(f64::NAN));
     }
     let quarters = (x / Dd::FRAC_PI_2 + 0.5).floor();
@@ -74,8 +77,13 @@ pub(super) fn sin_cos(x: Dd) -> (Dd, Dd) {
     }
 }
 
-/// x − n π/2, rounded once: it may be 10³² times smaller than x.
+/// x − n π/2. Next to a zero, where it may be 10³² times smaller than x, the difference is formed exactly.
 fn minus_half_pi(x: Dd, n: Dd) -> Dd {
+    let [first, second, third, ..] = HALF_PI;
+    let rest = x - Dd::product(n.hi, first) - Dd::product(n.hi, second) - n.hi * third;
+    if n.lo == 0.0 && rest.hi.abs() > 1e-12 * n.hi.abs() {
+        return rest;
+    }
     let words = HALF_PI.iter().flat_map(|&word| [two_prod(-n.lo, word), two_prod(-n.hi, word)]);
     let terms = words.flat_map(|(product, error)| [product, error]).filter(|&term| term != 0.0);
     Expansion::sum([x.hi, x.lo].into_iter().chain(terms)).to_dd()
@@ -86,7 +94,7 @@ fn sin_cos_kernel(x: Dd) -> (Dd, Dd) {
         return (x, Dd::ONE);
     }
     let minus_square = -(x * x);
-    (x + x * minus_square * series(minus_square, 3, 2), minus_square * series(minus_square, 2, 2) + 1.0)
+    (x + x * minus_square * series::<3, 2>(minus_square), minus_square * series::<2, 2>(minus_square) + 1.0)
 }
 
 /// The `f64` angle, turned to the x-axis and corrected by the small angle that is left.
@@ -110,12 +118,12 @@ pub(super) fn exp(x: Dd) -> Dd {
         Ok(reduced) => reduced,
         Err(limit) => return Dd::of(limit),
     };
-    (r * series(r, 1, 1) + 1.0).scaled(n)
+    (r * series::<1, 1>(r) + 1.0).scaled(n)
 }
 
 pub(super) fn exp_m1(x: Dd) -> Dd {
     if x.hi.abs() < 0.35 {
-        return if x.hi == 0.0 { x } else { x * series(x, 1, 1) };
+        return if x.hi == 0.0 { x } else { x * series::<1, 1>(x) };
     }
     exp(x) - 1.0
 }
@@ -140,6 +148,6 @@ pub(super) fn ln(x: Dd) -> Dd {
     let m = x.scaled(-n);
     let y = libm::log(m.hi);
     let rest = (m - 1.0) + m * exp_m1(Dd::of(-y));
-    let log = Dd::sum(y, rest.hi - 0.5 * rest.hi * rest.hi);
+    let log = rest - Dd::product(rest.hi, 0.5 * rest.hi) + y;
     Dd::LN_2 * f64::from(n) + log
 }

@@ -132,16 +132,11 @@ impl fmt::LowerExp for Dd {
         }
         let digits = f.precision().map_or(DIGITS - 1, |precision| precision as i32);
         let value = decimal(*self);
-        let value = {
-            let exponent = value.exponent();
-            value.rounded(digits - exponent)
-        };
+        let first = value.exponent();
+        let mut value = value.rounded(digits - first);
         let exponent = value.exponent();
-        let first = value.digits.len() - 1 - (exponent + value.decimals) as usize;
-        let mantissa =
-            Decimal { digits: value.digits[first..].to_vec(), decimals: exponent + value.decimals }
-                .rounded(digits);
-        f.pad_integral(self.hi > 0.0, "", &format!("{}e{exponent}", mantissa.positional()))
+        value.decimals += exponent;
+        f.pad_integral(self.hi > 0.0, "", &format!("{}e{exponent}", value.rounded(digits).positional()))
     }
 }
 

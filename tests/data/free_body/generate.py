@@ -229,10 +229,12 @@ def scenarios():
         split = 1 + 10.0**-power
         for kind, body in (("oblate", (1.0, split, 1.6)), ("prolate", (0.4, 1.0, split))):
             lone = 2 if kind == "oblate" else 0
-            for start, w in (("fast", (0.6, -0.5, 0.7)), ("slow", (0.6, -0.5, 0.7)), ("edge", (0.6, -0.5, 0.7))):
-                w = list(w)
-                # Rates of the lone axis that put the motion deep inside, slow in phase, or next to the separatrix.
-                w[lone] *= {"fast": 1.0, "slow": 1e-3, "edge": 10.0 ** (-power / 2)}[start]
+            root = 10.0 ** (-power / 2)
+            # Rates of the lone axis deep inside, slow in phase, and on either side of the separatrix.
+            edge = 0.613 if kind == "oblate" else 1.43
+            for start, rate in (("fast", 0.7), ("slow", 7e-4), ("edge", edge * root), ("inside", 0.97 * edge * root)):
+                w = [0.6, -0.5, 0.7]
+                w[lone] = rate
                 yield omega(f"near-{kind}-1e-{power}-{start}", "nearly symmetric", body, w, SOME, TILTED)
         body = (1.0 + 2.3 * 10.0**-power, 1.0, split)
         yield omega(f"near-sphere-1e-{power}", "nearly spherical", body, (0.5, 0.6, -0.7), SOME)

@@ -1,0 +1,65 @@
+//! The flags that name a body and its start, for every command that takes them.
+
+use clap::Args;
+use nalgebra::Matrix3;
+use polhode::body::{Body, Inertia, State};
+use polhode::catalog;
+use polhode::num::Dd;
+use polhode::rotation::{Quat, Vec3};
+
+use crate::arguments::{numbers, quaternion};
+use crate::error::Error;
+
+/// A body: exactly one of three flags.
+#[derive(Args, Clone, Debug)]
+#[group(required = true, multiple = false)]
+pub(crate) struct BodyArguments {
+    /// Principal moments, the k-th about the k-th body axis, in any consistent unit
+    #[arg(long, value_name = "I1,I2,I3", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    moments: Option<[f64; 3]>,
+    /// Tensor entries in body axes, I_xy = -sum m x y
+    #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = numbers::<6>, allow_hyphen_values = true)]
+    inertia: Option<[f64; 6]>,
+    /// Inertia of a body of the catalogue: toutatis, racket, t-handle, phone, water, spacecraft, textbook, dyadic, prolate, oblate, sphere
+    #[arg(long, value_name = "NAME")]
+    body: Option<String>,
+}
+
+impl BodyArguments {
+    /// The body that the flags describe.
+    pub(crate) fn body(&self) -> Result<Body, Error> {
+        let refused =
+            |flag: &str, error: polhode::body::InertiaError| Error::Input(format!("{flag}: {error}"));
+        let inertia = if let Some(moments) = self.moments {
+            Inertia::from_moments(moments).map_err(|error| refused("--moments", error))?
+        } else if let Some([xx, yy, zz, xy, xz, yz]) = self.inertia {
+            let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+            Inertia::from_tensor(tensor).map_err(|error| refused("--inertia", error))?
+        } else {
+            let name = self.body.as_deref().unwrap_or_default();
+            let known: Vec<&str> = catalog::bodies().iter().map(|body| body.name).collect();
+            let found = catalog::body(name);
+            found.ok_or_else(|| Error::unknown_name("--body", "body", name, known.iter().copied()))?.inertia
+        };
+        Ok(Body::free(inertia))
+    }
+}
+
+/// Angular velocity and attitude at the start.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct StartArguments {
+    /// Angular velocity at the start, body axes, rad/s
+    #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    omega: [f64; 3],
+    /// Attitude at the start, a quaternion body to space, scalar first; any norm but zero
+    #[arg(long, value_name = "w,x,y,z", value_parser = quaternion, allow_hyphen_values = true, default_value = "1,0,0,0")]
+    attitude: [f64; 4],
+}
+
+impl StartArguments {
+    /// The exact start of `body` as kernels see it.
+    pub(crate) fn inside(&self, body: &Body) -> Result<State<Dd>, Error> {
+        let start = body.enter_omega(Quat::from_components(self.attitude), Vec3(self.omega));
+        start.map_err(|error| Error::Input(format!("--omega: {error}")))
+    }
+}

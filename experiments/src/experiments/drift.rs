@@ -1,0 +1,219 @@
+//! What each method keeps and loses on real bodies, and how far its attitude is from the exact one.
+
+use std::time::Instant;
+
+use polhode::body::{Body, State};
+use polhode::catalog::{self, NamedBody};
+use polhode::flow::FreeMotion;
+use polhode::method::{AnyMethod, AxisOrder, LiePoisson, catalogue};
+use polhode::num::Dd;
+use polhode::observe::secular_drift;
+use polhode::rotation::rotation_angle;
+use polhode::run::{Run, RunError, Sample, Schedule};
+
+use crate::error::Error;
+use crate::experiment::{Context, Report};
+use crate::figure::{Figure, Series};
+use crate::table::{Cell, Column, Table, row};
+
+const BODIES: [&str; 7] = ["textbook", "toutatis", "racket", "t-handle", "phone", "water", "spacecraft"];
+
+/// Looks at the energy for its secular slope.
+const LOOKS: u64 = 512;
+
+pub(crate) fn run(context: &Context) -> Result<Report, Error> {
+    let steps = context.scale.pick(2_000, 100_000, 1_000_000);
+    let mut parts = Vec::new();
+    for body in BODIES.iter().filter_map(|name| catalog::body(name)) {
+        for h in step_sizes(&body) {
+            for method in methods(&body) {
+                parts.push((body.clone(), h, method));
+            }
+        }
+    }
+    let rows = context.in_parallel(parts, |(body, h, method)| measure(&body, method.as_ref(), h, steps));
+    let mut report = Report::default();
+    let mut drift = Table::new("drift", caption(steps), columns());
+    let mut timing = Table::new(
+        "timing",
+        "Nanoseconds per step, the least of several bursts on this machine.",
+        vec![
+            Column::new("method", "", "name in the catalogue"),
+            Column::new("step_ns", "ns", "time per step, nobody watching").heading("ns/step"),
+        ],
+    );
+    for row in rows {
+        drift.push(row?);
+    }
+    let hidden = ["body", "status"];
+    for named in BODIES.iter().filter_map(|name| catalog::body(name)) {
+        let caption = format!("{}: {}.", named.name, named.summary);
+        let of_body = |row: &[Cell]| row[0] == Cell::from(named.name);
+        report.views.push(drift.view(format!("drift-{}", named.name), caption, &hidden, of_body));
+    }
+    if let Some(textbook) = catalog::body("textbook") {
+        for method in methods(&textbook) {
+            timing.push(row![method.name(), step_time(&textbook, method.as_ref())?]);
+        }
+    }
+    report.figures.push(figure(&drift));
+    report.tables.push(drift);
+    report.timing = Some(timing);
+    Ok(report)
+}
+
+/// What a method keeps against how right it is: every body and step is a point.
+fn figure(drift: &Table) -> Figure {
+    let mut figure = Figure::log_log(
+        "drift",
+        "Every body at two steps; runs that diverged are left out",
+        "attitude error at the end (rad)",
+        "largest relative energy error",
+    )
+    .scatter();
+    for method in catalogue() {
+        let point = |row: &Vec<Cell>| match (&row[1], &row[5], &row[8], &row[14]) {
+            (Cell::Text(name), Cell::Number(energy), Cell::Number(attitude), Cell::Text(status))
+                if *name == method.name() && status == "ok" =>
+            {
+                Some((*attitude, *energy))
+            }
+            _ => None,
+        };
+        figure.series.push(Series::new(method.name(), drift.rows().iter().filter_map(point).collect()));
+    }
+    figure
+}
+
+fn caption(steps: u64) -> String {
+    format!("Largest errors over {steps} steps of torque-free rotation, and the attitude error at the end.")
+}
+
+fn columns() -> Vec<Column> {
+    vec![
+        Column::new("body", "", "name in the catalogue of bodies"),
+        Column::new("method", "", "name in the catalogue of methods"),
+        Column::new("h", "s", "step").latex("$h$").digits(2),
+        Column::new("angle_per_step", "rad", "h times the angular velocity at the start").hidden(),
+        Column::new("steps", "", "steps taken").hidden(),
+        Column::new("energy_error", "", "max |E - E0| / |E0| over every step").heading("energy").digits(2),
+        Column::new("momentum_error", "", "max ||m| - |m0|| / |m0| over every step")
+            .heading("|m|")
+            .latex("$|m|$")
+            .digits(2),
+        Column::new("momentum_vector_error", "", "max |L - L0| / |L0| over every step, in space")
+            .heading("L")
+            .latex("$L$")
+            .digits(2),
+        Column::new("attitude_error", "rad", "angle between computed and exact attitude at the end")
+            .heading("attitude")
+            .digits(2),
+        Column::new("energy_slope", "1/rad", "secular slope of (E - E0)/E0 per radian turned").hidden(),
+        Column::new("energy_slope_half_width", "1/rad", "half width of its 95 % interval").hidden(),
+        Column::new("flips", "", "changes of sign of the momentum along the middle axis").hidden(),
+        Column::new("flips_exact", "", "the same of the exact motion").hidden(),
+        Column::new("flips_right", "", "whether they agree").heading("flips").latex("flips"),
+        Column::new("status", "", "ok, diverged (the row holds the last finite state) or unsolved"),
+        Column::new("time_reached", "s", "time of the row").hidden(),
+    ]
+}
+
+/// 0.01 s for the textbook body, whose figures others have published; elsewhere powers of two of about a tenth and
+/// a hundredth of a radian per step, so that the times are exact.
+fn step_sizes(body: &NamedBody) -> Vec<f64> {
+    if body.name == "textbook" {
+        return vec![0.1, 0.01];
+    }
+    let speed = nalgebra::Vector3::from(body.omega_body).norm();
+    [0.1, 0.01].map(|angle| libm::exp2(libm::round(libm::log2(angle / speed)))).to_vec()
+}
+
+/// The catalogue, and for the textbook body the splitting in two orders that others use.
+fn methods(body: &NamedBody) -> Vec<Box<dyn AnyMethod>> {
+    let mut methods = catalogue();
+    if body.name == "textbook" {
+        let others =
+            AxisOrder::ALL.into_iter().filter(|order| ["321", "123"].contains(&order.to_string().as_str()));
+        methods.extend(others.map(|order| Box::new(LiePoisson { axes: Some(order) }) as Box<dyn AnyMethod>));
+    }
+    methods
+}
+
+fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Result<Vec<Cell>, Error> {
+    let body = Body::free(named.inertia.clone());
+    let start = body.state(Default::default(), named.omega_body.into()).map_err(unexpected)?;
+    let mut run = Run::new(method, &body, &start, h).map_err(unexpected)?;
+    let exact = FreeMotion::new(&body, State::of(run.start()));
+    let speed = nalgebra::Vector3::from(named.omega_body).norm();
+    let (mut angles, mut changes) = (Vec::new(), Vec::new());
+    let mut status = "ok";
+    let mut last: Sample = run.sample();
+    for sample in run.samples(Schedule::every((steps / LOOKS).max(1), steps)) {
+        last = match sample {
+            Ok(sample) => sample,
+            Err(RunError::Diverged { last }) => {
+                status = "diverged";
+                *last
+            }
+            Err(RunError::Unsolved { last, .. }) => {
+                status = "unsolved";
+                *last
+            }
+            Err(error) => return Err(unexpected(error)),
+        };
+        angles.push(last.elapsed.hi() * speed);
+        changes.push(last.energy_change);
+    }
+    let there = exact.inside_at_dd(last.elapsed);
+    let attitude = rotation_angle(State::<Dd>::of(last.inside).attitude, there.attitude).hi();
+    let slope = secular_drift(&angles, &changes).filter(|_| status == "ok");
+    let flips = exact.flips(last.elapsed);
+    Ok(row![
+        named.name,
+        method.name(),
+        h,
+        h * speed,
+        last.steps,
+        last.worst.energy,
+        last.worst.momentum,
+        last.worst.momentum_vector,
+        attitude,
+        slope.map(|d| d.slope),
+        slope.map(|d| d.half_width),
+        last.flips,
+        flips,
+        if status != "ok" {
+            status
+        } else if last.flips == flips {
+            "right"
+        } else {
+            "wrong"
+        },
+        status,
+        last.elapsed.hi(),
+    ]
+    .to_vec())
+}
+
+/// The least time of a step over bursts of a fraction of a millisecond.
+fn step_time(named: &NamedBody, method: &dyn AnyMethod) -> Result<f64, Error> {
+    const BURST: u64 = 2_000;
+    let body = Body::free(named.inertia.clone());
+    let start = body.state(Default::default(), named.omega_body.into()).map_err(unexpected)?;
+    let h = 1.0 / 1024.0;
+    let inside = Run::new(method, &body, &start, h).map_err(unexpected)?.start();
+    let mut step = method.prepare_f64(h, &body, &inside).map_err(unexpected)?;
+    let mut best = f64::INFINITY;
+    for _ in 0..100 {
+        let mut x = inside;
+        let clock = Instant::now();
+        step.advance_unseen(&mut x, BURST);
+        best = best.min(clock.elapsed().as_secs_f64() * 1e9 / BURST as f64);
+    }
+    Ok(best)
+}
+
+/// The catalogue's bodies and steps are valid; if one is not, that is what failed.
+fn unexpected(error: impl std::fmt::Display) -> Error {
+    Error::Failed(error.to_string())
+}

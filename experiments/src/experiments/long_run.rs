@@ -1,0 +1,127 @@
+//! Errors at logarithmic times over very many steps: what grows, and how fast.
+
+use std::time::Instant;
+
+use polhode::body::{Body, State};
+use polhode::catalog;
+use polhode::flow::FreeMotion;
+use polhode::method::method;
+use polhode::num::Dd;
+use polhode::rotation::rotation_angle;
+use polhode::run::{Run, Schedule};
+
+use crate::error::Error;
+use crate::experiment::{Context, Report};
+use crate::figure::{Figure, Series};
+use crate::table::{Cell, Column, Table, row};
+
+const METHODS: [&str; 5] = ["rk4", "rk4-normalized", "implicit-midpoint", "rattle", "lie-poisson"];
+
+/// A dyadic step: n h is exact, and about 0.05 rad.
+const STEP: f64 = 1.0 / 64.0;
+
+pub(crate) fn run(context: &Context) -> Result<Report, Error> {
+    let steps: u64 = context.scale.pick(10_000, 1_000_000, 1_000_000_000);
+    let found = context.in_parallel(METHODS.to_vec(), |name| follow(name, steps));
+    let mut series = Table::new(
+        "series",
+        format!("Errors at logarithmic times over {steps} steps of {STEP} s, dyadic body."),
+        vec![
+            Column::new("method", "", "name in the catalogue"),
+            Column::new("steps", "", "steps taken"),
+            Column::new("t", "s", "time").hidden(),
+            Column::new("energy_error", "", "max |E - E0| / |E0| over every step so far")
+                .heading("energy")
+                .digits(2),
+            Column::new("momentum_error", "", "max ||m| - |m0|| / |m0| over every step so far")
+                .heading("|m|")
+                .latex("$|m|$")
+                .digits(2),
+            Column::new("momentum_vector_error", "", "max |L - L0| / |L0| over every step so far")
+                .heading("L")
+                .latex("$L$")
+                .digits(2),
+            Column::new("attitude_error", "rad", "angle between computed and exact attitude")
+                .heading("attitude")
+                .digits(2),
+        ],
+    );
+    let mut summary = series.clone();
+    summary.name = "summary".into();
+    summary.caption = format!("Errors after {steps} steps of {STEP} s, dyadic body.");
+    let mut timing = Table::new(
+        "timing",
+        "Time of each run with its errors observed at every step, two runs side by side where there are two cores.",
+        vec![
+            Column::new("method", "", "name in the catalogue"),
+            Column::new("seconds", "s", "wall time of the run"),
+            Column::new("step_ns", "ns", "the same per step").heading("ns/step"),
+        ],
+    );
+    let mut energy = Figure::log_log(
+        "energy",
+        format!("Energy over {steps} steps"),
+        "steps",
+        "largest relative energy error so far",
+    );
+    let mut attitude =
+        Figure::log_log("attitude", format!("Attitude over {steps} steps"), "steps", "attitude error (rad)");
+    for (name, found) in METHODS.into_iter().zip(found) {
+        let (rows, seconds) = found?;
+        let curve = |column: usize| {
+            let point = |row: &Vec<Cell>| match (&row[1], &row[column]) {
+                (Cell::Integer(n), Cell::Number(x)) => Some((*n as f64, *x)),
+                _ => None,
+            };
+            Series::new(name, rows.iter().filter_map(point).collect())
+        };
+        energy.series.push(curve(3));
+        attitude.series.push(curve(6));
+        if let Some(last) = rows.last() {
+            summary.push(last.clone());
+        }
+        timing.push(row![name, seconds, seconds * 1e9 / steps as f64]);
+        for row in rows {
+            series.push(row);
+        }
+    }
+    Ok(Report {
+        tables: vec![series],
+        views: vec![summary],
+        figures: vec![energy, attitude],
+        timing: Some(timing),
+        ..Report::default()
+    })
+}
+
+/// The rows of one method, and the seconds they took.
+fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
+    let failed = |error: &dyn std::fmt::Display| Error::Failed(format!("{name}: {error}"));
+    let dyadic = catalog::body("dyadic").ok_or_else(|| failed(&"no dyadic body in the catalogue"))?;
+    let body = Body::free(dyadic.inertia);
+    let start = body.state(Default::default(), dyadic.omega_body.into()).map_err(|e| failed(&e))?;
+    let method = method(name).map_err(|e| failed(&e))?;
+    let mut run = Run::new(method.as_ref(), &body, &start, STEP).map_err(|e| failed(&e))?;
+    let exact = FreeMotion::new(&body, State::of(run.start()));
+    let clock = Instant::now();
+    let mut rows = Vec::new();
+    for sample in run.samples(Schedule::logarithmic(steps, 4)) {
+        let sample = sample.map_err(|e| failed(&e))?;
+        let there = exact.inside_at_dd(sample.elapsed);
+        let attitude = rotation_angle(State::<Dd>::of(sample.inside).attitude, there.attitude).hi();
+        let worst = sample.worst;
+        rows.push(
+            row![
+                name,
+                sample.steps,
+                sample.elapsed.hi(),
+                worst.energy,
+                worst.momentum,
+                worst.momentum_vector,
+                attitude
+            ]
+            .to_vec(),
+        );
+    }
+    Ok((rows, clock.elapsed().as_secs_f64()))
+}

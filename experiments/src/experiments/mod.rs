@@ -1,0 +1,32 @@
+//! The experiments, one file each.
+
+mod drift;
+mod exact;
+mod long_run;
+mod order;
+
+use crate::experiment::Experiment;
+
+/// All of them, in the order in which `all` runs them.
+pub(crate) const ALL: &[Experiment] = &[
+    Experiment {
+        name: "drift",
+        question: "what each method keeps and loses on real bodies, and how wrong its attitude is",
+        run: drift::run,
+    },
+    Experiment {
+        name: "order",
+        question: "whether each method converges with the order it claims",
+        run: order::run,
+    },
+    Experiment {
+        name: "exact",
+        question: "how exact the exact motion is, in every regime and at any time",
+        run: exact::run,
+    },
+    Experiment {
+        name: "long-run",
+        question: "what grows over very many steps, and how fast",
+        run: long_run::run,
+    },
+];

@@ -1,0 +1,78 @@
+//! Convergence orders, measured in double-double against the exact motion.
+
+use polhode::body::Body;
+use polhode::catalog;
+use polhode::method::{AnyMethod, catalogue};
+use polhode::run::{Halving, halvings};
+
+use crate::error::Error;
+use crate::experiment::{Context, Report};
+use crate::figure::{Figure, Series};
+use crate::table::{Column, Table, row};
+
+/// Time over which errors grow, s: a power of two, so that every step is exact.
+const SPAN: f64 = 2.0;
+
+pub(crate) fn run(context: &Context) -> Result<Report, Error> {
+    let finest = context.scale.pick(8, 12, 14);
+    let failed = |error: &dyn std::fmt::Display| Error::Failed(error.to_string());
+    let dyadic = catalog::body("dyadic").ok_or_else(|| failed(&"no dyadic body in the catalogue"))?;
+    let body = Body::free(dyadic.inertia);
+    let start = body
+        .enter_omega(nalgebra::UnitQuaternion::identity().into(), polhode::rotation::Vec3(dyadic.omega_body))
+        .map_err(|error| failed(&error))?;
+    let measure = |method: Box<dyn AnyMethod>| {
+        let errors = halvings(method.as_ref(), &body, &start, SPAN, 4..finest + 1);
+        errors.map(|errors| (method, errors)).map_err(|error| failed(&error))
+    };
+    let series = context.in_parallel(catalogue(), measure);
+
+    let mut errors = Table::new(
+        "errors",
+        format!("Errors of attitude and momentum after {SPAN} s by step, dyadic body, in double-double."),
+        vec![
+            Column::new("method", "", "name in the catalogue"),
+            Column::new("h", "s", "step").latex("$h$"),
+            Column::new("attitude_error", "rad", "angle between computed and exact attitude")
+                .heading("attitude"),
+            Column::new("attitude_order", "", "log2 of the ratio to the error at twice the step")
+                .heading("order"),
+            Column::new("momentum_error", "", "|m - m_exact| / |m|, body axes").heading("momentum"),
+            Column::new("momentum_order", "", "log2 of the ratio to the error at twice the step")
+                .heading("order"),
+        ],
+    );
+    let mut orders = Table::new(
+        "orders",
+        "Order of convergence: claimed, and measured at the last halving of the step.",
+        vec![
+            Column::new("method", "", "name in the catalogue"),
+            Column::new("claimed", "", "order that the method claims"),
+            Column::new("attitude_order", "", "measured on the attitude").heading("attitude").digits(5),
+            Column::new("momentum_order", "", "measured on the momentum").heading("momentum").digits(5),
+        ],
+    );
+    let mut figure = Figure::log_log(
+        "order",
+        format!("Attitude error after {SPAN} s against the step"),
+        "step h (s)",
+        "attitude error (rad)",
+    );
+    for found in series {
+        let (method, halved) = found?;
+        let mut last = (None, None);
+        for (k, now) in halved.iter().enumerate() {
+            let order = |pick: fn(&Halving) -> f64| {
+                k.checked_sub(1).map(|before| libm::log2(pick(&halved[before]) / pick(now)))
+            };
+            last = (order(|e| e.attitude_error), order(|e| e.momentum_error));
+            errors.push(row![method.name(), now.h, now.attitude_error, last.0, now.momentum_error, last.1]);
+        }
+        orders.push(row![method.name(), u64::from(method.claims().order), last.0, last.1]);
+        figure
+            .series
+            .push(Series::new(method.name(), halved.iter().map(|e| (e.h, e.attitude_error)).collect()));
+    }
+    let shown = vec![orders.clone()];
+    Ok(Report { tables: vec![orders, errors], views: shown, figures: vec![figure], ..Report::default() })
+}

@@ -1,0 +1,77 @@
+//! `polhode methods`: the catalogue.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use polhode::method::catalogue;
+
+use crate::error::Error;
+use crate::files::emit;
+use crate::table::{Column, Format, Table, row};
+
+/// The methods: order, what each keeps of free motion, cost per step, source
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Methods {
+    /// How rows are printed: table on a terminal, csv otherwise
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// Write to this file instead of standard output
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Methods {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        emit(&Format::or_default(self.format, self.out.is_some()).write(&table()), self.out.as_deref())
+    }
+}
+
+/// One row a method, from its claims.
+pub(crate) fn table() -> Table {
+    let mut table = Table::new(
+        "methods",
+        "What each method claims of free motion; every claim is tested.",
+        vec![
+            Column::new("name", "", "name on the command line"),
+            Column::new("order", "", "order of convergence"),
+            Column::new("energy", "", "exact, bounded or drifts"),
+            Column::new("momentum", "", "whether |m| is kept").heading("|m|").latex("$|m|$"),
+            Column::new("momentum_vector", "", "whether L in space is kept").heading("L").latex("$L$"),
+            Column::new("norm", "", "whether |q| = 1 is kept").heading("|q|").latex("$|q|$"),
+            Column::new("symmetric", "", "whether a step back undoes a step"),
+            Column::new("poisson", "", "whether the Lie-Poisson bracket is kept").heading("Poisson"),
+            Column::new("cost", "", "work per step"),
+            Column::new("source", "", "where it comes from"),
+        ],
+    );
+    let yes = |kept: bool| if kept { "yes" } else { "no" };
+    table.push(row![
+        "exact",
+        None::<u64>,
+        "exact",
+        "yes",
+        "yes",
+        "yes",
+        "yes",
+        "yes",
+        "1 evaluation at any time",
+        "Jacobi, J. reine angew. Math. 39 (1850) 293; two theta functions, constants in double-double"
+    ]);
+    for method in catalogue() {
+        let claims = method.claims();
+        let kept = claims.free;
+        table.push(row![
+            method.name(),
+            u64::from(claims.order),
+            kept.energy.to_string(),
+            yes(kept.momentum),
+            yes(kept.momentum_space),
+            yes(kept.norm),
+            yes(claims.symmetric),
+            yes(claims.poisson),
+            claims.cost.to_string(),
+            claims.source,
+        ]);
+    }
+    table
+}

@@ -1,0 +1,72 @@
+//! `polhode motion`: what kind of free motion a body makes.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use polhode::flow::{FreeMotion, Mode};
+
+use crate::body_arguments::{BodyArguments, StartArguments};
+use crate::error::Error;
+use crate::files::emit;
+use crate::table::{Column, Format, Table, row};
+
+/// Mode, periods and distance to the separatrix of a free motion
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Motion {
+    #[command(flatten)]
+    body: BodyArguments,
+    #[command(flatten)]
+    start: StartArguments,
+    /// How rows are printed: table on a terminal, csv otherwise
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// Write to this file instead of standard output
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Motion {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        let body = self.body.body()?;
+        let motion = FreeMotion::new(&body, self.start.inside(&body)?);
+        let character = motion.character().map_err(|error| Error::Input(format!("--omega: {error}")))?;
+        let mode = match character.mode {
+            Mode::LongAxis => "long-axis",
+            Mode::ShortAxis => "short-axis",
+            Mode::Separatrix => "separatrix",
+            Mode::Steady => "steady",
+        };
+        let column = Column::new;
+        let mut table = Table::new(
+            "motion",
+            "Character of a free motion.",
+            vec![
+                column("mode", "", "long-axis, short-axis, separatrix or steady"),
+                column("modulus", "", "k of the elliptic functions").digits(6),
+                column("complement", "", "1 - k^2").digits(6),
+                column("polhode_period", "s", "once round the polhode").heading("polhode period").digits(6),
+                column("nutation_period", "s", "the axis nods once").heading("nutation period").digits(6),
+                column("precession_period", "s", "mean time of the axis once round L")
+                    .heading("precession period")
+                    .digits(6),
+                column("precession_rate", "rad/s", "mean rate of the axis round L").hidden(),
+                column("spin", "rad/s", "2E/|L|").digits(6),
+                column("separatrix_distance", "", "(|L|^2/2E - I_middle)/I_middle, 0 on the separatrix")
+                    .heading("to separatrix")
+                    .digits(6),
+            ],
+        );
+        table.push(row![
+            mode,
+            character.parameter.map(f64::sqrt),
+            character.complement,
+            character.polhode_period,
+            character.nutation_period,
+            character.precession_rate.map(|rate| std::f64::consts::TAU / rate.abs()),
+            character.precession_rate,
+            character.spin,
+            character.separatrix_distance,
+        ]);
+        emit(&Format::or_default(self.format, self.out.is_some()).write(&table), self.out.as_deref())
+    }
+}

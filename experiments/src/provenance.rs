@@ -1,0 +1,74 @@
+//! Where results come from: `run.toml` beside them.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::experiment::{Report, Scale};
+
+#[derive(Serialize)]
+struct Provenance<'a> {
+    experiment: &'a str,
+    scale: String,
+    version: &'static str,
+    commit: &'static str,
+    /// Whether sources differ from the commit.
+    changed: &'static str,
+    rustc: &'static str,
+    profile: &'static str,
+    target: &'static str,
+    cpu_features: Vec<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seed: Option<u64>,
+    tables: BTreeMap<String, Columns>,
+}
+
+#[derive(Serialize)]
+struct Columns {
+    caption: String,
+    /// Name to meaning, with the unit in brackets.
+    columns: BTreeMap<&'static str, String>,
+}
+
+/// The contents of `run.toml`.
+pub(crate) fn describe(experiment: &str, scale: Scale, report: &Report) -> String {
+    let meaning = |unit: &str, meaning: &str| {
+        if unit.is_empty() { meaning.into() } else { format!("{meaning} [{unit}]") }
+    };
+    let tables = report.tables.iter().chain(&report.data).chain(&report.timing).map(|table| {
+        let columns = table.columns.iter().map(|c| (c.name, meaning(c.unit, c.meaning))).collect();
+        (format!("{}.csv", table.name), Columns { caption: table.caption.clone(), columns })
+    });
+    let provenance = Provenance {
+        experiment,
+        scale: scale.to_string(),
+        version: env!("CARGO_PKG_VERSION"),
+        commit: env!("POLHODE_COMMIT"),
+        changed: env!("POLHODE_DIRTY"),
+        rustc: env!("POLHODE_RUSTC"),
+        profile: env!("POLHODE_PROFILE"),
+        target: env!("POLHODE_TARGET"),
+        cpu_features: cpu_features(),
+        seed: report.seed,
+        tables: tables.collect(),
+    };
+    toml::to_string(&provenance).unwrap_or_default()
+}
+
+#[cfg(target_arch = "x86_64")]
+fn cpu_features() -> Vec<&'static str> {
+    [
+        ("avx", std::is_x86_feature_detected!("avx")),
+        ("avx2", std::is_x86_feature_detected!("avx2")),
+        ("fma", std::is_x86_feature_detected!("fma")),
+        ("avx512f", std::is_x86_feature_detected!("avx512f")),
+    ]
+    .into_iter()
+    .filter_map(|(name, there)| there.then_some(name))
+    .collect()
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn cpu_features() -> Vec<&'static str> {
+    Vec::new()
+}

@@ -1,0 +1,132 @@
+//! `polhode experiment publish`: numbers reach documents only from result files.
+//!
+//! A block in README.md between `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced
+//! by that table of the committed results of paper scale; every LaTeX table and CSV goes to paper/generated, headed by
+//! the experiment, commit and scale that made it. A block `<!-- begin generated: methods -->` holds the catalogue.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::error::Error;
+use crate::files::{read, replace};
+use crate::methods;
+
+const RESULTS: &str = "experiments/results/paper";
+const METHODS: &str = "methods";
+const REMEDY: &str = "run `polhode experiment run all --scale paper --out experiments/results` first";
+
+#[derive(Deserialize)]
+struct Origin {
+    experiment: String,
+    scale: String,
+    commit: String,
+}
+
+pub(crate) fn run(root: &Path) -> Result<(), Error> {
+    let results = root.join(RESULTS);
+    let readme_path = root.join("README.md");
+    let readme = with_blocks_filled(&read(&readme_path, "run this in the project's root")?, &results)?;
+    let generated = root.join("paper/generated");
+    let mut files = Vec::new();
+    for experiment in folders(&results)? {
+        let origin = origin(&experiment)?;
+        let head = format!("{}, commit {}, scale {}", origin.experiment, origin.commit, origin.scale);
+        for path in sorted_entries(&experiment)? {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let target = generated.join(format!("{}-{name}", origin.experiment));
+            match path.extension().and_then(|ending| ending.to_str()) {
+                Some("tex") => files.push((target, format!("% {head}\n{}", read(&path, REMEDY)?))),
+                Some("csv") => files.push((target, read(&path, REMEDY)?)),
+                _ => {}
+            }
+        }
+        files.push((
+            generated.join(format!("{}-origin.tex", origin.experiment)),
+            format!("% {head}\n{head}%\n"),
+        ));
+    }
+    let head = format!("% catalogue of methods, version {}\n", env!("CARGO_PKG_VERSION"));
+    files.push((generated.join("methods.tex"), head + &methods::table().latex()));
+    // all is known before the first file is touched
+    std::fs::create_dir_all(&generated)
+        .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", generated.display())))?;
+    for (path, text) in &files {
+        replace(path, text.as_bytes())?;
+    }
+    replace(&readme_path, readme.as_bytes())
+}
+
+fn origin(experiment: &Path) -> Result<Origin, Error> {
+    let path = experiment.join("run.toml");
+    toml::from_str(&read(&path, REMEDY)?)
+        .map_err(|error| Error::Input(format!("{}: {error}", path.display())))
+}
+
+fn folders(results: &Path) -> Result<Vec<std::path::PathBuf>, Error> {
+    Ok(sorted_entries(results)?.into_iter().filter(|path| path.is_dir()).collect())
+}
+
+fn sorted_entries(folder: &Path) -> Result<Vec<std::path::PathBuf>, Error> {
+    let unreadable = |reason: std::io::Error| {
+        Error::Input(format!("{}: cannot be read: {reason}; {REMEDY}", folder.display()))
+    };
+    let entries = std::fs::read_dir(folder).map_err(unreadable)?;
+    let mut paths =
+        entries.map(|entry| entry.map(|e| e.path())).collect::<Result<Vec<_>, _>>().map_err(unreadable)?;
+    paths.sort();
+    Ok(paths)
+}
+
+/// The text with each generated block replaced.
+fn with_blocks_filled(text: &str, results: &Path) -> Result<String, Error> {
+    const BEGIN: &str = "<!-- begin generated: ";
+    const END: &str = "<!-- end generated -->";
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find(BEGIN) {
+        let (before, block) = rest.split_at(at);
+        let unclosed =
+            || Error::Input(format!("README.md: a block that begins with '{BEGIN}' has no '{END}'"));
+        let (marker, _) = block.split_once('\n').ok_or_else(unclosed)?;
+        let name = marker.trim_start_matches(BEGIN).trim_end_matches("-->").trim();
+        let end = block.find(END).ok_or_else(unclosed)?;
+        let table = match name {
+            METHODS => methods::table().markdown(),
+            _ => read(&results.join(format!("{name}.md")), REMEDY)?,
+        };
+        out += &format!("{before}{marker}\n{table}{END}");
+        rest = &block[end + END.len()..];
+    }
+    Ok(out + rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::scratch::Scratch;
+
+    #[test]
+    fn blocks_are_replaced_and_the_rest_is_kept() {
+        let scratch = Scratch::new("publish");
+        std::fs::create_dir(scratch.path().join("drift")).unwrap();
+        std::fs::write(scratch.path().join("drift/table.md"), "| new |\n").unwrap();
+        let catalogue =
+            with_blocks_filled("<!-- begin generated: methods -->\n<!-- end generated -->", scratch.path());
+        assert!(catalogue.unwrap().contains("| rattle |"));
+        let text = "a\n<!-- begin generated: drift/table -->\n| old |\n<!-- end generated -->\nb\n";
+        let filled = with_blocks_filled(text, scratch.path()).unwrap();
+        assert_eq!(filled, text.replace("old", "new"));
+        assert_eq!(with_blocks_filled(&filled, scratch.path()).unwrap(), filled);
+    }
+
+    #[test]
+    fn a_missing_result_and_an_open_block_are_refused() {
+        let scratch = Scratch::new("publish-missing");
+        let missing = "<!-- begin generated: x/y -->\n<!-- end generated -->";
+        assert!(
+            with_blocks_filled(missing, scratch.path()).unwrap_err().to_string().contains("--scale paper")
+        );
+        assert!(with_blocks_filled("<!-- begin generated: x/y -->\n", scratch.path()).is_err());
+    }
+}

@@ -1,0 +1,290 @@
+//! A table: named columns, rows, and one writer for each reader.
+
+mod markup;
+mod print;
+mod rounded;
+
+use serde_json::Value;
+
+/// One value of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Cell {
+    /// A finite quantity.
+    Number(f64),
+    /// A count.
+    Integer(i64),
+    /// A name or a verdict.
+    Text(String),
+    /// The quantity has no meaning here.
+    Empty,
+}
+
+impl From<f64> for Cell {
+    /// A number that is not finite says that the quantity has no value: the cell is empty.
+    fn from(x: f64) -> Self {
+        if x.is_finite() { Self::Number(x) } else { Self::Empty }
+    }
+}
+
+impl From<u64> for Cell {
+    fn from(n: u64) -> Self {
+        i64::try_from(n).map_or(Self::Number(n as f64), Self::Integer)
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_string())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl<T: Into<Cell>> From<Option<T>> for Cell {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Empty, Into::into)
+    }
+}
+
+impl Cell {
+    /// Every digit that is needed to read the same double back.
+    fn exact(&self) -> String {
+        match self {
+            Self::Number(x) => format!("{x:?}"),
+            Self::Integer(n) => n.to_string(),
+            Self::Text(text) => text.clone(),
+            Self::Empty => String::new(),
+        }
+    }
+
+    fn json(&self) -> Value {
+        match self {
+            Self::Number(x) => Value::from(*x),
+            Self::Integer(n) => Value::from(*n),
+            Self::Text(text) => Value::from(text.as_str()),
+            Self::Empty => Value::Null,
+        }
+    }
+}
+
+/// One quantity of a table.
+#[derive(Clone, Debug)]
+pub(crate) struct Column {
+    /// Name in CSV and JSON.
+    pub(crate) name: &'static str,
+    /// Unit, "" for a pure number or a text.
+    pub(crate) unit: &'static str,
+    /// What the quantity is, for `run.toml`.
+    pub(crate) meaning: &'static str,
+    heading: &'static str,
+    latex: Option<&'static str>,
+    digits: usize,
+    shown: bool,
+}
+
+impl Column {
+    pub(crate) fn new(name: &'static str, unit: &'static str, meaning: &'static str) -> Self {
+        Self { name, unit, meaning, heading: name, latex: None, digits: 3, shown: true }
+    }
+
+    /// Heading in Markdown and on the terminal, and in LaTeX when it has none of its own.
+    pub(crate) fn heading(self, heading: &'static str) -> Self {
+        Self { heading, ..self }
+    }
+
+    /// Heading in LaTeX, verbatim.
+    pub(crate) fn latex(self, heading: &'static str) -> Self {
+        Self { latex: Some(heading), ..self }
+    }
+
+    /// Significant digits where the table is rounded.
+    pub(crate) fn digits(self, digits: usize) -> Self {
+        Self { digits, ..self }
+    }
+
+    /// Kept out of the rounded tables; CSV and JSON have it.
+    pub(crate) fn hidden(self) -> Self {
+        Self { shown: false, ..self }
+    }
+}
+
+/// Rows of named quantities.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    /// File name without ending.
+    pub(crate) name: String,
+    /// What the rows say, one sentence.
+    pub(crate) caption: String,
+    /// The quantities.
+    pub(crate) columns: Vec<Column>,
+    rows: Vec<Vec<Cell>>,
+}
+
+/// One row from values of any kind: `row!["rk4", 0.01, 1000_u64, None::<f64>]`.
+macro_rules! row {
+    ($($value:expr),* $(,)?) => { [$($crate::table::Cell::from($value)),*] };
+}
+pub(crate) use row;
+
+impl Table {
+    pub(crate) fn new(name: impl Into<String>, caption: impl Into<String>, columns: Vec<Column>) -> Self {
+        Self { name: name.into(), caption: caption.into(), columns, rows: Vec::new() }
+    }
+
+    /// The rows that `keep` chooses, for readers of documents; the columns named in `hide` are left out there.
+    pub(crate) fn view(
+        &self,
+        name: impl Into<String>,
+        caption: impl Into<String>,
+        hide: &[&str],
+        keep: impl Fn(&[Cell]) -> bool,
+    ) -> Self {
+        let shown = |column: &Column| Column {
+            shown: column.shown && !hide.contains(&column.name),
+            ..column.clone()
+        };
+        Self {
+            name: name.into(),
+            caption: caption.into(),
+            columns: self.columns.iter().map(shown).collect(),
+            rows: self.rows.iter().filter(|row| keep(row)).cloned().collect(),
+        }
+    }
+
+    /// Adds a row; a short one ends in empty cells.
+    pub(crate) fn push(&mut self, row: impl IntoIterator<Item = Cell>) {
+        let mut row: Vec<Cell> = row.into_iter().collect();
+        debug_assert_eq!(row.len(), self.columns.len(), "cells of a row of {}", self.name);
+        row.resize(self.columns.len(), Cell::Empty);
+        self.rows.push(row);
+    }
+
+    pub(crate) fn rows(&self) -> &[Vec<Cell>] {
+        &self.rows
+    }
+
+    /// Header row, then every row in full precision.
+    pub(crate) fn csv(&self) -> String {
+        let mut lines =
+            vec![self.columns.iter().map(|column| quoted(column.name)).collect::<Vec<_>>().join(",")];
+        lines.extend(
+            self.rows
+                .iter()
+                .map(|row| row.iter().map(|cell| quoted(&cell.exact())).collect::<Vec<_>>().join(",")),
+        );
+        lines.join("\n") + "\n"
+    }
+
+    /// An array of objects, a row a line; an empty cell is null.
+    pub(crate) fn json(&self) -> String {
+        let entry =
+            |(column, cell): (&Column, &Cell)| format!("{}:{}", Value::from(column.name), cell.json());
+        let object = |row: &Vec<Cell>| {
+            format!("  {{{}}}", self.columns.iter().zip(row).map(entry).collect::<Vec<_>>().join(","))
+        };
+        let rows: Vec<String> = self.rows.iter().map(object).collect();
+        if rows.is_empty() { "[]\n".into() } else { format!("[\n{}\n]\n", rows.join(",\n")) }
+    }
+
+    /// The columns of the rounded tables, with their place in a row.
+    fn shown(&self) -> Vec<(usize, &Column)> {
+        self.columns.iter().enumerate().filter(|(_, column)| column.shown).collect()
+    }
+
+    /// Whether the column holds numbers, which stand at the right.
+    fn is_numeric(&self, k: usize) -> bool {
+        let mut filled = self.rows.iter().filter(|row| row[k] != Cell::Empty).peekable();
+        filled.peek().is_some() && filled.all(|row| !matches!(row[k], Cell::Text(_)))
+    }
+}
+
+/// A field by RFC 4180.
+fn quoted(field: &str) -> String {
+    if field.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_string()
+    }
+}
+
+/// How rows are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Format {
+    /// Rounded, for eyes; the default on a terminal
+    Table,
+    /// Every digit, for programs; the default elsewhere
+    Csv,
+    /// An array of objects
+    Json,
+}
+
+impl Format {
+    /// The format asked for, or the one that suits standard output or a file.
+    pub(crate) fn or_default(asked: Option<Self>, to_file: bool) -> Self {
+        use std::io::IsTerminal;
+        let terminal = !to_file && std::io::stdout().is_terminal();
+        asked.unwrap_or(if terminal { Self::Table } else { Self::Csv })
+    }
+
+    pub(crate) fn write(self, table: &Table) -> String {
+        match self {
+            Self::Table => table.terminal(),
+            Self::Csv => table.csv(),
+            Self::Json => table.json(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    pub(super) fn example() -> Table {
+        let columns = vec![
+            Column::new("method", "", "integrator"),
+            Column::new("step", "s", "step size"),
+            Column::new("steps", "", "number of steps").hidden(),
+            Column::new("energy_error", "", "max |ΔE/E|")
+                .heading("max |ΔE/E|")
+                .latex(r"$|\Delta E/E|$")
+                .digits(2),
+        ];
+        let mut table = Table::new("drift", "Drift.", columns);
+        table.push(row!["rk4", 0.01, 1_000_000_u64, 4.3123e-10]);
+        table.push(row!["two, \"turns\" & 50 %", 0.1 + 0.2, 3_u64, f64::NAN]);
+        table
+    }
+
+    #[test]
+    fn csv_has_every_digit_and_no_nan() {
+        let expected = "method,step,steps,energy_error\nrk4,0.01,1000000,4.3123e-10\n\
+                        \"two, \"\"turns\"\" & 50 %\",0.30000000000000004,3,\n";
+        assert_eq!(example().csv(), expected);
+    }
+
+    #[test]
+    fn csv_reads_back_bit_for_bit() {
+        let mut table = Table::new("extremes", "", vec![Column::new("x", "", "")]);
+        let values =
+            [f64::MIN_POSITIVE / 3.0, f64::MAX, -1.0 / 3.0, 5e-324, 1e22, 123456789012345680.0, -0.0];
+        values.iter().for_each(|x| table.push(row![*x]));
+        let csv = table.csv();
+        let mut reader = csv::Reader::from_reader(csv.as_bytes());
+        let read: Vec<f64> = reader.deserialize().map(Result::unwrap).collect();
+        assert_eq!(read.iter().map(|x| x.to_bits()).collect::<Vec<_>>(), values.map(f64::to_bits));
+    }
+
+    #[test]
+    fn json_is_an_array_of_objects() {
+        let read: Value = serde_json::from_str(&example().json()).unwrap();
+        assert_eq!(read[0]["energy_error"], 4.3123e-10);
+        assert_eq!(read[0]["steps"], 1_000_000);
+        assert_eq!(read[1]["step"].as_f64().map(f64::to_bits), Some(0.30000000000000004_f64.to_bits()));
+        assert!(read[1]["energy_error"].is_null());
+        assert_eq!(Table::new("none", "", vec![]).json(), "[]\n");
+    }
+}

@@ -1,0 +1,121 @@
+//! The rounded rows in Markdown and LaTeX.
+
+use super::rounded::rounded;
+use super::{Cell, Column, Table};
+
+impl Table {
+    pub(crate) fn markdown(&self) -> String {
+        let shown = self.shown();
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let mut text = line(shown.iter().map(|(_, column)| escaped_markdown(&with_unit(column))).collect());
+        let rules = shown.iter().map(|(k, _)| if self.is_numeric(*k) { "---:" } else { ":---" });
+        text += &line(rules.map(String::from).collect());
+        for row in self.rows() {
+            let cell = |(k, column): &(usize, &Column)| match &row[*k] {
+                Cell::Number(x) => rounded(*x, column.digits).plain(),
+                other => escaped_markdown(&other.exact()),
+            };
+            text += &line(shown.iter().map(cell).collect());
+        }
+        text
+    }
+
+    /// A `tabular` in booktabs style, to be put into a `table` with its own caption.
+    pub(crate) fn latex(&self) -> String {
+        let shown = self.shown();
+        let line = |cells: Vec<String>| format!("{} \\\\\n", cells.join(" & "));
+        let alignment: String =
+            shown.iter().map(|(k, _)| if self.is_numeric(*k) { 'r' } else { 'l' }).collect();
+        let mut text = format!("\\begin{{tabular}}{{{alignment}}}\n\\toprule\n");
+        text += &line(shown.iter().map(|(_, column)| latex_heading(column)).collect());
+        text += "\\midrule\n";
+        for row in self.rows() {
+            let cell = |(k, column): &(usize, &Column)| match &row[*k] {
+                Cell::Number(x) => rounded(*x, column.digits).latex(),
+                Cell::Integer(n) => format!("${n}$"),
+                other => escaped_latex(&other.exact()),
+            };
+            text += &line(shown.iter().map(cell).collect());
+        }
+        text + "\\bottomrule\n\\end{tabular}\n"
+    }
+}
+
+/// "step [s]"
+pub(super) fn with_unit(column: &Column) -> String {
+    match column.unit {
+        "" => column.heading.to_string(),
+        unit => format!("{} [{unit}]", column.heading),
+    }
+}
+
+fn latex_heading(column: &Column) -> String {
+    let heading = column.latex.map_or_else(|| escaped_latex(column.heading), str::to_string);
+    match column.unit {
+        "" => heading,
+        unit => format!("{heading} [{}]", escaped_latex(unit)),
+    }
+}
+
+fn escaped_markdown(text: &str) -> String {
+    text.replace('|', "\\|").replace('<', "&lt;").replace('\n', " ")
+}
+
+fn escaped_latex(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => escaped.extend(['\\', c]),
+            '\\' => escaped += r"\textbackslash{}",
+            '~' => escaped += r"\textasciitilde{}",
+            '^' => escaped += r"\textasciicircum{}",
+            '|' => escaped += r"\textbar{}",
+            '<' => escaped += r"\textless{}",
+            '>' => escaped += r"\textgreater{}",
+            '\n' => escaped.push(' '),
+            'Δ' => escaped += r"$\Delta$",
+            'ω' => escaped += r"$\omega$",
+            '²' => escaped += r"\textsuperscript{2}",
+            '·' => escaped += r"$\cdot$",
+            '×' => escaped += r"$\times$",
+            _ => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::example;
+    use super::*;
+
+    #[test]
+    fn markdown_of_the_shown_columns() {
+        let expected = "| method | step [s] | max \\|ΔE/E\\| |\n| :--- | ---: | ---: |\n\
+                        | rk4 | 0.01 | 4.3e-10 |\n| two, \"turns\" & 50 % | 0.3 |  |\n";
+        assert_eq!(example().markdown(), expected);
+    }
+
+    #[test]
+    fn latex_of_the_shown_columns() {
+        let expected = r#"\begin{tabular}{lrr}
+\toprule
+method & step [s] & $|\Delta E/E|$ \\
+\midrule
+rk4 & $0.01$ & $4.3\times10^{-10}$ \\
+two, "turns" \& 50 \% & $0.3$ &  \\
+\bottomrule
+\end{tabular}
+"#;
+        assert_eq!(example().latex(), expected);
+    }
+
+    #[test]
+    fn latex_escapes_its_own_signs() {
+        assert_eq!(escaped_latex(r"a_b\c^{2}"), r"a\_b\textbackslash{}c\textasciicircum{}\{2\}");
+        assert_eq!(
+            escaped_latex("|ΔE| < 1 rad/s²"),
+            r"\textbar{}$\Delta$E\textbar{} \textless{} 1 rad/s\textsuperscript{2}"
+        );
+    }
+}

@@ -1,0 +1,113 @@
+//! The rows for a terminal of eighty columns.
+
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Width, presets};
+
+use super::markup::with_unit;
+use super::rounded::rounded;
+use super::{Cell, Column, Table};
+
+const WIDTH: usize = 80;
+/// Texts are wrapped rather than let push numbers out of sight.
+const TEXT_WIDTH: usize = 36;
+/// Blanks around a cell.
+const PADDING: usize = 2;
+
+impl Table {
+    /// Rounded rows; a table too wide is cut into blocks that each repeat the first column.
+    pub(crate) fn terminal(&self) -> String {
+        let shown = self.shown();
+        let Some(first) = shown.first() else { return String::new() };
+        let width = |(k, column): &(usize, &Column)| self.width(*k, column) + PADDING;
+        let mut blocks = vec![vec![*first]];
+        let mut used = width(first);
+        for column in &shown[1..] {
+            if used + width(column) > WIDTH {
+                blocks.push(vec![*first]);
+                used = width(first);
+            }
+            used += width(column);
+            if let Some(block) = blocks.last_mut() {
+                block.push(*column);
+            }
+        }
+        blocks.iter().map(|block| self.block(block) + "\n").collect::<Vec<_>>().join("\n")
+    }
+
+    fn width(&self, k: usize, column: &Column) -> usize {
+        let heading = headings(column).split('\n').map(length).max().unwrap_or(0);
+        let cells = self.rows().iter().map(|row| length(&text(&row[k], column))).max().unwrap_or(0);
+        if self.is_numeric(k) { heading.max(cells) } else { heading.max(cells).min(TEXT_WIDTH) }
+    }
+
+    fn block(&self, columns: &[(usize, &Column)]) -> String {
+        let mut table = comfy_table::Table::new();
+        table.load_preset(presets::NOTHING);
+        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH as u16);
+        table.set_header(columns.iter().map(|(_, column)| headings(column)));
+        for row in self.rows() {
+            table.add_row(columns.iter().map(|(k, column)| text(&row[*k], column)));
+        }
+        for (place, (k, column)) in columns.iter().enumerate() {
+            let Some(printed) = table.column_mut(place) else { continue };
+            printed.set_constraint(ColumnConstraint::Absolute(Width::Fixed(
+                (self.width(*k, column) + PADDING) as u16,
+            )));
+            if self.is_numeric(*k) {
+                printed.set_cell_alignment(CellAlignment::Right);
+            }
+        }
+        table.trim_fmt()
+    }
+}
+
+/// The unit stands below the name.
+fn headings(column: &Column) -> String {
+    with_unit(column).replacen(" [", "\n[", 1)
+}
+
+fn text(cell: &Cell, column: &Column) -> String {
+    match cell {
+        Cell::Number(x) => rounded(*x, column.digits).plain(),
+        other => other.exact(),
+    }
+}
+
+fn length(text: &str) -> usize {
+    text.chars().count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Column, Table, row, tests::example};
+    use super::*;
+
+    #[test]
+    fn every_line_fits_and_no_number_is_broken() {
+        let names = ["alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota"];
+        let columns = names.map(|name| Column::new(name, "rad/s", "").digits(6));
+        let mut table = Table::new("wide", "", columns.into());
+        table.push(names.map(|_| Cell::from(-1.234_567_89e-100)));
+        let printed = table.terminal();
+        assert!(printed.lines().all(|line| length(line) <= WIDTH), "{printed}");
+        assert_eq!(printed.matches("-1.23457e-100").count(), 10, "{printed}"); // the first column twice
+    }
+
+    #[test]
+    fn long_texts_wrap() {
+        let mut table =
+            Table::new("notes", "", vec![Column::new("name", "", ""), Column::new("note", "", "")]);
+        table.push(row![
+            "rk4",
+            "a long remark that has to be wrapped because it will not fit into one line of text"
+        ]);
+        let printed = table.terminal();
+        assert!(printed.lines().all(|line| length(line) <= WIDTH), "{printed}");
+        assert!(printed.contains("wrapped"), "{printed}");
+    }
+
+    #[test]
+    fn numbers_stand_at_the_right() {
+        let printed = example().terminal();
+        assert!(printed.lines().any(|line| line.ends_with("4.3e-10")), "{printed}");
+    }
+}

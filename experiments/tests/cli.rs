@@ -1,0 +1,497 @@
+//! The command line as its users meet it: golden outputs, golden refusals, and files that are whole or absent.
+//!
+//! `POLHODE_BLESS=1 cargo test -p polhode-experiments --test cli` rewrites the golden files; read the difference.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// An empty folder for one test, removed with it.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("polhode-cli-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn names(&self) -> Vec<String> {
+        names(&self.0)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+struct Answer {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn polhode(arguments: &[&str]) -> Answer {
+    let Output { status, stdout, stderr } =
+        Command::new(env!("CARGO_BIN_EXE_polhode")).args(arguments).output().unwrap();
+    let answer = Answer {
+        code: status.code().unwrap(),
+        out: String::from_utf8(stdout).unwrap(),
+        err: String::from_utf8(stderr).unwrap(),
+    };
+    for text in [&answer.out, &answer.err] {
+        assert!(!text.contains("panicked"), "{arguments:?}: {text}");
+    }
+    let words = answer.out.split(|c: char| !c.is_ascii_alphanumeric());
+    let not_numbers = words.filter(|word| ["NaN", "nan", "inf"].contains(word)).count();
+    assert_eq!(not_numbers, 0, "{arguments:?}: {}", answer.out);
+    answer
+}
+
+/// A command line written as a shell would take it; no argument here holds a blank.
+fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
+fn run(line: &str) -> Answer {
+    polhode(&words(line))
+}
+
+/// Runs `line`, which has to succeed silently on standard error.
+fn output(line: &str) -> String {
+    let answer = run(line);
+    assert_eq!((answer.code, answer.err.as_str()), (0, ""), "{line}");
+    answer.out
+}
+
+fn golden(name: &str, found: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
+    if std::env::var_os("POLHODE_BLESS").is_some() {
+        fs::write(&path, found).unwrap();
+    }
+    let expected = fs::read_to_string(&path).unwrap();
+    assert_eq!(found, expected, "{name} differs from the committed file");
+}
+
+/// The refusal of `line`: exit code 2, nothing on standard output, one `error:` that holds every part of `says`.
+fn refused(line: &str, says: &[&str]) {
+    refused_with(&words(line), says);
+}
+
+fn refused_with(arguments: &[&str], says: &[&str]) {
+    let answer = polhode(arguments);
+    let Answer { code, out, err } = &answer;
+    assert_eq!((*code, out.as_str()), (2, ""), "{arguments:?}: {err}");
+    assert!(err.starts_with("error: "), "{arguments:?}: {err}");
+    assert_eq!(err.matches("error:").count(), 1, "{arguments:?}: {err}");
+    for part in says {
+        assert!(err.contains(part), "{arguments:?}: '{part}' is not in: {err}");
+    }
+    let written_out = |word: &str| word.len() > 60 && !word.contains(['/', '<']);
+    assert!(!err.split_whitespace().any(written_out), "{arguments:?}: a value written out in full: {err}");
+}
+
+/// The first words of most lines here: a body whose moments and start are exact in binary.
+const DYADIC: &str = "propagate --body dyadic --omega 1,0.5,-0.25";
+
+fn with(flags: &str) -> String {
+    format!("{DYADIC} {flags}")
+}
+
+#[test]
+fn help_is_everywhere_and_fits_into_80_columns() {
+    let commands =
+        ["", "propagate", "methods", "experiment", "experiment list", "experiment run", "experiment publish"];
+    for command in commands {
+        for flag in ["--help", "-h"] {
+            let text = output(&format!("{command} {flag}"));
+            assert!(text.contains("Usage: polhode"), "{command}: {text}");
+            for line in text.lines() {
+                assert!(line.chars().count() <= 80, "{command} {flag}: {line}");
+            }
+        }
+    }
+    assert!(output("--version").starts_with("polhode "));
+}
+
+#[test]
+fn every_flag_is_in_the_help() {
+    let help = output("propagate --help");
+    for flag in [
+        "--moments",
+        "--inertia",
+        "--body",
+        "--omega",
+        "--attitude",
+        "--times",
+        "--until",
+        "--every",
+        "--start-time",
+        "--method",
+        "--step",
+        "--format",
+        "--out",
+    ] {
+        assert!(help.contains(flag), "{flag}");
+    }
+}
+
+#[test]
+fn the_exact_motion_is_the_golden_one() {
+    golden("exact.csv", &output(&with("--times 0,1,2,-1,1e6")));
+}
+
+/// Attitude and angular velocity of the dyadic body at t = 2 and t = −1, 20 digits: Taylor series of the equations
+/// of motion with 40 digits (mpmath 1.3, `odefun` with tol = 1e-30), which knows nothing of elliptic functions.
+#[expect(clippy::excessive_precision, reason = "digits of the reference")]
+const TAYLOR: [(f64, [f64; 7]); 2] = [
+    (
+        2.0,
+        [
+            0.41446149207459414034,
+            0.81123960424665596691,
+            0.29031537828351826779,
+            -0.29296579530915863294,
+            1.0830787987036790821,
+            0.18350856859624909173,
+            -0.34143982092447701993,
+        ],
+    ),
+    (
+        -1.0,
+        [
+            0.84091567587658248718,
+            -0.45909703747083820029,
+            -0.26542497229027488031,
+            0.10789031622549386082,
+            0.95198318313152534492,
+            0.60593731011834949349,
+            -0.18223609426135863092,
+        ],
+    ),
+];
+
+#[test]
+fn the_golden_rows_are_those_of_a_taylor_series() {
+    let text = output(&with("--times 2,-1"));
+    let mut rows = csv::Reader::from_reader(text.as_bytes());
+    for (row, (t, expected)) in rows.records().map(Result::unwrap).zip(TAYLOR) {
+        let cells: Vec<f64> = (0..8).map(|k| row[k].parse().unwrap()).collect();
+        assert_eq!(cells[0], t);
+        for (found, expected) in cells[1..].iter().zip(expected) {
+            approx::assert_abs_diff_eq!(*found, expected, epsilon = 1e-15);
+        }
+    }
+}
+
+#[test]
+fn stepping_methods_are_the_golden_ones() {
+    golden("rk4.csv", &output(&with("--method rk4 --step 0.125 --until 2 --every 0.5")));
+    golden("lie-poisson.csv", &output(&with("--method lie-poisson --step 0.125 --until 2 --every 0.5")));
+    golden("lie-poisson-321.csv", &output(&with("--method lie-poisson:321 --step 0.125 --times 1,2")));
+    golden("rattle.csv", &output(&with("--method rattle --step 0.125 --times 1,2")));
+}
+
+#[test]
+fn json_and_table_hold_the_rows_of_the_csv() {
+    let flags = "--until 1 --every 0.5 --attitude 0,0,3,4";
+    golden("exact.json", &output(&with(&format!("{flags} --format json"))));
+    golden("exact.txt", &output(&with(&format!("{flags} --format table"))));
+    golden("methods.csv", &output("methods"));
+    golden("experiments.csv", &output("experiment list"));
+    let text = output("methods --format table");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+}
+
+#[test]
+fn a_tensor_and_its_principal_moments_turn_alike() {
+    let moments = output("propagate --moments 1,2,2.5 --omega 0.5,1,0 --times 0,3");
+    let tensor = output("propagate --inertia 1,2,2.5,0,0,0 --omega 0.5,1,0 --times 0,3");
+    assert_eq!(moments, tensor);
+    golden(
+        "tensor.csv",
+        &output("propagate --inertia 2,2,3,-0.25,0.125,0.5 --omega 0.5,1,-0.25 --times 0,4"),
+    );
+}
+
+#[test]
+fn times_count_from_the_start_time() {
+    let shifted = output(&with("--start-time 5 --until 7 --every 1"));
+    let plain = output(&with("--until 2 --every 1"));
+    let without_t = |text: &str| -> Vec<String> {
+        text.lines().map(|line| line.split_once(',').unwrap().1.to_string()).collect()
+    };
+    assert_eq!(without_t(&shifted), without_t(&plain));
+    assert!(shifted.lines().last().unwrap().starts_with("7.0,"));
+    let back = output(&with("--until -2 --every -1"));
+    assert_eq!(back.lines().count(), 4);
+    // rows end where the last multiple does
+    assert_eq!(output(&with("--until 1 --every 0.75")).lines().count(), 3);
+    // a step that is no binary fraction still reaches what was typed
+    assert_eq!(output(&with("--method rk4 --step 0.1 --times 0.3,0.7,100.1")).lines().count(), 4);
+}
+
+#[test]
+fn any_norm_of_the_attitude_will_do() {
+    let flags = "--times 1 --method lie-poisson --step 0.5 --attitude";
+    let unit = output(&with(&format!("{flags} 1,-1,0,1")));
+    for scaled in ["2e0,-2,0,2", "1.25e-320,-1.25e-320,0,1.25e-320", "1e308,-1e308,0,1e308"] {
+        assert_eq!(output(&with(&format!("{flags} {scaled}"))), unit, "{scaled}");
+    }
+}
+
+#[test]
+fn a_body_at_rest_stays() {
+    for method in ["exact", "rk4 --step 0.5", "lie-poisson --step 0.5", "rattle --step 0.5"] {
+        let text = output(&format!("propagate --moments 1,2,3 --omega 0,0,0 --times 1 --method {method}"));
+        assert!(text.ends_with("1.0,1.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,,0.0\n"), "{text}");
+    }
+}
+
+#[test]
+fn numbers_are_refused_by_place_value_and_rule() {
+    refused(&with("--times 1,nan"), &["--times", "item 2", "'nan'", "finite"]);
+    refused(&with("--times inf"), &["--times", "'inf'", "finite"]);
+    refused(&with("--times 1,,2"), &["--times", "item 2", "missing"]);
+    refused(&with("--times 1,x"), &["--times", "item 2", "'x' is not a number", "0.5 or 1e-3"]);
+    refused(&with("--until 1e999 --every 1"), &["--until", "1e999", "finite"]);
+    refused(&with("--times"), &["--times", "value is required"]);
+    refused_with(&[&words(DYADIC)[..], &["--times", ""]].concat(), &["--times", "missing"]);
+    refused("propagate --moments 1,2 --omega 1,0,0 --times 1", &["--moments", "2 given, 3 needed"]);
+    refused("propagate --moments 1,2,3,4 --omega 1,0,0 --times 1", &["--moments", "4 given, 3 needed"]);
+    refused("propagate --inertia 1,2,3 --omega 1,0,0 --times 1", &["--inertia", "3 given, 6 needed"]);
+    refused("propagate --body dyadic --omega 1,0 --times 1", &["--omega", "2 given, 3 needed"]);
+    refused("propagate --body dyadic --omega 1,NaN,0 --times 1", &["--omega", "item 2", "finite"]);
+    refused(&with("--times 1 --attitude 1,0,0"), &["--attitude", "3 given, 4 needed"]);
+    refused(&with("--times 1 --attitude 0,0,-0,0"), &["--attitude", "zero quaternion", "1,0,0,0"]);
+    refused(&with("--times 1e300"), &["--times", "1e300", "digits", "can be answered"]);
+    refused(&with("--times 1e308 --start-time -1e308"), &["--times", "1e308", "not a finite number"]);
+}
+
+#[test]
+fn bodies_that_cannot_exist_are_refused() {
+    let moments = |list: &str, says: &[&str]| {
+        refused(&format!("propagate --moments {list} --omega 1,0,0 --times 1"), says);
+    };
+    moments("0,2,2", &["--moments", "0, 2, 2", "positive"]);
+    moments("-1,2,2", &["--moments", "-1, 2, 2", "positive"]);
+    moments("1,2,4", &["--moments", "1, 2, 4", "I1 + I2 >= I3 by 1 (25.000 %"]);
+    moments("1,2,3.0001", &["--moments", "I1 + I2 >= I3"]);
+    refused(
+        "propagate --inertia 1,2,3,5,0,0 --omega 1,0,0 --times 1",
+        &["--inertia", "-3.5249378105604", "positive"],
+    );
+    refused("propagate --inertia 1,1,3,0,0,0 --omega 1,0,0 --times 1", &["--inertia", "I1 + I2 >= I3"]);
+    refused("propagate --moments 1e308,1e308,1e308 --omega 1,1,1 --times 1", &["range of a double", "units"]);
+    refused("propagate --moments 1,2,3 --omega 1e200,0,0 --times 1", &["--omega", "1e200", "units"]);
+    refused("propagate --moments 1,2,3 --omega 1e-310,0,0 --times 1", &["--omega", "e-310 rad/s", "units"]);
+}
+
+#[test]
+fn steps_that_do_not_fit_are_refused() {
+    refused(&with("--method rk4 --times 1"), &["--step: missing", "--method rk4"]);
+    refused(&with("--method rk4 --step 0 --times 1"), &["--step", "0.0 is not positive", "above zero"]);
+    refused(&with("--method rk4 --step -0.5 --times 1"), &["--step", "-0.5 is not positive"]);
+    refused(&with("--method rk4 --step nan --times 1"), &["--step", "'nan' is not a finite number"]);
+    refused(&with("--step 0.5 --times 1"), &["--step", "--method exact", "leave it out"]);
+    refused(
+        &with("--method rk4 --step 0.375 --times 0.75,1"),
+        &["--step: '0.375'", "output time 1.0", "nearest time that it reaches is 1.125"],
+    );
+    refused(&with("--method rk4 --step 0.5 --times 3,1"), &["--times", "1.0 comes after 3.0", "ascending"]);
+    refused(&with("--method rk4 --step 0.5 --times -1"), &["--times", "-1.0 comes after 0.0"]);
+    refused(&with("--method rk4 --step 0.5 --until -1 --every -1"), &["--until: -1.0 comes after"]);
+    refused(&with("--method rk4 --step 1e-300 --times 1"), &["--step: '1e-300'", "2^53", "larger step"]);
+    refused(&with("--until 1 --every 0"), &["--every", "'0'", "not zero"]);
+    refused(&with("--until 1 --every -0.5"), &["--every: '-0.5'", "--until 1.0", "change its sign"]);
+    refused(&with("--start-time 5 --until 1 --every 1"), &["start time 5.0", "change its sign"]);
+    refused(&with("--until 1 --every 1e-9"), &["--every: '1e-9'", "1e9 rows", "larger distance"]);
+    refused(&with("--until 1e300 --every 1"), &["--every: '1.0'", "1e300 rows"]);
+}
+
+#[test]
+fn unknown_names_are_answered_with_the_nearest() {
+    refused(&with("--times 1 --method exakt"), &["--method: 'exakt': no such method", "'exact'"]);
+    refused(&with("--times 1 --step 1 --method ratle"), &["did you mean 'rattle'?"]);
+    refused(&with("--times 1 --step 1 --method verlet"), &["'verlet'", "known: exact, explicit-euler, "]);
+    refused(&with("--times 1 --step 1 --method lie-poisson:322"), &["'lie-poisson:322'", "lie-poisson:321"]);
+    refused(&with("--times 1 --step 1 --method rk4:2"), &["--method: 'rk4:2'", "takes no argument"]);
+    refused("propagate --body dyadik --omega 1,0,0 --times 1", &["--body: 'dyadik'", "'dyadic'"]);
+    refused("propagate --body moon --omega 1,0,0 --times 1", &["--body: 'moon'", "known: toutatis"]);
+    refused("experiment run drfit", &["'drfit': no such experiment", "'drift'"]);
+    refused("experiment run drift --scale smok", &["--scale", "'smok'", "'smoke'"]);
+    refused("methods --format yaml", &["--format", "'yaml'", "table, csv, json"]);
+    refused("propagat", &["'propagat'", "'propagate'"]);
+    refused(&with("--unti 1"), &["'--unti'", "'--until'"]);
+}
+
+#[test]
+fn flags_that_exclude_or_need_each_other_say_so() {
+    refused("propagate --body dyadic --moments 1,2,3 --omega 1,0,0 --times 1", &["'--body", "'--moments"]);
+    refused("propagate --omega 1,0,0 --times 1", &["--moments", "--inertia", "--body", "not provided"]);
+    refused("propagate --body dyadic --times 1", &["--omega <wx,wy,wz>", "not provided"]);
+    refused(&with("--times 1 --until 2"), &["--times", "cannot be used with", "--until"]);
+    refused(&with("--times 1 --every 2"), &["--times", "cannot be used with", "--every"]);
+    refused(&with("--until 2"), &["--until: '2.0'", "give --every DT too"]);
+    refused(&with("--every 2"), &["--every: '2.0'", "give --until T too"]);
+    refused(DYADIC, &["--times: missing", "--until T --every DT"]);
+    refused(&with("--times 1 --times 2"), &["--times", "multiple times"]);
+    refused("experiment run", &["<NAMES>", "not provided"]);
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_refused_and_left_as_it_was() {
+    let scratch = Scratch::new("out");
+    let file = scratch.0.join("file");
+    fs::write(&file, "kept").unwrap();
+    let below = file.join("rows.csv").display().to_string();
+    let folder = scratch.0.display().to_string();
+    let absent = scratch.0.join("absent/rows.csv").display().to_string();
+    for out in [&below, &folder, &absent] {
+        refused(&with(&format!("--times 1 --out {out}")), &["--out: '", "cannot be written"]);
+        refused(&format!("methods --out {out}"), &["--out: '", "cannot be written"]);
+    }
+    let run_out = file.display().to_string();
+    refused(
+        &format!("experiment run order --scale smoke --out {run_out}"),
+        &["--out: '", "cannot be written"],
+    );
+    assert_eq!(scratch.names(), ["file"]);
+    assert_eq!(fs::read_to_string(&file).unwrap(), "kept");
+    // a refusal of anything else does not touch the file either
+    refused(&with(&format!("--method rk4 --step 0.3 --times 1 --out {run_out}")), &["--step"]);
+    assert_eq!(fs::read_to_string(&file).unwrap(), "kept");
+}
+
+#[test]
+fn a_folder_of_something_else_is_not_replaced_by_results() {
+    let scratch = Scratch::new("foreign");
+    let folder = scratch.0.join("smoke/order");
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("thesis.tex"), "kept").unwrap();
+    let line = format!("experiment run order --scale smoke --out {}", scratch.0.display());
+    refused(&line, &["--out", "no run.toml", "move it away"]);
+    assert_eq!(names(&folder), ["thesis.tex"]);
+}
+
+#[test]
+fn rows_go_whole_into_the_file_and_replace_the_old_ones() {
+    let scratch = Scratch::new("file");
+    let path = scratch.0.join("rows.csv");
+    let to_file = with(&format!("--until 1 --every 0.5 --out {}", path.display()));
+    assert_eq!(output(&to_file), "");
+    let first = fs::read_to_string(&path).unwrap();
+    assert_eq!(first, output(&with("--until 1 --every 0.5")));
+    assert_eq!(output(&to_file.replace("--every 0.5", "--every 1")), "");
+    assert_eq!(fs::read_to_string(&path).unwrap().lines().count(), 3);
+    assert_eq!(scratch.names(), ["rows.csv"]);
+}
+
+#[test]
+fn a_step_of_more_than_a_radian_is_warned_of() {
+    let answer = run(&with("--method lie-poisson --step 1 --times 2"));
+    assert_eq!(answer.code, 0);
+    assert!(answer.err.starts_with("warning: --step: '1.0': turns the body by 1.1456"), "{}", answer.err);
+    assert_eq!(answer.err.lines().count(), 1);
+    assert_eq!(answer.out.lines().count(), 2);
+}
+
+#[test]
+fn a_run_that_diverges_prints_the_rows_so_far() {
+    let answer = run(&with("--method explicit-euler --step 1 --until 200 --every 20"));
+    assert_eq!(answer.code, 1);
+    let rows: Vec<&str> = answer.out.lines().collect();
+    assert!(rows.len() > 1 && rows.len() < 12, "{}", answer.out);
+    assert!(rows[1].starts_with("0.0,1.0,"), "{}", answer.out);
+    let error = answer.err.lines().find(|line| line.starts_with("error: ")).unwrap();
+    for part in ["--method explicit-euler", "diverged after", "smaller step"] {
+        assert!(error.contains(part), "{error}");
+    }
+}
+
+#[test]
+fn an_implicit_step_without_solution_is_told_and_fails() {
+    let answer = run(&with("--method rattle --step 8 --times 0,80"));
+    assert_eq!(answer.code, 1);
+    assert_eq!(answer.out.lines().count(), 2, "{}", answer.out);
+    assert!(answer.err.contains("error: --method rattle: "), "{}", answer.err);
+    assert!(answer.err.contains("smaller"), "{}", answer.err);
+}
+
+/// Every file below `folder` with its bytes, by path.
+fn tree(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files = Vec::new();
+    for name in names(folder) {
+        let path = folder.join(&name);
+        if path.is_dir() {
+            files.extend(tree(&path).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
+        } else {
+            files.push((name, fs::read(path).unwrap()));
+        }
+    }
+    files
+}
+
+#[test]
+fn experiments_repeat_bit_for_bit_and_can_be_published() {
+    let scratch = Scratch::new("experiments");
+    let run_into = |name: &str| {
+        let out = scratch.0.join(name);
+        let text = output(&format!("experiment run all --scale smoke --out {}", out.display()));
+        assert!(text.contains("Written to"), "{text}");
+        tree(&out.join("smoke"))
+    };
+    let (first, second) = (run_into("first"), run_into("second"));
+    let deterministic = |files: &[(String, Vec<u8>)]| -> Vec<(String, Vec<u8>)> {
+        files.iter().filter(|(name, _)| !name.ends_with("timing.csv")).cloned().collect()
+    };
+    assert_eq!(deterministic(&first), deterministic(&second));
+    for experiment in ["drift", "order", "long-run"] {
+        for ending in [".csv", ".md", ".tex", ".svg", "run.toml"] {
+            let of_it = |(name, bytes): &&(String, Vec<u8>)| {
+                name.starts_with(&format!("{experiment}/")) && name.ends_with(ending) && !bytes.is_empty()
+            };
+            assert!(first.iter().any(|file| of_it(&file)), "{experiment} has no {ending}");
+        }
+    }
+    for (name, bytes) in &first {
+        let text = String::from_utf8(bytes.clone()).unwrap();
+        assert!(!text.contains("NaN") && !text.contains(",inf"), "{name}");
+    }
+
+    // a project whose committed results are these
+    let root = scratch.0.join("project");
+    let results = root.join("experiments/results");
+    fs::create_dir_all(&results).unwrap();
+    fs::rename(scratch.0.join("first/smoke"), results.join("paper")).unwrap();
+    let block = "<!-- begin generated: order/orders -->\n<!-- end generated -->\n";
+    fs::write(root.join("README.md"), format!("Before.\n{block}After.\n")).unwrap();
+    assert_eq!(output(&format!("experiment publish --root {}", root.display())), "");
+    let readme = fs::read_to_string(root.join("README.md")).unwrap();
+    assert!(readme.starts_with("Before.\n") && readme.ends_with("After.\n"), "{readme}");
+    assert!(readme.contains("| lie-poisson"), "{readme}");
+    let table = fs::read_to_string(root.join("paper/generated/order-orders.tex")).unwrap();
+    assert!(table.starts_with("% order, commit "), "{table}");
+    assert!(root.join("paper/generated/long-run-series.csv").is_file());
+}
+
+#[test]
+fn publishing_without_results_is_refused() {
+    let scratch = Scratch::new("unpublished");
+    let line = format!("experiment publish --root {}", scratch.0.display());
+    refused(&line, &["README.md", "cannot be read"]);
+    fs::write(scratch.0.join("README.md"), "text\n").unwrap();
+    refused(&line, &["experiments/results/paper", "--scale paper"]);
+    assert_eq!(scratch.names(), ["README.md"]);
+}

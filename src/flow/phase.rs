@@ -1,0 +1,84 @@
+//! Phases counted in turns: products with any time, reduced without a rounded π.
+
+use crate::num::dd::{two_prod, two_sum};
+use crate::num::trig::{nearest, sin_cos_turns};
+use crate::num::{Dd, Precise};
+use crate::rotation::{Quat, Vec3};
+
+/// A double-double as two plain numbers.
+pub(super) type Pair = [f64; 2];
+
+pub(super) fn pair(x: Dd) -> Pair {
+    [x.hi(), x.lo()]
+}
+
+/// Turns from which the fractional part of a `f64` product pair is no longer exact.
+pub(super) const TOO_FAR: f64 = 1_125_899_906_842_624.0; // 2^50
+
+/// `rate · t + start`, both in double-double.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Phase {
+    rate: Pair,
+    start: Pair,
+}
+
+impl Phase {
+    pub(super) fn new(rate: Dd, start: Dd) -> Self {
+        Phase { rate: pair(rate), start: pair(start) }
+    }
+
+    /// The value at `t`, as a sum of two numbers.
+    #[inline]
+    pub(super) fn at(&self, t: f64) -> (f64, f64) {
+        let (product, rest) = two_prod(self.rate[0], t);
+        let (sum, error) = two_sum(product, self.start[0]);
+        (sum, (rest + self.rate[1] * t) + (error + self.start[1]))
+    }
+}
+
+/// A turn at a constant rate about an axis fixed in the body and in space.
+#[derive(Clone, Debug)]
+pub(super) struct Spin {
+    axis: Vec3<Dd>,
+    rate: Dd,
+    half_angle: Phase, // in turns
+}
+
+impl Spin {
+    /// About the unit vector `axis` at `rate` rad/s.
+    pub(super) fn new(axis: Vec3<Dd>, rate: Dd) -> Self {
+        Spin { axis, rate, half_angle: Phase::new(rate / (Dd::TAU * 2.0), Dd::ZERO) }
+    }
+
+    /// rad/s.
+    pub(super) fn rate(&self) -> Dd {
+        self.rate
+    }
+
+    /// The turn since the start; `None` after too many turns for `f64` pairs.
+    #[inline]
+    pub(super) fn quick(&self, t: f64) -> Option<Quat<f64>> {
+        let (turns, low) = self.half_angle.at(t);
+        if turns.is_nan() || turns.abs() >= TOO_FAR {
+            return None;
+        }
+        let (sin, cos) = sin_cos_turns(turns - nearest(turns), low);
+        Some(Quat::new(cos, Vec3(self.axis.0.map(|e| e.hi() * sin))))
+    }
+
+    /// The turn since the start, in double-double.
+    pub(super) fn precise(&self, t: Dd) -> Quat<Dd> {
+        turn(self.axis, self.rate * t)
+    }
+}
+
+/// The turn by `angle` about the unit vector `axis`.
+pub(super) fn turn<S: Precise>(axis: Vec3<S>, angle: S) -> Quat<S> {
+    let (sin, cos) = (reduce(angle, S::from_dd(Dd::TAU * 2.0)) * S::of(0.5)).sin_cos();
+    Quat::new(cos, axis * sin)
+}
+
+/// `x` less the nearest multiple of `period`.
+pub(super) fn reduce<S: Precise>(x: S, period: S) -> S {
+    x - (x / period).round() * period
+}
