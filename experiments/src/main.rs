@@ -7,12 +7,14 @@ mod experiment;
 mod experiments;
 mod figure;
 mod files;
+mod fit;
 mod methods;
 mod motion;
 mod propagate;
 mod provenance;
 mod publish;
 mod random;
+mod simulate;
 mod table;
 
 use std::path::PathBuf;
@@ -41,6 +43,8 @@ enum Command {
     Experiment(ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
     Motion(motion::Motion),
+    Fit(Box<fit::Fit>),
+    Simulate(simulate::Simulate),
     Methods(methods::Methods),
 }
 
@@ -91,6 +95,8 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Experiment(ExperimentCommand::Publish { root }) => publish::run(&root),
         Command::Propagate(propagate) => propagate.run(),
         Command::Motion(motion) => motion.run(),
+        Command::Fit(fit) => fit.run(),
+        Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),
     }
 }
