@@ -64,11 +64,15 @@ impl Banded {
         true
     }
 
-    /// L⁻¹ b, of a factor, in place.
-    pub(super) fn forward(&self, b: &mut [f64]) {
+    /// L⁻¹ b, of a factor, in place, of several right-hand sides side by side.
+    pub(super) fn forward<const N: usize>(&self, b: &mut [[f64; N]]) {
         for i in 0..self.size {
             let first = i.saturating_sub(self.band);
-            b[i] = (b[i] - dot(self.row(i, first, i), &b[first..i])) / self.get(i, i);
+            let mut sum = b[i];
+            for (l, known) in self.row(i, first, i).iter().zip(&b[first..i]) {
+                (0..N).for_each(|k| sum[k] -= l * known[k]);
+            }
+            b[i] = sum.map(|s| s / self.get(i, i));
         }
     }
 
@@ -141,9 +145,10 @@ mod tests {
         assert!(factor.factor());
         let z = factor.inverse_band();
         for j in 0..n {
-            let mut column = vec![0.0; n];
-            column[j] = 1.0;
+            let mut column = vec![[0.0]; n];
+            column[j] = [1.0];
             factor.forward(&mut column);
+            let mut column: Vec<f64> = column.into_iter().flatten().collect();
             factor.backward(&mut column);
             for i in 0..n {
                 let product: f64 = (0..n).map(|k| a.get(i, k) * column[k]).sum();

@@ -135,27 +135,41 @@ impl Tests {
     }
 }
 
-/// The weighted pairs (w φ', w φ) of the tests that see one sample; at most 2·reach + 1 of them.
+/// Most rows that one sample takes part in: three for each of the tests that overlap it.
+const MOST: usize = 30;
+
+/// The rows that see one sample, three to a test, with their weights w φ' and w φ.
 struct Seen {
     first: usize,
     count: usize,
-    slope: [f64; 24],
-    value: [f64; 24],
+    slope: [f64; MOST],
+    value: [f64; MOST],
 }
 
 impl Seen {
     fn new(tests: &Tests, t: f64, weight: f64) -> Seen {
         let range = tests.at(t);
-        let count = range.len().min(24);
-        let mut seen = Seen { first: range.start, count, slope: [0.0; 24], value: [0.0; 24] };
-        for (k, m) in range.take(count).enumerate() {
+        let count = (3 * range.len()).min(MOST);
+        let mut seen = Seen { first: 3 * range.start, count, slope: [0.0; MOST], value: [0.0; MOST] };
+        for (k, m) in range.take(count / 3).enumerate() {
             let (value, slope) = tests.value(m, t);
             let (u, q) = (tests.position(m, t), &tests.corrections[m]);
             let correction = value / tests.radius * (q[0] + u * (q[1] + u * (q[2] + u * q[3])));
-            seen.slope[k] = weight * (slope + correction);
-            seen.value[k] = weight * value;
+            seen.slope[3 * k..3 * k + 3].fill(weight * (slope + correction));
+            seen.value[3 * k..3 * k + 3].fill(weight * value);
         }
         seen
+    }
+
+    /// −slope·a + value·b by row, with the rows of `a` and `b` in turn: one axis of the tests' share in a product.
+    fn mix(&self, a: [f64; 3], b: [f64; 3]) -> [f64; MOST] {
+        let mut mixed = [0.0; MOST];
+        for ((m, s), v) in mixed.chunks_mut(3).zip(self.slope.chunks(3)).zip(self.value.chunks(3)) {
+            for q in 0..3 {
+                m[q] = v[q] * b[q] - s[q] * a[q];
+            }
+        }
+        mixed
     }
 }
 
@@ -163,30 +177,22 @@ impl Seen {
     /// Σ over pairs of tests of the blocks Z of `inverse`, weighted by slope·slope, slope·value and value·value; in
     /// the second the row belongs to the value. Lower halves only are summed, then mirrored.
     fn sums(&self, inverse: &Banded) -> [Matrix3<f64>; 3] {
-        let [mut aa, mut ab, mut ba, mut bb] = [Matrix3::<f64>::zeros(); 4];
-        for s in 0..self.count {
-            let (a, b) = (self.slope[s], self.value[s]);
-            for p in 0..3 {
-                let row = 3 * (self.first + s) + p;
-                let entries = inverse.row(row, 3 * self.first, row);
-                let (mut slopes, mut values) = ([0.0; 3], [0.0; 3]);
-                for (s2, block) in entries.chunks(3).enumerate() {
-                    for (q, z) in block.iter().enumerate() {
-                        slopes[q] += z * self.slope[s2];
-                        values[q] += z * self.value[s2];
-                    }
-                }
-                let half = 0.5 * inverse.get(row, row);
-                slopes[p] += half * a;
-                values[p] += half * b;
-                for q in 0..3 {
-                    aa[(p, q)] += a * slopes[q];
-                    ab[(p, q)] += b * slopes[q];
-                    ba[(p, q)] += a * values[q];
-                    bb[(p, q)] += b * values[q];
-                }
+        let (mut slopes, mut values) = ([[0.0; MOST]; 3], [[0.0; MOST]; 3]);
+        for row in 0..self.count {
+            let (a, b, p) = (self.slope[row], self.value[row], row % 3);
+            let entries = inverse.row(self.first + row, self.first, self.first + row + 1);
+            for ((z, s), v) in entries[..row].iter().zip(&mut slopes[p]).zip(&mut values[p]) {
+                *s += a * z;
+                *v += b * z;
             }
+            slopes[p][row] += 0.5 * a * entries[row];
+            values[p][row] += 0.5 * b * entries[row];
         }
+        let sum = |rows: &[[f64; MOST]; 3], weights: &[f64; MOST]| {
+            Matrix3::from_fn(|p, q| (q..self.count).step_by(3).map(|i| rows[p][i] * weights[i]).sum::<f64>())
+        };
+        let (aa, ab) = (sum(&slopes, &self.slope), sum(&values, &self.slope));
+        let (ba, bb) = (sum(&slopes, &self.value), sum(&values, &self.value));
         [aa + aa.transpose(), ab + ba.transpose(), bb + bb.transpose()]
     }
 }
@@ -202,8 +208,8 @@ pub(super) struct Linearised {
     factor: Banded,
     /// The coordinates that the last column is the residual of: what is left of x is small, and so is its rounding.
     origin: Coordinates,
-    /// L⁻¹ [G | r], a column each.
-    columns: [Vec<f64>; 6],
+    /// L⁻¹ [G | r], row by row.
+    rows: Vec<[f64; 6]>,
 }
 
 impl Linearised {
@@ -212,7 +218,7 @@ impl Linearised {
         let j = &tensor(&origin);
         let size = 3 * tests.count;
         let mut covariance = Banded::zeros(size, 3 * tests.reach + 2);
-        let mut columns: [Vec<f64>; 6] = core::array::from_fn(|_| vec![0.0; size]);
+        let mut rows = vec![[0.0; 6]; size];
         let bases: [Matrix3<f64>; 6] = core::array::from_fn(|k| if k < 5 { basis(k) } else { *j });
         let jj = j * j;
         for i in 0..stretch.times.len() {
@@ -223,42 +229,37 @@ impl Linearised {
             let k = cross_derivative(j, &w);
             let (jn, kn) = (j * noise[i], k * noise[i]);
             let (jk, kk) = (j * k.transpose(), k * k.transpose());
-            for s in 0..seen.count {
-                let (a, b) = (seen.slope[s], seen.value[s]);
-                let row = 3 * (seen.first + s);
-                for c in 0..3 {
-                    for l in 0..6 {
-                        columns[l][row + c] += b * crosses[l][c] - a * products[l][c];
-                    }
-                    columns[5][row + c] += b * kn[c] - a * jn[c];
+            let with_noise = |v: &[Vector3<f64>; 6], own: &Vector3<f64>| -> [[f64; 6]; 3] {
+                core::array::from_fn(|c| core::array::from_fn(|l| if l < 5 { v[l][c] } else { v[l][c] + own[c] }))
+            };
+            let (products, crosses) = (with_noise(&products, &jn), with_noise(&crosses, &kn));
+            // A Aᵀ by rows p: slope times (slope J J − value J Kᵀ) and value times (value K Kᵀ − slope K J)
+            let line = |m: &Matrix3<f64>, p: usize| [m[(p, 0)], m[(p, 1)], m[(p, 2)]];
+            let kj = jk.transpose();
+            let by_slope: [_; 3] = core::array::from_fn(|p| seen.mix(line(&jj, p), line(&jk, p)));
+            let by_value: [_; 3] = core::array::from_fn(|p| seen.mix(line(&kj, p), line(&kk, p)));
+            for row in 0..seen.count {
+                let (a, b, p) = (seen.slope[row], seen.value[row], row % 3);
+                for ((sum, cross), product) in rows[seen.first + row].iter_mut().zip(&crosses[p]).zip(&products[p]) {
+                    *sum += b * cross - a * product;
                 }
-                for p in 0..3 {
-                    let by_slope = Vector3::from_fn(|q, _| a * jj[(p, q)] - b * jk[(q, p)]);
-                    let by_value = Vector3::from_fn(|q, _| b * kk[(p, q)] - a * jk[(p, q)]);
-                    let entries = covariance.row_mut(row + p, 3 * seen.first, row + p + 1);
-                    for (s2, block) in entries.chunks_mut(3).enumerate() {
-                        for (q, entry) in block.iter_mut().enumerate() {
-                            *entry += seen.slope[s2] * by_slope[q] + seen.value[s2] * by_value[q];
-                        }
-                    }
+                let entries = covariance.row_mut(seen.first + row, seen.first, seen.first + row + 1);
+                for ((entry, s), v) in entries.iter_mut().zip(&by_slope[p]).zip(&by_value[p]) {
+                    *entry += b * v - a * s;
                 }
             }
         }
         if !covariance.factor() {
             return None;
         }
-        for column in &mut columns {
-            covariance.forward(column);
-        }
-        Some(Linearised { tests, factor: covariance, origin, columns })
+        covariance.forward(&mut rows);
+        Some(Linearised { tests, factor: covariance, origin, rows })
     }
 
     /// Whitened residuals at `x`.
     pub(super) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
         let step = x - self.origin;
-        (0..3 * self.tests.count)
-            .map(|row| self.columns[5][row] + (0..5).map(|k| self.columns[k][row] * step[k]).sum::<f64>())
-            .collect()
+        self.rows.iter().map(|row| row[5] + (0..5).map(|k| row[k] * step[k]).sum::<f64>()).collect()
     }
 
     /// The noise n̂ = Aᵀ C⁻¹ r that carries the samples onto the weak equations of `x`.
@@ -268,12 +269,10 @@ impl Linearised {
         (0..stretch.times.len())
             .map(|i| {
                 let seen = Seen::new(&self.tests, stretch.times[i], stretch.weights[i]);
-                let (mut slopes, mut values) = (Vector3::zeros(), Vector3::zeros());
-                for s in 0..seen.count {
-                    let row = 3 * (seen.first + s);
-                    let m = Vector3::new(multipliers[row], multipliers[row + 1], multipliers[row + 2]);
-                    slopes += m * seen.slope[s];
-                    values += m * seen.value[s];
+                let (mut slopes, mut values) = (Vector3::<f64>::zeros(), Vector3::<f64>::zeros());
+                for row in 0..seen.count {
+                    slopes[row % 3] += multipliers[seen.first + row] * seen.slope[row];
+                    values[row % 3] += multipliers[seen.first + row] * seen.value[row];
                 }
                 let k = cross_derivative(j, &(stretch.rates[i] - old[i]));
                 k.transpose() * values - j * slopes
@@ -322,21 +321,17 @@ pub(super) struct Stacked {
 impl Stacked {
     /// The triangle of all whitened rows, without forming their squares.
     pub(super) fn new(stretches: &[Linearised]) -> Stacked {
-        let columns = |k: usize| stretches.iter().flat_map(move |s| s.columns[k].iter().copied());
-        let rows = stretches.iter().map(|s| 3 * s.tests.count).sum();
-        let mut stack = Mat::<f64>::zeros(usize::max(rows, 6), 6);
-        for k in 0..6 {
-            columns(k).enumerate().for_each(|(i, value)| stack[(i, k)] = value);
-        }
-        Stacked::triangle(&stack, rows, stretches.first().map_or(Coordinates::zeros(), |s| s.origin))
+        let rows: Vec<[f64; 6]> = stretches.iter().flat_map(|s| s.rows.iter().copied()).collect();
+        Stacked::triangle(&rows, stretches.first().map_or(Coordinates::zeros(), |s| s.origin))
     }
 
     /// The same of unweighted rows.
     pub(super) fn of_rows(rows: &[[f64; 6]]) -> Stacked {
-        Stacked::triangle(&Mat::from_fn(rows.len().max(6), 6, |i, k| rows.get(i).map_or(0.0, |row| row[k])), rows.len(), Coordinates::zeros())
+        Stacked::triangle(rows, Coordinates::zeros())
     }
 
-    fn triangle(stack: &Mat<f64>, rows: usize, origin: Coordinates) -> Stacked {
+    fn triangle(rows: &[[f64; 6]], origin: Coordinates) -> Stacked {
+        let stack = Mat::from_fn(rows.len().max(6), 6, |i, k| rows.get(i).map_or(0.0, |row| row[k]));
         let qr = stack.qr();
         let r = qr.thin_R();
         Stacked {
@@ -344,7 +339,7 @@ impl Stacked {
             root: Form::from_fn(|i, k| if i <= k { r[(i, k)] } else { 0.0 }),
             z: Coordinates::from_fn(|i, _| r[(i, 5)]),
             misfit: r[(5, 5)] * r[(5, 5)],
-            rows,
+            rows: rows.len(),
         }
     }
 
