@@ -264,9 +264,14 @@ fn pure_spin_tells_an_axis_and_no_ratio() {
         let times = times(20);
         let rates: Vec<_> = times.iter().map(|_| axis * 3.0 + random.normal_vector() * sigma).collect();
         let record = Record::from_samples(&times, &rates).unwrap();
-        let FitError::Unidentifiable(what) = refusal(&record) else { panic!("noise {sigma}: {}", refusal(&record)) };
+        let FitError::Unidentifiable(what) = refusal(&record) else {
+            panic!("noise {sigma}: {}", refusal(&record))
+        };
         assert_eq!(what.rank, 2, "noise {sigma}: {:?}", what.deviations);
-        assert!(what.null_directions[0].contains("the ratio I2/I3 is undetermined: the record is a pure spin about axis 1"));
+        assert!(
+            what.null_directions[0]
+                .contains("the ratio I2/I3 is undetermined: the record is a pure spin about axis 1")
+        );
         assert!(what.known[0].contains("is a principal axis"), "{:?}", what.known);
     }
 }
@@ -314,7 +319,11 @@ fn a_sphere_looks_like_a_pure_spin_until_it_is_thrown_three_ways() {
     for k in 0..3 {
         assert!((estimate.principal[k] - 1.0 / 3.0).abs() < 5.0 * estimate.sigma_principal[k]);
     }
-    assert!(estimate.warnings.iter().any(|w| w.contains("agree within their errors")), "{:?}", estimate.warnings);
+    assert!(
+        estimate.warnings.iter().any(|w| w.contains("agree within their errors")),
+        "{:?}",
+        estimate.warnings
+    );
 }
 
 #[test]
@@ -345,7 +354,10 @@ fn tiny_and_huge_units_change_nothing_and_a_bad_noise_is_refused() {
 fn units_mistaken_by_57_are_named() {
     let (_, times, rates) = example(1e-3);
     let text = |unit: &str, factor: f64| {
-        let rows = times.iter().zip(&rates).map(|(t, w)| format!("{t},{},{},{}\n", w.x * factor, w.y * factor, w.z * factor));
+        let rows = times
+            .iter()
+            .zip(&rates)
+            .map(|(t, w)| format!("{t},{},{},{}\n", w.x * factor, w.y * factor, w.z * factor));
         format!("t,wx {unit},wy {unit},wz {unit}\n{}", rows.collect::<String>())
     };
     let degrees = 180.0 / std::f64::consts::PI;
@@ -395,10 +407,16 @@ fn contradictory_bounds_are_named() {
         bound(Vector3::x() * 2.0, Some(0.35), None),
     ]);
     let message = clash.unwrap_err().to_string();
-    assert!(message.contains("bound 1") && message.contains("bound 3") && !message.contains("bound 2"), "{message}");
+    assert!(
+        message.contains("bound 1") && message.contains("bound 3") && !message.contains("bound 2"),
+        "{message}"
+    );
     let law = with(vec![bound(Vector3::z(), Some(0.51), None)]).unwrap_err().to_string();
     assert!(law.contains("at most half the trace"), "{law}");
-    assert!(matches!(with(vec![bound(Vector3::zeros(), None, None)]), Err(FitError::BoundAxis { bound: 1, .. })));
+    assert!(matches!(
+        with(vec![bound(Vector3::zeros(), None, None)]),
+        Err(FitError::BoundAxis { bound: 1, .. })
+    ));
     assert!(matches!(
         with(vec![bound(Vector3::x(), Some(f64::NAN), None)]),
         Err(FitError::BoundValue { bound: 1, .. })
@@ -425,7 +443,11 @@ fn duplicate_times_are_merged_and_counted() {
     let w: Vec<_> = rates.iter().flat_map(|w| [*w, *w]).collect();
     let estimate = fit(&Record::from_samples(&t, &w).unwrap(), &Settings::default()).unwrap();
     assert!((estimate.shape.tensor() - j).amax() < 1e-3);
-    assert!(estimate.warnings[0].starts_with("1500 samples had the time of another"), "{:?}", estimate.warnings);
+    assert!(
+        estimate.warnings[0].starts_with("1500 samples had the time of another"),
+        "{:?}",
+        estimate.warnings
+    );
 }
 
 #[test]

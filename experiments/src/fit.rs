@@ -116,7 +116,8 @@ fn time_unit(text: &str) -> Result<TimeUnit, String> {
 }
 
 fn rate_unit(text: &str) -> Result<RateUnit, String> {
-    RateUnit::named(text).ok_or_else(|| format!("'{text}' is no unit of rates here; known: rad/s, deg/s, rpm"))
+    RateUnit::named(text)
+        .ok_or_else(|| format!("'{text}' is no unit of rates here; known: rad/s, deg/s, rpm"))
 }
 
 impl Fit {
@@ -165,7 +166,9 @@ impl Fit {
 
     /// All files and windows as one record.
     fn record(&self) -> Result<Record, Error> {
-        if let Some((n, w)) = self.window.iter().find_map(|w| w.file.filter(|n| *n > self.data.len()).map(|n| (n, w))) {
+        if let Some((n, w)) =
+            self.window.iter().find_map(|w| w.file.filter(|n| *n > self.data.len()).map(|n| (n, w)))
+        {
             let value = format!("{n}:{:?},{:?}", w.span.0, w.span.1);
             let rule = format!("there are {} files", self.data.len());
             return Err(Error::input("--window", &value, &rule, "count them from 1"));
@@ -188,7 +191,8 @@ impl Fit {
     fn read(&self, path: &Path) -> Result<Record, Error> {
         let text = read(path, "name a text file with a header and columns")?;
         let reading = Reading { time_unit: self.time_unit, rate_unit: self.rate_unit };
-        Record::read(&text, &path.display().to_string(), reading).map_err(|error| Error::Input(error.to_string()))
+        Record::read(&text, &path.display().to_string(), reading)
+            .map_err(|error| Error::Input(error.to_string()))
     }
 }
 

@@ -12,10 +12,14 @@ use crate::error::Error;
 use crate::files::emit;
 use crate::table::{Column, Format, Table, row};
 
+const USAGE: &str = "polhode simulate <BODY> --omega <wx,wy,wz> --until <T> --every <DT>
+  BODY: --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
+
 /// A noisy record of angular velocity, as a gyroscope on a free body gives it
 ///
 /// `polhode fit` reads what this writes. The same seed gives the same record on every machine.
 #[derive(Args, Clone, Debug)]
+#[command(override_usage = USAGE)]
 pub(crate) struct Simulate {
     #[command(flatten)]
     body: BodyArguments,

@@ -6,10 +6,10 @@ use nalgebra::{Matrix3, Vector3};
 use super::bound::local_cubic;
 use super::coordinates::{basis, tensor};
 use super::error::FitError;
+use super::estimate::{normalised, shape_of};
 use super::qp;
 use super::record::Record;
 use super::weak::{Stacked, Stretch};
-use super::estimate::{normalised, shape_of};
 use crate::body::InertiaShape;
 use crate::num::Real;
 
@@ -65,7 +65,8 @@ pub fn baseline(record: &Record, form: Baseline) -> Result<InertiaShape, FitErro
     }
     let stacked = Stacked::of_rows(&rows);
     let centre = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite()));
-    let centre = centre.ok_or_else(|| FitError::Solver { status: "the baseline's matrix is singular".into() })?;
+    let centre =
+        centre.ok_or_else(|| FitError::Solver { status: "the baseline's matrix is singular".into() })?;
     let spread = (stacked.misfit / rows.len() as f64).sqrt();
     let root = if spread > 0.0 { stacked.root / spread } else { stacked.root };
     shape_of(&tensor(&qp::nearest(centre, root, &[])?.x))
@@ -77,11 +78,7 @@ fn regressor(mut column: impl FnMut(&Matrix3<f64>) -> Vector3<f64>, rows: &mut V
     rows.extend((0..3).map(|c| columns.map(|v| v[c])));
 }
 
-fn strong(
-    s: &Stretch,
-    rows: &mut Vec<[f64; 6]>,
-    at: impl Fn(usize) -> Option<(Vector3<f64>, Vector3<f64>)>,
-) {
+fn strong(s: &Stretch, rows: &mut Vec<[f64; 6]>, at: impl Fn(usize) -> Option<(Vector3<f64>, Vector3<f64>)>) {
     for i in 1..s.times.len().saturating_sub(1) {
         if let Some((w, slope)) = at(i) {
             regressor(|b| b * slope + w.cross(&(b * w)), rows);

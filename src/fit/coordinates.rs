@@ -104,7 +104,12 @@ mod tests {
     #[test]
     fn eigenvectors_solve_their_equation_also_where_moments_agree() {
         let turned = Matrix3::new(2.0, 0.5, -0.25, 0.5, 3.0, 1.0, -0.25, 1.0, 5.0);
-        for a in [turned, Matrix3::identity(), Matrix3::from_diagonal(&Vector3::new(3.0, 1.0, 3.0)), turned * 1e-200] {
+        for a in [
+            turned,
+            Matrix3::identity(),
+            Matrix3::from_diagonal(&Vector3::new(3.0, 1.0, 3.0)),
+            turned * 1e-200,
+        ] {
             let (values, vectors) = eigen(a);
             assert!(values[0] <= values[1] && values[1] <= values[2]);
             assert!((a * vectors - vectors * Matrix3::from_diagonal(&values)).amax() < 2e-15 * a.amax());

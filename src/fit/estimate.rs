@@ -179,18 +179,21 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
     }
     let singular = || FitError::Solver { status: "the residuals have no positive covariance".into() };
-    let weak = weak::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| match failure {
-        Failure::TooShort => FitError::TooFewSamples {
-            samples: record.samples(),
-            segments: record.segments.len(),
-            longest: stretches.iter().map(|s| s.times.len()).max().unwrap_or(0),
-            needed: 2 * SAMPLES_PER_TEST as usize,
-        },
-        Failure::Singular => singular(),
+    let weak = weak::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| {
+        match failure {
+            Failure::TooShort => FitError::TooFewSamples {
+                samples: record.samples(),
+                segments: record.segments.len(),
+                longest: stretches.iter().map(|s| s.times.len()).max().unwrap_or(0),
+                needed: 2 * SAMPLES_PER_TEST as usize,
+            },
+            Failure::Singular => singular(),
+        }
     })?;
     let dof = weak.stacked.rows - 5;
     let misfit = weak.stacked.misfit / variance / dof.max(1) as f64;
-    let better = if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
+    let better =
+        if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
     if let Some((factor, hint, better)) = better.filter(|b| b.2 < 0.1 * misfit) {
         return Err(FitError::Units { factor, hint, misfit, better });
     }
@@ -213,7 +216,9 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
 
 fn check(settings: &Settings) -> Result<(), FitError> {
     let known = settings.known.map(Known::value);
-    for (name, value) in [("the radius", settings.radius), ("the noise", settings.noise), ("the known quantity", known)] {
+    for (name, value) in
+        [("the radius", settings.radius), ("the noise", settings.noise), ("the known quantity", known)]
+    {
         if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
             return Err(FitError::Setting { name, value });
         }
@@ -221,7 +226,10 @@ fn check(settings: &Settings) -> Result<(), FitError> {
     if let Some(Known::Moment { axis, .. }) = settings.known {
         let size = axis.norm();
         if !(size > 0.0 && size.is_finite()) {
-            return Err(FitError::Setting { name: "the length of the axis of the known moment", value: size });
+            return Err(FitError::Setting {
+                name: "the length of the axis of the known moment",
+                value: size,
+            });
         }
     }
     Ok(())
@@ -340,7 +348,11 @@ impl Facts<'_> {
         Ok(estimate)
     }
 
-    fn absolute(&self, j: &Matrix3<f64>, covariance: &Form) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+    fn absolute(
+        &self,
+        j: &Matrix3<f64>,
+        covariance: &Form,
+    ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
         let Some(known) = self.settings.known else { return Ok((None, None)) };
         let (trace, slope) = known.trace(self.record, j, self.variance * self.rms * self.rms);
         let inertia = Inertia::from_tensor(j * trace)
@@ -353,7 +365,8 @@ impl Facts<'_> {
         let each = self.weak.residuals.iter();
         each.map(|(segment, centres, e)| {
             let start = self.record.segments[*segment].times.first().copied().unwrap_or(0.0);
-            let values: Vec<[f64; 3]> = e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
+            let values: Vec<[f64; 3]> =
+                e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
             Residuals {
                 segment: *segment,
                 times: centres.iter().map(|c| start + c / self.rms).collect(),
@@ -378,7 +391,10 @@ impl Facts<'_> {
         }
         let unused = record.segments.len() - e.segments;
         if unused > 0 {
-            list.push(format!("{unused} of {} segments are too short for the test functions", record.segments.len()));
+            list.push(format!(
+                "{unused} of {} segments are too short for the test functions",
+                record.segments.len()
+            ));
         }
         if e.chi2_per_dof > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
             list.push(format!(
@@ -422,7 +438,10 @@ impl Facts<'_> {
             }
         }
         for constraint in &e.active_constraints {
-            list.push(format!("{} holds the answer (multiplier {:.3e})", constraint.name, constraint.multiplier));
+            list.push(format!(
+                "{} holds the answer (multiplier {:.3e})",
+                constraint.name, constraint.multiplier
+            ));
         }
         let largest = e.free_covariance.trace().sqrt();
         if largest > 5e-3 {

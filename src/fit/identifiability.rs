@@ -60,7 +60,8 @@ impl Identifiability {
 
     /// Both lists in one sentence.
     pub fn verdict(&self) -> String {
-        let known = if self.known.is_empty() { "nothing is known".to_string() } else { self.known.join("; ") };
+        let known =
+            if self.known.is_empty() { "nothing is known".to_string() } else { self.known.join("; ") };
         format!("{} of 5 numbers are known. {}. Known: {known}", self.rank, self.null_directions.join("; "))
     }
 }
@@ -82,7 +83,10 @@ fn words(
         format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z)
     };
     if rank == 0 {
-        return (vec!["no ratio and no axis is determined: the motion does not stand out of its noise".into()], Vec::new());
+        return (
+            vec!["no ratio and no axis is determined: the motion does not stand out of its noise".into()],
+            Vec::new(),
+        );
     }
     let common = common_frame(null);
     let frame = common.unwrap_or_else(|| eigen(*estimate).1);
@@ -114,7 +118,11 @@ fn words(
         let turn = off.iter().copied().fold((0.0, 0, 0), |a, b| if b.0 > a.0 { b } else { a });
         if diagonal >= turn.0 {
             let d = n.diagonal();
-            open.push(format!("the ratio I{}/I{} is undetermined", d.imin().min(d.imax()) + 1, d.imin().max(d.imax()) + 1));
+            open.push(format!(
+                "the ratio I{}/I{} is undetermined",
+                d.imin().min(d.imax()) + 1,
+                d.imin().max(d.imax()) + 1
+            ));
         } else {
             let third = 3 - turn.1 - turn.2;
             open.push(format!(

@@ -22,7 +22,8 @@ pub(super) fn variance(stretches: &[Stretch]) -> f64 {
         }
     }
     let middle = squares.len() / 2;
-    let median = if squares.is_empty() { 0.0 } else { *squares.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    let median =
+        if squares.is_empty() { 0.0 } else { *squares.select_nth_unstable_by(middle, f64::total_cmp).1 };
     let limit = if median > 0.0 { 30.0 * median } else { f64::INFINITY };
     let (mut sum, mut count) = (0.0, 0.0);
     for square in squares.into_iter().filter(|square| *square <= limit) {

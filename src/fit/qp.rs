@@ -15,7 +15,8 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus, SupportedConeT,
+    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
+    SupportedConeT,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -164,7 +165,8 @@ impl Program {
             let top = v.column(2).into_owned();
             for k in 0..2 {
                 let other = v.column(k).into_owned();
-                let (a, b, c) = (self.reading(&top, &top), self.reading(&other, &other), self.reading(&top, &other));
+                let (a, b, c) =
+                    (self.reading(&top, &top), self.reading(&other, &other), self.reading(&top, &other));
                 // [½ − a, −c; −c, ½ − b] ⪰ 0 as 1 − a − b ≥ |(b − a, 2c)|
                 cones.push([
                     Row { base: 2.0 * LIMIT - a.base - b.base, g: -a.g - b.g },
@@ -217,7 +219,10 @@ impl Program {
     /// Gradients of the entries of J on the face, then of the bounds that are held.
     fn gradients(&self, v: &[Vector3<f64>; 3], face: usize, held: &[usize]) -> Vec<Coordinates> {
         let pairs = (0..face).flat_map(|a| (0..=a).map(move |b| (a, b)));
-        pairs.map(|(a, b)| self.reading(&v[a], &v[b]).g).chain(held.iter().map(|&k| self.rows[k].0.g)).collect()
+        pairs
+            .map(|(a, b)| self.reading(&v[a], &v[b]).g)
+            .chain(held.iter().map(|&k| self.rows[k].0.g))
+            .collect()
     }
 
     /// The multipliers that make |y + Σ multiplier · gradient| least.
@@ -233,7 +238,12 @@ impl Program {
     fn newton(&self, start: Coordinates, face: usize, held: &[usize]) -> Result<Newton, FitError> {
         let equations = face * (face + 1) / 2 + held.len();
         if equations == 0 {
-            return Ok(Newton { y: Coordinates::zeros(), z: Matrix3::zeros(), held: Vec::new(), gradients: Vec::new() });
+            return Ok(Newton {
+                y: Coordinates::zeros(),
+                z: Matrix3::zeros(),
+                held: Vec::new(),
+                gradients: Vec::new(),
+            });
         }
         let mut y = start;
         // Z is kept in sensor axes: where two moments agree, their axes differ from step to step
@@ -243,17 +253,20 @@ impl Program {
             let (v, moments) = self.frame(&y);
             let gradients = self.gradients(&v, face, held);
             let mut values = Vec::with_capacity(equations);
-            for a in 0..face {
-                values.extend((0..=a).map(|b| if a == b { moments[a] - LIMIT } else { 0.0 }));
+            for (a, moment) in moments.iter().take(face).enumerate() {
+                values.extend((0..=a).map(|b| if a == b { moment - LIMIT } else { 0.0 }));
             }
             values.extend(held.iter().map(|&k| self.rows[k].0.base + self.rows[k].0.g.dot(&y)));
             // curvature of the eigenvalues: they repel those off the face
             let mut hessian = Form::identity();
             let frame = Matrix3::from_columns(&v);
             let inner = frame.transpose() * z * frame;
-            for (a, b, j) in (0..face).flat_map(|a| (0..face).flat_map(move |b| (face..3).map(move |j| (a, b, j)))) {
+            for (a, b, j) in
+                (0..face).flat_map(|a| (0..face).flat_map(move |b| (face..3).map(move |j| (a, b, j))))
+            {
                 let (ga, gb) = (self.reading(&v[a], &v[j]).g, self.reading(&v[b], &v[j]).g);
-                hessian += (ga * gb.transpose() + gb * ga.transpose()) * (inner[(a, b)] / (LIMIT - moments[j]));
+                hessian +=
+                    (ga * gb.transpose() + gb * ga.transpose()) * (inner[(a, b)] / (LIMIT - moments[j]));
             }
             let n = 5 + equations;
             let mut matrix = DMatrix::zeros(n, n);
@@ -269,10 +282,9 @@ impl Program {
                 }
                 right[5 + e] = -values[e] / sizes[e];
             }
-            let step = matrix
-                .full_piv_lu()
-                .solve(&right)
-                .ok_or_else(|| FitError::Solver { status: "the active constraints depend on each other".into() })?;
+            let step = matrix.full_piv_lu().solve(&right).ok_or_else(|| FitError::Solver {
+                status: "the active constraints depend on each other".into(),
+            })?;
             let move_ = Coordinates::from_column_slice(&step.as_slice()[..5]);
             y += move_;
             let multipliers: Vec<f64> = (0..equations).map(|e| step[5 + e] / sizes[e]).collect();
@@ -304,7 +316,9 @@ impl Program {
             }
         }
         let (z, _) = eigen(newton.z);
-        violation = violation.max((newton.z * (Matrix3::identity() * LIMIT - self.tensor(&y))).norm() / (1.0 + newton.largest()));
+        violation = violation.max(
+            (newton.z * (Matrix3::identity() * LIMIT - self.tensor(&y))).norm() / (1.0 + newton.largest()),
+        );
         let lowest = newton.held.iter().copied().fold(z[0].min(0.0), f64::min);
         let certificate = Certificate {
             stationarity: gradient.norm() / (1.0 + y.norm()),
@@ -432,7 +446,8 @@ fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
         order.sort_by(|&a, &b| duals[b].total_cmp(&duals[a]));
         let first = sides[order[0]].2.clone();
         let with = order.get(1).filter(|&&k| duals[k] > 1e-3).map(|&k| sides[k].2.clone());
-        let second = with.unwrap_or_else(|| "the law I1 + I2 >= I3, by which a moment is at most half the trace".into());
+        let second = with
+            .unwrap_or_else(|| "the law I1 + I2 >= I3, by which a moment is at most half the trace".into());
         return Err(FitError::Contradiction(Box::new(Clash { first, second, gap: answer[5] })));
     }
     Err(FitError::Solver { status: "the bounds could not be checked against the physical law".into() })
@@ -574,7 +589,15 @@ mod tests {
         let map = Form::from_fn(|i, k| basis(i).dot(&(turn * basis(k) * turn.transpose())));
         let mut next = numbers(11);
         for _ in 0..20 {
-            let root = Form::from_fn(|i, k| if i < k { next() } else if i == k { 5.0 + 4.0 * next() } else { 0.0 }) * 100.0;
+            let root = Form::from_fn(|i, k| {
+                if i < k {
+                    next()
+                } else if i == k {
+                    5.0 + 4.0 * next()
+                } else {
+                    0.0
+                }
+            }) * 100.0;
             let centre = Coordinates::from_fn(|_, _| 0.4 * next());
             let a = nearest(centre, root, &[]).unwrap();
             let turned = (root * map.transpose()).qr().r();
@@ -593,7 +616,8 @@ mod tests {
         assert!(answer.active[0].name.starts_with("bound 1"), "{:?}", answer.active);
         assert!(answer.active[0].multiplier > 0.0);
 
-        let clash = nearest(centre, root, &[x(Some(0.4), None), x(None, Some(0.3))]).err().unwrap().to_string();
+        let clash =
+            nearest(centre, root, &[x(Some(0.4), None), x(None, Some(0.3))]).err().unwrap().to_string();
         assert!(clash.contains("bound 1") && clash.contains("bound 2"), "{clash}");
         let law = nearest(centre, root, &[x(Some(0.6), None)]).err().unwrap().to_string();
         assert!(law.contains("half the trace"), "{law}");

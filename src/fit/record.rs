@@ -20,7 +20,9 @@ pub enum RecordError {
         found: Vec<String>,
     },
     /// A cell is not a finite number.
-    #[error("{file}, line {line}, column {column} ({name}): {value:?} is not a finite number; remove the row, or leave a gap")]
+    #[error(
+        "{file}, line {line}, column {column} ({name}): {value:?} is not a finite number; remove the row, or leave a gap"
+    )]
     Value {
         /// Name of the file.
         file: String,
@@ -34,7 +36,9 @@ pub enum RecordError {
         value: String,
     },
     /// A row is shorter than its header.
-    #[error("{file}, line {line}: {cells} cells where the header has {columns}; every row must have all of them")]
+    #[error(
+        "{file}, line {line}: {cells} cells where the header has {columns}; every row must have all of them"
+    )]
     Cells {
         /// Name of the file.
         file: String,
@@ -46,7 +50,9 @@ pub enum RecordError {
         columns: usize,
     },
     /// Time runs backwards.
-    #[error("{file}, line {line}: time {time} s comes after {before} s; times must not decrease. Sort the rows, or give the files apart")]
+    #[error(
+        "{file}, line {line}: time {time} s comes after {before} s; times must not decrease. Sort the rows, or give the files apart"
+    )]
     Order {
         /// Name of the file.
         file: String,
@@ -58,7 +64,9 @@ pub enum RecordError {
         before: f64,
     },
     /// A unit that is not known.
-    #[error("{file}: column {name:?} is in {unit:?}; known are s, ms, us, ns for time and rad/s, deg/s, rpm for rates")]
+    #[error(
+        "{file}: column {name:?} is in {unit:?}; known are s, ms, us, ns for time and rad/s, deg/s, rpm for rates"
+    )]
     Unit {
         /// Name of the file.
         file: String,
@@ -234,7 +242,8 @@ impl Record {
         if times.len() != rates.len() {
             return Err(RecordError::Lengths { times: times.len(), rates: rates.len() });
         }
-        let rows = times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
+        let rows =
+            times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
         Record::from_rows("samples", rows, ["t", "wx", "wy", "wz"].map(String::from), [1, 2, 3, 4])
     }
 
@@ -247,32 +256,40 @@ impl Record {
         let text = text.trim_start_matches('\u{feff}');
         let lines: Vec<(usize, &str)> = text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())).collect();
         // the header is the last line before the first row of numbers
-        let is_row = |line: &str| {
-            !line.is_empty() && cells(line).first().is_some_and(|c| c.parse::<f64>().is_ok())
-        };
+        let is_row =
+            |line: &str| !line.is_empty() && cells(line).first().is_some_and(|c| c.parse::<f64>().is_ok());
         let first = lines.iter().position(|(_, l)| is_row(l)).unwrap_or(lines.len());
         let header = lines[..first].iter().rev().find(|(_, l)| !l.trim_start_matches('#').trim().is_empty());
         let names = cells(header.map_or("", |(_, l)| l.trim_start_matches('#').trim()));
         let columns = find_columns(&names, file)?;
-        let time_unit = unit(&names[columns[0]], file, reading.time_unit, TimeUnit::named)?.unwrap_or(TimeUnit::Seconds);
+        let time_unit =
+            unit(&names[columns[0]], file, reading.time_unit, TimeUnit::named)?.unwrap_or(TimeUnit::Seconds);
         let mut rate_units = [RateUnit::RadiansPerSecond; 3];
         for (axis, rate_unit) in rate_units.iter_mut().enumerate() {
-            *rate_unit = unit(&names[columns[axis + 1]], file, reading.rate_unit, RateUnit::named)?.unwrap_or(*rate_unit);
+            *rate_unit = unit(&names[columns[axis + 1]], file, reading.rate_unit, RateUnit::named)?
+                .unwrap_or(*rate_unit);
         }
         let mut rows = Vec::new();
         for &(line, content) in lines[first..].iter().filter(|(_, l)| !l.is_empty() && !l.starts_with('#')) {
             let row = cells(content);
             if columns.iter().any(|&c| c >= row.len()) {
-                return Err(RecordError::Cells { file: file.into(), line, cells: row.len(), columns: names.len() });
+                return Err(RecordError::Cells {
+                    file: file.into(),
+                    line,
+                    cells: row.len(),
+                    columns: names.len(),
+                });
             }
             let mut values = [0.0; 4];
             for (value, &column) in values.iter_mut().zip(&columns) {
-                *value = row[column].parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(|| RecordError::Value {
-                    file: file.into(),
-                    line,
-                    column: column + 1,
-                    name: names[column].clone(),
-                    value: row[column].clone(),
+                *value = row[column].parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(|| {
+                    RecordError::Value {
+                        file: file.into(),
+                        line,
+                        column: column + 1,
+                        name: names[column].clone(),
+                        value: row[column].clone(),
+                    }
                 })?;
             }
             values[0] = time_unit.seconds(values[0]);
@@ -305,7 +322,12 @@ impl Record {
             }
             match merged.last_mut() {
                 Some((last, _)) if row[0] < last[0] => {
-                    return Err(RecordError::Order { file: file.into(), line, time: row[0], before: last[0] });
+                    return Err(RecordError::Order {
+                        file: file.into(),
+                        line,
+                        time: row[0],
+                        before: last[0],
+                    });
                 }
                 Some((last, count)) if row[0] == last[0] => {
                     *count += 1.0;
@@ -363,7 +385,8 @@ impl Record {
             }
             let before = cut.segments.len();
             for s in &self.segments {
-                let (a, b) = (s.times.partition_point(|&t| t < start), s.times.partition_point(|&t| t <= end));
+                let (a, b) =
+                    (s.times.partition_point(|&t| t < start), s.times.partition_point(|&t| t <= end));
                 if a < b {
                     cut.segments.push(Segment {
                         source: s.source.clone(),
@@ -397,7 +420,8 @@ fn flat_tops(samples: &[[f64; 4]]) -> Vec<bool> {
     let mut flat = vec![false; samples.len()];
     for k in 1..4 {
         let column = || samples.iter().map(|row| row[k]);
-        let (low, high) = (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
+        let (low, high) =
+            (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
         for end in [low, high] {
             let mut runs: Vec<(usize, usize)> = Vec::new();
             let mut i = 0;
@@ -463,13 +487,27 @@ fn find_columns(names: &[String], file: &str) -> Result<[usize; 4], RecordError>
     let reduced: Vec<String> = names.iter().map(|n| reduced(n)).collect();
     let find = |spellings: &[String]| spellings.iter().find_map(|s| reduced.iter().position(|n| n == s));
     let time: Vec<String> =
-        ["t", "time", "times", "timestamp", "secondselapsed", "elapsed", "timeus", "timems"].map(String::from).into();
+        ["t", "time", "times", "timestamp", "secondselapsed", "elapsed", "timeus", "timems"]
+            .map(String::from)
+            .into();
     let stems = [
-        "w", "omega", "omegabody", "gyro", "gyr", "gyroscope", "g", "angularvelocity", "angularvelocitybody", "rate",
-        "rotationrate", "",
+        "w",
+        "omega",
+        "omegabody",
+        "gyro",
+        "gyr",
+        "gyroscope",
+        "g",
+        "angularvelocity",
+        "angularvelocitybody",
+        "rate",
+        "rotationrate",
+        "",
     ];
     let mut columns = [0; 4];
-    for (k, missing) in ["time", "the rate about x", "the rate about y", "the rate about z"].into_iter().enumerate() {
+    for (k, missing) in
+        ["time", "the rate about x", "the rate about y", "the rate about z"].into_iter().enumerate()
+    {
         let spellings: Vec<String> = match k {
             0 => time.clone(),
             _ => stems.iter().map(|stem| format!("{stem}{}", ['x', 'y', 'z'][k - 1])).collect(),
@@ -491,8 +529,11 @@ fn unit<U: PartialEq + Copy + core::fmt::Debug>(
     named: impl Fn(&str) -> Option<U>,
 ) -> Result<Option<U>, RecordError> {
     let Some(text) = split_unit(name).1 else { return Ok(setting) };
-    let header =
-        named(text).ok_or_else(|| RecordError::Unit { file: file.into(), name: name.into(), unit: text.into() })?;
+    let header = named(text).ok_or_else(|| RecordError::Unit {
+        file: file.into(),
+        name: name.into(),
+        unit: text.into(),
+    })?;
     match setting {
         Some(setting) if setting != header => Err(RecordError::UnitClash {
             file: file.into(),
@@ -523,7 +564,9 @@ mod tests {
             "time,omega_body_x,omega_body_y,omega_body_z",
         ] {
             let separator = [",", ";", "\t", "      "].into_iter().find(|s| header.contains(s)).unwrap();
-            let row = |t: &str| ["1", "2", "3", "9"].iter().fold(t.to_string(), |r, c| format!("{r}{separator}{c}"));
+            let row = |t: &str| {
+                ["1", "2", "3", "9"].iter().fold(t.to_string(), |r, c| format!("{r}{separator}{c}"))
+            };
             let record = read(&format!("{header}\n{}\n{}\n", row("0.5"), row("0.75"))).unwrap();
             assert_eq!(record.segments[0].times, [0.5, 0.75], "{header}");
             assert_eq!(record.segments[0].rates[1], Vector3::new(1.0, 2.0, 3.0), "{header}");
@@ -533,10 +576,16 @@ mod tests {
     #[test]
     fn broken_rows_are_named_by_line_and_column() {
         for (text, expected) in [
-            ("t,wx,wy\n0,1,2\n", "a.csv: no column for the rate about z; the header has [\"t\", \"wx\", \"wy\"]"),
+            (
+                "t,wx,wy\n0,1,2\n",
+                "a.csv: no column for the rate about z; the header has [\"t\", \"wx\", \"wy\"]",
+            ),
             ("t,wx,wy,wz\n0,1,2\n", "a.csv, line 2: 3 cells where the header has 4"),
             ("t,wx,wy,wz\n0,1,2,3\n1,1,x,3\n", "a.csv, line 3, column 3 (wy): \"x\" is not a finite number"),
-            ("t,wx,wy,wz\n0,1,2,3\n\n1,1,2,inf\n", "a.csv, line 4, column 4 (wz): \"inf\" is not a finite number"),
+            (
+                "t,wx,wy,wz\n0,1,2,3\n\n1,1,2,inf\n",
+                "a.csv, line 4, column 4 (wz): \"inf\" is not a finite number",
+            ),
             ("t,wx,wy,wz\n1,1,2,3\n0.5,1,2,3\n", "a.csv, line 3: time 0.5 s comes after 1 s"),
             ("t,wx (mph),wy,wz\n1,1,2,3\n", "a.csv: column \"wx (mph)\" is in \"mph\""),
             ("t,wx,wy,wz\n", "a.csv: no samples"),

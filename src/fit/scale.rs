@@ -28,7 +28,9 @@ impl Known {
     /// The given value.
     pub(super) fn value(self) -> f64 {
         match self {
-            Known::Momentum(v) | Known::TwiceEnergy(v) | Known::Trace(v) | Known::Moment { value: v, .. } => v,
+            Known::Momentum(v) | Known::TwiceEnergy(v) | Known::Trace(v) | Known::Moment { value: v, .. } => {
+                v
+            }
         }
     }
 
@@ -48,11 +50,14 @@ impl Known {
             Known::TwiceEnergy(value) => {
                 // noise adds σ² tr J = σ² to the mean
                 let energy = rates().map(|w| w.dot(&(j * w))).sum::<f64>() / samples - variance;
-                let slope = Coordinates::from_fn(|k, _| rates().map(|w| w.dot(&(basis(k) * w))).sum::<f64>() / samples);
+                let slope = Coordinates::from_fn(|k, _| {
+                    rates().map(|w| w.dot(&(basis(k) * w))).sum::<f64>() / samples
+                });
                 (value / energy, slope * (-value / (energy * energy)))
             }
             Known::Momentum(value) => {
-                let square = rates().map(|w| (j * w).norm_squared()).sum::<f64>() / samples - variance * j.norm_squared();
+                let square = rates().map(|w| (j * w).norm_squared()).sum::<f64>() / samples
+                    - variance * j.norm_squared();
                 let size = square.sqrt();
                 let slope = Coordinates::from_fn(|k, _| {
                     let b = basis(k);

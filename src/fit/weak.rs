@@ -214,23 +214,30 @@ pub(super) struct Linearised {
 
 impl Linearised {
     /// `None` where the covariance is not positive, as for a tensor far from physical.
-    pub(super) fn new(stretch: &Stretch, noise: &[Vector3<f64>], origin: Coordinates, tests: Tests) -> Option<Self> {
+    pub(super) fn new(
+        stretch: &Stretch,
+        noise: &[Vector3<f64>],
+        origin: Coordinates,
+        tests: Tests,
+    ) -> Option<Self> {
         let j = &tensor(&origin);
         let size = 3 * tests.count;
         let mut covariance = Banded::zeros(size, 3 * tests.reach + 2);
         let mut rows = vec![[0.0; 6]; size];
         let bases: [Matrix3<f64>; 6] = core::array::from_fn(|k| if k < 5 { basis(k) } else { *j });
         let jj = j * j;
-        for i in 0..stretch.times.len() {
+        for (i, noise) in noise.iter().enumerate() {
             let seen = Seen::new(&tests, stretch.times[i], stretch.weights[i]);
-            let w = stretch.rates[i] - noise[i];
+            let w = stretch.rates[i] - noise;
             let products = bases.map(|b| b * w);
             let crosses = products.map(|p| w.cross(&p));
             let k = cross_derivative(j, &w);
-            let (jn, kn) = (j * noise[i], k * noise[i]);
+            let (jn, kn) = (j * noise, k * noise);
             let (jk, kk) = (j * k.transpose(), k * k.transpose());
             let with_noise = |v: &[Vector3<f64>; 6], own: &Vector3<f64>| -> [[f64; 6]; 3] {
-                core::array::from_fn(|c| core::array::from_fn(|l| if l < 5 { v[l][c] } else { v[l][c] + own[c] }))
+                core::array::from_fn(|c| {
+                    core::array::from_fn(|l| if l < 5 { v[l][c] } else { v[l][c] + own[c] })
+                })
             };
             let (products, crosses) = (with_noise(&products, &jn), with_noise(&crosses, &kn));
             // A Aᵀ by rows p: slope times (slope J J − value J Kᵀ) and value times (value K Kᵀ − slope K J)
@@ -240,7 +247,9 @@ impl Linearised {
             let by_value: [_; 3] = core::array::from_fn(|p| seen.mix(line(&kj, p), line(&kk, p)));
             for row in 0..seen.count {
                 let (a, b, p) = (seen.slope[row], seen.value[row], row % 3);
-                for ((sum, cross), product) in rows[seen.first + row].iter_mut().zip(&crosses[p]).zip(&products[p]) {
+                for ((sum, cross), product) in
+                    rows[seen.first + row].iter_mut().zip(&crosses[p]).zip(&products[p])
+                {
                     *sum += b * cross - a * product;
                 }
                 let entries = covariance.row_mut(seen.first + row, seen.first, seen.first + row + 1);
@@ -263,7 +272,13 @@ impl Linearised {
     }
 
     /// The noise n̂ = Aᵀ C⁻¹ r that carries the samples onto the weak equations of `x`.
-    pub(super) fn noise(&self, stretch: &Stretch, old: &[Vector3<f64>], j: &Matrix3<f64>, x: &Coordinates) -> Vec<Vector3<f64>> {
+    pub(super) fn noise(
+        &self,
+        stretch: &Stretch,
+        old: &[Vector3<f64>],
+        j: &Matrix3<f64>,
+        x: &Coordinates,
+    ) -> Vec<Vector3<f64>> {
         let mut multipliers = self.residuals(x);
         self.factor.backward(&mut multipliers);
         (0..stretch.times.len())
@@ -285,11 +300,11 @@ impl Linearised {
         let inverse = self.factor.inverse_band();
         let bases: [Matrix3<f64>; 5] = core::array::from_fn(basis);
         let mut sum = Form::zeros();
-        for i in 0..stretch.times.len() {
+        for (i, noise) in noise.iter().enumerate() {
             let seen = Seen::new(&self.tests, stretch.times[i], stretch.weights[i]);
             let [aa, ab, bb] = seen.sums(&inverse);
             let ba = ab.transpose();
-            let w = stretch.rates[i] - noise[i];
+            let w = stretch.rates[i] - noise;
             let k = bases.map(|b| cross_derivative(&b, &w));
             // Σ tr Z D_l D_kᵀ with D_k = −φ' B_k + φ K_k
             for l in 0..5 {
@@ -420,7 +435,11 @@ impl<'a> Rounds<'a> {
     }
 
     fn linearise(&self) -> Option<Vec<Linearised>> {
-        self.used.iter().zip(&self.noise).map(|((_, s, tests), n)| Linearised::new(s, n, self.x, tests.clone())).collect()
+        self.used
+            .iter()
+            .zip(&self.noise)
+            .map(|((_, s, tests), n)| Linearised::new(s, n, self.x, tests.clone()))
+            .collect()
     }
 
     /// One round; `ridge` keeps x finite before it is known that the record determines it.
@@ -463,8 +482,10 @@ fn candidates(stretches: &[Stretch]) -> Vec<f64> {
     let samples: usize = stretches.iter().map(|s| s.times.len()).sum();
     let duration: f64 = stretches.iter().map(Stretch::duration).sum();
     let lowest = (SAMPLES_PER_TEST * duration / samples as f64).max(0.5);
-    let mut radii: Vec<f64> =
-        (0..6).scan(lowest, |r, _| Some(core::mem::replace(r, 2.0 * *r))).filter(|r| 4.0 * r <= longest).collect();
+    let mut radii: Vec<f64> = (0..6)
+        .scan(lowest, |r, _| Some(core::mem::replace(r, 2.0 * *r)))
+        .filter(|r| 4.0 * r <= longest)
+        .collect();
     if radii.is_empty() {
         radii.push(0.25 * longest);
     }
@@ -489,7 +510,8 @@ fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinat
         let stacked = Stacked::new(&parts);
         // a misfit counts as noise, so that radii too short for the sampling or too long for the torques lose
         let misfit = stacked.misfit / variance / (stacked.rows - 5) as f64;
-        let spread = covariance(&stacked.information(), &rounds.inflation(&parts), variance * misfit.max(1.0));
+        let spread =
+            covariance(&stacked.information(), &rounds.inflation(&parts), variance * misfit.max(1.0));
         let trace = spread.map_or(f64::INFINITY, |c| c.trace());
         if trace < best.0 {
             best = (trace, radius);

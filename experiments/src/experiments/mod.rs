@@ -2,6 +2,7 @@
 
 mod drift;
 mod exact;
+mod fit_efficiency;
 mod long_run;
 mod order;
 
@@ -28,5 +29,10 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "long-run",
         question: "what grows over very many steps, and how fast",
         run: long_run::run,
+    },
+    Experiment {
+        name: "fit-efficiency",
+        question: "how close a fitted tensor comes to the Cramer-Rao bound, and what other formulations lose",
+        run: fit_efficiency::run,
     },
 ];

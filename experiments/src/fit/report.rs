@@ -30,7 +30,8 @@ pub(super) fn unidentified(what: &Identifiability, record: &Record, format: Form
             "triangle_slack": null, "active_constraints": [], "chi2_per_dof": null, "warnings": [],
         })),
         Format::Csv => {
-            let columns = vec![Column::new("kind", "", "known or undetermined"), Column::new("fact", "", "in words")];
+            let columns =
+                vec![Column::new("kind", "", "known or undetermined"), Column::new("fact", "", "in words")];
             let mut table = Table::new("facts", "What the record tells.", columns);
             what.known.iter().for_each(|fact| table.push(row!["known", fact.clone()]));
             what.null_directions.iter().for_each(|fact| table.push(row!["undetermined", fact.clone()]));
@@ -181,7 +182,10 @@ fn text(e: &Estimate) -> String {
             format!("deviation over the Cramer-Rao bound: {r:.3}")
         }),
         format!("chi^2 per degree of freedom: {:.3} ({} degrees)", e.chi2_per_dof, e.dof),
-        format!("correlation of neighbouring residuals: {:.3} +- {:.3}", e.whiteness.correlation, e.whiteness.sigma),
+        format!(
+            "correlation of neighbouring residuals: {:.3} +- {:.3}",
+            e.whiteness.correlation, e.whiteness.sigma
+        ),
         format!("drift of |J w|: {} per cent per second", percent(e.momentum_drift)),
         format!("drift of w J w: {} per cent per second", percent(e.energy_drift)),
         format!("I1 + I2 - I3: {}", with_error(e.triangle_slack, 2.0 * e.sigma_principal[2])),
