@@ -1,5 +1,6 @@
 //! Inertia from noisy rates: efficient, covariant, physical, and not fooled by any record of the failure table.
 #![cfg(feature = "fit")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
 use polhode::body::Inertia;

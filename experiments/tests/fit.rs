@@ -1,5 +1,7 @@
 //! `polhode simulate` and `polhode fit` as their users meet them: from a record to a tensor, and every refusal.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
