@@ -8,6 +8,7 @@ mod experiments;
 mod figure;
 mod files;
 mod fit;
+mod inertia;
 mod methods;
 mod motion;
 mod propagate;
@@ -46,6 +47,7 @@ enum Command {
     Fit(Box<fit::Fit>),
     Simulate(simulate::Simulate),
     Methods(methods::Methods),
+    Inertia(Box<inertia::Inertia>),
 }
 
 #[derive(Subcommand)]
@@ -98,6 +100,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),
+        Command::Inertia(inertia) => inertia.run(),
     }
 }
 

@@ -6,7 +6,7 @@ use crate::body::{Body, Carry, State};
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 
-/// Implicit midpoint (methods.md §5.1).
+/// Implicit midpoint.
 ///
 /// Φ_h: `m' = m + h m̄ × I⁻¹m̄` with `m̄ = ½(m + m')`, then `q' = q ∘ cay(h/2 I⁻¹m̄)`.
 /// Keeps energy and |m|, being quadratic, and L, because the same Cayley map turns m' back into m. It keeps the
@@ -79,5 +79,5 @@ pub(super) fn cayley_turn<S: Real>(x: &mut State<S>, carry: &mut Carry<S>, c: Ve
     let root = alpha.sqrt();
     let less_one = Quat::new(-(squared / (alpha + root)), c * (S::of(1.0) / root));
     carry.add_attitude(x, x.attitude * less_one);
-    carry.renormalize(x);
+    carry.end_step(x);
 }

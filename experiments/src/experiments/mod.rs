@@ -3,6 +3,7 @@
 mod drift;
 mod exact;
 mod fit_efficiency;
+mod inertia;
 mod long_run;
 mod order;
 
@@ -29,6 +30,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "long-run",
         question: "what grows over very many steps, and how fast",
         run: long_run::run,
+    },
+    Experiment {
+        name: "inertia",
+        question: "whether inertia tensors are right: closed forms, meshes, the lecture's statements, the doctor",
+        run: inertia::run,
     },
     Experiment {
         name: "fit-efficiency",
