@@ -54,6 +54,8 @@
 
 pub mod body;
 pub mod catalog;
+#[cfg(feature = "fit")]
+pub mod fit;
 pub mod flow;
 pub mod method;
 pub mod num;

@@ -7,6 +7,7 @@ mod experiment;
 mod experiments;
 mod figure;
 mod files;
+mod fit;
 mod inertia;
 mod methods;
 mod motion;
@@ -15,6 +16,7 @@ mod provenance;
 mod publish;
 mod random;
 mod reference;
+mod simulate;
 mod table;
 
 use std::path::PathBuf;
@@ -43,6 +45,8 @@ enum Command {
     Experiment(ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
     Motion(motion::Motion),
+    Fit(Box<fit::Fit>),
+    Simulate(simulate::Simulate),
     Methods(methods::Methods),
     Inertia(Box<inertia::Inertia>),
 }
@@ -94,6 +98,8 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Experiment(ExperimentCommand::Publish { root }) => publish::run(&root),
         Command::Propagate(propagate) => propagate.run(),
         Command::Motion(motion) => motion.run(),
+        Command::Fit(fit) => fit.run(),
+        Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),
         Command::Inertia(inertia) => inertia.run(),
     }

@@ -2,6 +2,7 @@
 
 mod drift;
 mod exact;
+mod fit_efficiency;
 mod inertia;
 mod long_run;
 mod order;
@@ -34,5 +35,10 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "inertia",
         question: "whether inertia tensors are right: closed forms, meshes, the lecture's statements, the doctor",
         run: inertia::run,
+    },
+    Experiment {
+        name: "fit-efficiency",
+        question: "how close a fitted tensor comes to the Cramer-Rao bound, and what other formulations lose",
+        run: fit_efficiency::run,
     },
 ];

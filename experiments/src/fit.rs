@@ -1,0 +1,211 @@
+//! `polhode fit`: inertia from measured angular velocity.
+
+mod plot;
+mod report;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use nalgebra::Vector3;
+use polhode::fit::{Bound, FitError, Known, RateUnit, Reading, Record, Settings, TimeUnit, fit};
+
+use crate::arguments::{number, numbers, positive};
+use crate::error::{Error, warn};
+use crate::files::{emit, read, replace};
+use crate::table::Format;
+
+/// Inertia tensor of a freely turning body from its measured angular velocity
+///
+/// Without one of --trace, --momentum, --twice-energy or --moment the tensor is known up to a factor, and its trace is
+/// set to 1. Exit code 1: the record does not determine the tensor; what it does determine is printed.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Fit {
+    /// Records with a header: t, wx, wy, wz, or the names of phone apps
+    #[arg(required = true, value_name = "DATA.csv")]
+    data: Vec<PathBuf>,
+    /// Unit of time where the header names none: s, ms, us, ns [default: s]
+    #[arg(long, value_name = "UNIT", value_parser = time_unit)]
+    time_unit: Option<TimeUnit>,
+    /// Unit of the rates where the header names none: rad/s, deg/s, rpm [default: rad/s]
+    #[arg(long, value_name = "UNIT", value_parser = rate_unit)]
+    rate_unit: Option<RateUnit>,
+    /// Use only this time, s; repeatable. With N: only of the N-th file
+    #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true)]
+    window: Vec<Window>,
+    /// Half width of the test functions, s [default: least covariance]
+    #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
+    radius: Option<f64>,
+    /// Standard deviation of the noise, rad/s [default: from the samples]
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    noise: Option<f64>,
+    /// The moment about an axis is at least this share of the trace; repeatable
+    #[arg(long, value_name = "nx,ny,nz,SHARE", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    at_least: Vec<[f64; 4]>,
+    /// The moment about an axis is at most this share of the trace; repeatable
+    #[arg(long, value_name = "nx,ny,nz,SHARE", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    at_most: Vec<[f64; 4]>,
+    #[command(flatten)]
+    known: KnownArguments,
+    /// Go on even where another unit explains the record far better
+    #[arg(long)]
+    trust_units: bool,
+    /// Draw the residuals into this file
+    #[arg(long, value_name = "FILE.svg")]
+    residuals: Option<PathBuf>,
+    /// How the result is printed: table on a terminal, csv otherwise
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// Write to this file instead of standard output
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// What gives the absolute size: at most one of these.
+#[derive(Args, Clone, Debug)]
+#[group(multiple = false)]
+struct KnownArguments {
+    /// Trace of the tensor, kg m^2
+    #[arg(long, value_name = "TRACE", value_parser = number, allow_hyphen_values = true)]
+    trace: Option<f64>,
+    /// Magnitude of the angular momentum, kg m^2/s
+    #[arg(long, value_name = "L", value_parser = number, allow_hyphen_values = true)]
+    momentum: Option<f64>,
+    /// Twice the kinetic energy, kg m^2/s^2
+    #[arg(long, value_name = "2T", value_parser = number, allow_hyphen_values = true)]
+    twice_energy: Option<f64>,
+    /// Moment about an axis, kg m^2
+    #[arg(long, value_name = "nx,ny,nz,I", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    moment: Option<[f64; 4]>,
+}
+
+impl KnownArguments {
+    fn known(&self) -> Option<Known> {
+        let moment = |[x, y, z, value]: [f64; 4]| Known::Moment { axis: Vector3::new(x, y, z), value };
+        self.trace
+            .map(Known::Trace)
+            .or(self.momentum.map(Known::Momentum))
+            .or(self.twice_energy.map(Known::TwiceEnergy))
+            .or(self.moment.map(moment))
+    }
+}
+
+/// A window of one file, counted from 1, or of every file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Window {
+    file: Option<usize>,
+    span: (f64, f64),
+}
+
+fn window(text: &str) -> Result<Window, String> {
+    let (file, span) = match text.split_once(':') {
+        Some((file, span)) => {
+            let number = file.trim().parse::<usize>().ok().filter(|n| *n > 0);
+            (Some(number.ok_or(format!("'{file}' is not the number of a file; count from 1"))?), span)
+        }
+        None => (None, text),
+    };
+    let [start, end] = numbers::<2>(span)?;
+    if start >= end {
+        return Err(format!("{start:?} is not before {end:?}; give the start, then the end"));
+    }
+    Ok(Window { file, span: (start, end) })
+}
+
+fn time_unit(text: &str) -> Result<TimeUnit, String> {
+    TimeUnit::named(text).ok_or_else(|| format!("'{text}' is no unit of time here; known: s, ms, us, ns"))
+}
+
+fn rate_unit(text: &str) -> Result<RateUnit, String> {
+    RateUnit::named(text)
+        .ok_or_else(|| format!("'{text}' is no unit of rates here; known: rad/s, deg/s, rpm"))
+}
+
+impl Fit {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        let record = self.record()?;
+        let bound = |axis: &[f64; 4]| Bound {
+            axis: Vector3::new(axis[0], axis[1], axis[2]),
+            at_least: None,
+            at_most: None,
+        };
+        let least = self.at_least.iter().map(|b| Bound { at_least: Some(b[3]), ..bound(b) });
+        let most = self.at_most.iter().map(|b| Bound { at_most: Some(b[3]), ..bound(b) });
+        let settings = Settings {
+            radius: self.radius,
+            noise: self.noise,
+            bounds: least.chain(most).collect(),
+            known: self.known.known(),
+            check_units: !self.trust_units,
+        };
+        let format = Format::or_default(self.format, self.out.is_some());
+        let estimate = match fit(&record, &settings) {
+            Ok(estimate) => estimate,
+            Err(FitError::Unidentifiable(what)) => {
+                emit(&report::unidentified(&what, &record, format), self.out.as_deref())?;
+                return Err(Error::Failed(format!("{}: {}", self.names(), FitError::Unidentifiable(what))));
+            }
+            Err(error @ (FitError::NoRotation { .. } | FitError::Solver { .. })) => {
+                return Err(Error::Failed(format!("{}: {error}", self.names())));
+            }
+            Err(error) => return Err(Error::Input(format!("{}: {error}", self.names()))),
+        };
+        let drawing = self.residuals.as_deref().map(|path| plot::residuals(&estimate).map(|svg| (path, svg)));
+        let drawing = drawing.transpose()?;
+        emit(&report::identified(&estimate, format), self.out.as_deref())?;
+        if let Some((path, svg)) = drawing {
+            replace(path, svg.as_bytes())?;
+        }
+        // the JSON holds them too; a file of rows does not
+        estimate.warnings.iter().for_each(|warning| warn(warning));
+        Ok(())
+    }
+
+    fn names(&self) -> String {
+        self.data.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// All files and windows as one record.
+    fn record(&self) -> Result<Record, Error> {
+        if let Some((n, w)) =
+            self.window.iter().find_map(|w| w.file.filter(|n| *n > self.data.len()).map(|n| (n, w)))
+        {
+            let value = format!("{n}:{:?},{:?}", w.span.0, w.span.1);
+            let rule = format!("there are {} files", self.data.len());
+            return Err(Error::input("--window", &value, &rule, "count them from 1"));
+        }
+        let mut all = Record::default();
+        for (k, path) in self.data.iter().enumerate() {
+            let record = self.read(path)?;
+            let own: Vec<(f64, f64)> =
+                self.window.iter().filter(|w| w.file.is_none_or(|n| n == k + 1)).map(|w| w.span).collect();
+            let cut = match (self.window.is_empty(), own.is_empty()) {
+                (true, _) => record,
+                (false, true) => continue,
+                (false, false) => record.windows(&own).map_err(|error| Error::Input(error.to_string()))?,
+            };
+            all = all.join(cut);
+        }
+        Ok(all)
+    }
+
+    fn read(&self, path: &Path) -> Result<Record, Error> {
+        let text = read(path, "name a text file with a header and columns")?;
+        let reading = Reading { time_unit: self.time_unit, rate_unit: self.rate_unit };
+        Record::read(&text, &path.display().to_string(), reading)
+            .map_err(|error| Error::Input(error.to_string()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_are_spans_of_one_file_or_of_all() {
+        assert_eq!(window("1,2.5"), Ok(Window { file: None, span: (1.0, 2.5) }));
+        assert_eq!(window("2:-1,0"), Ok(Window { file: Some(2), span: (-1.0, 0.0) }));
+        assert!(window("0:1,2").unwrap_err().contains("count from 1"));
+        assert!(window("2,1").unwrap_err().contains("not before"));
+        assert!(window("2").unwrap_err().contains("1 given, 2 needed"));
+    }
+}

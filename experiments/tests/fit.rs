@@ -1,0 +1,232 @@
+//! `polhode simulate` and `polhode fit` as their users meet them: from a record to a tensor, and every refusal.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+/// An empty folder for one test, removed with it.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("polhode-fit-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str, text: &str) -> String {
+        let path = self.0.join(name);
+        fs::write(&path, text).unwrap();
+        path.display().to_string()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+struct Answer {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn run(line: &str) -> Answer {
+    let done = Command::new(env!("CARGO_BIN_EXE_polhode")).args(line.split_whitespace()).output().unwrap();
+    let answer = Answer {
+        code: done.status.code().unwrap(),
+        out: String::from_utf8(done.stdout).unwrap(),
+        err: String::from_utf8(done.stderr).unwrap(),
+    };
+    assert!(!answer.err.contains("panicked"), "{line}: {}", answer.err);
+    for word in answer.out.split(|c: char| !c.is_ascii_alphanumeric()) {
+        assert!(!["NaN", "nan", "inf"].contains(&word), "{line}: {}", answer.out);
+    }
+    answer
+}
+
+fn output(line: &str) -> String {
+    let answer = run(line);
+    assert_eq!((answer.code, answer.err.as_str()), (0, ""), "{line}");
+    answer.out
+}
+
+fn refused(code: i32, line: &str, says: &[&str]) {
+    let answer = run(line);
+    assert_eq!(answer.code, code, "{line}: {}", answer.err);
+    assert!(answer.err.starts_with("error: "), "{line}: {}", answer.err);
+    for part in says {
+        assert!(answer.err.contains(part), "{line}: '{part}' is not in: {}", answer.err);
+    }
+}
+
+fn json(line: &str) -> Value {
+    serde_json::from_str(&run(&format!("{line} --format json")).out).unwrap()
+}
+
+const SIMULATE: &str = "simulate --moments 1,2,2.6 --omega 0.3,1,0.4 --every 0.02";
+
+#[test]
+fn a_simulated_record_is_the_golden_one() {
+    let found = output(&format!("{SIMULATE} --until 0.2 --noise 0.01 --jitter 0.5 --seed 3"));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/simulate.csv");
+    if std::env::var_os("POLHODE_BLESS").is_some() {
+        fs::write(&path, &found).unwrap();
+    }
+    assert_eq!(found, fs::read_to_string(&path).unwrap(), "simulate.csv differs from the committed file");
+    let exact = output(&format!("{SIMULATE} --until 0.2"));
+    let propagated = output("propagate --moments 1,2,2.6 --omega 0.3,1,0.4 --times 0.2");
+    let last = |text: &str, from: usize| -> Vec<f64> {
+        text.lines().last().unwrap().split(',').skip(from).take(3).map(|c| c.parse().unwrap()).collect()
+    };
+    for (a, b) in last(&exact, 1).iter().zip(last(&propagated, 5)) {
+        assert!((a - b).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn what_is_simulated_is_found_again() {
+    let scratch = Scratch::new("again");
+    let record = scratch.0.join("record.csv").display().to_string();
+    output(&format!("{SIMULATE} --until 30 --noise 1e-3 --out {record}"));
+    let answer = json(&format!("fit {record} --trace 5.6"));
+    let number = |key: &str, k: usize| answer[key][k].as_f64().unwrap();
+    for (k, moment) in [1.0, 2.0, 2.6].into_iter().enumerate() {
+        let error = (number("principal", k) - moment / 5.6).abs();
+        assert!(error < 5.0 * number("sigma_principal", k) && error < 1e-3, "{answer:#}");
+        assert!((answer["inertia"][k][k].as_f64().unwrap() - moment).abs() < 5e-3);
+    }
+    // the covariance is that of a trace held fixed
+    let covariance = |i: usize, j: usize| answer["covariance"][i][j].as_f64().unwrap();
+    let along: f64 = (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).map(|(i, j)| covariance(i, j)).sum();
+    assert!(along.abs() < 1e-12 * covariance(0, 0));
+    for key in [
+        "shape",
+        "principal",
+        "axes",
+        "covariance",
+        "sigma_principal",
+        "noise_sigma",
+        "samples",
+        "segments",
+        "method",
+        "identifiable",
+        "null_directions",
+        "triangle_slack",
+        "active_constraints",
+        "chi2_per_dof",
+        "warnings",
+        "inertia",
+        "inertia_covariance",
+    ] {
+        assert!(!answer[key].is_null(), "{key}");
+    }
+    assert_eq!((&answer["samples"], &answer["identifiable"]), (&Value::from(1501), &Value::from(true)));
+    assert!(answer["warnings"].as_array().unwrap().is_empty(), "{answer:#}");
+    let shape_only = json(&format!("fit {record}"));
+    assert!(shape_only["inertia"].is_null() && shape_only["inertia_covariance"].is_null());
+
+    // rows, and text no wider than a page
+    let rows = output(&format!("fit {record}"));
+    assert!(rows.starts_with("quantity,value,sigma\nprincipal_1,0.178"), "{rows}");
+    let text = output(&format!("fit {record} --format table"));
+    assert!(text.contains("deviation over the Cramer-Rao bound: 1.0"), "{text}");
+    // two windows of the one file, and a drawing
+    let svg = scratch.0.join("residuals.svg");
+    let line = format!("fit {record} --window 1:0,12 --window 15,30 --residuals {}", svg.display());
+    assert_eq!(json(&line)["segments"], Value::from(2));
+    assert!(fs::read_to_string(svg).unwrap().starts_with("<svg"));
+}
+
+#[test]
+fn what_is_not_determined_is_said_and_fails() {
+    let scratch = Scratch::new("spin");
+    let record = scratch.0.join("spin.csv").display().to_string();
+    output(&format!(
+        "simulate --moments 1,2,2.6 --omega 0,0,2 --until 10 --every 0.01 --noise 1e-3 --out {record}"
+    ));
+    let line = format!("fit {record}");
+    refused(1, &line, &["spin.csv", "does not determine the tensor", "the ratio I2/I3 is undetermined"]);
+    let answer = json(&line);
+    assert_eq!(answer["identifiable"], Value::from(false));
+    assert!(answer["known"][0].as_str().unwrap().contains("is a principal axis"));
+    assert!(answer["null_directions"][0].as_str().unwrap().contains("pure spin about axis 1"));
+    assert!(run(&format!("{line} --format table")).out.contains("Undetermined:\n  the ratio I2/I3"));
+    assert!(run(&line).out.contains("undetermined,"));
+}
+
+#[test]
+fn unusable_input_is_refused_by_file_line_and_column() {
+    let scratch = Scratch::new("refused");
+    let nan = scratch.file("nan.csv", "t,wx,wy,wz\n0,1,2,3\n0.1,1,nan,3\n");
+    refused(2, &format!("fit {nan}"), &["nan.csv, line 3, column 3 (wy): \"nan\" is not a finite number"]);
+    let short = scratch.file("short.csv", "t,wx,wy,wz\n0,1,2,3\n0.1,1,2,3\n");
+    refused(2, &format!("fit {short}"), &["short.csv: 2 samples in 1 segments", "at least 16"]);
+    let still = (0..100).map(|i| format!("{i},0,0,0\n")).collect::<String>();
+    let still = scratch.file("still.csv", &format!("t,wx,wy,wz\n{still}"));
+    refused(1, &format!("fit {still}"), &["still.csv: the rates have a root mean square of 0"]);
+    let headless = scratch.file("headless.csv", "0,1,2,3\n1,1,2,3\n");
+    refused(2, &format!("fit {headless}"), &["headless.csv: no column for time"]);
+    refused(2, "fit absent.csv", &["absent.csv: cannot be read"]);
+    refused(2, &format!("fit {nan} --rate-unit mph"), &["--rate-unit", "'mph'", "rad/s, deg/s, rpm"]);
+    refused(2, &format!("fit {nan} --window 2,1"), &["--window", "not before"]);
+    refused(2, &format!("fit {nan} --noise 0"), &["--noise", "not positive"]);
+    refused(
+        2,
+        &format!("fit {short} --window 5,6"),
+        &["no samples between 5 s and 6 s", "from 0 s to 0.1 s"],
+    );
+    refused(2, &format!("fit {short} --window 2:0,1"), &["--window: '2:0.0,1.0'", "there are 1 files"]);
+    refused(2, &format!("fit {short} --trace 1 --momentum 2"), &["--trace", "--momentum", "cannot be used"]);
+
+    let record = scratch.0.join("record.csv").display().to_string();
+    output(&format!("{SIMULATE} --until 20 --noise 1e-3 --out {record}"));
+    refused(2, &format!("fit {record} --at-most 1,0,0,0.2 --at-least 2,0,0,0.3"), &["exclude each other"]);
+    refused(2, &format!("fit {record} --at-least 0,0,1,0.6"), &["half the trace"]);
+    refused(2, &format!("fit {record} --at-least 0,0,0,0.1"), &["bound 1 has the axis"]);
+    refused(2, &format!("fit {record} --trace -1"), &["the known quantity is -1"]);
+    refused(
+        2,
+        &format!("fit {record} --rate-unit deg/s"),
+        &["record.csv: the units look mistaken", "radians per second taken for degrees per second"],
+    );
+    refused(2, &format!("{SIMULATE} --until 1 --noise -1"), &["--noise: '-1.0'", "not negative"]);
+    refused(2, &format!("{SIMULATE} --until 1 --jitter 1"), &["--jitter: '1.0'", "keep their order"]);
+    // a refusal leaves the file of an earlier answer alone
+    let kept = scratch.file("kept.csv", "kept");
+    refused(2, &format!("fit {nan} --out {kept}"), &["line 3"]);
+    assert_eq!(fs::read_to_string(kept).unwrap(), "kept");
+}
+
+#[test]
+fn help_names_every_flag_in_80_columns() {
+    for (command, flags) in [
+        ("simulate", ["--omega", "--until", "--every", "--noise", "--jitter", "--seed", "--format", "--out"]),
+        (
+            "fit",
+            [
+                "--time-unit",
+                "--rate-unit",
+                "--window",
+                "--radius",
+                "--noise",
+                "--at-least",
+                "--trace",
+                "--residuals",
+            ],
+        ),
+    ] {
+        let help = output(&format!("{command} --help"));
+        for flag in flags {
+            assert!(help.contains(flag), "{command}: {flag}");
+        }
+        assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
+    }
+}

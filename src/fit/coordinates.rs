@@ -1,0 +1,119 @@
+//! Coordinates of a tensor of trace 1, and the eigenvectors of small symmetric matrices.
+//!
+//! J = 1/3 + Σ x_k B_k with B_1 … B_5 an orthonormal basis (Frobenius) of the symmetric matrices of trace 0:
+//! the scale is eliminated, and a rotation of the sensor is an orthogonal map of x.
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+/// The five numbers that free motion can tell.
+pub(super) type Coordinates = SVector<f64, 5>;
+/// A quadratic form of them.
+pub(super) type Form = SMatrix<f64, 5, 5>;
+
+const HALF_ROOT: f64 = core::f64::consts::FRAC_1_SQRT_2;
+const SIXTH_ROOT: f64 = 0.408_248_290_463_863; // 1/√6
+
+/// The rows and columns of the order xx, yy, zz, xy, xz, yz.
+pub(super) const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+/// B_k.
+pub(super) fn basis(k: usize) -> Matrix3<f64> {
+    match k {
+        0 => Matrix3::from_diagonal(&Vector3::new(HALF_ROOT, -HALF_ROOT, 0.0)),
+        1 => Matrix3::from_diagonal(&Vector3::new(SIXTH_ROOT, SIXTH_ROOT, -2.0 * SIXTH_ROOT)),
+        _ => {
+            let (i, j) = ENTRIES[k + 1];
+            let mut b = Matrix3::zeros();
+            b[(i, j)] = HALF_ROOT;
+            b[(j, i)] = HALF_ROOT;
+            b
+        }
+    }
+}
+
+/// Σ x_k B_k.
+pub(super) fn trace_free(x: &Coordinates) -> Matrix3<f64> {
+    (0..5).fold(Matrix3::zeros(), |sum, k| sum + basis(k) * x[k])
+}
+
+/// 1/3 + Σ x_k B_k.
+pub(super) fn tensor(x: &Coordinates) -> Matrix3<f64> {
+    Matrix3::identity() / 3.0 + trace_free(x)
+}
+
+/// The coordinates of a symmetric tensor, its trace put aside.
+pub(super) fn coordinates(tensor: &Matrix3<f64>) -> Coordinates {
+    Coordinates::from_fn(|k, _| basis(k).dot(tensor))
+}
+
+/// vᵀ B_k w for each k.
+pub(super) fn pair(v: &Vector3<f64>, w: &Vector3<f64>) -> Coordinates {
+    Coordinates::from_fn(|k, _| v.dot(&(basis(k) * w)))
+}
+
+/// Eigenvalues, ascending, and eigenvectors (columns) of a symmetric matrix, by Jacobi's rotations.
+pub(super) fn eigen<const N: usize>(mut a: SMatrix<f64, N, N>) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+    let mut v = SMatrix::<f64, N, N>::identity();
+    // quadratic convergence: 53 bits take at most 6 or 7 sweeps, the rest is margin
+    for _ in 0..16 {
+        for p in 0..N {
+            for q in p + 1..N {
+                if a[(p, q)].abs() <= 1e-17 * (a[(p, p)].abs() * a[(q, q)].abs()).sqrt() {
+                    continue;
+                }
+                let theta = (a[(q, q)] - a[(p, p)]) / (2.0 * a[(p, q)]);
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let c = 1.0 / (t * t + 1.0).sqrt();
+                let s = t * c;
+                for k in 0..N {
+                    let (x, y) = (a[(k, p)], a[(k, q)]);
+                    a[(k, p)] = c * x - s * y;
+                    a[(k, q)] = s * x + c * y;
+                }
+                for k in 0..N {
+                    let (x, y) = (a[(p, k)], a[(q, k)]);
+                    a[(p, k)] = c * x - s * y;
+                    a[(q, k)] = s * x + c * y;
+                    let (x, y) = (v[(k, p)], v[(k, q)]);
+                    v[(k, p)] = c * x - s * y;
+                    v[(k, q)] = s * x + c * y;
+                }
+            }
+        }
+    }
+    let mut order: [usize; N] = core::array::from_fn(|k| k);
+    order.sort_by(|&i, &j| a[(i, i)].total_cmp(&a[(j, j)]));
+    (SVector::from_fn(|k, _| a[(order[k], order[k])]), SMatrix::from_fn(|i, k| v[(i, order[k])]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn basis_is_orthonormal_and_free_of_trace() {
+        for k in 0..5 {
+            assert_eq!(basis(k).trace(), 0.0);
+            for l in 0..5 {
+                let expected = if k == l { 1.0 } else { 0.0 };
+                assert!((basis(k).dot(&basis(l)) - expected).abs() < 1e-15, "{k} {l}");
+            }
+        }
+    }
+
+    #[test]
+    fn eigenvectors_solve_their_equation_also_where_moments_agree() {
+        let turned = Matrix3::new(2.0, 0.5, -0.25, 0.5, 3.0, 1.0, -0.25, 1.0, 5.0);
+        for a in [
+            turned,
+            Matrix3::identity(),
+            Matrix3::from_diagonal(&Vector3::new(3.0, 1.0, 3.0)),
+            turned * 1e-200,
+        ] {
+            let (values, vectors) = eigen(a);
+            assert!(values[0] <= values[1] && values[1] <= values[2]);
+            assert!((a * vectors - vectors * Matrix3::from_diagonal(&values)).amax() < 2e-15 * a.amax());
+            assert!((vectors.transpose() * vectors - Matrix3::identity()).amax() < 1e-15);
+        }
+    }
+}

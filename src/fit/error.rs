@@ -1,0 +1,98 @@
+//! Why a record has no answer.
+
+use thiserror::Error;
+
+use super::identifiability::Identifiability;
+
+/// Two demands that no tensor meets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clash {
+    /// The one.
+    pub first: String,
+    /// The other.
+    pub second: String,
+    /// By how much each would have to give way, as a share of the trace.
+    pub gap: f64,
+}
+
+/// Why a fit was refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum FitError {
+    /// Too few samples for even one test function.
+    #[error(
+        "{samples} samples in {segments} segments, the longest {longest} long; a fit needs a segment of at least {needed} \
+         samples: record longer or faster"
+    )]
+    TooFewSamples {
+        /// Samples.
+        samples: usize,
+        /// Segments.
+        segments: usize,
+        /// Samples of the longest segment.
+        longest: usize,
+        /// Fewest samples of a usable segment.
+        needed: usize,
+    },
+    /// The angular velocity is zero, or no larger than its noise.
+    #[error(
+        "the rates have a root mean square of {rms:.3e} rad/s and a noise of {noise:.3e} rad/s: there is no rotation to \
+         fit; spin the body faster"
+    )]
+    NoRotation {
+        /// Root mean square rate, rad/s.
+        rms: f64,
+        /// Noise of a component, rad/s.
+        noise: f64,
+    },
+    /// The record determines fewer than five numbers of the tensor.
+    #[error("the record does not determine the tensor: {}", .0.verdict())]
+    Unidentifiable(Box<Identifiability>),
+    /// Another unit of the rates or times explains the record far better.
+    #[error(
+        "the units look mistaken: with the rates {factor} times as large ({hint}) the misfit per equation falls from \
+         {misfit:.3e} to {better:.3e}; name the units, or switch this check off"
+    )]
+    Units {
+        /// Factor on rate × time.
+        factor: f64,
+        /// What may have happened.
+        hint: &'static str,
+        /// χ² per degree of freedom as given.
+        misfit: f64,
+        /// The same with the factor.
+        better: f64,
+    },
+    /// Bounds that exclude each other.
+    #[error("{} and {} exclude each other: each would have to give way by {:.3e} of the trace", .0.first, .0.second, .0.gap)]
+    Contradiction(Box<Clash>),
+    /// The axis of a bound has no direction.
+    #[error("bound {bound} has the axis {axis:?}; it must be a finite vector that is not zero")]
+    BoundAxis {
+        /// Which bound, from 1.
+        bound: usize,
+        /// Its axis.
+        axis: [f64; 3],
+    },
+    /// The value of a bound is not a number.
+    #[error("bound {bound} is {value}; it must be a finite share of the trace")]
+    BoundValue {
+        /// Which bound, from 1.
+        bound: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A setting that must be positive and finite is not.
+    #[error("{name} is {value}; it must be a positive number")]
+    Setting {
+        /// Which one.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The solver's answer did not pass the check of optimality.
+    #[error("the quadratic program has no certified answer: {status}")]
+    Solver {
+        /// What happened.
+        status: String,
+    },
+}

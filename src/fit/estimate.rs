@@ -1,0 +1,489 @@
+//! The estimate: from a record to a physical tensor and everything that can be said of it.
+
+use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
+
+use super::bound;
+use super::coordinates::{Coordinates, Form, eigen, pair, tensor};
+use super::error::FitError;
+use super::identifiability::Identifiability;
+use super::noise;
+use super::qp::{self, ActiveConstraint, Bound, Certificate, LIMIT};
+use super::record::Record;
+use super::scale::{Known, inertia_covariance};
+use super::torque_free::{Drift, Whiteness, drifts};
+use super::weak::{self, Failure, SAMPLES_PER_TEST, Stretch, Weak, entries_of_coordinates};
+use crate::body::{Inertia, InertiaShape};
+
+/// What the user may fix; the default leaves everything to the record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Half width of the test functions, s; chosen by least predicted covariance without it.
+    pub radius: Option<f64>,
+    /// Standard deviation of the noise of one component, rad/s; read from the samples without it.
+    pub noise: Option<f64>,
+    /// What is known of the moments beforehand.
+    pub bounds: Vec<Bound>,
+    /// What gives the absolute size.
+    pub known: Option<Known>,
+    /// Whether a unit that explains the record ten times better is an error.
+    pub check_units: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { radius: None, noise: None, bounds: Vec::new(), known: None, check_units: true }
+    }
+}
+
+/// Whitened residuals of one segment: standard normal where model and noise are right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Residuals {
+    /// Which segment of the record.
+    pub segment: usize,
+    /// Centres of the test functions, s.
+    pub times: Vec<f64>,
+    /// The residuals of each.
+    pub values: Vec<[f64; 3]>,
+    /// Their mean square.
+    pub misfit: f64,
+}
+
+/// A fitted tensor and how far to trust it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The tensor with trace 1, sensor axes.
+    pub shape: InertiaShape,
+    /// Its principal moments, ascending, as shares of the trace.
+    pub principal: [f64; 3],
+    /// Their standard deviations.
+    pub sigma_principal: [f64; 3],
+    /// Takes coordinates along the principal axes (ascending, right-handed) to sensor axes.
+    pub axes: UnitQuaternion<f64>,
+    /// Standard deviations of the turn about each principal axis, rad; infinite where two moments agree.
+    pub sigma_axes: [f64; 3],
+    /// I₁/I₃ and I₂/I₃.
+    pub ratios: [f64; 2],
+    /// Their standard deviations.
+    pub sigma_ratios: [f64; 2],
+    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the shape; rank 5, less on the face of an active constraint.
+    pub covariance: SMatrix<f64, 6, 6>,
+    /// Covariance of the same before the physical law was imposed: what a test of other tensors should use.
+    pub free_covariance: SMatrix<f64, 6, 6>,
+    /// The Cramér–Rao bound on it; `None` where the tensor has no inverse.
+    pub bound: Option<SMatrix<f64, 6, 6>>,
+    /// Root of the trace of the covariance over that of the bound.
+    pub bound_ratio: Option<f64>,
+    /// Absolute tensor, kg m², where something gave the scale.
+    pub inertia: Option<Inertia>,
+    /// Covariance of its entries.
+    pub inertia_covariance: Option<SMatrix<f64, 6, 6>>,
+    /// Noise of one component of the rates, rad/s.
+    pub noise_sigma: f64,
+    /// Mean square of the residuals over the noise; the covariance is multiplied by it where it exceeds 1.
+    pub chi2_per_dof: f64,
+    /// Equations beyond the five unknowns.
+    pub dof: usize,
+    /// Samples.
+    pub samples: usize,
+    /// Segments that were long enough.
+    pub segments: usize,
+    /// Half width of the test functions, s.
+    pub radius: f64,
+    /// What the record determines.
+    pub identifiability: Identifiability,
+    /// I₁ + I₂ − I₃ as a share of the trace; never negative.
+    pub triangle_slack: f64,
+    /// Constraints that hold the answer.
+    pub active_constraints: Vec<ActiveConstraint>,
+    /// Check of the answer's optimality.
+    pub certificate: Certificate,
+    /// Drift of |J ω|.
+    pub momentum_drift: Drift,
+    /// Drift of 2T = ω·J ω.
+    pub energy_drift: Drift,
+    /// Correlation of neighbouring residuals.
+    pub whiteness: Whiteness,
+    /// Residuals by segment.
+    pub residuals: Vec<Residuals>,
+    /// What a reader of the figures must know.
+    pub warnings: Vec<String>,
+}
+
+/// A record in units of its own mean square rate and of the time in which the body turns by one radian.
+pub(super) struct Normalised {
+    pub(super) stretches: Vec<Stretch>,
+    /// Root mean square rate, rad/s.
+    rms: f64,
+}
+
+/// Other units, as factors on rate × time, and what would have happened.
+const UNITS: [(f64, &str); 8] = [
+    (core::f64::consts::PI / 180.0, "degrees per second taken for radians per second"),
+    (180.0 / core::f64::consts::PI, "radians per second taken for degrees per second"),
+    (core::f64::consts::PI / 30.0, "revolutions per minute taken for radians per second"),
+    (30.0 / core::f64::consts::PI, "radians per second taken for revolutions per minute"),
+    (6.0, "revolutions per minute taken for degrees per second"),
+    (1.0 / 6.0, "degrees per second taken for revolutions per minute"),
+    (1e-3, "milliseconds taken for seconds"),
+    (1e3, "seconds taken for milliseconds"),
+];
+
+pub(super) fn normalised(record: &Record) -> Result<Normalised, FitError> {
+    let samples = record.samples();
+    let longest = record.segments.iter().map(|s| s.times.len()).max().unwrap_or(0);
+    let needed = 2 * SAMPLES_PER_TEST as usize;
+    if longest < needed {
+        return Err(FitError::TooFewSamples { samples, segments: record.segments.len(), longest, needed });
+    }
+    // the largest component first, so that squares neither over- nor underflow
+    let rates = || record.segments.iter().flat_map(|s| &s.rates);
+    let largest = rates().map(|w| w.amax()).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return Err(FitError::NoRotation { rms: 0.0, noise: 0.0 });
+    }
+    let mean = rates().map(|w| (w / largest).norm_squared()).sum::<f64>() / samples as f64;
+    let rms = largest * mean.sqrt();
+    let segments = record.segments.iter();
+    let stretches = segments.map(|s| {
+        let start = s.times.first().copied().unwrap_or(0.0);
+        let times = s.times.iter().map(|t| (t - start) * rms).collect();
+        Stretch::new(times, s.rates.iter().map(|w| w / rms).collect())
+    });
+    Ok(Normalised { stretches: stretches.collect(), rms })
+}
+
+/// A tensor as a checked shape.
+pub(super) fn shape_of(j: &Matrix3<f64>) -> Result<InertiaShape, FitError> {
+    InertiaShape::from_tensor(*j).map_err(|error| FitError::Solver { status: error.to_string() })
+}
+
+/// Fits one tensor to all segments of a record.
+///
+/// The estimator is the weak form of Euler's equation, weighted by the covariance of its noise at samples that are
+/// moved onto the equations from round to round; the physical law enters by a quadratic program in whitened increments.
+/// No unit of rate or time and no rotation of the sensor changes the result beyond rounding.
+///
+/// # Errors
+/// Too few samples; no rotation; a record that does not determine the tensor, with what it does determine; units that
+/// look mistaken; bounds that contradict each other or the physical law; a program without a certified answer.
+pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
+    check(settings)?;
+    let Normalised { stretches, rms } = normalised(record)?;
+    // readings of a noiseless record carry at least the quadrature's error
+    let variance = match settings.noise {
+        Some(sigma) => (sigma / rms) * (sigma / rms),
+        None => noise::variance(&stretches).max(1e-20),
+    };
+    // the mean square is 1, of which the noise of three components is 3 σ²: a quarter is too much to fit
+    if 3.0 * variance > 0.25 {
+        return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
+    }
+    let singular = || FitError::Solver { status: "the residuals have no positive covariance".into() };
+    let weak = weak::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| {
+        match failure {
+            Failure::TooShort => FitError::TooFewSamples {
+                samples: record.samples(),
+                segments: record.segments.len(),
+                longest: stretches.iter().map(|s| s.times.len()).max().unwrap_or(0),
+                needed: 2 * SAMPLES_PER_TEST as usize,
+            },
+            Failure::Singular => singular(),
+        }
+    })?;
+    let dof = weak.stacked.rows - 5;
+    let misfit = weak.stacked.misfit / variance / dof.max(1) as f64;
+    let better =
+        if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
+    if let Some((factor, hint, better)) = better.filter(|b| b.2 < 0.1 * misfit) {
+        return Err(FitError::Units { factor, hint, misfit, better });
+    }
+    let identifiability = identify(&weak, &stretches, variance).ok_or_else(singular)?;
+    if !identifiability.complete() {
+        return Err(FitError::Unidentifiable(Box::new(identifiability)));
+    }
+    if !weak.settled {
+        return Err(singular());
+    }
+    let inflated = variance * misfit.max(1.0);
+    let free = weak::covariance(&weak.stacked.information(), &weak.inflation, inflated)
+        .or_else(|| weak::covariance(&weak.stacked.information(), &Form::zeros(), inflated))
+        .ok_or_else(|| FitError::Solver { status: "the information is not positive".into() })?;
+    let root = weak.stacked.root / inflated.sqrt();
+    let nearest = qp::nearest(weak.x, root, &settings.bounds)?;
+    let facts = Facts { record, settings, stretches: &stretches, rms, variance, weak: &weak, misfit, dof };
+    facts.report(nearest, free, identifiability, better)
+}
+
+fn check(settings: &Settings) -> Result<(), FitError> {
+    let known = settings.known.map(Known::value);
+    for (name, value) in
+        [("the radius", settings.radius), ("the noise", settings.noise), ("the known quantity", known)]
+    {
+        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+            return Err(FitError::Setting { name, value });
+        }
+    }
+    if let Some(Known::Moment { axis, .. }) = settings.known {
+        let size = axis.norm();
+        if !(size > 0.0 && size.is_finite()) {
+            return Err(FitError::Setting {
+                name: "the length of the axis of the known moment",
+                value: size,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The unit that explains the record best, where one does so at least three times better.
+fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<(f64, &'static str, f64)> {
+    let pilot = weak::pilot(stretches);
+    let mut best = None;
+    let mut least = misfit / 3.0;
+    for (factor, hint) in UNITS {
+        let scaled: Vec<Stretch> = pilot
+            .iter()
+            .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
+            .collect();
+        let Ok(weak) = weak::estimate(&scaled, None, variance) else { continue };
+        let dof = weak.stacked.rows - 5;
+        let value = weak.stacked.misfit / variance / dof.max(1) as f64;
+        if value < least {
+            least = value;
+            best = Some((factor, hint, value));
+        }
+    }
+    best
+}
+
+fn identify(weak: &Weak, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
+    let mut scatter = Matrix3::zeros();
+    let mut count = 0.0;
+    for w in stretches.iter().flat_map(|s| &s.rates) {
+        scatter += w * w.transpose();
+        count += 1.0;
+    }
+    let (singular, directions) = weak.stacked.spectrum()?;
+    let spectrum = (singular / variance.sqrt(), directions);
+    let (rows, j) = (weak.stacked.rows, tensor(&weak.x));
+    Some(Identifiability::new(&spectrum, &weak.inflation, rows, &(scatter / count), &j))
+}
+
+/// What the report is drawn from.
+struct Facts<'a> {
+    record: &'a Record,
+    settings: &'a Settings,
+    stretches: &'a [Stretch],
+    rms: f64,
+    variance: f64,
+    weak: &'a Weak,
+    misfit: f64,
+    dof: usize,
+}
+
+impl Facts<'_> {
+    fn report(
+        &self,
+        nearest: qp::Nearest,
+        free: Form,
+        identifiability: Identifiability,
+        better: Option<(f64, &'static str, f64)>,
+    ) -> Result<Estimate, FitError> {
+        let root = self.weak.stacked.root / (self.variance * self.misfit.max(1.0)).sqrt();
+        let on_face = face_covariance(&free, &root, &nearest.face);
+        let shape = shape_of(&tensor(&nearest.x))?;
+        let j = shape.tensor();
+        let (moments, _) = eigen(j);
+        let axes = Inertia::from_tensor(j).map_or(UnitQuaternion::identity(), |i| i.principal_axes());
+        let v: [Vector3<f64>; 3] = core::array::from_fn(|k| axes * Vector3::ith(k, 1.0));
+        let deviation = |g: Coordinates, c: &Form| g.dot(&(c * g)).max(0.0).sqrt();
+        let sigma_principal = core::array::from_fn(|k| deviation(pair(&v[k], &v[k]), &on_face));
+        let sigma_axes = core::array::from_fn(|k| {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            deviation(pair(&v[a], &v[b]), &on_face) / (moments[a] - moments[b]).abs()
+        });
+        let ratio = |k: usize| {
+            let slope = (pair(&v[k], &v[k]) - pair(&v[2], &v[2]) * (moments[k] / moments[2])) / moments[2];
+            (moments[k] / moments[2], deviation(slope, &on_face))
+        };
+        let entries = entries_of_coordinates();
+        let spread = |c: Form| entries * c * entries.transpose();
+        let bound = bound::cramer_rao(self.stretches, &nearest.x, self.weak.radius, self.variance);
+        let bound_ratio = bound.map(|b| (free.trace() / b.trace()).sqrt());
+        let (inertia, inertia_covariance) = self.absolute(&j, &on_face)?;
+        let (momentum, energy) = drifts(self.stretches, &j, self.variance);
+        let per_second = |d: Drift| Drift { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
+        let residuals = self.residuals();
+        let mut estimate = Estimate {
+            principal: [moments[0], moments[1], moments[2]],
+            sigma_principal,
+            axes,
+            sigma_axes,
+            ratios: [ratio(0).0, ratio(1).0],
+            sigma_ratios: [ratio(0).1, ratio(1).1],
+            covariance: spread(on_face),
+            free_covariance: spread(free),
+            bound: bound.map(spread),
+            bound_ratio,
+            inertia,
+            inertia_covariance,
+            noise_sigma: self.variance.sqrt() * self.rms,
+            chi2_per_dof: self.misfit,
+            dof: self.dof,
+            samples: self.record.samples(),
+            segments: residuals.len(),
+            radius: self.weak.radius / self.rms,
+            identifiability,
+            triangle_slack: (2.0 * (LIMIT - moments[2])).max(0.0),
+            active_constraints: nearest.active,
+            certificate: nearest.certificate,
+            momentum_drift: per_second(momentum),
+            energy_drift: per_second(energy),
+            whiteness: Whiteness::new(self.weak.residuals.iter().map(|(_, _, e)| e.as_slice())),
+            residuals,
+            warnings: Vec::new(),
+            shape,
+        };
+        estimate.warnings = self.warnings(&estimate, better);
+        Ok(estimate)
+    }
+
+    fn absolute(
+        &self,
+        j: &Matrix3<f64>,
+        covariance: &Form,
+    ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+        let Some(known) = self.settings.known else { return Ok((None, None)) };
+        let (trace, slope) = known.trace(self.record, j, self.variance * self.rms * self.rms);
+        let inertia = Inertia::from_tensor(j * trace)
+            .map_err(|error| FitError::Solver { status: format!("no absolute tensor: {error}") })?;
+        Ok((Some(inertia), Some(inertia_covariance(j, covariance, trace, &slope))))
+    }
+
+    fn residuals(&self) -> Vec<Residuals> {
+        let deviation = self.variance.sqrt();
+        let each = self.weak.residuals.iter();
+        each.map(|(segment, centres, e)| {
+            let start = self.record.segments[*segment].times.first().copied().unwrap_or(0.0);
+            let values: Vec<[f64; 3]> =
+                e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
+            Residuals {
+                segment: *segment,
+                times: centres.iter().map(|c| start + c / self.rms).collect(),
+                misfit: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
+                values,
+            }
+        })
+        .collect()
+    }
+
+    fn warnings(&self, e: &Estimate, better: Option<(f64, &'static str, f64)>) -> Vec<String> {
+        let mut list = Vec::new();
+        let record = self.record;
+        if record.merged > 0 {
+            list.push(format!("{} samples had the time of another and were merged with it", record.merged));
+        }
+        if record.saturated > 0 {
+            list.push(format!(
+                "{} samples stand at the end of the sensor's range (flat tops) and were left out",
+                record.saturated
+            ));
+        }
+        let unused = record.segments.len() - e.segments;
+        if unused > 0 {
+            list.push(format!(
+                "{unused} of {} segments are too short for the test functions",
+                record.segments.len()
+            ));
+        }
+        if e.chi2_per_dof > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
+            list.push(format!(
+                "the residuals are {:.1} times what the noise of {:.2e} rad/s explains: torques, outliers or a sensor that \
+                 filters; deviations are enlarged by that factor",
+                e.chi2_per_dof.sqrt(),
+                e.noise_sigma
+            ));
+        }
+        if let Some((factor, hint, value)) = better {
+            list.push(format!(
+                "with the rates {factor:.4} times as large the misfit falls from {:.2e} to {value:.2e}: {hint}?",
+                e.chi2_per_dof
+            ));
+        }
+        if e.whiteness.significant() {
+            list.push(format!(
+                "neighbouring residuals are correlated by {:.2} +- {:.2}: the noise is not white or the model is wrong",
+                e.whiteness.correlation, e.whiteness.sigma
+            ));
+        }
+        for (name, drift) in [("momentum |J w|", e.momentum_drift), ("energy w J w", e.energy_drift)] {
+            if drift.significant() {
+                list.push(format!(
+                    "not free of torques: the {name} changes by {:.2} +- {:.2} per cent per second",
+                    100.0 * drift.rate,
+                    100.0 * drift.sigma
+                ));
+            }
+        }
+        let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.misfit).collect();
+        levels.sort_by(f64::total_cmp);
+        if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {
+            for r in e.residuals.iter().filter(|r| r.misfit > 4.0 * median) {
+                list.push(format!(
+                    "segment {} (from {} s) has {:.1} times the residuals of the median segment: check it",
+                    r.segment + 1,
+                    r.times.first().copied().unwrap_or(0.0),
+                    (r.misfit / median).sqrt()
+                ));
+            }
+        }
+        for constraint in &e.active_constraints {
+            list.push(format!(
+                "{} holds the answer (multiplier {:.3e})",
+                constraint.name, constraint.multiplier
+            ));
+        }
+        let largest = e.free_covariance.trace().sqrt();
+        if largest > 5e-3 {
+            list.push(format!(
+                "the tensor is known to {:.1} per cent of its trace only: beyond half a per cent the linear covariance is a guide",
+                100.0 * largest
+            ));
+        }
+        for (low, high) in [(0, 1), (1, 2)] {
+            let (a, b) = (e.sigma_principal[low], e.sigma_principal[high]);
+            if e.principal[high] - e.principal[low] < 3.0 * (a * a + b * b).sqrt() {
+                list.push(format!(
+                    "moments {} and {} agree within their errors: the directions of their axes are arbitrary",
+                    low + 1,
+                    high + 1
+                ));
+            }
+        }
+        if e.dof < 20 {
+            list.push(format!("only {} equations beyond the unknowns: the misfit says little", e.dof));
+        }
+        list
+    }
+}
+
+/// The covariance of an answer that is held on a face: increments along the active gradients are gone.
+///
+/// With the oblique projector P onto the face, orthogonal in the metric of the information, it is P C Pᵀ.
+fn face_covariance(free: &Form, root: &Form, face: &[Coordinates]) -> Form {
+    if face.is_empty() {
+        return *free;
+    }
+    // gradients span a subspace of the whitened increments y; orthonormal by Gram and Schmidt
+    let mut q: Vec<Coordinates> = Vec::new();
+    for g in face {
+        let rest = q.iter().chain(q.iter()).fold(*g, |r, u| r - u * u.dot(&r));
+        if rest.norm() > 1e-10 * g.norm() {
+            q.push(rest.normalize());
+        }
+    }
+    let inside = q.iter().fold(Form::identity(), |p, u| p - u * u.transpose());
+    let Some(inverse) = root.try_inverse() else { return *free };
+    let projector = inverse * inside * root;
+    projector * free * projector.transpose()
+}

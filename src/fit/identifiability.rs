@@ -1,0 +1,154 @@
+//! What a record tells of the tensor, and what it leaves open, in words.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::coordinates::{Coordinates, Form, eigen, trace_free};
+
+/// A combination of entries with a larger standard deviation (share of the trace) counts as undetermined: physical
+/// tensors differ by 0.4 at most from the sphere, so such a figure tells nothing.
+const VAGUE: f64 = 0.1;
+/// How many standard deviations of its own fluctuation the information must exceed.
+const SIGNIFICANT: f64 = 5.0;
+
+/// The spectrum of information about the five numbers of a tensor of trace 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identifiability {
+    /// Standard deviations (share of the trace) along the principal directions of the information, ascending; infinite
+    /// where the motion tells nothing.
+    pub deviations: [f64; 5],
+    /// How many of them are determined.
+    pub rank: usize,
+    /// The undetermined combinations in words.
+    pub null_directions: Vec<String>,
+    /// The same as trace-free tensors of Frobenius norm 1, in sensor axes.
+    pub null_tensors: Vec<Matrix3<f64>>,
+    /// What is known all the same, in words.
+    pub known: Vec<String>,
+}
+
+impl Identifiability {
+    /// From the singular values of the whitened equations with their directions, and what noise alone adds to the
+    /// information, over `rows` equations; `scatter` is the mean of ω ωᵀ and `estimate` the tensor so far.
+    pub(super) fn new(
+        (singular, directions): &(Coordinates, Form),
+        noise: &Form,
+        rows: usize,
+        scatter: &Matrix3<f64>,
+        estimate: &Matrix3<f64>,
+    ) -> Self {
+        let mut deviations = [0.0; 5];
+        let mut null_tensors = Vec::new();
+        for k in 0..5 {
+            let direction: Coordinates = directions.column(k).into_owned();
+            let by_noise = direction.dot(&(noise * direction));
+            let value = singular[k] * singular[k] - by_noise;
+            let fluctuation = by_noise * (2.0 / rows as f64).sqrt();
+            deviations[k] = if value > 0.0 { 1.0 / value.sqrt() } else { f64::INFINITY };
+            if deviations[k] > VAGUE || value < SIGNIFICANT * fluctuation {
+                null_tensors.push(trace_free(&direction));
+            }
+        }
+        let rank = 5 - null_tensors.len();
+        let (null_directions, known) = words(&null_tensors, rank, scatter, estimate);
+        Identifiability { deviations, rank, null_directions, null_tensors, known }
+    }
+
+    /// Whether everything but the scale is determined.
+    pub fn complete(&self) -> bool {
+        self.rank == 5
+    }
+
+    /// Both lists in one sentence.
+    pub fn verdict(&self) -> String {
+        let known =
+            if self.known.is_empty() { "nothing is known".to_string() } else { self.known.join("; ") };
+        format!("{} of 5 numbers are known. {}. Known: {known}", self.rank, self.null_directions.join("; "))
+    }
+}
+
+fn words(
+    null: &[Matrix3<f64>],
+    rank: usize,
+    scatter: &Matrix3<f64>,
+    estimate: &Matrix3<f64>,
+) -> (Vec<String>, Vec<String>) {
+    if rank == 5 {
+        return (Vec::new(), Vec::new());
+    }
+    let (spread, directions) = eigen(*scatter);
+    let main: Vector3<f64> = directions.column(2).into_owned();
+    let axis = |v: &Vector3<f64>| {
+        let largest = v[v.iamax()];
+        let v = v * largest.signum();
+        format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z)
+    };
+    if rank == 0 {
+        return (
+            vec!["no ratio and no axis is determined: the motion does not stand out of its noise".into()],
+            Vec::new(),
+        );
+    }
+    let common = common_frame(null);
+    let frame = common.unwrap_or_else(|| eigen(*estimate).1);
+    if rank <= 2 && spread[1] <= 0.05 * spread[2] {
+        return (
+            vec![
+                "the ratio I2/I3 is undetermined: the record is a pure spin about axis 1".into(),
+                "the ratio I1/I2 is undetermined: nothing compares the spin axis with the other two".into(),
+                "the directions of axes 2 and 3 are undetermined".into(),
+            ],
+            vec![format!("{} is a principal axis, numbered 1 here", axis(&main))],
+        );
+    }
+    let known = (0..3)
+        .map(|k| frame.column(k).into_owned())
+        .enumerate()
+        .filter(|(_, v)| null.iter().all(|t| (t * v - v * v.dot(&(t * v))).norm() < 0.1))
+        .map(|(k, v)| format!("{} is a principal axis, numbered {} here", axis(&v), k + 1))
+        .collect();
+    if common.is_some() && rank == 3 {
+        let open = "the ratios I1/I2 and I2/I3 are undetermined: the record holds only pure spins about principal axes";
+        return (vec![open.into()], known);
+    }
+    let mut open = Vec::new();
+    for tensor in null {
+        let n = frame.transpose() * tensor * frame;
+        let off = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| (n[(i, j)].abs() * core::f64::consts::SQRT_2, i, j));
+        let diagonal = n.diagonal().norm();
+        let turn = off.iter().copied().fold((0.0, 0, 0), |a, b| if b.0 > a.0 { b } else { a });
+        if diagonal >= turn.0 {
+            let d = n.diagonal();
+            open.push(format!(
+                "the ratio I{}/I{} is undetermined",
+                d.imin().min(d.imax()) + 1,
+                d.imin().max(d.imax()) + 1
+            ));
+        } else {
+            let third = 3 - turn.1 - turn.2;
+            open.push(format!(
+                "the directions of axes {} and {} about axis {} are undetermined",
+                turn.1 + 1,
+                turn.2 + 1,
+                third + 1
+            ));
+        }
+    }
+    (open, known)
+}
+
+/// The axes that diagonalise all of `null`, if there are such.
+fn common_frame(null: &[Matrix3<f64>]) -> Option<Matrix3<f64>> {
+    // one of these has three distinct eigenvalues, whose axes are the only candidates
+    let sums = null.iter().flat_map(|a| null.iter().flat_map(move |b| [*a, a + b, a - b]));
+    let gap = |m: &Matrix3<f64>| {
+        let (values, _) = eigen(*m);
+        (values[1] - values[0]).min(values[2] - values[1])
+    };
+    let best = sums.max_by(|a, b| gap(a).total_cmp(&gap(b)))?;
+    let (_, frame) = eigen(best);
+    let off = |t: &Matrix3<f64>| {
+        let n = frame.transpose() * t * frame;
+        n[(0, 1)].abs().max(n[(0, 2)].abs()).max(n[(1, 2)].abs())
+    };
+    null.iter().all(|t| off(t) < 0.1).then_some(frame)
+}

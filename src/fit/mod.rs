@@ -1,0 +1,57 @@
+//! Inertia from measured angular velocity.
+//!
+//! A body that turns freely tells its inertia tensor up to a factor: five numbers. [`fit`] reads them from a
+//! [`Record`] of rates: the weak form of Euler's equation (nothing is differentiated) weighted by the covariance of
+//! its own noise, then the nearest tensor that a body can have. [`Estimate`] says how well each number is known,
+//! how that compares with the Cramér–Rao bound, and what in the record contradicts a free body.
+//!
+//! ```
+//! use nalgebra::Vector3;
+//! use polhode::body::Inertia;
+//! use polhode::fit::{Known, Random, Record, Settings, fit, rehearse};
+//!
+//! let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+//! let times: Vec<f64> = (0..3000).map(|i| f64::from(i) / 100.0).collect();
+//! let rates = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
+//!
+//! let record = Record::from_samples(&times, &rates)?;
+//! let settings = Settings { known: Some(Known::Trace(5.6)), ..Settings::default() };
+//! let estimate = fit(&record, &settings)?;
+//! for (k, truth) in [1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6].into_iter().enumerate() {
+//!     assert!((estimate.principal[k] - truth).abs() < 5.0 * estimate.sigma_principal[k]);
+//!     assert!(estimate.sigma_principal[k] < 1e-4);
+//! }
+//! assert!(estimate.warnings.is_empty(), "{:?}", estimate.warnings);
+//! let inertia = estimate.inertia.ok_or("a trace was given")?; // kg m², since the trace was
+//! assert!((inertia.tensor()[(1, 1)] - 2.0).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The tensor comes from one linear least-squares problem and one quadratic program per round; a refinement by
+//! maximum likelihood would start where this ends.
+
+mod banded;
+mod baselines;
+mod bound;
+mod coordinates;
+mod error;
+mod estimate;
+mod identifiability;
+mod noise;
+mod qp;
+mod quadrature;
+mod record;
+mod rehearsal;
+mod scale;
+mod torque_free;
+mod weak;
+
+pub use baselines::{Baseline, baseline};
+pub use error::{Clash, FitError};
+pub use estimate::{Estimate, Residuals, Settings, fit};
+pub use identifiability::Identifiability;
+pub use qp::{ActiveConstraint, Bound, Certificate};
+pub use record::{RateUnit, Reading, Record, RecordError, Segment, TimeUnit};
+pub use rehearsal::{Random, rehearse};
+pub use scale::Known;
+pub use torque_free::{Drift, Whiteness};

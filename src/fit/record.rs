@@ -1,0 +1,626 @@
+//! Records of angular velocity: read from text, checked row by row, split where they have gaps.
+
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// Why a record cannot be used. Lines and columns count from 1, the header included.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RecordError {
+    /// No header names the columns that are needed.
+    #[error(
+        "{file}: no column for {missing}; the header has {found:?}. Name the columns t, wx, wy, wz (or \"Time (s)\", \
+         \"Gyroscope x (rad/s)\", …)"
+    )]
+    Column {
+        /// Name of the file.
+        file: String,
+        /// What is missing.
+        missing: &'static str,
+        /// The names that were found.
+        found: Vec<String>,
+    },
+    /// A cell is not a finite number.
+    #[error(
+        "{file}, line {line}, column {column} ({name}): {value:?} is not a finite number; remove the row, or leave a gap"
+    )]
+    Value {
+        /// Name of the file.
+        file: String,
+        /// Its line.
+        line: usize,
+        /// The column.
+        column: usize,
+        /// Name of the column.
+        name: String,
+        /// What stands there.
+        value: String,
+    },
+    /// A row is shorter than its header.
+    #[error(
+        "{file}, line {line}: {cells} cells where the header has {columns}; every row must have all of them"
+    )]
+    Cells {
+        /// Name of the file.
+        file: String,
+        /// Its line.
+        line: usize,
+        /// Cells of the row.
+        cells: usize,
+        /// Columns of the header.
+        columns: usize,
+    },
+    /// Time runs backwards.
+    #[error(
+        "{file}, line {line}: time {time} s comes after {before} s; times must not decrease. Sort the rows, or give the files apart"
+    )]
+    Order {
+        /// Name of the file.
+        file: String,
+        /// Its line.
+        line: usize,
+        /// The time, s.
+        time: f64,
+        /// The time before it, s.
+        before: f64,
+    },
+    /// A unit that is not known.
+    #[error(
+        "{file}: column {name:?} is in {unit:?}; known are s, ms, us, ns for time and rad/s, deg/s, rpm for rates"
+    )]
+    Unit {
+        /// Name of the file.
+        file: String,
+        /// The column.
+        name: String,
+        /// Its unit.
+        unit: String,
+    },
+    /// The header and a flag name different units.
+    #[error("{file}: column {name:?} says {header:?}, the setting says {setting:?}; drop one of the two")]
+    UnitClash {
+        /// Name of the file.
+        file: String,
+        /// The column.
+        name: String,
+        /// Unit of the header.
+        header: String,
+        /// Unit of the setting.
+        setting: String,
+    },
+    /// No rows, or none in the windows.
+    #[error("{file}: no samples{}", match window { Some((a, b)) => format!(" between {a} s and {b} s; the record runs from {} s to {} s", span.0, span.1), None => String::new() })]
+    Empty {
+        /// Name of the file.
+        file: String,
+        /// The window that has none, s.
+        window: Option<(f64, f64)>,
+        /// First and last time, s.
+        span: (f64, f64),
+    },
+    /// A window that ends before it begins.
+    #[error("window {start},{end}: a window is a start and a later end, in seconds")]
+    Window {
+        /// Its start, s.
+        start: f64,
+        /// Its end, s.
+        end: f64,
+    },
+    /// As many times as rates are needed.
+    #[error("{times} times but {rates} rates; every sample needs both")]
+    Lengths {
+        /// Times.
+        times: usize,
+        /// Rates.
+        rates: usize,
+    },
+}
+
+/// Unit of a time column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TimeUnit {
+    /// s
+    Seconds,
+    /// 1e-3 s
+    Milliseconds,
+    /// 1e-6 s
+    Microseconds,
+    /// 1e-9 s
+    Nanoseconds,
+}
+
+/// Unit of a column of rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RateUnit {
+    /// rad/s
+    RadiansPerSecond,
+    /// deg/s
+    DegreesPerSecond,
+    /// Revolutions per minute.
+    RevolutionsPerMinute,
+}
+
+impl TimeUnit {
+    /// The unit of that name: s, ms, us (µs), ns.
+    pub fn named(name: &str) -> Option<Self> {
+        match plain(name).as_str() {
+            "s" | "sec" | "second" | "seconds" => Some(Self::Seconds),
+            "ms" | "msec" | "milliseconds" => Some(Self::Milliseconds),
+            "us" | "µs" | "μs" | "microseconds" => Some(Self::Microseconds),
+            "ns" | "nanoseconds" => Some(Self::Nanoseconds),
+            _ => None,
+        }
+    }
+
+    /// In seconds, by a division where the factor is not a binary number.
+    fn seconds(self, value: f64) -> f64 {
+        match self {
+            Self::Seconds => value,
+            Self::Milliseconds => value / 1e3,
+            Self::Microseconds => value / 1e6,
+            Self::Nanoseconds => value / 1e9,
+        }
+    }
+}
+
+impl RateUnit {
+    /// The unit of that name: rad/s, deg/s (°/s, dps), rpm.
+    pub fn named(name: &str) -> Option<Self> {
+        match plain(name).as_str() {
+            "rad/s" | "rads" | "rad/sec" | "rads-1" | "rps" | "radians/s" => Some(Self::RadiansPerSecond),
+            "deg/s" | "°/s" | "dps" | "degs" | "deg/sec" | "degrees/s" => Some(Self::DegreesPerSecond),
+            "rpm" | "1/min" | "rev/min" => Some(Self::RevolutionsPerMinute),
+            _ => None,
+        }
+    }
+
+    fn radians_per_second(self, value: f64) -> f64 {
+        match self {
+            Self::RadiansPerSecond => value,
+            Self::DegreesPerSecond => value * (core::f64::consts::PI / 180.0),
+            Self::RevolutionsPerMinute => value * (core::f64::consts::PI / 30.0),
+        }
+    }
+}
+
+/// How a text is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// Unit of time where the header names none; seconds without it.
+    pub time_unit: Option<TimeUnit>,
+    /// Unit of the rates where the header names none; rad/s without it.
+    pub rate_unit: Option<RateUnit>,
+}
+
+/// Samples without a gap between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segment {
+    /// Where it comes from.
+    pub source: String,
+    /// Ascending times, s.
+    pub times: Vec<f64>,
+    /// Angular velocities in sensor axes, rad/s, one per time.
+    pub rates: Vec<Vector3<f64>>,
+}
+
+/// Measured angular velocities of one body: segments that share one tensor, each with a motion of its own.
+///
+/// ```
+/// use polhode::fit::{Reading, Record};
+/// let text = "t (ms), wx (deg/s), wy (deg/s), wz (deg/s)\n0, 0, 90, 180\n10, 1, 90, 180\n10, 3, 90, 180\n";
+/// let record = Record::read(text, "toss.csv", Reading::default())?;
+/// assert_eq!((record.samples(), record.merged), (2, 1)); // rows of the same time are averaged
+/// assert_eq!(record.segments[0].times, [0.0, 0.01]);
+/// assert_eq!(record.segments[0].rates[1].z, core::f64::consts::PI);
+///
+/// let broken = Record::read("t,wx,wy,wz\n0,1,2,3\n1,1,nan,3\n", "toss.csv", Reading::default());
+/// assert!(broken.unwrap_err().to_string().starts_with("toss.csv, line 3, column 3 (wy): \"nan\""));
+/// # Ok::<(), polhode::fit::RecordError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Record {
+    /// Its segments.
+    pub segments: Vec<Segment>,
+    /// Samples that were merged into one of the same time.
+    pub merged: usize,
+    /// Samples left out because a component stood at the end of the sensor's range.
+    pub saturated: usize,
+    /// Places where the record was split because of a gap.
+    pub gaps: usize,
+}
+
+/// A gap is an interval longer than this many median intervals.
+const GAP: f64 = 8.0;
+/// Equal extreme samples in a row that count as the end of the range.
+const FLAT_TOP: usize = 4;
+
+impl Record {
+    /// From times (s) and angular velocities (rad/s, sensor axes).
+    ///
+    /// # Errors
+    /// Lists of different lengths, values that are not finite, times that decrease, no samples.
+    pub fn from_samples(times: &[f64], rates: &[Vector3<f64>]) -> Result<Record, RecordError> {
+        if times.len() != rates.len() {
+            return Err(RecordError::Lengths { times: times.len(), rates: rates.len() });
+        }
+        let rows =
+            times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
+        Record::from_rows("samples", rows, ["t", "wx", "wy", "wz"].map(String::from), [1, 2, 3, 4])
+    }
+
+    /// From a text with a header: cells apart by comma, semicolon or tab, or by two spaces or more; lines before the
+    /// header and lines that begin with `#` may hold anything.
+    ///
+    /// # Errors
+    /// Missing columns, unknown units, cells that are not finite numbers, times that decrease.
+    pub fn read(text: &str, file: &str, reading: Reading) -> Result<Record, RecordError> {
+        let text = text.trim_start_matches('\u{feff}');
+        let lines: Vec<(usize, &str)> = text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())).collect();
+        // the header is the last line before the first row of numbers
+        let is_row =
+            |line: &str| !line.is_empty() && cells(line).first().is_some_and(|c| c.parse::<f64>().is_ok());
+        let first = lines.iter().position(|(_, l)| is_row(l)).unwrap_or(lines.len());
+        let header = lines[..first].iter().rev().find(|(_, l)| !l.trim_start_matches('#').trim().is_empty());
+        let names = cells(header.map_or("", |(_, l)| l.trim_start_matches('#').trim()));
+        let columns = find_columns(&names, file)?;
+        let time_unit =
+            unit(&names[columns[0]], file, reading.time_unit, TimeUnit::named)?.unwrap_or(TimeUnit::Seconds);
+        let mut rate_units = [RateUnit::RadiansPerSecond; 3];
+        for (axis, rate_unit) in rate_units.iter_mut().enumerate() {
+            *rate_unit = unit(&names[columns[axis + 1]], file, reading.rate_unit, RateUnit::named)?
+                .unwrap_or(*rate_unit);
+        }
+        let mut rows = Vec::new();
+        for &(line, content) in lines[first..].iter().filter(|(_, l)| !l.is_empty() && !l.starts_with('#')) {
+            let row = cells(content);
+            if columns.iter().any(|&c| c >= row.len()) {
+                return Err(RecordError::Cells {
+                    file: file.into(),
+                    line,
+                    cells: row.len(),
+                    columns: names.len(),
+                });
+            }
+            let mut values = [0.0; 4];
+            for (value, &column) in values.iter_mut().zip(&columns) {
+                *value = row[column].parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(|| {
+                    RecordError::Value {
+                        file: file.into(),
+                        line,
+                        column: column + 1,
+                        name: names[column].clone(),
+                        value: row[column].clone(),
+                    }
+                })?;
+            }
+            values[0] = time_unit.seconds(values[0]);
+            for axis in 0..3 {
+                values[axis + 1] = rate_units[axis].radians_per_second(values[axis + 1]);
+            }
+            rows.push((line, values));
+        }
+        let used = columns.map(|c| names[c].clone());
+        Record::from_rows(file, rows, used, columns.map(|c| c + 1))
+    }
+
+    fn from_rows(
+        file: &str,
+        rows: Vec<(usize, [f64; 4])>,
+        names: [String; 4],
+        columns: [usize; 4],
+    ) -> Result<Record, RecordError> {
+        let mut record = Record::default();
+        let mut merged: Vec<([f64; 4], f64)> = Vec::with_capacity(rows.len());
+        for (line, row) in rows {
+            if let Some(k) = row.iter().position(|v| !v.is_finite()) {
+                return Err(RecordError::Value {
+                    file: file.into(),
+                    line,
+                    column: columns[k],
+                    name: names[k].clone(),
+                    value: row[k].to_string(),
+                });
+            }
+            match merged.last_mut() {
+                Some((last, _)) if row[0] < last[0] => {
+                    return Err(RecordError::Order {
+                        file: file.into(),
+                        line,
+                        time: row[0],
+                        before: last[0],
+                    });
+                }
+                Some((last, count)) if row[0] == last[0] => {
+                    *count += 1.0;
+                    for k in 1..4 {
+                        last[k] += (row[k] - last[k]) / *count;
+                    }
+                    record.merged += 1;
+                }
+                _ => merged.push((row, 1.0)),
+            }
+        }
+        if merged.is_empty() {
+            return Err(RecordError::Empty { file: file.into(), window: None, span: (0.0, 0.0) });
+        }
+        let samples: Vec<[f64; 4]> = merged.into_iter().map(|(row, _)| row).collect();
+        let flat = flat_tops(&samples);
+        record.saturated = flat.iter().filter(|f| **f).count();
+        let mut intervals: Vec<f64> = samples.windows(2).map(|w| w[1][0] - w[0][0]).collect();
+        intervals.sort_by(f64::total_cmp);
+        let median = intervals.get(intervals.len() / 2).copied().unwrap_or(0.0);
+        let mut last: Option<f64> = None;
+        for (row, flat) in samples.iter().zip(flat) {
+            if flat {
+                last = None;
+                continue;
+            }
+            let gap = last.is_some_and(|t| row[0] - t > GAP * median);
+            record.gaps += usize::from(gap);
+            if gap || last.is_none() {
+                record.segments.push(Segment { source: file.into(), times: Vec::new(), rates: Vec::new() });
+            }
+            if let Some(segment) = record.segments.last_mut() {
+                segment.times.push(row[0]);
+                segment.rates.push(Vector3::new(row[1], row[2], row[3]));
+            }
+            last = Some(row[0]);
+        }
+        Ok(record)
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.segments.iter().map(|s| s.times.len()).sum()
+    }
+
+    /// The parts that lie in the windows (start, end), s, both ends included.
+    ///
+    /// # Errors
+    /// A window that is not ascending, or without samples.
+    pub fn windows(&self, windows: &[(f64, f64)]) -> Result<Record, RecordError> {
+        let mut cut = Record { segments: Vec::new(), ..*self };
+        for &(start, end) in windows {
+            if !(start.is_finite() && end.is_finite() && start < end) {
+                return Err(RecordError::Window { start, end });
+            }
+            let before = cut.segments.len();
+            for s in &self.segments {
+                let (a, b) =
+                    (s.times.partition_point(|&t| t < start), s.times.partition_point(|&t| t <= end));
+                if a < b {
+                    cut.segments.push(Segment {
+                        source: s.source.clone(),
+                        times: s.times[a..b].to_vec(),
+                        rates: s.rates[a..b].to_vec(),
+                    });
+                }
+            }
+            if cut.segments.len() == before {
+                let first = self.segments.first().and_then(|s| s.times.first()).copied().unwrap_or(0.0);
+                let last = self.segments.last().and_then(|s| s.times.last()).copied().unwrap_or(0.0);
+                let file = self.segments.first().map_or(String::new(), |s| s.source.clone());
+                return Err(RecordError::Empty { file, window: Some((start, end)), span: (first, last) });
+            }
+        }
+        Ok(cut)
+    }
+
+    /// This record and another of the same body.
+    pub fn join(mut self, other: Record) -> Record {
+        self.segments.extend(other.segments);
+        self.merged += other.merged;
+        self.saturated += other.saturated;
+        self.gaps += other.gaps;
+        self
+    }
+}
+
+/// Samples where a component stays at its largest or smallest value for several samples in a row.
+fn flat_tops(samples: &[[f64; 4]]) -> Vec<bool> {
+    let mut flat = vec![false; samples.len()];
+    for k in 1..4 {
+        let column = || samples.iter().map(|row| row[k]);
+        let (low, high) =
+            (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
+        for end in [low, high] {
+            let mut runs: Vec<(usize, usize)> = Vec::new();
+            let mut i = 0;
+            while i < samples.len() {
+                let run = samples[i..].iter().take_while(|row| row[k] == end).count();
+                if run >= FLAT_TOP {
+                    runs.push((i, i + run));
+                }
+                i += run.max(1);
+            }
+            // a column that never moves is a quiet axis, not a clipped one
+            if low < high {
+                for (a, b) in runs {
+                    flat[a..b].iter_mut().for_each(|f| *f = true);
+                }
+            }
+        }
+    }
+    flat
+}
+
+/// The cells of a line, quotes removed.
+fn cells(line: &str) -> Vec<String> {
+    let clean = |cell: &str| cell.trim().trim_matches('"').trim().to_string();
+    let delimiter = [',', ';', '\t'].into_iter().find(|d| line.contains(*d));
+    if let Some(delimiter) = delimiter {
+        return line.split(delimiter).map(clean).collect();
+    }
+    let wide: Vec<String> = line.split("  ").map(clean).filter(|c| !c.is_empty()).collect();
+    if wide.len() > 1 { wide } else { line.split_whitespace().map(clean).collect() }
+}
+
+/// Lower case without blanks.
+fn plain(text: &str) -> String {
+    text.trim().to_lowercase().split_whitespace().collect()
+}
+
+/// A name without its unit, reduced to letters and digits, with sub- and superscripts as letters.
+fn reduced(name: &str) -> String {
+    let name = split_unit(name).0;
+    let letters = name.to_lowercase();
+    letters
+        .chars()
+        .filter_map(|c| match c {
+            'ω' => Some('w'),
+            'ₓ' | 'ˣ' => Some('x'),
+            'ᵧ' | 'ʸ' => Some('y'),
+            'ᶻ' => Some('z'),
+            c if c.is_alphanumeric() => Some(c),
+            _ => None,
+        })
+        .collect()
+}
+
+/// "Gyroscope x (rad/s)" as its name and its unit.
+fn split_unit(name: &str) -> (&str, Option<&str>) {
+    let Some(open) = name.find(['(', '[']) else { return (name, None) };
+    let unit = name[open + 1..].trim_end().trim_end_matches([')', ']']);
+    (&name[..open], Some(unit))
+}
+
+fn find_columns(names: &[String], file: &str) -> Result<[usize; 4], RecordError> {
+    let reduced: Vec<String> = names.iter().map(|n| reduced(n)).collect();
+    let find = |spellings: &[String]| spellings.iter().find_map(|s| reduced.iter().position(|n| n == s));
+    let time: Vec<String> =
+        ["t", "time", "times", "timestamp", "secondselapsed", "elapsed", "timeus", "timems"]
+            .map(String::from)
+            .into();
+    let stems = [
+        "w",
+        "omega",
+        "omegabody",
+        "gyro",
+        "gyr",
+        "gyroscope",
+        "g",
+        "angularvelocity",
+        "angularvelocitybody",
+        "rate",
+        "rotationrate",
+        "",
+    ];
+    let mut columns = [0; 4];
+    for (k, missing) in
+        ["time", "the rate about x", "the rate about y", "the rate about z"].into_iter().enumerate()
+    {
+        let spellings: Vec<String> = match k {
+            0 => time.clone(),
+            _ => stems.iter().map(|stem| format!("{stem}{}", ['x', 'y', 'z'][k - 1])).collect(),
+        };
+        columns[k] = find(&spellings).ok_or_else(|| RecordError::Column {
+            file: file.into(),
+            missing,
+            found: names.to_vec(),
+        })?;
+    }
+    Ok(columns)
+}
+
+/// The unit of a column, from its header or the setting, which must not contradict each other.
+fn unit<U: PartialEq + Copy + core::fmt::Debug>(
+    name: &str,
+    file: &str,
+    setting: Option<U>,
+    named: impl Fn(&str) -> Option<U>,
+) -> Result<Option<U>, RecordError> {
+    let Some(text) = split_unit(name).1 else { return Ok(setting) };
+    let header = named(text).ok_or_else(|| RecordError::Unit {
+        file: file.into(),
+        name: name.into(),
+        unit: text.into(),
+    })?;
+    match setting {
+        Some(setting) if setting != header => Err(RecordError::UnitClash {
+            file: file.into(),
+            name: name.into(),
+            header: format!("{header:?}"),
+            setting: format!("{setting:?}"),
+        }),
+        _ => Ok(Some(header)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Record, RecordError> {
+        Record::read(text, "a.csv", Reading::default())
+    }
+
+    #[test]
+    fn spellings_of_phones_and_loggers_are_understood() {
+        for header in [
+            "t,wx,wy,wz",
+            "\"Time (s)\",\"Gyroscope x (rad/s)\",\"Gyroscope y (rad/s)\",\"Gyroscope z (rad/s)\",\"Absolute (rad/s)\"",
+            "# made by a logger\n#time      ωₓ (rad/s)      ωᵧ (rad/s)      ωᶻ (rad/s)      ω_total (rad/s)",
+            "seconds_elapsed;gyro_x;gyro_y;gyro_z",
+            "Timestamp\tGyrX [rad/s]\tGyrY [rad/s]\tGyrZ [rad/s]",
+            "time,omega_body_x,omega_body_y,omega_body_z",
+        ] {
+            let separator = [",", ";", "\t", "      "].into_iter().find(|s| header.contains(s)).unwrap();
+            let row = |t: &str| {
+                ["1", "2", "3", "9"].iter().fold(t.to_string(), |r, c| format!("{r}{separator}{c}"))
+            };
+            let record = read(&format!("{header}\n{}\n{}\n", row("0.5"), row("0.75"))).unwrap();
+            assert_eq!(record.segments[0].times, [0.5, 0.75], "{header}");
+            assert_eq!(record.segments[0].rates[1], Vector3::new(1.0, 2.0, 3.0), "{header}");
+        }
+    }
+
+    #[test]
+    fn broken_rows_are_named_by_line_and_column() {
+        for (text, expected) in [
+            (
+                "t,wx,wy\n0,1,2\n",
+                "a.csv: no column for the rate about z; the header has [\"t\", \"wx\", \"wy\"]",
+            ),
+            ("t,wx,wy,wz\n0,1,2\n", "a.csv, line 2: 3 cells where the header has 4"),
+            ("t,wx,wy,wz\n0,1,2,3\n1,1,x,3\n", "a.csv, line 3, column 3 (wy): \"x\" is not a finite number"),
+            (
+                "t,wx,wy,wz\n0,1,2,3\n\n1,1,2,inf\n",
+                "a.csv, line 4, column 4 (wz): \"inf\" is not a finite number",
+            ),
+            ("t,wx,wy,wz\n1,1,2,3\n0.5,1,2,3\n", "a.csv, line 3: time 0.5 s comes after 1 s"),
+            ("t,wx (mph),wy,wz\n1,1,2,3\n", "a.csv: column \"wx (mph)\" is in \"mph\""),
+            ("t,wx,wy,wz\n", "a.csv: no samples"),
+        ] {
+            let message = read(text).unwrap_err().to_string();
+            assert!(message.starts_with(expected), "{message}");
+        }
+        let setting = Reading { rate_unit: Some(RateUnit::DegreesPerSecond), ..Reading::default() };
+        let clash = Record::read("t,wx (rad/s),wy,wz\n1,1,2,3\n", "a.csv", setting).unwrap_err().to_string();
+        assert!(clash.contains("RadiansPerSecond") && clash.contains("DegreesPerSecond"), "{clash}");
+    }
+
+    #[test]
+    fn gaps_split_and_windows_cut() {
+        let mut text = String::from("t,wx,wy,wz\n");
+        for i in (0..50).chain(80..120) {
+            text += &format!("{},{i},1,2\n", f64::from(i) / 100.0);
+        }
+        let record = read(&text).unwrap();
+        assert_eq!((record.segments.len(), record.gaps, record.samples()), (2, 1, 90));
+        let cut = record.windows(&[(0.1, 0.2), (0.4, 0.9)]).unwrap();
+        let lengths: Vec<usize> = cut.segments.iter().map(|s| s.times.len()).collect();
+        assert_eq!(lengths, [11, 10, 11]);
+        assert!(record.windows(&[(0.55, 0.7)]).unwrap_err().to_string().contains("from 0 s to 1.19 s"));
+        assert!(record.windows(&[(2.0, 1.0)]).is_err());
+    }
+
+    #[test]
+    fn flat_tops_are_left_out_and_quiet_axes_are_not() {
+        let clipped = |i: i32| (f64::from(i) / 20.0 - 2.0).clamp(-1.0, 1.5);
+        let times: Vec<f64> = (0..100).map(|i| f64::from(i) * 0.01).collect();
+        let rates: Vec<_> = (0..100).map(|i| Vector3::new(clipped(i), 7.0, f64::from(i))).collect();
+        let record = Record::from_samples(&times, &rates).unwrap();
+        // −1 up to i = 20, 1.5 from i = 70
+        assert_eq!(record.saturated, 21 + 30);
+        assert_eq!(record.samples(), 49);
+    }
+}
