@@ -62,8 +62,10 @@ impl BodyArguments {
             Ok((Inertia::from_tensor(tensor).map_err(|error| refused("--inertia", error))?, [0.0; 3]))
         } else {
             let name = self.body.as_deref().unwrap_or_default();
-            let known: Vec<&str> = catalog::bodies().iter().map(|body| body.name).collect();
+            let known: Vec<&str> =
+                catalog::bodies().iter().chain(&catalog::tops()).map(|body| body.name).collect();
             let found = catalog::body(name)
+                .or_else(|| catalog::top(name))
                 .ok_or_else(|| Error::unknown_name("--body", "body", name, known.iter().copied()))?;
             Ok((found.inertia, found.weight_moment))
         }
