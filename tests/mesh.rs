@@ -333,3 +333,29 @@ fn broken_files_name_the_byte_or_the_line() {
             .starts_with("the mesh is open; edges with one triangle only: 3")
     );
 }
+
+#[test]
+fn a_file_cut_anywhere_is_refused() {
+    let bytes = stl(&cube(1));
+    for length in 0..bytes.len() {
+        let message = Mesh::from_stl(&bytes[..length]).unwrap_err().to_string();
+        assert!(message.contains(&format!("ends at byte {length}")), "{message}");
+    }
+    let text = ascii(&cube(1));
+    let end = text.find("endsolid").unwrap() + "endsolid".len();
+    for length in 0..end {
+        assert!(Mesh::from_stl(&text.as_bytes()[..length]).is_err(), "{length}");
+    }
+    // bytes of any kind are refused or read, never a panic
+    let mut state = 1_u32;
+    for length in 0..2000 {
+        let noise: Vec<u8> = (0..length)
+            .map(|_| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                (state >> 24) as u8
+            })
+            .collect();
+        assert!(Mesh::from_stl(noise.as_slice()).is_err());
+        assert!(Mesh::from_obj(noise.as_slice()).is_err());
+    }
+}
