@@ -13,6 +13,7 @@ mod propagate;
 mod provenance;
 mod publish;
 mod random;
+mod sphere;
 mod table;
 
 use std::path::PathBuf;

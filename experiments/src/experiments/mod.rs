@@ -2,6 +2,7 @@
 
 mod drift;
 mod exact;
+mod lecture;
 mod long_run;
 mod order;
 
@@ -28,5 +29,10 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "long-run",
         question: "what grows over very many steps, and how fast",
         run: long_run::run,
+    },
+    Experiment {
+        name: "lecture",
+        question: "whether every statement of a lecture on rigid bodies is confirmed",
+        run: lecture::run,
     },
 ];
