@@ -431,7 +431,9 @@ fn compensated_sums_lose_nothing() {
     }
     assert!(relative_error(small.value() - 1.0, Dd::from(1e-30)) < 0.01);
 
-    assert_eq!(sum::dot([1e16, 1.0, -1e16], [1.0, 1e-3, 1.0]), 1e-3);
+    let (a, b) = (0.1, 1e17 + 16.0);
+    let (product, rest) = sum::exact_product(a, b);
+    assert_eq!((Dd::sum(product, rest) - Dd::product(a, b)).hi(), 0.0);
 }
 
 #[test]

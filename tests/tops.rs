@@ -7,8 +7,8 @@ mod fixtures;
 use core::f64::consts::PI;
 
 use fixtures::{TopCase, tops};
-use polhode::body::{Body, Inertia, State};
-use polhode::flow::{Casimir, Flow, FreeMotion, LagrangeError, LagrangeTop, SymmetricTop};
+use polhode::body::{Body, Carry, Inertia, State};
+use polhode::flow::{Casimir, Flow, FreeMotion, LagrangeError, LagrangeTop, ShortDrift, SymmetricTop};
 use polhode::method::method;
 use polhode::num::{Dd, Precise, Real};
 use polhode::observe::secular_drift;
@@ -115,7 +115,7 @@ fn the_closed_form_solves_the_equations_of_motion_at_every_scale() {
         let inertia = Inertia::from_moments([1.25, 1.25, 0.75]).unwrap();
         let body = Body::heavy(inertia, [0.0, 0.0, weight].into()).unwrap();
         let falling = libm::sqrt(weight);
-        for tilt in [0.0, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 2.0, 3.0, 3.141, PI] {
+        for tilt in [0.0, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 2.0, 3.0, 3.13, PI] {
             for spin in [0.0, 1e-3, 0.7, -2.0, 3.0, 40.0, 1e6] {
                 for (across, along) in
                     [(0.0, 0.0), (1e-9, 0.0), (0.3, 0.0), (0.0, -0.6), (1.0, 2.0), (-1e6, 1e3)]
@@ -254,14 +254,14 @@ fn published_problems_are_met_by_stepping() {
 
 #[test]
 fn composed_kick_drift_has_no_secular_energy_and_keeps_vertical_momentum_to_round_off() {
-    for (name, steps) in [("E3-asymmetric", 100_000), ("E3-symmetric", 1_000_000), ("E10", 1_000_000)] {
+    for name in ["E3-asymmetric", "E3-symmetric", "E10"] {
         let case = tops("reference.csv").into_iter().find(|case| case.free.scenario == name).unwrap();
         let (body, start) = problem(&case);
         let start = body.leave(&start);
         let mut run = Run::new(method("kick-drift:4").unwrap().as_ref(), &body, &start, 0.01).unwrap();
         let (mut times, mut changes) = (Vec::new(), Vec::new());
         let mut last = None;
-        for sample in run.samples(Schedule::every(50, steps)) {
+        for sample in run.samples(Schedule::every(50, 1_000_000)) {
             let sample = sample.unwrap();
             times.push(sample.elapsed.hi());
             changes.push(sample.energy_change);
@@ -271,7 +271,7 @@ fn composed_kick_drift_has_no_secular_energy_and_keeps_vertical_momentum_to_roun
         println!("{name}: {drift:?}, {worst:?}");
         assert!(!drift.is_secular(), "{name}: {drift:?}");
         assert!(worst.energy < 1e-8, "{name}: {worst:?}");
-        assert!(worst.momentum_z.unwrap() < 1e-13, "{name}: {worst:?}");
+        assert!(worst.momentum_z.unwrap() < 1e-14, "{name}: {worst:?}");
     }
 }
 
@@ -397,4 +397,23 @@ fn the_sleeping_top_wakes_below_its_threshold_only() {
     };
     assert!(largest_tilt(1.01) < 0.01);
     assert!(largest_tilt(0.99) > 0.1);
+}
+
+#[test]
+fn a_short_drift_is_the_free_motion_and_a_long_one_is_left_alone() {
+    let body = Body::free(Inertia::from_moments([1.0, 1.75, 2.0]).unwrap());
+    let start =
+        body.enter_omega(Quat::from_components([0.9, 0.3, -0.2, 0.4]), Vec3([0.4, -0.7, 1.1])).unwrap();
+    let (flow, motion) = (ShortDrift::<Dd>::new(&body), FreeMotion::new(&body, start));
+    for t in [1e-9, 1e-3, -0.01, 0.02] {
+        let mut x = start;
+        assert!(flow.carried(Dd::of(t), &mut x, &mut Carry::default()));
+        let exact = motion.inside_at_dd(Dd::of(t));
+        let off =
+            (x.attitude - exact.attitude).magnitude() + (x.momentum_body - exact.momentum_body).magnitude();
+        assert!(off < 1e-29, "t = {t}: {off:.1e}");
+    }
+    let mut x = start;
+    assert!(!flow.carried(Dd::of(3.0), &mut x, &mut Carry::default()));
+    assert_eq!(x, start);
 }

@@ -24,7 +24,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// Finite numbers separated by commas.
-fn list(text: &str) -> Result<Vec<f64>, String> {
+pub(crate) fn list(text: &str) -> Result<Vec<f64>, String> {
     let items = text.split(',').enumerate();
     items.map(|(k, item)| number(item).map_err(|error| format!("item {}: {error}", k + 1))).collect()
 }

@@ -131,17 +131,13 @@ impl Context {
 
 /// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`.
 pub(crate) fn run(names: &[String], scale: Scale, out: &Path) -> Result<(), Error> {
-    let mut chosen = Vec::new();
-    for name in names {
-        match experiments::ALL.iter().find(|experiment| experiment.name == name) {
-            Some(experiment) => chosen.push(experiment),
-            None if name == "all" => chosen.extend(experiments::ALL),
-            None => {
-                let known = experiments::ALL.iter().map(|experiment| experiment.name).chain(["all"]);
-                return Err(Error::unknown_name("experiment run", "experiment", name, known));
-            }
-        }
+    let known = experiments::ALL.iter().map(|experiment| experiment.name).chain(["all"]);
+    if let Some(name) = names.iter().find(|name| known.clone().all(|known| known != *name)) {
+        return Err(Error::unknown_name("experiment run", "experiment", name, known));
     }
+    // each once, however often it is named
+    let asked = |name: &str| names.iter().any(|asked| asked == name || asked == "all");
+    let chosen = experiments::ALL.iter().filter(|experiment| asked(experiment.name));
     let mut failures = Vec::new();
     for experiment in chosen {
         let folder = out.join(scale.to_string()).join(experiment.name);

@@ -116,15 +116,20 @@ impl ValueFormatter<f64> for Decades {
         if self.floor == Some(power) {
             return "0".into();
         }
-        let raised = |c| match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            digit => char::from_u32('⁰' as u32 + digit as u32 - '0' as u32).unwrap_or(digit),
-        };
-        format!("10{}", power.to_string().chars().map(raised).collect::<String>())
+        ten_to(power)
     }
+}
+
+/// A power of ten as it is printed, 10⁻³.
+pub(crate) fn ten_to(power: i32) -> String {
+    let raised = |c| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => char::from_u32('⁰' as u32 + digit as u32 - '0' as u32).unwrap_or(digit),
+    };
+    format!("10{}", power.to_string().chars().map(raised).collect::<String>())
 }
 
 impl Series {

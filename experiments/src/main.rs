@@ -7,6 +7,7 @@ mod experiment;
 mod experiments;
 mod figure;
 mod files;
+mod inertia;
 mod methods;
 mod motion;
 mod propagate;
@@ -43,6 +44,7 @@ enum Command {
     Propagate(Box<propagate::Propagate>),
     Motion(motion::Motion),
     Methods(methods::Methods),
+    Inertia(Box<inertia::Inertia>),
 }
 
 #[derive(Subcommand)]
@@ -93,6 +95,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Propagate(propagate) => propagate.run(),
         Command::Motion(motion) => motion.run(),
         Command::Methods(methods) => methods.run(),
+        Command::Inertia(inertia) => inertia.run(),
     }
 }
 

@@ -4,6 +4,7 @@
 //! by that table of the committed results of paper scale; every LaTeX table and CSV goes to paper/generated, headed by
 //! the experiment, commit and scale that made it. A block `<!-- begin generated: methods -->` holds the catalogue.
 
+use std::fmt;
 use std::path::Path;
 
 use serde::Deserialize;
@@ -21,6 +22,14 @@ struct Origin {
     experiment: String,
     scale: String,
     commit: String,
+    changed: String,
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let changes = if self.changed == "false" { "" } else { " with changes" };
+        write!(f, "{}, commit {}{changes}, scale {}", self.experiment, self.commit, self.scale)
+    }
 }
 
 pub(crate) fn run(root: &Path) -> Result<(), Error> {
@@ -31,7 +40,7 @@ pub(crate) fn run(root: &Path) -> Result<(), Error> {
     let mut files = Vec::new();
     for experiment in folders(&results)? {
         let origin = origin(&experiment)?;
-        let head = format!("{}, commit {}, scale {}", origin.experiment, origin.commit, origin.scale);
+        let head = origin.to_string();
         for path in sorted_entries(&experiment)? {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let target = generated.join(format!("{}-{name}", origin.experiment));

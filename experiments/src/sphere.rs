@@ -38,7 +38,7 @@ impl Panel {
         let (sin_e, cos_e) = libm::sincos(elevation);
         let left = PANEL * column as f64;
         let mut panel = Panel {
-            centre: [left + 0.5 * PANEL, 0.5 * PANEL + 20.0],
+            centre: [left + 0.5 * PANEL, 0.5 * PANEL + 25.0],
             right: V::new(-sin_a, cos_a, 0.0),
             up: V::new(-sin_e * cos_a, -sin_e * sin_a, cos_e),
             towards: V::new(cos_e * cos_a, cos_e * sin_a, sin_e),
@@ -143,8 +143,10 @@ impl Panel {
     fn arrow(&mut self, from: V, to: V, colour: &str, name: &str) {
         self.line(&[from, to], colour, 2.0, false);
         self.head(to, to - from, colour, 5.0);
-        let along = (to - from).normalize();
-        let [x, y] = self.place(to + along * 0.11);
+        // the name stands beyond the tip, as far however the arrow is foreshortened
+        let ([x, y], [u, v]) = (self.place(to), self.place(from));
+        let share = 15.0 / libm::hypot(x - u, y - v);
+        let [x, y] = [x + share * (x - u), y + share * (y - v)];
         self.text([x, y + 5.0], "middle", 16, name);
     }
 
@@ -227,8 +229,8 @@ fn circle(axis: V, v: V) -> Vec<V> {
     (0..=180).map(at).collect()
 }
 
-fn drawing(name: &'static str, panels: Vec<Panel>, foot: &str) -> Drawing {
-    let (width, height) = (PANEL * panels.len() as f64, PANEL + 70.0);
+fn drawing(name: &'static str, panels: Vec<Panel>, foot: &[&str]) -> Drawing {
+    let (width, height) = (PANEL * panels.len() as f64, PANEL + 30.0 + 20.0 * foot.len() as f64);
     let mut svg = format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="sans-serif">
 <defs><radialGradient id="ball" cx="0.38" cy="0.32" r="0.75"><stop offset="0" stop-color="#ffffff"/><stop offset="1" stop-color="#e4e4e4"/></radialGradient></defs>
@@ -238,12 +240,14 @@ fn drawing(name: &'static str, panels: Vec<Panel>, foot: &str) -> Drawing {
     for panel in &panels {
         svg += &panel.svg;
     }
-    let _ = writeln!(
-        svg,
-        r#"<text x="{:.1}" y="{:.1}" text-anchor="middle" font-size="14">{foot}</text>"#,
-        0.5 * width,
-        height - 16.0
-    );
+    for (line, text) in foot.iter().enumerate() {
+        let _ = writeln!(
+            svg,
+            r#"<text x="{:.1}" y="{:.1}" text-anchor="middle" font-size="14">{text}</text>"#,
+            0.5 * width,
+            PANEL + 22.0 + 20.0 * line as f64
+        );
+    }
     svg += "</svg>\n";
     Drawing { name, svg }
 }
@@ -293,7 +297,10 @@ pub(crate) fn polhodes() -> Result<Drawing, Error> {
     Ok(drawing(
         "polhodes",
         vec![panel],
-        "blue: about the smallest moment; green: about the largest; orange: separatrix",
+        &[
+            "blue: around the axis of the smallest moment; green: of the",
+            "largest; orange: separatrix through that of the middle one",
+        ],
     ))
 }
 
@@ -307,8 +314,8 @@ pub(crate) fn cones() -> Result<Drawing, Error> {
     .into_iter()
     .enumerate()
     {
-        let mut panel = Panel::new(column, -1.05, 0.3, title);
-        panel.centre[1] += 110.0;
+        let mut panel = Panel::new(column, -0.3, 0.22, title);
+        panel.centre[1] += 125.0;
         // L upwards, axis and w in one plane: tan(axis to w) = I3/I tan(axis to L)
         let (sin, cos) = libm::sincos(theta);
         let axis = V::new(0.0, sin, cos);
@@ -326,35 +333,47 @@ pub(crate) fn cones() -> Result<Drawing, Error> {
     Ok(drawing(
         "cones",
         panels,
-        "orange: space cone, fixed; blue: body cone, which rolls on it; they touch along ω",
+        &["orange: space cone, fixed; blue: body cone, which rolls on it; they touch along ω"],
     ))
 }
 
 /// The path of a heavy top's axis: three ways of nodding.
 pub(crate) fn axis_paths() -> Result<Drawing, Error> {
-    let (weight, spin, tilt) = (1.0, 3.1, 0.95);
+    let (weight, tilt, nutations) = (1.0, 0.95, 7.0);
     let inertia = Inertia::from_moments([1.0; 3]).map_err(unexpected)?;
     let body = Body::heavy(inertia, V::new(0.0, 0.0, weight)).map_err(unexpected)?;
     let zxz: EulerSequence = "zxz".parse().map_err(unexpected)?;
-    let slow = weight / spin;
+    // of moments 1; φ′ at the start as a share of the steady precession
+    let spun = |spin: f64, share: f64| {
+        let omega = V::new(0.0, share * weight / spin * libm::sin(tilt), spin);
+        LagrangeTop::from_omega(&body, zxz.attitude([0.0, tilt, 0.0]), omega).map_err(unexpected)
+    };
+    let advance =
+        |top: &LagrangeTop| top.precession_per_nutation().ok_or_else(|| unexpected("the top does not nod"));
     let mut panels = Vec::new();
     for (column, (title, share)) in
-        [("waves: φ′ forwards", 0.45), ("cusps: φ′ = 0", 0.0), ("loops: φ′ backwards", -0.9)]
+        [("waves: φ′ forwards", 0.6), ("cusps: φ′ = 0", 0.0), ("loops: φ′ backwards", -0.9)]
             .into_iter()
             .enumerate()
     {
         let mut panel = Panel::new(column, -0.9, 0.5, title);
         panel.ball();
-        let omega = V::new(0.0, share * slow * libm::sin(tilt), spin);
-        let attitude = zxz.attitude([0.0, tilt, 0.0]);
-        let top = LagrangeTop::from_omega(&body, attitude, omega).map_err(unexpected)?;
+        // the spin at which the path closes after one turn
+        let (mut slow, mut fast) = (2.0, 6.0);
+        for _ in 0..50 {
+            let spin = 0.5 * (slow + fast);
+            if advance(&spun(spin, share)?)? * nutations > core::f64::consts::TAU {
+                slow = spin
+            } else {
+                fast = spin
+            }
+        }
+        let top = spun(fast, share)?;
         for limit in top.turning_points() {
             let (sin, cos) = libm::sincos(limit);
             panel.curve(&circle(V::z(), V::new(sin, 0.0, cos)), GREY, 1.0);
         }
-        let both = top.nutation_period().zip(top.precession_per_nutation());
-        let (period, advance) = both.ok_or_else(|| unexpected("the top does not nod"))?;
-        let nutations = libm::round(core::f64::consts::TAU / advance);
+        let period = top.nutation_period().ok_or_else(|| unexpected("the top does not nod"))?;
         let at = |k: i32| -> Result<V, Error> {
             let state = top.at(period * nutations * f64::from(k) / 1800.0).map_err(unexpected)?;
             Ok(state.rotation() * V::z())
@@ -368,6 +387,6 @@ pub(crate) fn axis_paths() -> Result<Drawing, Error> {
     Ok(drawing(
         "axis",
         panels,
-        "path of the axis of a heavy top; φ′ is its azimuthal rate at the upper circle",
+        &["path of the axis of a heavy top; φ′ is its azimuthal rate at the upper circle"],
     ))
 }

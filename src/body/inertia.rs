@@ -4,11 +4,12 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::principal::{frame_quaternion, principal_axes};
+use super::tensor::{Spectrum, power_of_two_below};
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
 
 /// Rounding that a tensor may show, relative to its trace: symmetry and triangle inequalities are judged up to it.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 
 /// Why a tensor is not the inertia of a body.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -78,6 +79,29 @@ pub enum Symmetry {
     Oblate,
     /// All three agree, as of a sphere or a cube. All axes are arbitrary.
     Spherical,
+}
+
+impl Symmetry {
+    /// Of ascending moments.
+    pub(super) fn of([low, middle, high]: [f64; 3]) -> Self {
+        let rounding = ROUNDING * (low + middle + high);
+        match (middle - low <= rounding, high - middle <= rounding) {
+            (true, true) => Symmetry::Spherical,
+            (true, false) => Symmetry::Oblate,
+            (false, true) => Symmetry::Prolate,
+            (false, false) => Symmetry::Asymmetric,
+        }
+    }
+
+    /// In one lowercase word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Symmetry::Asymmetric => "asymmetric",
+            Symmetry::Prolate => "prolate",
+            Symmetry::Oblate => "oblate",
+            Symmetry::Spherical => "spherical",
+        }
+    }
 }
 
 /// The inertia tensor of a rigid body about a stated point, kg m² (or any consistent unit), in body axes.
@@ -153,28 +177,8 @@ impl Inertia {
     /// Entries that are not finite, a tensor that is not symmetric, moments that are not positive or break a
     /// triangle inequality.
     pub fn from_tensor(tensor: Matrix3<f64>) -> Result<Self, InertiaError> {
-        check_finite(tensor.as_slice())?;
-        let largest = tensor.amax();
-        if largest == 0.0 {
-            return Err(InertiaError::NotPositive { moments: [0.0; 3] });
-        }
-        let scale = power_of_two_below(largest);
-        let scaled = tensor / scale;
-        let trace = scaled.trace().abs();
-        for (row, column) in [(0, 1), (0, 2), (1, 2)] {
-            let difference = (scaled[(row, column)] - scaled[(column, row)]).abs();
-            if difference > ROUNDING * trace {
-                return Err(InertiaError::NotSymmetric {
-                    row: ['x', 'y', 'z'][row],
-                    column: ['x', 'y', 'z'][column],
-                    upper: tensor[(row, column)],
-                    lower: tensor[(column, row)],
-                    relative: difference / trace,
-                });
-            }
-        }
-        let entry = |i: usize, j: usize| Dd::sum(scaled[(i, j)], scaled[(j, i)]) * Dd::of(0.5);
-        let (moments, axes) = principal_axes([0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))));
+        check_symmetric(&tensor)?;
+        let Spectrum { scale, moments, axes } = Spectrum::of_finite(&tensor);
         let rounded = moments.map(Dd::hi);
         if rounded[0] <= 0.0 {
             return Err(InertiaError::NotPositive { moments: rounded.map(|i| i * scale) });
@@ -227,14 +231,7 @@ impl Inertia {
     pub fn symmetry(&self) -> Symmetry {
         let mut moments = self.moments.map(Dd::hi);
         moments.sort_by(f64::total_cmp);
-        let [low, middle, high] = moments;
-        let rounding = ROUNDING * (low + middle + high);
-        match (middle - low <= rounding, high - middle <= rounding) {
-            (true, true) => Symmetry::Spherical,
-            (true, false) => Symmetry::Oblate,
-            (false, true) => Symmetry::Prolate,
-            (false, false) => Symmetry::Asymmetric,
-        }
+        Symmetry::of(moments)
     }
 
     /// The tensor without its size: what free motion can tell of it.
@@ -313,8 +310,32 @@ fn check_finite(values: &[f64]) -> Result<(), InertiaError> {
     }
 }
 
+/// Finite entries that agree across the diagonal up to rounding.
+pub(super) fn check_symmetric(tensor: &Matrix3<f64>) -> Result<(), InertiaError> {
+    check_finite(tensor.as_slice())?;
+    let largest = tensor.amax();
+    if largest == 0.0 {
+        return Ok(());
+    }
+    let scaled = tensor / power_of_two_below(largest);
+    let trace = scaled.trace().abs();
+    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+        let difference = (scaled[(row, column)] - scaled[(column, row)]).abs();
+        if difference > ROUNDING * trace {
+            return Err(InertiaError::NotSymmetric {
+                row: ['x', 'y', 'z'][row],
+                column: ['x', 'y', 'z'][column],
+                upper: tensor[(row, column)],
+                lower: tensor[(column, row)],
+                relative: difference / trace,
+            });
+        }
+    }
+    Ok(())
+}
+
 /// The triangle inequalities for moments divided by `scale`.
-fn check_triangle(scaled: [f64; 3], scale: f64) -> Result<(), InertiaError> {
+pub(super) fn check_triangle(scaled: [f64; 3], scale: f64) -> Result<(), InertiaError> {
     let rounding = ROUNDING * (scaled[0] + scaled[1] + scaled[2]);
     for (largest, pair) in [(0, [1, 2]), (1, [0, 2]), (2, [0, 1])] {
         let excess = (Dd::of(scaled[largest]) - Dd::sum(scaled[pair[0]], scaled[pair[1]])).hi();
@@ -331,31 +352,9 @@ fn check_triangle(scaled: [f64; 3], scale: f64) -> Result<(), InertiaError> {
     Ok(())
 }
 
-/// The largest power of two not above `x`, of a positive finite number; exact, also for subnormal `x`.
-fn power_of_two_below(x: f64) -> f64 {
-    let bits = x.to_bits();
-    match bits >> 52 {
-        0 => f64::from_bits(1 << (63 - bits.leading_zeros())),
-        exponent => f64::from_bits(exponent << 52),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn power_of_two_is_exact_over_the_whole_range() {
-        for (x, power) in [
-            (1.0, 1.0),
-            (1.999, 1.0),
-            (0.75, 0.5),
-            (3e-310, f64::from_bits(1 << 45)),
-            (1e308, f64::from_bits(2046 << 52)),
-        ] {
-            assert_eq!(power_of_two_below(x), power);
-        }
-    }
 
     #[test]
     fn scaling_the_mass_by_a_power_of_two_changes_no_bit_inside() {

@@ -1,7 +1,8 @@
 //! Motion along a polhode by Jacobi's functions and Carlson's integrals, in any scalar.
 //!
 //! The attitude is a swing, which takes the momentum to the axis that it circulates about, and a twist ψ about that
-//! axis: no frame that becomes singular, no inverse sine, no branch that closes on the separatrix (methods.md §6.2).
+//! axis: no frame that becomes singular, no inverse sine, no branch that closes on the separatrix:
+//! the remedy that Leroy's note on the free body in the sources of Principia proposes, here without coordinates.
 //! Notation as in [`polhode`](super::polhode).
 //!
 //! # Where printed formulas do not serve

@@ -10,6 +10,7 @@ mod lagrange_top;
 mod nutation;
 mod phase;
 mod polhode;
+mod short_drift;
 mod symmetric_top;
 mod theta;
 mod turn;
@@ -19,6 +20,7 @@ pub use character::{AtRest, Character, Mode};
 pub use free_body::{FreeBody, FreeMotion, TimeError};
 pub use kick::Kick;
 pub use lagrange_top::{LagrangeError, LagrangeTop};
+pub use short_drift::ShortDrift;
 pub use symmetric_top::SymmetricTop;
 pub use turn::{AxisTurn, turn};
 

@@ -12,7 +12,7 @@
 //! | k², k'² | parameter and complementary parameter of the elliptic functions |
 //! | u, ν, K | phase, its rate, quarter period |
 //!
-//! Source: methods.md §6.2; amplitudes as in Landau and Lifshitz, Mechanics, §37, without relabelled vectors.
+//! Source: Landau and Lifshitz, Mechanics, §37, without relabelled vectors and without differences that cancel.
 
 use crate::num::elliptic::incomplete;
 use crate::num::{Dd, Expansion, Precise};

@@ -5,7 +5,8 @@ use crate::body::{Body, Carry, State};
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 
-/// The exact flow of the kinetic energy of one axis, `H_i = m_i² / (2 I_i)` (methods.md §4.1).
+/// The exact flow of the kinetic energy of one axis, `H_i = m_i² / (2 I_i)`
+/// (McLachlan, Phys. Rev. Lett. 71 (1993) 3043).
 ///
 /// Φ_t: with θ = t m_i / I_i, turn (m_j, m_k) by −θ about axis i and the attitude by θ on the right;
 /// (i, j, k) cyclic. Keeps m_i, |m| and the momentum in space.

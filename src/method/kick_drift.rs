@@ -2,7 +2,7 @@
 
 use super::{Claimed, Claims, Cost, Energy, Kept, KeptHeavy, Method, Step, StepError, usable};
 use crate::body::{Body, Carry, State};
-use crate::flow::{Flow, FreeBody, Kick, SymmetricTop};
+use crate::flow::{Flow, FreeBody, Kick, ShortDrift, SymmetricTop};
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};
 
@@ -13,8 +13,9 @@ use crate::rotation::{Quat, Vec3};
 /// bracket, and for exponentially long times the energy within O(h²); a fast top under a weak torque is followed with
 /// an error in proportion to the torque. Without torque it is the exact motion.
 ///
-/// What rounding takes from the energy and from L in a drift of elliptic functions is measured in double-double and given back, carried from
-/// step to step: else they would move away slowly, by a few hundredths of a rounding error in each drift.
+/// Short drifts are increments whose rounding is carried. What rounding takes from the energy and from L in a drift
+/// by elliptic functions is measured in double-double and given back: else both would move away slowly, by a few
+/// hundredths of a rounding error in each drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KickDrift;
 
@@ -55,7 +56,10 @@ impl<S: Precise> Method<S> for KickDrift {
             h,
             half: h * S::of(0.5),
             kick: Kick::new(body),
-            drift: SymmetricTop::new(body).map_or(Drift::FreeBody(FreeBody::new(body)), Drift::SymmetricTop),
+            drift: match SymmetricTop::new(body) {
+                Some(flow) => Drift::SymmetricTop(flow),
+                None => Drift::FreeBody(ShortDrift::new(body), FreeBody::new(body)),
+            },
             inverse_moments: body.inverse_moments(),
             carry: Carry::default(),
         })
@@ -67,13 +71,15 @@ impl<S: Precise> Step<S> for KickDriftStep<S> {
         self.kick.carried(self.half, x, &mut self.carry);
         match self.drift {
             Drift::SymmetricTop(flow) => flow.carried(self.h, x, &mut self.carry),
-            Drift::FreeBody(flow) => {
-                let before = self.invariants(x);
-                flow.flow(self.h, x);
-                self.restore(before, x);
+            Drift::FreeBody(short, any) => {
+                if !short.carried(self.h, x, &mut self.carry) {
+                    let before = self.invariants(x);
+                    any.flow(self.h, x);
+                    self.restore(before, x);
+                }
             }
         }
-        self.carry.renormalize(x);
+        self.carry.end_step(x);
         self.kick.carried(self.half, x, &mut self.carry);
     }
 }
@@ -81,7 +87,7 @@ impl<S: Precise> Step<S> for KickDriftStep<S> {
 #[derive(Clone, Copy, Debug)]
 enum Drift<S> {
     SymmetricTop(SymmetricTop<S>),
-    FreeBody(FreeBody<S>),
+    FreeBody(ShortDrift<S>, FreeBody<S>),
 }
 
 /// What a drift keeps: 2T, |m|² and L.

@@ -5,7 +5,7 @@ use crate::body::{Body, Carry, State, of_dd};
 use crate::flow::{Kick, turn};
 use crate::num::{Dd, Real};
 
-/// Strang splitting of the kinetic energy by axes (methods.md §4.1).
+/// Strang splitting of the kinetic energy by axes.
 ///
 /// Φ_h = R_a(h/2) R_b(h/2) R_c(h) R_b(h/2) R_a(h/2), R_i the exact [turn](crate::flow::AxisTurn) of `m_i²/(2 I_i)`.
 /// A product of exact flows: keeps |m|, L and the Lie–Poisson bracket, and the energy within O(h²) for
@@ -74,7 +74,7 @@ impl<S: Real> Step<S> for LiePoissonStep<S> {
             _ => self.turns::<2, 1, 0>(x),
         }
         self.kick.carried(self.half, x, &mut self.carry);
-        self.carry.renormalize(x);
+        self.carry.end_step(x);
     }
 }
 

@@ -1,6 +1,6 @@
 //! RATTLE, which for the free body is the discrete Moser–Veselov map, on quaternions.
 //!
-//! # Notation (methods.md §3.2)
+//! # Notation
 //! | letter | meaning |
 //! |---|---|
 //! | c | Cayley vector of the step, `tan(θ/2)` times its axis |

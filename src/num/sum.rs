@@ -1,7 +1,6 @@
 //! Compensated sums.
 
 use super::Real;
-use super::dd::{two_prod, two_sum};
 
 /// A running sum that carries its own rounding error.
 ///
@@ -57,18 +56,15 @@ pub fn add_carried<S: Real>(sum: &mut S, carry: &mut S, delta: S) {
     *sum = new;
 }
 
-/// Σ aₖ bₖ as if computed in twice the working precision and rounded once.
-///
-/// Source: T. Ogita, S. M. Rump, S. Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005)
-/// 1955–1988, algorithm 5.3 (Dot2).
+/// `a · b` and the error of its rounding, by Dekker's splitting: exact for `f64` below 1e300, and in any other scalar as
+/// good as its own rounding.
 #[inline]
-pub fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
-    let (mut sum, mut carry) = (0.0, 0.0);
-    for k in 0..N {
-        let (product, rounding) = two_prod(a[k], b[k]);
-        let (total, error) = two_sum(sum, product);
-        sum = total;
-        carry += error + rounding;
-    }
-    sum + carry
+pub fn exact_product<S: Real>(a: S, b: S) -> (S, S) {
+    let split = |x: S| {
+        let t = x * S::of(134_217_729.0); // 2²⁷ + 1
+        let high = t - (t - x);
+        (high, x - high)
+    };
+    let ((a1, a2), (b1, b2), p) = (split(a), split(b), a * b);
+    (p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2)
 }

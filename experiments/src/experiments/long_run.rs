@@ -12,7 +12,7 @@ use polhode::run::{Run, Schedule};
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series};
+use crate::figure::{Figure, Series, ten_to};
 use crate::table::{Cell, Column, Table, row};
 
 const METHODS: [&str; 5] = ["rk4", "rk4-normalized", "implicit-midpoint", "rattle", "lie-poisson"];
@@ -21,11 +21,12 @@ const METHODS: [&str; 5] = ["rk4", "rk4-normalized", "implicit-midpoint", "rattl
 const STEP: f64 = 1.0 / 64.0;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let steps: u64 = context.scale.pick(10_000, 1_000_000, 1_000_000_000);
+    let power = context.scale.pick(4, 6, 9);
+    let (steps, counted) = (10_u64.pow(power), ten_to(power as i32));
     let found = context.in_parallel(METHODS.to_vec(), |name| follow(name, steps));
     let mut series = Table::new(
         "series",
-        format!("Errors at logarithmic times over {steps} steps of {STEP} s, dyadic body."),
+        format!("Errors at logarithmic times over {counted} steps of {STEP} s, dyadic body."),
         vec![
             Column::new("method", "", "name in the catalogue"),
             Column::new("steps", "", "steps taken"),
@@ -48,7 +49,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     );
     let mut summary = series.clone();
     summary.name = "summary".into();
-    summary.caption = format!("Errors after {steps} steps of {STEP} s, dyadic body.");
+    summary.caption = format!("Errors after {counted} steps of {STEP} s, dyadic body.");
     let mut timing = Table::new(
         "timing",
         "Time of each run with its errors observed at every step, two runs side by side where there are two cores.",
@@ -60,12 +61,16 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     );
     let mut energy = Figure::log_log(
         "energy",
-        format!("Energy over {steps} steps"),
+        format!("Energy over {counted} steps"),
         "steps",
         "largest relative energy error so far",
     );
-    let mut attitude =
-        Figure::log_log("attitude", format!("Attitude over {steps} steps"), "steps", "attitude error (rad)");
+    let mut attitude = Figure::log_log(
+        "attitude",
+        format!("Attitude over {counted} steps"),
+        "steps",
+        "attitude error (rad)",
+    );
     for (name, found) in METHODS.into_iter().zip(found) {
         let (rows, seconds) = found?;
         let curve = |column: usize| {

@@ -2,6 +2,8 @@
 
 mod drift;
 mod exact;
+mod heavy_top;
+mod inertia;
 mod lecture;
 mod long_run;
 mod order;
@@ -31,8 +33,18 @@ pub(crate) const ALL: &[Experiment] = &[
         run: long_run::run,
     },
     Experiment {
+        name: "inertia",
+        question: "whether inertia tensors are right: closed forms, meshes, the lecture's statements, the doctor",
+        run: inertia::run,
+    },
+    Experiment {
         name: "lecture",
-        question: "whether every statement of a lecture on rigid bodies is confirmed",
+        question: "whether every statement of a lecture on rotating bodies is confirmed",
         run: lecture::run,
+    },
+    Experiment {
+        name: "heavy-top",
+        question: "what each method keeps of tops under gravity, and how wrong its attitude is",
+        run: heavy_top::run,
     },
 ];

@@ -1,0 +1,259 @@
+//! `polhode inertia`: builds, checks and converts inertia tensors.
+
+mod examined;
+mod given;
+mod output;
+mod parts;
+mod xml;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use nalgebra::{Matrix3, Vector3};
+use polhode::body::{Amount, InertiaError, MassError, MassProperties, Mesh, MeshError, Solid, Verdict};
+
+use crate::arguments::{list, numbers, positive};
+use crate::error::{Error, warn};
+use crate::files::{emit, read};
+use examined::Examined;
+use given::Given;
+
+/// Build, check and convert inertia tensors
+///
+/// SHAPE and its ARGUMENT, lengths in m, symmetry axis z:
+///   box LX,LY,LZ    ellipsoid A,B,C (semi-axes)    sphere R    shell R
+///   cylinder R,H    tube R1,R2,H    cone R,H    torus R,r    rod L
+///   disk R    plate LX,LY    hoop R    mesh FILE (.stl or .obj, closed)
+///   tensor Ixx,Iyy,Izz,Ixy,Ixz,Iyz (or all nine entries, by rows)
+///   parts FILE.toml    json FILE    urdf FILE    mjcf FILE
+///
+/// Tensor entries carry the minus sign, I_xy = -int x y dm, and are about the
+/// centre of mass. A cone stands on z = 0. A tensor that no body can have is
+/// examined: the law it breaks and by how much, what probably happened, the
+/// nearest tensor that a body can have. The exit code is then 1.
+#[derive(Args, Clone, Debug)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Inertia {
+    /// What the argument describes
+    shape: String,
+    /// Sizes, entries or a file
+    #[arg(value_name = "ARGUMENT", allow_hyphen_values = true)]
+    argument: String,
+    /// Mass, kg
+    #[arg(long, value_name = "M", value_parser = positive, allow_hyphen_values = true)]
+    mass: Option<f64>,
+    /// Density, kg/m^3 (of a surface kg/m^2, of a line kg/m)
+    #[arg(long, value_name = "D", value_parser = positive, allow_hyphen_values = true, conflicts_with = "mass")]
+    density: Option<f64>,
+    /// How many metres the unit of length of a mesh is, 0.001 for millimetres
+    #[arg(long, value_name = "METRES", value_parser = positive, allow_hyphen_values = true)]
+    length_unit: Option<f64>,
+    /// Centre of mass of a typed tensor, m
+    #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    center_of_mass: Option<[f64; 3]>,
+    /// The point that a typed tensor is about, if not the centre of mass, m
+    #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    given_about: Option<[f64; 3]>,
+    /// Edges of the box around the body of a typed tensor, which help to tell what went wrong, m
+    #[arg(long, value_name = "LX,LY,LZ", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    extents: Option<[f64; 3]>,
+    /// Also the tensor about this point, m
+    #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    about: Option<[f64; 3]>,
+    /// What is written: table on a terminal, csv otherwise
+    #[arg(long, value_enum)]
+    format: Option<Form>,
+    /// Write to this file instead of standard output
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// How bodies are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// For eyes
+    Table,
+    /// One row a body
+    Csv,
+    /// An object, of several bodies an array
+    Json,
+    /// <inertial> of a URDF link
+    Urdf,
+    /// <inertial> of an MJCF body with fullinertia
+    Mjcf,
+    /// <inertial> of an MJCF body with diaginertia and quat
+    MjcfDiagonal,
+    /// A list of parts, as `parts` reads it
+    Toml,
+}
+
+impl Inertia {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        let given = self.given()?;
+        if self.about.is_some() && given.iter().any(|body| body.mass.is_none()) {
+            let rule = "missing: --about moves a tensor by M (R^2 1 - R R^T)";
+            return Err(Error::input("--mass", "", rule, "give --mass M"));
+        }
+        let point = self.about.map(Vector3::from);
+        let mut bodies = Vec::new();
+        for body in given {
+            let name = if body.name.is_empty() { String::new() } else { format!(" of '{}'", body.name) };
+            let refused = |error| Error::Input(format!("{} {}{name}: {error}", self.shape, self.argument));
+            bodies.push(Examined::of(body, point).map_err(refused)?);
+        }
+        let terminal = || self.out.is_none() && std::io::IsTerminal::is_terminal(&std::io::stdout());
+        let form = self.format.unwrap_or_else(|| if terminal() { Form::Table } else { Form::Csv });
+        let invalid: Vec<String> = bodies
+            .iter()
+            .filter(|body| body.diagnosis.verdict == Verdict::Invalid)
+            .map(Examined::report)
+            .collect();
+        for body in bodies.iter().filter(|body| body.diagnosis.verdict == Verdict::Suspicious) {
+            warn(&body.report());
+        }
+        // a model must not take over a tensor that no body has; a report shows it
+        if invalid.is_empty() || matches!(form, Form::Table | Form::Csv | Form::Json) {
+            emit(&output::write(&bodies, form), self.out.as_deref())?;
+        }
+        if invalid.is_empty() { Ok(()) } else { Err(Error::Failed(invalid.join("\n"))) }
+    }
+
+    /// The bodies that the arguments describe.
+    fn given(&self) -> Result<Vec<Given>, Error> {
+        let path = Path::new(&self.argument);
+        let single = |given: Given| Ok(vec![given]);
+        let shape = self.shape.as_str();
+        if !matches!(shape, "tensor") {
+            self.only_for("tensor", "--center-of-mass", self.center_of_mass.is_some())?;
+            self.only_for("tensor", "--given-about", self.given_about.is_some())?;
+            self.only_for("tensor", "--extents", self.extents.is_some())?;
+        }
+        if shape != "mesh" {
+            self.only_for("mesh", "--length-unit", self.length_unit.is_some())?;
+        }
+        if matches!(shape, "tensor" | "parts" | "json" | "urdf" | "mjcf") {
+            self.only_for("shapes and mesh", "--density", self.density.is_some())?;
+        }
+        if matches!(shape, "parts" | "json" | "urdf" | "mjcf") {
+            self.only_for("shapes, mesh and tensor", "--mass", self.mass.is_some())?;
+        }
+        match shape {
+            "tensor" => single(self.tensor()?),
+            "mesh" => single(Given::body(self.mesh(path)?)),
+            "parts" => single(Given::body(parts::read_parts(path)?)),
+            "json" => given::from_json(path, &read(path, "name a JSON file of this command")?),
+            "urdf" => xml::urdf(path, &read(path, "name a URDF file")?),
+            "mjcf" => xml::mjcf(path, &read(path, "name an MJCF file")?),
+            _ => {
+                if !Solid::names().any(|name| name == shape) {
+                    let others = ["mesh", "tensor", "parts", "json", "urdf", "mjcf"];
+                    return Err(Error::unknown_name("SHAPE", "shape", shape, Solid::names().chain(others)));
+                }
+                let sizes = list(&self.argument)
+                    .map_err(|error| Error::Input(format!("{shape}: '{}': {error}", self.argument)))?;
+                let solid = Solid::named(shape, &sizes).map_err(|error| self.refused(error))?;
+                single(Given::body(solid.with(self.amount()?).map_err(|error| self.refused(error))?))
+            }
+        }
+    }
+
+    fn only_for(&self, shapes: &str, flag: &str, given: bool) -> Result<(), Error> {
+        if given {
+            Err(Error::input(
+                flag,
+                "",
+                &format!("belongs to {shapes}, not to {}", self.shape),
+                "leave it out",
+            ))
+        } else {
+            Ok(())
+        }
+    }
+
+    fn amount(&self) -> Result<Amount, Error> {
+        match (self.mass, self.density) {
+            (Some(mass), _) => Ok(Amount::Mass(mass)),
+            (None, Some(density)) => Ok(Amount::Density(density)),
+            (None, None) => Err(Error::input(
+                "--mass",
+                "",
+                &format!("missing: {} needs an amount of matter", self.shape),
+                "give --mass M (kg) or --density D (kg/m^3)",
+            )),
+        }
+    }
+
+    fn refused(&self, error: MassError) -> Error {
+        Error::Input(format!("{} {}: {error}", self.shape, self.argument))
+    }
+
+    /// The typed entries: six, or nine by rows.
+    fn tensor(&self) -> Result<Given, Error> {
+        let place = format!("tensor: '{}'", self.argument);
+        let entries = list(&self.argument).map_err(|error| Error::Input(format!("{place}: {error}")))?;
+        let tensor = match entries.as_slice() {
+            &[xx, yy, zz, xy, xz, yz] => Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+            nine if nine.len() == 9 => Matrix3::from_row_slice(nine),
+            other => {
+                return Err(Error::Input(format!(
+                    "{place}: {} given, 6 needed (Ixx,Iyy,Izz,Ixy,Ixz,Iyz) or 9 (by rows)",
+                    other.len()
+                )));
+            }
+        };
+        let center_of_mass = Vector3::from(self.center_of_mass.unwrap_or_default());
+        let mut given =
+            Given { mass: self.mass, center_of_mass, extents: self.extents, ..Given::of_tensor(tensor) };
+        if let Some(point) = self.given_about {
+            let Some(mass) = self.mass else {
+                let rule = "missing: --given-about moves a tensor by M (R^2 1 - R R^T)";
+                return Err(Error::input("--mass", "", rule, "give --mass M"));
+            };
+            given = match MassProperties::from_tensor_about(point.into(), mass, center_of_mass, tensor) {
+                Ok(body) => Given { extents: self.extents, ..Given::body(body) },
+                Err(MassError::Inertia(law @ InertiaError::NotSymmetric { .. })) => {
+                    return Err(Error::Input(format!("{place}: {law}")));
+                }
+                Err(error) => {
+                    let rule = format!("too small for a tensor about --given-about: {error}");
+                    return Err(Error::Failed(format!("{place}: {rule}")));
+                }
+            };
+        }
+        Ok(given)
+    }
+
+    fn mesh(&self, path: &Path) -> Result<MassProperties, Error> {
+        let amount = self.amount()?;
+        let mesh = read_mesh(path)?;
+        scaled(&mesh, amount, self.length_unit.unwrap_or(1.0)).map_err(|error| self.refused(error))
+    }
+}
+
+/// A mesh by the ending of its name.
+fn read_mesh(path: &Path) -> Result<Mesh, Error> {
+    let refused = |error: MeshError| Error::Input(format!("{}: {error}", path.display()));
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    let open =
+        || std::fs::File::open(path).map(std::io::BufReader::new).map_err(|error| refused(error.into()));
+    match ending.as_deref() {
+        Some("stl") => Mesh::from_stl(open()?).map_err(refused),
+        Some("obj") => Mesh::from_obj(open()?).map_err(refused),
+        _ => Err(Error::input(
+            "mesh",
+            &path.display().to_string(),
+            "the ending tells the format, and this one is unknown",
+            "name a file that ends in .stl or .obj",
+        )),
+    }
+}
+
+/// The body of a mesh whose coordinates are multiples of `unit` metres.
+fn scaled(mesh: &Mesh, amount: Amount, unit: f64) -> Result<MassProperties, MassError> {
+    let amount = match amount {
+        Amount::Density(density) => Amount::Density(density * unit * unit * unit),
+        mass => mass,
+    };
+    let body = mesh.with(amount)?;
+    MassProperties::new(body.mass(), body.center_of_mass() * unit, body.tensor() * (unit * unit))
+}

@@ -1,0 +1,107 @@
+//! A body with what the examination of its tensor found.
+
+use std::fmt::Write;
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::body::{Diagnosis, Evidence, InertiaError, MassError, MassProperties, Verdict, diagnose};
+
+use super::given::Given;
+
+pub(super) struct Examined {
+    pub(super) given: Given,
+    pub(super) diagnosis: Diagnosis,
+    /// In the axes of the frame; of unit mass if none is known, and absent if no body has the tensor.
+    pub(super) body: Option<MassProperties>,
+    /// A point and the tensor about it, if there is one.
+    pub(super) about: Option<(Vector3<f64>, Option<Matrix3<f64>>)>,
+}
+
+impl Examined {
+    /// Examines `given`.
+    ///
+    /// # Errors
+    /// Numbers without a meaning: a mass that is not positive, a tensor that is not symmetric.
+    pub(super) fn of(given: Given, point: Option<Vector3<f64>>) -> Result<Self, MassError> {
+        let evidence = Evidence {
+            mass: given.mass,
+            center_of_mass: Some(given.turn.inverse() * given.center_of_mass),
+            extents: given.extents,
+        };
+        let mut diagnosis = diagnose(given.tensor, &evidence)?;
+        if given.computed && diagnosis.verdict == Verdict::Suspicious {
+            diagnosis.verdict = Verdict::Valid;
+            diagnosis.causes.clear();
+        }
+        if let Some(law @ InertiaError::NotSymmetric { .. }) = &diagnosis.violation {
+            return Err(MassError::Inertia(law.clone()));
+        }
+        let body = match &diagnosis.violation {
+            Some(_) => None,
+            None => {
+                let mass = given.mass.unwrap_or(1.0);
+                let body = MassProperties::new(mass, Vector3::zeros(), given.tensor)?;
+                Some(body.turned(given.turn).moved(given.center_of_mass)?)
+            }
+        };
+        let about = point.map(|point| (point, body.map(|body| body.tensor_about(point))));
+        Ok(Examined { given, diagnosis, body, about })
+    }
+
+    pub(super) fn verdict(&self) -> &'static str {
+        match self.diagnosis.verdict {
+            Verdict::Valid => "valid",
+            Verdict::Suspicious => "suspicious",
+            Verdict::Invalid => "invalid",
+        }
+    }
+
+    /// Which law is broken and by how much, in one sentence.
+    pub(super) fn trouble(&self) -> Option<String> {
+        let found = &self.diagnosis;
+        if let Some(law) = &found.violation {
+            return Some(law.to_string());
+        }
+        found.misfit.map(|misfit| {
+            format!(
+                "the second moment along {} is {:.4e} times the greatest that this mass and these extents allow",
+                misfit.axis, misfit.ratio
+            )
+        })
+    }
+
+    /// Everything that is to be said about a tensor that is not simply valid.
+    pub(super) fn report(&self) -> String {
+        let found = &self.diagnosis;
+        let name = if self.given.name.is_empty() { "the tensor" } else { &self.given.name };
+        let trouble = self.trouble().unwrap_or_else(|| "valid, but hardly of the body described".into());
+        let mut text = format!("{name}: {trouble}");
+        for (place, explanation) in found.causes.iter().take(3).enumerate() {
+            let entries = six(&explanation.corrected).map(|x| x.to_string()).join(",");
+            let _ = write!(text, "\n  cause {}: {}\n    then it is {entries}", place + 1, explanation.cause);
+        }
+        if found.causes.is_empty() {
+            text += "\n  no single mistake of the kinds that are tested explains it";
+        }
+        if found.distance > 0.0 {
+            let nearest = six(&found.nearest).map(|x| x.to_string()).join(",");
+            let percent = 100.0 * found.distance / self.given.tensor.norm();
+            let _ = write!(
+                text,
+                "\n  nearest valid tensor: {nearest}\n    Frobenius distance {:.6e}, {percent:.3} % of its norm",
+                found.distance
+            );
+        }
+        let [a, b, c] = found.equivalent_box;
+        let unit = if self.given.mass.is_some() { "m" } else { "(relative)" };
+        let _ = write!(
+            text,
+            "\n  box of that inertia: {a:.6} x {b:.6} x {c:.6} {unit}, along the principal axes"
+        );
+        text
+    }
+}
+
+/// Ixx, Iyy, Izz, Ixy, Ixz, Iyz, without signed zeros.
+pub(super) fn six(tensor: &Matrix3<f64>) -> [f64; 6] {
+    [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|place| tensor[place] + 0.0)
+}

@@ -1,0 +1,84 @@
+//! A body as it was given, before anything is known to be right with it.
+
+use std::path::Path;
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::body::MassProperties;
+use serde::Deserialize;
+
+use crate::error::Error;
+
+#[derive(Clone, Debug)]
+pub(super) struct Given {
+    /// Of the link or body in a model, else empty.
+    pub(super) name: String,
+    pub(super) mass: Option<f64>,
+    /// In the axes of the frame.
+    pub(super) center_of_mass: Vector3<f64>,
+    /// Takes the axes of the tensor to those of the frame.
+    pub(super) turn: UnitQuaternion<f64>,
+    /// About the centre of mass.
+    pub(super) tensor: Matrix3<f64>,
+    /// Along the axes of the tensor.
+    pub(super) extents: Option<[f64; 3]>,
+    /// Whether the tensor was computed here, so that there is no mistake of a user's to look for.
+    pub(super) computed: bool,
+}
+
+impl Given {
+    /// A tensor and nothing else.
+    pub(super) fn of_tensor(tensor: Matrix3<f64>) -> Self {
+        Self {
+            name: String::new(),
+            mass: None,
+            center_of_mass: Vector3::zeros(),
+            turn: UnitQuaternion::identity(),
+            tensor,
+            extents: None,
+            computed: false,
+        }
+    }
+
+    /// A body that is right by construction.
+    pub(super) fn body(body: MassProperties) -> Self {
+        Self {
+            mass: Some(body.mass()),
+            center_of_mass: body.center_of_mass(),
+            computed: true,
+            ..Self::of_tensor(body.tensor())
+        }
+    }
+}
+
+/// What this command writes as JSON, as far as it says what the body is.
+#[derive(Deserialize)]
+struct Written {
+    #[serde(default)]
+    name: String,
+    mass: Option<f64>,
+    #[serde(default)]
+    center_of_mass: [f64; 3],
+    inertia: [[f64; 3]; 3],
+}
+
+/// From the JSON that this command writes: an object, or an array of them.
+pub(super) fn from_json(path: &Path, text: &str) -> Result<Vec<Given>, Error> {
+    let written: Result<Vec<Written>, _> = if text.trim_start().starts_with('[') {
+        serde_json::from_str(text)
+    } else {
+        serde_json::from_str(text).map(|one| vec![one])
+    };
+    let written = written.map_err(|error| {
+        Error::Input(format!(
+            "{}: {error}; needed: \"inertia\": [[3x3]], and \"mass\" and \"center_of_mass\": [3] if known",
+            path.display()
+        ))
+    })?;
+    let given = |written: Written| Given {
+        name: written.name,
+        mass: written.mass,
+        center_of_mass: written.center_of_mass.into(),
+        ..Given::of_tensor(Matrix3::from_fn(|j, k| written.inertia[j][k]))
+    };
+    Ok(written.into_iter().map(given).collect())
+}

@@ -1,0 +1,476 @@
+//! `polhode inertia` as its users meet it: golden values, golden refusals, formats that read each other.
+//!
+//! `POLHODE_BLESS=1 cargo test -p polhode-experiments --test inertia` rewrites the golden files; read the difference.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder with the files of one test, removed with it.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("polhode-inertia-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str, content: impl AsRef<[u8]>) {
+        fs::write(self.0.join(name), content).unwrap();
+    }
+
+    /// Runs `polhode inertia` in this folder.
+    fn run(&self, line: &str) -> Answer {
+        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_polhode"))
+            .arg("inertia")
+            .args(line.split_whitespace())
+            .current_dir(&self.0)
+            .output()
+            .unwrap();
+        let answer = Answer {
+            code: status.code().unwrap(),
+            out: String::from_utf8(stdout).unwrap(),
+            err: String::from_utf8(stderr).unwrap(),
+        };
+        let mut words = answer.out.split(|c: char| !c.is_ascii_alphanumeric());
+        assert!(!words.any(|word| ["NaN", "nan", "inf"].contains(&word)), "{line}: {}", answer.out);
+        assert!(!answer.err.contains("panicked"), "{line}: {}", answer.err);
+        answer
+    }
+
+    /// The output of a run that has nothing to complain of.
+    fn output(&self, line: &str) -> String {
+        let answer = self.run(line);
+        assert_eq!((answer.code, answer.err.as_str()), (0, ""), "{line}");
+        answer.out
+    }
+
+    fn json(&self, line: &str) -> serde_json::Value {
+        serde_json::from_str(&self.output(&format!("{line} --format json"))).unwrap()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+struct Answer {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn golden(name: &str, found: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/inertia").join(name);
+    if std::env::var_os("POLHODE_BLESS").is_some() {
+        fs::write(&path, found).unwrap();
+    }
+    let expected = fs::read_to_string(&path).unwrap();
+    assert_eq!(found, expected, "{name} differs from the committed file");
+}
+
+/// All numbers of a JSON value, in order.
+fn numbers(value: &serde_json::Value) -> Vec<f64> {
+    match value {
+        serde_json::Value::Number(number) => vec![number.as_f64().unwrap()],
+        serde_json::Value::Array(items) => items.iter().flat_map(numbers).collect(),
+        _ => Vec::new(),
+    }
+}
+
+const OBJ_CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+                        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+/// A tetrahedron with three edges along the axes.
+fn binary_stl() -> Vec<u8> {
+    let [o, x, y, z] = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut bytes = vec![b' '; 80];
+    bytes.extend(4_u32.to_le_bytes());
+    for corners in [[o, y, x], [o, x, z], [o, z, y], [x, y, z]] {
+        bytes.extend([0; 12]);
+        corners.iter().flatten().for_each(|x| bytes.extend(x.to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+const HAMMER: &str = "\
+# lengths in m, masses in kg
+name = \"hammer\"
+
+[[part]]
+name = \"handle\"
+shape = \"cylinder\"
+size = [0.015, 0.25]
+density = 700
+at = [0, 0, 0.125]
+
+[[part]]
+name = \"head\"
+shape = \"box\"
+size = [0.125, 0.03125, 0.03125]
+mass = 1
+at = [0, 0, 0.265625]
+turn = [2, 0, 0, 1.0]
+
+[[part]]
+shape = \"point\"
+mass = 0.0625
+at = [0, 0.25, 0]
+
+[[part]]
+shape = \"tensor\"
+mass = 0.5
+inertia = [1e-3, 2e-3, 1.5e-3, -1e-4, 0, 2e-4]
+at = [0.5, 0, 0]
+
+[[part]]
+shape = \"mesh\"
+file = \"cube.obj\"
+length_unit = 0.125
+density = 256
+";
+
+fn workshop(name: &str) -> Scratch {
+    let scratch = Scratch::new(name);
+    scratch.file("cube.obj", OBJ_CUBE);
+    scratch.file("corner.stl", binary_stl());
+    scratch.file("hammer.toml", HAMMER);
+    scratch
+}
+
+#[test]
+fn every_shape_is_golden() {
+    let scratch = Scratch::new("shapes");
+    let shapes = [
+        "box 1,2,3",
+        "ellipsoid 1,2,3",
+        "sphere 2",
+        "shell 2",
+        "cylinder 1,2",
+        "tube 1,2,3",
+        "cone 1,2",
+        "torus 2,0.5",
+        "rod 3",
+        "disk 2",
+        "plate 1,2",
+        "hoop 2",
+    ];
+    let mut rows = String::new();
+    for shape in shapes {
+        for amount in ["--mass 120", "--density 3"] {
+            let text = scratch.output(&format!("{shape} {amount}"));
+            let (head, row) = text.split_once('\n').unwrap();
+            if rows.is_empty() {
+                writeln!(rows, "{head}").unwrap();
+            }
+            write!(rows, "{shape} {amount}: {row}").unwrap();
+        }
+    }
+    golden("shapes.txt", &rows);
+    // what a reader can check by heart
+    let moments = |line: &str| numbers(&scratch.json(line)["principal_moments"]);
+    assert_eq!(moments("box 1,2,3 --mass 12"), [5.0, 10.0, 13.0]);
+    assert_eq!(moments("sphere 2 --mass 5"), [8.0, 8.0, 8.0]);
+    assert_eq!(moments("cylinder 2,3 --mass 4"), [7.0, 7.0, 8.0]);
+    assert_eq!(moments("rod 6 --mass 1"), [0.0, 3.0, 3.0]);
+    assert_eq!(moments("hoop 2 --mass 1"), [2.0, 2.0, 4.0]);
+}
+
+#[test]
+fn json_and_table_are_golden() {
+    let scratch = workshop("golden");
+    golden("box.json", &scratch.output("box 1,2,3 --mass 12 --format json"));
+    golden("disk.txt", &scratch.output("disk 1 --mass 2 --about 1,2,3 --format table"));
+    golden("corner.json", &scratch.output("mesh corner.stl --density 6 --format json"));
+    golden("hammer.json", &scratch.output("parts hammer.toml --format json"));
+    golden("tensor.json", &scratch.output("tensor 2,2,3,-0.25,0.125,0.5 --format json"));
+    golden(
+        "point.json",
+        &scratch.output(
+            "tensor 15,12,7,-2,-3,-6 --mass 1 --center-of-mass 1,2,3 --given-about 0,0,0 --format json",
+        ),
+    );
+}
+
+#[test]
+fn the_keys_of_the_conventions_are_there() {
+    let scratch = Scratch::new("keys");
+    let body = scratch.json("plate 1,2 --mass 3");
+    assert_eq!(body["mass"], 3.0);
+    let length = |key: &str| numbers(&body[key]).len();
+    assert_eq!(
+        ["center_of_mass", "inertia", "principal_moments", "axes", "triangle_margins"].map(length),
+        [3, 9, 3, 4, 3]
+    );
+    assert_eq!(body["class"], "planar");
+    assert_eq!(body["triangle_margins"][2], 0.0);
+    assert_eq!(body["sign"], "I_xy = -int x y dm");
+    assert!(scratch.json("tensor 1,2,2,0,0,0")["mass"].is_null());
+}
+
+#[test]
+fn meshes_in_any_unit_are_the_solids() {
+    let scratch = workshop("meshes");
+    let millimetres = OBJ_CUBE.replace(" 1", " 1000").replace("f 1000", "f 1");
+    let vertices: String =
+        millimetres.lines().filter(|line| line.starts_with('v')).fold(String::new(), |a, l| a + l + "\n");
+    let faces: String =
+        OBJ_CUBE.lines().filter(|line| line.starts_with('f')).fold(String::new(), |a, l| a + l + "\n");
+    scratch.file("mm.obj", vertices + &faces);
+    let solid = scratch.json("box 1,1,1 --density 3");
+    for line in
+        ["mesh cube.obj --density 3", "mesh mm.obj --length-unit 0.001 --density 3", "mesh cube.obj --mass 3"]
+    {
+        let mesh = scratch.json(line);
+        assert_eq!(numbers(&mesh["center_of_mass"]), [0.5; 3], "{line}");
+        for key in ["mass", "inertia"] {
+            for (a, b) in numbers(&mesh[key]).into_iter().zip(numbers(&solid[key])) {
+                assert!((a - b).abs() < 1e-15, "{line}: {key} {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_format_is_read_back_to_twelve_digits_and_names_its_sign() {
+    let scratch = workshop("formats");
+    let start = scratch.json("parts hammer.toml");
+    for (form, ending, reader) in [
+        ("urdf", "urdf", "urdf"),
+        ("mjcf", "xml", "mjcf"),
+        ("mjcf-diagonal", "xml", "mjcf"),
+        ("toml", "toml", "parts"),
+        ("json", "json", "json"),
+    ] {
+        let text = scratch.output(&format!("parts hammer.toml --format {form}"));
+        assert!(text.contains("I_xy = -int x y dm"), "{text}");
+        golden(&format!("hammer.{form}"), &text);
+        let name = format!("{form}.{ending}");
+        scratch.file(&name, &text);
+        let back = scratch.json(&format!("{reader} {name}"));
+        for key in ["mass", "center_of_mass", "inertia", "principal_moments"] {
+            let (found, expected) = (numbers(&back[key]), numbers(&start[key]));
+            let largest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            for (a, b) in found.iter().zip(&expected) {
+                assert!((a - b).abs() < 1e-14 * largest, "{form} {key}: {a} {b}");
+            }
+            assert_eq!(found.len(), expected.len());
+        }
+    }
+}
+
+/// A model of two links in the words of other programs, with axes turned by rpy.
+const ROBOT: &str = "\
+<robot name=\"r\">
+  <link name=\"base\">
+    <inertial>
+      <origin xyz=\"0 0 1\" rpy=\"0 0 1.5707963267948966\"/>
+      <mass value=\"200\"/>
+      <inertia ixx=\"10\" ixy=\"-1\" ixz=\"0\" iyy=\"20\" iyz=\"0\" izz=\"25\"/>
+    </inertial>
+  </link>
+  <link name=\"arm\">
+    <inertial>
+      <mass value=\"2\"/>
+      <inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\" iyz=\"0\" izz=\"1.5\"/>
+    </inertial>
+  </link>
+</robot>
+";
+
+#[test]
+fn models_are_examined_link_by_link() {
+    let scratch = Scratch::new("models");
+    scratch.file("robot.urdf", ROBOT);
+    let answer = scratch.run("urdf robot.urdf --out rows.csv");
+    assert_eq!((answer.code, answer.out.as_str()), (1, ""));
+    golden("robot.err", &answer.err);
+    golden("robot.csv", &fs::read_to_string(scratch.0.join("rows.csv")).unwrap());
+    // a model must not take over what no body has: nothing is written
+    let answer = scratch.run("urdf robot.urdf --format mjcf --out model.xml");
+    assert_eq!((answer.code, answer.out.as_str()), (1, ""));
+    assert!(!scratch.0.join("model.xml").exists());
+    // several bodies are an array, which is read back as the same bodies
+    let array = scratch.run("urdf robot.urdf --format json").out;
+    scratch.file("robot.json", &array);
+    assert_eq!(scratch.run("json robot.json --format json").out, array);
+    // a quarter turn about z: x of the inertial frame is y of the link, and I_xy changes its sign
+    scratch.file("base.urdf", ROBOT.split("  <link name=\"arm\">").next().unwrap().to_owned() + "</robot>");
+    let inertia = numbers(&scratch.json("urdf base.urdf")["inertia"]);
+    for (found, expected) in inertia.iter().zip([20.0, 1.0, 0.0, 1.0, 10.0, 0.0, 0.0, 0.0, 25.0]) {
+        assert!((found - expected).abs() < 1e-14, "{inertia:?}");
+    }
+}
+
+#[test]
+fn the_doctor_is_golden() {
+    let scratch = Scratch::new("doctor");
+    let mut text = String::new();
+    for line in [
+        "tensor 1,1,3,0,0,0",
+        "tensor 0.75,0.75,0.75,0.3125,0.3125,0.3125",
+        "tensor 1250,4250,5000,0,0,0 --mass 1.25 --extents 0.2,0.1,0.05",
+        "tensor 0.25,-0.5,0.5,0,0,0 --mass 3",
+        "tensor 1,1,1,0,0,0 --mass 2 --center-of-mass 3,0,0 --given-about 0,0,0",
+    ] {
+        let answer = scratch.run(line);
+        assert_eq!(answer.code, 1, "{line}");
+        writeln!(text, "$ polhode inertia {line}\n{}", answer.err).unwrap();
+    }
+    golden("doctor.txt", &text);
+    golden("doctor.json", &scratch.run("tensor 1,1,3,0,0,0 --format json").out);
+    let answer = scratch.run("tensor 1250,4250,5000,0,0,0 --mass 1.25");
+    assert_eq!(answer.code, 0, "valid, though hardly of 1.25 kg");
+    assert!(
+        answer.err.starts_with(
+            "warning: the tensor: valid, but hardly of the body described\n  cause 1: in kg mm^2"
+        )
+    );
+    // thin bodies are well
+    for line in ["tensor 1,2,3,0,0,0", "tensor 0,1,1,0,0,0", "tensor 0.1,0.2,0.30000000000000004,0,0,0"] {
+        assert!(scratch.output(line).contains(",valid,"), "{line}");
+    }
+}
+
+#[test]
+fn refusals_are_golden() {
+    let scratch = workshop("refusals");
+    let stl = binary_stl();
+    scratch.file("short.stl", &stl[..200]);
+    scratch.file("header.stl", &stl[..50]);
+    scratch.file("long.stl", [&stl[..], b"\n"].concat());
+    scratch.file("ascii.stl", "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n");
+    scratch.file("words.stl", "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n");
+    scratch.file("open.obj", OBJ_CUBE.replace("f 5 6 7 8\n", ""));
+    scratch.file("inside-out.obj", reversed(OBJ_CUBE));
+    scratch.file("turned.obj", OBJ_CUBE.replace("f 5 6 7 8", "f 8 7 6 5"));
+    scratch.file("doubled.obj", format!("{OBJ_CUBE}f 5 6 7 8\n"));
+    scratch.file("index.obj", OBJ_CUBE.replace("f 5 6 7 8", "f 5 6 7 9"));
+    scratch.file("cube.ply", "ply");
+    let toml = |name: &str, from: &str, to: &str| scratch.file(name, HAMMER.replacen(from, to, 1));
+    toml("syntax.toml", "size = [0.015, 0.25]", "size = [0.015, 0.25");
+    toml("key.toml", "density = 700", "densty = 700");
+    toml("shape.toml", "\"cylinder\"", "\"cylindre\"");
+    toml("missing.toml", "density = 700\n", "");
+    toml("both.toml", "density = 700", "density = 700\nmass = 1");
+    toml("negative.toml", "mass = 1\n", "mass = -1\n");
+    toml("zero.toml", "[0.015, 0.25]", "[0.015, 0]");
+    toml("count.toml", "[0.015, 0.25]", "[0.015, 0.25, 1]");
+    toml("type.toml", "at = [0, 0, 0.125]", "at = [0, 0, \"up\"]");
+    toml("point.toml", "mass = 0.0625", "mass = 0.0625\nsize = 1");
+    toml("law.toml", "[1e-3, 2e-3, 1.5e-3", "[1e-3, 2e-3, 1.5e-2");
+    toml("mesh.toml", "cube.obj", "open.obj");
+    toml("turn.toml", "[2, 0, 0, 1.0]", "[0, 0, 0, 0]");
+    scratch.file("empty.toml", "name = \"nothing\"\n");
+    scratch.file("mass.urdf", ROBOT.replace("<mass value=\"2\"/>", "<mass value=\"-2\"/>"));
+    scratch.file("entry.urdf", ROBOT.replace("iyz=\"0\" izz=\"1.5\"", "izz=\"1.5\""));
+    scratch.file("number.urdf", ROBOT.replace("ixx=\"0.1\"", "ixx=\"0,1\""));
+    scratch.file("broken.urdf", ROBOT.replace("</robot>", ""));
+    scratch.file("none.urdf", "<robot/>");
+    scratch.file("euler.xml", "<inertial pos=\"0 0 0\" euler=\"1 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>");
+    scratch.file("two.xml", "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1\"/>");
+    scratch.file("skew.json", "{\"mass\": 1, \"inertia\": [[2, 0.5, 0], [0.25, 2, 0], [0, 0, 3]]}");
+    scratch.file("keys.json", "{\"mass\": 1}");
+    let before: Vec<_> = names(&scratch.0);
+    let lines = [
+        "bax 1,2,3 --mass 1",
+        "dodecahedron 1 --mass 1",
+        "box 1,2 --mass 1",
+        "box 1,2,x --mass 1",
+        "box 1,0,3 --mass 1",
+        "box 1,-2,3 --mass 1",
+        "box 1,2,3 --mass -1",
+        "box 1,2,3 --mass 0",
+        "box 1,2,3 --density nan",
+        "box 1,2,3",
+        "box 1,2,3 --mass 1 --density 1",
+        "box 1,2,3 --mass 1 --extents 1,2,3",
+        "sphere 1e200 --mass 1",
+        "tube 2,1,3 --mass 1",
+        "torus 1,2 --mass 1",
+        "tensor 1,2,3",
+        "tensor 2,0.5,0,0.25,2,0,0,0,3",
+        "tensor 1,2,inf,0,0,0",
+        "tensor 1,2,3,0,0,0 --mass -1",
+        "tensor 1,2,3,0,0,0 --density 1",
+        "tensor 1,2,3,0,0,0 --about 1,0,0",
+        "tensor 1,2,3,0,0,0 --given-about 1,0,0",
+        "tensor 1,2,3,0,0,0 --extents 1,0,1",
+        "mesh nowhere.stl --mass 1",
+        "mesh cube.ply --mass 1",
+        "mesh cube.obj",
+        "mesh short.stl --mass 1",
+        "mesh header.stl --mass 1",
+        "mesh long.stl --mass 1",
+        "mesh ascii.stl --mass 1",
+        "mesh words.stl --mass 1",
+        "mesh open.obj --mass 1",
+        "mesh inside-out.obj --mass 1",
+        "mesh turned.obj --mass 1",
+        "mesh doubled.obj --mass 1",
+        "mesh index.obj --mass 1",
+        "parts nowhere.toml",
+        "parts hammer.toml --mass 1",
+        "parts syntax.toml",
+        "parts key.toml",
+        "parts shape.toml",
+        "parts missing.toml",
+        "parts both.toml",
+        "parts negative.toml",
+        "parts zero.toml",
+        "parts count.toml",
+        "parts type.toml",
+        "parts point.toml",
+        "parts law.toml",
+        "parts mesh.toml",
+        "parts turn.toml",
+        "parts empty.toml",
+        "urdf mass.urdf",
+        "urdf entry.urdf",
+        "urdf number.urdf",
+        "urdf broken.urdf",
+        "urdf none.urdf",
+        "mjcf euler.xml",
+        "mjcf two.xml",
+        "json skew.json",
+        "json keys.json",
+    ];
+    let mut text = String::new();
+    for line in lines {
+        for out in ["", " --out result.json"] {
+            let answer = scratch.run(&format!("{line}{out}"));
+            assert_eq!((answer.code, answer.out.as_str()), (2, ""), "{line}: {}", answer.err);
+            assert!(answer.err.starts_with("error: "), "{line}: {}", answer.err);
+            if out.is_empty() {
+                writeln!(text, "$ polhode inertia {line}\n{}", answer.err).unwrap();
+            }
+        }
+    }
+    golden("refusals.txt", &text);
+    assert_eq!(names(&scratch.0), before, "something was written");
+}
+
+/// The same faces seen from the other side.
+fn reversed(obj: &str) -> String {
+    let turn = |line: &str| match line.strip_prefix("f ") {
+        Some(face) => "f ".to_owned() + &face.split(' ').rev().collect::<Vec<_>>().join(" "),
+        None => line.to_owned(),
+    };
+    obj.lines().map(|line| turn(line) + "\n").collect()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}

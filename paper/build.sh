@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Builds paper/main.pdf from main.tex and generated/.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+packages="latexmk lmodern texlive-latex-recommended texlive-pictures texlive-science"
+missing() {
+  echo "$1; on Debian or Ubuntu:" >&2
+  echo "  sudo apt-get install $packages" >&2
+  exit 2
+}
+
+for tool in latexmk pdflatex bibtex; do
+  command -v "$tool" >/dev/null || missing "$tool is not installed"
+done
+for file in lmodern.sty booktabs.sty microtype.sty pgfplots.sty; do
+  kpsewhich "$file" >/dev/null || missing "$file is not installed"
+done
+for file in drift-origin.tex order-origin.tex long-run-series.csv; do
+  if [ ! -f "generated/$file" ]; then
+    echo "generated/$file is missing; make the results of paper scale and publish them:" >&2
+    echo "  cargo run --release -- experiment run all --scale paper --out experiments/results" >&2
+    echo "  cargo run --release -- experiment publish" >&2
+    exit 2
+  fi
+done
+
+latexmk -pdf -interaction=nonstopmode -halt-on-error -silent main.tex
+echo "paper/main.pdf"

@@ -1,0 +1,224 @@
+//! What is wrong with a tensor, what probably happened, and what would be right.
+
+mod causes;
+mod nearest;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::inertia::{InertiaError, ROUNDING, check_symmetric};
+use super::mass::{MassError, check_tensor, finite, positive};
+use super::tensor::{Spectrum, Tensor};
+pub use causes::{Cause, Entry};
+
+/// Densities within e^±14 of water's, from a thousandth of a kg/m³ to that of no known matter, accuse nobody.
+const ORDINARY: f64 = 14.0;
+
+/// What is known of the body besides its tensor; everything is optional, and every item tells more causes apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Evidence {
+    /// Mass, kg.
+    pub mass: Option<f64>,
+    /// Centre of mass as seen from the origin of the frame, m: the other point that a tensor may be about.
+    pub center_of_mass: Option<Vector3<f64>>,
+    /// Edges of the box around the body along the axes of the tensor, m.
+    pub extents: Option<[f64; 3]>,
+}
+
+/// The outcome of an examination.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing speaks against it.
+    Valid,
+    /// A body can have this tensor, but hardly the one that is described.
+    Suspicious,
+    /// No body has this tensor, or none of this mass fits into these extents with it.
+    Invalid,
+}
+
+/// A cause that would explain the tensor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explanation {
+    /// What happened.
+    pub cause: Cause,
+    /// The tensor if it did.
+    pub corrected: Matrix3<f64>,
+    /// How far-fetched: rareness of the mistake plus oddness of the corrected body. Only the order has a meaning.
+    pub cost: f64,
+}
+
+/// A second moment that is too large for the extents of the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misfit {
+    /// Name of the axis.
+    pub axis: char,
+    /// ∫ x² dm about the centre of mass over its greatest value M L²/4, which half the mass at either end has.
+    pub ratio: f64,
+}
+
+/// What an examination found.
+///
+/// ```
+/// use nalgebra::Matrix3;
+/// use polhode::body::{Cause, Evidence, Verdict, diagnose};
+///
+/// // a designer's +∫ x y dm typed where tensor entries belong
+/// let typed = Matrix3::new(0.75, 0.3125, 0.3125, 0.3125, 0.75, 0.3125, 0.3125, 0.3125, 0.75);
+/// let found = diagnose(typed, &Evidence::default())?;
+/// assert_eq!(found.verdict, Verdict::Invalid);
+/// assert_eq!(
+///     found.violation.unwrap().to_string(),
+///     "principal moments 0.4375, 0.4375, 1.375 violate I1 + I2 >= I3 by 0.5 (36.364 % of the largest); no mass distribution has them"
+/// );
+/// assert_eq!(found.causes[0].cause, Cause::ProductSigns);
+/// assert_eq!(found.causes[0].corrected[(0, 1)], -0.3125);
+/// # Ok::<(), polhode::body::MassError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnosis {
+    /// The outcome.
+    pub verdict: Verdict,
+    /// The law of inertia tensors that is broken, with its numbers.
+    pub violation: Option<InertiaError>,
+    /// The worst second moment that the extents leave no room for.
+    pub misfit: Option<Misfit>,
+    /// Principal moments of the symmetric part, ascending.
+    pub principal_moments: [f64; 3],
+    /// By how much the sum of the other two moments exceeds the k-th.
+    pub triangle_margins: [f64; 3],
+    /// Causes that would explain it, the likeliest first; none if the tensor is valid.
+    pub causes: Vec<Explanation>,
+    /// The nearest tensor that a body can have, in Frobenius norm; a moment of it may be zero.
+    pub nearest: Matrix3<f64>,
+    /// Frobenius distance to it.
+    pub distance: f64,
+    /// Edges of the homogeneous box of the nearest tensor, along its principal axes (ascending moments, so the longest
+    /// edge first): in m with a known mass, else relative to the longest.
+    pub equivalent_box: [f64; 3],
+}
+
+/// Examines a tensor (entries `I_xy = −∫ x y dm`, supposed to be about the centre of mass).
+///
+/// The law is ½ tr(I)·1 − I ⪰ 0 up to 1e-12 of the trace; points, rods and plates obey it. A cause is tested by
+/// undoing it: it explains the tensor if the corrected one obeys the law and fits into the extents. Explanations
+/// are ranked by how rare the mistake is, how well the corrected body fills the extents (or how ordinary its
+/// density is, if only the mass is known, in kg and m), how large its products are, and how flat it is.
+///
+/// # Errors
+/// Entries or evidence that are not finite, a mass or extents that are not positive.
+pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, MassError> {
+    if let Some(mass) = evidence.mass {
+        positive("mass", mass)?;
+    }
+    if let Some(center) = evidence.center_of_mass {
+        finite("centre of mass", &center)?;
+    }
+    for extent in evidence.extents.into_iter().flatten() {
+        positive("extent", extent)?;
+    }
+    let spectrum = Spectrum::of(&tensor)?;
+    let violation = check_tensor(&tensor).err();
+    let misfit = evidence.misfit(&tensor);
+    let broken = violation.is_some() || misfit.is_some();
+    // a valid tensor is believed unless another one is clearly less odd
+    let accepted = if broken { f64::INFINITY } else { evidence.oddness(&tensor, ORDINARY) - 1.0 };
+    let mut causes: Vec<Explanation> = causes::candidates(&tensor, evidence)
+        .into_iter()
+        .filter(|(_, corrected, _)| check_tensor(corrected).is_ok() && evidence.misfit(corrected).is_none())
+        .map(|(cause, corrected, rareness)| {
+            let cost = rareness + evidence.oddness(&corrected, 0.0);
+            Explanation { cause, corrected, cost }
+        })
+        .filter(|explanation| explanation.cost < accepted)
+        .collect();
+    causes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let verdict = match (broken, causes.is_empty()) {
+        (true, _) => Verdict::Invalid,
+        (false, false) => Verdict::Suspicious,
+        (false, true) => Verdict::Valid,
+    };
+    let (nearest, distance) = nearest::nearest_valid(&tensor);
+    let [a, b, c] = spectrum.moments.map(|i| i.hi() * spectrum.scale);
+    Ok(Diagnosis {
+        verdict,
+        violation,
+        misfit,
+        principal_moments: [a, b, c],
+        triangle_margins: [(b + c) - a, (a + c) - b, (a + b) - c],
+        causes,
+        nearest,
+        distance,
+        equivalent_box: equivalent_box(&nearest, evidence.mass),
+    })
+}
+
+/// Edges √(12 J/M) from the second moments J = ½ tr(I) − I along the principal axes.
+fn equivalent_box(tensor: &Matrix3<f64>, mass: Option<f64>) -> [f64; 3] {
+    let spectrum = Spectrum::of_finite(tensor);
+    let second = second_moments(&spectrum);
+    match mass {
+        Some(mass) => second.map(|j| (12.0 * j * (spectrum.scale / mass)).sqrt()),
+        None if second[0] > 0.0 => second.map(|j| (j / second[0]).sqrt()),
+        None => [0.0; 3],
+    }
+}
+
+/// Second moments along the principal axes over the scale, descending, never negative.
+fn second_moments(spectrum: &Spectrum) -> [f64; 3] {
+    let [a, b, c] = spectrum.moments;
+    [b + c - a, a + c - b, a + b - c].map(|twice| (0.5 * twice.hi()).max(0.0))
+}
+
+impl Evidence {
+    /// The axis whose second moment most exceeds M L²/4 (Popoviciu's bound on a variance), if one does.
+    fn misfit(&self, tensor: &Matrix3<f64>) -> Option<Misfit> {
+        let ratios = self.fill(tensor)?;
+        let k = [0, 1, 2].into_iter().max_by(|&i, &j| ratios[i].total_cmp(&ratios[j]))?;
+        let ratio = ratios[k] / 3.0;
+        (ratio > 1.0 + 1e-9).then_some(Misfit { axis: ['x', 'y', 'z'][k], ratio })
+    }
+
+    /// Second moments along the axes over those of a homogeneous box of the extents: 1 for a box, 3 at most.
+    fn fill(&self, tensor: &Matrix3<f64>) -> Option<[f64; 3]> {
+        let (mass, extents) = (self.mass?, self.extents?);
+        let half = 0.5 * tensor.trace();
+        Some([0, 1, 2].map(|k| 12.0 * (half - tensor[(k, k)]) / (mass * extents[k] * extents[k])))
+    }
+
+    /// How odd a body of this tensor is: 0 for a compact body of ordinary size whose axes are principal.
+    ///
+    /// Without extents the density of the equivalent box tells the size; up to e^`tolerance` from water's it is ordinary.
+    fn oddness(&self, tensor: &Matrix3<f64>, tolerance: f64) -> f64 {
+        let spectrum = Spectrum::of_finite(tensor);
+        let second = second_moments(&spectrum);
+        let square = |x: f64| x * x;
+        // from e⁻⁴ on a body is as flat as a plate
+        let flatness =
+            if second[0] > 0.0 { -libm::log((second[2] / second[0]).max(libm::exp(-4.0))) } else { 4.0 };
+        let products = square(tensor[(0, 1)]) + square(tensor[(0, 2)]) + square(tensor[(1, 2)]);
+        let diagonal = square(tensor[(0, 0)]) + square(tensor[(1, 1)]) + square(tensor[(2, 2)]);
+        let tilt = if diagonal > 0.0 { 8.0 * products / diagonal } else { 0.0 };
+        let is_flat = second[2] <= ROUNDING * second[0];
+        let size = match (self.fill(tensor), self.mass) {
+            // real bodies are emptier than a box: most have a third to one and a half of its second moments
+            (Some(fill), _) => {
+                fill.map(|r| square(libm::log(r.max(1e-12) / 0.7) / libm::log(2.5))).iter().sum()
+            }
+            (None, Some(mass)) if !is_flat => {
+                let edges = second.map(|j| (12.0 * j * (spectrum.scale / mass)).sqrt());
+                let density = mass / (edges[0] * edges[1] * edges[2]);
+                let orders = libm::log(density / 1000.0).abs();
+                if orders <= tolerance { 0.0 } else { square(orders) / 8.0 }
+            }
+            _ => 0.0,
+        };
+        0.5 * flatness + tilt + size
+    }
+}
+
+/// The parallel-axis term of the evidence, if it has a mass and a centre away from the origin.
+fn parallel_axis_term(evidence: &Evidence) -> Option<Matrix3<f64>> {
+    use crate::num::{Dd, Real};
+    use crate::rotation::Vec3;
+    let (mass, center) = (evidence.mass?, evidence.center_of_mass?);
+    (center != Vector3::zeros()).then(|| Tensor::of_point(Dd::of(mass), Vec3::of(center.into())).rounded())
+}

@@ -1,0 +1,317 @@
+//! Bodies bounded by triangles: mass, centre of mass and inertia of what a closed mesh encloses.
+
+mod closed;
+mod obj;
+mod stl;
+
+use std::io::{self, BufRead, Read};
+
+use nalgebra::{Matrix3, Vector3};
+use thiserror::Error;
+
+use super::mass::{Amount, MassError, MassProperties};
+use super::tensor::Tensor;
+use crate::num::{Compensated, Dd};
+use crate::rotation::Vec3;
+use closed::Welded;
+
+/// Why a mesh bounds no body. Triangles, lines and bytes are counted from 1, the byte of an end of file is its size.
+#[derive(Debug, Error)]
+pub enum MeshError {
+    /// The file cannot be read.
+    #[error("cannot be read: {0}")]
+    Unreadable(#[from] io::Error),
+    /// The file is too short to be an STL.
+    #[error("STL ends at byte {length}, within its header of 84 bytes, and does not begin with 'solid'")]
+    Header {
+        /// Size of the file.
+        length: u64,
+    },
+    /// A binary STL ends early.
+    #[error(
+        "STL is truncated: its header announces {triangles} triangles, {announced} bytes, but it ends at byte {length}, \
+         in triangle {triangle}"
+    )]
+    Truncated {
+        /// The number in the header.
+        triangles: u32,
+        /// The size that goes with it.
+        announced: u64,
+        /// Size of the file.
+        length: u64,
+        /// The triangle that is not complete.
+        triangle: u64,
+    },
+    /// A binary STL goes on after the last triangle.
+    #[error(
+        "STL announces {triangles} triangles, which end at byte {announced}, but more bytes follow; its count is wrong"
+    )]
+    Surplus {
+        /// The number in the header.
+        triangles: u32,
+        /// The size that goes with it.
+        announced: u64,
+    },
+    /// An ASCII STL ends early.
+    #[error(
+        "STL is truncated: it ends at byte {length}, line {line}, in triangle {triangle}, without 'endsolid'"
+    )]
+    TruncatedText {
+        /// Size of the file.
+        length: u64,
+        /// Number of its lines.
+        line: u64,
+        /// The triangle that is not complete.
+        triangle: u64,
+    },
+    /// A line of text that does not belong there.
+    #[error("line {line}: '{found}' where {expected} is expected")]
+    Syntax {
+        /// Number of the line.
+        line: u64,
+        /// Its beginning.
+        found: String,
+        /// What belongs there.
+        expected: &'static str,
+    },
+    /// A face names a vertex that is not there.
+    #[error("line {line}: face names vertex {index}, but {vertices} vertices stand above it")]
+    Index {
+        /// Number of the line.
+        line: u64,
+        /// The offending index.
+        index: i64,
+        /// Vertices so far.
+        vertices: usize,
+    },
+    /// A coordinate is not a finite number.
+    #[error("triangle {triangle} has the coordinate {value}; every coordinate must be a finite number")]
+    NotFinite {
+        /// Number of the triangle.
+        triangle: u64,
+        /// The offending value.
+        value: f64,
+    },
+    /// There is no triangle.
+    #[error("the mesh has no triangle with three distinct corners")]
+    Empty,
+    /// More vertices than can be numbered.
+    #[error("the mesh has more than {} vertices", closed::LIMIT)]
+    TooLarge,
+    /// An edge bounds one triangle only.
+    #[error("the mesh is open; edges with one triangle only: {edges}, the first is {edge}")]
+    Open {
+        /// How many.
+        edges: usize,
+        /// The first.
+        edge: Edge,
+    },
+    /// More than two triangles meet in an edge.
+    #[error(
+        "the mesh is not manifold; edges with more than two triangles: {edges}, the first is {edge}, with {uses}"
+    )]
+    NonManifold {
+        /// How many.
+        edges: usize,
+        /// The first.
+        edge: Edge,
+        /// Number of triangles that meet there.
+        uses: usize,
+    },
+    /// Two neighbours turn in opposite senses.
+    #[error(
+        "the triangles are not consistently oriented; edges run through twice in one direction: {edges}, \
+         the first is {edge}; one of its two triangles is turned over"
+    )]
+    Orientation {
+        /// How many.
+        edges: usize,
+        /// The first.
+        edge: Edge,
+    },
+    /// All triangles of a part face inwards.
+    #[error(
+        "the mesh is inside out: the part with {edge} encloses the volume {volume}; \
+         list the corners of its triangles counterclockwise as seen from outside"
+    )]
+    InsideOut {
+        /// The first edge of the part.
+        edge: Edge,
+        /// Signed volume of the part.
+        volume: f64,
+    },
+    /// The mesh is closed and flat, or its cavities leave nothing.
+    #[error("the mesh encloses no volume")]
+    Flat,
+}
+
+/// An edge of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// One end.
+    pub from: Vector3<f64>,
+    /// The other end.
+    pub to: Vector3<f64>,
+    /// The first triangle that it bounds, from 1.
+    pub triangle: u64,
+}
+
+impl core::fmt::Display for Edge {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (a, b) = (self.from, self.to);
+        write!(
+            f,
+            "edge ({}, {}, {})-({}, {}, {}) of triangle {}",
+            a.x, a.y, a.z, b.x, b.y, b.z, self.triangle
+        )
+    }
+}
+
+/// What a closed, oriented, manifold triangle mesh encloses.
+///
+/// Vertices are the same where their bits are. Cavities are parts that face inwards and lie within another part;
+/// parts that overlap count twice. Volume, centre and tensor come from one pass over the triangles, as sums over
+/// the signed tetrahedra that each spans with the middle of the bounding box (so that a mesh far from the origin
+/// loses no digits), compensated.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::body::{Amount, Mesh};
+///
+/// let [o, x, y, z] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector3::from);
+/// let faces = [[o, y, x], [o, x, z], [o, z, y], [x, y, z]];
+/// let corner = Mesh::new(faces)?.with(Amount::Density(6.0))?;
+/// assert_eq!((corner.mass(), corner.center_of_mass()), (1.0, Vector3::new(0.25, 0.25, 0.25)));
+///
+/// let open = Mesh::new(faces[..3].to_vec()).unwrap_err();
+/// assert_eq!(
+///     open.to_string(),
+///     "the mesh is open; edges with one triangle only: 3, the first is edge (0, 1, 0)-(1, 0, 0) of triangle 1"
+/// );
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    triangles: usize,
+    vertices: usize,
+    unit: Enclosed,
+}
+
+impl Mesh {
+    /// From triangles, corners counterclockwise as seen from outside.
+    ///
+    /// # Errors
+    /// Coordinates that are not finite, and meshes that are open, not manifold, not consistently oriented, inside
+    /// out or flat; the message names an edge.
+    pub fn new(triangles: impl IntoIterator<Item = [Vector3<f64>; 3]>) -> Result<Self, MeshError> {
+        let mut welded = Welded::default();
+        for corners in triangles {
+            welded.add(corners.map(Into::into))?;
+        }
+        Self::of(welded)
+    }
+
+    /// From an STL file, binary or ASCII.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); files that end early, name the byte.
+    pub fn from_stl(reader: impl Read) -> Result<Self, MeshError> {
+        Self::of(stl::read(reader)?)
+    }
+
+    /// From an OBJ file: its `v` and `f` lines; polygons are cut into triangles from their first corner.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); lines that cannot be read.
+    pub fn from_obj(reader: impl BufRead) -> Result<Self, MeshError> {
+        Self::of(obj::read(reader)?)
+    }
+
+    fn of(mesh: Welded) -> Result<Self, MeshError> {
+        if mesh.triangles.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        mesh.check_edges()?;
+        mesh.check_parts()?;
+        let unit = Enclosed::by(&mesh)?;
+        Ok(Mesh { triangles: mesh.triangles.len(), vertices: mesh.vertices.len(), unit })
+    }
+
+    /// Number of triangles, without those whose corners coincide.
+    pub fn triangles(&self) -> usize {
+        self.triangles
+    }
+
+    /// Number of distinct vertices.
+    pub fn vertices(&self) -> usize {
+        self.vertices
+    }
+
+    /// Enclosed volume, m³.
+    pub fn volume(&self) -> f64 {
+        self.unit.volume
+    }
+
+    /// Mass properties with so much matter in it, in the frame of the vertices.
+    ///
+    /// # Errors
+    /// A mass or density that is not finite or not above zero.
+    pub fn with(&self, amount: Amount) -> Result<MassProperties, MassError> {
+        let mass = amount.mass(self.unit.volume)?;
+        let density = match amount {
+            Amount::Mass(_) => mass / self.unit.volume,
+            Amount::Density(density) => density,
+        };
+        MassProperties::checked(mass, self.unit.center, self.unit.tensor * density)
+    }
+}
+
+/// Volume, centre and tensor about it for density 1.
+#[derive(Clone, Debug, PartialEq)]
+struct Enclosed {
+    volume: f64,
+    center: Vector3<f64>,
+    tensor: Matrix3<f64>,
+}
+
+impl Enclosed {
+    /// Of the tetrahedron (0, a, b, c) with s = a + b + c: 6V = a·(b × c), ∫ x = V s/4,
+    /// ∫ x xᵀ = V (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/20; summed with sign over all triangles.
+    fn by(mesh: &Welded) -> Result<Self, MeshError> {
+        let origin = mesh.middle();
+        let mut sums = [Compensated::new(0.0); 10];
+        let mut absolute = 0.0;
+        for &triangle in &mesh.triangles {
+            let [a, b, c] = mesh.corners(triangle).map(|v| v + -origin);
+            let v6 = a.dot(b.cross(c));
+            let s = a + b + c;
+            let second = |j: usize, k: usize| v6 * (a[j] * a[k] + b[j] * b[k] + c[j] * c[k] + s[j] * s[k]);
+            let terms = [
+                v6,
+                v6 * s[0],
+                v6 * s[1],
+                v6 * s[2],
+                second(0, 0),
+                second(1, 1),
+                second(2, 2),
+                second(0, 1),
+                second(0, 2),
+                second(1, 2),
+            ];
+            for (sum, term) in sums.iter_mut().zip(terms) {
+                sum.add(term);
+            }
+            absolute += v6.abs();
+        }
+        let [v6, x, y, z, xx, yy, zz, xy, xz, yz] = sums.map(|sum| sum.value());
+        if v6 <= 16.0 * f64::EPSILON * absolute {
+            return Err(MeshError::Flat);
+        }
+        let offset = Vec3([x, y, z]) * (1.0 / (4.0 * v6));
+        let about_origin = Matrix3::new(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy) / 120.0;
+        let volume = v6 / 6.0;
+        let term = Tensor::of_point(Dd::sum(volume, 0.0), Vec3::of(offset));
+        let tensor = (Tensor::symmetric_part(&about_origin) - term).rounded();
+        Ok(Enclosed { volume, center: (origin + offset).into(), tensor })
+    }
+}

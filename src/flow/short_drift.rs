@@ -1,0 +1,69 @@
+//! The free body over a short time, by the Taylor series of its motion summed to rounding.
+
+use crate::body::{Body, Carry, State};
+use crate::num::Precise;
+use crate::rotation::{Quat, Vec3};
+
+/// Terms before the series is given up.
+const TERMS: usize = 20;
+
+/// The largest angle of a turn, rad, that is worth a try.
+const SHORT: f64 = 0.125;
+
+/// The exact flow of the free body as increments of m and q, so that what rounding takes can be carried.
+///
+/// With `m = Σ m_n`, `q = Σ q_n` in powers of the time t: `(n + 1) m_{n+1} = t Σ m_k × I⁻¹m_{n−k}` and
+/// `2 (n + 1) q_{n+1} = t Σ q_k ∘ I⁻¹m_{n−k}`. An increment is good to its own rounding: over a short time that is far
+/// less than the rounding of the state, which a flow by elliptic functions suffers at each call.
+#[derive(Clone, Copy, Debug)]
+pub struct ShortDrift<S> {
+    inverse_moments: Vec3<S>,
+}
+
+impl<S: Precise> ShortDrift<S> {
+    /// The flow of `body` without its torque.
+    pub fn new(body: &Body) -> Self {
+        ShortDrift { inverse_moments: body.inverse_moments() }
+    }
+
+    /// Moves `x` by the time `t`; false, and `x` untouched, if the turn is not short.
+    pub fn carried(&self, t: S, x: &mut State<S>, carry: &mut Carry<S>) -> bool {
+        let omega = x.momentum_body.times(self.inverse_moments);
+        let short = omega.magnitude() * t.magnitude() < SHORT;
+        if !short {
+            return false;
+        }
+        let mut m = [x.momentum_body; TERMS];
+        let mut w = [omega; TERMS];
+        let mut q = [x.attitude; TERMS];
+        let mut last = 0;
+        for n in 0..TERMS - 1 {
+            let mut momentum = Vec3::zero();
+            let mut attitude = Quat::zero();
+            for k in 0..=n {
+                momentum = momentum + m[k].cross(w[n - k]);
+                attitude = attitude + q[k].rate(w[n - k]);
+            }
+            let factor = t / S::of((n + 1) as f64);
+            last = n + 1;
+            m[last] = momentum * factor;
+            w[last] = m[last].times(self.inverse_moments);
+            q[last] = attitude * factor;
+            let small = |term: f64, first: f64| term <= 0.25 * S::ROUNDOFF * first;
+            if small(m[last].magnitude(), m[1].magnitude()) && small(q[last].magnitude(), q[1].magnitude()) {
+                break;
+            }
+        }
+        if last == TERMS - 1 {
+            return false;
+        }
+        let (mut momentum, mut attitude) = (m[last], q[last]);
+        for n in (1..last).rev() {
+            momentum = momentum + m[n];
+            attitude = attitude + q[n];
+        }
+        carry.add_momentum(x, momentum);
+        carry.add_attitude(x, attitude);
+        true
+    }
+}
