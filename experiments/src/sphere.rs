@@ -314,7 +314,7 @@ pub(crate) fn cones() -> Result<Drawing, Error> {
     .into_iter()
     .enumerate()
     {
-        let mut panel = Panel::new(column, -0.3, 0.22, title);
+        let mut panel = Panel::new(column, 0.35, 0.27, title);
         panel.centre[1] += 125.0;
         // L upwards, axis and w in one plane: tan(axis to w) = I3/I tan(axis to L)
         let (sin, cos) = libm::sincos(theta);

@@ -20,8 +20,11 @@ use crate::table::{Column, Table, row};
 /// A measured rate may differ by this share from the predicted one.
 const RATE_TOLERANCE: f64 = 0.03;
 
+/// Adds the statements of a part of the lecture.
+type Part = fn(&mut Statements) -> Result<(), Error>;
+
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let parts: Vec<fn(&mut Statements) -> Result<(), Error>> =
+    let parts: Vec<Part> =
         vec![motion::general, motion::equations, free::statements, symmetric::statements, heavy::statements];
     let found = context.in_parallel(parts, |part| {
         let mut statements = Statements::default();
@@ -51,7 +54,12 @@ fn statements_table() -> Table {
         vec![
             Column::new("section", "", "section of the lecture"),
             Column::new("statement", "", "what is said"),
-            Column::new("formula", "", "value of the formula; of a vector, its length").digits(6),
+            Column::new(
+                "formula",
+                "",
+                "value of the formula; of a vector, its length; of what is constant, its change: 0",
+            )
+            .digits(6),
             Column::new("computed", "", "value computed without the formula").digits(6),
             Column::new("difference", "", "largest |computed - formula| over the scale of the quantity")
                 .digits(2),
@@ -229,6 +237,17 @@ impl Statements {
         self
     }
 
+    /// What is constant changes by no more than `tolerance`, relative to its size.
+    fn constant(
+        &mut self,
+        section: &'static str,
+        text: impl Into<String>,
+        change: f64,
+        tolerance: f64,
+    ) -> &mut Self {
+        self.exact(section, text, [0.0, change, change], tolerance)
+    }
+
     /// The difference falls as the small quantity to the power `rate`.
     fn limit(
         &mut self,
@@ -271,4 +290,50 @@ fn second_derivative(t: f64, f: impl Fn(Dd) -> Vec3<Dd>) -> Vector3<f64> {
 /// The examples are valid; if one is not, that is what failed.
 fn unexpected(error: impl std::fmt::Display) -> Error {
     Error::Failed(error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn limit(rate: f64, power: f64) -> Statement {
+        let point = |k: i32| {
+            let small = libm::exp2(-f64::from(k));
+            Point { small, formula: 2.0, computed: 2.0 + 3.0 * libm::pow(small, power) }
+        };
+        let mut statements = Statements::default();
+        statements.limit("", "", rate, (4..8).map(point).collect());
+        statements.0.remove(0)
+    }
+
+    #[test]
+    fn a_limit_passes_at_its_own_rate_alone() {
+        assert!(limit(2.0, 2.0).passed());
+        assert!(!limit(2.0, 1.0).passed());
+        assert!(!limit(1.0, 2.0).passed(), "faster than predicted is also wrong");
+        let mut none = Statements::default();
+        none.limit("", "", 1.0, Vec::new());
+        assert!(!none.0[0].passed());
+    }
+
+    #[test]
+    fn a_difference_beyond_its_tolerance_or_without_value_fails() {
+        let mut statements = Statements::default();
+        statements.number("", "", [1.0, 1.0 + 1e-12], 1.0, 1e-13);
+        statements.number("", "", [1.0, f64::NAN], 1.0, 1e-13);
+        statements.constant("", "", 1e-16, 1e-15);
+        let verdicts: Vec<bool> = statements.0.iter().map(Statement::passed).collect();
+        assert_eq!(verdicts, [false, false, true]);
+    }
+
+    #[test]
+    fn derivatives_are_good_to_rounding() {
+        let f = |t: Dd| {
+            let (sin, cos) = t.sin_cos();
+            Vec3([sin, cos, t * t])
+        };
+        let (sin, cos) = libm::sincos(0.7);
+        assert!((derivative(0.7, f) - Vector3::new(cos, -sin, 1.4)).norm() < 1e-15);
+        assert!((second_derivative(0.7, f) - Vector3::new(-sin, -cos, 2.0)).norm() < 1e-14);
+    }
 }
