@@ -7,7 +7,7 @@ use polhode::flow::FreeMotion;
 use polhode::num::elliptic::Modulus;
 use polhode::num::{Dd, Real};
 
-use super::{Point, Statements, second_derivative, unexpected};
+use super::{Point, Statements, larger, second_derivative, unexpected};
 use crate::error::Error;
 
 const FREE: &str = "17.4";
@@ -40,9 +40,9 @@ fn conserved(s: &mut Statements) -> Result<(), Error> {
         let (energy, momentum) = (body.energy(&start), V::from(start.momentum_space()));
         for k in 1..=1000 {
             let now: State<f64> = free.inside_at(f64::from(k) / omega.norm());
-            energy_error = energy_error.max((body.energy(&now) / energy - 1.0).abs());
+            energy_error = larger(energy_error, (body.energy(&now) / energy - 1.0).abs());
             let off = V::from(now.momentum_space()) - momentum;
-            momentum_error = momentum_error.max(off.norm() / momentum.norm());
+            momentum_error = larger(momentum_error, off.norm() / momentum.norm());
         }
     }
     s.constant(FREE, "E of a free body is constant", energy_error, 1e-14);
@@ -57,7 +57,7 @@ fn constant(s: &mut Statements) -> Result<(), Error> {
         let mut worst = 0.0_f64;
         for k in 1..=200 {
             let now = free.omega_at(5.0 * f64::from(k)).map_err(unexpected)?;
-            worst = worst.max((now - omega).norm() / omega.norm());
+            worst = larger(worst, (now - omega).norm() / omega.norm());
         }
         s.constant(FREE, text, worst, 1e-15);
         Ok(())

@@ -8,7 +8,7 @@ use polhode::method::method;
 use polhode::num::{Dd, Real};
 use polhode::rotation::{EulerSequence, Quat, Vec3};
 
-use super::{Point, Statements, derivative, unexpected};
+use super::{Point, Statements, derivative, larger, unexpected};
 use crate::error::Error;
 
 const HEAVY: &str = "17.6";
@@ -54,16 +54,16 @@ fn constants(s: &mut Statements) -> Result<(), Error> {
         (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
     for k in 1..=1000 {
         let now = state(0.37 * f64::from(k))?;
-        energy_error = energy_error.max((energy(&now) - energy_0).abs() / energy_0);
-        vertical_error = vertical_error.max((vertical(&now) - vertical_0).abs() / size);
-        along_error = along_error.max((now.momentum().z - along_0).abs() / size);
+        energy_error = larger(energy_error, (energy(&now) - energy_0).abs() / energy_0);
+        vertical_error = larger(vertical_error, (vertical(&now) - vertical_0).abs() / size);
+        along_error = larger(along_error, (now.momentum().z - along_0).abs() / size);
         // theta' from w about the line of nodes
         let up = now.rotation().inverse() * V::z();
         let sin = libm::hypot(up.x, up.y);
         let omega = now.momentum().component_div(&moments);
         let theta_rate = (up.y * omega.x - up.x * omega.y) / sin;
         let shape = 0.5 * ACROSS * theta_rate * theta_rate + top.effective_potential(libm::atan2(sin, up.z));
-        shape_error = shape_error.max((shape - energy_0).abs() / energy_0);
+        shape_error = larger(shape_error, (shape - energy_0).abs() / energy_0);
     }
     s.constant(HEAVY, "p_phi = L_Z is constant", vertical_error, 1e-14);
     s.constant(HEAVY, "p_psi = I3 w3 is constant", along_error, 1e-14);

@@ -7,7 +7,7 @@ use polhode::num::elliptic::Modulus;
 use polhode::num::{Dd, Real};
 use polhode::rotation::{EulerSequence, Quat, Vec3};
 
-use super::{Point, Statements, derivative, unexpected};
+use super::{Point, Statements, derivative, larger, unexpected};
 use crate::error::Error;
 use crate::random::Random;
 
@@ -153,7 +153,7 @@ fn rolling_and_pendulum(s: &mut Statements) -> Result<(), Error> {
         let rolling = V::new(rate * radius, 0.0, 0.0) + omega.cross(&rim(k));
         (rolling - omega.cross(&(centre + rim(k) - contact))).norm()
     });
-    let worst = worst.fold(0.0, f64::max);
+    let worst = worst.fold(0.0, larger);
     let text = "a rolling wheel turns about its contact point: v = w x (r - Q) on the rim";
     s.exact(ROTATION, text, [rate * radius, rate * radius, worst / (rate * radius)], SUMS);
     let (hoop, v) = (mass * radius * radius, rate * radius);
@@ -205,7 +205,7 @@ fn three_sets(s: &mut Statements) {
     let force: V = p.force.iter().sum();
     // of the springs too, which cancel
     let forces: f64 = p.mass.iter().zip(&a).map(|(m, a)| m * a.norm()).sum();
-    let reach = p.place.iter().map(V::norm).fold(0.0, f64::max);
+    let reach = p.place.iter().map(V::norm).fold(0.0, larger);
     let text = "sets 1 to 3 hold for any particles, with springs between them: P' = F";
     s.vector_in(EQUATIONS, text, [force, p.weighted(|i| a[i])], forces, SUMS);
     let acceleration = p.weighted(|i| a[i]) / mass;

@@ -5,7 +5,7 @@ use polhode::body::{Inertia, State};
 use polhode::flow::FreeMotion;
 use polhode::num::{Dd, Real};
 
-use super::{Point, Statements, second_derivative, unexpected};
+use super::{Point, Statements, larger, second_derivative, unexpected};
 use crate::error::Error;
 
 const SYMMETRIC: &str = "17.5";
@@ -28,7 +28,7 @@ fn motion(across: f64, along: f64, omega: V) -> Result<FreeMotion, Error> {
 
 /// Largest value over a hundred seconds.
 fn worst(of: impl Fn(f64) -> Result<f64, Error>) -> Result<f64, Error> {
-    (1..=400).try_fold(0.0_f64, |worst, k| Ok(worst.max(of(0.25 * f64::from(k))?)))
+    (1..=400).try_fold(0.0_f64, |worst, k| Ok(larger(worst, of(0.25 * f64::from(k))?)))
 }
 
 fn body_cone(s: &mut Statements, kind: &str, across: f64, along: f64) -> Result<(), Error> {
@@ -77,7 +77,7 @@ fn body_cone(s: &mut Statements, kind: &str, across: f64, along: f64) -> Result<
     let nods = worst(|t| Ok((tilt(t)? - theta).abs()))?;
     let formula = libm::atan2(across * omega, along * spin);
     let text = format!("{kind}: theta' = 0, the axis keeps its angle to L");
-    s.exact(SYMMETRIC, text, [formula, theta, nods.max((theta - formula).abs())], 1e-14);
+    s.exact(SYMMETRIC, text, [formula, theta, larger(nods, (theta - formula).abs())], 1e-14);
     let precession = momentum.norm() / across;
     let about = Unit::new_normalize(momentum);
     let off = worst(|t| {
@@ -88,7 +88,7 @@ fn body_cone(s: &mut Statements, kind: &str, across: f64, along: f64) -> Result<
     let computed = free.character().map_err(unexpected)?.precession_rate;
     let computed = computed.ok_or_else(|| unexpected("no precession"))?;
     let text = format!("{kind}: phi' = L/I, the axis goes round L");
-    s.exact(SYMMETRIC, text, [precession, computed, off.max((computed / precession - 1.0).abs())], PHASE);
+    s.exact(SYMMETRIC, text, [precession, computed, larger(off, (computed / precession - 1.0).abs())], PHASE);
     let (sin, cos) = libm::sincos(theta);
     let text = format!("{kind}: w across the axis is phi' sin theta = L sin theta / I");
     s.number(SYMMETRIC, text, [precession * sin, omega], omega, 1e-15);
