@@ -61,12 +61,21 @@ pub(crate) struct Report {
     /// Parts of them for readers; where there are none, the tables themselves are shown.
     pub(crate) views: Vec<Table>,
     pub(crate) figures: Vec<Figure>,
+    /// Figures that are not plots.
+    pub(crate) drawings: Vec<Drawing>,
     /// Times, which depend on the machine.
     pub(crate) timing: Option<Table>,
     /// Of the random numbers, if there were any.
     pub(crate) seed: Option<u64>,
     /// Claims that did not hold: the results are written all the same, and the command fails.
     pub(crate) failures: Vec<String>,
+}
+
+/// A finished SVG.
+pub(crate) struct Drawing {
+    /// File name without ending.
+    pub(crate) name: &'static str,
+    pub(crate) svg: String,
 }
 
 /// What an experiment is told.
@@ -157,6 +166,9 @@ fn write(experiment: &Experiment, scale: Scale, report: &Report, folder: &Path) 
     }
     for figure in &report.figures {
         staging.write(&format!("{}.svg", figure.name), figure.svg()?.as_bytes())?;
+    }
+    for drawing in &report.drawings {
+        staging.write(&format!("{}.svg", drawing.name), drawing.svg.as_bytes())?;
     }
     staging.write(MARK, provenance::describe(experiment.name, scale, report).as_bytes())?;
     staging.commit()

@@ -17,6 +17,7 @@ mod publish;
 mod random;
 mod reference;
 mod simulate;
+mod sphere;
 mod table;
 
 use std::path::PathBuf;

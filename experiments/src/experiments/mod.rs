@@ -3,7 +3,9 @@
 mod drift;
 mod exact;
 mod fit_efficiency;
+mod heavy_top;
 mod inertia;
+mod lecture;
 mod long_run;
 mod order;
 
@@ -40,5 +42,13 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "fit-efficiency",
         question: "how close a fitted tensor comes to the Cramer-Rao bound, and what other formulations lose",
         run: fit_efficiency::run,
+        name: "lecture",
+        question: "whether every statement of a lecture on rotating bodies is confirmed",
+        run: lecture::run,
+    },
+    Experiment {
+        name: "heavy-top",
+        question: "what each method keeps of tops under gravity, and how wrong its attitude is",
+        run: heavy_top::run,
     },
 ];

@@ -1,0 +1,159 @@
+//! What each method keeps of heavy tops, and how far its attitude is from the closed form.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use polhode::body::State;
+use polhode::catalog::{self, NamedBody};
+use polhode::flow::{LagrangeError, LagrangeTop};
+use polhode::method::{AnyMethod, catalogue};
+use polhode::num::Dd;
+use polhode::observe::secular_drift;
+use polhode::rotation::rotation_angle;
+use polhode::run::{Run, RunError, Schedule};
+
+use crate::error::Error;
+use crate::experiment::{Context, Report};
+use crate::figure::{Figure, Series};
+use crate::table::{Cell, Column, Table, row};
+
+/// Looks at the energy for its secular slope.
+const LOOKS: u64 = 512;
+
+pub(crate) fn run(context: &Context) -> Result<Report, Error> {
+    let steps = context.scale.pick(2_000, 100_000, 1_000_000);
+    let mut parts = Vec::new();
+    for top in catalog::tops() {
+        for angle in [0.1, 0.025] {
+            for method in catalogue().into_iter().filter(|method| method.claims().potential.is_some()) {
+                parts.push((top.clone(), step_size(&top, angle)?, method));
+            }
+        }
+    }
+    let rows = context.in_parallel(parts, |(top, h, method)| measure(&top, method.as_ref(), h, steps));
+    let caption =
+        format!("Largest errors over {steps} steps under gravity, and the attitude error at the end.");
+    let mut errors = Table::new("heavy-top", caption, columns());
+    for row in rows {
+        errors.push(row?);
+    }
+    let mut report = Report::default();
+    for top in catalog::tops() {
+        let caption = format!("{}: {}.", top.name, top.summary);
+        let of_top = |row: &[Cell]| row[0] == Cell::from(top.name);
+        report.views.push(errors.view(format!("heavy-top-{}", top.name), caption, &["top"], of_top));
+    }
+    report.figures.push(figure(&errors));
+    report.tables.push(errors);
+    Ok(report)
+}
+
+fn columns() -> Vec<Column> {
+    vec![
+        Column::new("top", "", "name in the catalogue of tops"),
+        Column::new("method", "", "name in the catalogue of methods"),
+        Column::new("h", "s", "step").latex("$h$").digits(2),
+        Column::new("steps", "", "steps taken").hidden(),
+        Column::new("energy_error", "", "max |E - E0| / (T0 + |c|) over every step, c the weight moment")
+            .heading("energy")
+            .digits(2),
+        Column::new("momentum_z_error", "", "max |L_Z - L_Z0| over its largest possible value, every step")
+            .heading("L_Z")
+            .latex("$p_\\varphi$")
+            .digits(2),
+        Column::new("attitude_error", "rad", "angle between computed and exact attitude at the end")
+            .heading("attitude")
+            .digits(2),
+        Column::new("energy_slope", "1/s", "secular slope of (E - E0)/(T0 + |c|)").heading("slope").digits(2),
+        Column::new("energy_slope_half_width", "1/s", "half width of its 95 % interval")
+            .heading("±")
+            .digits(2),
+        Column::new("status", "", "ok, diverged (the row holds the last finite state) or unsolved"),
+        Column::new("time_reached", "s", "time of the row").hidden(),
+    ]
+}
+
+/// A power of two near `angle` rad per step, so that the times are exact.
+fn step_size(top: &NamedBody, angle: f64) -> Result<f64, Error> {
+    let moment = top.inertia.principal_moments().into_iter().fold(f64::INFINITY, f64::min);
+    // a top at rest moves at the rate of a pendulum
+    let weight = Vector3::from(top.weight_moment).norm();
+    let fastest = Vector3::from(top.omega_body).norm() + libm::sqrt(weight / moment);
+    Ok(libm::exp2(libm::round(libm::log2(angle / fastest))))
+}
+
+fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Result<Vec<Cell>, Error> {
+    let body = top.body().map_err(unexpected)?;
+    let [w, x, y, z] = top.attitude;
+    let attitude = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+    let start = body.state(attitude, top.omega_body.into()).map_err(unexpected)?;
+    let mut run = Run::new(method, &body, &start, h).map_err(unexpected)?;
+    let exact = match LagrangeTop::new(&body, State::of(run.start())) {
+        Ok(exact) => Some(exact),
+        Err(LagrangeError::NotSymmetric { .. } | LagrangeError::OffAxis { .. }) => None,
+        Err(error) => return Err(unexpected(error)),
+    };
+    let (mut times, mut changes) = (Vec::new(), Vec::new());
+    let (mut last, mut status) = (run.sample(), "ok");
+    for sample in run.samples(Schedule::every((steps / LOOKS).max(1), steps)) {
+        last = match sample {
+            Ok(sample) => sample,
+            Err(RunError::Diverged { last }) => {
+                status = "diverged";
+                *last
+            }
+            Err(RunError::Unsolved { last, .. }) => {
+                status = "unsolved";
+                *last
+            }
+            Err(error) => return Err(unexpected(error)),
+        };
+        times.push(last.elapsed.hi());
+        changes.push(last.energy_change);
+    }
+    let attitude_error = exact.map(|exact| {
+        let there: State<Dd> = exact.inside_at_dd(last.elapsed);
+        rotation_angle(there.attitude, State::of(last.inside).attitude).hi()
+    });
+    let slope = secular_drift(&times, &changes);
+    Ok(row![
+        top.name,
+        method.name(),
+        h,
+        last.steps,
+        last.worst.energy,
+        last.worst.momentum_z,
+        attitude_error,
+        slope.map(|d| d.slope),
+        slope.map(|d| d.half_width),
+        status,
+        last.elapsed.hi(),
+    ]
+    .to_vec())
+}
+
+/// What a method keeps against how right it is: every symmetric top and step is a point.
+fn figure(errors: &Table) -> Figure {
+    let mut figure = Figure::log_log(
+        "heavy-top",
+        "Every top that has a closed form, at two steps; runs that diverged are left out",
+        "attitude error at the end (rad)",
+        "largest relative energy error",
+    )
+    .scatter();
+    for method in catalogue().into_iter().filter(|method| method.claims().potential.is_some()) {
+        let point = |row: &Vec<Cell>| match (&row[1], &row[4], &row[6], &row[9]) {
+            (Cell::Text(name), Cell::Number(energy), Cell::Number(attitude), Cell::Text(status))
+                if *name == method.name() && status == "ok" =>
+            {
+                Some((*attitude, *energy))
+            }
+            _ => None,
+        };
+        figure.series.push(Series::new(method.name(), errors.rows().iter().filter_map(point).collect()));
+    }
+    figure
+}
+
+/// The catalogue's tops and steps are valid; if one is not, that is what failed.
+fn unexpected(error: impl std::fmt::Display) -> Error {
+    Error::Failed(error.to_string())
+}
