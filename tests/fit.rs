@@ -335,6 +335,18 @@ fn two_samples_are_too_few() {
 }
 
 #[test]
+fn a_radius_without_room_is_refused() {
+    let (_, times, rates) = example(1e-2);
+    let record = Record::from_samples(&times, &rates).unwrap();
+    for radius in [16.0, 0.05] {
+        let refused = fit(&record, &Settings { radius: Some(radius), ..Settings::default() });
+        assert!(matches!(refused, Err(FitError::Radius { .. })), "{radius}");
+    }
+    let given = fit(&record, &Settings { radius: Some(2.0), ..Settings::default() }).unwrap();
+    assert!((given.radius - 2.0).abs() < 1e-12);
+}
+
+#[test]
 fn tiny_and_huge_units_change_nothing_and_a_bad_noise_is_refused() {
     // P scaled by 1e±14 and tr J = 1e-6 or 1e8 in the table: here no unit reaches the solver at all
     let (j, times, rates) = example(1e-3);
