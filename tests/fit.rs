@@ -56,12 +56,19 @@ struct Trials {
 fn trials(count: usize, sigma: f64, seed: u64) -> Trials {
     let mut random = Random::new(seed);
     let times = times(60);
-    let (mut sum, mut covered) = (0.0, 0);
+    let (mut sum, mut covered, mut refused) = (0.0, 0, 0);
     for trial in 0..count {
         let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &random_rotation(&mut random));
         let omega = random.normal_vector().normalize();
-        let estimate = fit(&record(&j, omega, &times, sigma, &mut random), &Settings::default())
-            .unwrap_or_else(|error| panic!("trial {trial}: {error}"));
+        let estimate = match fit(&record(&j, omega, &times, sigma, &mut random), &Settings::default()) {
+            Ok(estimate) => estimate,
+            // close to a pure spin, where the noise of a tenth drowns the wobble
+            Err(FitError::Unidentifiable(_)) if sigma > 0.05 => {
+                refused += 1;
+                continue;
+            }
+            Err(error) => panic!("trial {trial}: {error}"),
+        };
         assert!(is_physical(&estimate), "trial {trial}");
         assert!(estimate.certificate.violation <= 1e-9 && estimate.certificate.stationarity <= 1e-9);
         let e = entries(&(estimate.shape.tensor() - j));
@@ -69,7 +76,10 @@ fn trials(count: usize, sigma: f64, seed: u64) -> Trials {
         // the 95 % point of χ² with 5 degrees of freedom
         covered += usize::from(distance(&e, &estimate.free_covariance) < 11.070_497_693_516_35);
     }
-    Trials { over_bound: (sum / (5 * count) as f64).sqrt(), coverage: covered as f64 / count as f64 }
+    assert!(20 * refused <= count, "{refused} of {count} refused");
+    println!("noise {sigma}: {refused} of {count} refused");
+    let answered = count - refused;
+    Trials { over_bound: (sum / (5 * answered) as f64).sqrt(), coverage: covered as f64 / answered as f64 }
 }
 
 /// With 40 trials the mean of χ²₅/5 scatters by √(2/200) = 0.1, its root by 0.05: four of these about 1.
@@ -88,7 +98,7 @@ fn efficient_at_low_noise_and_nearly_so_at_high() {
 #[test]
 #[ignore = "paper scale"]
 fn efficient_over_400_trials() {
-    for (sigma, high) in [(1e-3, 1.1), (1e-2, 1.1), (1e-1, 1.6)] {
+    for (sigma, high) in [(1e-1, 1.6), (1e-2, 1.1), (1e-3, 1.1)] {
         let t = trials(400, sigma, 4);
         println!("noise {sigma}: error over bound {:.4}, coverage {:.4}", t.over_bound, t.coverage);
         assert!((0.9..high).contains(&t.over_bound), "noise {sigma}: {:.3} of the bound", t.over_bound);
@@ -332,6 +342,18 @@ fn two_samples_are_too_few() {
     let record = Record::from_samples(&[0.0, 0.01], &[Vector3::x(), Vector3::y()]).unwrap();
     let message = refusal(&record).to_string();
     assert!(message.starts_with("2 samples in 1 segments"), "{message}");
+}
+
+#[test]
+fn a_radius_without_room_is_refused() {
+    let (_, times, rates) = example(1e-2);
+    let record = Record::from_samples(&times, &rates).unwrap();
+    for radius in [16.0, 0.05] {
+        let refused = fit(&record, &Settings { radius: Some(radius), ..Settings::default() });
+        assert!(matches!(refused, Err(FitError::Radius { .. })), "{radius}");
+    }
+    let given = fit(&record, &Settings { radius: Some(2.0), ..Settings::default() }).unwrap();
+    assert!((given.radius - 2.0).abs() < 1e-12);
 }
 
 #[test]

@@ -89,6 +89,16 @@ pub enum FitError {
         /// Its value.
         value: f64,
     },
+    /// Test functions that no segment has room for.
+    #[error("a radius of {radius} s needs segments of {} s with {needed} samples in each; the longest lasts {longest} s", 2.0 * radius)]
+    Radius {
+        /// The radius, s.
+        radius: f64,
+        /// Duration of the longest segment, s.
+        longest: f64,
+        /// Fewest samples in one test function.
+        needed: usize,
+    },
     /// The solver's answer did not pass the check of optimality.
     #[error("the quadratic program has no certified answer: {status}")]
     Solver {

@@ -181,12 +181,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let singular = || FitError::Solver { status: "the residuals have no positive covariance".into() };
     let weak = weak::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| {
         match failure {
-            Failure::TooShort => FitError::TooFewSamples {
-                samples: record.samples(),
-                segments: record.segments.len(),
-                longest: stretches.iter().map(|s| s.times.len()).max().unwrap_or(0),
-                needed: 2 * SAMPLES_PER_TEST as usize,
-            },
+            Failure::TooShort => too_short(record, settings, &stretches, rms),
             Failure::Singular => singular(),
         }
     })?;
@@ -233,6 +228,22 @@ fn check(settings: &Settings) -> Result<(), FitError> {
         }
     }
     Ok(())
+}
+
+fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f64) -> FitError {
+    let needed = SAMPLES_PER_TEST as usize;
+    match settings.radius {
+        Some(radius) => {
+            let longest = stretches.iter().map(Stretch::duration).fold(0.0, f64::max) / rms;
+            FitError::Radius { radius, longest, needed }
+        }
+        None => FitError::TooFewSamples {
+            samples: record.samples(),
+            segments: record.segments.len(),
+            longest: stretches.iter().map(|s| s.times.len()).max().unwrap_or(0),
+            needed: 2 * needed,
+        },
+    }
 }
 
 /// The unit that explains the record best, where one does so at least three times better.
