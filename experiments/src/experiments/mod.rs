@@ -42,6 +42,8 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "fit-efficiency",
         question: "how close a fitted tensor comes to the Cramer-Rao bound, and what other formulations lose",
         run: fit_efficiency::run,
+    },
+    Experiment {
         name: "lecture",
         question: "whether every statement of a lecture on rotating bodies is confirmed",
         run: lecture::run,
