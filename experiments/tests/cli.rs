@@ -514,3 +514,32 @@ fn publishing_without_results_is_refused() {
     refused(&line, &["experiments/results/paper", "--scale paper"]);
     assert_eq!(scratch.names(), ["README.md"]);
 }
+
+#[test]
+fn a_weight_moment_makes_a_top() {
+    // Brüls and Cardona's top at t = 2 s, tests/data/tops/reference.csv
+    let exact = output("propagate --body bruls-cardona --omega 0,150,-4.61538 --times 2 --format csv");
+    let row: Vec<&str> = exact.lines().nth(1).unwrap().split(',').collect();
+    let expected = [0.1229471350415335, -0.49107989255002701, 0.35043003034362096, -0.78798688755048567];
+    for (found, expected) in row[1..5].iter().zip(expected) {
+        assert!((found.parse::<f64>().unwrap() - expected).abs() < 1e-14, "{found}, expected {expected}");
+    }
+    // under gravity |m| and L are not kept, the momentum about the vertical is
+    assert_eq!((row[11], row[12]), ("", ""));
+    assert!(row[13].parse::<f64>().unwrap() < 1e-15);
+
+    let heavy = "propagate --moments 1,2,3 --weight-moment 0,0,1 --omega 1,1,1 --times 1";
+    refused(heavy, &["--method exact", "1, 2, 3", "no two agree", "kick-drift:4"]);
+    refused(
+        "propagate --moments 2,2,3 --weight-moment 0.1,0,1 --omega 1,1,1 --times 1",
+        &["--method exact", "off the symmetry axis"],
+    );
+    refused(
+        "propagate --moments 1,2,3 --weight-moment 0,0 --omega 1,1,1 --times 1",
+        &["--weight-moment", "3 needed"],
+    );
+    refused("motion --body gyroscope --omega 1,1,1", &["--body", "gyroscope", "gravity"]);
+    // no closed form: the attitude error is left empty
+    let stepped = output(&format!("{heavy} --method kick-drift:4 --step 0.015625 --format csv"));
+    assert!(stepped.lines().nth(1).unwrap().ends_with(','), "{stepped}");
+}

@@ -17,7 +17,7 @@ use crate::table::{Column, Table, row};
 
 const FIXTURES: &str = include_str!("../../../tests/data/free_body/fixtures.csv");
 
-/// What issue and README promise: attitude in rad, angular velocity relative.
+/// What is promised: attitude in rad, angular velocity relative.
 const PROMISE: f64 = 1e-14;
 /// The same over random bodies.
 const RANDOM_PROMISE: f64 = 1e-13;
