@@ -47,6 +47,17 @@ pub enum FitError {
     /// The record determines fewer than five numbers of the tensor.
     #[error("the record does not determine the tensor: {}", .0.verdict())]
     Unidentifiable(Box<Identifiability>),
+    /// The rates change, but no tensor explains how.
+    #[error(
+        "the rates change, but in {rounds} rounds at any radius no tensor settled: the noise of {noise:.3e} rad/s hides \
+         the motion, or torques make it; record longer, with a larger wobble, or name a radius"
+    )]
+    Unsettled {
+        /// Rounds of reweighting at each radius.
+        rounds: usize,
+        /// Noise of a component, rad/s.
+        noise: f64,
+    },
     /// Another unit of the rates or times explains the record far better.
     #[error(
         "the units look mistaken: with the rates {factor} times as large ({hint}) the misfit per equation falls from \

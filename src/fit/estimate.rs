@@ -185,27 +185,27 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
             Failure::Singular => singular(),
         }
     })?;
-    let dof = weak.stacked.rows - 5;
-    let misfit = weak.stacked.misfit / variance / dof.max(1) as f64;
+    let misfit = weak.misfit_per_dof(variance);
     let better =
         if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
     if let Some((factor, hint, better)) = better.filter(|b| b.2 < 0.1 * misfit) {
         return Err(FitError::Units { factor, hint, misfit, better });
     }
     let identifiability = identify(&weak, &stretches, variance).ok_or_else(singular)?;
+    if !weak.settled && misfit > 1.0 + 5.0 * (2.0 / weak.dof().max(1) as f64).sqrt() {
+        // the rates are not constant, and still no tensor explains them
+        return Err(FitError::Unsettled { rounds: weak::ROUNDS, noise: variance.sqrt() * rms });
+    }
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
     }
-    if !weak.settled {
-        return Err(singular());
-    }
-    let inflated = variance * misfit.max(1.0);
-    let free = weak::covariance(&weak.stacked.information(), &weak.inflation, inflated)
-        .or_else(|| weak::covariance(&weak.stacked.information(), &Form::zeros(), inflated))
+    let root = weak.root / (variance * misfit.max(1.0)).sqrt();
+    let free = root
+        .try_inverse()
+        .map(|inverse| inverse * inverse.transpose())
         .ok_or_else(|| FitError::Solver { status: "the information is not positive".into() })?;
-    let root = weak.stacked.root / inflated.sqrt();
     let nearest = qp::nearest(weak.x, root, &settings.bounds)?;
-    let facts = Facts { record, settings, stretches: &stretches, rms, variance, weak: &weak, misfit, dof };
+    let facts = Facts { record, settings, stretches: &stretches, rms, variance, weak: &weak, misfit };
     facts.report(nearest, free, identifiability, better)
 }
 
@@ -257,8 +257,7 @@ fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<(f64
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
         let Ok(weak) = weak::estimate(&scaled, None, variance) else { continue };
-        let dof = weak.stacked.rows - 5;
-        let value = weak.stacked.misfit / variance / dof.max(1) as f64;
+        let value = weak.misfit_per_dof(variance);
         if value < least {
             least = value;
             best = Some((factor, hint, value));
@@ -274,10 +273,9 @@ fn identify(weak: &Weak, stretches: &[Stretch], variance: f64) -> Option<Identif
         scatter += w * w.transpose();
         count += 1.0;
     }
-    let (singular, directions) = weak.stacked.spectrum()?;
+    let (singular, directions) = weak.spectrum()?;
     let spectrum = (singular / variance.sqrt(), directions);
-    let (rows, j) = (weak.stacked.rows, tensor(&weak.x));
-    Some(Identifiability::new(&spectrum, &weak.inflation, rows, &(scatter / count), &j))
+    Some(Identifiability::new(&spectrum, &(scatter / count), &tensor(&weak.x)))
 }
 
 /// What the report is drawn from.
@@ -289,7 +287,6 @@ struct Facts<'a> {
     variance: f64,
     weak: &'a Weak,
     misfit: f64,
-    dof: usize,
 }
 
 impl Facts<'_> {
@@ -300,7 +297,7 @@ impl Facts<'_> {
         identifiability: Identifiability,
         better: Option<(f64, &'static str, f64)>,
     ) -> Result<Estimate, FitError> {
-        let root = self.weak.stacked.root / (self.variance * self.misfit.max(1.0)).sqrt();
+        let root = self.weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
         let on_face = face_covariance(&free, &root, &nearest.face);
         let shape = shape_of(&tensor(&nearest.x))?;
         let j = shape.tensor();
@@ -319,7 +316,7 @@ impl Facts<'_> {
         };
         let entries = entries_of_coordinates();
         let spread = |c: Form| entries * c * entries.transpose();
-        let bound = bound::cramer_rao(self.stretches, &nearest.x, self.weak.radius, self.variance);
+        let bound = bound::cramer_rao(self.stretches, &nearest.x, self.variance);
         let bound_ratio = bound.map(|b| (free.trace() / b.trace()).sqrt());
         let (inertia, inertia_covariance) = self.absolute(&j, &on_face)?;
         let (momentum, energy) = drifts(self.stretches, &j, self.variance);
@@ -340,7 +337,7 @@ impl Facts<'_> {
             inertia_covariance,
             noise_sigma: self.variance.sqrt() * self.rms,
             chi2_per_dof: self.misfit,
-            dof: self.dof,
+            dof: self.weak.dof(),
             samples: self.record.samples(),
             segments: residuals.len(),
             radius: self.weak.radius / self.rms,

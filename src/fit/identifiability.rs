@@ -7,9 +7,6 @@ use super::coordinates::{Coordinates, Form, eigen, trace_free};
 /// A combination of entries with a larger standard deviation (share of the trace) counts as undetermined: physical
 /// tensors differ by 0.4 at most from the sphere, so such a figure tells nothing.
 const VAGUE: f64 = 0.1;
-/// How many standard deviations of its own fluctuation the information must exceed.
-const SIGNIFICANT: f64 = 5.0;
-
 /// The spectrum of information about the five numbers of a tensor of trace 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
@@ -27,27 +24,19 @@ pub struct Identifiability {
 }
 
 impl Identifiability {
-    /// From the singular values of the whitened equations with their directions, and what noise alone adds to the
-    /// information, over `rows` equations; `scatter` is the mean of ω ωᵀ and `estimate` the tensor so far.
+    /// From the singular values of the whitened equations with their directions; `scatter` is the mean of ω ωᵀ and
+    /// `estimate` the tensor so far.
     pub(super) fn new(
         (singular, directions): &(Coordinates, Form),
-        noise: &Form,
-        rows: usize,
         scatter: &Matrix3<f64>,
         estimate: &Matrix3<f64>,
     ) -> Self {
-        let mut deviations = [0.0; 5];
-        let mut null_tensors = Vec::new();
-        for k in 0..5 {
-            let direction: Coordinates = directions.column(k).into_owned();
-            let by_noise = direction.dot(&(noise * direction));
-            let value = singular[k] * singular[k] - by_noise;
-            let fluctuation = by_noise * (2.0 / rows as f64).sqrt();
-            deviations[k] = if value > 0.0 { 1.0 / value.sqrt() } else { f64::INFINITY };
-            if deviations[k] > VAGUE || value < SIGNIFICANT * fluctuation {
-                null_tensors.push(trace_free(&direction));
-            }
-        }
+        let deviations =
+            core::array::from_fn(|k| if singular[k] > 0.0 { 1.0 / singular[k] } else { f64::INFINITY });
+        let null_tensors: Vec<_> = (0..5)
+            .filter(|&k| deviations[k] > VAGUE)
+            .map(|k| trace_free(&directions.column(k).into_owned()))
+            .collect();
         let rank = 5 - null_tensors.len();
         let (null_directions, known) = words(&null_tensors, rank, scatter, estimate);
         Identifiability { deviations, rank, null_directions, null_tensors, known }

@@ -47,6 +47,7 @@ mod torque_free;
 mod weak;
 
 pub use baselines::{Baseline, baseline};
+pub use bound::foreseen_bound;
 pub use error::{Clash, FitError};
 pub use estimate::{Estimate, Residuals, Settings, fit};
 pub use identifiability::Identifiability;

@@ -12,7 +12,7 @@
 //! |---|---|
 //! | r, G | residuals of the weak equations, and their derivatives with respect to the coordinates x of J |
 //! | H | Gᵀ C⁻¹ G: information, in units of 1/σ² |
-//! | V | what the noise in G adds to H, in expectation and in units of 1/σ²: H/σ² − V is what the motion tells |
+//! | V | what the noise in G adds to H at raw samples, in expectation and in units of 1/σ² |
 
 use std::rc::Rc;
 
@@ -358,15 +358,13 @@ impl Stacked {
         }
     }
 
-    pub(super) fn information(&self) -> Form {
-        self.root.transpose() * self.root
+    /// Mean square of what is left over that of the noise, where it is more than 1.
+    fn excess(&self, variance: f64) -> f64 {
+        (self.misfit / variance / self.rows.saturating_sub(5).max(1) as f64).max(1.0)
     }
 
-    /// Singular values of R, descending, and the directions they belong to: the eigenvalues of H without its squares.
-    pub(super) fn spectrum(&self) -> Option<(Coordinates, Form)> {
-        let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
-        let (values, directions) = (svd.S().column_vector(), svd.V());
-        Some((Coordinates::from_fn(|k, _| values[k]), Form::from_fn(|i, k| directions[(i, k)])))
+    fn information(&self) -> Form {
+        self.root.transpose() * self.root
     }
 
     /// The x that makes |R (x − origin) + z|² + ridge |x|² least.
@@ -401,17 +399,43 @@ pub(super) enum Failure {
 pub(super) struct Weak {
     pub(super) radius: f64,
     pub(super) x: Coordinates,
-    /// Whether the rounds ended where they should; else it is good for one question only: what is undetermined.
+    /// Whether the rounds stood still; else this is good for one question only: what is undetermined.
     pub(super) settled: bool,
-    pub(super) stacked: Stacked,
-    /// V.
-    pub(super) inflation: Form,
+    /// Upper triangular, Rᵀ R = H at a motion free of noise.
+    pub(super) root: Form,
+    /// Sum of squares of the whitened residuals.
+    pub(super) misfit: f64,
+    /// Equations.
+    pub(super) rows: usize,
     /// Whitened residuals of each stretch that is long enough: its index, the tests' centres, three values each.
     pub(super) residuals: Vec<(usize, Vec<f64>, Vec<f64>)>,
 }
 
-/// Rounds at the final radius.
-const ROUNDS: usize = 4;
+impl Weak {
+    /// Equations beyond the unknowns.
+    pub(super) fn dof(&self) -> usize {
+        self.rows - 5
+    }
+
+    /// Mean square of the residuals over the noise.
+    pub(super) fn misfit_per_dof(&self, variance: f64) -> f64 {
+        self.misfit / variance / self.dof().max(1) as f64
+    }
+
+    /// Singular values of R, descending, and the directions they belong to: the eigenvalues of H without its squares.
+    pub(super) fn spectrum(&self) -> Option<(Coordinates, Form)> {
+        let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
+        let (values, directions) = (svd.S().column_vector(), svd.V());
+        Some((Coordinates::from_fn(|k, _| values[k]), Form::from_fn(|i, k| directions[(i, k)])))
+    }
+}
+
+/// Most rounds at one radius; at low noise two or three do.
+pub(super) const ROUNDS: usize = 12;
+/// Standard deviations by which the last round may still move the tensor.
+const STILL: f64 = 0.01;
+/// Fall of χ² that no wobble of pure noise brings about: its chance is e⁻²⁵ for each frequency that is tried.
+const SIGNIFICANT_GAIN: f64 = 50.0;
 
 struct Rounds<'a> {
     used: Vec<(usize, &'a Stretch, Tests)>,
@@ -442,35 +466,102 @@ impl<'a> Rounds<'a> {
             .collect()
     }
 
-    /// One round; `ridge` keeps x finite before it is known that the record determines it.
-    fn round(&mut self, ridge: f64) -> Option<()> {
+    /// One round, and by how many standard deviations it moved the tensor. A ridge as weak as one reading keeps x
+    /// finite before it is known that the record determines it.
+    fn round(&mut self, variance: f64) -> Option<f64> {
         let parts = self.linearise()?;
-        let x = Stacked::new(&parts).ridge(ridge)?;
+        let stacked = Stacked::new(&parts);
+        let x = stacked.ridge(variance)?;
         let j = tensor(&self.x);
         for ((part, (_, s, _)), noise) in parts.iter().zip(&self.used).zip(&mut self.noise) {
             *noise = part.noise(s, noise, &j, &x);
         }
+        let moved =
+            (stacked.root * (x - self.x)).norm() / (variance.sqrt() * stacked.excess(variance).sqrt());
         self.x = x;
-        Some(())
+        Some(moved)
     }
 
-    fn finish(&self, settled: bool) -> Option<Weak> {
+    /// Rounds until the tensor stands still; `None` where it does not.
+    fn settle(&mut self, variance: f64) -> Option<()> {
+        for _ in 0..ROUNDS {
+            if self.round(variance)? <= STILL {
+                return Some(());
+            }
+        }
+        None
+    }
+
+    fn finish(&self, variance: f64) -> Option<Weak> {
         let parts = self.linearise()?;
         let stacked = Stacked::new(&parts);
         let x = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite())).unwrap_or(self.x);
         let used = self.used.iter().zip(&parts);
         let residuals = used.map(|((k, _, tests), p)| (*k, tests.centres(), p.residuals(&x))).collect();
-        let radius = self.used.first()?.2.radius;
-        Some(Weak { radius, x, inflation: self.inflation(&parts), stacked, residuals, settled })
+        // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
+        // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
+        let gain = (self.misfit_of_sphere()? - stacked.misfit) / (variance * stacked.excess(variance));
+        let root = if gain > SIGNIFICANT_GAIN { stacked.root } else { self.root_of_constant_rates()? };
+        Some(Weak {
+            radius: self.used.first()?.2.radius,
+            x,
+            settled: true,
+            root,
+            misfit: stacked.misfit,
+            rows: stacked.rows,
+            residuals,
+        })
     }
 
+    /// What can be said without any tensor to go by: the information of constant rates, weighted as for a sphere.
+    fn at_sphere(mut self) -> Option<Weak> {
+        self.x = Coordinates::zeros();
+        let (root, misfit) = (self.root_of_constant_rates()?, self.misfit_of_sphere()?);
+        let rows = self.used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
+        Some(Weak {
+            radius: self.used.first()?.2.radius,
+            x: self.x,
+            settled: false,
+            root,
+            misfit,
+            rows,
+            residuals: Vec::new(),
+        })
+    }
+
+    /// What the weak equations of the sphere leave, whose rates are constant.
+    fn misfit_of_sphere(&self) -> Option<f64> {
+        let mut sum = 0.0;
+        for (_, s, tests) in &self.used {
+            let raw = vec![Vector3::zeros(); s.times.len()];
+            let part = Linearised::new(s, &raw, Coordinates::zeros(), tests.clone())?;
+            sum += part.rows.iter().map(|row| row[5] * row[5]).sum::<f64>();
+        }
+        Some(sum)
+    }
+
+    /// R of motions that keep their mean rates.
+    fn root_of_constant_rates(&self) -> Option<Form> {
+        let parts: Option<Vec<Linearised>> = self
+            .used
+            .iter()
+            .map(|(_, s, tests)| {
+                let mean = s.rates.iter().sum::<Vector3<f64>>() / s.rates.len() as f64;
+                let noise: Vec<_> = s.rates.iter().map(|w| w - mean).collect();
+                Linearised::new(s, &noise, self.x, tests.clone())
+            })
+            .collect();
+        Some(Stacked::new(&parts?).root)
+    }
+
+    /// V.
     fn inflation(&self, parts: &[Linearised]) -> Form {
         parts.iter().zip(&self.used).zip(&self.noise).map(|((p, (_, s, _)), n)| p.inflation(s, n)).sum()
     }
 }
 
-/// The covariance (H/σ² − V)⁻¹ (H/σ²) (H/σ² − V)⁻¹ of an estimate at this information.
-pub(super) fn covariance(information: &Form, inflation: &Form, variance: f64) -> Option<Form> {
+/// The covariance (H/σ² − V)⁻¹ (H/σ²) (H/σ² − V)⁻¹ of an estimate at raw samples.
+fn covariance(information: &Form, inflation: &Form, variance: f64) -> Option<Form> {
     let noisy = information / variance;
     let inverse = (noisy - inflation).cholesky()?.inverse();
     Some(inverse * noisy * inverse)
@@ -509,9 +600,8 @@ fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinat
         let Some(parts) = rounds.linearise() else { continue };
         let stacked = Stacked::new(&parts);
         // a misfit counts as noise, so that radii too short for the sampling or too long for the torques lose
-        let misfit = stacked.misfit / variance / (stacked.rows - 5) as f64;
-        let spread =
-            covariance(&stacked.information(), &rounds.inflation(&parts), variance * misfit.max(1.0));
+        let inflated = variance * stacked.excess(variance);
+        let spread = covariance(&stacked.information(), &rounds.inflation(&parts), inflated);
         let trace = spread.map_or(f64::INFINITY, |c| c.trace());
         if trace < best.0 {
             best = (trace, radius);
@@ -525,16 +615,24 @@ const PILOT_SAMPLES: usize = 40_000;
 
 /// The weak estimate; `variance` is that of the noise in units of the mean square rate.
 pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64) -> Result<Weak, Failure> {
-    let (radius, start) = match radius {
-        Some(radius) => (radius, Coordinates::zeros()),
-        None => choose_radius(&pilot(stretches), variance).ok_or(Failure::TooShort)?,
+    let (first, start, largest) = match radius {
+        Some(radius) => (radius, Coordinates::zeros(), radius),
+        None => {
+            let pilot = pilot(stretches);
+            let (radius, start) = choose_radius(&pilot, variance).ok_or(Failure::TooShort)?;
+            (radius, start, candidates(&pilot).into_iter().fold(radius, f64::max))
+        }
     };
-    let mut rounds = Rounds::new(stretches, radius, start).ok_or(Failure::TooShort)?;
-    let settled = (0..ROUNDS).try_for_each(|_| rounds.round(variance)).and_then(|()| rounds.finish(true));
-    // a record that determines too little may drive J out of all bounds; at the sphere it can at least be asked what it knows
-    settled
-        .or_else(|| Rounds::new(stretches, radius, Coordinates::zeros())?.finish(false))
-        .ok_or(Failure::Singular)
+    // a weak wobble in strong noise may need longer test functions than its information alone asks for
+    let mut radius = first;
+    while radius <= largest * (1.0 + 1e-9) {
+        let mut rounds = Rounds::new(stretches, radius, start).ok_or(Failure::TooShort)?;
+        if let Some(weak) = rounds.settle(variance).and_then(|()| rounds.finish(variance)) {
+            return Ok(weak);
+        }
+        radius *= 2.0;
+    }
+    Rounds::new(stretches, first, start).and_then(Rounds::at_sphere).ok_or(Failure::Singular)
 }
 
 /// The first stretches, up to a number of samples.
