@@ -188,11 +188,13 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let misfit = weak.misfit_per_dof(variance);
     let better =
         if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
-    if let Some((factor, hint, better)) = better.filter(|b| b.2 < 0.1 * misfit) {
+    // without a settled tensor to compare with, a unit must explain the record by itself
+    let convincing = if weak.settled() { 0.1 * misfit } else { 2.0 };
+    if let Some((factor, hint, better)) = better.filter(|b| b.2 < convincing) {
         return Err(FitError::Units { factor, hint, misfit, better });
     }
     let identifiability = identify(&weak, &stretches, variance).ok_or_else(singular)?;
-    if !weak.settled && misfit > 1.0 + 5.0 * (2.0 / weak.dof().max(1) as f64).sqrt() {
+    if !weak.settled() && misfit > 1.0 + 5.0 * (2.0 / weak.dof().max(1) as f64).sqrt() {
         // the rates are not constant, and still no tensor explains them
         return Err(FitError::Unsettled { rounds: weak::ROUNDS, noise: variance.sqrt() * rms });
     }
@@ -257,6 +259,9 @@ fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<(f64
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
         let Ok(weak) = weak::estimate(&scaled, None, variance) else { continue };
+        if !weak.settled() {
+            continue;
+        }
         let value = weak.misfit_per_dof(variance);
         if value < least {
             least = value;
@@ -410,6 +415,12 @@ impl Facts<'_> {
                  filters; deviations are enlarged by that factor",
                 e.chi2_per_dof.sqrt(),
                 e.noise_sigma
+            ));
+        }
+        if !self.weak.still() {
+            list.push(format!(
+                "the reweighting did not come to rest: a further round would move the tensor by {:.2} standard deviations",
+                self.weak.moved
             ));
         }
         if let Some((factor, hint, value)) = better {

@@ -399,8 +399,9 @@ pub(super) enum Failure {
 pub(super) struct Weak {
     pub(super) radius: f64,
     pub(super) x: Coordinates,
-    /// Whether the rounds stood still; else this is good for one question only: what is undetermined.
-    pub(super) settled: bool,
+    /// Standard deviations by which a further round would move x; infinite where no round could be made, and this is
+    /// good for one question only: what is undetermined.
+    pub(super) moved: f64,
     /// Upper triangular, Rᵀ R = H at a motion free of noise.
     pub(super) root: Form,
     /// Sum of squares of the whitened residuals.
@@ -412,6 +413,16 @@ pub(super) struct Weak {
 }
 
 impl Weak {
+    /// Whether the rounds ended near enough to a fixed point.
+    pub(super) fn settled(&self) -> bool {
+        self.moved <= RESTLESS
+    }
+
+    /// Whether they stood still there.
+    pub(super) fn still(&self) -> bool {
+        self.moved <= STILL
+    }
+
     /// Equations beyond the unknowns.
     pub(super) fn dof(&self) -> usize {
         self.rows - 5
@@ -432,8 +443,14 @@ impl Weak {
 
 /// Most rounds at one radius; at low noise two or three do.
 pub(super) const ROUNDS: usize = 12;
+/// Rounds that take their whole step.
+const FULL_ROUNDS: usize = 6;
 /// Standard deviations by which the last round may still move the tensor.
 const STILL: f64 = 0.01;
+/// The same beyond which there is no answer.
+const RESTLESS: f64 = 0.5;
+/// Misfit per equation that noise does not explain.
+const TORQUES: f64 = 4.0;
 /// Fall of χ² that no wobble of pure noise brings about: its chance is e⁻²⁵ for each frequency that is tried.
 const SIGNIFICANT_GAIN: f64 = 50.0;
 
@@ -466,33 +483,38 @@ impl<'a> Rounds<'a> {
             .collect()
     }
 
-    /// One round, and by how many standard deviations it moved the tensor. A ridge as weak as one reading keeps x
-    /// finite before it is known that the record determines it.
-    fn round(&mut self, variance: f64) -> Option<f64> {
+    /// One round, and by how many standard deviations it would move the tensor if it took its whole step. A ridge as weak as one reading keeps x finite before it is known that the record determines it.
+    fn round(&mut self, variance: f64, full: bool) -> Option<f64> {
         let parts = self.linearise()?;
         let stacked = Stacked::new(&parts);
         let x = stacked.ridge(variance)?;
+        // where torques act, full steps may end in going to and fro
+        let relax = if full || stacked.excess(variance) < TORQUES { 1.0 } else { 0.5 };
         let j = tensor(&self.x);
         for ((part, (_, s, _)), noise) in parts.iter().zip(&self.used).zip(&mut self.noise) {
-            *noise = part.noise(s, noise, &j, &x);
+            let next = part.noise(s, noise, &j, &x);
+            for (old, new) in noise.iter_mut().zip(next) {
+                *old += (new - *old) * relax;
+            }
         }
-        let moved =
-            (stacked.root * (x - self.x)).norm() / (variance.sqrt() * stacked.excess(variance).sqrt());
-        self.x = x;
+        let step = x - self.x;
+        self.x += step * relax;
+        Some((stacked.root * step).norm() / (variance * stacked.excess(variance)).sqrt())
+    }
+
+    /// Rounds until the tensor stands still, and by how many standard deviations the last would have moved it.
+    fn settle(&mut self, variance: f64) -> Option<f64> {
+        let mut moved = f64::INFINITY;
+        for round in 0..ROUNDS {
+            moved = self.round(variance, round < FULL_ROUNDS)?;
+            if moved <= STILL {
+                break;
+            }
+        }
         Some(moved)
     }
 
-    /// Rounds until the tensor stands still; `None` where it does not.
-    fn settle(&mut self, variance: f64) -> Option<()> {
-        for _ in 0..ROUNDS {
-            if self.round(variance)? <= STILL {
-                return Some(());
-            }
-        }
-        None
-    }
-
-    fn finish(&self, variance: f64) -> Option<Weak> {
+    fn finish(&self, variance: f64, moved: f64) -> Option<Weak> {
         let parts = self.linearise()?;
         let stacked = Stacked::new(&parts);
         let x = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite())).unwrap_or(self.x);
@@ -505,7 +527,7 @@ impl<'a> Rounds<'a> {
         Some(Weak {
             radius: self.used.first()?.2.radius,
             x,
-            settled: true,
+            moved,
             root,
             misfit: stacked.misfit,
             rows: stacked.rows,
@@ -521,7 +543,7 @@ impl<'a> Rounds<'a> {
         Some(Weak {
             radius: self.used.first()?.2.radius,
             x: self.x,
-            settled: false,
+            moved: f64::INFINITY,
             root,
             misfit,
             rows,
@@ -589,7 +611,7 @@ fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinat
     let mut start = Coordinates::zeros();
     let mut pilot = Rounds::new(stretches, radii[radii.len() / 2], start)?;
     for _ in 0..2 {
-        if pilot.round(variance).is_none() {
+        if pilot.round(variance, true).is_none() {
             break;
         }
         start = pilot.x;
@@ -625,14 +647,24 @@ pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64
     };
     // a weak wobble in strong noise may need longer test functions than its information alone asks for
     let mut radius = first;
+    let mut best: Option<Weak> = None;
     while radius <= largest * (1.0 + 1e-9) {
         let mut rounds = Rounds::new(stretches, radius, start).ok_or(Failure::TooShort)?;
-        if let Some(weak) = rounds.settle(variance).and_then(|()| rounds.finish(variance)) {
-            return Ok(weak);
+        let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS);
+        if let Some(weak) = moved.and_then(|moved| rounds.finish(variance, moved)) {
+            if weak.still() {
+                return Ok(weak);
+            }
+            // mere noise comes to rest on a motion, if there is one; torques may not let it
+            let torques = weak.misfit_per_dof(variance) > TORQUES;
+            if torques && best.as_ref().is_none_or(|b| weak.moved < b.moved) {
+                best = Some(weak);
+            }
         }
         radius *= 2.0;
     }
-    Rounds::new(stretches, first, start).and_then(Rounds::at_sphere).ok_or(Failure::Singular)
+    let sphere = || Rounds::new(stretches, first, start)?.at_sphere();
+    best.or_else(sphere).ok_or(Failure::Singular)
 }
 
 /// The first stretches, up to a number of samples.

@@ -2,7 +2,9 @@
 
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
 use polhode::body::Inertia;
-use polhode::fit::{Baseline, Estimate, FitError, Random, Record, Settings, baseline, fit, rehearse};
+use polhode::fit::{
+    Baseline, Estimate, FitError, Random, Record, Settings, baseline, fit, foreseen_bound, rehearse,
+};
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};
@@ -92,6 +94,9 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             failures
                 .push(format!("{name}, noise {level}: {broken} fits broke off, or a tensor is not physical"));
         }
+        if body == 0 && refused > 0 {
+            failures.push(format!("{name}, noise {level}: {refused} of {trials} records refused"));
+        }
         if let Some(limits) =
             promise(body, level, trials).filter(|(low, high)| !(*low..=*high).contains(&over))
         {
@@ -162,11 +167,11 @@ fn trial(moments: [f64; 3], noise: f64, seconds: usize, seed: u64) -> Result<Tri
     let nothing = Trial { own: None, covered: false, physical: false, broken: false, baselines: [None; 4] };
     let estimate: Estimate = match fit(&record, &Settings::default()) {
         Ok(estimate) => estimate,
-        Err(FitError::Unidentifiable(_)) => return Ok(nothing),
+        Err(FitError::Unidentifiable(_) | FitError::Unsettled { .. }) => return Ok(nothing),
         Err(_) => return Ok(Trial { broken: true, ..nothing }),
     };
     let error = |shape: Matrix3<f64>| entries(&(shape - j));
-    let bound = estimate.bound.ok_or_else(|| failed(&"no Cramér–Rao bound"))?;
+    let bound = foreseen_bound(&body, omega, &times, noise).ok_or_else(|| failed(&"no Cramér–Rao bound"))?;
     let own = error(estimate.shape.tensor());
     let covered = square(&own, &estimate.free_covariance).is_some_and(|s| s < ELLIPSOID);
     let baselines = BASELINES.map(|form| {
