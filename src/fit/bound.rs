@@ -123,7 +123,7 @@ pub(super) fn cramer_rao(stretches: &[Stretch], x: &Coordinates, variance: f64) 
             let Some(step) = step else { break };
             let next = Fisher::new(&euler, s, middle, start + step);
             // where torques act, the samples may lead away from any free motion
-            if !(next.misfit < fisher.misfit) {
+            if next.misfit.is_nan() || next.misfit >= fisher.misfit {
                 break;
             }
             (start, fisher) = (start + step, next);
@@ -170,7 +170,7 @@ pub fn foreseen_bound(
     let information = fisher.of_tensor()?;
     let (spectrum, _) = eigen(information);
     // what a pure spin leaves open is zero up to the rounding of sums of squares
-    if !(spectrum[0] > 1e-12 * spectrum[4]) {
+    if spectrum[0].is_nan() || spectrum[0] <= 1e-12 * spectrum[4] {
         return None;
     }
     let bound = (information / (deviation * deviation)).cholesky()?.inverse();
