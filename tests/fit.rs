@@ -319,21 +319,26 @@ fn pure_spin_tells_an_axis_and_no_ratio() {
     }
 }
 
+/// A mean rate is off its axis by noise, which must not pass for a wobble about it, however long the record.
 #[test]
 fn two_pure_spins_tell_all_axes_and_no_ratio() {
     let mut random = Random::new(18);
-    let r = random_rotation(&mut random);
-    let times = times(10);
-    let spin = |k: usize, random: &mut Random| {
-        let axis = r * Vector3::ith(k, 2.0);
-        let rates: Vec<_> = times.iter().map(|_| axis + random.normal_vector() * 1e-4).collect();
-        Record::from_samples(&times, &rates).unwrap()
-    };
-    let both = spin(0, &mut random).join(spin(2, &mut random));
-    let FitError::Unidentifiable(what) = refusal(&both) else { panic!() };
-    assert_eq!(what.rank, 3, "{what:?}");
-    assert!(what.null_directions.iter().all(|d| d.contains("ratio")), "{:?}", what.null_directions);
-    assert_eq!(what.known.len(), 3, "{:?}", what.known);
+    for (seconds, sigma) in [(10, 1e-4), (10, 1e-2), (20, 1e-1), (40, 1e-3)] {
+        let times = times(seconds);
+        for trial in 0..4 {
+            let r = random_rotation(&mut random);
+            let spin = |k: usize, random: &mut Random| {
+                let axis = r * Vector3::ith(k, 2.0);
+                let rates: Vec<_> = times.iter().map(|_| axis + random.normal_vector() * sigma).collect();
+                Record::from_samples(&times, &rates).unwrap()
+            };
+            let both = spin(0, &mut random).join(spin(2, &mut random));
+            let FitError::Unidentifiable(what) = refusal(&both) else { panic!("{seconds} s, trial {trial}") };
+            assert_eq!(what.rank, 3, "{seconds} s, trial {trial}: {what:?}");
+            assert!(what.null_directions.iter().all(|d| d.contains("ratio")), "{:?}", what.null_directions);
+            assert_eq!(what.known.len(), 3, "{:?}", what.known);
+        }
+    }
 }
 
 #[test]

@@ -128,20 +128,44 @@ impl Program {
         tensor(&(self.centre + step))
     }
 
-    /// Clarabel, with cuts until the law holds.
+    /// Clarabel, with cuts until law and bounds hold.
+    ///
+    /// A wall enters when an answer lies beyond it, so that none is further away than the answer: walls at 1e5 standard
+    /// deviations would end the solver's progress at answers of one.
     fn cut(&self) -> Result<(Coordinates, usize), FitError> {
-        let (_, axes) = eigen(self.tensor(&Coordinates::zeros()));
-        let law = |v: Vector3<f64>| {
-            let r = self.reading(&v, &v);
-            Row { base: r.base - LIMIT, g: r.g }
-        };
-        let mut rows: Vec<Row> = (0..3).map(|k| law(axes.column(k).into())).collect();
-        rows.extend(self.rows.iter().map(|(row, ..)| *row));
-        // distances from the centre to the walls are in standard deviations: one unit for all of them
-        let scale = rows.iter().map(|r| r.base / r.g.norm()).filter(|d| d.is_finite()).fold(1.0, f64::max);
+        let mut y = Coordinates::zeros();
+        let mut rows: Vec<Row> = Vec::new();
         let mut cones: Vec<[Row; 3]> = Vec::new();
         let mut last = f64::INFINITY;
-        for round in 1..=CUTS {
+        for round in 0..=CUTS {
+            let (moments, v) = eigen(self.tensor(&y));
+            let beyond = |row: &Row| row.base + row.g.dot(&y);
+            let violated: Vec<Row> =
+                self.rows.iter().map(|(row, ..)| *row).filter(|r| beyond(r) > VIOLATION).collect();
+            let violation = violated.iter().map(beyond).fold(moments[2] - LIMIT, f64::max);
+            // where the solver's own accuracy ends the descent, Newton's method and the certificate take over
+            if violation <= VIOLATION || (round > 0 && violation <= 1e-5 && violation > 0.5 * last) {
+                return Ok((y, round));
+            }
+            last = violation;
+            rows.extend(violated);
+            let walls: Vec<Row> = (0..3)
+                .filter(|&k| moments[k] > LIMIT + VIOLATION)
+                .map(|k| v.column(k).into_owned())
+                .map(|v| self.reading(&v, &v))
+                .map(|r| Row { base: r.base - LIMIT, g: r.g })
+                .collect();
+            let new_cones = !walls.is_empty() && round > 0;
+            rows.extend(walls);
+            // the answer is at least as far away as the furthest wall that it must reach
+            let distance = |r: &Row| r.base / r.g.norm();
+            let scale = rows.iter().map(distance).filter(|d| d.is_finite()).fold(0.0, f64::max);
+            if scale == 0.0 {
+                return Ok((y, round));
+            }
+            if new_cones {
+                cones.extend((0..2).map(|k| self.minor(&v, &moments, k, scale)));
+            }
             let mut conditions = Conditions::new(5);
             for row in &rows {
                 let size = row.g.norm();
@@ -154,28 +178,26 @@ impl Program {
                 conditions.second_order(cone.map(|r| ((r.g / size), r.base / size / scale)));
             }
             let answer = conditions.solve(&[1.0; 5], &[0.0; 5])?;
-            let y = Coordinates::from_column_slice(&answer) * scale;
-            let (moments, v) = eigen(self.tensor(&y));
-            let violation = moments[2] - LIMIT;
-            // where the solver's own accuracy ends the descent, Newton's method and the certificate take over
-            if violation <= VIOLATION || (violation <= 1e-5 && violation > 0.5 * last) {
-                return Ok((y, round));
-            }
-            last = violation;
-            let top = v.column(2).into_owned();
-            for k in 0..2 {
-                let other = v.column(k).into_owned();
-                let (a, b, c) =
-                    (self.reading(&top, &top), self.reading(&other, &other), self.reading(&top, &other));
-                // [½ − a, −c; −c, ½ − b] ⪰ 0 as 1 − a − b ≥ |(b − a, 2c)|
-                cones.push([
-                    Row { base: 2.0 * LIMIT - a.base - b.base, g: -a.g - b.g },
-                    Row { base: b.base - a.base, g: b.g - a.g },
-                    Row { base: 2.0 * c.base, g: c.g * 2.0 },
-                ]);
-            }
+            y = Coordinates::from_column_slice(&answer) * scale;
         }
         Err(FitError::Solver { status: format!("the physical law is not met after {CUTS} rounds of cuts") })
+    }
+
+    /// The minor [½ − a, −c; −c, ½ − b] ⪰ 0 of the largest and the k-th axis as a cone: p + q ≥ |(q − p, 2c)| with
+    /// p = (½ − a)/w, q = (½ − b) w, where w makes both of one size at answers of the size `scale`.
+    fn minor(&self, v: &Matrix3<f64>, moments: &Vector3<f64>, k: usize, scale: f64) -> [Row; 3] {
+        let (top, other) = (v.column(2).into_owned(), v.column(k).into_owned());
+        let (a, b, c) = (self.reading(&top, &top), self.reading(&other, &other), self.reading(&top, &other));
+        let small = a.g.norm() * scale;
+        let large = (LIMIT - moments[k]).max(b.g.norm() * scale);
+        let w = (small / large).sqrt();
+        let p = Row { base: (LIMIT - a.base) / w, g: -a.g / w };
+        let q = Row { base: (LIMIT - b.base) * w, g: -b.g * w };
+        [
+            Row { base: p.base + q.base, g: p.g + q.g },
+            Row { base: q.base - p.base, g: q.g - p.g },
+            Row { base: 2.0 * c.base, g: c.g * 2.0 },
+        ]
     }
 
     /// Newton's method on the face that the solver's answer lies on, and the certificate.

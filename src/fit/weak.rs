@@ -13,6 +13,7 @@
 //! | r, G | residuals of the weak equations, and their derivatives with respect to the coordinates x of J |
 //! | H | Gᵀ C⁻¹ G: information, in units of 1/σ² |
 //! | V | what the noise in G adds to H at raw samples, in expectation and in units of 1/σ² |
+//! | D | Dᵀ D is what errors of the mean rates may add to H where nothing but their mean stands out of the noise |
 
 use std::rc::Rc;
 
@@ -404,6 +405,8 @@ pub(super) struct Weak {
     pub(super) moved: f64,
     /// Upper triangular, Rᵀ R = H at a motion free of noise.
     pub(super) root: Form,
+    /// D of the mean rates; zero where R is taken at a motion that stands out of the noise.
+    doubt: Form,
     /// Sum of squares of the whitened residuals.
     pub(super) misfit: f64,
     /// Equations.
@@ -433,11 +436,18 @@ impl Weak {
         self.misfit / variance / self.dof().max(1) as f64
     }
 
-    /// Singular values of R, descending, and the directions they belong to: the eigenvalues of H without its squares.
+    /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
+    /// without its squares.
     pub(super) fn spectrum(&self) -> Option<(Coordinates, Form)> {
         let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
         let (values, directions) = (svd.S().column_vector(), svd.V());
-        Some((Coordinates::from_fn(|k, _| values[k]), Form::from_fn(|i, k| directions[(i, k)])))
+        let mut pairs: [(f64, Coordinates); 5] = core::array::from_fn(|k| {
+            let direction = Coordinates::from_fn(|i, _| directions[(i, k)]);
+            let sure = values[k] * values[k] - (self.doubt * direction).norm_squared();
+            (sure.max(0.0).sqrt(), direction)
+        });
+        pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Some((Coordinates::from_fn(|k, _| pairs[k].0), Form::from_fn(|i, k| pairs[k].1[i])))
     }
 }
 
@@ -453,6 +463,8 @@ const RESTLESS: f64 = 0.5;
 const TORQUES: f64 = 4.0;
 /// Fall of χ² that no wobble of pure noise brings about: its chance is e⁻²⁵ for each frequency that is tried.
 const SIGNIFICANT_GAIN: f64 = 50.0;
+/// Standard deviations of mean rates within which the true ones are taken to lie.
+const SURE: f64 = 5.0;
 
 struct Rounds<'a> {
     used: Vec<(usize, &'a Stretch, Tests)>,
@@ -523,12 +535,17 @@ impl<'a> Rounds<'a> {
         // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
         // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
         let gain = (self.misfit_of_sphere()? - stacked.misfit) / (variance * stacked.excess(variance));
-        let root = if gain > SIGNIFICANT_GAIN { stacked.root } else { self.root_of_constant_rates()? };
+        let (root, doubt) = if gain > SIGNIFICANT_GAIN {
+            (stacked.root, Form::zeros())
+        } else {
+            self.constant_rates(variance)?
+        };
         Some(Weak {
             radius: self.used.first()?.2.radius,
             x,
             moved,
             root,
+            doubt,
             misfit: stacked.misfit,
             rows: stacked.rows,
             residuals,
@@ -536,15 +553,16 @@ impl<'a> Rounds<'a> {
     }
 
     /// What can be said without any tensor to go by: the information of constant rates, weighted as for a sphere.
-    fn at_sphere(mut self) -> Option<Weak> {
+    fn at_sphere(mut self, variance: f64) -> Option<Weak> {
         self.x = Coordinates::zeros();
-        let (root, misfit) = (self.root_of_constant_rates()?, self.misfit_of_sphere()?);
+        let ((root, doubt), misfit) = (self.constant_rates(variance)?, self.misfit_of_sphere()?);
         let rows = self.used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
         Some(Weak {
             radius: self.used.first()?.2.radius,
             x: self.x,
             moved: f64::INFINITY,
             root,
+            doubt,
             misfit,
             rows,
             residuals: Vec::new(),
@@ -562,18 +580,27 @@ impl<'a> Rounds<'a> {
         Some(sum)
     }
 
-    /// R of motions that keep their mean rates.
-    fn root_of_constant_rates(&self) -> Option<Form> {
-        let parts: Option<Vec<Linearised>> = self
-            .used
-            .iter()
-            .map(|(_, s, tests)| {
-                let mean = s.rates.iter().sum::<Vector3<f64>>() / s.rates.len() as f64;
-                let noise: Vec<_> = s.rates.iter().map(|w| w - mean).collect();
+    /// R of motions that keep their mean rates, and D.
+    fn constant_rates(&self, variance: f64) -> Option<(Form, Form)> {
+        let (mut at_means, mut displaced) = (Vec::new(), Vec::new());
+        for (_, s, tests) in &self.used {
+            let count = s.rates.len() as f64;
+            let mean = s.rates.iter().sum::<Vector3<f64>>() / count;
+            let at = |rate: Vector3<f64>| {
+                let noise: Vec<_> = s.rates.iter().map(|w| w - rate).collect();
                 Linearised::new(s, &noise, self.x, tests.clone())
-            })
-            .collect();
-        Some(Stacked::new(&parts?).root)
+            };
+            at_means.extend(at(mean)?.rows);
+            let sure = SURE * (variance / count).sqrt();
+            for axis in 0..3 {
+                let step = Vector3::ith(axis, sure);
+                let (above, below) = (at(mean + step)?.rows, at(mean - step)?.rows);
+                let difference =
+                    |(a, b): (&[f64; 6], &[f64; 6])| core::array::from_fn(|k| (a[k] - b[k]) / 2.0);
+                displaced.extend(above.iter().zip(&below).map(difference));
+            }
+        }
+        Some((Stacked::triangle(&at_means, self.x).root, Stacked::triangle(&displaced, self.x).root))
     }
 
     /// V.
@@ -663,7 +690,7 @@ pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64
         }
         radius *= 2.0;
     }
-    let sphere = || Rounds::new(stretches, first, start)?.at_sphere();
+    let sphere = || Rounds::new(stretches, first, start)?.at_sphere(variance);
     best.or_else(sphere).ok_or(Failure::Singular)
 }
 
