@@ -319,6 +319,22 @@ fn pure_spin_tells_an_axis_and_no_ratio() {
     }
 }
 
+/// A flat body that spins almost about its largest axis: at most units there is some tensor for so small a wobble, so
+/// that none of them may be called the right one.
+#[test]
+fn a_drowned_spin_is_not_called_a_mistake_of_units() {
+    let mut random = Random::new(60);
+    let times = times(60);
+    for trial in 0..4 {
+        let r = random_rotation(&mut random);
+        let j = turned([1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0], &r);
+        let omega = r * Vector3::new(-0.066, -0.079, -0.995);
+        let error = refusal(&record(&j, omega, &times, 0.1, &mut random));
+        let named = matches!(error, FitError::Unidentifiable(_) | FitError::Unsettled { .. });
+        assert!(named, "trial {trial}: {error}");
+    }
+}
+
 /// A mean rate is off its axis by noise, which must not pass for a wobble about it, however long the record.
 #[test]
 fn two_pure_spins_tell_all_axes_and_no_ratio() {

@@ -188,9 +188,11 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let misfit = weak.misfit_per_dof(variance);
     let better =
         if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
-    // without a settled tensor to compare with, a unit must explain the record by itself
-    let convincing = if weak.settled() { 0.1 * misfit } else { 2.0 };
-    if let Some((factor, hint, better)) = better.filter(|b| b.2 < convincing) {
+    // without a settled tensor to compare with, a unit must explain the record by itself, and no other may: there is a
+    // tensor for a small wobble in most units
+    let convincing =
+        |b: &Better| if weak.settled() { b.misfit < 0.1 * misfit } else { b.misfit < 2.0 && b.next > 4.0 };
+    if let Some(Better { factor, hint, misfit: better, .. }) = better.filter(convincing) {
         return Err(FitError::Units { factor, hint, misfit, better });
     }
     let identifiability = identify(&weak, &stretches, variance).ok_or_else(singular)?;
@@ -248,27 +250,38 @@ fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f
     }
 }
 
+/// A unit that explains the record better than the one it was read in.
+#[derive(Clone, Copy)]
+struct Better {
+    /// On rate × time.
+    factor: f64,
+    hint: &'static str,
+    /// Mean square of the residuals over the noise in this unit.
+    misfit: f64,
+    /// The same in the next best.
+    next: f64,
+}
+
 /// The unit that explains the record best, where one does so at least three times better.
-fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<(f64, &'static str, f64)> {
+fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<Better> {
     let pilot = weak::pilot(stretches);
-    let mut best = None;
-    let mut least = misfit / 3.0;
+    let mut found = Vec::new();
     for (factor, hint) in UNITS {
         let scaled: Vec<Stretch> = pilot
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
-        let Ok(weak) = weak::estimate(&scaled, None, variance) else { continue };
-        if !weak.settled() {
-            continue;
-        }
-        let value = weak.misfit_per_dof(variance);
-        if value < least {
-            least = value;
-            best = Some((factor, hint, value));
-        }
+        let settled = weak::estimate(&scaled, None, variance).ok().filter(Weak::settled);
+        found.extend(settled.map(|weak| (weak.misfit_per_dof(variance), factor, hint)));
     }
-    best
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let next = found.get(1).map_or(f64::INFINITY, |f| f.0);
+    found.first().filter(|f| f.0 < misfit / 3.0).map(|&(misfit, factor, hint)| Better {
+        factor,
+        hint,
+        misfit,
+        next,
+    })
 }
 
 fn identify(weak: &Weak, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
@@ -300,7 +313,7 @@ impl Facts<'_> {
         nearest: qp::Nearest,
         free: Form,
         identifiability: Identifiability,
-        better: Option<(f64, &'static str, f64)>,
+        better: Option<Better>,
     ) -> Result<Estimate, FitError> {
         let root = self.weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
         let on_face = face_covariance(&free, &root, &nearest.face);
@@ -390,7 +403,7 @@ impl Facts<'_> {
         .collect()
     }
 
-    fn warnings(&self, e: &Estimate, better: Option<(f64, &'static str, f64)>) -> Vec<String> {
+    fn warnings(&self, e: &Estimate, better: Option<Better>) -> Vec<String> {
         let mut list = Vec::new();
         let record = self.record;
         if record.merged > 0 {
@@ -423,9 +436,9 @@ impl Facts<'_> {
                 self.weak.moved
             ));
         }
-        if let Some((factor, hint, value)) = better {
+        if let Some(Better { factor, hint, misfit, .. }) = better {
             list.push(format!(
-                "with the rates {factor:.4} times as large the misfit falls from {:.2e} to {value:.2e}: {hint}?",
+                "with the rates {factor:.4} times as large the misfit falls from {:.2e} to {misfit:.2e}: {hint}?",
                 e.chi2_per_dof
             ));
         }

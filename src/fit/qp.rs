@@ -604,6 +604,23 @@ mod tests {
         assert!(held > 100);
     }
 
+    /// A flat body well measured: the law is a hair's breadth away, the other walls 1e5 standard deviations.
+    #[test]
+    fn remote_walls_do_not_stop_the_solver() {
+        let mut next = numbers(31);
+        for trial in 0..200 {
+            let mut root = Form::from_fn(|i, k| if i < k { 1e4 * next() } else { 0.0 });
+            for k in 0..5 {
+                root[(k, k)] = libm::pow(10.0, 5.5 + 1.5 * next());
+            }
+            let (a, b) = (0.2 + 0.05 * next(), 1e-6 * next().abs());
+            let flat = Matrix3::from_diagonal(&Vector3::new(a, 0.5 - a - b, 0.5 + b));
+            let centre = coordinates(&flat) + Coordinates::from_fn(|_, _| 1e-6 * next());
+            let answer = nearest(centre, root, &[]).unwrap_or_else(|error| panic!("{trial}: {error}"));
+            assert!(eigen(tensor(&answer.x)).0[2] <= LIMIT, "{trial}");
+        }
+    }
+
     #[test]
     fn the_answer_turns_with_the_axes() {
         let turn = *nalgebra::Rotation3::from_axis_angle(&Vector3::y_axis(), 0.7).matrix()
