@@ -464,7 +464,7 @@ fn flat_tops_are_left_out_with_a_warning() {
     let top = rates.iter().map(|w| w.amax()).fold(0.0, f64::max) * 0.95;
     rates.iter_mut().for_each(|w| *w = w.map(|c| c.clamp(-top, top)));
     let record = Record::from_samples(&times, &rates).unwrap();
-    assert!(record.saturated > 50);
+    assert!(record.saturated() > 50);
     let estimate = fit(&record, &Settings::default()).unwrap();
     assert!(estimate.warnings.iter().any(|w| w.contains("flat tops")), "{:?}", estimate.warnings);
     let e = entries(&(estimate.shape.tensor() - j));

@@ -406,13 +406,13 @@ impl Facts<'_> {
     fn warnings(&self, e: &Estimate, better: Option<Better>) -> Vec<String> {
         let mut list = Vec::new();
         let record = self.record;
-        if record.merged > 0 {
-            list.push(format!("{} samples had the time of another and were merged with it", record.merged));
+        if record.merged() > 0 {
+            list.push(format!("{} samples had the time of another and were merged with it", record.merged()));
         }
-        if record.saturated > 0 {
+        if record.saturated() > 0 {
             list.push(format!(
                 "{} samples stand at the end of the sensor's range (flat tops) and were left out",
-                record.saturated
+                record.saturated()
             ));
         }
         let unused = record.segments.len() - e.segments;

@@ -27,7 +27,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The tensor comes from one linear least-squares problem and one quadratic program per round; a refinement by
+//! The tensor comes from rounds of linear least squares and one quadratic program at their end; a refinement by
 //! maximum likelihood would start where this ends.
 
 mod banded;

@@ -208,7 +208,7 @@ pub struct Segment {
 /// use polhode::fit::{Reading, Record};
 /// let text = "t (ms), wx (deg/s), wy (deg/s), wz (deg/s)\n0, 0, 90, 180\n10, 1, 90, 180\n10, 3, 90, 180\n";
 /// let record = Record::read(text, "toss.csv", Reading::default())?;
-/// assert_eq!((record.samples(), record.merged), (2, 1)); // rows of the same time are averaged
+/// assert_eq!((record.samples(), record.merged()), (2, 1)); // rows of the same time are averaged
 /// assert_eq!(record.segments[0].times, [0.0, 0.01]);
 /// assert_eq!(record.segments[0].rates[1].z, core::f64::consts::PI);
 ///
@@ -220,12 +220,15 @@ pub struct Segment {
 pub struct Record {
     /// Its segments.
     pub segments: Vec<Segment>,
-    /// Samples that were merged into one of the same time.
-    pub merged: usize,
-    /// Samples left out because a component stood at the end of the sensor's range.
-    pub saturated: usize,
-    /// Places where the record was split because of a gap.
-    pub gaps: usize,
+    /// What was found among the rows, and when, s.
+    findings: Vec<(f64, Finding)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Finding {
+    Merged,
+    Saturated,
+    Gap,
 }
 
 /// A gap is an interval longer than this many median intervals.
@@ -334,7 +337,7 @@ impl Record {
                     for k in 1..4 {
                         last[k] += (row[k] - last[k]) / *count;
                     }
-                    record.merged += 1;
+                    record.findings.push((row[0], Finding::Merged));
                 }
                 _ => merged.push((row, 1.0)),
             }
@@ -344,18 +347,20 @@ impl Record {
         }
         let samples: Vec<[f64; 4]> = merged.into_iter().map(|(row, _)| row).collect();
         let flat = flat_tops(&samples);
-        record.saturated = flat.iter().filter(|f| **f).count();
         let mut intervals: Vec<f64> = samples.windows(2).map(|w| w[1][0] - w[0][0]).collect();
         intervals.sort_by(f64::total_cmp);
         let median = intervals.get(intervals.len() / 2).copied().unwrap_or(0.0);
         let mut last: Option<f64> = None;
         for (row, flat) in samples.iter().zip(flat) {
             if flat {
+                record.findings.push((row[0], Finding::Saturated));
                 last = None;
                 continue;
             }
             let gap = last.is_some_and(|t| row[0] - t > GAP * median);
-            record.gaps += usize::from(gap);
+            if gap {
+                record.findings.push((row[0], Finding::Gap));
+            }
             if gap || last.is_none() {
                 record.segments.push(Segment { source: file.into(), times: Vec::new(), rates: Vec::new() });
             }
@@ -373,16 +378,36 @@ impl Record {
         self.segments.iter().map(|s| s.times.len()).sum()
     }
 
+    /// Number of samples that were merged into one of the same time.
+    pub fn merged(&self) -> usize {
+        self.count(Finding::Merged)
+    }
+
+    /// Number of samples left out because a component stood at the end of the sensor's range.
+    pub fn saturated(&self) -> usize {
+        self.count(Finding::Saturated)
+    }
+
+    /// Number of places where the record was split because of a gap.
+    pub fn gaps(&self) -> usize {
+        self.count(Finding::Gap)
+    }
+
+    fn count(&self, what: Finding) -> usize {
+        self.findings.iter().filter(|(_, finding)| *finding == what).count()
+    }
+
     /// The parts that lie in the windows (start, end), s, both ends included.
     ///
     /// # Errors
     /// A window that is not ascending, or without samples.
     pub fn windows(&self, windows: &[(f64, f64)]) -> Result<Record, RecordError> {
-        let mut cut = Record { segments: Vec::new(), ..*self };
+        let mut cut = Record::default();
         for &(start, end) in windows {
             if !(start.is_finite() && end.is_finite() && start < end) {
                 return Err(RecordError::Window { start, end });
             }
+            cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
             let before = cut.segments.len();
             for s in &self.segments {
                 let (a, b) =
@@ -408,9 +433,7 @@ impl Record {
     /// This record and another of the same body.
     pub fn join(mut self, other: Record) -> Record {
         self.segments.extend(other.segments);
-        self.merged += other.merged;
-        self.saturated += other.saturated;
-        self.gaps += other.gaps;
+        self.findings.extend(other.findings);
         self
     }
 }
@@ -605,10 +628,11 @@ mod tests {
             text += &format!("{},{i},1,2\n", f64::from(i) / 100.0);
         }
         let record = read(&text).unwrap();
-        assert_eq!((record.segments.len(), record.gaps, record.samples()), (2, 1, 90));
+        assert_eq!((record.segments.len(), record.gaps(), record.samples()), (2, 1, 90));
         let cut = record.windows(&[(0.1, 0.2), (0.4, 0.9)]).unwrap();
         let lengths: Vec<usize> = cut.segments.iter().map(|s| s.times.len()).collect();
         assert_eq!(lengths, [11, 10, 11]);
+        assert_eq!((cut.gaps(), record.windows(&[(0.1, 0.4)]).unwrap().gaps()), (1, 0));
         assert!(record.windows(&[(0.55, 0.7)]).unwrap_err().to_string().contains("from 0 s to 1.19 s"));
         assert!(record.windows(&[(2.0, 1.0)]).is_err());
     }
@@ -620,7 +644,8 @@ mod tests {
         let rates: Vec<_> = (0..100).map(|i| Vector3::new(clipped(i), 7.0, f64::from(i))).collect();
         let record = Record::from_samples(&times, &rates).unwrap();
         // −1 up to i = 20, 1.5 from i = 70
-        assert_eq!(record.saturated, 21 + 30);
+        assert_eq!(record.saturated(), 21 + 30);
         assert_eq!(record.samples(), 49);
+        assert_eq!(record.windows(&[(0.0, 0.5)]).unwrap().saturated(), 21);
     }
 }

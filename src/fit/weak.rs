@@ -495,7 +495,9 @@ impl<'a> Rounds<'a> {
             .collect()
     }
 
-    /// One round, and by how many standard deviations it would move the tensor if it took its whole step. A ridge as weak as one reading keeps x finite before it is known that the record determines it.
+    /// One round, and by how many standard deviations it would move the tensor if it took its whole step.
+    ///
+    /// A ridge as weak as one reading keeps x finite before it is known that the record determines it.
     fn round(&mut self, variance: f64, full: bool) -> Option<f64> {
         let parts = self.linearise()?;
         let stacked = Stacked::new(&parts);
