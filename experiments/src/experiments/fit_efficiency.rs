@@ -14,6 +14,9 @@ use crate::table::{Cell, Column, Table, row};
 const SEED: u64 = 40_400;
 /// Noise of a component as a share of the rate.
 const NOISES: [f64; 3] = [1e-3, 1e-2, 1e-1];
+/// Their columns: name and heading.
+const NOISE_COLUMNS: [(&str, &str); 3] =
+    [("noise_0.001", "noise 0.001"), ("noise_0.01", "noise 0.01"), ("noise_0.1", "noise 0.1")];
 const BODIES: [(&str, [f64; 3]); 3] =
     [("asymmetric", [1.0, 2.0, 2.6]), ("near-symmetric", [1.0, 2.0, 2.1]), ("planar", [1.0, 2.0, 3.0])];
 const BASELINES: [Baseline; 4] = [
@@ -120,8 +123,30 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             point(form.name().trim_start_matches("baseline: ").into(), over);
         }
     }
+    let compared = comparison(&curves);
     figure.series = curves;
-    Ok(Report { tables: vec![table], figures: vec![figure], seed: Some(SEED), failures, ..Report::default() })
+    Ok(Report {
+        tables: vec![table, compared],
+        figures: vec![figure],
+        seed: Some(SEED),
+        failures,
+        ..Report::default()
+    })
+}
+
+/// The curves of the asymmetric body as a table: a row for each formulation, a column for each noise.
+fn comparison(curves: &[Series]) -> Table {
+    let mut columns = vec![Column::new("formulation", "", "how the equation of motion is used")];
+    let at = "error over bound at this noise, a share of the rate";
+    columns.extend(NOISE_COLUMNS.map(|(name, heading)| Column::new(name, "", at).heading(heading)));
+    let caption = "Error over the Cramer-Rao bound, asymmetric body.";
+    let mut table = Table::new("formulations", caption, columns);
+    for series in curves {
+        let mut cells = vec![Cell::from(series.name.clone())];
+        cells.extend(series.points.iter().map(|(_, value)| Cell::from(rounded(*value))));
+        table.push(cells);
+    }
+    table
 }
 
 /// What is promised of the asymmetric body, widened by four standard deviations where trials are few.
