@@ -3,13 +3,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::bound::local_cubic;
 use super::coordinates::{basis, tensor};
+use super::cramer_rao::local_cubic;
 use super::error::FitError;
 use super::estimate::{normalised, shape_of};
 use super::qp;
 use super::record::Record;
-use super::weak::{Stacked, Stretch};
+use super::stacked::Stacked;
+use super::test_functions::Stretch;
 use crate::body::InertiaShape;
 use crate::num::Real;
 

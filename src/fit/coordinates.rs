@@ -86,6 +86,11 @@ pub(super) fn eigen<const N: usize>(mut a: SMatrix<f64, N, N>) -> (SVector<f64, 
     (SVector::from_fn(|k, _| a[(order[k], order[k])]), SMatrix::from_fn(|i, k| v[(i, order[k])]))
 }
 
+/// The matrix that takes coordinates to the entries xx, yy, zz, xy, xz, yz.
+pub(super) fn entries_of_coordinates() -> SMatrix<f64, 6, 5> {
+    SMatrix::from_fn(|row, k| basis(k)[ENTRIES[row]])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

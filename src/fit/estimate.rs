@@ -2,16 +2,21 @@
 
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
-use super::bound;
-use super::coordinates::{Coordinates, Form, eigen, pair, tensor};
+use super::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, pair, tensor};
+use super::cramer_rao::cramer_rao;
 use super::error::FitError;
 use super::identifiability::Identifiability;
+use super::limits::Bound;
 use super::noise;
-use super::qp::{self, ActiveConstraint, Bound, Certificate, LIMIT};
+use super::qp::{self, ActiveConstraint, Certificate, LIMIT};
+use super::radius::{self, Failure};
 use super::record::Record;
+use super::rounds::{ROUNDS, Weak};
 use super::scale::{Known, inertia_covariance};
+use super::test_functions::{SAMPLES_PER_TEST, Stretch};
 use super::torque_free::{Drift, Whiteness, drifts};
-use super::weak::{self, Failure, SAMPLES_PER_TEST, Stretch, Weak, entries_of_coordinates};
+use super::units::{Better, better_unit};
+use super::warnings::warnings;
 use crate::body::{Inertia, InertiaShape};
 
 /// What the user may fix; the default leaves everything to the record.
@@ -116,18 +121,6 @@ pub(super) struct Normalised {
     rms: f64,
 }
 
-/// Other units, as factors on rate × time, and what would have happened.
-const UNITS: [(f64, &str); 8] = [
-    (core::f64::consts::PI / 180.0, "degrees per second taken for radians per second"),
-    (180.0 / core::f64::consts::PI, "radians per second taken for degrees per second"),
-    (core::f64::consts::PI / 30.0, "revolutions per minute taken for radians per second"),
-    (30.0 / core::f64::consts::PI, "radians per second taken for revolutions per minute"),
-    (6.0, "revolutions per minute taken for degrees per second"),
-    (1.0 / 6.0, "degrees per second taken for revolutions per minute"),
-    (1e-3, "milliseconds taken for seconds"),
-    (1e3, "seconds taken for milliseconds"),
-];
-
 pub(super) fn normalised(record: &Record) -> Result<Normalised, FitError> {
     let samples = record.samples();
     let longest = record.segments.iter().map(|s| s.times.len()).max().unwrap_or(0);
@@ -179,12 +172,13 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
     }
     let singular = || FitError::Solver { status: "the residuals have no positive covariance".into() };
-    let weak = weak::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| {
-        match failure {
-            Failure::TooShort => too_short(record, settings, &stretches, rms),
-            Failure::Singular => singular(),
-        }
-    })?;
+    let weak =
+        radius::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| {
+            match failure {
+                Failure::TooShort => too_short(record, settings, &stretches, rms),
+                Failure::Singular => singular(),
+            }
+        })?;
     let misfit = weak.misfit_per_dof(variance);
     let better =
         if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
@@ -198,7 +192,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let identifiability = identify(&weak, &stretches, variance).ok_or_else(singular)?;
     if !weak.settled() && misfit > 1.0 + 5.0 * (2.0 / weak.dof().max(1) as f64).sqrt() {
         // the rates are not constant, and still no tensor explains them
-        return Err(FitError::Unsettled { rounds: weak::ROUNDS, noise: variance.sqrt() * rms });
+        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms });
     }
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
@@ -250,40 +244,6 @@ fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f
     }
 }
 
-/// A unit that explains the record better than the one it was read in.
-#[derive(Clone, Copy)]
-struct Better {
-    /// On rate × time.
-    factor: f64,
-    hint: &'static str,
-    /// Mean square of the residuals over the noise in this unit.
-    misfit: f64,
-    /// The same in the next best.
-    next: f64,
-}
-
-/// The unit that explains the record best, where one does so at least three times better.
-fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<Better> {
-    let pilot = weak::pilot(stretches);
-    let mut found = Vec::new();
-    for (factor, hint) in UNITS {
-        let scaled: Vec<Stretch> = pilot
-            .iter()
-            .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
-            .collect();
-        let settled = weak::estimate(&scaled, None, variance).ok().filter(Weak::settled);
-        found.extend(settled.map(|weak| (weak.misfit_per_dof(variance), factor, hint)));
-    }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let next = found.get(1).map_or(f64::INFINITY, |f| f.0);
-    found.first().filter(|f| f.0 < misfit / 3.0).map(|&(misfit, factor, hint)| Better {
-        factor,
-        hint,
-        misfit,
-        next,
-    })
-}
-
 fn identify(weak: &Weak, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
     let mut scatter = Matrix3::zeros();
     let mut count = 0.0;
@@ -297,13 +257,13 @@ fn identify(weak: &Weak, stretches: &[Stretch], variance: f64) -> Option<Identif
 }
 
 /// What the report is drawn from.
-struct Facts<'a> {
-    record: &'a Record,
+pub(super) struct Facts<'a> {
+    pub(super) record: &'a Record,
     settings: &'a Settings,
     stretches: &'a [Stretch],
     rms: f64,
     variance: f64,
-    weak: &'a Weak,
+    pub(super) weak: &'a Weak,
     misfit: f64,
 }
 
@@ -334,7 +294,7 @@ impl Facts<'_> {
         };
         let entries = entries_of_coordinates();
         let spread = |c: Form| entries * c * entries.transpose();
-        let bound = bound::cramer_rao(self.stretches, &nearest.x, self.variance);
+        let bound = cramer_rao(self.stretches, &nearest.x, self.variance);
         let bound_ratio = bound.map(|b| (free.trace() / b.trace()).sqrt());
         let (inertia, inertia_covariance) = self.absolute(&j, &on_face)?;
         let (momentum, energy) = drifts(self.stretches, &j, self.variance);
@@ -370,7 +330,7 @@ impl Facts<'_> {
             warnings: Vec::new(),
             shape,
         };
-        estimate.warnings = self.warnings(&estimate, better);
+        estimate.warnings = warnings(&estimate, self, better);
         Ok(estimate)
     }
 
@@ -401,101 +361,6 @@ impl Facts<'_> {
             }
         })
         .collect()
-    }
-
-    fn warnings(&self, e: &Estimate, better: Option<Better>) -> Vec<String> {
-        let mut list = Vec::new();
-        let record = self.record;
-        if record.merged() > 0 {
-            list.push(format!("{} samples had the time of another and were merged with it", record.merged()));
-        }
-        if record.saturated() > 0 {
-            list.push(format!(
-                "{} samples stand at the end of the sensor's range (flat tops) and were left out",
-                record.saturated()
-            ));
-        }
-        let unused = record.segments.len() - e.segments;
-        if unused > 0 {
-            list.push(format!(
-                "{unused} of {} segments are too short for the test functions",
-                record.segments.len()
-            ));
-        }
-        if e.chi2_per_dof > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
-            list.push(format!(
-                "the residuals are {:.1} times what the noise of {:.2e} rad/s explains: torques, outliers or a sensor that \
-                 filters; deviations are enlarged by that factor",
-                e.chi2_per_dof.sqrt(),
-                e.noise_sigma
-            ));
-        }
-        if !self.weak.still() {
-            list.push(format!(
-                "the reweighting did not come to rest: a further round would move the tensor by {:.2} standard deviations",
-                self.weak.moved
-            ));
-        }
-        if let Some(Better { factor, hint, misfit, .. }) = better {
-            list.push(format!(
-                "with the rates {factor:.4} times as large the misfit falls from {:.2e} to {misfit:.2e}: {hint}?",
-                e.chi2_per_dof
-            ));
-        }
-        if e.whiteness.significant() {
-            list.push(format!(
-                "neighbouring residuals are correlated by {:.2} +- {:.2}: the noise is not white or the model is wrong",
-                e.whiteness.correlation, e.whiteness.sigma
-            ));
-        }
-        for (name, drift) in [("momentum |J w|", e.momentum_drift), ("energy w J w", e.energy_drift)] {
-            if drift.significant() {
-                list.push(format!(
-                    "not free of torques: the {name} changes by {:.2} +- {:.2} per cent per second",
-                    100.0 * drift.rate,
-                    100.0 * drift.sigma
-                ));
-            }
-        }
-        let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.misfit).collect();
-        levels.sort_by(f64::total_cmp);
-        if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {
-            for r in e.residuals.iter().filter(|r| r.misfit > 4.0 * median) {
-                list.push(format!(
-                    "segment {} (from {} s) has {:.1} times the residuals of the median segment: check it",
-                    r.segment + 1,
-                    r.times.first().copied().unwrap_or(0.0),
-                    (r.misfit / median).sqrt()
-                ));
-            }
-        }
-        for constraint in &e.active_constraints {
-            list.push(format!(
-                "{} holds the answer (multiplier {:.3e})",
-                constraint.name, constraint.multiplier
-            ));
-        }
-        let largest = e.free_covariance.trace().sqrt();
-        if largest > 5e-3 {
-            list.push(format!(
-                "the tensor is known to {:.1} per cent of its trace only: beyond half a per cent the linear covariance is a guide",
-                100.0 * largest
-            ));
-        }
-        for (low, high) in [(0, 1), (1, 2)] {
-            let (a, b) = (e.sigma_principal[low], e.sigma_principal[high]);
-            if e.principal[high] - e.principal[low] < 3.0 * (a * a + b * b).sqrt() {
-                list.push(format!(
-                    "moments {} and {} agree within their errors: the directions of their axes are arbitrary",
-                    low + 1,
-                    high + 1
-                ));
-            }
-        }
-        if e.dof < 20 {
-            list.push(format!("only {} equations beyond the unknowns: the misfit says little", e.dof));
-        }
-        list
     }
 }
 

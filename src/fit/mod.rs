@@ -32,26 +32,35 @@
 
 mod banded;
 mod baselines;
-mod bound;
+mod conic;
 mod coordinates;
+mod cramer_rao;
 mod error;
 mod estimate;
 mod identifiability;
+mod limits;
 mod noise;
 mod qp;
 mod quadrature;
+mod radius;
 mod record;
 mod rehearsal;
+mod rounds;
 mod scale;
+mod stacked;
+mod test_functions;
 mod torque_free;
+mod units;
+mod warnings;
 mod weak;
 
 pub use baselines::{Baseline, baseline};
-pub use bound::foreseen_bound;
+pub use cramer_rao::foreseen_bound;
 pub use error::{Clash, FitError};
 pub use estimate::{Estimate, Residuals, Settings, fit};
 pub use identifiability::Identifiability;
-pub use qp::{ActiveConstraint, Bound, Certificate};
+pub use limits::Bound;
+pub use qp::{ActiveConstraint, Certificate};
 pub use record::{RateUnit, Reading, Record, RecordError, Segment, TimeUnit};
 pub use rehearsal::{Random, rehearse};
 pub use scale::Known;

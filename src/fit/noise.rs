@@ -1,6 +1,6 @@
 //! The noise of a sensor from its own samples.
 
-use super::weak::Stretch;
+use super::test_functions::Stretch;
 
 /// Variance of one component, from what local cubics leave of five neighbouring samples.
 ///

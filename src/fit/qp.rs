@@ -2,8 +2,9 @@
 //!
 //! x = x̂ + R⁻¹ y with Rᵀ R the information, so that the objective is ½|y|² whatever the conditioning: in raw entries
 //! a solver stops at its tolerance long before the badly determined directions have settled. With trace 1 the one
-//! physical law is λ_max(J) ≤ ½; it enters as rows vᵀ J v ≤ ½ along the principal axes of x̂ and as second-order cones
-//! (2×2 minors of ½ − J in the eigenbasis of the last answer), added until the violation is at most 1e-9.
+//! physical law is λ_max(J) ≤ ½; it enters as rows vᵀ J v ≤ ½ along principal axes that break it, of x̂ and of each answer,
+//! and as second-order cones (2×2 minors of ½ − J in the eigenbasis of the last answer), added until the violation is
+//! at most 1e-9.
 //! Newton's method on the active face then takes the answer to rounding, and its optimality is certified here, not by
 //! the solver's status.
 //!
@@ -13,37 +14,23 @@
 //! | g | gradient of a linear reading of J with respect to y |
 //! | Z | multiplier of ½ − J ⪰ 0 on its null space |
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
-    SupportedConeT,
-};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
+use super::conic::Conditions;
 use super::coordinates::{Coordinates, Form, coordinates, eigen, pair, tensor};
-use super::error::{Clash, FitError};
+use super::error::FitError;
+use super::limits::{Bound, check_bounds, describe, feasible};
 
 /// The largest share of the trace that a moment can have: the other two together are not less.
 pub(super) const LIMIT: f64 = 0.5;
 /// Violation of the law that ends the cuts.
 const VIOLATION: f64 = 1e-9;
 /// Rounds of cuts; hard random problems took at most 13.
-const CUTS: usize = 40;
+pub(super) const CUTS: usize = 40;
 /// Largest violation, complementarity and negative multiplier of a certified answer.
 const CERTIFIED: f64 = 1e-9;
 /// Its largest residual of stationarity: a millionth of a standard deviation. Conditions of 1e10 reach no further.
 const STATIONARY: f64 = 1e-6;
-
-/// A limit that is known beforehand: the moment of inertia about `axis` as a share of the trace.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound {
-    /// Any non-zero vector along the axis, in sensor axes.
-    pub axis: Vector3<f64>,
-    /// Smallest share; physically not below 0.
-    pub at_least: Option<f64>,
-    /// Largest share; physically not above ½.
-    pub at_most: Option<f64>,
-}
 
 /// What the solver's answer was checked against: largest residuals of the optimality conditions, in whitened units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -397,147 +384,6 @@ struct Newton {
 impl Newton {
     fn largest(&self) -> f64 {
         self.held.iter().copied().fold(self.z.amax(), |m, h| m.max(h.abs()))
-    }
-}
-
-fn describe(index: usize, bound: &Bound, upper: bool) -> String {
-    let n = bound.axis;
-    let (relation, value) = if upper { ("<=", bound.at_most) } else { (">=", bound.at_least) };
-    let value = value.unwrap_or(f64::INFINITY);
-    format!("bound {}: moment about ({}, {}, {}) {relation} {value} of the trace", index + 1, n.x, n.y, n.z)
-}
-
-fn check_bounds(bounds: &[Bound]) -> Result<(), FitError> {
-    for (k, bound) in bounds.iter().enumerate() {
-        let size = bound.axis.norm();
-        if !(size > 0.0 && size.is_finite()) {
-            return Err(FitError::BoundAxis { bound: k + 1, axis: bound.axis.into() });
-        }
-        for value in [bound.at_least, bound.at_most].into_iter().flatten() {
-            if !value.is_finite() {
-                return Err(FitError::BoundValue { bound: k + 1, value });
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Phase 1: the least common relaxation t of all bounds over the physical tensors.
-///
-/// Where t > 0 the bounds with the largest multipliers are those that clash.
-fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
-    let mut sides: Vec<(Coordinates, f64, String)> = Vec::new();
-    for (k, bound) in bounds.iter().enumerate() {
-        let n = bound.axis.normalize();
-        let g = pair(&n, &n);
-        if let Some(low) = bound.at_least {
-            sides.push((-g, 1.0 / 3.0 - low, describe(k, bound, false)));
-        }
-        if let Some(high) = bound.at_most {
-            sides.push((g, high - 1.0 / 3.0, describe(k, bound, true)));
-        }
-    }
-    let mut cuts: Vec<Vector3<f64>> = (0..3).map(|k| Vector3::ith(k, 1.0)).collect();
-    let six = |g: &Coordinates, t: f64| [g[0], g[1], g[2], g[3], g[4], t];
-    for _ in 0..10 * CUTS {
-        let mut conditions = Conditions::new(6);
-        for (g, right, _) in &sides {
-            conditions.nonnegative(&six(g, -1.0), *right);
-        }
-        for v in &cuts {
-            conditions.nonnegative(&six(&pair(v, v), 0.0), LIMIT - v.norm_squared() / 3.0);
-        }
-        for k in 0..6 {
-            // any physical tensor lies well inside; t below 0 only means room to spare
-            for sign in [1.0, -1.0] {
-                let unit: [f64; 6] = core::array::from_fn(|i| if i == k { sign } else { 0.0 });
-                conditions.nonnegative(&unit, if k == 5 && sign > 0.0 { 1e3 } else { 1.0 });
-            }
-        }
-        let (answer, duals) = conditions.solve_with_duals(&[0.0; 6], &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0])?;
-        let x = Coordinates::from_column_slice(&answer[..5]);
-        let (moments, axes) = eigen(tensor(&x));
-        if moments[2] - LIMIT > 1e-6 {
-            cuts.extend((0..3).map(|k| axes.column(k).into_owned()));
-            continue;
-        }
-        if answer[5] <= 1e-6 {
-            return Ok(());
-        }
-        let mut order: Vec<usize> = (0..sides.len()).collect();
-        order.sort_by(|&a, &b| duals[b].total_cmp(&duals[a]));
-        let first = sides[order[0]].2.clone();
-        let with = order.get(1).filter(|&&k| duals[k] > 1e-3).map(|&k| sides[k].2.clone());
-        let second = with
-            .unwrap_or_else(|| "the law I1 + I2 >= I3, by which a moment is at most half the trace".into());
-        return Err(FitError::Contradiction(Box::new(Clash { first, second, gap: answer[5] })));
-    }
-    Err(FitError::Solver { status: "the bounds could not be checked against the physical law".into() })
-}
-
-/// Conditions a·x ≤ b and second-order cones, gathered for the solver.
-struct Conditions {
-    variables: usize,
-    nonnegative: Vec<(Vec<f64>, f64)>,
-    second_order: Vec<(Vec<f64>, f64)>,
-}
-
-impl Conditions {
-    fn new(variables: usize) -> Self {
-        Conditions { variables, nonnegative: Vec::new(), second_order: Vec::new() }
-    }
-
-    fn nonnegative(&mut self, a: &[f64], b: f64) {
-        self.nonnegative.push((a.to_vec(), b));
-    }
-
-    /// base₀ + g₀·x ≥ |(base₁ + g₁·x, base₂ + g₂·x)|.
-    fn second_order(&mut self, cone: [(Coordinates, f64); 3]) {
-        self.second_order.extend(cone.map(|(g, base)| ((-g).as_slice().to_vec(), base)));
-    }
-
-    fn solve(&self, diagonal: &[f64], linear: &[f64]) -> Result<Vec<f64>, FitError> {
-        self.solve_with_duals(diagonal, linear).map(|(x, _)| x)
-    }
-
-    /// min ½ Σ diagonal x² + linear·x. Every status is looked at; an answer of less than full accuracy is passed on,
-    /// since what follows certifies it.
-    fn solve_with_duals(&self, diagonal: &[f64], linear: &[f64]) -> Result<(Vec<f64>, Vec<f64>), FitError> {
-        let rows: Vec<&(Vec<f64>, f64)> = self.nonnegative.iter().chain(&self.second_order).collect();
-        let (m, n) = (rows.len(), self.variables);
-        let colptr = (0..=n).map(|k| k * m).collect();
-        let rowval = (0..n).flat_map(|_| 0..m).collect();
-        let nzval = (0..n).flat_map(|k| rows.iter().map(move |(a, _)| a[k])).collect();
-        let a = CscMatrix::new(m, n, colptr, rowval, nzval);
-        let p = CscMatrix::new(n, n, (0..=n).collect(), (0..n).collect(), diagonal.to_vec());
-        let b: Vec<f64> = rows.iter().map(|(_, b)| *b).collect();
-        if b.iter().chain(&a.nzval).any(|value| !value.is_finite()) {
-            return Err(FitError::Solver { status: "a coefficient of the program is not finite".into() });
-        }
-        let mut cones: Vec<SupportedConeT<f64>> = vec![NonnegativeConeT(self.nonnegative.len())];
-        cones.extend((0..self.second_order.len() / 3).map(|_| SecondOrderConeT(3)));
-        let settings = DefaultSettings {
-            verbose: false,
-            tol_gap_abs: 1e-11,
-            tol_gap_rel: 1e-11,
-            tol_feas: 1e-11,
-            ..DefaultSettings::default()
-        };
-        let mut solver = DefaultSolver::new(&p, linear, &a, &b, &cones, settings)
-            .map_err(|error| FitError::Solver { status: error.to_string() })?;
-        solver.solve();
-        let solution = &solver.solution;
-        match solution.status {
-            SolverStatus::Solved
-            | SolverStatus::AlmostSolved
-            | SolverStatus::InsufficientProgress
-            | SolverStatus::MaxIterations
-                if solution.x.iter().all(|x| x.is_finite()) =>
-            {
-                Ok((solution.x.clone(), solution.z.clone()))
-            }
-            status => Err(FitError::Solver { status: format!("{status:?}") }),
-        }
     }
 }
 

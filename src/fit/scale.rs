@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
+use super::coordinates::entries_of_coordinates;
 use super::coordinates::{Coordinates, ENTRIES, Form, basis};
 use super::record::Record;
-use super::weak::entries_of_coordinates;
 
 /// A quantity that is known besides the motion, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::weak::Stretch;
+use super::test_functions::Stretch;
 
 /// Relative change per second of a quantity that a free body keeps.
 #[derive(Clone, Copy, Debug, PartialEq)]

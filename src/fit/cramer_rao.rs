@@ -5,8 +5,9 @@
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-use super::coordinates::{Coordinates, Form, basis, eigen, tensor};
-use super::weak::{Stretch, cross_derivative, entries_of_coordinates};
+use super::coordinates::{Coordinates, Form, basis, eigen, entries_of_coordinates, tensor};
+use super::test_functions::Stretch;
+use super::weak::cross_derivative;
 use crate::body::Inertia;
 
 type Sensitivity = SMatrix<f64, 3, 8>;

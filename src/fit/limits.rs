@@ -1,0 +1,95 @@
+//! What is known of the moments beforehand, and whether it agrees with itself and with the physical law.
+
+use nalgebra::Vector3;
+
+use super::conic::Conditions;
+use super::coordinates::{Coordinates, eigen, pair, tensor};
+use super::error::{Clash, FitError};
+use super::qp::{CUTS, LIMIT};
+
+/// A limit that is known beforehand: the moment of inertia about `axis` as a share of the trace.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// Any non-zero vector along the axis, in sensor axes.
+    pub axis: Vector3<f64>,
+    /// Smallest share; physically not below 0.
+    pub at_least: Option<f64>,
+    /// Largest share; physically not above ½.
+    pub at_most: Option<f64>,
+}
+
+/// A limit in words.
+pub(super) fn describe(index: usize, bound: &Bound, upper: bool) -> String {
+    let n = bound.axis;
+    let (relation, value) = if upper { ("<=", bound.at_most) } else { (">=", bound.at_least) };
+    let value = value.unwrap_or(f64::INFINITY);
+    format!("bound {}: moment about ({}, {}, {}) {relation} {value} of the trace", index + 1, n.x, n.y, n.z)
+}
+
+pub(super) fn check_bounds(bounds: &[Bound]) -> Result<(), FitError> {
+    for (k, bound) in bounds.iter().enumerate() {
+        let size = bound.axis.norm();
+        if !(size > 0.0 && size.is_finite()) {
+            return Err(FitError::BoundAxis { bound: k + 1, axis: bound.axis.into() });
+        }
+        for value in [bound.at_least, bound.at_most].into_iter().flatten() {
+            if !value.is_finite() {
+                return Err(FitError::BoundValue { bound: k + 1, value });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Phase 1: the least common relaxation t of all bounds over the physical tensors.
+///
+/// Where t > 0 the bounds with the largest multipliers are those that clash.
+pub(super) fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
+    let mut sides: Vec<(Coordinates, f64, String)> = Vec::new();
+    for (k, bound) in bounds.iter().enumerate() {
+        let n = bound.axis.normalize();
+        let g = pair(&n, &n);
+        if let Some(low) = bound.at_least {
+            sides.push((-g, 1.0 / 3.0 - low, describe(k, bound, false)));
+        }
+        if let Some(high) = bound.at_most {
+            sides.push((g, high - 1.0 / 3.0, describe(k, bound, true)));
+        }
+    }
+    let mut cuts: Vec<Vector3<f64>> = (0..3).map(|k| Vector3::ith(k, 1.0)).collect();
+    let six = |g: &Coordinates, t: f64| [g[0], g[1], g[2], g[3], g[4], t];
+    for _ in 0..10 * CUTS {
+        let mut conditions = Conditions::new(6);
+        for (g, right, _) in &sides {
+            conditions.nonnegative(&six(g, -1.0), *right);
+        }
+        for v in &cuts {
+            conditions.nonnegative(&six(&pair(v, v), 0.0), LIMIT - v.norm_squared() / 3.0);
+        }
+        for k in 0..6 {
+            // any physical tensor lies well inside; t below 0 only means room to spare
+            for sign in [1.0, -1.0] {
+                let unit: [f64; 6] = core::array::from_fn(|i| if i == k { sign } else { 0.0 });
+                conditions.nonnegative(&unit, if k == 5 && sign > 0.0 { 1e3 } else { 1.0 });
+            }
+        }
+        let (answer, duals) = conditions.solve_with_duals(&[0.0; 6], &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0])?;
+        let x = Coordinates::from_column_slice(&answer[..5]);
+        let (moments, axes) = eigen(tensor(&x));
+        if moments[2] - LIMIT > 1e-6 {
+            cuts.extend((0..3).map(|k| axes.column(k).into_owned()));
+            continue;
+        }
+        if answer[5] <= 1e-6 {
+            return Ok(());
+        }
+        let mut order: Vec<usize> = (0..sides.len()).collect();
+        order.sort_by(|&a, &b| duals[b].total_cmp(&duals[a]));
+        let first = sides[order[0]].2.clone();
+        let with = order.get(1).filter(|&&k| duals[k] > 1e-3).map(|&k| sides[k].2.clone());
+        let second = with
+            .unwrap_or_else(|| "the law I1 + I2 >= I3, by which a moment is at most half the trace".into());
+        return Err(FitError::Contradiction(Box::new(Clash { first, second, gap: answer[5] })));
+    }
+    Err(FitError::Solver { status: "the bounds could not be checked against the physical law".into() })
+}

@@ -1,0 +1,113 @@
+//! The half width of the test functions: chosen by least predicted covariance, doubled where the rounds do not settle.
+
+use super::coordinates::{Coordinates, Form};
+use super::rounds::{RESTLESS, Rounds, TORQUES, Weak};
+use super::stacked::Stacked;
+use super::test_functions::{SAMPLES_PER_TEST, Stretch};
+
+/// Why there is no weak estimate.
+pub(super) enum Failure {
+    /// No stretch carries enough test functions.
+    TooShort,
+    /// A covariance has no factor.
+    Singular,
+}
+
+/// The covariance (H/σ² − V)⁻¹ (H/σ²) (H/σ² − V)⁻¹ of an estimate at raw samples.
+fn covariance(information: &Form, inflation: &Form, variance: f64) -> Option<Form> {
+    let noisy = information / variance;
+    let inverse = (noisy - inflation).cholesky()?.inverse();
+    Some(inverse * noisy * inverse)
+}
+
+/// Radii to choose from, ascending: doubling from half the time in which the body turns by one radian.
+fn candidates(stretches: &[Stretch]) -> Vec<f64> {
+    let longest = stretches.iter().map(Stretch::duration).fold(0.0, f64::max);
+    let samples: usize = stretches.iter().map(|s| s.times.len()).sum();
+    let duration: f64 = stretches.iter().map(Stretch::duration).sum();
+    let lowest = (SAMPLES_PER_TEST * duration / samples as f64).max(0.5);
+    let mut radii: Vec<f64> = (0..6)
+        .scan(lowest, |r, _| Some(core::mem::replace(r, 2.0 * *r)))
+        .filter(|r| 4.0 * r <= longest)
+        .collect();
+    if radii.is_empty() {
+        radii.push(0.25 * longest);
+    }
+    radii
+}
+
+/// The radius of least predicted covariance, and the coordinates it was judged at.
+fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinates)> {
+    let radii = candidates(stretches);
+    let mut start = Coordinates::zeros();
+    let mut pilot = Rounds::new(stretches, radii[radii.len() / 2], start)?;
+    for _ in 0..2 {
+        if pilot.round(variance, true).is_none() {
+            break;
+        }
+        start = pilot.x;
+    }
+    let mut best = (f64::INFINITY, radii[radii.len() / 2]);
+    for radius in radii {
+        let Some(rounds) = Rounds::new(stretches, radius, start) else { continue };
+        let Some(parts) = rounds.linearise() else { continue };
+        let stacked = Stacked::new(&parts);
+        // a misfit counts as noise, so that radii too short for the sampling or too long for the torques lose
+        let inflated = variance * stacked.excess(variance);
+        let spread = covariance(&stacked.information(), &rounds.inflation(&parts), inflated);
+        let trace = spread.map_or(f64::INFINITY, |c| c.trace());
+        if trace < best.0 {
+            best = (trace, radius);
+        }
+    }
+    Some((best.1, start))
+}
+
+/// Samples on which the radius is chosen: more would not change it.
+const PILOT_SAMPLES: usize = 40_000;
+
+/// The weak estimate; `variance` is that of the noise in units of the mean square rate.
+pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64) -> Result<Weak, Failure> {
+    let (first, start, largest) = match radius {
+        Some(radius) => (radius, Coordinates::zeros(), radius),
+        None => {
+            let pilot = pilot(stretches);
+            let (radius, start) = choose_radius(&pilot, variance).ok_or(Failure::TooShort)?;
+            (radius, start, candidates(&pilot).into_iter().fold(radius, f64::max))
+        }
+    };
+    // a weak wobble in strong noise may need longer test functions than its information alone asks for
+    let mut radius = first;
+    let mut best: Option<Weak> = None;
+    while radius <= largest * (1.0 + 1e-9) {
+        let mut rounds = Rounds::new(stretches, radius, start).ok_or(Failure::TooShort)?;
+        let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS);
+        if let Some(weak) = moved.and_then(|moved| rounds.finish(variance, moved)) {
+            if weak.still() {
+                return Ok(weak);
+            }
+            // mere noise comes to rest on a motion, if there is one; torques may not let it
+            let torques = weak.misfit_per_dof(variance) > TORQUES;
+            if torques && best.as_ref().is_none_or(|b| weak.moved < b.moved) {
+                best = Some(weak);
+            }
+        }
+        radius *= 2.0;
+    }
+    let sphere = || Rounds::new(stretches, first, start)?.at_sphere(variance);
+    best.or_else(sphere).ok_or(Failure::Singular)
+}
+
+/// The first stretches, up to a number of samples.
+pub(super) fn pilot(stretches: &[Stretch]) -> Vec<Stretch> {
+    let mut left = PILOT_SAMPLES;
+    let mut chosen = Vec::new();
+    for s in stretches {
+        let count = left.min(s.times.len());
+        if count > 3 {
+            chosen.push(if count < s.times.len() { s.head(count) } else { s.clone() });
+        }
+        left -= count;
+    }
+    chosen
+}

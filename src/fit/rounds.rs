@@ -1,0 +1,224 @@
+//! Rounds of the weak equations at samples that each round moves further onto them.
+
+use faer::Mat;
+use nalgebra::Vector3;
+
+use super::coordinates::{Coordinates, Form, tensor};
+use super::stacked::Stacked;
+use super::test_functions::{Stretch, Tests};
+use super::weak::Linearised;
+
+/// Most rounds at one radius; at low noise two or three do.
+pub(super) const ROUNDS: usize = 12;
+/// Rounds that take their whole step.
+const FULL_ROUNDS: usize = 6;
+/// Standard deviations by which the last round may still move the tensor.
+const STILL: f64 = 0.01;
+/// The same beyond which there is no answer.
+pub(super) const RESTLESS: f64 = 0.5;
+/// Misfit per equation that noise does not explain.
+pub(super) const TORQUES: f64 = 4.0;
+/// Fall of χ² that no wobble of pure noise brings about: its chance is e⁻²⁵ for each frequency that is tried.
+const SIGNIFICANT_GAIN: f64 = 50.0;
+/// Standard deviations of mean rates within which the true ones are taken to lie.
+const SURE: f64 = 5.0;
+
+/// The weak estimate of a record: where its rounds ended.
+pub(super) struct Weak {
+    pub(super) radius: f64,
+    pub(super) x: Coordinates,
+    /// Standard deviations by which a further round would move x; infinite where no round could be made, and this is
+    /// good for one question only: what is undetermined.
+    pub(super) moved: f64,
+    /// Upper triangular, Rᵀ R = H at a motion free of noise.
+    pub(super) root: Form,
+    /// D of the mean rates; zero where R is taken at a motion that stands out of the noise.
+    doubt: Form,
+    /// Sum of squares of the whitened residuals.
+    pub(super) misfit: f64,
+    /// Equations.
+    pub(super) rows: usize,
+    /// Whitened residuals of each stretch that is long enough: its index, the tests' centres, three values each.
+    pub(super) residuals: Vec<(usize, Vec<f64>, Vec<f64>)>,
+}
+
+impl Weak {
+    /// Whether the rounds ended near enough to a fixed point.
+    pub(super) fn settled(&self) -> bool {
+        self.moved <= RESTLESS
+    }
+
+    /// Whether they stood still there.
+    pub(super) fn still(&self) -> bool {
+        self.moved <= STILL
+    }
+
+    /// Equations beyond the unknowns.
+    pub(super) fn dof(&self) -> usize {
+        self.rows - 5
+    }
+
+    /// Mean square of the residuals over the noise.
+    pub(super) fn misfit_per_dof(&self, variance: f64) -> f64 {
+        self.misfit / variance / self.dof().max(1) as f64
+    }
+
+    /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
+    /// without its squares.
+    pub(super) fn spectrum(&self) -> Option<(Coordinates, Form)> {
+        let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
+        let (values, directions) = (svd.S().column_vector(), svd.V());
+        let mut pairs: [(f64, Coordinates); 5] = core::array::from_fn(|k| {
+            let direction = Coordinates::from_fn(|i, _| directions[(i, k)]);
+            let sure = values[k] * values[k] - (self.doubt * direction).norm_squared();
+            (sure.max(0.0).sqrt(), direction)
+        });
+        pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Some((Coordinates::from_fn(|k, _| pairs[k].0), Form::from_fn(|i, k| pairs[k].1[i])))
+    }
+}
+
+pub(super) struct Rounds<'a> {
+    used: Vec<(usize, &'a Stretch, Tests)>,
+    noise: Vec<Vec<Vector3<f64>>>,
+    pub(super) x: Coordinates,
+}
+
+impl<'a> Rounds<'a> {
+    pub(super) fn new(stretches: &'a [Stretch], radius: f64, x: Coordinates) -> Option<Self> {
+        let used: Vec<_> = stretches
+            .iter()
+            .enumerate()
+            .filter_map(|(k, s)| Tests::new(s, radius).map(|tests| (k, s, tests)))
+            .collect();
+        let rows: usize = used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
+        if rows < 6 {
+            return None;
+        }
+        let noise = used.iter().map(|(_, s, _)| vec![Vector3::zeros(); s.times.len()]).collect();
+        Some(Rounds { used, noise, x })
+    }
+
+    pub(super) fn linearise(&self) -> Option<Vec<Linearised>> {
+        self.used
+            .iter()
+            .zip(&self.noise)
+            .map(|((_, s, tests), n)| Linearised::new(s, n, self.x, tests.clone()))
+            .collect()
+    }
+
+    /// One round, and by how many standard deviations it would move the tensor if it took its whole step.
+    ///
+    /// A ridge as weak as one reading keeps x finite before it is known that the record determines it.
+    pub(super) fn round(&mut self, variance: f64, full: bool) -> Option<f64> {
+        let parts = self.linearise()?;
+        let stacked = Stacked::new(&parts);
+        let x = stacked.ridge(variance)?;
+        // where torques act, full steps may end in going to and fro
+        let relax = if full || stacked.excess(variance) < TORQUES { 1.0 } else { 0.5 };
+        let j = tensor(&self.x);
+        for ((part, (_, s, _)), noise) in parts.iter().zip(&self.used).zip(&mut self.noise) {
+            let next = part.noise(s, noise, &j, &x);
+            for (old, new) in noise.iter_mut().zip(next) {
+                *old += (new - *old) * relax;
+            }
+        }
+        let step = x - self.x;
+        self.x += step * relax;
+        Some((stacked.root * step).norm() / (variance * stacked.excess(variance)).sqrt())
+    }
+
+    /// Rounds until the tensor stands still, and by how many standard deviations the last would have moved it.
+    pub(super) fn settle(&mut self, variance: f64) -> Option<f64> {
+        let mut moved = f64::INFINITY;
+        for round in 0..ROUNDS {
+            moved = self.round(variance, round < FULL_ROUNDS)?;
+            if moved <= STILL {
+                break;
+            }
+        }
+        Some(moved)
+    }
+
+    pub(super) fn finish(&self, variance: f64, moved: f64) -> Option<Weak> {
+        let parts = self.linearise()?;
+        let stacked = Stacked::new(&parts);
+        let x = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite())).unwrap_or(self.x);
+        let used = self.used.iter().zip(&parts);
+        let residuals = used.map(|((k, _, tests), p)| (*k, tests.centres(), p.residuals(&x))).collect();
+        // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
+        // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
+        let gain = (self.misfit_of_sphere()? - stacked.misfit) / (variance * stacked.excess(variance));
+        let (root, doubt) = if gain > SIGNIFICANT_GAIN {
+            (stacked.root, Form::zeros())
+        } else {
+            self.constant_rates(variance)?
+        };
+        Some(Weak {
+            radius: self.used.first()?.2.radius,
+            x,
+            moved,
+            root,
+            doubt,
+            misfit: stacked.misfit,
+            rows: stacked.rows,
+            residuals,
+        })
+    }
+
+    /// What can be said without any tensor to go by: the information of constant rates, weighted as for a sphere.
+    pub(super) fn at_sphere(mut self, variance: f64) -> Option<Weak> {
+        self.x = Coordinates::zeros();
+        let ((root, doubt), misfit) = (self.constant_rates(variance)?, self.misfit_of_sphere()?);
+        let rows = self.used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
+        Some(Weak {
+            radius: self.used.first()?.2.radius,
+            x: self.x,
+            moved: f64::INFINITY,
+            root,
+            doubt,
+            misfit,
+            rows,
+            residuals: Vec::new(),
+        })
+    }
+
+    /// What the weak equations of the sphere leave, whose rates are constant.
+    fn misfit_of_sphere(&self) -> Option<f64> {
+        let mut sum = 0.0;
+        for (_, s, tests) in &self.used {
+            let raw = vec![Vector3::zeros(); s.times.len()];
+            let part = Linearised::new(s, &raw, Coordinates::zeros(), tests.clone())?;
+            sum += part.rows.iter().map(|row| row[5] * row[5]).sum::<f64>();
+        }
+        Some(sum)
+    }
+
+    /// R of motions that keep their mean rates, and D.
+    fn constant_rates(&self, variance: f64) -> Option<(Form, Form)> {
+        let (mut at_means, mut displaced) = (Vec::new(), Vec::new());
+        for (_, s, tests) in &self.used {
+            let count = s.rates.len() as f64;
+            let mean = s.rates.iter().sum::<Vector3<f64>>() / count;
+            let at = |rate: Vector3<f64>| {
+                let noise: Vec<_> = s.rates.iter().map(|w| w - rate).collect();
+                Linearised::new(s, &noise, self.x, tests.clone())
+            };
+            at_means.extend(at(mean)?.rows);
+            let sure = SURE * (variance / count).sqrt();
+            for axis in 0..3 {
+                let step = Vector3::ith(axis, sure);
+                let (above, below) = (at(mean + step)?.rows, at(mean - step)?.rows);
+                let difference =
+                    |(a, b): (&[f64; 6], &[f64; 6])| core::array::from_fn(|k| (a[k] - b[k]) / 2.0);
+                displaced.extend(above.iter().zip(&below).map(difference));
+            }
+        }
+        Some((Stacked::triangle(&at_means, self.x).root, Stacked::triangle(&displaced, self.x).root))
+    }
+
+    /// V.
+    pub(super) fn inflation(&self, parts: &[Linearised]) -> Form {
+        parts.iter().zip(&self.used).zip(&self.noise).map(|((p, (_, s, _)), n)| p.inflation(s, n)).sum()
+    }
+}

@@ -1,0 +1,180 @@
+//! Test functions of compact support on a stretch of samples, and their weights in sums over samples.
+
+use std::rc::Rc;
+
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+
+use super::banded::Banded;
+use super::quadrature;
+
+/// Test functions per radius.
+const TESTS_PER_RADIUS: f64 = 4.0;
+/// Fewest samples in the support of one test function.
+pub(super) const SAMPLES_PER_TEST: f64 = 8.0;
+
+/// One stretch of samples without gaps, in units of the root mean square rate and its inverse.
+#[derive(Clone, Debug)]
+pub(super) struct Stretch {
+    pub(super) times: Vec<f64>,
+    pub(super) rates: Vec<Vector3<f64>>,
+    pub(super) weights: Vec<f64>,
+}
+
+impl Stretch {
+    pub(super) fn new(times: Vec<f64>, rates: Vec<Vector3<f64>>) -> Self {
+        let weights = quadrature::weights(&times);
+        Stretch { times, rates, weights }
+    }
+
+    pub(super) fn duration(&self) -> f64 {
+        self.times.last().zip(self.times.first()).map_or(0.0, |(b, a)| b - a)
+    }
+
+    /// Its first `count` samples.
+    pub(super) fn head(&self, count: usize) -> Stretch {
+        Stretch::new(self.times[..count].to_vec(), self.rates[..count].to_vec())
+    }
+}
+
+/// The test functions of one stretch: φ = (1 − u²)⁴, u = (t − centre)/radius, centres evenly spaced.
+#[derive(Clone, Debug)]
+pub(super) struct Tests {
+    first: f64,
+    spacing: f64,
+    pub(super) radius: f64,
+    pub(super) count: usize,
+    /// How many neighbours on one side a test overlaps.
+    pub(super) reach: usize,
+    /// Cubics q(u) of each test, with which φ' + φ q/radius sums by parts exactly: see [`by_parts`](Self::by_parts).
+    corrections: Rc<[Vector4<f64>]>,
+}
+
+impl Tests {
+    /// `None` where the stretch is shorter than one test function, or has too few samples for it.
+    pub(super) fn new(stretch: &Stretch, radius: f64) -> Option<Tests> {
+        let duration = stretch.duration();
+        let samples = stretch.times.len() as f64;
+        // a radius that was cut from this very duration may exceed half of it by rounding
+        if 2.0 * radius > duration * (1.0 + 1e-9) || samples * 2.0 * radius < SAMPLES_PER_TEST * duration {
+            return None;
+        }
+        let room = (duration - 2.0 * radius).max(0.0);
+        // nudged off the ties, so that a change of units cannot change the count
+        let steps = (TESTS_PER_RADIUS * room / radius + 1e-6).round();
+        let count = steps as usize + 1;
+        let spacing = if count > 1 { room / steps } else { radius };
+        let overlap = if count > 1 { (2.0 * radius / spacing - 1e-9) as usize } else { 0 };
+        let mut tests = Tests {
+            first: stretch.times[0] + radius,
+            spacing,
+            radius,
+            count,
+            reach: overlap.min(count - 1),
+            corrections: vec![Vector4::zeros(); count].into(),
+        };
+        tests.corrections = tests.by_parts(stretch);
+        Some(tests)
+    }
+
+    /// The cubics q that make Σ w (φ' + φ q/radius) p + Σ w φ p' = 0 for every cubic p.
+    ///
+    /// It is by this identity that the weak form rests on Euler's equation; a quadrature alone obeys it up to its error,
+    /// which a short support or irregular times would make a bias.
+    fn by_parts(&self, stretch: &Stretch) -> Rc<[Vector4<f64>]> {
+        let mut sums = vec![(Matrix4::<f64>::zeros(), Vector4::<f64>::zeros()); self.count];
+        for (&t, &weight) in stretch.times.iter().zip(&stretch.weights) {
+            for m in self.at(t) {
+                let (value, slope) = self.value(m, t);
+                let u = self.position(m, t);
+                let powers = Vector4::new(1.0, u, u * u, u * u * u);
+                let slopes = Vector4::new(0.0, 1.0, 2.0 * u, 3.0 * u * u);
+                sums[m].0 += powers * powers.transpose() * (weight * value);
+                sums[m].1 -= powers * (weight * slope * self.radius) + slopes * (weight * value);
+            }
+        }
+        sums.into_iter().map(|(m, b)| m.cholesky().map_or(Vector4::zeros(), |m| m.solve(&b))).collect()
+    }
+
+    /// u of test `m` at `t`.
+    fn position(&self, m: usize, t: f64) -> f64 {
+        (t - self.first - m as f64 * self.spacing) / self.radius
+    }
+
+    /// The tests that are not zero at `t`.
+    fn at(&self, t: f64) -> core::ops::Range<usize> {
+        let low = ((t - self.radius - self.first) / self.spacing).ceil().max(0.0) as usize;
+        let high = ((t + self.radius - self.first) / self.spacing).floor();
+        if high < 0.0 { 0..0 } else { low..(high as usize + 1).min(self.count) }
+    }
+
+    pub(super) fn centres(&self) -> Vec<f64> {
+        (0..self.count).map(|m| self.first + m as f64 * self.spacing).collect()
+    }
+
+    /// φ_m and φ'_m at `t`.
+    fn value(&self, m: usize, t: f64) -> (f64, f64) {
+        let u = self.position(m, t);
+        let v = (1.0 - u * u).max(0.0);
+        (v * v * v * v, -8.0 * u * v * v * v / self.radius)
+    }
+}
+
+/// Most rows that one sample takes part in: three for each of the tests that overlap it.
+const MOST: usize = 30;
+
+/// The rows that see one sample, three to a test, with their weights w φ' and w φ.
+pub(super) struct Seen {
+    pub(super) first: usize,
+    pub(super) count: usize,
+    pub(super) slope: [f64; MOST],
+    pub(super) value: [f64; MOST],
+}
+
+impl Seen {
+    pub(super) fn new(tests: &Tests, t: f64, weight: f64) -> Seen {
+        let range = tests.at(t);
+        let count = (3 * range.len()).min(MOST);
+        let mut seen = Seen { first: 3 * range.start, count, slope: [0.0; MOST], value: [0.0; MOST] };
+        for (k, m) in range.take(count / 3).enumerate() {
+            let (value, slope) = tests.value(m, t);
+            let (u, q) = (tests.position(m, t), &tests.corrections[m]);
+            let correction = value / tests.radius * (q[0] + u * (q[1] + u * (q[2] + u * q[3])));
+            seen.slope[3 * k..3 * k + 3].fill(weight * (slope + correction));
+            seen.value[3 * k..3 * k + 3].fill(weight * value);
+        }
+        seen
+    }
+
+    /// −slope·a + value·b by row, with the rows of `a` and `b` in turn: one axis of the tests' share in a product.
+    pub(super) fn mix(&self, a: [f64; 3], b: [f64; 3]) -> [f64; MOST] {
+        let mut mixed = [0.0; MOST];
+        for ((m, s), v) in mixed.chunks_mut(3).zip(self.slope.chunks(3)).zip(self.value.chunks(3)) {
+            for q in 0..3 {
+                m[q] = v[q] * b[q] - s[q] * a[q];
+            }
+        }
+        mixed
+    }
+
+    /// Σ over pairs of tests of the blocks Z of `inverse`, weighted by slope·slope, slope·value and value·value; in
+    /// the second the row belongs to the value. Lower halves only are summed, then mirrored.
+    pub(super) fn sums(&self, inverse: &Banded) -> [Matrix3<f64>; 3] {
+        let (mut slopes, mut values) = ([[0.0; MOST]; 3], [[0.0; MOST]; 3]);
+        for row in 0..self.count {
+            let (a, b, p) = (self.slope[row], self.value[row], row % 3);
+            let entries = inverse.row(self.first + row, self.first, self.first + row + 1);
+            for ((z, s), v) in entries[..row].iter().zip(&mut slopes[p]).zip(&mut values[p]) {
+                *s += a * z;
+                *v += b * z;
+            }
+            slopes[p][row] += 0.5 * a * entries[row];
+            values[p][row] += 0.5 * b * entries[row];
+        }
+        let sum = |rows: &[[f64; MOST]; 3], weights: &[f64; MOST]| {
+            Matrix3::from_fn(|p, q| (q..self.count).step_by(3).map(|i| rows[p][i] * weights[i]).sum::<f64>())
+        };
+        let (aa, ab) = (sum(&slopes, &self.slope), sum(&values, &self.slope));
+        let (ba, bb) = (sum(&slopes, &self.value), sum(&values, &self.value));
+        [aa + aa.transpose(), ab + ba.transpose(), bb + bb.transpose()]
+    }
+}

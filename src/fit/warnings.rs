@@ -1,0 +1,97 @@
+//! What a reader of an estimate must know before its figures are used.
+
+use super::estimate::{Estimate, Facts};
+use super::units::Better;
+
+/// In words: what of the record, the residuals and the answer limits the use of `e`.
+pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) -> Vec<String> {
+    let mut list = Vec::new();
+    let record = facts.record;
+    if record.merged() > 0 {
+        list.push(format!("{} samples had the time of another and were merged with it", record.merged()));
+    }
+    if record.saturated() > 0 {
+        list.push(format!(
+            "{} samples stand at the end of the sensor's range (flat tops) and were left out",
+            record.saturated()
+        ));
+    }
+    let unused = record.segments.len() - e.segments;
+    if unused > 0 {
+        list.push(format!(
+            "{unused} of {} segments are too short for the test functions",
+            record.segments.len()
+        ));
+    }
+    if e.chi2_per_dof > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
+        list.push(format!(
+            "the residuals are {:.1} times what the noise of {:.2e} rad/s explains: torques, outliers or a sensor that \
+             filters; deviations are enlarged by that factor",
+            e.chi2_per_dof.sqrt(),
+            e.noise_sigma
+        ));
+    }
+    if !facts.weak.still() {
+        list.push(format!(
+            "the reweighting did not come to rest: a further round would move the tensor by {:.2} standard deviations",
+            facts.weak.moved
+        ));
+    }
+    if let Some(Better { factor, hint, misfit, .. }) = better {
+        list.push(format!(
+            "with the rates {factor:.4} times as large the misfit falls from {:.2e} to {misfit:.2e}: {hint}?",
+            e.chi2_per_dof
+        ));
+    }
+    if e.whiteness.significant() {
+        list.push(format!(
+            "neighbouring residuals are correlated by {:.2} +- {:.2}: the noise is not white or the model is wrong",
+            e.whiteness.correlation, e.whiteness.sigma
+        ));
+    }
+    for (name, drift) in [("momentum |J w|", e.momentum_drift), ("energy w J w", e.energy_drift)] {
+        if drift.significant() {
+            list.push(format!(
+                "not free of torques: the {name} changes by {:.2} +- {:.2} per cent per second",
+                100.0 * drift.rate,
+                100.0 * drift.sigma
+            ));
+        }
+    }
+    let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.misfit).collect();
+    levels.sort_by(f64::total_cmp);
+    if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {
+        for r in e.residuals.iter().filter(|r| r.misfit > 4.0 * median) {
+            list.push(format!(
+                "segment {} (from {} s) has {:.1} times the residuals of the median segment: check it",
+                r.segment + 1,
+                r.times.first().copied().unwrap_or(0.0),
+                (r.misfit / median).sqrt()
+            ));
+        }
+    }
+    for constraint in &e.active_constraints {
+        list.push(format!("{} holds the answer (multiplier {:.3e})", constraint.name, constraint.multiplier));
+    }
+    let largest = e.free_covariance.trace().sqrt();
+    if largest > 5e-3 {
+        list.push(format!(
+            "the tensor is known to {:.1} per cent of its trace only: beyond half a per cent the linear covariance is a guide",
+            100.0 * largest
+        ));
+    }
+    for (low, high) in [(0, 1), (1, 2)] {
+        let (a, b) = (e.sigma_principal[low], e.sigma_principal[high]);
+        if e.principal[high] - e.principal[low] < 3.0 * (a * a + b * b).sqrt() {
+            list.push(format!(
+                "moments {} and {} agree within their errors: the directions of their axes are arbitrary",
+                low + 1,
+                high + 1
+            ));
+        }
+    }
+    if e.dof < 20 {
+        list.push(format!("only {} equations beyond the unknowns: the misfit says little", e.dof));
+    }
+    list
+}
