@@ -14,6 +14,11 @@ pub(crate) enum Error {
     Input(String),
 }
 
+/// What ours alone can cause: catalogues and examples are valid; if one is not, that is what failed.
+pub(crate) fn unexpected(error: impl std::fmt::Display) -> Error {
+    Error::Failed(error.to_string())
+}
+
 impl Error {
     /// Unusable input: where it stands (flag or file:line), what it is, the rule it breaks, what to do.
     pub(crate) fn input(place: &str, value: &str, rule: &str, remedy: &str) -> Self {

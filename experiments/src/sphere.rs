@@ -7,7 +7,7 @@ use polhode::body::{Body, Inertia};
 use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::rotation::EulerSequence;
 
-use crate::error::Error;
+use crate::error::{Error, unexpected};
 use crate::experiment::Drawing;
 
 type V = Vector3<f64>;
@@ -250,10 +250,6 @@ fn drawing(name: &'static str, panels: Vec<Panel>, foot: &[&str]) -> Drawing {
     }
     svg += "</svg>\n";
     Drawing { name, svg }
-}
-
-fn unexpected(error: impl std::fmt::Display) -> Error {
-    Error::Failed(error.to_string())
 }
 
 /// The paths of the angular momentum in the body, on the sphere of its length.

@@ -9,17 +9,15 @@ use polhode::method::{AnyMethod, AxisOrder, LiePoisson, catalogue};
 use polhode::num::Dd;
 use polhode::observe::secular_drift;
 use polhode::rotation::rotation_angle;
-use polhode::run::{Run, RunError, Sample, Schedule};
+use polhode::run::Run;
 
-use crate::error::Error;
+use super::followed::{Followed, follow};
+use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series};
 use crate::table::{Cell, Column, Table, row};
 
 const BODIES: [&str; 7] = ["textbook", "toutatis", "racket", "t-handle", "phone", "water", "spacecraft"];
-
-/// Looks at the energy for its secular slope.
-const LOOKS: u64 = 512;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let steps = context.scale.pick(2_000, 100_000, 1_000_000);
@@ -146,28 +144,11 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
     let mut run = Run::new(method, &body, &start, h).map_err(unexpected)?;
     let exact = FreeMotion::new(&body, State::of(run.start()));
     let speed = nalgebra::Vector3::from(named.omega_body).norm();
-    let (mut angles, mut changes) = (Vec::new(), Vec::new());
-    let mut status = "ok";
-    let mut last: Sample = run.sample();
-    for sample in run.samples(Schedule::every((steps / LOOKS).max(1), steps)) {
-        last = match sample {
-            Ok(sample) => sample,
-            Err(RunError::Diverged { last }) => {
-                status = "diverged";
-                *last
-            }
-            Err(RunError::Unsolved { last, .. }) => {
-                status = "unsolved";
-                *last
-            }
-            Err(error) => return Err(unexpected(error)),
-        };
-        angles.push(last.elapsed.hi() * speed);
-        changes.push(last.energy_change);
-    }
+    let Followed { last, status, times, energy_changes } = follow(&mut run, steps)?;
     let there = exact.inside_at_dd(last.elapsed);
     let attitude = rotation_angle(State::<Dd>::of(last.inside).attitude, there.attitude).hi();
-    let slope = secular_drift(&angles, &changes).filter(|_| status == "ok");
+    let angles: Vec<f64> = times.iter().map(|t| t * speed).collect();
+    let slope = secular_drift(&angles, &energy_changes).filter(|_| status == "ok");
     let flips = exact.flips(last.elapsed);
     Ok(row![
         named.name,
@@ -212,9 +193,4 @@ fn step_time(named: &NamedBody, method: &dyn AnyMethod) -> Result<f64, Error> {
         best = best.min(clock.elapsed().as_secs_f64() * 1e9 / BURST as f64);
     }
     Ok(best)
-}
-
-/// The catalogue's bodies and steps are valid; if one is not, that is what failed.
-fn unexpected(error: impl std::fmt::Display) -> Error {
-    Error::Failed(error.to_string())
 }

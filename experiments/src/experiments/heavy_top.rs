@@ -8,15 +8,13 @@ use polhode::method::{AnyMethod, catalogue};
 use polhode::num::Dd;
 use polhode::observe::secular_drift;
 use polhode::rotation::rotation_angle;
-use polhode::run::{Run, RunError, Schedule};
+use polhode::run::Run;
 
-use crate::error::Error;
+use super::followed::{Followed, follow};
+use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series};
 use crate::table::{Cell, Column, Table, row};
-
-/// Looks at the energy for its secular slope.
-const LOOKS: u64 = 512;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let steps = context.scale.pick(2_000, 100_000, 1_000_000);
@@ -91,29 +89,12 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
         Err(LagrangeError::NotSymmetric { .. } | LagrangeError::OffAxis { .. }) => None,
         Err(error) => return Err(unexpected(error)),
     };
-    let (mut times, mut changes) = (Vec::new(), Vec::new());
-    let (mut last, mut status) = (run.sample(), "ok");
-    for sample in run.samples(Schedule::every((steps / LOOKS).max(1), steps)) {
-        last = match sample {
-            Ok(sample) => sample,
-            Err(RunError::Diverged { last }) => {
-                status = "diverged";
-                *last
-            }
-            Err(RunError::Unsolved { last, .. }) => {
-                status = "unsolved";
-                *last
-            }
-            Err(error) => return Err(unexpected(error)),
-        };
-        times.push(last.elapsed.hi());
-        changes.push(last.energy_change);
-    }
+    let Followed { last, status, times, energy_changes } = follow(&mut run, steps)?;
     let attitude_error = exact.map(|exact| {
         let there: State<Dd> = exact.inside_at_dd(last.elapsed);
         rotation_angle(there.attitude, State::of(last.inside).attitude).hi()
     });
-    let slope = secular_drift(&times, &changes);
+    let slope = secular_drift(&times, &energy_changes);
     Ok(row![
         top.name,
         method.name(),
@@ -151,9 +132,4 @@ fn figure(errors: &Table) -> Figure {
         figure.series.push(Series::new(method.name(), errors.rows().iter().filter_map(point).collect()));
     }
     figure
-}
-
-/// The catalogue's tops and steps are valid; if one is not, that is what failed.
-fn unexpected(error: impl std::fmt::Display) -> Error {
-    Error::Failed(error.to_string())
 }

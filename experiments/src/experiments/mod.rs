@@ -1,8 +1,9 @@
-//! The experiments, one file each.
+//! The experiments, one file each, and what two of them share.
 
 mod drift;
 mod exact;
 mod fit_efficiency;
+mod followed;
 mod heavy_top;
 mod inertia;
 mod lecture;

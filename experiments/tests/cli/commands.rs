@@ -1,90 +1,9 @@
-//! The command line as its users meet it: golden outputs, golden refusals, and files that are whole or absent.
-//!
-//! `POLHODE_BLESS=1 cargo test -p polhode-experiments --test cli` rewrites the golden files; read the difference.
-
-#![allow(clippy::unwrap_used)]
+//! `polhode` and its commands, but for `inertia`, `fit` and `simulate`.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
-/// An empty folder for one test, removed with it.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("polhode-cli-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn names(&self) -> Vec<String> {
-        names(&self.0)
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
-
-struct Answer {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn polhode(arguments: &[&str]) -> Answer {
-    let Output { status, stdout, stderr } =
-        Command::new(env!("CARGO_BIN_EXE_polhode")).args(arguments).output().unwrap();
-    let answer = Answer {
-        code: status.code().unwrap(),
-        out: String::from_utf8(stdout).unwrap(),
-        err: String::from_utf8(stderr).unwrap(),
-    };
-    for text in [&answer.out, &answer.err] {
-        assert!(!text.contains("panicked"), "{arguments:?}: {text}");
-    }
-    let words = answer.out.split(|c: char| !c.is_ascii_alphanumeric());
-    let not_numbers = words.filter(|word| ["NaN", "nan", "inf"].contains(word)).count();
-    assert_eq!(not_numbers, 0, "{arguments:?}: {}", answer.out);
-    answer
-}
-
-/// A command line written as a shell would take it; no argument here holds a blank.
-fn words(line: &str) -> Vec<&str> {
-    line.split_whitespace().collect()
-}
-
-fn run(line: &str) -> Answer {
-    polhode(&words(line))
-}
-
-/// Runs `line`, which has to succeed silently on standard error.
-fn output(line: &str) -> String {
-    let answer = run(line);
-    assert_eq!((answer.code, answer.err.as_str()), (0, ""), "{line}");
-    answer.out
-}
-
-fn golden(name: &str, found: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
-    if std::env::var_os("POLHODE_BLESS").is_some() {
-        fs::write(&path, found).unwrap();
-    }
-    let expected = fs::read_to_string(&path).unwrap();
-    assert_eq!(found, expected, "{name} differs from the committed file");
-}
+use crate::harness::{Answer, Scratch, golden, names, output, polhode, run, words};
 
 /// The refusal of `line`: exit code 2, nothing on standard output, one `error:` that holds every part of `says`.
 fn refused(line: &str, says: &[&str]) {
@@ -92,7 +11,7 @@ fn refused(line: &str, says: &[&str]) {
 }
 
 fn refused_with(arguments: &[&str], says: &[&str]) {
-    let answer = polhode(arguments);
+    let answer = polhode(arguments, Path::new("."));
     let Answer { code, out, err } = &answer;
     assert_eq!((*code, out.as_str()), (2, ""), "{arguments:?}: {err}");
     assert!(err.starts_with("error: "), "{arguments:?}: {err}");

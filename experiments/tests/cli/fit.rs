@@ -1,62 +1,10 @@
 //! `polhode simulate` and `polhode fit` as their users meet them: from a record to a tensor, and every refusal.
 
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use serde_json::Value;
 
-/// An empty folder for one test, removed with it.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("polhode-fit-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn file(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name);
-        fs::write(&path, text).unwrap();
-        path.display().to_string()
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-struct Answer {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn run(line: &str) -> Answer {
-    let done = Command::new(env!("CARGO_BIN_EXE_polhode")).args(line.split_whitespace()).output().unwrap();
-    let answer = Answer {
-        code: done.status.code().unwrap(),
-        out: String::from_utf8(done.stdout).unwrap(),
-        err: String::from_utf8(done.stderr).unwrap(),
-    };
-    assert!(!answer.err.contains("panicked"), "{line}: {}", answer.err);
-    for word in answer.out.split(|c: char| !c.is_ascii_alphanumeric()) {
-        assert!(!["NaN", "nan", "inf"].contains(&word), "{line}: {}", answer.out);
-    }
-    answer
-}
-
-fn output(line: &str) -> String {
-    let answer = run(line);
-    assert_eq!((answer.code, answer.err.as_str()), (0, ""), "{line}");
-    answer.out
-}
+use crate::harness::{Scratch, golden, output, run};
 
 fn refused(code: i32, line: &str, says: &[&str]) {
     let answer = run(line);
@@ -76,11 +24,7 @@ const SIMULATE: &str = "simulate --moments 1,2,2.6 --omega 0.3,1,0.4 --every 0.0
 #[test]
 fn a_simulated_record_is_the_golden_one() {
     let found = output(&format!("{SIMULATE} --until 0.2 --noise 0.01 --jitter 0.5 --seed 3"));
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/simulate.csv");
-    if std::env::var_os("POLHODE_BLESS").is_some() {
-        fs::write(&path, &found).unwrap();
-    }
-    assert_eq!(found, fs::read_to_string(&path).unwrap(), "simulate.csv differs from the committed file");
+    golden("simulate.csv", &found);
     let exact = output(&format!("{SIMULATE} --until 0.2"));
     let propagated = output("propagate --moments 1,2,2.6 --omega 0.3,1,0.4 --times 0.2");
     let last = |text: &str, from: usize| -> Vec<f64> {

@@ -1,53 +1,20 @@
 //! `polhode inertia` as its users meet it: golden values, golden refusals, formats that read each other.
-//!
-//! `POLHODE_BLESS=1 cargo test -p polhode-experiments --test inertia` rewrites the golden files; read the difference.
-
-#![allow(clippy::unwrap_used)]
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
-/// A folder with the files of one test, removed with it.
-struct Scratch(PathBuf);
+use crate::harness::{self, Answer, Scratch, names, polhode};
 
 impl Scratch {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("polhode-inertia-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn file(&self, name: &str, content: impl AsRef<[u8]>) {
-        fs::write(self.0.join(name), content).unwrap();
-    }
-
     /// Runs `polhode inertia` in this folder.
     fn run(&self, line: &str) -> Answer {
-        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_polhode"))
-            .arg("inertia")
-            .args(line.split_whitespace())
-            .current_dir(&self.0)
-            .output()
-            .unwrap();
-        let answer = Answer {
-            code: status.code().unwrap(),
-            out: String::from_utf8(stdout).unwrap(),
-            err: String::from_utf8(stderr).unwrap(),
-        };
-        let mut words = answer.out.split(|c: char| !c.is_ascii_alphanumeric());
-        assert!(!words.any(|word| ["NaN", "nan", "inf"].contains(&word)), "{line}: {}", answer.out);
-        assert!(!answer.err.contains("panicked"), "{line}: {}", answer.err);
-        answer
+        let arguments: Vec<&str> = std::iter::once("inertia").chain(line.split_whitespace()).collect();
+        polhode(&arguments, &self.0)
     }
 
     /// The output of a run that has nothing to complain of.
     fn output(&self, line: &str) -> String {
-        let answer = self.run(line);
-        assert_eq!((answer.code, answer.err.as_str()), (0, ""), "{line}");
-        answer.out
+        self.run(line).silent(line)
     }
 
     fn json(&self, line: &str) -> serde_json::Value {
@@ -55,25 +22,8 @@ impl Scratch {
     }
 }
 
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-struct Answer {
-    code: i32,
-    out: String,
-    err: String,
-}
-
 fn golden(name: &str, found: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/inertia").join(name);
-    if std::env::var_os("POLHODE_BLESS").is_some() {
-        fs::write(&path, found).unwrap();
-    }
-    let expected = fs::read_to_string(&path).unwrap();
-    assert_eq!(found, expected, "{name} differs from the committed file");
+    harness::golden(&format!("inertia/{name}"), found);
 }
 
 /// All numbers of a JSON value, in order.
@@ -465,12 +415,4 @@ fn reversed(obj: &str) -> String {
         None => line.to_owned(),
     };
     obj.lines().map(|line| turn(line) + "\n").collect()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use polhode::num::{Dd, Real};
 use polhode::rotation::Vec3;
 
-use crate::error::Error;
+use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::sphere;
 use crate::table::{Column, Table, row};
@@ -290,11 +290,6 @@ fn second_derivative(t: f64, f: impl Fn(Dd) -> Vec3<Dd>) -> Vector3<f64> {
     let t = Dd::of(t);
     let sum = f(t + h) + f(t - h) - f(t) * Dd::of(2.0);
     Vec3((sum * (Dd::ONE / (h * h))).0.map(Dd::hi)).into()
-}
-
-/// The examples are valid; if one is not, that is what failed.
-fn unexpected(error: impl std::fmt::Display) -> Error {
-    Error::Failed(error.to_string())
 }
 
 #[cfg(test)]

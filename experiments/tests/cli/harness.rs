@@ -1,0 +1,99 @@
+//! What every test of the command line needs: a folder, a run with its answer, golden files, refusals.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// An empty folder for one test, removed with it.
+pub(crate) struct Scratch(pub(crate) PathBuf);
+
+impl Scratch {
+    /// `name` is that of no other test.
+    pub(crate) fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("polhode-cli-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    /// Writes a file and returns its path.
+    pub(crate) fn file(&self, name: &str, content: impl AsRef<[u8]>) -> String {
+        let path = self.0.join(name);
+        fs::write(&path, content).unwrap();
+        path.display().to_string()
+    }
+
+    pub(crate) fn names(&self) -> Vec<String> {
+        names(&self.0)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Names of the files in a folder, sorted.
+pub(crate) fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+pub(crate) struct Answer {
+    pub(crate) code: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+/// Runs `polhode` in `folder`; whatever it is asked, it neither panics nor prints what is not a number.
+pub(crate) fn polhode(arguments: &[&str], folder: &Path) -> Answer {
+    let done =
+        Command::new(env!("CARGO_BIN_EXE_polhode")).args(arguments).current_dir(folder).output().unwrap();
+    let answer = Answer {
+        code: done.status.code().unwrap(),
+        out: String::from_utf8(done.stdout).unwrap(),
+        err: String::from_utf8(done.stderr).unwrap(),
+    };
+    for text in [&answer.out, &answer.err] {
+        assert!(!text.contains("panicked"), "{arguments:?}: {text}");
+    }
+    let mut words = answer.out.split(|c: char| !c.is_ascii_alphanumeric());
+    assert!(!words.any(|word| ["NaN", "nan", "inf"].contains(&word)), "{arguments:?}: {}", answer.out);
+    answer
+}
+
+/// A command line written as a shell would take it; no argument here holds a blank.
+pub(crate) fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
+pub(crate) fn run(line: &str) -> Answer {
+    polhode(&words(line), Path::new("."))
+}
+
+/// The output of `line`, which has to succeed silently on standard error.
+pub(crate) fn output(line: &str) -> String {
+    run(line).silent(line)
+}
+
+impl Answer {
+    /// The output of a run that has nothing to complain of.
+    pub(crate) fn silent(self, line: &str) -> String {
+        assert_eq!((self.code, self.err.as_str()), (0, ""), "{line}");
+        self.out
+    }
+}
+
+/// Compares with `tests/golden/<name>`, or rewrites it.
+pub(crate) fn golden(name: &str, found: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
+    if std::env::var_os("POLHODE_BLESS").is_some() {
+        fs::write(&path, found).unwrap();
+    }
+    let expected = fs::read_to_string(&path).unwrap();
+    assert_eq!(found, expected, "{name} differs from the committed file");
+}

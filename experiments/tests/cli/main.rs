@@ -1,0 +1,10 @@
+//! The command line as its users meet it: golden outputs, golden refusals, and files that are whole or absent.
+//!
+//! `POLHODE_BLESS=1 cargo test -p polhode-experiments --test cli` rewrites the golden files; read the difference.
+
+#![allow(clippy::unwrap_used)]
+
+mod commands;
+mod fit;
+mod harness;
+mod inertia;
