@@ -16,7 +16,7 @@ done
 for file in lmodern.sty booktabs.sty microtype.sty pgfplots.sty; do
   kpsewhich "$file" >/dev/null || missing "$file is not installed"
 done
-for file in drift-origin.tex order-origin.tex long-run-series.csv; do
+for file in drift-origin.tex order-origin.tex long-run-series.csv heavy-top-origin.tex fit-efficiency-origin.tex; do
   if [ ! -f "generated/$file" ]; then
     echo "generated/$file is missing; make the results of paper scale and publish them:" >&2
     echo "  cargo run --release -- experiment run all --scale paper --out experiments/results" >&2

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 
 /// Publishing makes `paper/generated/<experiment>-<table>` for each of these, and `methods`.
-const EXPERIMENTS: [&str; 4] = ["drift", "order", "exact", "long-run"];
+const EXPERIMENTS: [&str; 6] = ["drift", "order", "exact", "long-run", "heavy-top", "fit-efficiency"];
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
