@@ -114,7 +114,7 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     let short = scratch.file("short.csv", "t,wx,wy,wz\n0,1,2,3\n0.1,1,2,3\n");
     refused(2, &format!("fit {short}"), &["short.csv: 2 samples in 1 segments", "at least 16"]);
     let still = (0..100).map(|i| format!("{i},0,0,0\n")).collect::<String>();
-    let still = scratch.file("still.csv", &format!("t,wx,wy,wz\n{still}"));
+    let still = scratch.file("still.csv", format!("t,wx,wy,wz\n{still}"));
     refused(1, &format!("fit {still}"), &["still.csv: the rates have a root mean square of 0"]);
     let headless = scratch.file("headless.csv", "0,1,2,3\n1,1,2,3\n");
     refused(2, &format!("fit {headless}"), &["headless.csv: no column for time"]);
