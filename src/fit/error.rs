@@ -60,7 +60,7 @@ pub enum FitError {
     },
     /// Another unit of the rates or times explains the record far better.
     #[error(
-        "the units look mistaken: with the rates {factor} times as large ({hint}) the misfit per equation falls from \
+        "the units look mistaken: with the rates {factor:.4} times as large ({hint}) the misfit per equation falls from \
          {misfit:.3e} to {better:.3e}; name the units, or switch this check off"
     )]
     Units {

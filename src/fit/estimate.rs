@@ -11,7 +11,7 @@ use super::noise;
 use super::qp::{self, ActiveConstraint, Certificate, LIMIT};
 use super::radius::{self, Failure};
 use super::record::Record;
-use super::rounds::{ROUNDS, Weak};
+use super::rounds::{ROUNDS, WeakEstimate};
 use super::scale::{Known, inertia_covariance};
 use super::test_functions::{SAMPLES_PER_TEST, Stretch};
 use super::torque_free::{Drift, Whiteness, drifts};
@@ -244,7 +244,7 @@ fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f
     }
 }
 
-fn identify(weak: &Weak, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
+fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
     let mut scatter = Matrix3::zeros();
     let mut count = 0.0;
     for w in stretches.iter().flat_map(|s| &s.rates) {
@@ -263,7 +263,7 @@ pub(super) struct Facts<'a> {
     stretches: &'a [Stretch],
     rms: f64,
     variance: f64,
-    pub(super) weak: &'a Weak,
+    pub(super) weak: &'a WeakEstimate,
     misfit: f64,
 }
 

@@ -1,7 +1,7 @@
 //! The half width of the test functions: chosen by least predicted covariance, doubled where the rounds do not settle.
 
 use super::coordinates::{Coordinates, Form};
-use super::rounds::{RESTLESS, Rounds, TORQUES, Weak};
+use super::rounds::{RESTLESS, Rounds, TORQUES, WeakEstimate};
 use super::stacked::Stacked;
 use super::test_functions::{SAMPLES_PER_TEST, Stretch};
 
@@ -67,7 +67,11 @@ fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinat
 const PILOT_SAMPLES: usize = 40_000;
 
 /// The weak estimate; `variance` is that of the noise in units of the mean square rate.
-pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64) -> Result<Weak, Failure> {
+pub(super) fn estimate(
+    stretches: &[Stretch],
+    radius: Option<f64>,
+    variance: f64,
+) -> Result<WeakEstimate, Failure> {
     let (first, start, largest) = match radius {
         Some(radius) => (radius, Coordinates::zeros(), radius),
         None => {
@@ -78,7 +82,7 @@ pub(super) fn estimate(stretches: &[Stretch], radius: Option<f64>, variance: f64
     };
     // a weak wobble in strong noise may need longer test functions than its information alone asks for
     let mut radius = first;
-    let mut best: Option<Weak> = None;
+    let mut best: Option<WeakEstimate> = None;
     while radius <= largest * (1.0 + 1e-9) {
         let mut rounds = Rounds::new(stretches, radius, start).ok_or(Failure::TooShort)?;
         let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS);

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::coordinates::{Coordinates, Form, tensor};
 use super::stacked::Stacked;
-use super::test_functions::{Stretch, Tests};
+use super::test_functions::{Stretch, TestFunctions};
 use super::weak::Linearised;
 
 /// Most rounds at one radius; at low noise two or three do.
@@ -24,7 +24,7 @@ const SIGNIFICANT_GAIN: f64 = 50.0;
 const SURE: f64 = 5.0;
 
 /// The weak estimate of a record: where its rounds ended.
-pub(super) struct Weak {
+pub(super) struct WeakEstimate {
     pub(super) radius: f64,
     pub(super) x: Coordinates,
     /// Standard deviations by which a further round would move x; infinite where no round could be made, and this is
@@ -42,7 +42,7 @@ pub(super) struct Weak {
     pub(super) residuals: Vec<(usize, Vec<f64>, Vec<f64>)>,
 }
 
-impl Weak {
+impl WeakEstimate {
     /// Whether the rounds ended near enough to a fixed point.
     pub(super) fn settled(&self) -> bool {
         self.moved <= RESTLESS
@@ -79,7 +79,7 @@ impl Weak {
 }
 
 pub(super) struct Rounds<'a> {
-    used: Vec<(usize, &'a Stretch, Tests)>,
+    used: Vec<(usize, &'a Stretch, TestFunctions)>,
     noise: Vec<Vec<Vector3<f64>>>,
     pub(super) x: Coordinates,
 }
@@ -89,7 +89,7 @@ impl<'a> Rounds<'a> {
         let used: Vec<_> = stretches
             .iter()
             .enumerate()
-            .filter_map(|(k, s)| Tests::new(s, radius).map(|tests| (k, s, tests)))
+            .filter_map(|(k, s)| TestFunctions::new(s, radius).map(|tests| (k, s, tests)))
             .collect();
         let rows: usize = used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
         if rows < 6 {
@@ -140,7 +140,7 @@ impl<'a> Rounds<'a> {
         Some(moved)
     }
 
-    pub(super) fn finish(&self, variance: f64, moved: f64) -> Option<Weak> {
+    pub(super) fn finish(&self, variance: f64, moved: f64) -> Option<WeakEstimate> {
         let parts = self.linearise()?;
         let stacked = Stacked::new(&parts);
         let x = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite())).unwrap_or(self.x);
@@ -154,7 +154,7 @@ impl<'a> Rounds<'a> {
         } else {
             self.constant_rates(variance)?
         };
-        Some(Weak {
+        Some(WeakEstimate {
             radius: self.used.first()?.2.radius,
             x,
             moved,
@@ -167,11 +167,11 @@ impl<'a> Rounds<'a> {
     }
 
     /// What can be said without any tensor to go by: the information of constant rates, weighted as for a sphere.
-    pub(super) fn at_sphere(mut self, variance: f64) -> Option<Weak> {
+    pub(super) fn at_sphere(mut self, variance: f64) -> Option<WeakEstimate> {
         self.x = Coordinates::zeros();
         let ((root, doubt), misfit) = (self.constant_rates(variance)?, self.misfit_of_sphere()?);
         let rows = self.used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
-        Some(Weak {
+        Some(WeakEstimate {
             radius: self.used.first()?.2.radius,
             x: self.x,
             moved: f64::INFINITY,

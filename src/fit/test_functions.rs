@@ -38,7 +38,7 @@ impl Stretch {
 
 /// The test functions of one stretch: φ = (1 − u²)⁴, u = (t − centre)/radius, centres evenly spaced.
 #[derive(Clone, Debug)]
-pub(super) struct Tests {
+pub(super) struct TestFunctions {
     first: f64,
     spacing: f64,
     pub(super) radius: f64,
@@ -49,9 +49,9 @@ pub(super) struct Tests {
     corrections: Rc<[Vector4<f64>]>,
 }
 
-impl Tests {
+impl TestFunctions {
     /// `None` where the stretch is shorter than one test function, or has too few samples for it.
-    pub(super) fn new(stretch: &Stretch, radius: f64) -> Option<Tests> {
+    pub(super) fn new(stretch: &Stretch, radius: f64) -> Option<TestFunctions> {
         let duration = stretch.duration();
         let samples = stretch.times.len() as f64;
         // a radius that was cut from this very duration may exceed half of it by rounding
@@ -64,7 +64,7 @@ impl Tests {
         let count = steps as usize + 1;
         let spacing = if count > 1 { room / steps } else { radius };
         let overlap = if count > 1 { (2.0 * radius / spacing - 1e-9) as usize } else { 0 };
-        let mut tests = Tests {
+        let mut tests = TestFunctions {
             first: stretch.times[0] + radius,
             spacing,
             radius,
@@ -131,7 +131,7 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    pub(super) fn new(tests: &Tests, t: f64, weight: f64) -> Seen {
+    pub(super) fn new(tests: &TestFunctions, t: f64, weight: f64) -> Seen {
         let range = tests.at(t);
         let count = (3 * range.len()).min(MOST);
         let mut seen = Seen { first: 3 * range.start, count, slope: [0.0; MOST], value: [0.0; MOST] };

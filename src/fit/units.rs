@@ -1,7 +1,7 @@
 //! Mistaken units of a record, which Euler's equation tells: rates enter it squared, their derivatives do not.
 
 use super::radius;
-use super::rounds::Weak;
+use super::rounds::WeakEstimate;
 use super::test_functions::Stretch;
 
 /// Other units, as factors on rate × time, and what would have happened.
@@ -37,7 +37,7 @@ pub(super) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
-        let settled = radius::estimate(&scaled, None, variance).ok().filter(Weak::settled);
+        let settled = radius::estimate(&scaled, None, variance).ok().filter(WeakEstimate::settled);
         found.extend(settled.map(|weak| (weak.misfit_per_dof(variance), factor, hint)));
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::banded::Banded;
 use super::coordinates::{Coordinates, Form, basis, tensor};
-use super::test_functions::{Seen, Stretch, Tests};
+use super::test_functions::{Seen, Stretch, TestFunctions};
 
 /// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
 pub(super) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
@@ -28,7 +28,7 @@ pub(super) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f6
 
 /// The weak equations of one stretch, linearised at samples `rates` − `noise` and tensor J, whitened by L⁻¹.
 pub(super) struct Linearised {
-    tests: Tests,
+    tests: TestFunctions,
     factor: Banded,
     /// The coordinates that the last column is the residual of: what is left of x is small, and so is its rounding.
     pub(super) origin: Coordinates,
@@ -42,7 +42,7 @@ impl Linearised {
         stretch: &Stretch,
         noise: &[Vector3<f64>],
         origin: Coordinates,
-        tests: Tests,
+        tests: TestFunctions,
     ) -> Option<Self> {
         let j = &tensor(&origin);
         let size = 3 * tests.count;
