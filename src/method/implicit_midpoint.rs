@@ -1,5 +1,6 @@
 //! The implicit midpoint rule on m, with the Cayley map on the attitude.
 
+use super::gyroscopic::Gyroscopic;
 use super::stagnation::iterate;
 use super::{Claimed, Claims, Cost, Energy, Kept, KeptHeavy, Method, Step, StepError, usable};
 use crate::body::{Body, Carry, Gravity, State, vertical};
@@ -23,6 +24,7 @@ pub struct ImplicitMidpointStep<S> {
     h: S,
     half: S,
     inverse_moments: Vec3<S>,
+    gyroscopic: Gyroscopic<S>, // h u × I⁻¹u
     gravity: Option<Gravity<S>>,
     carry: Carry<S>,
     worst_residual: f64,
@@ -49,11 +51,12 @@ impl Claimed for ImplicitMidpoint {
 impl<S: Real> Method<S> for ImplicitMidpoint {
     type Step = ImplicitMidpointStep<S>;
     fn prepare(&self, h: f64, body: &Body, _: &State<S>) -> Result<ImplicitMidpointStep<S>, StepError> {
-        let h = S::of(usable(h)?);
+        let h = usable(h)?;
         Ok(ImplicitMidpointStep {
-            h,
+            h: S::of(h),
             half: S::of(0.5),
             inverse_moments: body.inverse_moments(),
+            gyroscopic: Gyroscopic::new(body, h),
             gravity: body.gravity(),
             carry: Carry::default(),
             worst_residual: 0.0,
@@ -66,10 +69,7 @@ impl<S: Real> Step<S> for ImplicitMidpointStep<S> {
     fn step(&mut self, x: &mut State<S>) {
         let m = x.momentum_body;
         let (delta, residual) = match &self.gravity {
-            None => {
-                let increment = |middle: Vec3<S>| middle.cross(middle.times(self.inverse_moments)) * self.h;
-                iterate(increment(m), |delta| increment(m + delta * self.half))
-            }
+            None => iterate(self.gyroscopic.at(m), |delta| self.gyroscopic.at(m + delta * self.half)),
             Some(gravity) => self.heavy(gravity, x),
         };
         self.worst_residual = self.worst_residual.max(residual);
@@ -91,7 +91,7 @@ impl<S: Real> ImplicitMidpointStep<S> {
         let increment = |middle: Vec3<S>| {
             let omega = middle.times(self.inverse_moments);
             let torque = middle_vertical(up, omega * (self.h * self.half)).cross(gravity.weight_moment);
-            (middle.cross(omega) + torque) * self.h
+            self.gyroscopic.at(middle) + torque * self.h
         };
         iterate(increment(m), |delta| increment(m + delta * self.half))
     }
