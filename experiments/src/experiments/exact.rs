@@ -12,6 +12,7 @@ use polhode::rotation::{Quat, Vec3, rotation_angle};
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};
+use crate::figure::{Figure, Series};
 use crate::random::Random;
 use crate::table::{Column, Table, row};
 
@@ -146,6 +147,18 @@ fn fixtures(report: &mut Report) -> Result<(), Error> {
         report.failures.push(format!("errors {:e} rad and {:e} exceed {PROMISE:e}", all.attitude, all.omega));
     }
     report.tables.extend([regimes, times]);
+    let mut figure = Figure::log_log(
+        "times",
+        "Largest attitude error of the exact motion, by the arithmetic of its constants",
+        "turned (rad)",
+        "attitude error (rad)",
+    );
+    let curve = |name: &str, error: fn(&Worst) -> f64| {
+        let points = by_time.iter().map(|(power, worst)| (libm::exp10(f64::from(*power)), error(worst)));
+        Series::new(name, points.collect())
+    };
+    figure.series = vec![curve("double-double", |w| w.attitude), curve("f64 only", |w| w.plain_attitude)];
+    report.figures.push(figure);
     Ok(())
 }
 
