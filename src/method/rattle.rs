@@ -79,11 +79,11 @@ impl<S: Real> Step<S> for RattleStep<S> {
         self.kick.carried(self.half_step, x, &mut self.carry);
         let (m, term) = (x.momentum_body, |i, u_j, u_k| self.gyroscopic.component(i, u_j, u_k));
         let sweep = |u: Vec3<S>| {
-            let squared = u.times(self.half).norm_squared();
+            let alpha = S::of(1.0) + u.times(self.half).norm_squared();
             // Gauss–Seidel: each new component serves the next
-            let u0 = m[0] + (squared * m[0] + term(0, u[1], u[2]));
-            let u1 = m[1] + (squared * m[1] + term(1, u[2], u0));
-            let u2 = m[2] + (squared * m[2] + term(2, u0, u1));
+            let u0 = alpha * m[0] + term(0, u[1], u[2]);
+            let u1 = alpha * m[1] + term(1, u[2], u0);
+            let u2 = alpha * m[2] + term(2, u0, u1);
             Vec3([u0, u1, u2])
         };
         let (u, residual) = iterate(m, sweep);
