@@ -394,7 +394,7 @@ fn a_sphere_looks_like_a_pure_spin_until_it_is_thrown_three_ways() {
 fn two_samples_are_too_few() {
     let record = Record::from_samples(&[0.0, 0.01], &[Vector3::x(), Vector3::y()]).unwrap();
     let message = refusal(&record).to_string();
-    assert!(message.starts_with("2 samples in 1 segments"), "{message}");
+    assert!(message.starts_with("2 samples, at most 2 without a gap"), "{message}");
 }
 
 #[test]

@@ -20,8 +20,8 @@ pub struct Clash {
 pub enum FitError {
     /// Too few samples for even one test function.
     #[error(
-        "{samples} samples in {segments} segments, the longest {longest} long; a fit needs a segment of at least {needed} \
-         samples: record longer or faster"
+        "{samples} samples, at most {longest} without a gap (segments: {segments}); a fit needs a segment of at least \
+         {needed} samples: record longer or faster"
     )]
     TooFewSamples {
         /// Samples.

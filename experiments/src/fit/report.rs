@@ -145,7 +145,7 @@ fn with_error(value: f64, sigma: f64) -> String {
 
 fn text(e: &Estimate) -> String {
     let mut lines = vec![
-        format!("{} samples in {} segments, noise {:.3e} rad/s", e.samples, e.segments, e.noise_sigma),
+        format!("{} samples, segments: {}, noise {:.3e} rad/s", e.samples, e.segments, e.noise_sigma),
         format!("method: {METHOD}, test functions of half width {:.4} s", e.radius),
         String::new(),
         "principal moments (shares of the trace) and axes in sensor axes:".into(),

@@ -112,7 +112,7 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     let nan = scratch.file("nan.csv", "t,wx,wy,wz\n0,1,2,3\n0.1,1,nan,3\n");
     refused(2, &format!("fit {nan}"), &["nan.csv, line 3, column 3 (wy): \"nan\" is not a finite number"]);
     let short = scratch.file("short.csv", "t,wx,wy,wz\n0,1,2,3\n0.1,1,2,3\n");
-    refused(2, &format!("fit {short}"), &["short.csv: 2 samples in 1 segments", "at least 16"]);
+    refused(2, &format!("fit {short}"), &["short.csv: 2 samples, at most 2 without a gap", "at least 16"]);
     let still = (0..100).map(|i| format!("{i},0,0,0\n")).collect::<String>();
     let still = scratch.file("still.csv", format!("t,wx,wy,wz\n{still}"));
     refused(1, &format!("fit {still}"), &["still.csv: the rates have a root mean square of 0"]);
