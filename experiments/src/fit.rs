@@ -144,7 +144,9 @@ impl Fit {
                 emit(&report::unidentified(&what, &record, format), self.out.as_deref())?;
                 return Err(Error::Failed(format!("{}: {}", self.names(), FitError::Unidentifiable(what))));
             }
-            Err(error @ (FitError::NoRotation { .. } | FitError::Solver { .. })) => {
+            Err(
+                error @ (FitError::NoRotation { .. } | FitError::Unsettled { .. } | FitError::Solver { .. }),
+            ) => {
                 return Err(Error::Failed(format!("{}: {error}", self.names())));
             }
             Err(error) => return Err(Error::Input(format!("{}: {error}", self.names()))),

@@ -11,7 +11,7 @@ pub struct Clash {
     pub first: String,
     /// The other.
     pub second: String,
-    /// By how much each would have to give way, as a share of the trace.
+    /// By how much each would have to give way, as a share of the trace; negative where they meet.
     pub gap: f64,
 }
 
@@ -76,6 +76,9 @@ pub enum FitError {
     /// Bounds that exclude each other.
     #[error("{} and {} exclude each other: each would have to give way by {:.3e} of the trace", .0.first, .0.second, .0.gap)]
     Contradiction(Box<Clash>),
+    /// Bounds that hardly a tensor meets.
+    #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", .0.first, .0.second)]
+    NoRoom(Box<Clash>),
     /// The axis of a bound has no direction.
     #[error("bound {bound} has the axis {axis:?}; it must be a finite vector that is not zero")]
     BoundAxis {
@@ -84,8 +87,8 @@ pub enum FitError {
         /// Its axis.
         axis: [f64; 3],
     },
-    /// The value of a bound is not a number.
-    #[error("bound {bound} is {value}; it must be a finite share of the trace")]
+    /// The value of a bound is no share.
+    #[error("bound {bound} is {value}; it must be a share of the trace, from 0 to 1")]
     BoundValue {
         /// Which bound, from 1.
         bound: usize,

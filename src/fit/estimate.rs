@@ -189,7 +189,8 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     if let Some(Better { factor, hint, misfit: better, .. }) = better.filter(convincing) {
         return Err(FitError::Units { factor, hint, misfit, better });
     }
-    let identifiability = identify(&weak, &stretches, variance).ok_or_else(singular)?;
+    // what the noise does not explain enlarges the deviations
+    let identifiability = identify(&weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
     if !weak.settled() && misfit > 1.0 + 5.0 * (2.0 / weak.dof().max(1) as f64).sqrt() {
         // the rates are not constant, and still no tensor explains them
         return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms });
@@ -341,6 +342,10 @@ impl Facts<'_> {
     ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
         let Some(known) = self.settings.known else { return Ok((None, None)) };
         let (trace, slope) = known.trace(self.record, j, self.variance * self.rms * self.rms);
+        // its covariance goes with the square
+        if !(trace * trace).is_normal() {
+            return Err(FitError::Setting { name: "the known quantity", value: known.value() });
+        }
         let inertia = Inertia::from_tensor(j * trace)
             .map_err(|error| FitError::Solver { status: format!("no absolute tensor: {error}") })?;
         Ok((Some(inertia), Some(inertia_covariance(j, covariance, trace, &slope))))

@@ -37,7 +37,7 @@ const STATIONARY: f64 = 1e-6;
 pub struct Certificate {
     /// |y + Σ multiplier · gradient| over 1 + |y|.
     pub stationarity: f64,
-    /// Largest violation of a constraint, as a share of the trace.
+    /// Largest violation of a constraint, and |Z (½ − J)| over 1 + the largest multiplier, as shares of the trace.
     pub violation: f64,
     /// Most negative multiplier, over 1 + the largest.
     pub dual_violation: f64,
@@ -84,10 +84,21 @@ pub(super) fn nearest(centre: Coordinates, root: Form, bounds: &[Bound]) -> Resu
     for (k, bound) in bounds.iter().enumerate() {
         let n = bound.axis.normalize();
         let share = program.reading(&n, &n);
-        if let Some(low) = bound.at_least {
+        // of bounds about one axis the tighter one, since two of them could not be told apart
+        let twins =
+            || bounds.iter().enumerate().filter(|(_, b)| b.axis.normalize().dot(&n).abs() > 1.0 - 1e-12);
+        let tighter = |of: fn(&Bound) -> Option<f64>, sign: f64| {
+            let value = of(bound)?;
+            let looser = |(i, b): (usize, &Bound)| {
+                of(b).is_some_and(|other| sign * other > sign * value || (other == value && i < k))
+            };
+            (!twins().any(looser)).then_some(value)
+        };
+        // what the law says anyway would only stand beside it
+        if let Some(low) = tighter(|b| b.at_least, 1.0).filter(|low| *low > 0.0) {
             program.rows.push((Row { base: low - share.base, g: -share.g }, k, false));
         }
-        if let Some(high) = bound.at_most {
+        if let Some(high) = tighter(|b| b.at_most, -1.0).filter(|high| *high < LIMIT) {
             program.rows.push((Row { base: share.base - high, g: share.g }, k, true));
         }
     }
@@ -506,5 +517,23 @@ mod tests {
         assert!(clash.contains("bound 1") && clash.contains("bound 2"), "{clash}");
         let law = nearest(centre, root, &[x(Some(0.6), None)]).err().unwrap().to_string();
         assert!(law.contains("half the trace"), "{law}");
+
+        // the same bound twice, once looser, and one that the law implies
+        let twice = [x(Some(0.25), None), x(Some(0.25), None), x(Some(0.22), Some(0.5))];
+        let answer = nearest(centre, root, &twice).unwrap();
+        assert!((tensor(&answer.x)[(0, 0)] - 0.25).abs() < 1e-15);
+        assert_eq!(answer.active.len(), 1);
+        for edge in [
+            &[x(Some(0.3), Some(0.3))][..],
+            &[x(Some(0.3), None), x(None, Some(0.300_000_1))],
+            &[x(Some(0.2), Some(0.199_999_9))],
+            &[x(Some(0.5), None)],
+            &[x(None, Some(0.0))],
+        ] {
+            let error = nearest(centre, root, edge).err().unwrap();
+            assert!(matches!(error, FitError::NoRoom(_)), "{error}");
+        }
+        let outside = nearest(centre, root, &[x(Some(5000.0), None)]).err().unwrap().to_string();
+        assert!(outside.contains("bound 1 is 5000"), "{outside}");
     }
 }
