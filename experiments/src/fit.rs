@@ -122,6 +122,7 @@ fn rate_unit(text: &str) -> Result<RateUnit, String> {
 
 impl Fit {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        self.check_paths()?;
         let record = self.record()?;
         let bound = |axis: &[f64; 4]| Bound {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
@@ -154,11 +155,54 @@ impl Fit {
         let drawing = self.residuals.as_deref().map(|path| plot::residuals(&estimate).map(|svg| (path, svg)));
         let drawing = drawing.transpose()?;
         emit(&report::identified(&estimate, format), self.out.as_deref())?;
-        if let Some((path, svg)) = drawing {
-            replace(path, svg.as_bytes())?;
-        }
         // the JSON holds them too; a file of rows does not
         estimate.warnings.iter().for_each(|warning| warn(warning));
+        match drawing {
+            Some((path, svg)) => replace(path, svg.as_bytes()),
+            None => Ok(()),
+        }
+    }
+
+    /// No sample is read twice, and no measurement is written over.
+    fn check_paths(&self) -> Result<(), Error> {
+        let same = |a: &Path, b: &Path| {
+            let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+            whole(a) == whole(b)
+        };
+        for (k, path) in self.data.iter().enumerate() {
+            if self.data[..k].iter().any(|before| same(before, path)) {
+                let value = path.display().to_string();
+                return Err(Error::input(
+                    "DATA",
+                    &value,
+                    "the file is given twice",
+                    "give it once, with windows",
+                ));
+            }
+        }
+        for (flag, out) in [("--out", &self.out), ("--residuals", &self.residuals)] {
+            let Some(out) = out else { continue };
+            if self.data.iter().any(|path| same(path, out)) {
+                let value = out.display().to_string();
+                return Err(Error::input(
+                    flag,
+                    &value,
+                    "it would replace the measurement",
+                    "name another file",
+                ));
+            }
+        }
+        if let (Some(out), Some(residuals)) = (&self.out, &self.residuals) {
+            if same(out, residuals) {
+                let value = out.display().to_string();
+                return Err(Error::input(
+                    "--residuals",
+                    &value,
+                    "it would replace --out",
+                    "name another file",
+                ));
+            }
+        }
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::identifiability::Identifiability;
+use super::test_functions::TESTS_PER_RADIUS;
 
 /// Two demands that no tensor meets.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +21,8 @@ pub struct Clash {
 pub enum FitError {
     /// Too few samples for even one test function.
     #[error(
-        "{samples} samples, at most {longest} without a gap (segments: {segments}); a fit needs a segment of at least \
-         {needed} samples: record longer or faster"
+        "{samples} samples, at most {longest} without a gap (segments: {segments}, left out for flat tops: {saturated}); \
+         a fit needs a segment of at least {needed} samples: record longer or faster"
     )]
     TooFewSamples {
         /// Samples.
@@ -30,6 +31,8 @@ pub enum FitError {
         segments: usize,
         /// Samples of the longest segment.
         longest: usize,
+        /// Samples left out for flat tops.
+        saturated: usize,
         /// Fewest samples of a usable segment.
         needed: usize,
     },
@@ -60,7 +63,7 @@ pub enum FitError {
     },
     /// Another unit of the rates or times explains the record far better.
     #[error(
-        "the units look mistaken: with the rates {factor:.4} times as large ({hint}) the misfit per equation falls from \
+        "the units look mistaken: with rate x time {factor:.4e} times as large ({hint}) the misfit per equation falls from \
          {misfit:.3e} to {better:.3e}; name the units, or switch this check off"
     )]
     Units {
@@ -96,7 +99,7 @@ pub enum FitError {
         value: f64,
     },
     /// A setting that must be positive and finite is not.
-    #[error("{name} is {value}; it must be a positive number")]
+    #[error("{name} is {value:?}; it must be a positive number, and its square neither vanish nor overflow")]
     Setting {
         /// Which one.
         name: &'static str,
@@ -104,7 +107,10 @@ pub enum FitError {
         value: f64,
     },
     /// Test functions that no segment has room for.
-    #[error("a radius of {radius} s needs segments of {} s with {needed} samples in each; the longest lasts {longest} s", 2.0 * radius)]
+    #[error(
+        "a radius of {radius} s needs a segment of {:.4} s, which holds two test functions with {needed} samples in each; \
+         the longest lasts {longest} s", (2.0 + 0.5 / TESTS_PER_RADIUS) * radius
+    )]
     Radius {
         /// The radius, s.
         radius: f64,

@@ -126,7 +126,8 @@ pub(super) fn normalised(record: &Record) -> Result<Normalised, FitError> {
     let longest = record.segments.iter().map(|s| s.times.len()).max().unwrap_or(0);
     let needed = 2 * SAMPLES_PER_TEST as usize;
     if longest < needed {
-        return Err(FitError::TooFewSamples { samples, segments: record.segments.len(), longest, needed });
+        let (segments, saturated) = (record.segments.len(), record.saturated());
+        return Err(FitError::TooFewSamples { samples, segments, longest, saturated, needed });
     }
     // the largest component first, so that squares neither over- nor underflow
     let rates = || record.segments.iter().flat_map(|s| &s.rates);
@@ -240,6 +241,7 @@ fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f
             samples: record.samples(),
             segments: record.segments.len(),
             longest: stretches.iter().map(|s| s.times.len()).max().unwrap_or(0),
+            saturated: record.saturated(),
             needed: 2 * needed,
         },
     }

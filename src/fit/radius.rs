@@ -102,16 +102,17 @@ pub(super) fn estimate(
     best.or_else(sphere).ok_or(Failure::Singular)
 }
 
-/// The first stretches, up to a number of samples.
+/// The longest stretches, up to a number of samples, in their order.
 pub(super) fn pilot(stretches: &[Stretch]) -> Vec<Stretch> {
+    let mut longest: Vec<usize> = (0..stretches.len()).collect();
+    longest.sort_by_key(|&k| core::cmp::Reverse(stretches[k].times.len()));
     let mut left = PILOT_SAMPLES;
-    let mut chosen = Vec::new();
-    for s in stretches {
-        let count = left.min(s.times.len());
-        if count > 3 {
-            chosen.push(if count < s.times.len() { s.head(count) } else { s.clone() });
-        }
-        left -= count;
+    let mut counts = vec![0; stretches.len()];
+    for k in longest {
+        counts[k] = left.min(stretches[k].times.len());
+        left -= counts[k];
     }
-    chosen
+    let part =
+        |(s, &count): (&Stretch, &usize)| if count < s.times.len() { s.head(count) } else { s.clone() };
+    stretches.iter().zip(&counts).filter(|(_, count)| **count > 3).map(part).collect()
 }

@@ -76,7 +76,7 @@ pub enum RecordError {
         unit: String,
     },
     /// The header and a flag name different units.
-    #[error("{file}: column {name:?} says {header:?}, the setting says {setting:?}; drop one of the two")]
+    #[error("{file}: column {name:?} says {header}, the setting says {setting}; drop one of the two")]
     UnitClash {
         /// Name of the file.
         file: String,
@@ -137,6 +137,27 @@ pub enum RateUnit {
     DegreesPerSecond,
     /// Revolutions per minute.
     RevolutionsPerMinute,
+}
+
+impl core::fmt::Display for TimeUnit {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Seconds => "s",
+            Self::Milliseconds => "ms",
+            Self::Microseconds => "us",
+            Self::Nanoseconds => "ns",
+        })
+    }
+}
+
+impl core::fmt::Display for RateUnit {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::RadiansPerSecond => "rad/s",
+            Self::DegreesPerSecond => "deg/s",
+            Self::RevolutionsPerMinute => "rpm",
+        })
+    }
 }
 
 impl TimeUnit {
@@ -235,6 +256,8 @@ enum Finding {
 const GAP: f64 = 8.0;
 /// Equal extreme samples in a row that count as the end of the range.
 const FLAT_TOP: usize = 4;
+/// Steps of the rounding that a column must span before its ends can be those of a sensor's range.
+const QUIET: f64 = 16.0;
 
 impl Record {
     /// From times (s) and angular velocities (rad/s, sensor axes).
@@ -397,16 +420,19 @@ impl Record {
         self.findings.iter().filter(|(_, finding)| *finding == what).count()
     }
 
-    /// The parts that lie in the windows (start, end), s, both ends included.
+    /// The parts that lie in the windows (start, end), s, both ends included. Windows that overlap count as one, so that no
+    /// sample serves twice.
     ///
     /// # Errors
     /// A window that is not ascending, or without samples.
     pub fn windows(&self, windows: &[(f64, f64)]) -> Result<Record, RecordError> {
+        if let Some(&(start, end)) =
+            windows.iter().find(|(start, end)| !(start.is_finite() && end.is_finite() && start < end))
+        {
+            return Err(RecordError::Window { start, end });
+        }
         let mut cut = Record::default();
-        for &(start, end) in windows {
-            if !(start.is_finite() && end.is_finite() && start < end) {
-                return Err(RecordError::Window { start, end });
-            }
+        for (start, end) in joined(windows) {
             cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
             let before = cut.segments.len();
             for s in &self.segments {
@@ -438,28 +464,52 @@ impl Record {
     }
 }
 
-/// Samples where a component stays at its largest or smallest value for several samples in a row.
+/// The windows with those that overlap made one, in the order of their starts.
+fn joined(windows: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut sorted = windows.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut joined: Vec<(f64, f64)> = Vec::new();
+    for (start, end) in sorted {
+        match joined.last_mut() {
+            Some(last) if start < last.1 => last.1 = last.1.max(end),
+            _ => joined.push((start, end)),
+        }
+    }
+    joined
+}
+
+/// Samples where a component stays at its largest or smallest value, and longer than a rounded peak would.
+///
+/// In rounded readings a peak is flat too: as long as it takes to fall by a few steps of the rounding. A clipped one is
+/// flat for longer than that.
 fn flat_tops(samples: &[[f64; 4]]) -> Vec<bool> {
     let mut flat = vec![false; samples.len()];
     for k in 1..4 {
         let column = || samples.iter().map(|row| row[k]);
         let (low, high) =
             (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
+        let steps = samples.windows(2).map(|w| (w[1][k] - w[0][k]).abs()).filter(|step| *step > 0.0);
+        let step = steps.fold(f64::INFINITY, f64::min);
+        // a column of a few values, or of one, is a quiet axis
+        if high - low < QUIET * step {
+            continue;
+        }
         for end in [low, high] {
-            let mut runs: Vec<(usize, usize)> = Vec::new();
+            let away = |row: &[f64; 4]| (row[k] - end).abs() >= 2.5 * step;
             let mut i = 0;
             while i < samples.len() {
                 let run = samples[i..].iter().take_while(|row| row[k] == end).count();
                 if run >= FLAT_TOP {
-                    runs.push((i, i + run));
+                    // how long the fall lasts is asked no further than the answer matters; an edge tells nothing
+                    let most = run / 3;
+                    let before = samples[..i].iter().rev().take(most).position(away);
+                    let after = samples[i + run..].iter().take(most).position(away);
+                    let edge = (i < most, samples.len() - (i + run) < most);
+                    if (before.is_some() || edge.0) && (after.is_some() || edge.1) {
+                        flat[i..i + run].iter_mut().for_each(|f| *f = true);
+                    }
                 }
                 i += run.max(1);
-            }
-            // a column that never moves is a quiet axis, not a clipped one
-            if low < high {
-                for (a, b) in runs {
-                    flat[a..b].iter_mut().for_each(|f| *f = true);
-                }
             }
         }
     }
@@ -506,13 +556,23 @@ fn split_unit(name: &str) -> (&str, Option<&str>) {
     (&name[..open], Some(unit))
 }
 
+const TIME_NAMES: [&str; 5] = ["t", "time", "timestamp", "secondselapsed", "elapsed"];
+
+/// The unit at the end of the name of a time, as in `time_ms`.
+fn suffixed_unit(name: &str) -> Option<&'static str> {
+    let reduced = reduced(name);
+    TIME_NAMES
+        .iter()
+        .find_map(|stem| ["ms", "us", "ns"].into_iter().find(|unit| reduced.strip_prefix(stem) == Some(unit)))
+}
+
 fn find_columns(names: &[String], file: &str) -> Result<[usize; 4], RecordError> {
     let reduced: Vec<String> = names.iter().map(|n| reduced(n)).collect();
     let find = |spellings: &[String]| spellings.iter().find_map(|s| reduced.iter().position(|n| n == s));
-    let time: Vec<String> =
-        ["t", "time", "times", "timestamp", "secondselapsed", "elapsed", "timeus", "timems"]
-            .map(String::from)
-            .into();
+    let time: Vec<String> = TIME_NAMES
+        .iter()
+        .flat_map(|name| ["", "s", "ms", "us", "ns"].map(|unit| format!("{name}{unit}")))
+        .collect();
     let stems = [
         "w",
         "omega",
@@ -545,13 +605,13 @@ fn find_columns(names: &[String], file: &str) -> Result<[usize; 4], RecordError>
 }
 
 /// The unit of a column, from its header or the setting, which must not contradict each other.
-fn unit<U: PartialEq + Copy + core::fmt::Debug>(
+fn unit<U: PartialEq + Copy + core::fmt::Display>(
     name: &str,
     file: &str,
     setting: Option<U>,
     named: impl Fn(&str) -> Option<U>,
 ) -> Result<Option<U>, RecordError> {
-    let Some(text) = split_unit(name).1 else { return Ok(setting) };
+    let Some(text) = split_unit(name).1.or_else(|| suffixed_unit(name)) else { return Ok(setting) };
     let header = named(text).ok_or_else(|| RecordError::Unit {
         file: file.into(),
         name: name.into(),
@@ -561,8 +621,8 @@ fn unit<U: PartialEq + Copy + core::fmt::Debug>(
         Some(setting) if setting != header => Err(RecordError::UnitClash {
             file: file.into(),
             name: name.into(),
-            header: format!("{header:?}"),
-            setting: format!("{setting:?}"),
+            header: header.to_string(),
+            setting: setting.to_string(),
         }),
         _ => Ok(Some(header)),
     }
@@ -618,7 +678,7 @@ mod tests {
         }
         let setting = Reading { rate_unit: Some(RateUnit::DegreesPerSecond), ..Reading::default() };
         let clash = Record::read("t,wx (rad/s),wy,wz\n1,1,2,3\n", "a.csv", setting).unwrap_err().to_string();
-        assert!(clash.contains("RadiansPerSecond") && clash.contains("DegreesPerSecond"), "{clash}");
+        assert!(clash.contains("says rad/s") && clash.contains("says deg/s"), "{clash}");
     }
 
     #[test]
@@ -647,5 +707,47 @@ mod tests {
         assert_eq!(record.saturated(), 21 + 30);
         assert_eq!(record.samples(), 49);
         assert_eq!(record.windows(&[(0.0, 0.5)]).unwrap().saturated(), 21);
+    }
+
+    #[test]
+    fn rounded_peaks_and_quiet_axes_are_not_flat_tops() {
+        let times: Vec<f64> = (0..2000).map(|i| f64::from(i) * 0.01).collect();
+        let rounded = |x: f64, step: f64| libm::round(x / step) * step;
+        let wave = |t: f64| libm::sin(0.7 * t);
+        let at = |step: f64| -> Vec<Vector3<f64>> {
+            // the last one flickers by one step
+            let third = |i: usize| 1.0 + step * f64::from(u8::from(i % 7 > 3));
+            times
+                .iter()
+                .enumerate()
+                .map(|(i, t)| Vector3::new(rounded(wave(*t), step), wave(*t), third(i)))
+                .collect()
+        };
+        for step in [0.05, 0.01, 1e-3, f64::EPSILON] {
+            let record = Record::from_samples(&times, &at(step)).unwrap();
+            assert_eq!(record.saturated(), 0, "step {step}");
+        }
+        // the same wave beyond a sensor's range
+        for step in [0.01, 1e-3] {
+            let clipped: Vec<_> = at(step).iter().map(|w| w.map(|c| c.clamp(-0.8, 0.8))).collect();
+            let record = Record::from_samples(&times, &clipped).unwrap();
+            let beyond = clipped.iter().filter(|w| w.x.abs() == 0.8 || w.y.abs() == 0.8).count();
+            assert_eq!(record.saturated(), beyond, "step {step}");
+        }
+    }
+
+    #[test]
+    fn overlapping_windows_are_one_and_units_end_names() {
+        let mut text = String::from("time_ms,wx,wy,wz\n");
+        (0..100).for_each(|i| text += &format!("{},{i},1,2\n", 10 * i));
+        let record = read(&text).unwrap();
+        assert_eq!(record.segments[0].times[99], 0.99);
+        let twice = record.windows(&[(0.3, 0.6), (0.0, 0.4), (0.6, 0.9), (0.0, 0.4)]).unwrap();
+        assert_eq!((twice.segments.len(), twice.samples()), (2, 61 + 31));
+        assert_eq!(read(&text.replace("time_ms", "timestampNs")).unwrap().segments[0].times[99], 990e-9);
+        assert!(
+            Record::read(&text, "a", Reading { time_unit: Some(TimeUnit::Seconds), ..Reading::default() })
+                .is_err()
+        );
     }
 }

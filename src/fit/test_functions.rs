@@ -8,7 +8,7 @@ use super::banded::Banded;
 use super::quadrature;
 
 /// Test functions per radius.
-const TESTS_PER_RADIUS: f64 = 4.0;
+pub(super) const TESTS_PER_RADIUS: f64 = 4.0;
 /// Fewest samples in the support of one test function.
 pub(super) const SAMPLES_PER_TEST: f64 = 8.0;
 

@@ -5,7 +5,7 @@ use super::rounds::WeakEstimate;
 use super::test_functions::Stretch;
 
 /// Other units, as factors on rate × time, and what would have happened.
-const UNITS: [(f64, &str); 8] = [
+const UNITS: [(f64, &str); 12] = [
     (core::f64::consts::PI / 180.0, "degrees per second taken for radians per second"),
     (180.0 / core::f64::consts::PI, "radians per second taken for degrees per second"),
     (core::f64::consts::PI / 30.0, "revolutions per minute taken for radians per second"),
@@ -14,6 +14,10 @@ const UNITS: [(f64, &str); 8] = [
     (1.0 / 6.0, "degrees per second taken for revolutions per minute"),
     (1e-3, "milliseconds taken for seconds"),
     (1e3, "seconds taken for milliseconds"),
+    (1e-6, "microseconds taken for seconds"),
+    (1e6, "seconds taken for microseconds"),
+    (1e-9, "nanoseconds taken for seconds"),
+    (1e9, "seconds taken for nanoseconds"),
 ];
 
 /// A unit that explains the record better than the one it was read in.

@@ -3,6 +3,13 @@
 use super::estimate::{Estimate, Facts};
 use super::units::Better;
 
+/// Both to two digits of the deviation.
+fn with_sigma(value: f64, sigma: f64) -> String {
+    let digits = if sigma > 0.0 { 1.0 - libm::floor(libm::log10(sigma)) } else { 2.0 };
+    let digits = digits.clamp(0.0, 15.0) as usize;
+    format!("{value:.digits$} +- {sigma:.digits$}")
+}
+
 /// In words: what of the record, the residuals and the answer limits the use of `e`.
 pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) -> Vec<String> {
     let mut list = Vec::new();
@@ -24,10 +31,11 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) 
         ));
     }
     if e.chi2_per_dof > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
+        let times = e.chi2_per_dof.sqrt();
+        let times = if times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
         list.push(format!(
-            "the residuals are {:.1} times what the noise of {:.2e} rad/s explains: torques, outliers or a sensor that \
+            "the residuals are {times} times what the noise of {:.2e} rad/s explains: torques, outliers or a sensor that \
              filters; deviations are enlarged by that factor",
-            e.chi2_per_dof.sqrt(),
             e.noise_sigma
         ));
     }
@@ -39,7 +47,7 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) 
     }
     if let Some(Better { factor, hint, misfit, .. }) = better {
         list.push(format!(
-            "with the rates {factor:.4} times as large the misfit falls from {:.2e} to {misfit:.2e}: {hint}?",
+            "with rate x time {factor:.4e} times as large the misfit falls from {:.2e} to {misfit:.2e}: {hint}?",
             e.chi2_per_dof
         ));
     }
@@ -52,9 +60,8 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) 
     for (name, drift) in [("momentum |J w|", e.momentum_drift), ("energy w J w", e.energy_drift)] {
         if drift.significant() {
             list.push(format!(
-                "not free of torques: the {name} changes by {:.2} +- {:.2} per cent per second",
-                100.0 * drift.rate,
-                100.0 * drift.sigma
+                "not free of torques: the {name} changes by {} per cent per second",
+                with_sigma(100.0 * drift.rate, 100.0 * drift.sigma)
             ));
         }
     }
@@ -65,7 +72,7 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) 
             list.push(format!(
                 "segment {} (from {} s) has {:.1} times the residuals of the median segment: check it",
                 r.segment + 1,
-                r.times.first().copied().unwrap_or(0.0),
+                record.segments[r.segment].times.first().copied().unwrap_or(0.0),
                 (r.misfit / median).sqrt()
             ));
         }

@@ -107,6 +107,26 @@ fn what_is_not_determined_is_said_and_fails() {
 }
 
 #[test]
+fn a_motion_that_noise_hides_is_a_refusal_and_no_bad_input() {
+    let scratch = Scratch::new("hidden");
+    let record = scratch.0.join("hidden.csv").display().to_string();
+    let spin = "simulate --moments 1,2,3 --omega -0.066,-0.079,-0.995 --until 60 --every 0.01 --noise 0.1";
+    output(&format!("{spin} --out {record}"));
+    refused(1, &format!("fit {record}"), &["hidden.csv"]);
+}
+
+/// A noiseless symmetric body: its third rate flickers by a unit in the last place.
+#[test]
+fn what_is_simulated_without_noise_is_read() {
+    let scratch = Scratch::new("noiseless");
+    let record = scratch.0.join("symmetric.csv").display().to_string();
+    output(&format!("simulate --moments 1,1,2 --omega 0.5,0,1 --until 20 --every 0.01 --out {record}"));
+    let answer = json(&format!("fit {record}"));
+    assert_eq!(answer["samples"], Value::from(2001));
+    assert!((answer["principal"][2].as_f64().unwrap() - 0.5).abs() < 1e-9, "{answer:#}");
+}
+
+#[test]
 fn unusable_input_is_refused_by_file_line_and_column() {
     let scratch = Scratch::new("refused");
     let nan = scratch.file("nan.csv", "t,wx,wy,wz\n0,1,2,3\n0.1,1,nan,3\n");
@@ -141,6 +161,16 @@ fn unusable_input_is_refused_by_file_line_and_column() {
         &format!("fit {record} --rate-unit deg/s"),
         &["record.csv: the units look mistaken", "radians per second taken for degrees per second"],
     );
+    refused(2, &format!("fit {record} --trace 1e308"), &["the known quantity is 1e308"]);
+    refused(2, &format!("fit {record} --at-least 1,0,0,0.3 --at-most 1,0,0,0.3"), &["leave no room"]);
+    refused(2, &format!("fit {record} --time-unit ns"), &["seconds taken for nanoseconds"]);
+    refused(2, &format!("fit {record} {record}"), &["the file is given twice"]);
+    refused(2, &format!("fit {record} --radius 10"), &["a radius of 10 s needs a segment of 21.25"]);
+    let before = fs::read_to_string(&record).unwrap();
+    refused(2, &format!("fit {record} --out {record}"), &["--out", "it would replace the measurement"]);
+    let same = scratch.0.join("same").display().to_string();
+    refused(2, &format!("fit {record} --out {same} --residuals {same}"), &["it would replace --out"]);
+    assert_eq!(fs::read_to_string(&record).unwrap(), before);
     refused(2, &format!("{SIMULATE} --until 1 --noise -1"), &["--noise: '-1.0'", "not negative"]);
     refused(2, &format!("{SIMULATE} --until 1 --jitter 1"), &["--jitter: '1.0'", "keep their order"]);
     // a refusal leaves the file of an earlier answer alone
