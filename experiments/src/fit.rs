@@ -192,16 +192,11 @@ impl Fit {
                 ));
             }
         }
-        if let (Some(out), Some(residuals)) = (&self.out, &self.residuals) {
-            if same(out, residuals) {
-                let value = out.display().to_string();
-                return Err(Error::input(
-                    "--residuals",
-                    &value,
-                    "it would replace --out",
-                    "name another file",
-                ));
-            }
+        if let Some(out) =
+            self.out.as_ref().filter(|out| self.residuals.as_ref().is_some_and(|r| same(r, out)))
+        {
+            let value = out.display().to_string();
+            return Err(Error::input("--residuals", &value, "it would replace --out", "name another file"));
         }
         Ok(())
     }
