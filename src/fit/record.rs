@@ -273,8 +273,8 @@ impl Record {
         Record::from_rows("samples", rows, ["t", "wx", "wy", "wz"].map(String::from), [1, 2, 3, 4])
     }
 
-    /// From a text with a header: cells apart by comma, semicolon or tab, or by two spaces or more; lines before the
-    /// header and lines that begin with `#` may hold anything.
+    /// From a text with a header: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas
+    /// where semicolons or tabs part them; lines before the header and lines that begin with `#` may hold anything.
     ///
     /// # Errors
     /// Missing columns, unknown units, cells that are not finite numbers, times that decrease.
@@ -516,12 +516,19 @@ fn flat_tops(samples: &[[f64; 4]]) -> Vec<bool> {
     flat
 }
 
-/// The cells of a line, quotes removed.
+/// The cells of a line, quotes removed; where semicolons or tabs part them, a comma in a number is a decimal one.
 fn cells(line: &str) -> Vec<String> {
     let clean = |cell: &str| cell.trim().trim_matches('"').trim().to_string();
-    let delimiter = [',', ';', '\t'].into_iter().find(|d| line.contains(*d));
-    if let Some(delimiter) = delimiter {
-        return line.split(delimiter).map(clean).collect();
+    let pointed = |cell: &str| {
+        let cell = clean(cell);
+        let pointed = cell.replace(',', ".");
+        if pointed.parse::<f64>().is_ok() { pointed } else { cell }
+    };
+    if let Some(delimiter) = [';', '\t'].into_iter().find(|d| line.contains(*d)) {
+        return line.split(delimiter).map(pointed).collect();
+    }
+    if line.contains(',') {
+        return line.split(',').map(clean).collect();
     }
     let wide: Vec<String> = line.split("  ").map(clean).filter(|c| !c.is_empty()).collect();
     if wide.len() > 1 { wide } else { line.split_whitespace().map(clean).collect() }
@@ -707,6 +714,15 @@ mod tests {
         assert_eq!(record.saturated(), 21 + 30);
         assert_eq!(record.samples(), 49);
         assert_eq!(record.windows(&[(0.0, 0.5)]).unwrap().saturated(), 21);
+    }
+
+    #[test]
+    fn decimal_commas_are_read_between_semicolons() {
+        let record = read("t;wx;wy;wz\n0,5;0,1;-1e-1;3\n0,75;1;2,25;-3,5\n").unwrap();
+        assert_eq!(record.segments[0].times, [0.5, 0.75]);
+        assert_eq!(record.segments[0].rates[1], Vector3::new(1.0, 2.25, -3.5));
+        let broken = read("t;wx;wy;wz\n0,5;1,000,5;0;3\n").unwrap_err().to_string();
+        assert!(broken.contains("line 2, column 2 (wx): \"1,000,5\""), "{broken}");
     }
 
     #[test]
