@@ -10,6 +10,11 @@ use crate::error::Error;
 ///
 /// Pipes and devices, which cannot be replaced, are written to directly.
 pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    replace_named_by("--out", path, bytes)
+}
+
+/// The same for a path that another flag names.
+pub(crate) fn replace_named_by(flag: &str, path: &Path, bytes: &[u8]) -> Result<(), Error> {
     // A link is followed, so that its target is replaced and not the link.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let written = match fs::metadata(&target) {
@@ -19,7 +24,7 @@ pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
         }
         _ => replace_file(&target, bytes),
     };
-    written.map_err(|reason| unwritable(path, &reason))
+    written.map_err(|reason| unwritable(flag, path, &reason))
 }
 
 fn replace_file(target: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -43,9 +48,9 @@ fn beside(target: &Path, role: &str) -> io::Result<PathBuf> {
     Ok(target.with_file_name(format!(".{}.{}.{role}", name.to_string_lossy(), std::process::id())))
 }
 
-fn unwritable(path: &Path, reason: &io::Error) -> Error {
+fn unwritable(flag: &str, path: &Path, reason: &io::Error) -> Error {
     Error::Input(format!(
-        "--out: '{}': cannot be written: {reason}; name a place that exists and that you may write to",
+        "{flag}: '{}': cannot be written: {reason}; name a place that exists and that you may write to",
         path.display()
     ))
 }
@@ -83,14 +88,14 @@ impl Staging {
             fs::create_dir(&temporary)?;
             Ok(temporary)
         };
-        let temporary = create().map_err(|reason| unwritable(target, &reason))?;
+        let temporary = create().map_err(|reason| unwritable("--out", target, &reason))?;
         Ok(Self { target: target.to_path_buf(), temporary })
     }
 
     /// Writes one file of the folder.
     pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Error> {
         let path = self.temporary.join(name);
-        write_synced(&path, bytes).map_err(|reason| unwritable(&self.target.join(name), &reason))
+        write_synced(&path, bytes).map_err(|reason| unwritable("--out", &self.target.join(name), &reason))
     }
 
     /// Puts the folder in place of the one that stood there.
@@ -109,7 +114,7 @@ impl Staging {
             }
             if replaced { fs::remove_dir_all(&old) } else { Ok(()) }
         };
-        exchange().map_err(|reason: io::Error| unwritable(&self.target, &reason))
+        exchange().map_err(|reason: io::Error| unwritable("--out", &self.target, &reason))
     }
 }
 

@@ -11,7 +11,7 @@ use polhode::fit::{Bound, FitError, Known, RateUnit, Reading, Record, Settings, 
 
 use crate::arguments::{number, numbers, positive};
 use crate::error::{Error, warn};
-use crate::files::{emit, read, replace};
+use crate::files::{emit, read, replace_named_by};
 use crate::table::Format;
 
 /// Inertia tensor of a freely turning body from its measured angular velocity
@@ -158,7 +158,7 @@ impl Fit {
         // the JSON holds them too; a file of rows does not
         estimate.warnings.iter().for_each(|warning| warn(warning));
         match drawing {
-            Some((path, svg)) => replace(path, svg.as_bytes()),
+            Some((path, svg)) => replace_named_by("--residuals", path, svg.as_bytes()),
             None => Ok(()),
         }
     }

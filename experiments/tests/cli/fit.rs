@@ -166,6 +166,8 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     refused(2, &format!("fit {record} --time-unit ns"), &["seconds taken for nanoseconds"]);
     refused(2, &format!("fit {record} {record}"), &["the file is given twice"]);
     refused(2, &format!("fit {record} --radius 10"), &["a radius of 10 s needs a segment of 21.25"]);
+    let nowhere = run(&format!("fit {record} --residuals /nowhere/r.svg"));
+    assert!(nowhere.code == 2 && nowhere.err.contains("--residuals: '/nowhere/r.svg'"), "{}", nowhere.err);
     let before = fs::read_to_string(&record).unwrap();
     refused(2, &format!("fit {record} --out {record}"), &["--out", "it would replace the measurement"]);
     let same = scratch.0.join("same").display().to_string();
