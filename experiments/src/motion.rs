@@ -10,8 +10,12 @@ use crate::error::Error;
 use crate::files::emit;
 use crate::table::{Column, Format, Table, row};
 
+const USAGE: &str = "polhode motion <BODY> --omega <wx,wy,wz> [OPTIONS]
+  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
+
 /// Mode, periods and distance to the separatrix of a free motion
 #[derive(Args, Clone, Debug)]
+#[command(override_usage = USAGE)]
 pub(crate) struct Motion {
     #[command(flatten)]
     body: BodyArguments,

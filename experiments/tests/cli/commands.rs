@@ -35,6 +35,9 @@ fn help_is_everywhere_and_fits_into_80_columns() {
     let commands = [
         "",
         "propagate",
+        "motion",
+        "simulate",
+        "fit",
         "methods",
         "inertia",
         "experiment",
