@@ -89,10 +89,10 @@ pub(super) fn nearest(centre: Coordinates, root: Form, bounds: &[Bound]) -> Resu
             || bounds.iter().enumerate().filter(|(_, b)| b.axis.normalize().dot(&n).abs() > 1.0 - 1e-12);
         let tighter = |of: fn(&Bound) -> Option<f64>, sign: f64| {
             let value = of(bound)?;
-            let looser = |(i, b): (usize, &Bound)| {
+            let outdoes = |(i, b): (usize, &Bound)| {
                 of(b).is_some_and(|other| sign * other > sign * value || (other == value && i < k))
             };
-            (!twins().any(looser)).then_some(value)
+            (!twins().any(outdoes)).then_some(value)
         };
         // what the law says anyway would only stand beside it
         if let Some(low) = tighter(|b| b.at_least, 1.0).filter(|low| *low > 0.0) {
