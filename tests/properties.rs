@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod cases;
+
 use polhode::body::{Body, Inertia, State};
 use polhode::flow::FreeMotion;
 use polhode::method::method;
@@ -40,7 +42,7 @@ fn apart(a: &State<Dd>, b: &State<Dd>) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(cases::usual(200))]
 
     #[test]
     fn exact_motion_keeps_energy_and_momentum_in_space(

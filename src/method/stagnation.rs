@@ -3,16 +3,25 @@
 use crate::num::Real;
 use crate::rotation::Vec3;
 
-/// More sweeps than any step below 60° of turn takes; a step that needs them has left the range of the iteration.
-const SWEEPS: u32 = 60;
+/// More sweeps than any step below 50° of turn takes; a step that needs them has left the range of the iteration.
+const SWEEPS: u32 = 100;
+
+/// Above this many roundoffs of the size a change that does not decrease is no stagnation but a coincidence, or a
+/// contraction that turns: only a change this small can be made of rounding.
+const ROUNDING: f64 = 64.0;
 
 /// Iterates `next` from `start` until the change stops decreasing (Hairer, McLachlan and Razakarivony, BIT 48
 /// (2008) 231): a fixed tolerance would leave a systematic error that drifts. Returns the last iterate and its
-/// change relative to its size.
+/// change relative to the size of `m`, the momentum that it is or is added to.
 #[inline]
-pub(super) fn iterate<S: Real>(start: Vec3<S>, mut next: impl FnMut(Vec3<S>) -> Vec3<S>) -> (Vec3<S>, f64) {
+pub(super) fn iterate<S: Real>(
+    m: Vec3<S>,
+    start: Vec3<S>,
+    mut next: impl FnMut(Vec3<S>) -> Vec3<S>,
+) -> (Vec3<S>, f64) {
     let mut x = start;
     let mut change = f64::INFINITY;
+    let size = m.magnitude() + start.magnitude();
     for _ in 0..SWEEPS {
         let new = next(x);
         let moved = (new - x).magnitude();
@@ -20,11 +29,11 @@ pub(super) fn iterate<S: Real>(start: Vec3<S>, mut next: impl FnMut(Vec3<S>) -> 
         if moved == 0.0 {
             return (x, 0.0);
         }
-        if moved >= change {
-            change = moved;
+        let stagnates = moved >= change && moved <= ROUNDING * S::ROUNDOFF * size;
+        change = moved;
+        if stagnates {
             break;
         }
-        change = moved;
     }
-    (x, change / x.magnitude())
+    (x, change / size)
 }

@@ -298,6 +298,7 @@ impl PartialOrd for Dd {
 }
 
 impl Real for Dd {
+    const ROUNDOFF: f64 = f64::EPSILON * f64::EPSILON / 4.0;
     #[inline]
     fn of(x: f64) -> Dd {
         Dd::exact(x)
@@ -321,7 +322,6 @@ impl Real for Dd {
 }
 
 impl Precise for Dd {
-    const ROUNDOFF: f64 = f64::EPSILON * f64::EPSILON / 4.0;
     #[inline]
     fn from_dd(x: Dd) -> Self {
         x

@@ -22,6 +22,8 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// Unit roundoff of one operation.
+    const ROUNDOFF: f64;
     /// The scalar nearest to `x`.
     fn of(x: f64) -> Self;
     /// Square root; NaN of a negative number.
@@ -34,8 +36,6 @@ pub trait Real:
 
 /// A scalar that can be compared, rounded and turned into an angle: `f64` and [`Dd`].
 pub trait Precise: Real + PartialOrd {
-    /// Unit roundoff of one operation.
-    const ROUNDOFF: f64;
     /// Nearest value of this type.
     fn from_dd(x: Dd) -> Self;
     /// The same value, exactly.
@@ -57,6 +57,7 @@ pub trait Precise: Real + PartialOrd {
 }
 
 impl Real for f64 {
+    const ROUNDOFF: f64 = f64::EPSILON / 2.0;
     #[inline]
     fn of(x: f64) -> Self {
         x
@@ -76,7 +77,6 @@ impl Real for f64 {
 }
 
 impl Precise for f64 {
-    const ROUNDOFF: f64 = f64::EPSILON / 2.0;
     #[inline]
     fn from_dd(x: Dd) -> Self {
         x.to_f64()

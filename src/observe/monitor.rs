@@ -2,7 +2,7 @@
 
 use crate::body::{Body, Gravity, State};
 use crate::num::dd::{two_prod, two_sum};
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
 /// Relative errors of the invariants against the start; 0 for a free body at rest.

@@ -14,9 +14,9 @@ use crate::method::{Advance, AnyMethod, StepError};
 use crate::num::{Dd, Precise};
 use crate::observe::{Errors, Invariants, Monitor};
 
-/// An implicit solve that ends further than this from its equation, relative, is no solution. Rounding alone
-/// leaves about 1e-16.
-const SOLVED: f64 = 1e-10;
+/// An implicit solve that ends further than this from its equation, relative, is no solution: the invariants would be
+/// lost by as much in every step. Rounding alone leaves about 1e-16.
+const SOLVED: f64 = 1e-13;
 
 /// Steps between looks at the residual of implicit methods.
 const CHUNK: u64 = 4096;
