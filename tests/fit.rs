@@ -520,7 +520,7 @@ fn duplicate_times_are_merged_and_counted() {
     let estimate = fit(&Record::from_samples(&t, &w).unwrap(), &Settings::default()).unwrap();
     assert!((estimate.shape.tensor() - j).amax() < 1e-3);
     assert!(
-        estimate.warnings[0].starts_with("1500 samples had the time of another"),
+        estimate.warnings[0].starts_with("1500 samples were merged with the sample of the same time"),
         "{:?}",
         estimate.warnings
     );

@@ -4,7 +4,7 @@
 
 mod cases;
 
-use polhode::body::{Body, Inertia, State};
+use polhode::body::{Body, Inertia, State, StateError};
 use polhode::flow::FreeMotion;
 use polhode::method::method;
 use polhode::num::{Dd, Real};
@@ -142,4 +142,21 @@ fn invariants_do_not_depend_on_the_frame_of_the_input() {
     let energy = Invariants::of(&body, &rounded).energy.hi() * body.scale();
     approx::assert_relative_eq!(energy, 0.5 * omega.dot(&(tensor * omega)), max_relative = 1e-15);
     approx::assert_relative_eq!(start.momentum(), tensor * omega, max_relative = 1e-15);
+}
+
+#[test]
+fn an_attitude_may_have_any_norm_but_zero() {
+    let body = Body::free(Inertia::from_moments([2.0, 3.0, 4.0]).unwrap());
+    let enter = |q: [f64; 4]| body.enter_omega(Quat::from_components(q), Vec3([0.5, 1.0, -0.25]));
+    let usual = enter([0.5, 0.25, -0.75, 1.0]).unwrap();
+    for exponent in [-1070, -600, 600, 1020] {
+        assert_eq!(
+            enter([0.5, 0.25, -0.75, 1.0].map(|x| libm::scalbn(x, exponent))),
+            Ok(usual),
+            "2^{exponent}"
+        );
+    }
+    assert_eq!(enter([0.0, -0.0, 0.0, 0.0]), Err(StateError::NoAttitude));
+    let rounded = State { attitude: Quat::zero(), momentum_body: Vec3([1.0, 3.0, -1.0]) };
+    assert_eq!(body.enter(&rounded), Err(StateError::NoAttitude));
 }

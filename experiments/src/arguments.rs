@@ -36,7 +36,7 @@ pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     })
 }
 
-/// A quaternion w,x,y,z of any non-zero norm; as typed, but for a power of two that keeps its square in range.
+/// A quaternion w,x,y,z of any non-zero norm, as typed.
 pub(crate) fn quaternion(text: &str) -> Result<[f64; 4], String> {
     let q = numbers(text)?;
     if q == [0.0; 4] {
@@ -44,9 +44,7 @@ pub(crate) fn quaternion(text: &str) -> Result<[f64; 4], String> {
             "the zero quaternion has no direction; any other norm is fine, and 1,0,0,0 is the attitude unturned".into()
         );
     }
-    let largest = q.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let exponent = libm::ilogb(largest);
-    Ok(q.map(|x| libm::scalbn(x, -exponent)))
+    Ok(q)
 }
 
 /// Output times as typed, a value of its own because clap reads `Vec` as a repeated flag.
@@ -114,8 +112,6 @@ mod tests {
         assert!(message("1,2,1e999").starts_with("item 3: '1e999' is not a finite number"));
         assert_eq!(positive("0").unwrap_err(), "0.0 is not positive; give a number above zero");
         assert!(quaternion("0,0,-0,0").unwrap_err().contains("zero quaternion"));
-        assert_eq!(quaternion("0,-5e-324,0,0"), Ok([0.0, -1.0, 0.0, 0.0]));
-        assert_eq!(quaternion("1.5e308,0,0,1.5e308").map(|q| q[0] == q[3] && q[0] < 2.0), Ok(true));
         assert_eq!(quaternion("1,0.1,0,0"), Ok([1.0, 0.1, 0.0, 0.0]));
     }
 

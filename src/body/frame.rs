@@ -18,6 +18,9 @@ pub enum StateError {
         /// The offending value.
         value: f64,
     },
+    /// The quaternion of the attitude is zero.
+    #[error("the attitude is the zero quaternion, which has no direction; any other norm is fine")]
+    NoAttitude,
     /// The spin is too large or too small for its energy to be a double.
     #[error(
         "angular velocity {omega:?} rad/s with this inertia puts the energy outside the range of a double; change the units"
@@ -121,7 +124,7 @@ impl Body {
     /// The state with angular velocity `omega_body` (rad/s, body axes): m = I ω.
     ///
     /// # Errors
-    /// Components that are not finite, or a spin whose energy is no finite double.
+    /// Components that are not finite, a quaternion of zeros, or a spin whose energy is no finite double.
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
@@ -140,15 +143,17 @@ impl Body {
         Ok(self.leave(&inside))
     }
 
-    /// The exact state with angular velocity `omega_body` as kernels see it.
+    /// The exact state with angular velocity `omega_body` as kernels see it; the attitude may have any norm but zero.
     ///
     /// # Errors
     /// As [`state`](Self::state).
     pub fn enter_omega(&self, attitude: Quat<f64>, omega_body: Vec3<f64>) -> Result<State<Dd>, StateError> {
-        check("attitude", &attitude.components())?;
+        let largest = check_attitude(attitude)?;
         check("angular velocity", &omega_body.0)?;
+        // the power of two keeps the squares in range
+        let near_one = attitude.components().map(|x| libm::scalbn(x, -libm::ilogb(largest)));
         let inside = State {
-            attitude: Quat::of(attitude).normalized() * self.inertia.frame(),
+            attitude: Quat::of(Quat::from_components(near_one)).normalized() * self.inertia.frame(),
             momentum_body: self.inertia.scaled_momentum(omega_body),
         };
         self.check_range(&inside)?;
@@ -160,7 +165,7 @@ impl Body {
     /// # Errors
     /// As [`state`](Self::state).
     pub fn enter(&self, x: &State<f64>) -> Result<State<Dd>, StateError> {
-        check("attitude", &x.attitude.components())?;
+        check_attitude(x.attitude)?;
         check("momentum", &x.momentum_body.0)?;
         let (frame, scale) = (self.inertia.frame(), self.inertia.scale());
         let momentum = Vec3(x.momentum_body.0.map(|m| Dd::of(m / scale)));
@@ -231,6 +236,13 @@ fn clear(x: f64) -> bool {
 /// A double-double in any scalar, rounded once where it has fewer digits.
 pub(crate) fn of_dd<S: Real>(x: Dd) -> S {
     S::of(x.hi()) + S::of(x.lo())
+}
+
+/// The largest component.
+fn check_attitude(attitude: Quat<f64>) -> Result<f64, StateError> {
+    check("attitude", &attitude.components())?;
+    let largest = attitude.magnitude();
+    if largest > 0.0 { Ok(largest) } else { Err(StateError::NoAttitude) }
 }
 
 fn check(quantity: &'static str, components: &[f64]) -> Result<(), StateError> {

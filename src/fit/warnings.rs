@@ -10,18 +10,22 @@ fn with_sigma(value: f64, sigma: f64) -> String {
     format!("{value:.digits$} +- {sigma:.digits$}")
 }
 
+/// "1 sample has", "2 samples have".
+fn samples(count: usize, one: &str, more: &str) -> String {
+    if count == 1 { format!("1 sample {one}") } else { format!("{count} samples {more}") }
+}
+
 /// In words: what of the record, the residuals and the answer limits the use of `e`.
 pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) -> Vec<String> {
     let mut list = Vec::new();
     let record = facts.record;
     if record.merged() > 0 {
-        list.push(format!("{} samples had the time of another and were merged with it", record.merged()));
+        let samples = samples(record.merged(), "was", "were");
+        list.push(format!("{samples} merged with the sample of the same time"));
     }
     if record.saturated() > 0 {
-        list.push(format!(
-            "{} samples stand at the end of the sensor's range (flat tops) and were left out",
-            record.saturated()
-        ));
+        let samples = samples(record.saturated(), "stands", "stand");
+        list.push(format!("{samples} at the end of the sensor's range (flat tops), left out"));
     }
     let unused = record.segments.len() - e.segments;
     if unused > 0 {
