@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use nalgebra::Vector3;
 use polhode::fit::{Bound, FitError, Known, RateUnit, Reading, Record, Settings, TimeUnit, fit};
+use report::Facts;
 
 use crate::arguments::{number, numbers, positive};
 use crate::error::{Error, warn};
@@ -141,16 +142,18 @@ impl Fit {
         let format = Format::or_default(self.format, self.out.is_some());
         let estimate = match fit(&record, &settings) {
             Ok(estimate) => estimate,
-            Err(FitError::Unidentifiable(what)) => {
-                emit(&report::unidentified(&what, &record, format), self.out.as_deref())?;
-                return Err(Error::Failed(format!("{}: {}", self.names(), FitError::Unidentifiable(what))));
-            }
-            Err(
-                error @ (FitError::NoRotation { .. } | FitError::Unsettled { .. } | FitError::Solver { .. }),
-            ) => {
+            Err(error) => {
+                let facts = match &error {
+                    FitError::Unidentifiable(what) => Some(Facts::unidentified(what)),
+                    FitError::Unsettled { axes, .. } => Some(Facts::unsettled(axes)),
+                    FitError::NoRotation { .. } | FitError::Solver { .. } => None,
+                    _ => return Err(Error::Input(format!("{}: {error}", self.names()))),
+                };
+                if let Some(facts) = facts {
+                    emit(&facts.report(&record, format), self.out.as_deref())?;
+                }
                 return Err(Error::Failed(format!("{}: {error}", self.names())));
             }
-            Err(error) => return Err(Error::Input(format!("{}: {error}", self.names()))),
         };
         let drawing = self.residuals.as_deref().map(|path| plot::residuals(&estimate).map(|svg| (path, svg)));
         let drawing = drawing.transpose()?;

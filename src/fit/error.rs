@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::averages::AverageAxis;
 use super::identifiability::Identifiability;
 use super::test_functions::TESTS_PER_RADIUS;
 
@@ -53,13 +54,16 @@ pub enum FitError {
     /// The rates change, but no tensor explains how.
     #[error(
         "the rates change, but in {rounds} rounds at any radius no tensor settled: the noise of {noise:.3e} rad/s hides \
-         the motion, or torques make it; record longer, with a larger wobble, or name a radius"
+         the motion, or torques make it; record longer, with a larger wobble, or name a radius{}",
+        known_without_torques(axes)
     )]
     Unsettled {
         /// Rounds of reweighting at each radius.
         rounds: usize,
         /// Noise of a component, rad/s.
         noise: f64,
+        /// What is known all the same, if no torque acted.
+        axes: Vec<AverageAxis>,
     },
     /// Another unit of the rates or times explains the record far better.
     #[error(
@@ -125,4 +129,9 @@ pub enum FitError {
         /// What happened.
         status: String,
     },
+}
+
+fn known_without_torques(axes: &[AverageAxis]) -> String {
+    let known = axes.iter().map(|axis| format!(". Known, if no torque acted: {axis}"));
+    known.collect()
 }

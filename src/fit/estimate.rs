@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
+use super::averages;
 use super::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, pair, tensor};
 use super::cramer_rao::cramer_rao;
 use super::error::FitError;
@@ -194,7 +195,8 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let identifiability = identify(&weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
     if !weak.settled() && misfit > 1.0 + 5.0 * (2.0 / weak.dof().max(1) as f64).sqrt() {
         // the rates are not constant, and still no tensor explains them
-        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms });
+        let axes = averages::axes(&stretches, variance);
+        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, axes });
     }
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));

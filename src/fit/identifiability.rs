@@ -6,7 +6,8 @@ use super::coordinates::{Coordinates, Form, eigen, trace_free};
 
 /// A combination of entries with a larger standard deviation (share of the trace) counts as undetermined: physical
 /// tensors differ by 0.4 at most from the sphere, so such a figure tells nothing.
-const VAGUE: f64 = 0.1;
+pub(super) const VAGUE: f64 = 0.1;
+
 /// The spectrum of information about the five numbers of a tensor of trace 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
@@ -55,6 +56,12 @@ impl Identifiability {
     }
 }
 
+/// A unit vector of either sign, the largest component positive.
+pub(super) fn direction(v: &Vector3<f64>) -> String {
+    let v = v * v[v.iamax()].signum();
+    format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z)
+}
+
 fn words(
     null: &[Matrix3<f64>],
     rank: usize,
@@ -66,11 +73,6 @@ fn words(
     }
     let (spread, directions) = eigen(*scatter);
     let main: Vector3<f64> = directions.column(2).into_owned();
-    let axis = |v: &Vector3<f64>| {
-        let largest = v[v.iamax()];
-        let v = v * largest.signum();
-        format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z)
-    };
     if rank == 0 {
         return (
             vec!["no ratio and no axis is determined: the motion does not stand out of its noise".into()],
@@ -86,14 +88,14 @@ fn words(
                 "the ratio I1/I2 is undetermined: nothing compares the spin axis with the other two".into(),
                 "the directions of axes 2 and 3 are undetermined".into(),
             ],
-            vec![format!("{} is a principal axis, numbered 1 here", axis(&main))],
+            vec![format!("{} is a principal axis, numbered 1 here", direction(&main))],
         );
     }
     let known = (0..3)
         .map(|k| frame.column(k).into_owned())
         .enumerate()
         .filter(|(_, v)| null.iter().all(|t| (t * v - v * v.dot(&(t * v))).norm() < 0.1))
-        .map(|(k, v)| format!("{} is a principal axis, numbered {} here", axis(&v), k + 1))
+        .map(|(k, v)| format!("{} is a principal axis, numbered {} here", direction(&v), k + 1))
         .collect();
     if common.is_some() && rank == 3 {
         let open = "the ratios I1/I2 and I2/I3 are undetermined: the record holds only pure spins about principal axes";

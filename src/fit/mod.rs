@@ -30,6 +30,7 @@
 //! The tensor comes from rounds of linear least squares and one quadratic program at their end; a refinement by
 //! maximum likelihood would start where this ends.
 
+mod averages;
 mod banded;
 mod baselines;
 mod conic;
@@ -54,6 +55,7 @@ mod units;
 mod warnings;
 mod weak;
 
+pub use averages::AverageAxis;
 pub use baselines::{Baseline, baseline};
 pub use cramer_rao::foreseen_bound;
 pub use error::{Clash, FitError};

@@ -20,8 +20,8 @@ pub(super) const RESTLESS: f64 = 0.5;
 pub(super) const TORQUES: f64 = 4.0;
 /// Fall of χ² that no wobble of pure noise brings about: its chance is e⁻²⁵ for each frequency that is tried.
 const SIGNIFICANT_GAIN: f64 = 50.0;
-/// Standard deviations of mean rates within which the true ones are taken to lie.
-const SURE: f64 = 5.0;
+/// Standard deviations of a mean within which the true one is taken to lie.
+pub(super) const SURE: f64 = 5.0;
 
 /// The weak estimate of a record: where its rounds ended.
 pub(super) struct WeakEstimate {

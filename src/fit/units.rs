@@ -1,7 +1,9 @@
 //! Mistaken units of a record, which Euler's equation tells: rates enter it squared, their derivatives do not.
 
+use super::coordinates::{eigen, tensor};
+use super::qp::LIMIT;
 use super::radius;
-use super::rounds::WeakEstimate;
+use super::rounds::{SURE, WeakEstimate};
 use super::test_functions::Stretch;
 
 /// Other units, as factors on rate × time, and what would have happened.
@@ -32,7 +34,7 @@ pub(super) struct Better {
     pub(super) next: f64,
 }
 
-/// The unit that explains the record best, where one does so at least three times better.
+/// The unit that explains the record best, where one does so at least three times better and with a credible tensor.
 pub(super) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<Better> {
     let pilot = radius::pilot(stretches);
     let mut found = Vec::new();
@@ -42,14 +44,28 @@ pub(super) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
         let settled = radius::estimate(&scaled, None, variance).ok().filter(WeakEstimate::settled);
-        found.extend(settled.map(|weak| (weak.misfit_per_dof(variance), factor, hint)));
+        found.extend(
+            settled.map(|weak| (weak.misfit_per_dof(variance), factor, hint, credible(&weak, variance))),
+        );
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let next = found.get(1).map_or(f64::INFINITY, |f| f.0);
-    found.first().filter(|f| f.0 < misfit / 3.0).map(|&(misfit, factor, hint)| Better {
+    found.first().filter(|f| f.0 < misfit / 3.0 && f.3).map(|&(misfit, factor, hint, _)| Better {
         factor,
         hint,
         misfit,
         next,
     })
+}
+
+/// Largest deviation, as a share of the distance from the sphere, at which a tensor tells one unit from another.
+const TOLD: f64 = 0.2;
+
+/// Whether the estimate is a tensor that a body may have, and that the record determines. With rates too large a
+/// hardly determined tensor next to the sphere explains most motions; with rates too small, one far from physical.
+fn credible(weak: &WeakEstimate, variance: f64) -> bool {
+    let Some((singular, _)) = weak.spectrum() else { return false };
+    let deviation = (variance * weak.misfit_per_dof(variance).max(1.0)).sqrt() / singular[4];
+    let largest = eigen(tensor(&weak.x)).0[2];
+    deviation <= TOLD * weak.x.norm() && largest - LIMIT <= SURE * deviation
 }

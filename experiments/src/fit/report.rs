@@ -1,7 +1,7 @@
 //! A fit for eyes, for spreadsheets and for programs.
 
 use nalgebra::{Matrix3, SMatrix};
-use polhode::fit::{Estimate, Identifiability, Record};
+use polhode::fit::{AverageAxis, Estimate, Identifiability, Record};
 use serde_json::{Value, json};
 
 use crate::table::{Column, Format, Table, row};
@@ -20,31 +20,53 @@ pub(super) fn identified(e: &Estimate, format: Format) -> String {
 }
 
 /// What a record tells that does not determine the tensor.
-pub(super) fn unidentified(what: &Identifiability, record: &Record, format: Format) -> String {
-    match format {
-        Format::Json => pretty(&json!({
-            "shape": null, "principal": null, "axes": null, "covariance": null, "sigma_principal": null,
-            "inertia": null, "inertia_covariance": null, "noise_sigma": null,
-            "samples": record.samples(), "segments": record.segments.len(), "method": METHOD,
-            "identifiable": false, "rank": what.rank, "null_directions": what.null_directions, "known": what.known,
-            "triangle_slack": null, "active_constraints": [], "chi2_per_dof": null, "warnings": [],
-        })),
-        Format::Csv => {
-            let columns =
-                vec![Column::new("kind", "", "known or undetermined"), Column::new("fact", "", "in words")];
-            let mut table = Table::new("facts", "What the record tells.", columns);
-            what.known.iter().for_each(|fact| table.push(row!["known", fact.clone()]));
-            what.null_directions.iter().for_each(|fact| table.push(row!["undetermined", fact.clone()]));
-            table.csv()
-        }
-        Format::Table => {
-            let list = |facts: &[String]| facts.iter().map(|f| format!("  {f}\n")).collect::<String>();
-            format!(
-                "{} of 5 numbers of the tensor are known.\nKnown:\n{}Undetermined:\n{}",
-                what.rank,
-                if what.known.is_empty() { "  nothing\n".into() } else { list(&what.known) },
-                list(&what.null_directions)
-            )
+pub(super) struct Facts {
+    /// How many of the five numbers are known, where they can be counted.
+    pub(super) rank: Option<usize>,
+    pub(super) known: Vec<String>,
+    pub(super) open: Vec<String>,
+}
+
+impl Facts {
+    pub(super) fn unidentified(what: &Identifiability) -> Self {
+        Facts { rank: Some(what.rank), known: what.known.clone(), open: what.null_directions.clone() }
+    }
+
+    pub(super) fn unsettled(axes: &[AverageAxis]) -> Self {
+        let known = axes.iter().map(|axis| format!("{axis}, if no torque acted"));
+        let open = "the ratios of the moments, and all else of the axes: no tensor settled";
+        Facts { rank: None, known: known.collect(), open: vec![open.into()] }
+    }
+
+    pub(super) fn report(&self, record: &Record, format: Format) -> String {
+        match format {
+            Format::Json => pretty(&json!({
+                "shape": null, "principal": null, "axes": null, "covariance": null, "sigma_principal": null,
+                "inertia": null, "inertia_covariance": null, "noise_sigma": null,
+                "samples": record.samples(), "segments": record.segments.len(), "method": METHOD,
+                "identifiable": false, "rank": self.rank, "null_directions": self.open, "known": self.known,
+                "triangle_slack": null, "active_constraints": [], "chi2_per_dof": null, "warnings": [],
+            })),
+            Format::Csv => {
+                let columns = vec![
+                    Column::new("kind", "", "known or undetermined"),
+                    Column::new("fact", "", "in words"),
+                ];
+                let mut table = Table::new("facts", "What the record tells.", columns);
+                self.known.iter().for_each(|fact| table.push(row!["known", fact.clone()]));
+                self.open.iter().for_each(|fact| table.push(row!["undetermined", fact.clone()]));
+                table.csv()
+            }
+            Format::Table => {
+                let list = |facts: &[String]| facts.iter().map(|f| format!("  {f}\n")).collect::<String>();
+                let counted = self.rank.map(|rank| format!("{rank} of 5 numbers of the tensor are known.\n"));
+                format!(
+                    "{}Known:\n{}Undetermined:\n{}",
+                    counted.unwrap_or_default(),
+                    if self.known.is_empty() { "  nothing\n".into() } else { list(&self.known) },
+                    list(&self.open)
+                )
+            }
         }
     }
 }

@@ -1,0 +1,64 @@
+//! What averages over a record tell of the axes, with no tensor to go by.
+//!
+//! One test function over a whole segment turns Euler's equation into [M, J]_ij = ε_ijk (J v)_k with M = ∫ φ ω ωᵀ dt and
+//! v = ∫ φ' ω dt. Noise adds a multiple of 1 to M, which commutes with J. In the eigenframe of M, with eigenvalues λ,
+//! (λ_i − λ_j) J_ij is a component of J v, and no moment of a body exceeds half the trace: |J_ij| ≤ ½ |v| / |λ_i − λ_j|.
+
+use core::fmt;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::coordinates::eigen;
+use super::identifiability::{VAGUE, direction};
+use super::rounds::SURE;
+use super::test_functions::{Seen, Stretch, TestFunctions};
+
+/// An axis that is principal within a bound, for every body on which no torque acted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AverageAxis {
+    /// Unit vector in sensor axes.
+    pub axis: Vector3<f64>,
+    /// Greatest product of inertia of this axis with another, as a share of the trace.
+    pub product: f64,
+}
+
+impl fmt::Display for AverageAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let axis = direction(&self.axis);
+        write!(
+            f,
+            "{axis} is a principal axis, but for products of inertia below {:.4} of the trace",
+            self.product
+        )
+    }
+}
+
+/// The axes whose products are bounded by a figure that tells something.
+pub(super) fn axes(stretches: &[Stretch], variance: f64) -> Vec<AverageAxis> {
+    let (mut m, mut v) = (Matrix3::zeros(), Vector3::zeros());
+    let (mut squares, mut slopes) = (0.0, 0.0);
+    for s in stretches {
+        let Some(tests) = TestFunctions::new(s, 0.5 * s.duration()) else { continue };
+        for ((&t, w), &weight) in s.times.iter().zip(&s.rates).zip(&s.weights) {
+            let seen = Seen::new(&tests, t, weight);
+            let (slope, value) = (seen.slope[0], seen.value[0]);
+            m += w * w.transpose() * value;
+            v += w * slope;
+            squares += value * value * w.norm_squared();
+            slopes += slope * slope;
+        }
+    }
+    // expected squares of the noise in v, and of that in M (Frobenius), whose commutator with J is at most half of it
+    let noise = SURE * ((3.0 * variance * slopes).sqrt() + (8.0 * variance * squares).sqrt());
+    let (values, directions) = eigen(m);
+    (0..3)
+        .map(|k| {
+            let gap = (0..3)
+                .filter(|&i| i != k)
+                .map(|i| (values[i] - values[k]).abs())
+                .fold(f64::INFINITY, f64::min);
+            AverageAxis { axis: directions.column(k).into_owned(), product: 0.5 * (v.norm() + noise) / gap }
+        })
+        .filter(|a| a.product <= VAGUE)
+        .collect()
+}
