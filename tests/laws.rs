@@ -280,6 +280,20 @@ fn a_small_first_change_does_not_end_an_implicit_step() {
     }
 }
 
+/// Next to an equilibrium nothing but rounding is left to iterate, of terms far larger than momentum and torque.
+#[test]
+fn a_body_that_hangs_almost_still_is_no_unsolved_step() {
+    let tensor = nalgebra::Matrix3::new(1.0, 0.1, 0.2, 0.1, 2.0, 0.3, 0.2, 0.3, 2.5);
+    let body = Body::heavy(Inertia::from_tensor(tensor).unwrap(), [0.0, 0.0, -1.0].into()).unwrap();
+    for push in [0.0, 1e-12, 1e-8, 1e-5, 1e-3] {
+        let start = body.state(Default::default(), [push, -0.5 * push, 0.25 * push].into()).unwrap();
+        for method in catalogue().iter().filter(|m| matches!(m.claims().cost, Cost::Solves(_))) {
+            let end = Run::new(method.as_ref(), &body, &start, 0.1).unwrap().advance_to(10_000).unwrap();
+            assert!(end.worst.energy < 1e-6, "{} {push}: {:e}", method.name(), end.worst.energy);
+        }
+    }
+}
+
 #[test]
 fn a_symmetric_method_returns_and_the_others_do_not() {
     for problem in [free(), heavy()] {

@@ -69,7 +69,9 @@ impl<S: Real> Step<S> for ImplicitMidpointStep<S> {
     fn step(&mut self, x: &mut State<S>) {
         let m = x.momentum_body;
         let (delta, residual) = match &self.gravity {
-            None => iterate(m, self.gyroscopic.at(m), |delta| self.gyroscopic.at(m + delta * self.half)),
+            None => iterate(m.magnitude(), self.gyroscopic.at(m), |delta| {
+                self.gyroscopic.at(m + delta * self.half)
+            }),
             Some(gravity) => self.heavy(gravity, x),
         };
         self.worst_residual = self.worst_residual.max(residual);
@@ -93,7 +95,9 @@ impl<S: Real> ImplicitMidpointStep<S> {
             let torque = middle_vertical(up, omega * (self.h * self.half)).cross(gravity.weight_moment);
             self.gyroscopic.at(middle) + torque * self.h
         };
-        iterate(m, increment(m), |delta| increment(m + delta * self.half))
+        // next to an equilibrium torques are differences of terms as large as the weight moment
+        let size = m.magnitude() + (gravity.weight_moment * self.h).magnitude();
+        iterate(size, increment(m), |delta| increment(m + delta * self.half))
     }
 }
 

@@ -86,7 +86,7 @@ impl<S: Real> Step<S> for RattleStep<S> {
             let u2 = alpha * m[2] + term(2, u0, u1);
             Vec3([u0, u1, u2])
         };
-        let (u, residual) = iterate(m, m, sweep);
+        let (u, residual) = iterate(m.magnitude(), m, sweep);
         self.worst_residual = self.worst_residual.max(residual);
         let c = u.times(self.half);
         let alpha = S::of(1.0) + c.norm_squared();

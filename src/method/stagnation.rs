@@ -12,16 +12,15 @@ const ROUNDING: f64 = 64.0;
 
 /// Iterates `next` from `start` until the change stops decreasing (Hairer, McLachlan and Razakarivony, BIT 48
 /// (2008) 231): a fixed tolerance would leave a systematic error that drifts. Returns the last iterate and its
-/// change relative to the size of `m`, the momentum that it is or is added to.
+/// change relative to `size`, that of the momenta which the sums of `next` are rounded at.
 #[inline]
 pub(super) fn iterate<S: Real>(
-    m: Vec3<S>,
+    size: f64,
     start: Vec3<S>,
     mut next: impl FnMut(Vec3<S>) -> Vec3<S>,
 ) -> (Vec3<S>, f64) {
     let mut x = start;
     let mut change = f64::INFINITY;
-    let size = m.magnitude() + start.magnitude();
     for _ in 0..SWEEPS {
         let new = next(x);
         let moved = (new - x).magnitude();
