@@ -565,3 +565,92 @@ fn a_drowned_wobble_is_refused_or_flagged() {
         }
     }
 }
+
+/// J = n nᵀ solves the weak equations of any spin about n, with residuals and covariance that vanish together.
+#[test]
+fn the_trivial_tensor_of_a_short_record_is_no_answer() {
+    let body = Inertia::from_moments([0.2876, 0.2876, 0.4246]).unwrap();
+    let times: Vec<f64> = (0..=120).map(|i| 0.0009 * f64::from(i)).collect();
+    for seed in 1..=12 {
+        let mut random = Random::new(seed);
+        let rates = rehearse(&body, Vector3::new(0.26, 26.3, 0.26), &times, 2.7e-4, &mut random).unwrap();
+        let error = refusal(&Record::from_samples(&times, &rates).unwrap());
+        let named = matches!(error, FitError::Unidentifiable(_) | FitError::Unsettled { .. });
+        assert!(named, "seed {seed}: {error}");
+    }
+}
+
+/// Rounds that lose the smallest moment of a slender body have no covariance to go on with.
+#[test]
+fn a_pencil_is_fitted_where_its_wobble_is_plain() {
+    let body = Inertia::from_moments([0.00227, 1.0, 1.0]).unwrap();
+    let times: Vec<f64> = (0..1000).map(|i| 0.03 * f64::from(i)).collect();
+    let mut fitted = 0;
+    for seed in 1..=8 {
+        let rates =
+            rehearse(&body, Vector3::new(1.0, 0.3, 0.3), &times, 1e-2, &mut Random::new(seed)).unwrap();
+        let Ok(estimate) = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()) else {
+            continue;
+        };
+        fitted += 1;
+        let off = (estimate.principal[0] - 0.00227 / 2.00227).abs();
+        assert!(off < 5.0 * estimate.sigma_principal[0].max(1e-4), "seed {seed}: {off:e}");
+    }
+    assert!(fitted >= 6, "{fitted} of 8");
+}
+
+/// Times that scatter widely leave a misfit of the quadrature, which a wrong unit must not be taken to explain.
+#[test]
+fn irregular_times_are_no_mistake_of_units() {
+    let body = Inertia::from_moments([1.0, 1.9, 2.6]).unwrap();
+    for seed in 1..=4 {
+        let mut random = Random::new(seed);
+        let times: Vec<f64> =
+            (0..600).map(|i| 0.2 * (f64::from(i) + 0.95 * (random.uniform() - 0.5))).collect();
+        let rates = rehearse(&body, Vector3::new(0.4, 1.0, 0.5), &times, 1e-5, &mut random).unwrap();
+        let estimate = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
+        for (share, truth) in estimate.principal.iter().zip([1.0, 1.9, 2.6]) {
+            assert!((share - truth / 5.5).abs() < 1e-4, "seed {seed}: {:?}", estimate.principal);
+        }
+    }
+}
+
+#[test]
+fn bounds_that_contradict_the_record_are_seen_in_the_misfit() {
+    let mut random = Random::new(12);
+    let times = times(30);
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let rates = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-2, &mut random).unwrap();
+    let record = Record::from_samples(&times, &rates).unwrap();
+    let bounded = |at_least, at_most| {
+        let bounds = vec![Bound { axis: Vector3::x(), at_least, at_most }];
+        fit(&record, &Settings { bounds, ..Settings::default() }).unwrap()
+    };
+    let free = bounded(Some(0.1), None);
+    assert_eq!(free.pull, 0.0);
+    assert!(free.chi2_per_dof < 1.2);
+    for held in [bounded(Some(0.4), None), bounded(Some(0.3), Some(0.300_01))] {
+        assert!(held.pull > 100.0 && held.chi2_per_dof > 10.0, "{} {}", held.pull, held.chi2_per_dof);
+        let mean = held.residuals[0].misfit;
+        assert!((mean / held.chi2_per_dof - 1.0).abs() < 0.1, "{mean} {}", held.chi2_per_dof);
+        assert!(held.warnings.iter().any(|w| w.contains("it contradicts them")), "{:?}", held.warnings);
+        let variances = held.covariance.diagonal();
+        assert!(variances.iter().all(|v| *v >= 0.0), "{variances}");
+    }
+}
+
+#[test]
+fn settings_out_of_range_are_refused_with_their_rule() {
+    let mut random = Random::new(13);
+    let times = times(10);
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let rates = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-2, &mut random).unwrap();
+    let record = Record::from_samples(&times, &rates).unwrap();
+    let with = |settings| fit(&record, &settings).expect_err("must be refused").to_string();
+    for noise in [1e-200, 1e-160, 1e200] {
+        let message = with(Settings { noise: Some(noise), ..Settings::default() });
+        assert!(message.contains("its square neither vanish nor overflow"), "{message}");
+    }
+    let message = with(Settings { radius: Some(0.0401), ..Settings::default() });
+    assert!(message.contains("nearly as many equations as there are samples"), "{message}");
+}

@@ -37,10 +37,10 @@ pub enum FitError {
         /// Fewest samples of a usable segment.
         needed: usize,
     },
-    /// The angular velocity is zero, or no larger than its noise.
+    /// The angular velocity is zero, or a quarter and more of its mean square is noise.
     #[error(
-        "the rates have a root mean square of {rms:.3e} rad/s and a noise of {noise:.3e} rad/s: there is no rotation to \
-         fit; spin the body faster"
+        "the rates have a root mean square of {rms:.3e} rad/s and a noise of {noise:.3e} rad/s: no rotation stands out \
+         enough to be fitted; spin the body faster"
     )]
     NoRotation {
         /// Root mean square rate, rad/s.
@@ -54,7 +54,7 @@ pub enum FitError {
     /// The rates change, but no tensor explains how.
     #[error(
         "the rates change, but in {rounds} rounds at any radius no tensor settled: the noise of {noise:.3e} rad/s hides \
-         the motion, or torques make it; record longer, with a larger wobble, or name a radius{}",
+         the motion, torques make it, or the body is slender; record longer, with a larger wobble, or name a radius{}",
         known_without_torques(axes)
     )]
     Unsettled {
@@ -122,6 +122,15 @@ pub enum FitError {
         longest: f64,
         /// Fewest samples in one test function.
         needed: usize,
+    },
+    /// Test functions so short that their equations are nearly as many as the samples.
+    #[error(
+        "a radius of {radius} s makes nearly as many equations as there are samples, whose noise has then no inverse \
+         covariance; name a larger one"
+    )]
+    Dense {
+        /// The radius, s.
+        radius: f64,
     },
     /// The solver's answer did not pass the check of optimality.
     #[error("the quadratic program has no certified answer: {status}")]

@@ -25,7 +25,8 @@ use crate::body::{Inertia, InertiaShape};
 pub struct Settings {
     /// Half width of the test functions, s; chosen by least predicted covariance without it.
     pub radius: Option<f64>,
-    /// Standard deviation of the noise of one component, rad/s; read from the samples without it.
+    /// Standard deviation of the noise of one component, rad/s, at least 1e-10 of the rates; read from the samples
+    /// without it.
     pub noise: Option<f64>,
     /// What is known of the moments beforehand.
     pub bounds: Vec<Bound>,
@@ -85,11 +86,14 @@ pub struct Estimate {
     pub inertia_covariance: Option<SMatrix<f64, 6, 6>>,
     /// Noise of one component of the rates, rad/s.
     pub noise_sigma: f64,
-    /// Mean square of the residuals over the noise; the covariance is multiplied by it where it exceeds 1.
+    /// Mean square of the residuals over the noise; the covariance is multiplied by it, before law and bounds are
+    /// imposed, where it exceeds 1.
     pub chi2_per_dof: f64,
+    /// Standard deviations by which law and bounds hold the answer off what the record alone says.
+    pub pull: f64,
     /// Equations beyond the five unknowns.
     pub dof: usize,
-    /// Samples.
+    /// Samples of the segments that were long enough.
     pub samples: usize,
     /// Segments that were long enough.
     pub segments: usize,
@@ -164,11 +168,14 @@ pub(super) fn shape_of(j: &Matrix3<f64>) -> Result<InertiaShape, FitError> {
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     check(settings)?;
     let Normalised { stretches, rms } = normalised(record)?;
-    // readings of a noiseless record carry at least the quadrature's error
     let variance = match settings.noise {
-        Some(sigma) => (sigma / rms) * (sigma / rms),
-        None => noise::variance(&stretches).max(1e-20),
+        Some(sigma) => Some((sigma / rms) * (sigma / rms))
+            .filter(|v| v.is_normal())
+            .ok_or(FitError::Setting { name: "the noise", value: sigma })?,
+        None => noise::variance(&stretches),
     };
+    // readings of a noiseless record carry at least the quadrature's error
+    let variance = variance.max(1e-20);
     // the mean square is 1, of which the noise of three components is 3 σ²: a quarter is too much to fit
     if 3.0 * variance > 0.25 {
         return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
@@ -177,6 +184,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let weak =
         radius::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| {
             match failure {
+                Failure::Dense => settings.radius.map_or_else(singular, |radius| FitError::Dense { radius }),
                 Failure::TooShort => too_short(record, settings, &stretches, rms),
                 Failure::Singular => singular(),
             }
@@ -204,7 +212,6 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let root = weak.root / (variance * misfit.max(1.0)).sqrt();
     let free = root
         .try_inverse()
-        .map(|inverse| inverse * inverse.transpose())
         .ok_or_else(|| FitError::Solver { status: "the information is not positive".into() })?;
     let nearest = qp::nearest(weak.x, root, &settings.bounds)?;
     let facts = Facts { record, settings, stretches: &stretches, rms, variance, weak: &weak, misfit };
@@ -269,7 +276,7 @@ pub(super) struct Facts<'a> {
     rms: f64,
     variance: f64,
     pub(super) weak: &'a WeakEstimate,
-    misfit: f64,
+    pub(super) misfit: f64,
 }
 
 impl Facts<'_> {
@@ -281,30 +288,32 @@ impl Facts<'_> {
         better: Option<Better>,
     ) -> Result<Estimate, FitError> {
         let root = self.weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
-        let on_face = face_covariance(&free, &root, &nearest.face);
+        let on_face = face_factor(&free, &nearest.face);
         let shape = shape_of(&tensor(&nearest.x))?;
         let j = shape.tensor();
         let (moments, _) = eigen(j);
         let axes = Inertia::from_tensor(j).map_or(UnitQuaternion::identity(), |i| i.principal_axes());
         let v: [Vector3<f64>; 3] = core::array::from_fn(|k| axes * Vector3::ith(k, 1.0));
-        let deviation = |g: Coordinates, c: &Form| g.dot(&(c * g)).max(0.0).sqrt();
-        let sigma_principal = core::array::from_fn(|k| deviation(pair(&v[k], &v[k]), &on_face));
+        let deviation = |g: Coordinates| (on_face.transpose() * g).norm();
+        let sigma_principal = core::array::from_fn(|k| deviation(pair(&v[k], &v[k])));
         let sigma_axes = core::array::from_fn(|k| {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-            deviation(pair(&v[a], &v[b]), &on_face) / (moments[a] - moments[b]).abs()
+            deviation(pair(&v[a], &v[b])) / (moments[a] - moments[b]).abs()
         });
         let ratio = |k: usize| {
             let slope = (pair(&v[k], &v[k]) - pair(&v[2], &v[2]) * (moments[k] / moments[2])) / moments[2];
-            (moments[k] / moments[2], deviation(slope, &on_face))
+            (moments[k] / moments[2], deviation(slope))
         };
         let entries = entries_of_coordinates();
-        let spread = |c: Form| entries * c * entries.transpose();
+        // of a factor, so that no variance is negative
+        let spread = |factor: Form| (entries * factor) * (entries * factor).transpose();
         let bound = cramer_rao(self.stretches, &nearest.x, self.variance);
-        let bound_ratio = bound.map(|b| (free.trace() / b.trace()).sqrt());
-        let (inertia, inertia_covariance) = self.absolute(&j, &on_face)?;
+        let bound_ratio = bound.map(|b| free.norm() / b.trace().sqrt());
+        let (inertia, inertia_covariance) = self.absolute(&j, &(on_face * on_face.transpose()))?;
         let (momentum, energy) = drifts(self.stretches, &j, self.variance);
         let per_second = |d: Drift| Drift { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
-        let residuals = self.residuals();
+        let residuals = self.residuals(&nearest.x);
+        let pull = (root * (nearest.x - self.weak.x)).norm();
         let mut estimate = Estimate {
             principal: [moments[0], moments[1], moments[2]],
             sigma_principal,
@@ -314,14 +323,15 @@ impl Facts<'_> {
             sigma_ratios: [ratio(0).1, ratio(1).1],
             covariance: spread(on_face),
             free_covariance: spread(free),
-            bound: bound.map(spread),
+            bound: bound.map(|b| entries * b * entries.transpose()),
             bound_ratio,
             inertia,
             inertia_covariance,
             noise_sigma: self.variance.sqrt() * self.rms,
-            chi2_per_dof: self.misfit,
+            chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / self.weak.dof().max(1) as f64,
+            pull,
             dof: self.weak.dof(),
-            samples: self.record.samples(),
+            samples: residuals.iter().map(|r| self.record.segments[r.segment].times.len()).sum(),
             segments: residuals.len(),
             radius: self.weak.radius / self.rms,
             identifiability,
@@ -330,7 +340,7 @@ impl Facts<'_> {
             certificate: nearest.certificate,
             momentum_drift: per_second(momentum),
             energy_drift: per_second(energy),
-            whiteness: Whiteness::new(self.weak.residuals.iter().map(|(_, _, e)| e.as_slice())),
+            whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
             residuals,
             warnings: Vec::new(),
             shape,
@@ -355,16 +365,17 @@ impl Facts<'_> {
         Ok((Some(inertia), Some(inertia_covariance(j, covariance, trace, &slope))))
     }
 
-    fn residuals(&self) -> Vec<Residuals> {
+    fn residuals(&self, x: &Coordinates) -> Vec<Residuals> {
         let deviation = self.variance.sqrt();
-        let each = self.weak.residuals.iter();
-        each.map(|(segment, centres, e)| {
-            let start = self.record.segments[*segment].times.first().copied().unwrap_or(0.0);
+        let each = self.weak.parts.iter();
+        each.map(|part| {
+            let start = self.record.segments[part.stretch].times.first().copied().unwrap_or(0.0);
+            let e = part.residuals(x);
             let values: Vec<[f64; 3]> =
                 e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
             Residuals {
-                segment: *segment,
-                times: centres.iter().map(|c| start + c / self.rms).collect(),
+                segment: part.stretch,
+                times: part.centres.iter().map(|c| start + c / self.rms).collect(),
                 misfit: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
                 values,
             }
@@ -373,13 +384,10 @@ impl Facts<'_> {
     }
 }
 
-/// The covariance of an answer that is held on a face: increments along the active gradients are gone.
+/// A factor F, with covariance F Fᵀ, of an answer that is held on a face: increments along the active gradients are gone.
 ///
-/// With the oblique projector P onto the face, orthogonal in the metric of the information, it is P C Pᵀ.
-fn face_covariance(free: &Form, root: &Form, face: &[Coordinates]) -> Form {
-    if face.is_empty() {
-        return *free;
-    }
+/// With the projector Q onto the face in whitened increments it is R⁻¹ Q.
+fn face_factor(free: &Form, face: &[Coordinates]) -> Form {
     // gradients span a subspace of the whitened increments y; orthonormal by Gram and Schmidt
     let mut q: Vec<Coordinates> = Vec::new();
     for g in face {
@@ -388,8 +396,5 @@ fn face_covariance(free: &Form, root: &Form, face: &[Coordinates]) -> Form {
             q.push(rest.normalize());
         }
     }
-    let inside = q.iter().fold(Form::identity(), |p, u| p - u * u.transpose());
-    let Some(inverse) = root.try_inverse() else { return *free };
-    let projector = inverse * inside * root;
-    projector * free * projector.transpose()
+    q.iter().fold(*free, |f, u| f - (f * u) * u.transpose())
 }

@@ -215,7 +215,19 @@ impl Program {
             .collect();
         // a constraint that is near but does not push is let go, the one that pulls most first
         loop {
-            let newton = self.newton(start, face, &held)?;
+            let newton = match self.newton(start, face, &held) {
+                // of constraints that depend on each other, as the sides of a narrow bound, the furthest is not reached
+                Err(_) if !held.is_empty() => {
+                    let reach = |k: usize| {
+                        let row = &self.rows[k].0;
+                        -(row.base + row.g.dot(&start)) / row.g.norm()
+                    };
+                    let furthest = (0..held.len()).max_by(|&a, &b| reach(held[a]).total_cmp(&reach(held[b])));
+                    held.remove(furthest.unwrap_or(0));
+                    continue;
+                }
+                solved => solved?,
+            };
             let (z, _) = eigen(newton.z);
             let slack_of_face = z[0].min(0.0);
             let weakest = newton.held.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));

@@ -3,12 +3,17 @@
 use super::coordinates::{Coordinates, Form};
 use super::rounds::{RESTLESS, Rounds, TORQUES, WeakEstimate};
 use super::stacked::Stacked;
-use super::test_functions::{SAMPLES_PER_TEST, Stretch};
+use super::test_functions::{SAMPLES_PER_TEST, Stretch, TestFunctions};
+
+/// Test functions per sample beyond which the covariance of their noise is all but singular.
+const DENSE: f64 = 0.9;
 
 /// Why there is no weak estimate.
 pub(super) enum Failure {
     /// No stretch carries enough test functions.
     TooShort,
+    /// The equations of the radius that was asked for are nearly as many as the samples.
+    Dense,
     /// A covariance has no factor.
     Singular,
 }
@@ -26,12 +31,12 @@ fn candidates(stretches: &[Stretch]) -> Vec<f64> {
     let samples: usize = stretches.iter().map(|s| s.times.len()).sum();
     let duration: f64 = stretches.iter().map(Stretch::duration).sum();
     let lowest = (SAMPLES_PER_TEST * duration / samples as f64).max(0.5);
-    let mut radii: Vec<f64> = (0..6)
-        .scan(lowest, |r, _| Some(core::mem::replace(r, 2.0 * *r)))
-        .filter(|r| 4.0 * r <= longest)
-        .collect();
+    let mut radii: Vec<f64> = (0..6).scan(lowest, |r, _| Some(core::mem::replace(r, 2.0 * *r))).collect();
+    let enough = |s: &Stretch, r: f64| s.times.len() as f64 * 2.0 * r >= SAMPLES_PER_TEST * s.duration();
+    radii.retain(|&r| stretches.iter().any(|s| 4.0 * r <= s.duration() && enough(s, r)));
     if radii.is_empty() {
-        radii.push(0.25 * longest);
+        let densest = stretches.iter().max_by_key(|s| s.times.len()).map_or(longest, Stretch::duration);
+        radii.push(0.25 * densest);
     }
     radii
 }
@@ -73,7 +78,16 @@ pub(super) fn estimate(
     variance: f64,
 ) -> Result<WeakEstimate, Failure> {
     let (first, start, largest) = match radius {
-        Some(radius) => (radius, Coordinates::zeros(), radius),
+        Some(radius) => {
+            let dense = |s: &Stretch| {
+                let tests = TestFunctions::new(s, radius);
+                tests.is_some_and(|tests| tests.count as f64 > DENSE * s.times.len() as f64)
+            };
+            if stretches.iter().any(dense) {
+                return Err(Failure::Dense);
+            }
+            (radius, Coordinates::zeros(), radius)
+        }
         None => {
             let pilot = pilot(stretches);
             let (radius, start) = choose_radius(&pilot, variance).ok_or(Failure::TooShort)?;
@@ -86,7 +100,8 @@ pub(super) fn estimate(
     while radius <= largest * (1.0 + 1e-9) {
         let mut rounds = Rounds::new(stretches, radius, start).ok_or(Failure::TooShort)?;
         let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS);
-        if let Some(weak) = moved.and_then(|moved| rounds.finish(variance, moved)) {
+        let weak = moved.and_then(|moved| rounds.finish(variance, moved));
+        if let Some(weak) = weak.filter(|weak| weak.possible(variance)) {
             if weak.still() {
                 return Ok(weak);
             }

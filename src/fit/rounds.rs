@@ -3,7 +3,8 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
-use super::coordinates::{Coordinates, Form, tensor};
+use super::coordinates::{Coordinates, Form, eigen, pair, tensor};
+use super::qp::LIMIT;
 use super::stacked::Stacked;
 use super::test_functions::{Stretch, TestFunctions};
 use super::weak::Linearised;
@@ -12,6 +13,8 @@ use super::weak::Linearised;
 pub(super) const ROUNDS: usize = 12;
 /// Rounds that take their whole step.
 const FULL_ROUNDS: usize = 6;
+/// Shares of a step that are tried.
+const SHARES: usize = 30;
 /// Standard deviations by which the last round may still move the tensor.
 const STILL: f64 = 0.01;
 /// The same beyond which there is no answer.
@@ -20,6 +23,10 @@ pub(super) const RESTLESS: f64 = 0.5;
 pub(super) const TORQUES: f64 = 4.0;
 /// Fall of χ² that no wobble of pure noise brings about: its chance is e⁻²⁵ for each frequency that is tried.
 const SIGNIFICANT_GAIN: f64 = 50.0;
+/// What a round may leave of the smallest moment: at none at all the covariance of the equations has no inverse.
+const KEPT: f64 = 0.1;
+/// How far beyond the law, as a share of the trace, torques may carry an estimate that the law is to bring back.
+const BEYOND: f64 = 0.05;
 /// Standard deviations of a mean within which the true one is taken to lie.
 pub(super) const SURE: f64 = 5.0;
 
@@ -38,8 +45,22 @@ pub(super) struct WeakEstimate {
     pub(super) misfit: f64,
     /// Equations.
     pub(super) rows: usize,
-    /// Whitened residuals of each stretch that is long enough: its index, the tests' centres, three values each.
-    pub(super) residuals: Vec<(usize, Vec<f64>, Vec<f64>)>,
+    /// Each stretch that is long enough.
+    pub(super) parts: Vec<Part>,
+}
+
+/// The whitened equations of one stretch.
+pub(super) struct Part {
+    pub(super) stretch: usize,
+    pub(super) centres: Vec<f64>,
+    linearised: Linearised,
+}
+
+impl Part {
+    /// Three for each centre.
+    pub(super) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
+        self.linearised.residuals(x)
+    }
 }
 
 impl WeakEstimate {
@@ -51,6 +72,17 @@ impl WeakEstimate {
     /// Whether they stood still there.
     pub(super) fn still(&self) -> bool {
         self.moved <= STILL
+    }
+
+    /// Whether a body may have this tensor, or one near it: J = n nᵀ solves the equations of any spin about n, with
+    /// residuals and covariance that vanish together, and rounds may end there.
+    pub(super) fn possible(&self, variance: f64) -> bool {
+        let (moments, axes) = eigen(tensor(&self.x));
+        let top = axes.column(2).into_owned();
+        let share = self.root.transpose().solve_lower_triangular(&pair(&top, &top));
+        let excess = variance * self.misfit_per_dof(variance).max(1.0);
+        let deviation = share.map_or(f64::INFINITY, |g| g.norm() * excess.sqrt());
+        moments[2] - LIMIT <= (SURE * deviation).max(BEYOND)
     }
 
     /// Equations beyond the unknowns.
@@ -116,6 +148,8 @@ impl<'a> Rounds<'a> {
         let x = stacked.ridge(variance)?;
         // where torques act, full steps may end in going to and fro
         let relax = if full || stacked.excess(variance) < TORQUES { 1.0 } else { 0.5 };
+        let step = x - self.x;
+        let relax = relax * self.room(&step);
         let j = tensor(&self.x);
         for ((part, (_, s, _)), noise) in parts.iter().zip(&self.used).zip(&mut self.noise) {
             let next = part.noise(s, noise, &j, &x);
@@ -123,9 +157,20 @@ impl<'a> Rounds<'a> {
                 *old += (new - *old) * relax;
             }
         }
-        let step = x - self.x;
         self.x += step * relax;
         Some((stacked.root * step).norm() / (variance * stacked.excess(variance)).sqrt())
+    }
+
+    /// The share of `step` after which the smallest moment is not yet lost.
+    fn room(&self, step: &Coordinates) -> f64 {
+        let smallest = |share: f64| eigen(tensor(&(self.x + step * share))).0[0];
+        let least = KEPT * smallest(0.0);
+        if smallest(1.0) >= least {
+            return 1.0;
+        }
+        // a step that ends where the moment vanishes keeps just that much at the first of them
+        let shares = core::iter::successors(Some(1.0 - KEPT), |share| Some(0.5 * share));
+        shares.take(SHARES).find(|&share| smallest(share) >= 0.99 * least).unwrap_or(0.0)
     }
 
     /// Rounds until the tensor stands still, and by how many standard deviations the last would have moved it.
@@ -144,8 +189,6 @@ impl<'a> Rounds<'a> {
         let parts = self.linearise()?;
         let stacked = Stacked::new(&parts);
         let x = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite())).unwrap_or(self.x);
-        let used = self.used.iter().zip(&parts);
-        let residuals = used.map(|((k, _, tests), p)| (*k, tests.centres(), p.residuals(&x))).collect();
         // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
         // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
         let gain = (self.misfit_of_sphere()? - stacked.misfit) / (variance * stacked.excess(variance));
@@ -162,7 +205,12 @@ impl<'a> Rounds<'a> {
             doubt,
             misfit: stacked.misfit,
             rows: stacked.rows,
-            residuals,
+            parts: self
+                .used
+                .iter()
+                .zip(parts)
+                .map(|((k, _, tests), linearised)| Part { stretch: *k, centres: tests.centres(), linearised })
+                .collect(),
         })
     }
 
@@ -179,7 +227,7 @@ impl<'a> Rounds<'a> {
             doubt,
             misfit,
             rows,
-            residuals: Vec::new(),
+            parts: Vec::new(),
         })
     }
 

@@ -1,9 +1,7 @@
 //! Mistaken units of a record, which Euler's equation tells: rates enter it squared, their derivatives do not.
 
-use super::coordinates::{eigen, tensor};
-use super::qp::LIMIT;
 use super::radius;
-use super::rounds::{SURE, WeakEstimate};
+use super::rounds::WeakEstimate;
 use super::test_functions::Stretch;
 
 /// Other units, as factors on rate × time, and what would have happened.
@@ -61,11 +59,9 @@ pub(super) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
 /// Largest deviation, as a share of the distance from the sphere, at which a tensor tells one unit from another.
 const TOLD: f64 = 0.2;
 
-/// Whether the estimate is a tensor that a body may have, and that the record determines. With rates too large a
-/// hardly determined tensor next to the sphere explains most motions; with rates too small, one far from physical.
+/// Whether the record determines the estimate: with rates too large a tensor next to the sphere explains most motions.
 fn credible(weak: &WeakEstimate, variance: f64) -> bool {
     let Some((singular, _)) = weak.spectrum() else { return false };
     let deviation = (variance * weak.misfit_per_dof(variance).max(1.0)).sqrt() / singular[4];
-    let largest = eigen(tensor(&weak.x)).0[2];
-    deviation <= TOLD * weak.x.norm() && largest - LIMIT <= SURE * deviation
+    deviation <= TOLD * weak.x.norm()
 }

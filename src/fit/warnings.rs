@@ -3,6 +3,9 @@
 use super::estimate::{Estimate, Facts};
 use super::units::Better;
 
+/// Standard deviations by which noise alone does not carry five numbers off the physical tensors.
+const FAR: f64 = 6.0;
+
 /// Both to two digits of the deviation.
 fn with_sigma(value: f64, sigma: f64) -> String {
     let digits = if sigma > 0.0 { 1.0 - libm::floor(libm::log10(sigma)) } else { 2.0 };
@@ -34,8 +37,8 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) 
             record.segments.len()
         ));
     }
-    if e.chi2_per_dof > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
-        let times = e.chi2_per_dof.sqrt();
+    if facts.misfit > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
+        let times = facts.misfit.sqrt();
         let times = if times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
         list.push(format!(
             "the residuals are {times} times what the noise of {:.2e} rad/s explains: torques, outliers or a sensor that \
@@ -52,7 +55,7 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) 
     if let Some(Better { factor, hint, misfit, .. }) = better {
         list.push(format!(
             "with rate x time {factor:.4e} times as large the misfit falls from {:.2e} to {misfit:.2e}: {hint}?",
-            e.chi2_per_dof
+            facts.misfit
         ));
     }
     if e.whiteness.significant() {
@@ -84,7 +87,15 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) 
     for constraint in &e.active_constraints {
         list.push(format!("{} holds the answer (multiplier {:.3e})", constraint.name, constraint.multiplier));
     }
-    let largest = e.free_covariance.trace().sqrt();
+    if e.pull > FAR {
+        list.push(format!(
+            "law and bounds hold the answer {:.1} standard deviations off what the record says: it contradicts them",
+            e.pull
+        ));
+    }
+    // Frobenius, which no turn of the sensor changes
+    let c = &e.free_covariance;
+    let largest = (c.trace() + c[(3, 3)] + c[(4, 4)] + c[(5, 5)]).sqrt();
     if largest > 5e-3 {
         list.push(format!(
             "the tensor is known to {:.1} per cent of its trace only: beyond half a per cent the linear covariance is a guide",

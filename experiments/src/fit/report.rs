@@ -114,6 +114,7 @@ fn object(e: &Estimate) -> Value {
             "dual_violation": e.certificate.dual_violation, "rounds": e.certificate.rounds,
         },
         "chi2_per_dof": e.chi2_per_dof,
+        "pull": e.pull,
         "dof": e.dof,
         "momentum_drift": { "rate": e.momentum_drift.rate, "sigma": e.momentum_drift.sigma },
         "energy_drift": { "rate": e.energy_drift.rate, "sigma": e.energy_drift.sigma },
