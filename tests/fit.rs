@@ -177,6 +177,75 @@ fn the_bound_is_that_of_the_exact_motion() {
     assert!(apart < 1e-5, "{apart:e}");
 }
 
+/// √ of the trace of a fit's own bound over that of the bound at the true motion.
+fn over_true_bound(
+    estimate: &Estimate,
+    j: &Matrix3<f64>,
+    omega: Vector3<f64>,
+    times: &[f64],
+    sigma: f64,
+) -> f64 {
+    let body = Inertia::from_tensor(*j).unwrap();
+    let truth = foreseen_bound(&body, omega, times, sigma).unwrap();
+    (estimate.bound.expect("a motion explains this record").trace() / truth.trace()).sqrt()
+}
+
+/// Noise of a quarter of the rate over thirty turns, and a motion that stays at the saddle for a minute.
+#[test]
+fn the_bound_is_that_of_the_motion_that_was_measured() {
+    let j = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.6));
+    let times: Vec<f64> = (0..=4000).map(|i| 0.05 * f64::from(i)).collect();
+    for (omega, sigma) in [(Vector3::new(0.3, 1.0, 0.4), 0.25), (Vector3::new(0.001, 1.0, 0.001), 1e-3)] {
+        for seed in 1..=6 {
+            let record = record(&j, omega, &times, sigma, &mut Random::new(seed));
+            let estimate = fit(&record, &Settings::default()).unwrap();
+            // the bound at an estimate two deviations off is up to a tenth another
+            let apart = over_true_bound(&estimate, &j, omega, &times, sigma);
+            assert!((0.85..1.15).contains(&apart), "{omega:?}, seed {seed}: {apart:.3}");
+            let ratio = estimate.bound_ratio.unwrap();
+            assert!((0.95..1.3).contains(&ratio), "{omega:?}, seed {seed}: {ratio:.3}");
+        }
+    }
+}
+
+#[test]
+fn the_bound_of_random_records_is_that_of_their_motion() {
+    let mut random = Random::new(41);
+    for trial in 0..40 {
+        let sigma = [1e-4, 1e-3, 1e-2, 5e-2][trial % 4];
+        let times: Vec<f64> = (0..2000).map(|i| [0.02, 0.05, 0.1][trial % 3] * f64::from(i)).collect();
+        let r = random_rotation(&mut random);
+        let j = turned([0.12 + 0.1 * random.uniform(), 0.33, 0.45], &r);
+        let omega = random.normal_vector().normalize();
+        let estimate = fit(&record(&j, omega, &times, sigma, &mut random), &Settings::default()).unwrap();
+        // beyond a per cent of the trace it depends on where the estimate is
+        if estimate.free_covariance.trace().sqrt() < 1e-2 {
+            let apart = over_true_bound(&estimate, &j, omega, &times, sigma);
+            assert!((0.8..1.25).contains(&apart), "trial {trial}: {apart:.3}");
+        }
+    }
+}
+
+/// A rate that a torque takes up by a half over fifty turns: a free motion stays in phase for a few of them only.
+#[test]
+fn where_no_free_motion_explains_the_samples_there_is_no_bound() {
+    let j = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.6));
+    let body = Inertia::from_tensor(j).unwrap();
+    let mut random = Random::new(17);
+    let times: Vec<f64> = (0..8000).map(|i| 0.02 * f64::from(i)).collect();
+    // t + t²/4T runs through the same motion ever faster
+    let clock: Vec<f64> = times.iter().map(|t| t + t * t / 640.0).collect();
+    let free = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &clock, 0.0, &mut random).unwrap();
+    let speed = times.iter().map(|t| 1.0 + t / 320.0);
+    let rates: Vec<_> = free.iter().zip(speed).map(|(w, s)| w * s + random.normal_vector() * 1e-3).collect();
+    let known = Some(Known::TwiceEnergy(3.0));
+    let settings = Settings { known, ..Settings::default() };
+    let estimate = fit(&Record::from_samples(&times, &rates).unwrap(), &settings).unwrap();
+    assert!(estimate.bound.is_none() && estimate.bound_ratio.is_none());
+    let covariance = estimate.inertia_covariance.unwrap();
+    assert!(covariance.trace() > 0.0 && covariance.iter().all(|v| v.is_finite()));
+}
+
 #[test]
 fn without_noise_the_tensor_is_exact_to_the_quadrature() {
     let (j, times, rates) = example(0.0);

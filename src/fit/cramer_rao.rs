@@ -3,6 +3,8 @@
 //! F = σ⁻² Σ Sᵢᵀ Sᵢ with S = ∂ω/∂(x, ω₀) from the variational equations of J ω' = J ω × ω; each segment has an ω₀ of its
 //! own, which the Schur complement takes out.
 
+use core::ops::Range;
+
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::coordinates::{Coordinates, Form, basis, eigen, entries_of_coordinates, tensor};
@@ -10,7 +12,8 @@ use super::test_functions::Stretch;
 use super::weak::cross_derivative;
 use crate::body::Inertia;
 
-type Sensitivity = SMatrix<f64, 3, 8>;
+/// ∂ω/∂(x, ω₀), or ∂ω/∂ω₀ alone where N is 3.
+type Sensitivity<const N: usize> = SMatrix<f64, 3, N>;
 
 /// Largest turn of one step of the integrator, in units of the Jacobian's norm: errors of order 1e-6, plenty for a bound.
 const STEP: f64 = 0.1;
@@ -21,11 +24,19 @@ struct Euler {
 }
 
 impl Euler {
+    fn new(j: Matrix3<f64>) -> Option<Euler> {
+        Some(Euler { j, inverse: j.try_inverse()? })
+    }
+
     /// ω' and S'.
-    fn derivative(&self, w: &Vector3<f64>, s: &Sensitivity) -> (Vector3<f64>, Sensitivity) {
+    fn derivative<const N: usize>(
+        &self,
+        w: &Vector3<f64>,
+        s: &Sensitivity<N>,
+    ) -> (Vector3<f64>, Sensitivity<N>) {
         let rate = -self.inverse * w.cross(&(self.j * w));
         let mut ds = self.inverse * cross_derivative(&self.j, w) * -s;
-        for k in 0..5 {
+        for k in 0..N - 3 {
             let b = basis(k);
             let own = self.inverse * (w.cross(&(b * w)) + b * rate);
             ds.set_column(k, &(ds.column(k) - own));
@@ -34,7 +45,7 @@ impl Euler {
     }
 
     /// The classical Runge–Kutta step, in as many parts as the rate asks for.
-    fn advance(&self, w: &mut Vector3<f64>, s: &mut Sensitivity, time: f64) {
+    fn advance<const N: usize>(&self, w: &mut Vector3<f64>, s: &mut Sensitivity<N>, time: f64) {
         let speed = (self.inverse * cross_derivative(&self.j, w)).norm();
         let parts = (speed * time.abs() / STEP).ceil().clamp(1.0, 100.0);
         let h = time / parts;
@@ -47,91 +58,199 @@ impl Euler {
             *s += (s1 + (s2 + s3) * 2.0 + s4) * (h / 6.0);
         }
     }
-}
 
-/// The motion through `start` at sample `middle`, with its sensitivities to (x, start): `visit` sees every sample.
-fn sweep(
-    euler: &Euler,
-    times: &[f64],
-    middle: usize,
-    start: Vector3<f64>,
-    mut visit: impl FnMut(usize, &Vector3<f64>, &Sensitivity),
-) {
-    let identity = Sensitivity::from_fn(|i, k| if k == i + 5 { 1.0 } else { 0.0 });
-    visit(middle, &start, &identity);
-    let (mut w, mut sensitivity) = (start, identity);
-    for i in middle + 1..times.len() {
-        euler.advance(&mut w, &mut sensitivity, times[i] - times[i - 1]);
-        visit(i, &w, &sensitivity);
+    /// The motion through `start`, with its sensitivities: `visit` sees it at each of `times`.
+    fn sweep<const N: usize>(
+        &self,
+        times: &[f64],
+        start: &Start,
+        mut visit: impl FnMut(usize, &Vector3<f64>, &Sensitivity<N>),
+    ) {
+        let identity = Sensitivity::from_fn(|i, k| if k + 3 == i + N { 1.0 } else { 0.0 });
+        let split = times.partition_point(|&t| t < start.time);
+        let mut go = |i: usize, last: &mut f64, w: &mut Vector3<f64>, s: &mut Sensitivity<N>| {
+            self.advance(w, s, times[i] - *last);
+            *last = times[i];
+            visit(i, w, s);
+        };
+        let (mut last, mut w, mut s) = (start.time, start.rate, identity);
+        (split..times.len()).for_each(|i| go(i, &mut last, &mut w, &mut s));
+        let (mut last, mut w, mut s) = (start.time, start.rate, identity);
+        (0..split).rev().for_each(|i| go(i, &mut last, &mut w, &mut s));
     }
-    let (mut w, mut sensitivity) = (start, identity);
-    for i in (0..middle).rev() {
-        euler.advance(&mut w, &mut sensitivity, times[i] - times[i + 1]);
-        visit(i, &w, &sensitivity);
-    }
-}
 
-/// What a sweep says of (x, start), and how far the samples are from it.
-struct Fisher {
-    information: SMatrix<f64, 8, 8>,
-    gradient: Vector3<f64>,
-    misfit: f64,
-}
-
-impl Fisher {
-    fn new(euler: &Euler, s: &Stretch, middle: usize, start: Vector3<f64>) -> Fisher {
-        let mut sum = Fisher { information: SMatrix::zeros(), gradient: Vector3::zeros(), misfit: 0.0 };
-        sweep(euler, &s.times, middle, start, |i, w, sensitivity| {
-            sum.information += sensitivity.transpose() * sensitivity;
-            let residual = s.rates[i] - w;
-            sum.gradient += sensitivity.fixed_view::<3, 3>(0, 5).transpose() * residual;
-            sum.misfit += residual.norm_squared();
-        });
+    /// Σ Sᵀ S.
+    fn information(&self, times: &[f64], start: &Start) -> SMatrix<f64, 8, 8> {
+        let mut sum = SMatrix::zeros();
+        self.sweep(times, start, |_, _, s: &Sensitivity<8>| sum += s.transpose() * s);
         sum
     }
+}
 
-    /// The Gauss–Newton step of the start, the tensor held.
-    fn step(&self) -> Option<Vector3<f64>> {
-        Some(self.information.fixed_view::<3, 3>(5, 5).into_owned().cholesky()?.solve(&self.gradient))
+/// Where a motion is at one time.
+#[derive(Clone, Copy)]
+struct Start {
+    time: f64,
+    rate: Vector3<f64>,
+}
+
+/// Information about x alone.
+fn of_tensor(information: &SMatrix<f64, 8, 8>) -> Option<Form> {
+    let own = information.fixed_view::<3, 3>(5, 5).into_owned().cholesky()?;
+    let mixed = information.fixed_view::<3, 5>(5, 0).into_owned();
+    Some(information.fixed_view::<5, 5>(0, 0) - mixed.transpose() * own.solve(&mixed))
+}
+
+/// Means of neighbouring samples.
+struct Means {
+    times: Vec<f64>,
+    rates: Vec<Vector3<f64>>,
+    counts: Vec<f64>,
+}
+
+impl Means {
+    /// Over at most `width`; of zero width, the samples themselves.
+    fn new(s: &Stretch, width: f64) -> Means {
+        let mut means = Means { times: Vec::new(), rates: Vec::new(), counts: Vec::new() };
+        let mut low = 0;
+        while low < s.times.len() {
+            let high = s.times.partition_point(|&t| t <= s.times[low] + width).max(low + 1);
+            let count = (high - low) as f64;
+            // about the first, so that one sample stays as it is
+            let first = s.times[low];
+            means.times.push(first + s.times[low..high].iter().map(|t| t - first).sum::<f64>() / count);
+            means.rates.push(s.rates[low..high].iter().sum::<Vector3<f64>>() / count);
+            means.counts.push(count);
+            low = high;
+        }
+        means
     }
 
-    /// Information about x alone.
-    fn of_tensor(&self) -> Option<Form> {
-        let own = self.information.fixed_view::<3, 3>(5, 5).into_owned().cholesky()?;
-        let mixed = self.information.fixed_view::<3, 5>(5, 0).into_owned();
-        Some(self.information.fixed_view::<5, 5>(0, 0) - mixed.transpose() * own.solve(&mixed))
+    /// Those at most `radius` from `time`.
+    fn around(&self, time: f64, radius: f64) -> Range<usize> {
+        let low = self.times.partition_point(|&t| t < time - radius);
+        low..self.times.partition_point(|&t| t <= time + radius)
     }
 }
 
-/// Sweeps that look for a better start of one stretch.
-const STARTS: usize = 4;
-/// A step of the start, in units of the mean square rate, that no longer changes the bound.
-const STILL: f64 = 1e-3;
+/// How far a motion is from samples, and which way leads nearer.
+struct Misfit {
+    information: Matrix3<f64>,
+    gradient: Vector3<f64>,
+    sum: f64,
+}
 
-/// The bound on the covariance of the coordinates; `None` where the tensor has no inverse or the record does not
-/// determine it. Motions start from a local cubic through the samples within one radian of each middle, which
-/// least squares over the whole stretch then improve: a weak wobble is known by all samples together only.
-pub(super) fn cramer_rao(stretches: &[Stretch], x: &Coordinates, variance: f64) -> Option<Form> {
-    let j = tensor(x);
-    let euler = Euler { j, inverse: j.try_inverse()? };
-    let mut information = Form::zeros();
-    for s in stretches.iter().filter(|s| s.times.len() >= 5) {
-        let middle = s.times.len() / 2;
-        let (mut start, _) = local_cubic(s, middle, 1.0)?;
-        let mut fisher = Fisher::new(&euler, s, middle, start);
-        for _ in 1..STARTS {
-            let step = fisher.step().filter(|step| step.norm() > STILL);
-            let Some(step) = step else { break };
-            let next = Fisher::new(&euler, s, middle, start + step);
-            // where torques act, the samples may lead away from any free motion
-            if next.misfit.is_nan() || next.misfit >= fisher.misfit {
+impl Misfit {
+    fn new(euler: &Euler, means: &Means, range: Range<usize>, start: &Start) -> Misfit {
+        let mut misfit = Misfit { information: Matrix3::zeros(), gradient: Vector3::zeros(), sum: 0.0 };
+        let low = range.start;
+        euler.sweep(&means.times[range], start, |i, w, s: &Sensitivity<3>| {
+            let (count, residual) = (means.counts[low + i], means.rates[low + i] - w);
+            misfit.information += s.transpose() * s * count;
+            misfit.gradient += s.transpose() * residual * count;
+            misfit.sum += residual.norm_squared() * count;
+        });
+        misfit
+    }
+}
+
+/// Steps towards the motion nearest to one window of samples.
+const STEPS: usize = 12;
+/// A fall of the misfit, in units of the variance, that no longer matters: a tenth of a standard deviation.
+const STILL: f64 = 0.01;
+
+/// The start of the motion nearest to the samples of a window by Levenberg's damped steps, the tensor held.
+fn descend(
+    euler: &Euler,
+    means: &Means,
+    range: Range<usize>,
+    mut start: Start,
+    variance: f64,
+) -> Option<(Start, f64)> {
+    let equations = 3.0 * range.len() as f64;
+    let mut now = Misfit::new(euler, means, range.clone(), &start);
+    let mut damping = 0.0;
+    for _ in 0..STEPS {
+        let ridge = Matrix3::identity() * (damping * now.information.trace());
+        let step = (now.information + ridge).cholesky()?.solve(&now.gradient);
+        if step.dot(&now.gradient) <= STILL * variance.max(now.sum / equations) {
+            break;
+        }
+        let there = Start { rate: start.rate + step, ..start };
+        let next = Misfit::new(euler, means, range.clone(), &there);
+        if next.sum < now.sum {
+            (start, now) = (there, next);
+            damping *= 0.1;
+        } else {
+            damping = (10.0 * damping).max(1e-4);
+        }
+    }
+    Some((start, now.sum)).filter(|(_, sum)| sum.is_finite())
+}
+
+/// Where in a stretch to start, as a share of its samples, and the radius of the first window.
+const STARTS: [(f64, f64); 6] = [(0.5, 1.0), (0.25, 1.0), (0.75, 1.0), (0.5, 2.0), (0.25, 2.0), (0.75, 2.0)];
+/// Duration of the samples that the search sees as one.
+const WIDTH: f64 = 0.1;
+/// Share of what noise does not explain that a motion may leave, too.
+const LEFT: f64 = 0.05;
+
+/// The motion of a given tensor that explains the samples of a stretch; `None` if none was found.
+///
+/// The misfit of a whole stretch has many minima, one for each number of turns that the motion may be ahead or behind.
+/// A window within which the motion turns by little has one, and what it leaves uncertain of the motion in a window
+/// twice as long is small against a turn: each window starts where the one before has ended.
+fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Option<Start> {
+    let samples = Means::new(s, 0.0);
+    let coarse = Means::new(s, WIDTH);
+    let mean = s.rates.iter().sum::<Vector3<f64>>() / s.rates.len() as f64;
+    let variation: f64 = s.rates.iter().map(|w| (w - mean).norm_squared()).sum();
+    // noise of 3n components, and five standard deviations of the sum of their squares
+    let components = 3.0 * s.rates.len() as f64;
+    let noise = variance * components;
+    let slack = 5.0 * variance * (2.0 * components).sqrt();
+    STARTS.iter().find_map(|&(share, first)| {
+        let at = (share * s.times.len() as f64) as usize;
+        let mut start = Start { time: s.times[at], rate: local_cubic(s, at, first)?.0 };
+        let mut radius = first;
+        loop {
+            let range = coarse.around(start.time, radius);
+            if range.len() >= 4 {
+                start = descend(euler, &coarse, range, start, variance)?.0;
+            }
+            if radius >= s.duration() || radius.is_infinite() {
                 break;
             }
-            (start, fisher) = (start + step, next);
+            radius *= 2.0;
         }
-        information += fisher.of_tensor()?;
+        let (start, left) = descend(euler, &samples, 0..s.times.len(), start, variance)?;
+        (left - noise <= LEFT * (variation - noise).max(0.0) + slack).then_some(start)
+    })
+}
+
+/// The motions of a given tensor that explain a record.
+pub(super) struct Motions<'a> {
+    euler: Euler,
+    each: Vec<(&'a Stretch, Start)>,
+}
+
+impl<'a> Motions<'a> {
+    /// `None` where the tensor has no inverse, or a stretch is not explained: what is said of another motion is false.
+    pub(super) fn nearest(stretches: &'a [Stretch], x: &Coordinates, variance: f64) -> Option<Self> {
+        let euler = Euler::new(tensor(x))?;
+        let long = stretches.iter().filter(|s| s.times.len() >= 5);
+        let each = long.map(|s| Some((s, nearest_motion(&euler, s, variance)?))).collect::<Option<_>>()?;
+        Some(Motions { euler, each })
     }
-    Some((information / variance).cholesky()?.inverse())
+
+    /// The bound on the covariance of the coordinates; `None` where the motions do not determine them.
+    pub(super) fn bound(&self, variance: f64) -> Option<Form> {
+        let mut sum = Form::zeros();
+        for (s, start) in &self.each {
+            sum += of_tensor(&self.euler.information(&s.times, start))?;
+        }
+        Some((sum / variance).cholesky()?.inverse())
+    }
 }
 
 /// The Cramér–Rao bound on the tensor with trace 1 of a body that is known: what a record of its free motion can tell
@@ -160,15 +279,13 @@ pub fn foreseen_bound(
     sigma: f64,
 ) -> Option<SMatrix<f64, 6, 6>> {
     let shape = inertia.tensor() / inertia.tensor().trace();
-    let euler = Euler { j: shape, inverse: shape.try_inverse()? };
+    let euler = Euler::new(shape)?;
     // in units of the rate, as in a fit
     let rate = omega_body.norm();
     let times: Vec<f64> = times.iter().map(|t| t * rate).collect();
-    let mut information = SMatrix::zeros();
-    sweep(&euler, &times, 0, omega_body / rate, |_, _, s| information += s.transpose() * s);
-    let fisher = Fisher { information, gradient: Vector3::zeros(), misfit: 0.0 };
+    let start = Start { time: times.first().copied()?, rate: omega_body / rate };
     let deviation = sigma / rate;
-    let information = fisher.of_tensor()?;
+    let information = of_tensor(&euler.information(&times, &start))?;
     let (spectrum, _) = eigen(information);
     // what a pure spin leaves open is zero up to the rounding of sums of squares
     if spectrum[0].is_nan() || spectrum[0] <= 1e-12 * spectrum[4] {

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::averages;
 use super::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, pair, tensor};
-use super::cramer_rao::cramer_rao;
+use super::cramer_rao::Motions;
 use super::error::FitError;
 use super::identifiability::Identifiability;
 use super::limits::Bound;
@@ -76,7 +76,7 @@ pub struct Estimate {
     pub covariance: SMatrix<f64, 6, 6>,
     /// Covariance of the same before the physical law was imposed: what a test of other tensors should use.
     pub free_covariance: SMatrix<f64, 6, 6>,
-    /// The Cramér–Rao bound on it; `None` where the tensor has no inverse.
+    /// The Cramér–Rao bound on it; `None` where the tensor has no inverse, or no free motion of it explains the samples.
     pub bound: Option<SMatrix<f64, 6, 6>>,
     /// Root of the trace of the covariance over that of the bound.
     pub bound_ratio: Option<f64>,
@@ -307,7 +307,8 @@ impl Facts<'_> {
         let entries = entries_of_coordinates();
         // of a factor, so that no variance is negative
         let spread = |factor: Form| (entries * factor) * (entries * factor).transpose();
-        let bound = cramer_rao(self.stretches, &nearest.x, self.variance);
+        let motions = Motions::nearest(self.stretches, &nearest.x, self.variance);
+        let bound = motions.as_ref().and_then(|m| m.bound(self.variance));
         let bound_ratio = bound.map(|b| free.norm() / b.trace().sqrt());
         let (inertia, inertia_covariance) = self.absolute(&j, &(on_face * on_face.transpose()))?;
         let (momentum, energy) = drifts(self.stretches, &j, self.variance);
