@@ -342,6 +342,63 @@ fn scale_from_what_is_known_besides() {
     assert!(shape_only.inertia.is_none() && shape_only.inertia_covariance.is_none());
 }
 
+/// The mean energy and momentum carry noise of their own, and share some with the shape.
+#[test]
+fn a_scale_from_energy_or_momentum_scatters_as_it_claims() {
+    let j = Matrix3::from_diagonal(&Vector3::new(1.0, 1.5, 2.0));
+    let omega = Vector3::new(0.5, 1.0, 0.6);
+    let times: Vec<f64> = (0..600).map(|i| 0.05 * f64::from(i)).collect();
+    let momentum = j * omega;
+    let count = 40;
+    for known in [Known::TwiceEnergy(omega.dot(&momentum)), Known::Momentum(momentum.norm())] {
+        let settings = Settings { known: Some(known), ..Settings::default() };
+        let (mut scatter, mut claim) = (SMatrix::<f64, 6, 1>::zeros(), SMatrix::<f64, 6, 1>::zeros());
+        for seed in 0..count {
+            let record = record(&j, omega, &times, 0.01, &mut Random::new(seed));
+            let estimate = fit(&record, &settings).unwrap();
+            let e = entries(&(estimate.inertia.unwrap().tensor() - j));
+            scatter += e.component_mul(&e);
+            claim += estimate.inertia_covariance.unwrap().diagonal();
+        }
+        for k in 0..6 {
+            // a root of χ²/count scatters by 1/√(2 count)
+            let ratio = (scatter[k] / claim[k]).sqrt();
+            let four = 4.0 / (2.0 * count as f64).sqrt();
+            assert!((ratio - 1.0).abs() < four, "{known:?}, entry {k}: {ratio:.2}");
+        }
+    }
+}
+
+/// Rates whose squares vanish, and a known quantity that leaves a tensor of ordinary size.
+#[test]
+fn the_scale_knows_no_smallest_rate() {
+    let (j, times, rates) = example(1e-3);
+    let omega = Vector3::new(0.3, -0.8, 0.6);
+    let (momentum, energy) = ((j * omega).norm(), omega.dot(&(j * omega)));
+    for factor in [1e-85, 1e-120, 1e-154, 1e120] {
+        let t: Vec<f64> = times.iter().map(|t| t / factor).collect();
+        let w: Vec<_> = rates.iter().map(|w| w * factor).collect();
+        let slow = Record::from_samples(&t, &w).unwrap();
+        let record = Record::from_samples(&times, &rates).unwrap();
+        for (here, there) in [
+            (Known::Momentum(momentum), Known::Momentum(momentum * factor)),
+            (Known::TwiceEnergy(energy), Known::TwiceEnergy(energy * factor * factor)),
+        ] {
+            let of = |record, known| fit(record, &Settings { known: Some(known), ..Settings::default() });
+            let (a, b) = (of(&record, here).unwrap(), of(&slow, there).unwrap());
+            let (a, b) = (a.inertia_covariance.unwrap(), b.inertia_covariance.unwrap());
+            assert!((b - a).amax() < 1e-8 * a.amax(), "{factor:e}, {there:?}: {b}");
+            // a value that asks for a tensor no number can hold
+            let known = Known::TwiceEnergy(energy);
+            match fit(&slow, &Settings { known: Some(known), ..Settings::default() }) {
+                Ok(e) => assert!(e.inertia_covariance.unwrap().iter().all(|v| v.is_finite()), "{factor:e}"),
+                Err(FitError::Setting { name: "the known quantity", .. }) => {}
+                Err(error) => panic!("{factor:e}: {error}"),
+            }
+        }
+    }
+}
+
 #[test]
 fn baselines_lose_what_the_table_says_they_lose() {
     let (j, times, rates) = example(1e-2);

@@ -251,6 +251,24 @@ impl<'a> Motions<'a> {
         }
         Some((sum / variance).cholesky()?.inverse())
     }
+
+    /// Σ Sᵀ ∂f/∂ω with f = ω·M ω, each ω₀ taken out: what the noise in the sum of f shares with that in the coordinates,
+    /// which is the covariance of an efficient estimate times this.
+    pub(super) fn shared(&self, m: &Matrix3<f64>) -> Option<Coordinates> {
+        let mut shared = Coordinates::zeros();
+        for (s, start) in &self.each {
+            let (mut information, mut sum) = (SMatrix::<f64, 8, 8>::zeros(), SMatrix::<f64, 8, 1>::zeros());
+            self.euler.sweep(&s.times, start, |_, w, s: &Sensitivity<8>| {
+                information += s.transpose() * s;
+                sum += s.transpose() * (m * w) * 2.0;
+            });
+            let own = information.fixed_view::<3, 3>(5, 5).into_owned().cholesky()?;
+            let mixed = information.fixed_view::<3, 5>(5, 0).into_owned();
+            let start = sum.fixed_rows::<3>(5).into_owned();
+            shared += sum.fixed_rows::<5>(0) - mixed.transpose() * own.solve(&start);
+        }
+        Some(shared)
+    }
 }
 
 /// The Cramér–Rao bound on the tensor with trace 1 of a body that is known: what a record of its free motion can tell

@@ -13,7 +13,7 @@ use super::qp::{self, ActiveConstraint, Certificate, LIMIT};
 use super::radius::{self, Failure};
 use super::record::Record;
 use super::rounds::{ROUNDS, WeakEstimate};
-use super::scale::{Known, inertia_covariance};
+use super::scale::Known;
 use super::test_functions::{SAMPLES_PER_TEST, Stretch};
 use super::torque_free::{Drift, Whiteness, drifts};
 use super::units::{Better, better_unit};
@@ -310,7 +310,8 @@ impl Facts<'_> {
         let motions = Motions::nearest(self.stretches, &nearest.x, self.variance);
         let bound = motions.as_ref().and_then(|m| m.bound(self.variance));
         let bound_ratio = bound.map(|b| free.norm() / b.trace().sqrt());
-        let (inertia, inertia_covariance) = self.absolute(&j, &(on_face * on_face.transpose()))?;
+        let covariance = on_face * on_face.transpose();
+        let (inertia, inertia_covariance) = self.absolute(&j, &covariance, motions.as_ref())?;
         let (momentum, energy) = drifts(self.stretches, &j, self.variance);
         let per_second = |d: Drift| Drift { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
         let residuals = self.residuals(&nearest.x);
@@ -354,16 +355,19 @@ impl Facts<'_> {
         &self,
         j: &Matrix3<f64>,
         covariance: &Form,
+        motions: Option<&Motions<'_>>,
     ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
         let Some(known) = self.settings.known else { return Ok((None, None)) };
-        let (trace, slope) = known.trace(self.record, j, self.variance * self.rms * self.rms);
+        let scale = known.scale(self.stretches, self.rms, j, self.variance);
+        let trace = scale.trace;
         // its covariance goes with the square
         if !(trace * trace).is_normal() {
             return Err(FitError::Setting { name: "the known quantity", value: known.value() });
         }
         let inertia = Inertia::from_tensor(j * trace)
             .map_err(|error| FitError::Solver { status: format!("no absolute tensor: {error}") })?;
-        Ok((Some(inertia), Some(inertia_covariance(j, covariance, trace, &slope))))
+        let excess = self.misfit.max(1.0);
+        Ok((Some(inertia), Some(scale.covariance(j, covariance, excess, motions))))
     }
 
     fn residuals(&self, x: &Coordinates) -> Vec<Residuals> {

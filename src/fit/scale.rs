@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::coordinates::entries_of_coordinates;
-use super::coordinates::{Coordinates, ENTRIES, Form, basis};
-use super::record::Record;
+use super::coordinates::{Coordinates, ENTRIES, Form, basis, entries_of_coordinates, pair};
+use super::cramer_rao::Motions;
+use super::test_functions::Stretch;
 
 /// A quantity that is known besides the motion, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,49 +34,112 @@ impl Known {
         }
     }
 
-    /// The trace of the tensor and its gradient with respect to the coordinates of the shape `j`, given the noise
-    /// variance of the rates.
-    pub(super) fn trace(self, record: &Record, j: &Matrix3<f64>, variance: f64) -> (f64, Coordinates) {
-        let samples = record.samples() as f64;
-        let rates = || record.segments.iter().flat_map(|s| &s.rates);
+    /// The trace of a tensor of shape `j` from rates in units of their root mean square `rms`, rad/s, whose noise has
+    /// `variance` in those units.
+    pub(super) fn scale(self, stretches: &[Stretch], rms: f64, j: &Matrix3<f64>, variance: f64) -> Scale {
         match self {
-            Known::Trace(value) => (value, Coordinates::zeros()),
+            Known::Trace(trace) => Scale { trace, slope: Coordinates::zeros(), mean: None },
             Known::Moment { axis, value } => {
                 let n = axis.normalize();
                 let share = n.dot(&(j * n));
-                let slope = Coordinates::from_fn(|k, _| n.dot(&(basis(k) * n)));
-                (value / share, slope * (-value / (share * share)))
+                let trace = value / share;
+                Scale { trace, slope: pair(&n, &n) * (-trace / share), mean: None }
             }
             Known::TwiceEnergy(value) => {
-                // noise adds σ² tr J = σ² to the mean
-                let energy = rates().map(|w| w.dot(&(j * w))).sum::<f64>() / samples - variance;
-                let slope = Coordinates::from_fn(|k, _| {
-                    rates().map(|w| w.dot(&(basis(k) * w))).sum::<f64>() / samples
-                });
-                (value / energy, slope * (-value / (energy * energy)))
+                let mean = Mean::new(stretches, *j, basis, variance);
+                // one by one, so that no square of a rate underflows
+                let trace = value / rms / rms / mean.value;
+                mean.scale(trace, 1.0)
             }
             Known::Momentum(value) => {
-                let square = rates().map(|w| (j * w).norm_squared()).sum::<f64>() / samples
-                    - variance * j.norm_squared();
-                let size = square.sqrt();
-                let slope = Coordinates::from_fn(|k, _| {
-                    let b = basis(k);
-                    rates().map(|w| (j * w).dot(&(b * w))).sum::<f64>() / samples - variance * j.dot(&b)
-                });
-                (value / size, slope * (-value / (size * square)))
+                let change = |k| j * basis(k) + basis(k) * j;
+                let mean = Mean::new(stretches, j * j, change, variance);
+                let trace = value / rms / mean.value.sqrt();
+                mean.scale(trace, 0.5)
             }
         }
     }
 }
 
-/// Covariance of the entries of trace × J.
-pub(super) fn inertia_covariance(
-    j: &Matrix3<f64>,
-    covariance: &Form,
-    trace: f64,
-    slope: &Coordinates,
-) -> SMatrix<f64, 6, 6> {
-    let entries = SVector::<f64, 6>::from_fn(|k, _| j[ENTRIES[k]]);
-    let map = entries_of_coordinates() * trace + entries * slope.transpose();
-    map * covariance * map.transpose()
+/// The mean of ω·M ω over all samples, free of the bias by noise.
+struct Mean {
+    m: Matrix3<f64>,
+    value: f64,
+    /// Its gradient with respect to the coordinates of the shape.
+    slope: Coordinates,
+    /// Of the mean at a given shape.
+    variance: f64,
+    samples: f64,
+}
+
+impl Mean {
+    /// ω + n has ω·M ω + 2 n·M ω + n·M n: a mean that is larger by σ² tr M, a variance of 4 σ² |M ω|² + 2 σ⁴ tr M².
+    fn new(
+        stretches: &[Stretch],
+        m: Matrix3<f64>,
+        change: impl Fn(usize) -> Matrix3<f64>,
+        variance: f64,
+    ) -> Mean {
+        let (mut scatter, mut samples) = (Matrix3::zeros(), 0.0);
+        for w in stretches.iter().flat_map(|s| &s.rates) {
+            scatter += w * w.transpose();
+            samples += 1.0;
+        }
+        let scatter = scatter / samples - Matrix3::identity() * variance;
+        let of_one = 4.0 * scatter.dot(&(m * m)).max(0.0) + 2.0 * variance * m.norm_squared();
+        let slope = Coordinates::from_fn(|k, _| scatter.dot(&change(k)));
+        Mean { m, value: scatter.dot(&m), slope, variance: variance * of_one / samples, samples }
+    }
+
+    /// The scale from a trace that goes with the inverse `power` of the mean.
+    fn scale(self, trace: f64, power: f64) -> Scale {
+        let per_mean = -power * trace / self.value;
+        Scale { trace, slope: self.slope * per_mean, mean: Some((self, per_mean)) }
+    }
+}
+
+/// The trace of a tensor whose shape is known.
+pub(super) struct Scale {
+    pub(super) trace: f64,
+    /// Its gradient with respect to the coordinates of the shape.
+    slope: Coordinates,
+    /// The mean that it was read from, and its derivative with respect to that.
+    mean: Option<(Mean, f64)>,
+}
+
+impl Scale {
+    /// Covariance of the entries of trace × J from that of the coordinates of J; what the noise does not explain has
+    /// enlarged the latter by `excess`.
+    ///
+    /// Shape and mean carry the same noise. Their covariance is taken as for an efficient estimate of the shape at the
+    /// given motions; without motions, the two are taken to err together as badly as they can.
+    pub(super) fn covariance(
+        &self,
+        j: &Matrix3<f64>,
+        shape: &Form,
+        excess: f64,
+        motions: Option<&Motions<'_>>,
+    ) -> SMatrix<f64, 6, 6> {
+        let entries = SVector::<f64, 6>::from_fn(|k, _| j[ENTRIES[k]]);
+        let map = entries_of_coordinates() * self.trace + entries * self.slope.transpose();
+        let of_shape = map * shape * map.transpose();
+        let Some((mean, per_mean)) = &self.mean else { return of_shape };
+        let variance = mean.variance * excess;
+        let own = entries * *per_mean;
+        let of_mean = own * own.transpose() * variance;
+        if let Some(shared) = motions.and_then(|motions| motions.shared(&mean.m)) {
+            let both = shape * shared / mean.samples;
+            // no more than all of the mean's noise, which an estimate short of efficient would seem to share
+            let most = (variance / shared.dot(&both).abs() * mean.samples).sqrt().min(1.0);
+            let mixed = map * both * own.transpose() * most;
+            return of_shape + mixed + mixed.transpose() + of_mean;
+        }
+        // (a + b)(a + b)ᵀ <= (1 + t) a aᵀ + (1 + 1/t) b bᵀ for every t; this one makes the trace least
+        let t = (of_mean.trace() / of_shape.trace()).sqrt();
+        if t > 0.0 && t.is_finite() {
+            of_shape * (1.0 + t) + of_mean * (1.0 + 1.0 / t)
+        } else {
+            of_shape + of_mean
+        }
+    }
 }
