@@ -274,7 +274,8 @@ impl Record {
     }
 
     /// From a text with a header: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas
-    /// where semicolons or tabs part them; lines before the header and lines that begin with `#` may hold anything.
+    /// where semicolons or tabs part them; lines before the header and lines that begin with `#` may hold anything. Of
+    /// several times the one whose name has a unit is read.
     ///
     /// # Errors
     /// Missing columns, unknown units, cells that are not finite numbers, times that decrease.
@@ -287,7 +288,11 @@ impl Record {
         let first = lines.iter().position(|(_, l)| is_row(l)).unwrap_or(lines.len());
         let header = lines[..first].iter().rev().find(|(_, l)| !l.trim_start_matches('#').trim().is_empty());
         let names = cells(header.map_or("", |(_, l)| l.trim_start_matches('#').trim()));
-        let columns = find_columns(&names, file)?;
+        let columns = find_columns(&names).map_err(|missing| RecordError::Column {
+            file: file.into(),
+            missing,
+            found: names.clone(),
+        })?;
         let time_unit =
             unit(&names[columns[0]], file, reading.time_unit, TimeUnit::named)?.unwrap_or(TimeUnit::Seconds);
         let mut rate_units = [RateUnit::RadiansPerSecond; 3];
@@ -563,52 +568,71 @@ fn split_unit(name: &str) -> (&str, Option<&str>) {
     (&name[..open], Some(unit))
 }
 
-const TIME_NAMES: [&str; 5] = ["t", "time", "timestamp", "secondselapsed", "elapsed"];
+/// The first that a header has is read, but one without a unit only where no other has one.
+const TIME_NAMES: [&str; 5] = ["secondselapsed", "t", "time", "timestamp", "elapsed"];
 
-/// The unit at the end of the name of a time, as in `time_ms`.
+const RATE_NAMES: [&str; 12] = [
+    "w",
+    "omega",
+    "omegabody",
+    "gyro",
+    "gyr",
+    "gyroscope",
+    "g",
+    "angularvelocity",
+    "angularvelocitybody",
+    "rate",
+    "rotationrate",
+    "",
+];
+
+/// The unit in the name of a time, as in `time_ms`.
 fn suffixed_unit(name: &str) -> Option<&'static str> {
     let reduced = reduced(name);
-    TIME_NAMES
-        .iter()
-        .find_map(|stem| ["ms", "us", "ns"].into_iter().find(|unit| reduced.strip_prefix(stem) == Some(unit)))
+    TIME_NAMES.iter().find_map(|stem| match reduced.strip_prefix(stem)? {
+        "ms" => Some("ms"),
+        "us" => Some("us"),
+        "ns" => Some("ns"),
+        // `ts` and `times` name no unit, `t_s` does
+        "s" if !name.trim_end().to_lowercase().strip_suffix('s')?.ends_with(char::is_alphanumeric) => {
+            Some("s")
+        }
+        "" if *stem == "secondselapsed" => Some("s"),
+        _ => None,
+    })
 }
 
-fn find_columns(names: &[String], file: &str) -> Result<[usize; 4], RecordError> {
-    let reduced: Vec<String> = names.iter().map(|n| reduced(n)).collect();
-    let find = |spellings: &[String]| spellings.iter().find_map(|s| reduced.iter().position(|n| n == s));
-    let time: Vec<String> = TIME_NAMES
-        .iter()
-        .flat_map(|name| ["", "s", "ms", "us", "ns"].map(|unit| format!("{name}{unit}")))
-        .collect();
-    let stems = [
-        "w",
-        "omega",
-        "omegabody",
-        "gyro",
-        "gyr",
-        "gyroscope",
-        "g",
-        "angularvelocity",
-        "angularvelocitybody",
-        "rate",
-        "rotationrate",
-        "",
-    ];
-    let mut columns = [0; 4];
-    for (k, missing) in
-        ["time", "the rate about x", "the rate about y", "the rate about z"].into_iter().enumerate()
-    {
-        let spellings: Vec<String> = match k {
-            0 => time.clone(),
-            _ => stems.iter().map(|stem| format!("{stem}{}", ['x', 'y', 'z'][k - 1])).collect(),
-        };
-        columns[k] = find(&spellings).ok_or_else(|| RecordError::Column {
-            file: file.into(),
-            missing,
-            found: names.to_vec(),
-        })?;
+/// How late a column is considered for the time, if it is one: names with a unit come first, since a bare time may be
+/// anything, such as nanoseconds since 1970.
+fn time_rank(name: &str) -> Option<(bool, usize, usize)> {
+    let reduced = reduced(name);
+    let (stem, suffix) = TIME_NAMES.iter().enumerate().find_map(|(stem, text)| {
+        let rest = reduced.strip_prefix(text)?;
+        Some((stem, ["", "s", "ms", "us", "ns"].iter().position(|suffix| *suffix == rest)?))
+    })?;
+    let unit = split_unit(name).1.or_else(|| suffixed_unit(name)).and_then(TimeUnit::named);
+    Some((unit.is_none(), stem, suffix))
+}
+
+/// Where time and the three rates stand, or what is missing.
+fn find_columns(names: &[String]) -> Result<[usize; 4], &'static str> {
+    fn least<R: Ord>(ranks: impl Iterator<Item = Option<R>>) -> Option<usize> {
+        let ranked = ranks.enumerate().filter_map(|(k, rank)| rank.map(|r| (r, k)));
+        ranked.min().map(|(_, k)| k)
     }
-    Ok(columns)
+    let reduced: Vec<String> = names.iter().map(|n| reduced(n)).collect();
+    let rate = |axis: char| {
+        least(reduced.iter().map(|n| {
+            let stem = n.strip_suffix(axis)?;
+            RATE_NAMES.iter().position(|name| *name == stem)
+        }))
+    };
+    Ok([
+        least(names.iter().map(|n| time_rank(n))).ok_or("time")?,
+        rate('x').ok_or("the rate about x")?,
+        rate('y').ok_or("the rate about y")?,
+        rate('z').ok_or("the rate about z")?,
+    ])
 }
 
 /// The unit of a column, from its header or the setting, which must not contradict each other.
@@ -765,5 +789,35 @@ mod tests {
             Record::read(&text, "a", Reading { time_unit: Some(TimeUnit::Seconds), ..Reading::default() })
                 .is_err()
         );
+    }
+
+    fn only(text: &str) -> (Vec<f64>, Vec<[f64; 3]>) {
+        let record = read(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!(record.segments.len(), 1, "{text}");
+        let segment = &record.segments[0];
+        (segment.times.clone(), segment.rates.iter().map(|w| [w.x, w.y, w.z]).collect())
+    }
+
+    #[test]
+    fn a_time_with_a_unit_wins_over_a_bare_one() {
+        for (header, times) in [
+            ("time,seconds_elapsed,z,y,x", [0.25, 0.5]),
+            ("time,time_s,z,y,x", [0.25, 0.5]),
+            ("t,Elapsed (ms),z,y,x", [0.25e-3, 0.5e-3]),
+            ("timestamp_ns,seconds_elapsed,z,y,x", [0.25, 0.5]),
+            // no unit is in these names
+            ("frame,time,z,y,x", [0.25, 0.5]),
+            ("ts,t,z,y,x", [0.25, 0.5]),
+        ] {
+            let text = format!("{header}\n1727600000250000000,0.25,3,2,1\n1727600000500000000,0.5,6,5,4\n");
+            assert_eq!(only(&text), (times.to_vec(), vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), "{header}");
+        }
+        // the unit of the name is not overruled
+        for name in ["seconds_elapsed", "time_s"] {
+            let setting = Reading { time_unit: Some(TimeUnit::Nanoseconds), ..Reading::default() };
+            let text = format!("time,{name},z,y,x\n1,0.25,3,2,1\n");
+            let clash = Record::read(&text, "a.csv", setting).unwrap_err().to_string();
+            assert!(clash.contains(&format!("\"{name}\" says s, the setting says ns")), "{clash}");
+        }
     }
 }
