@@ -35,9 +35,27 @@ pub enum RecordError {
         /// What stands there.
         value: String,
     },
-    /// A row is shorter than its header.
+    /// A comma that would make a number of either size.
     #[error(
-        "{file}, line {line}: {cells} cells where the header has {columns}; every row must have all of them"
+        "{file}, line {line}, column {column} ({name}): {value:?} has a comma that may part thousands or decimals; write a \
+         decimal point and no other mark"
+    )]
+    Comma {
+        /// Name of the file.
+        file: String,
+        /// Its line.
+        line: usize,
+        /// The column.
+        column: usize,
+        /// Name of the column.
+        name: String,
+        /// What stands there.
+        value: String,
+    },
+    /// A row that ends before the last column that is needed, or has more cells than its header.
+    #[error(
+        "{file}, line {line}: {cells} cells where the header has {columns}; every row must have as many, with decimal \
+         points where commas part the cells"
     )]
     Cells {
         /// Name of the file.
@@ -274,20 +292,26 @@ impl Record {
     }
 
     /// From a text with a header: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas
-    /// where semicolons or tabs part them; lines before the header and lines that begin with `#` may hold anything. Of
-    /// several times the one whose name has a unit is read.
+    /// where semicolons or tabs part them, or within quotes; lines before the header and lines that begin with `#` may
+    /// hold anything. Of several times the one whose name has a unit is read.
     ///
     /// # Errors
-    /// Missing columns, unknown units, cells that are not finite numbers, times that decrease.
+    /// Missing columns, unknown units, rows that do not fit the header, cells that are not finite numbers, times that
+    /// decrease.
     pub fn read(text: &str, file: &str, reading: Reading) -> Result<Record, RecordError> {
         let text = text.trim_start_matches('\u{feff}');
-        let lines: Vec<(usize, &str)> = text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())).collect();
+        // a tab in front is an empty cell
+        let lines =
+            text.lines().map(|l| l.trim_end().trim_start_matches(|c: char| c.is_whitespace() && c != '\t'));
+        let lines: Vec<(usize, &str)> = lines.enumerate().map(|(k, l)| (k + 1, l)).collect();
         // the header is the last line before the first row of numbers
         let is_row =
             |line: &str| !line.is_empty() && cells(line).first().is_some_and(|c| c.parse::<f64>().is_ok());
         let first = lines.iter().position(|(_, l)| is_row(l)).unwrap_or(lines.len());
         let header = lines[..first].iter().rev().find(|(_, l)| !l.trim_start_matches('#').trim().is_empty());
-        let names = cells(header.map_or("", |(_, l)| l.trim_start_matches('#').trim()));
+        let names = cells(
+            header.map_or("", |(_, l)| l.strip_prefix('#').map_or(*l, |l| l.trim_start_matches('#').trim())),
+        );
         let columns = find_columns(&names).map_err(|missing| RecordError::Column {
             file: file.into(),
             missing,
@@ -301,9 +325,15 @@ impl Record {
                 .unwrap_or(*rate_unit);
         }
         let mut rows = Vec::new();
-        for &(line, content) in lines[first..].iter().filter(|(_, l)| !l.is_empty() && !l.starts_with('#')) {
-            let row = cells(content);
-            if columns.iter().any(|&c| c >= row.len()) {
+        for &(line, content) in
+            lines[first..].iter().filter(|(_, l)| !l.is_empty() && !l.trim_start().starts_with('#'))
+        {
+            let mut row = cells(content);
+            // a separator at the end of every row makes one empty cell more
+            if row.len() == names.len() + 1 && row.last().is_some_and(String::is_empty) {
+                row.pop();
+            }
+            if row.len() > names.len() || columns.iter().any(|&c| c >= row.len()) {
                 return Err(RecordError::Cells {
                     file: file.into(),
                     line,
@@ -314,12 +344,11 @@ impl Record {
             let mut values = [0.0; 4];
             for (value, &column) in values.iter_mut().zip(&columns) {
                 *value = row[column].parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(|| {
-                    RecordError::Value {
-                        file: file.into(),
-                        line,
-                        column: column + 1,
-                        name: names[column].clone(),
-                        value: row[column].clone(),
+                    let (file, name, value) = (file.into(), names[column].clone(), row[column].clone());
+                    let column = column + 1;
+                    match may_part_thousands(&value) {
+                        true => RecordError::Comma { file, line, column, name, value },
+                        false => RecordError::Value { file, line, column, name, value },
                     }
                 })?;
             }
@@ -521,22 +550,55 @@ fn flat_tops(samples: &[[f64; 4]]) -> Vec<bool> {
     flat
 }
 
-/// The cells of a line, quotes removed; where semicolons or tabs part them, a comma in a number is a decimal one.
+fn is_number(cell: &str) -> bool {
+    cell.parse::<f64>().is_ok()
+}
+
+/// The parts of a line between separators that stand outside of quotes; a quote opens at the start of a part only.
+fn parts(line: &str, separates: impl Fn(char) -> bool) -> Vec<&str> {
+    let (mut parts, mut start, mut quoted) = (Vec::new(), 0, false);
+    for (i, c) in line.char_indices() {
+        if c == '"' {
+            let part = line[start..i].trim_start();
+            quoted ^= part.is_empty() || part.starts_with('"');
+        } else if separates(c) && !quoted {
+            parts.push(&line[start..i]);
+            start = i + c.len_utf8();
+        }
+    }
+    parts.push(&line[start..]);
+    parts
+}
+
+/// Whether a comma in a number has three digits after it and up to three before it, as one between thousands has.
+fn may_part_thousands(cell: &str) -> bool {
+    let Some((whole, rest)) = cell.trim_start_matches(['+', '-']).split_once(',') else { return false };
+    let digits = rest.chars().take_while(char::is_ascii_digit).count();
+    digits == 3
+        && (1..=3).contains(&whole.len())
+        && !whole.starts_with('0')
+        && whole.chars().all(|c| c.is_ascii_digit())
+}
+
+/// The cells of a line, quotes removed. A comma in a number is a decimal one where semicolons or tabs part the cells, and
+/// within quotes where it cannot part thousands.
 fn cells(line: &str) -> Vec<String> {
-    let clean = |cell: &str| cell.trim().trim_matches('"').trim().to_string();
-    let pointed = |cell: &str| {
-        let cell = clean(cell);
+    let delimiter =
+        [';', '\t', ','].into_iter().find(|&d| line.contains(d) && parts(line.trim(), |c| c == d).len() > 1);
+    let clean = |cell: &str| {
+        let cell = cell.trim().trim_matches('"').trim();
+        let is_decimal = matches!(delimiter, Some(';' | '\t')) || !may_part_thousands(cell);
         let pointed = cell.replace(',', ".");
-        if pointed.parse::<f64>().is_ok() { pointed } else { cell }
+        if is_decimal && is_number(&pointed) { pointed } else { cell.to_string() }
     };
-    if let Some(delimiter) = [';', '\t'].into_iter().find(|d| line.contains(*d)) {
-        return line.split(delimiter).map(pointed).collect();
+    if let Some(delimiter) = delimiter {
+        return parts(line, |c| c == delimiter).into_iter().map(clean).collect();
     }
-    if line.contains(',') {
-        return line.split(',').map(clean).collect();
-    }
-    let wide: Vec<String> = line.split("  ").map(clean).filter(|c| !c.is_empty()).collect();
-    if wide.len() > 1 { wide } else { line.split_whitespace().map(clean).collect() }
+    // two spaces leave an empty part between them
+    let words = parts(line, char::is_whitespace);
+    let wide: Vec<String> =
+        words.split(|w| w.is_empty()).filter(|w| !w.is_empty()).map(|w| clean(&w.join(" "))).collect();
+    if wide.len() > 1 { wide } else { words.into_iter().filter(|w| !w.is_empty()).map(clean).collect() }
 }
 
 /// Lower case without blanks.
@@ -678,8 +740,11 @@ mod tests {
             "time,omega_body_x,omega_body_y,omega_body_z",
         ] {
             let separator = [",", ";", "\t", "      "].into_iter().find(|s| header.contains(s)).unwrap();
+            let columns = header.lines().last().unwrap().split(separator).count();
             let row = |t: &str| {
-                ["1", "2", "3", "9"].iter().fold(t.to_string(), |r, c| format!("{r}{separator}{c}"))
+                ["1", "2", "3", "9"][..columns - 1]
+                    .iter()
+                    .fold(t.to_string(), |r, c| format!("{r}{separator}{c}"))
             };
             let record = read(&format!("{header}\n{}\n{}\n", row("0.5"), row("0.75"))).unwrap();
             assert_eq!(record.segments[0].times, [0.5, 0.75], "{header}");
@@ -796,6 +861,55 @@ mod tests {
         assert_eq!(record.segments.len(), 1, "{text}");
         let segment = &record.segments[0];
         (segment.times.clone(), segment.rates.iter().map(|w| [w.x, w.y, w.z]).collect())
+    }
+
+    fn refusal(text: &str) -> String {
+        read(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn rows_longer_than_their_header_are_refused() {
+        for (text, cells, columns) in [
+            ("t,wx,wy,wz\n0,1,2,3\n0,5,1,2,3\n", 5, 4),
+            ("t,wx,wy,wz\n0,1,2,3\n0,5,1,0,2,0,3,0\n", 8, 4),
+            ("t,wx,wy,wz\n0,1,2,3\n1,1,2,3,,\n", 6, 4),
+            ("t,wx,wy,wz,\n0,1,2,3,\n1,1,2,3,,7\n", 6, 5),
+            ("t;wx;wy;wz\n0;1;2;3\n1;1;2;3;4\n", 5, 4),
+            ("t\twx\twy\twz\n0\t1\t2\t3\n\t1\t1\t2\t3\n", 5, 4),
+            ("t wx wy wz\n0 1 2 3\n1 1 2 3 4\n", 5, 4),
+        ] {
+            let expected = RecordError::Cells { file: "a.csv".into(), line: 3, cells, columns };
+            assert_eq!(read(text), Err(expected), "{text}");
+        }
+        // a separator at the end of each row, or of the header alone
+        for text in [
+            "t,wx,wy,wz\n0,1,2,3,\n1,4,5,6, \n",
+            "t;wx;wy;wz\n0;1;2;3;\n1;4;5;6;\n",
+            "t\twx\twy\twz\n0\t1\t2\t3\t\n1\t4\t5\t6\t\n",
+            "t,wx,wy,wz,\n0,1,2,3,\n1,4,5,6\n",
+            // a column of row numbers without a name
+            "\tt\twx\twy\twz\n7\t0\t1\t2\t3\n8\t1\t4\t5\t6\n",
+        ] {
+            assert_eq!(only(text), (vec![0.0, 1.0], vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), "{text}");
+        }
+    }
+
+    #[test]
+    fn quoted_cells_stay_whole() {
+        let text = "\"t\",wx,note,wy,wz\n\
+                    \"0,5\",\"-0,125\",\"a, b; \"\"c\"\", d\",\"1000,125\",\"+1,25\"\n";
+        assert_eq!(only(text), (vec![0.5], vec![[-0.125, 1000.125, 1.25]]));
+        assert_eq!(only("t wx wy wz\n\"0,5\" 1 2 3\n"), (vec![0.5], vec![[1.0, 2.0, 3.0]]));
+        // a mark of inches opens no quote
+        assert_eq!(only("t,wx,tube,wy,wz\n0,1,5\",2,3\n"), (vec![0.0], vec![[1.0, 2.0, 3.0]]));
+        for value in ["1,000", "-12,345", "123,456", "1,234.5", "1,000,000", "1,000e1"] {
+            let message = refusal(&format!("t,wx,wy,wz\n0.5,\"{value}\",0,0\n"));
+            let start =
+                format!("a.csv, line 2, column 2 (wx): \"{value}\" has a comma that may part thousands");
+            assert!(message.starts_with(&start), "{message}");
+        }
+        let half = refusal("t,wx,wy,wz\n0,\"1,2,3\n");
+        assert!(half.starts_with("a.csv, line 2: 2 cells where the header has 4"), "{half}");
     }
 
     #[test]
