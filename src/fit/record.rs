@@ -8,8 +8,9 @@ use thiserror::Error;
 pub enum RecordError {
     /// No header names the columns that are needed.
     #[error(
-        "{file}: no column for {missing}; the header has {found:?}. Name the columns t, wx, wy, wz (or \"Time (s)\", \
-         \"Gyroscope x (rad/s)\", …)"
+        "{file}: no column for {missing}; the header has {}. Name the columns t, wx, wy, wz (or \"Time (s)\", \
+         \"Gyroscope x (rad/s)\", …)",
+        shown(found)
     )]
     Column {
         /// Name of the file.
@@ -21,7 +22,8 @@ pub enum RecordError {
     },
     /// A cell is not a finite number.
     #[error(
-        "{file}, line {line}, column {column} ({name}): {value:?} is not a finite number; remove the row, or leave a gap"
+        "{file}, line {line}, column {column} ({name}): {} is not a finite number; remove the row, or leave a gap",
+        shown(value)
     )]
     Value {
         /// Name of the file.
@@ -37,8 +39,9 @@ pub enum RecordError {
     },
     /// A comma that would make a number of either size.
     #[error(
-        "{file}, line {line}, column {column} ({name}): {value:?} has a comma that may part thousands or decimals; write a \
-         decimal point and no other mark"
+        "{file}, line {line}, column {column} ({name}): {} has a comma that may part thousands or decimals; write a \
+         decimal point and no other mark",
+        shown(value)
     )]
     Comma {
         /// Name of the file.
@@ -83,7 +86,9 @@ pub enum RecordError {
     },
     /// A unit that is not known.
     #[error(
-        "{file}: column {name:?} is in {unit:?}; known are s, ms, us, ns for time and rad/s, deg/s, rpm for rates"
+        "{file}: column {} is in {}; known are s, ms, us, ns for time and rad/s, deg/s, rpm for rates",
+        shown(name),
+        shown(unit)
     )]
     Unit {
         /// Name of the file.
@@ -94,7 +99,7 @@ pub enum RecordError {
         unit: String,
     },
     /// The header and a flag name different units.
-    #[error("{file}: column {name:?} says {header}, the setting says {setting}; drop one of the two")]
+    #[error("{file}: column {} says {header}, the setting says {setting}; drop one of the two", shown(name))]
     UnitClash {
         /// Name of the file.
         file: String,
@@ -131,6 +136,17 @@ pub enum RecordError {
         /// Rates.
         rates: usize,
     },
+}
+
+/// Characters of a file that a message shows; a file of another kind may be a single line.
+const SHOWN: usize = 60;
+
+fn shown(what: &impl core::fmt::Debug) -> String {
+    let whole = format!("{what:?}");
+    match whole.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &whole[..end]),
+        None => whole,
+    }
 }
 
 /// Unit of a time column.
@@ -293,25 +309,19 @@ impl Record {
 
     /// From a text with a header: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas
     /// where semicolons or tabs part them, or within quotes; lines before the header and lines that begin with `#` may
-    /// hold anything. Of several times the one whose name has a unit is read.
+    /// hold anything, and so may columns that are not needed. Of several times the one whose name has a unit is read.
     ///
     /// # Errors
     /// Missing columns, unknown units, rows that do not fit the header, cells that are not finite numbers, times that
     /// decrease.
     pub fn read(text: &str, file: &str, reading: Reading) -> Result<Record, RecordError> {
         let text = text.trim_start_matches('\u{feff}');
-        // a tab in front is an empty cell
-        let lines =
-            text.lines().map(|l| l.trim_end().trim_start_matches(|c: char| c.is_whitespace() && c != '\t'));
-        let lines: Vec<(usize, &str)> = lines.enumerate().map(|(k, l)| (k + 1, l)).collect();
-        // the header is the last line before the first row of numbers
-        let is_row =
-            |line: &str| !line.is_empty() && cells(line).first().is_some_and(|c| c.parse::<f64>().is_ok());
-        let first = lines.iter().position(|(_, l)| is_row(l)).unwrap_or(lines.len());
-        let header = lines[..first].iter().rev().find(|(_, l)| !l.trim_start_matches('#').trim().is_empty());
-        let names = cells(
-            header.map_or("", |(_, l)| l.strip_prefix('#').map_or(*l, |l| l.trim_start_matches('#').trim())),
-        );
+        // a carriage return alone ends a line too; a tab in front is an empty cell
+        let lines = text.split('\n').flat_map(|l| l.strip_suffix('\r').unwrap_or(l).split('\r'));
+        let lines = lines.map(|l| l.trim_end().trim_start_matches(|c: char| c.is_whitespace() && c != '\t'));
+        let lines: Vec<(usize, &str)> =
+            lines.enumerate().map(|(k, l)| (k + 1, l)).filter(|(_, l)| !l.is_empty()).collect();
+        let (first, names) = find_header(&lines);
         let columns = find_columns(&names).map_err(|missing| RecordError::Column {
             file: file.into(),
             missing,
@@ -325,9 +335,7 @@ impl Record {
                 .unwrap_or(*rate_unit);
         }
         let mut rows = Vec::new();
-        for &(line, content) in
-            lines[first..].iter().filter(|(_, l)| !l.is_empty() && !l.trim_start().starts_with('#'))
-        {
+        for &(line, content) in lines[first..].iter().filter(|(_, l)| uncommented(l).is_none()) {
             let mut row = cells(content);
             // a separator at the end of every row makes one empty cell more
             if row.len() == names.len() + 1 && row.last().is_some_and(String::is_empty) {
@@ -550,8 +558,60 @@ fn flat_tops(samples: &[[f64; 4]]) -> Vec<bool> {
     flat
 }
 
+/// What follows the mark of a comment.
+fn uncommented(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    line.starts_with('#').then(|| line.trim_start_matches('#').trim())
+}
+
 fn is_number(cell: &str) -> bool {
     cell.parse::<f64>().is_ok()
+}
+
+/// The names of the columns, and where the lines after them begin.
+///
+/// That is the last line to name all columns before the first with numbers in them. Where no line does, a message needs
+/// the one that was meant: that before the first line of numbers, or else the first with as many cells as the last.
+fn find_header(lines: &[(usize, &str)]) -> (usize, Vec<String>) {
+    let mut header: Option<(usize, Vec<String>, [usize; 4])> = None;
+    let mut named_by_comment = true;
+    for (k, (_, line)) in lines.iter().enumerate() {
+        let comment = uncommented(line);
+        let row = cells(comment.unwrap_or(line));
+        if let Ok(columns) = find_columns(&row) {
+            // prose may name t, x, y, z as well
+            if named_by_comment || comment.is_none() {
+                header = Some((k, row, columns));
+                named_by_comment = comment.is_some();
+            }
+        } else if comment.is_none() {
+            let numbers = |columns: &[usize; 4]| {
+                columns.iter().filter(|c| row.get(**c).is_some_and(|cell| is_number(cell))).count()
+            };
+            // one number alone may stand in a preamble
+            let is_row = header.as_ref().is_some_and(|(_, _, columns)| numbers(columns) > 1);
+            if is_row || row.first().is_some_and(|cell| is_number(cell)) {
+                break;
+            }
+        }
+    }
+    if let Some((k, names, _)) = header {
+        return (k + 1, names);
+    }
+    let mut before = Vec::new();
+    for (_, line) in lines {
+        let comment = uncommented(line);
+        let row = cells(comment.unwrap_or(line));
+        let numbers = row.iter().filter(|cell| is_number(cell)).count();
+        if comment.is_none() && (2 * numbers > row.len() || row.first().is_some_and(|cell| is_number(cell))) {
+            return (lines.len(), before);
+        }
+        if !row.is_empty() {
+            before = row;
+        }
+    }
+    let mut rows = lines.iter().map(|(_, line)| cells(uncommented(line).unwrap_or(line)));
+    (lines.len(), rows.find(|row| row.len() == before.len()).unwrap_or_default())
 }
 
 /// The parts of a line between separators that stand outside of quotes; a quote opens at the start of a part only.
@@ -932,6 +992,60 @@ mod tests {
             let text = format!("time,{name},z,y,x\n1,0.25,3,2,1\n");
             let clash = Record::read(&text, "a.csv", setting).unwrap_err().to_string();
             assert!(clash.contains(&format!("\"{name}\" says s, the setting says ns")), "{clash}");
+        }
+    }
+
+    #[test]
+    fn columns_of_text_may_stand_anywhere() {
+        let expected = (vec![0.0, 0.5], vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+        for text in [
+            "run,t,wx,wy,wz\nr1,0,1,2,3\nr1,0.5,4,5,6\n",
+            "date,seconds_elapsed,x,y,z\n2024-05-01T10:00:00Z,0,1,2,3\n2024-05-01T10:00:00.5Z,0.5,4,5,6\n",
+            "date;t;wx;wy;wz;note\n01.05.2024 10:00;0,0;1;2;3;begin, rest\n01.05.2024 10:00;0,5;4;5;6;\n",
+            "run  t  wx  wy  wz\nr 1  0  1  2  3\nr 1  0.5  4  5  6\n",
+            // numbers, and the names of axes, in a preamble
+            "Range,-2000,2000\n# axes: t x y z\nSerial 12\n\n#run,t,wx,wy,wz\nr1,0,1,2,3\n# pause\nr1,0.5,4,5,6\n",
+            "run,t,wx,wy,wz\n# columns t x y z\nr1,0,1,2,3\nr1,0.5,4,5,6\n",
+            "t x y z\nwz,wy,wx,t\n3,2,1,0\n6,5,4,0.5\n",
+        ] {
+            assert_eq!(only(text), expected, "{text}");
+        }
+        for (text, start) in [
+            (
+                "made by hand\nrun,t,wx,wy\n#\nr1,0,1,2\nr2,1,1,2\n",
+                "a.csv: no column for the rate about z; the header has [\"run\", \"t\", \"wx\", \"wy\"]",
+            ),
+            (
+                "made by hand on Monday\nday,hour,wx\nMay,ten,a\nMay,ten,b\n",
+                "a.csv: no column for time; the header has [\"day\", \"hour\", \"wx\"]",
+            ),
+            ("0,1,2,3\nt,wx,wy,wz\n0,1,2,3\n", "a.csv: no column for time; the header has []"),
+            // no row between header and numbers is passed over
+            ("t,wx,wy,wz\ns,deg/s,deg/s,deg/s\n0,1,2,3\n", "a.csv, line 2, column 1 (t): \"s\""),
+            ("time,wx,wy,wz\n2024-05-01,1,2,3\n", "a.csv, line 2, column 1 (time): \"2024-05-01\""),
+        ] {
+            let message = refusal(text);
+            assert!(message.starts_with(start), "{message}");
+        }
+    }
+
+    #[test]
+    fn any_line_end_is_one_and_messages_stay_short() {
+        let expected = only("t,wx,wy,wz\n0,1,2,3\n1,4,5,6\n");
+        for end in ["\r", "\r\n", "\r\r\n"] {
+            assert_eq!(only(&["t,wx,wy,wz", "0,1,2,3", "1,4,5,6", ""].join(end)), expected, "{end:?}");
+        }
+        assert!(refusal("t,wx,wy,wz\r0,1,2,3\r1,a,5,6").starts_with("a.csv, line 3, column 2 (wx): \"a\""));
+        let long = "\u{0}PNG é,".repeat(5000);
+        for text in [
+            long.clone(),
+            long.replace(',', ""),
+            format!("t,wx,wy,wz\n0,{},2,3", long.replace(',', "")),
+            format!("t,wx,wy,wz\n0,\"1,000{long}\",2,3"),
+            format!("t,wx ({}),wy,wz\n0,1,2,3", long.replace(',', "")),
+        ] {
+            let message = refusal(&text);
+            assert!(message.chars().count() < 300 && message.contains('…'), "{message}");
         }
     }
 }

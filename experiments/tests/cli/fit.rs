@@ -126,6 +126,28 @@ fn what_is_simulated_without_noise_is_read() {
     assert!((answer["principal"][2].as_f64().unwrap() - 0.5).abs() < 1e-9, "{answer:#}");
 }
 
+/// Columns as Sensor Logger writes them, and a name before them.
+#[test]
+fn a_phones_record_gives_the_tensor_of_its_columns() {
+    let scratch = Scratch::new("phone");
+    let simulated = output(&format!("{SIMULATE} --until 30 --noise 1e-3"));
+    let plain = scratch.file("plain.csv", &simulated);
+    let rows = simulated.lines().skip(1).enumerate().map(|(i, row)| {
+        let cells: Vec<&str> = row.split(',').collect();
+        let nanoseconds = 1_727_600_000_000_000_000 + 20_000_000 * i;
+        format!("toss 1,{nanoseconds},{},{},{},{}\n", cells[0], cells[3], cells[2], cells[1])
+    });
+    let rows = rows.collect::<String>();
+    let phone = scratch.file("phone.csv", format!("run,time,seconds_elapsed,z,y,x\n{rows}"));
+    let [plain, phone] = [plain, phone].map(|file| json(&format!("fit {file}")));
+    assert_eq!((&plain["shape"], &plain["samples"]), (&phone["shape"], &phone["samples"]));
+    refused(
+        2,
+        &format!("fit {} --time-unit ns", scratch.0.join("phone.csv").display()),
+        &["column \"seconds_elapsed\" says s, the setting says ns"],
+    );
+}
+
 #[test]
 fn unusable_input_is_refused_by_file_line_and_column() {
     let scratch = Scratch::new("refused");
@@ -138,6 +160,15 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     refused(1, &format!("fit {still}"), &["still.csv: the rates have a root mean square of 0"]);
     let headless = scratch.file("headless.csv", "0,1,2,3\n1,1,2,3\n");
     refused(2, &format!("fit {headless}"), &["headless.csv: no column for time"]);
+    let thousands = scratch.file("thousands.csv", "t,wx,wy,wz\n0.5,\"1,000\",0,0\n");
+    refused(2, &format!("fit {thousands}"), &["thousands.csv, line 2, column 2 (wx): \"1,000\" has a comma"]);
+    let wide = scratch.file("wide.csv", "t,wx,wy,wz\n0,5,1,0,0\n");
+    refused(2, &format!("fit {wide}"), &["wide.csv, line 2: 5 cells where the header has 4"]);
+    let text = scratch.file("text.csv", "run,t,wx,wy\nr1,0,1,2\nr2,1,1,2\n");
+    refused(2, &format!("fit {text}"), &["the header has [\"run\", \"t\", \"wx\", \"wy\"]"]);
+    let binary = scratch.file("binary.csv", "\u{1}IMU,".repeat(1000));
+    let message = run(&format!("fit {binary}")).err;
+    assert!(message.contains("no column for time") && message.len() < 400, "{message}");
     refused(2, "fit absent.csv", &["absent.csv: cannot be read"]);
     refused(2, &format!("fit {nan} --rate-unit mph"), &["--rate-unit", "'mph'", "rad/s, deg/s, rpm"]);
     refused(2, &format!("fit {nan} --window 2,1"), &["--window", "not before"]);
