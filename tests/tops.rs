@@ -148,6 +148,31 @@ fn the_closed_form_solves_the_equations_of_motion_at_every_scale() {
     assert!(worst.0 < 1e-20, "{:.1e}: {}", worst.0, worst.1);
 }
 
+#[test]
+fn a_ball_may_carry_its_weight_in_any_direction() {
+    let inertia = Inertia::from_moments([1.0; 3]).unwrap();
+    let attitude = Quat::from_components([0.9, 0.3, 0.2, 0.1]);
+    for (across, along) in
+        [(0.0, 0.0), (1e-300, 0.0), (1e-24, -2e-20), (1e-16, 3e-17), (-1e-9, 1e-8), (0.4, 2.0)]
+    {
+        for height in [2.27, 0.0, -2.27] {
+            let weight = [across, along, height];
+            if weight == [0.0; 3] || Vec3(weight).magnitude() < 1e-200 {
+                continue;
+            }
+            let body = Body::heavy(inertia.clone(), weight.into()).unwrap();
+            let start = body.enter_omega(attitude, Vec3([0.4, -0.2, 1.0])).unwrap();
+            let top = LagrangeTop::new(&body, start).unwrap();
+            for t in [0.0, 1.0, 5.0] {
+                let found = residual(&top, t, 3.0);
+                assert!(found < 1e-20, "c {weight:?}, t {t}: {found:.1e}");
+            }
+            let off = (top.inside_at_dd(Dd::ZERO).attitude - start.attitude).magnitude();
+            assert!(off < 1e-29, "c {weight:?}: start off by {off:.1e}");
+        }
+    }
+}
+
 fn top(name: &str) -> LagrangeTop {
     let case = tops("reference.csv").into_iter().find(|case| case.free.scenario == name).unwrap();
     let (body, start) = problem(&case);

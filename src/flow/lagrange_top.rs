@@ -113,7 +113,7 @@ impl LagrangeTop {
     pub fn new(body: &Body, start: State<Dd>) -> Result<Self, LagrangeError> {
         let weight_moment = body.gravity::<Dd>().ok_or(LagrangeError::Free)?.weight_moment;
         let (axis, transverse, axial) = symmetry_axis(body, weight_moment)?;
-        let frame = shortest_turn(axis);
+        let frame = turn_to(axis);
         let weight = weight_moment.norm();
         let attitude = start.attitude.normalized() * frame;
         let momentum_body = frame.rotate_back(start.momentum_body);
@@ -272,13 +272,14 @@ fn symmetry_axis(body: &Body, weight_moment: Vec3<Dd>) -> Result<(Vec3<Dd>, Dd, 
     Ok((Vec3::unit(axis) * sign, mean(axis), i[axis]))
 }
 
-/// The shortest turn that takes e₃ to the unit vector `direction`.
-fn shortest_turn(direction: Vec3<Dd>) -> Quat<Dd> {
-    let along = direction[2] + 1.0;
-    if along.hi() <= 0.0 {
-        return Quat::new(Dd::ZERO, Vec3::unit(0));
+/// A turn that takes e₃ to the unit vector `direction`: in the upper half the shortest. In the lower half, where the
+/// shortest has no digits near −e₃, a half turn about e₁ follows the shortest turn to the mirrored direction.
+fn turn_to(direction: Vec3<Dd>) -> Quat<Dd> {
+    let [x, y, z] = direction.0;
+    if z < Dd::ZERO {
+        return Quat::new(Dd::ZERO, Vec3::unit(0)) * turn_to(Vec3([x, -y, -z]));
     }
-    Quat::new(along, Vec3::unit(2).cross(direction)).normalized()
+    Quat::new(z + 1.0, Vec3::unit(2).cross(direction)).normalized()
 }
 
 fn positive_root(x: Dd) -> Dd {
