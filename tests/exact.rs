@@ -80,6 +80,28 @@ fn double_double_states_are_exact_to_conditioning() {
 }
 
 #[test]
+fn f64_states_agree_with_double_double_up_to_the_reach_of_a_double() {
+    let mut worst = 0.0_f64;
+    for (moments, omega) in [
+        ([1.0, 1.0, 1.0], [0.0, 0.0, 1.0]),
+        ([1.0, 1.0, 0.5], [0.3, 0.4, 1.25]),
+        ([1.0, 2.0, 2.5], [0.4, -0.2, 1.0]),
+        ([1.0, 2.0, 3.0], [1e-3, 1.0, 2e-3]), // beside the separatrix
+    ] {
+        let inertia = Inertia::from_moments(moments).unwrap();
+        let motion = FreeMotion::from_omega(&inertia, Default::default(), omega.into()).unwrap();
+        for n in 0..3000 {
+            let t = libm::exp10(10.0 + 6.3 * f64::from(n) / 3000.0);
+            let (rough, exact) = (motion.inside_at(t), motion.inside_at_dd(Dd::from(t)));
+            let error = rotation_angle(State::<Dd>::of(rough).attitude, exact.attitude).hi();
+            assert!(error < 1e-14, "{moments:?} at {t:e} s: {error:.1e} rad");
+            worst = worst.max(error);
+        }
+    }
+    println!("{worst:.1e} rad");
+}
+
+#[test]
 fn flips_are_counted_as_the_momentum_changes_sign() {
     let inertia = Inertia::from_moments([1.0, 2.0, 3.0]).unwrap();
     for omega in [[0.4, 1.0, -0.3], [-0.4, -1.0, 0.3], [0.01, 1.0, 0.02], [1.0, 0.5, 0.1]] {

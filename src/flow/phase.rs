@@ -12,8 +12,9 @@ pub(super) fn pair(x: Dd) -> Pair {
     [x.hi(), x.lo()]
 }
 
-/// Turns from which the fractional part of a `f64` product pair is no longer exact.
-pub(super) const TOO_FAR: f64 = 1_125_899_906_842_624.0; // 2^50
+/// Turns from which a `f64` product pair serves no longer: up to here its low part stays below 2⁻¹¹, so that the
+/// rest after whole quarter turns hardly leaves the range of the kernels, which do not reduce the low part.
+pub(super) const TOO_FAR: f64 = 8_796_093_022_208.0; // 2^43
 
 /// `rate · t + start`, both in double-double.
 #[derive(Clone, Copy, Debug)]

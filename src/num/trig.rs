@@ -81,7 +81,7 @@ fn polynomial(z: f64, z2: f64, c: [f64; 6]) -> f64 {
     (c[0] + z * c[1]) + z2 * ((c[2] + z * c[3]) + z2 * (c[4] + z * c[5]))
 }
 
-/// Sine and cosine of 2π (x + low), |x| ≤ ½, `low` a few units in the last place of 1 at most.
+/// Sine and cosine of 2π (x + low), |x| ≤ ½, |low| ≤ 2⁻¹⁰: only x is reduced.
 ///
 /// Quarter turns are taken off exactly, so a phase counted in turns meets no rounded π before it is small.
 #[inline]
