@@ -173,6 +173,31 @@ fn a_ball_may_carry_its_weight_in_any_direction() {
     }
 }
 
+/// `weight` 2²ⁿ and ω 2ⁿ times as large: the same motion 2ⁿ times as fast.
+fn sped_up(moments: [f64; 3], weight: [f64; 3], omega: [f64; 3], n: i32) -> (Body, State<Dd>) {
+    let scaled = |v: [f64; 3], n| v.map(|x| libm::scalbn(x, n));
+    let inertia = Inertia::from_moments(moments).unwrap();
+    let body = Body::heavy(inertia, scaled(weight, 2 * n).into()).unwrap();
+    let attitude = Quat::from_components([0.9, 0.3, 0.2, 0.1]);
+    let start = body.enter_omega(attitude, Vec3(scaled(omega, n))).unwrap();
+    (body, start)
+}
+
+#[test]
+fn errors_are_those_of_the_same_motion_in_another_unit_of_time() {
+    let worst = |n: i32| {
+        let (body, start) = sped_up([1.0, 2.0, 2.5], [0.3, 0.1, 1.0], [0.5, 0.1, 1.0], n);
+        let method = method("kick-drift:2").unwrap();
+        let mut run = Run::new(method.as_ref(), &body, &body.leave(&start), libm::scalbn(0.01, -n)).unwrap();
+        run.advance_to(300).unwrap().worst
+    };
+    let ordinary = worst(0);
+    assert!(ordinary.energy > 1e-9 && ordinary.momentum_z.unwrap() > 1e-18, "{ordinary:?}");
+    for n in [-380, -260, -10, 10, 260, 380] {
+        assert_eq!(worst(n), ordinary, "2^{n}");
+    }
+}
+
 fn top(name: &str) -> LagrangeTop {
     let case = tops("reference.csv").into_iter().find(|case| case.free.scenario == name).unwrap();
     let (body, start) = problem(&case);

@@ -81,7 +81,7 @@ struct Heavy {
 impl Heavy {
     fn of(body: &Body, kinetic: Dd) -> Option<Self> {
         let gravity = body.gravity::<Dd>()?;
-        let energy = (kinetic + gravity.weight_moment.norm()).hi();
+        let energy = (kinetic + gravity.weight_moment.norm_of_any_size()).hi();
         let largest = body.moments::<f64>().magnitude();
         Some(Heavy { gravity, energy, momentum: (2.0 * largest * energy).sqrt() })
     }

@@ -4,7 +4,7 @@ use core::ops::{Add, Index, IndexMut, Mul, Neg, Sub};
 
 use nalgebra::Vector3;
 
-use crate::num::Real;
+use crate::num::{Dd, Real};
 
 /// A vector of three components.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +71,18 @@ impl<S: Real> Vec3<S> {
         let [a, b, c] = self.0.map(S::magnitude);
         // f64::max would drop a NaN
         if a.is_nan() || b.is_nan() || c.is_nan() { f64::NAN } else { a.max(b).max(c) }
+    }
+}
+
+impl Vec3<Dd> {
+    /// Length, also where its square leaves the range of a double: a power of two is taken out, which changes no bit.
+    pub(crate) fn norm_of_any_size(self) -> Dd {
+        let largest = self.magnitude();
+        if largest == 0.0 {
+            return Dd::ZERO;
+        }
+        let n = libm::ilogb(largest);
+        Vec3(self.0.map(|x| x.scaled(-n))).norm().scaled(n)
     }
 }
 
