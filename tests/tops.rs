@@ -198,6 +198,50 @@ fn errors_are_those_of_the_same_motion_in_another_unit_of_time() {
     }
 }
 
+#[test]
+fn the_closed_form_has_the_same_bits_in_any_unit_of_time() {
+    for (moments, weight) in [([1.25, 1.25, 0.75], [0.0, 0.0, 2.0]), ([1.5; 3], [0.3, -0.7, 0.1])] {
+        for omega in [[0.0; 3], [0.4, -0.2, 1.0], [1e-30, 0.0, 0.0], [0.0, 1e-9, 40.0], [1e20, 0.0, 1e20]] {
+            let fast = omega.into_iter().fold(1.0, f64::max);
+            let at = |n: i32| {
+                let (body, start) = sped_up(moments, weight, omega, n);
+                let top = LagrangeTop::new(&body, start).unwrap();
+                let t = libm::scalbn(1.7 / fast, -n);
+                assert!(top.reach() > t && top.reach().is_finite());
+                let x = top.inside_at(t);
+                let period = top.nutation_period().map(|period| libm::scalbn(period, n));
+                (x.attitude, x.momentum_body.0.map(|m| libm::scalbn(m, -n)), period)
+            };
+            let ordinary = at(0);
+            assert!(ordinary.0.magnitude() <= 1.0);
+            // as far as the energy is a double
+            let range = if fast > 1e10 { -300..=300 } else { -380..=380 };
+            for n in [-380, -300, -255, -100, 1, 7, 101, 256, 300, 380] {
+                if range.contains(&n) && (Vec3(omega).magnitude() > 1e-20 || n > -300) {
+                    assert_eq!(at(n), ordinary, "c {weight:?}, omega {omega:?}, 2^{n}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_weight_that_no_double_tells_from_none_is_refused() {
+    let refusal = |weight: f64, attitude: [f64; 4], omega: [f64; 3]| {
+        let inertia = Inertia::from_moments([1.0, 1.0, 1.5]).unwrap();
+        let body = Body::heavy(inertia, [0.0, 0.0, weight].into()).unwrap();
+        let start = body.enter_omega(Quat::from_components(attitude), Vec3(omega)).unwrap();
+        LagrangeTop::new(&body, start).err()
+    };
+    let tilted = [0.9, 0.3, 0.2, 0.1];
+    assert_eq!(refusal(1e-70, tilted, [0.0, 0.1, 1.0]), None);
+    let weak = refusal(1e-200, tilted, [0.0, 0.1, 1.0]);
+    assert!(matches!(weak, Some(LagrangeError::Weak { ratio }) if ratio < 1e-199), "{weak:?}");
+    assert_eq!(refusal(1.0, [1.0, 1e-69, 0.0, 0.0], [0.0; 3]), None);
+    let upright = refusal(1.0, [1.0, 1e-160, 0.0, 0.0], [0.0; 3]);
+    assert!(matches!(upright, Some(LagrangeError::Upright { tilt }) if tilt < 1e-159), "{upright:?}");
+}
+
 fn top(name: &str) -> LagrangeTop {
     let case = tops("reference.csv").into_iter().find(|case| case.free.scenario == name).unwrap();
     let (body, start) = problem(&case);

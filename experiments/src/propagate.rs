@@ -119,7 +119,11 @@ impl Propagate {
             let elapsed = Dd::from(t) - Dd::from(self.start_time);
             let exact = motion.inside_at_dd(elapsed);
             let x = rounded(&exact);
-            monitor.observe(&[x]);
+            if monitor.observe(&[x]) == 0 {
+                return Err(Error::Failed(format!(
+                    "--method exact: at {t:?} s the state is not finite; take kick-drift:4 and a --step"
+                )));
+            }
             let error = rotation_angle(State::<Dd>::of(x).attitude, exact.attitude).hi();
             table.push(self::row(body, t, &x, monitor.worst(), Some(error)));
         }

@@ -14,7 +14,13 @@ use crate::rotation::{Quat, Vec3};
 /// What may be rounding in equal moments (of their sum) and in the direction of the weight moment.
 const ROUNDING: f64 = 1e-12;
 
-/// Why a body is not a Lagrange top.
+/// Weight moment over moment of inertia and squared angular velocity, below which cubes leave the range of a double.
+const WEAKEST: f64 = 1e-80;
+
+/// Deviation from rest on the vertical, below which its fourth powers have no digits.
+const UPRIGHT: f64 = 1e-70;
+
+/// Why a body is not a Lagrange top, or has no motion in doubles.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum LagrangeError {
     /// There is no weight moment.
@@ -39,6 +45,23 @@ pub enum LagrangeError {
     OffAxis {
         /// Angle between weight moment and symmetry axis, rad.
         angle: f64,
+    },
+    /// The weight is too weak beside the spin.
+    #[error(
+        "the weight moment is {ratio:.1e} of moment of inertia times squared angular velocity (at least {WEAKEST:e}): too little \
+         to be told from none; leave it out"
+    )]
+    Weak {
+        /// |c|/(A ω²), ω the fastest part of m/A.
+        ratio: f64,
+    },
+    /// The axis is all but at rest on the vertical.
+    #[error(
+        "the axis starts {tilt:.1e} away from rest on the vertical, too little for its fourth power to have digits; give it 0 or at least {UPRIGHT:e}"
+    )]
+    Upright {
+        /// Largest of the quaternion's components that would be zero and of angular velocity over the fastest rate.
+        tilt: f64,
     },
     /// The start is not usable.
     #[error(transparent)]
@@ -81,7 +104,8 @@ pub struct LagrangeTop {
 enum Motion {
     /// The axis rests on the vertical: upright, asleep or about to fall, or hanging.
     Vertical,
-    Nutating(Box<Nutation>),
+    /// In units of time of 2ᵏ s, in which the fastest rate is near 1.
+    Nutating { nutation: Box<Nutation>, unit: i32 },
 }
 
 impl LagrangeTop {
@@ -89,7 +113,8 @@ impl LagrangeTop {
     ///
     /// # Errors
     /// A body that is not a Lagrange top, with the condition that fails and by how much; components that are not
-    /// finite, or an energy outside the range of a double.
+    /// finite, or an energy outside the range of a double; a weight that is too weak beside the spin, or a start too
+    /// near to rest on the vertical.
     pub fn from_omega(
         body: &Body,
         attitude: UnitQuaternion<f64>,
@@ -109,25 +134,39 @@ impl LagrangeTop {
     /// From a state at t = 0 as kernels see it.
     ///
     /// # Errors
-    /// A body that is not a Lagrange top.
+    /// A body that is not a Lagrange top, a weight that is too weak or a start too near to rest on the vertical.
     pub fn new(body: &Body, start: State<Dd>) -> Result<Self, LagrangeError> {
         let weight_moment = body.gravity::<Dd>().ok_or(LagrangeError::Free)?.weight_moment;
         let (axis, transverse, axial) = symmetry_axis(body, weight_moment)?;
         let frame = turn_to(axis);
-        let weight = weight_moment.norm();
+        let weight = weight_moment.norm_of_any_size();
         let attitude = start.attitude.normalized() * frame;
         let momentum_body = frame.rotate_back(start.momentum_body);
         let start = State { attitude, momentum_body };
 
         let ([m1, m2, _], Quat { w, v }) = (momentum_body.0, attitude);
-        let zero = |x: Dd| x.hi() == 0.0;
-        let vertical = (zero(v[0]) && zero(v[1])) || (zero(w) && zero(v[2]));
-        let motion = if vertical && zero(m1) && zero(m2) {
+        let upright = v[0].magnitude().max(v[1].magnitude());
+        let hanging = w.magnitude().max(v[2].magnitude());
+        let across = m1.magnitude().max(m2.magnitude());
+        let motion = if upright.min(hanging) == 0.0 && across == 0.0 {
             Motion::Vertical
         } else {
             let b = weight * Dd::of(2.0) / transverse;
             let omega = momentum_body * (Dd::ONE / transverse);
-            Motion::Nutating(Box::new(Nutation::new(b, attitude, omega)))
+            let falling = (weight / transverse).sqrt().hi();
+            let fastest = falling.max(omega.magnitude());
+            let slowness = falling / omega.magnitude();
+            if slowness * slowness < WEAKEST {
+                return Err(LagrangeError::Weak { ratio: slowness * slowness });
+            }
+            let tilt = upright.min(hanging).max(omega[0].magnitude().max(omega[1].magnitude()) / fastest);
+            if tilt < UPRIGHT {
+                return Err(LagrangeError::Upright { tilt });
+            }
+            let unit = -libm::ilogb(fastest);
+            let omega = Vec3(omega.0.map(|rate| rate.scaled(unit)));
+            let nutation = Box::new(Nutation::new(b.scaled(2 * unit), attitude, omega));
+            Motion::Nutating { nutation, unit }
         };
         Ok(LagrangeTop { body: body.clone(), frame, transverse, axial, weight, start, motion })
     }
@@ -154,14 +193,16 @@ impl LagrangeTop {
     /// The largest |t| at which the phases still have digits, s: some 2⁹⁶ rad.
     pub fn reach(&self) -> f64 {
         let smaller = if self.axial < self.transverse { self.axial } else { self.transverse };
-        let omega = self.start.momentum_body * (Dd::ONE / smaller);
-        let fastest = omega.norm().hi() + (self.weight / self.transverse).sqrt().hi();
+        let [m1, m2, m3] = self.start.momentum_body.0;
+        let omega = Vec3([m1 / self.transverse, m2 / self.transverse, m3 / smaller]);
+        let fastest = omega.norm_of_any_size().hi() + (self.weight / self.transverse).sqrt().hi();
         MOST_RADIANS / fastest
     }
 
     /// The state at time `t` (s), finite and within [`reach`](Self::reach), as kernels see it.
     ///
-    /// Phases are reduced in double-double. The quaternion is the continuous lift from the start.
+    /// Phases are reduced in double-double; next to the separatrix of the sleeping top, where the axis makes many turns
+    /// before it nods, they are evaluated in it as well. The quaternion is the continuous lift from the start.
     pub fn inside_at(&self, t: f64) -> State<f64> {
         self.evaluate(Dd::from(t))
     }
@@ -182,10 +223,10 @@ impl LagrangeTop {
                 let q = Quat::from_components(self.start.attitude.components().map(S::from_dd));
                 (q * turn(m3 / self.axial), Vec3(self.start.momentum_body.0.map(S::from_dd)))
             }
-            Motion::Nutating(nutation) => {
+            Motion::Nutating { nutation, unit } => {
                 let spin = turn(m3 / self.axial - m3 / self.transverse);
-                let (q, q_rate) = nutation.at::<S>(t);
-                let mut m = (q.conjugate() * q_rate).v * cast::<S>(self.transverse * 2.0);
+                let (q, q_rate) = nutation.at::<S>(t.scaled(-unit));
+                let mut m = (q.conjugate() * q_rate).v * cast::<S>((self.transverse * 2.0).scaled(-unit));
                 m[2] = cast(m3);
                 (q * spin, spin.rotate_back(m))
             }
@@ -202,7 +243,7 @@ impl LagrangeTop {
                 let up = self.start.attitude.w.hi() != 0.0 || self.start.attitude.v[2].hi() != 0.0;
                 [if up { 0.0 } else { core::f64::consts::PI }; 2]
             }
-            Motion::Nutating(nutation) => {
+            Motion::Nutating { nutation, .. } => {
                 let [lowest, highest] = nutation.turning_points();
                 [tilt(highest), tilt(lowest)]
             }
@@ -214,7 +255,7 @@ impl LagrangeTop {
     pub fn nutation_period(&self) -> Option<f64> {
         match &self.motion {
             Motion::Vertical => None,
-            Motion::Nutating(nutation) => nutation.period().map(Dd::hi),
+            Motion::Nutating { nutation, unit } => nutation.period().map(|period| period.scaled(*unit).hi()),
         }
     }
 
@@ -223,7 +264,7 @@ impl LagrangeTop {
     pub fn precession_per_nutation(&self) -> Option<f64> {
         match &self.motion {
             Motion::Vertical => None,
-            Motion::Nutating(nutation) => nutation.precession().map(Dd::hi),
+            Motion::Nutating { nutation, .. } => nutation.precession().map(Dd::hi),
         }
     }
 
@@ -246,7 +287,7 @@ impl LagrangeTop {
 /// Unit vector along the weight moment, transverse and axial moment.
 fn symmetry_axis(body: &Body, weight_moment: Vec3<Dd>) -> Result<(Vec3<Dd>, Dd, Dd), LagrangeError> {
     let i = body.moments::<Dd>();
-    let direction = weight_moment * (Dd::ONE / weight_moment.norm());
+    let direction = weight_moment * (Dd::ONE / weight_moment.norm_of_any_size());
     let trace = i[0] + i[1] + i[2];
     let apart = |axis: usize| ((i[(axis + 1) % 3] - i[(axis + 2) % 3]) / trace).magnitude();
     let mean = |axis: usize| (i[(axis + 1) % 3] + i[(axis + 2) % 3]) * 0.5;

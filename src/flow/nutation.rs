@@ -98,7 +98,14 @@ impl Start {
     fn zeros(&self) -> ([Dd; 3], [Dd; 2], Dd) {
         let ([_, x2, x3], [y1, y2], w3) = self.separated_zeros();
         let x1 = self.e * self.e / (self.b * x2 * x3);
-        let y2 = if y2 < w3 { self.d * self.d / (self.b * y1 * w3) } else { y2 };
+        let y2 = if y2 < w3 {
+            // by a power of two clear of the end of the range, where d² is not
+            let n = exponent(w3);
+            let (d, w3) = (self.d.scaled(-n), w3.scaled(-n));
+            (d * d / (self.b * y1 * w3)).scaled(n)
+        } else {
+            y2
+        };
         ([x1, x2, x3], [y1, y2], w3)
     }
 
@@ -114,9 +121,12 @@ impl Start {
         let y2 = p2 / b - y1 + v / b;
         if v + b * two * y2 < b * y1 {
             // u₂ and u₃ are the close pair
-            let product = d * d / (b * y1);
             let half_difference = (d * d / y1 - p1) / (b * y1 * two); // (y₂ − w₃)/2
-            let (y2, w3) = pair(half_difference, product);
+            let n = exponent(if half_difference.abs() > d.abs() { half_difference } else { d });
+            let scaled = d.scaled(-n);
+            let product = scaled * scaled / (b * y1);
+            let (y2, w3) = pair(half_difference.scaled(-n), product);
+            let (y2, w3) = (y2.scaled(n), w3.scaled(n));
             return ([two - y1, two - y2, two + w3], [y1, y2], w3);
         }
         if y < x {
@@ -136,6 +146,11 @@ impl Start {
         let (x2, x1) = ordered((q1 - b * e * e / v) / v, e * e / v);
         ([x1, x2, v / b], [two - x1, two - x2], v / b - two)
     }
+}
+
+/// n of the power 2ⁿ next below |x|; 0 for 0.
+fn exponent(x: Dd) -> i32 {
+    if x.hi() == 0.0 { 0 } else { libm::ilogb(x.magnitude()) }
 }
 
 /// The larger and the smaller zero of z² − sum z + product, both real and not negative.

@@ -191,6 +191,47 @@ fn a_body_at_rest_stays() {
     }
 }
 
+/// The cells of a column of CSV, as numbers.
+fn column(text: &str, name: &str) -> Vec<f64> {
+    let mut rows = csv::Reader::from_reader(text.as_bytes());
+    let place = rows.headers().unwrap().iter().position(|header| header.starts_with(name)).unwrap();
+    rows.records().map(|row| row.unwrap()[place].parse().unwrap()).collect()
+}
+
+#[test]
+fn a_lagrange_top_of_any_size_keeps_its_invariants() {
+    let tilted = "--attitude 0.9,0.3,0.2,0.1";
+    for flags in [
+        &format!("--moments 1,1,1 --weight-moment 0,0,-2.27 --omega 0.4,-0.2,1 {tilted} --times 0,1,5"),
+        "--moments 1,1,0.5 --weight-moment 0,0,1e104 --omega 1e52,0,1e52 --times 0,1e-52",
+        "--moments 1,1,2 --weight-moment 0,0,1e200 --omega 0,1e50,1 --times 1e-100,4e-98",
+        "--moments 1,1,2 --weight-moment 0,0,1e-180 --omega 1e-90,0,1e-90 --times 1e90",
+    ] {
+        let text = output(&format!("propagate {flags}"));
+        for name in ["energy_error", "momentum_z_error"] {
+            let found = column(&text, name);
+            assert!(found.iter().all(|error| (0.0..1e-14).contains(error)), "{flags}: {found:?}");
+        }
+    }
+    let weak = "propagate --moments 1,1,2 --weight-moment 0,0,1e-200 --omega 0,1e-90,1 --times 1";
+    refused(weak, &["--method exact", "2.5e-201", "at least 1e-80", "leave it out"]);
+    let upright = "propagate --moments 1,1,2 --weight-moment 0,0,1e200 --omega 0,1,1 --times 1e-100";
+    refused(upright, &["--method exact", "1.0e-100 away from rest on the vertical", "at least 1e-70"]);
+}
+
+#[test]
+fn errors_under_gravity_are_measured_at_any_scale() {
+    let large = "propagate --moments 1,2,2.5 --weight-moment 3e169,1e169,1e170 --omega 0.5e85,0.1e85,1e85 \
+                 --attitude 0.9,0.3,0.2,0.1 --times 1e-83 --method rattle --step 1e-86";
+    let small = "propagate --moments 1,2,2.5 --weight-moment 3e-181,1e-181,1e-180 --omega 0,0,0 --times 1e91 \
+                 --method rattle --step 1e89";
+    for line in [large, small] {
+        let text = output(line);
+        let [error, vertical] = ["energy_error", "momentum_z_error"].map(|name| column(&text, name)[0]);
+        assert!(error > 1e-12 && error < 1e-2 && vertical > 0.0 && vertical < 1e-13, "{line}: {text}");
+    }
+}
+
 #[test]
 fn numbers_are_refused_by_place_value_and_rule() {
     refused(&with("--times 1,nan"), &["--times", "item 2", "'nan'", "finite"]);
