@@ -242,6 +242,28 @@ fn a_weight_that_no_double_tells_from_none_is_refused() {
     assert!(matches!(upright, Some(LagrangeError::Upright { tilt }) if tilt < 1e-159), "{upright:?}");
 }
 
+#[test]
+fn next_to_the_separatrix_of_the_sleeping_top_no_digits_are_lost() {
+    let inertia = Inertia::from_moments([1.0, 1.0, 0.5]).unwrap();
+    let body = Body::heavy(inertia, [0.0, 0.0, 1.0].into()).unwrap();
+    let mut worst = 0.0_f64;
+    for tilt in [1e-14, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 0.1] {
+        for delta in [0.0, 1e-14, -1e-14, 1e-10, -1e-10, 1e-6, -1e-6, 1e-3, -1e-3, 0.03, -0.03] {
+            let (sin, cos) = libm::sincos(tilt / 2.0);
+            let attitude = Quat::from_components([cos, sin, 0.0, 0.0]);
+            let start = body.enter_omega(attitude, Vec3([0.0, 0.0, 4.0 * (1.0 + delta)])).unwrap();
+            let top = LagrangeTop::new(&body, start).unwrap();
+            for t in [0.3, -2.0, 17.0, 1e3, 1e5, 1e7, 1e12] {
+                let (rough, exact) = (top.inside_at(t), top.inside_at_dd(Dd::from(t)));
+                let error = rotation_angle(State::<Dd>::of(rough).attitude, exact.attitude).hi();
+                assert!(error < 1e-14, "tilt {tilt:e}, spin off by {delta:e}, t {t:e}: {error:.1e} rad");
+                worst = worst.max(error);
+            }
+        }
+    }
+    println!("{worst:.1e} rad");
+}
+
 fn top(name: &str) -> LagrangeTop {
     let case = tops("reference.csv").into_iter().find(|case| case.free.scenario == name).unwrap();
     let (body, start) = problem(&case);

@@ -24,6 +24,9 @@ use crate::num::elliptic::{Modulus, incomplete, r_j};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
+/// Radians of arg α from which `f64` is too short for them.
+const LONG: f64 = 8.0;
+
 /// The nutation of one heavy ball.
 #[derive(Clone, Debug)]
 pub(super) struct Nutation {
@@ -47,7 +50,7 @@ pub(super) struct Nutation {
 /// sn, cn, dn.
 #[derive(Clone, Copy)]
 struct Jacobi<T> {
-    u: T,
+    u: Dd,
     sn: T,
     cn: T,
     dn: T,
@@ -299,7 +302,7 @@ impl Nutation {
         let modulus = Modulus::<T>::new(cast(self.complement));
         let evaluate = |u: Dd| {
             let (sn, cn, dn) = modulus.sn_cn_dn(cast(u));
-            Jacobi { u: cast(u), sn, cn, dn }
+            Jacobi { u, sn, cn, dn }
         };
         let Some(half) = self.half else {
             let from_lowest = evaluate(tau);
@@ -314,7 +317,7 @@ impl Nutation {
         let k = modulus.complementary_modulus();
         let quarter = |f: Jacobi<T>, u: Dd, side: Dd| {
             let side = cast::<T>(side);
-            Jacobi { u: cast(u), sn: side * f.cn / f.dn, cn: -(side * k * f.sn / f.dn), dn: k / f.dn }
+            Jacobi { u, sn: side * f.cn / f.dn, cn: -(side * k * f.sn / f.dn), dn: k / f.dn }
         };
         let (from_lowest, from_highest) = if tau.abs() < sigma.abs() {
             let f = evaluate(tau);
@@ -353,8 +356,19 @@ impl Nutation {
             cast::<T>(rate / (x3 - x1)) * self.third_kind(f, x1 / (x3 - x1))
         } else {
             let n = (x2 - x1) / x1;
-            cast::<T>(rate / x1) * (f.u - cast::<T>(n) * self.third_kind(f, n))
+            cast::<T>(rate / x1) * (cast::<T>(f.u) - cast::<T>(n) * self.third_kind(f, n))
         }
+    }
+
+    /// [`alpha_phase`](Self::alpha_phase) but for whole turns. Next to the separatrix of the sleeping top the axis nods
+    /// slowly and arg α makes many turns meanwhile: there all of it is evaluated in double-double.
+    fn alpha_angle<T: Precise>(&self, f: Jacobi<T>) -> T {
+        let turning = self.e.abs() / (self.rate * Dd::of(2.0) * self.x[0]);
+        if self.alpha_jumps() || (turning * f.u).magnitude() < LONG {
+            return self.alpha_phase(f);
+        }
+        let (sn, cn, dn) = Modulus::new(self.complement).sn_cn_dn(f.u);
+        cast(reduce(self.alpha_phase(Jacobi { u: f.u, sn, cn, dn }), Dd::TAU))
     }
 
     /// The smooth part of |arg β|, an odd function of σ.
@@ -366,10 +380,10 @@ impl Nutation {
         }
         if self.beta_jumps() {
             let r = y2 / w3;
-            cast::<T>(-(rate / w3)) * (f.u - cast::<T>(Dd::ONE + r) * self.third_kind(f, r))
+            cast::<T>(-(rate / w3)) * (cast::<T>(f.u) - cast::<T>(Dd::ONE + r) * self.third_kind(f, r))
         } else {
             let n = self.parameter * w3 / y2;
-            cast::<T>(rate / y2) * (f.u - cast::<T>(self.parameter + n) * self.third_kind(f, n))
+            cast::<T>(rate / y2) * (cast::<T>(f.u) - cast::<T>(self.parameter + n) * self.third_kind(f, n))
         }
     }
 
@@ -380,7 +394,7 @@ impl Nutation {
             // sn = tanh
             let root = n.sqrt();
             let arc = if root.magnitude() == 0.0 { f.sn } else { (root * f.sn).atan2(one) / root };
-            return (f.u - arc) / (one + n);
+            return (cast::<T>(f.u) - arc) / (one + n);
         }
         let s2 = f.sn * f.sn;
         f.sn * s2 * r_j(f.cn * f.cn, f.dn * f.dn, one, one + n * s2) / T::of(3.0)
@@ -388,7 +402,7 @@ impl Nutation {
 
     fn alpha<T: Precise>(&self, f: Jacobi<T>) -> Moving<T> {
         let sign = cast::<T>(sign_of(self.e));
-        let phase = Complex::phase(sign * self.alpha_phase(f));
+        let phase = Complex::phase(sign * self.alpha_angle(f));
         let [x1, x2, x3] = self.x;
         let Jacobi { sn, cn, dn, .. } = f;
         if !self.alpha_jumps() {
