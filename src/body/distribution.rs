@@ -9,13 +9,16 @@ use thiserror::Error;
 
 use super::mass::{MassError, MassProperties, positive};
 use crate::num::trig::sin_cos;
-use crate::num::{Compensated, Real};
+use crate::num::{Compensated, Real, Shown};
 
 /// Why a distribution has no mass properties.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DistributionError {
     /// The density is negative or not a number somewhere.
-    #[error("density is {density} at ({}, {}, {}); it must be finite and not negative", at.x, at.y, at.z)]
+    #[error(
+        "density is {} at ({}, {}, {}); it must be finite and not negative",
+        Shown(*density), Shown(at.x), Shown(at.y), Shown(at.z)
+    )]
     Density {
         /// The offending value.
         density: f64,

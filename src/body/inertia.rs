@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::principal::{frame_quaternion, principal_axes};
 use super::tensor::{Spectrum, power_of_two_below};
-use crate::num::{Dd, Real};
+use crate::num::{Dd, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
 /// Rounding that a tensor may show, relative to its trace: symmetry and triangle inequalities are judged up to it.
@@ -22,9 +22,9 @@ pub enum InertiaError {
     },
     /// The tensor is not symmetric.
     #[error(
-        "inertia tensor is not symmetric: I_{row}{column} = {upper} but I_{column}{row} = {lower}, apart by {:.3e} of the trace; \
+        "inertia tensor is not symmetric: I_{row}{column} = {} but I_{column}{row} = {}, apart by {relative:.3e} of the trace; \
          I_jk = -sum m x_j x_k is the same both ways",
-        relative
+        Shown(*upper), Shown(*lower)
     )]
     NotSymmetric {
         /// Axis name of the first index.
@@ -41,9 +41,9 @@ pub enum InertiaError {
     /// A principal moment is zero or negative.
     #[error(
         "principal moments {}, {}, {}: each must be positive (a moment is a sum of mass times distance squared)",
-        moments[0],
-        moments[1],
-        moments[2]
+        Shown(moments[0]),
+        Shown(moments[1]),
+        Shown(moments[2])
     )]
     NotPositive {
         /// The principal moments.
@@ -52,7 +52,7 @@ pub enum InertiaError {
     /// Two moments together are less than the third.
     #[error(
         "principal moments {}, {}, {} violate I{} + I{} >= I{} by {} ({:.3} % of the largest); no mass distribution has them",
-        moments[0], moments[1], moments[2], pair[0] + 1, pair[1] + 1, largest + 1, excess, percent
+        Shown(moments[0]), Shown(moments[1]), Shown(moments[2]), pair[0] + 1, pair[1] + 1, largest + 1, Shown(*excess), percent
     )]
     Triangle {
         /// The principal moments.

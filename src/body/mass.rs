@@ -6,14 +6,14 @@ use thiserror::Error;
 use super::inertia::{Inertia, InertiaError, ROUNDING, Symmetry, check_symmetric, check_triangle};
 use super::principal::frame_quaternion;
 use super::tensor::{Spectrum, Tensor};
-use crate::num::{Dd, Real};
+use crate::num::{Dd, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
 /// Why something is no body, or has no mass properties.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MassError {
     /// A mass, length or density is zero, negative or not finite.
-    #[error("{quantity} is {value}; it must be a finite number above zero")]
+    #[error("{quantity} is {}; it must be a finite number above zero", Shown(*value))]
     NotPositive {
         /// What was measured.
         quantity: &'static str,
@@ -29,7 +29,7 @@ pub enum MassError {
         value: f64,
     },
     /// One size of a shape must lie below another.
-    #[error("{shape}: {small_name} {small} must be below {large_name} {large}")]
+    #[error("{shape}: {small_name} {} must be below {large_name} {}", Shown(*small), Shown(*large))]
     Sizes {
         /// The shape.
         shape: &'static str,

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::mass::{Amount, MassError, MassProperties};
 use super::tensor::Tensor;
-use crate::num::{Compensated, Dd};
+use crate::num::{Compensated, Dd, Shown};
 use crate::rotation::Vec3;
 use closed::Welded;
 
@@ -131,8 +131,9 @@ pub enum MeshError {
     },
     /// All triangles of a part face inwards.
     #[error(
-        "the mesh is inside out: the part with {edge} encloses the volume {volume}; \
-         list the corners of its triangles counterclockwise as seen from outside"
+        "the mesh is inside out: the part with {edge} encloses the volume {}; \
+         list the corners of its triangles counterclockwise as seen from outside",
+        Shown(*volume)
     )]
     InsideOut {
         /// The first edge of the part.

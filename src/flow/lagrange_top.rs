@@ -8,7 +8,7 @@ use super::free_body::MOST_RADIANS;
 use super::nutation::{Nutation, cast};
 use super::phase::reduce;
 use crate::body::{Body, State, StateError};
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Precise, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
 /// What may be rounding in equal moments (of their sum) and in the direction of the weight moment.
@@ -30,7 +30,7 @@ pub enum LagrangeError {
     #[error(
         "principal moments {}, {}, {}: no two agree, the closest differ by {:.3e} of their sum (at most {ROUNDING:e}); a Lagrange top \
          is symmetric",
-        moments[0], moments[1], moments[2], relative
+        Shown(moments[0]), Shown(moments[1]), Shown(moments[2]), relative
     )]
     NotSymmetric {
         /// The principal moments, in the order of the principal axes that kernels use.

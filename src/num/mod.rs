@@ -14,10 +14,12 @@ pub mod dd;
 pub mod elliptic;
 pub mod expansion;
 pub mod real;
+mod shown;
 pub mod sum;
 pub mod trig;
 
 pub use dd::Dd;
 pub use expansion::Expansion;
 pub use real::{Precise, Real};
+pub(crate) use shown::Shown;
 pub use sum::Compensated;

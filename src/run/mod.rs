@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::body::{Body, State, StateError};
 use crate::method::{Advance, AnyMethod, StepError};
-use crate::num::{Dd, Precise};
+use crate::num::{Dd, Precise, Shown};
 use crate::observe::{Errors, Invariants, Monitor};
 
 /// An implicit solve that ends further than this from its equation, relative, is no solution: the invariants would be
@@ -86,7 +86,7 @@ pub enum RunError {
     State(#[from] StateError),
     /// The next step leaves the range of numbers.
     #[error("diverged after {} steps, t = {} s: the next state is not finite; take a smaller step or another method",
-        .last.steps, .last.elapsed.to_f64())]
+        .last.steps, Shown(.last.elapsed.to_f64()))]
     Diverged {
         /// The last finite sample.
         last: Box<Sample>,
@@ -94,7 +94,7 @@ pub enum RunError {
     /// The equations of an implicit step could not be solved.
     #[error(
         "after {} steps, t = {} s, an implicit step was left with a relative residual of {residual:.1e} (at most {SOLVED:e}): \
-         it turns too far in one step; take a smaller one", .last.steps, .last.elapsed.to_f64()
+         it turns too far in one step; take a smaller one", .last.steps, Shown(.last.elapsed.to_f64())
     )]
     Unsolved {
         /// The sample at which it was noticed.
