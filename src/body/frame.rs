@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::{Gravity, Inertia, State};
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Precise, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
 /// Why a start is not usable.
@@ -23,16 +23,21 @@ pub enum StateError {
     NoAttitude,
     /// The spin is too large or too small for its energy to be a double.
     #[error(
-        "angular velocity {omega:?} rad/s with this inertia puts the energy outside the range of a double; change the units"
+        "{quantity} {} {unit} with this inertia puts the energy outside the range of a double; change the units", Shown(*value)
     )]
     OutOfRange {
-        /// Largest component of the angular velocity, rad/s.
-        omega: f64,
+        /// Angular velocity or momentum, which was given.
+        quantity: &'static str,
+        /// Its largest component.
+        value: f64,
+        /// In which unit.
+        unit: &'static str,
     },
     /// The weight moment is too large or too small beside the inertia.
     #[error(
-        "weight moment {weight_moment} N m beside moments of inertia of {moment}: the rate of falling is outside the range \
-         of a double; change the units"
+        "weight moment {} N m beside moments of inertia of {}: the rate of falling is outside the range \
+         of a double; change the units",
+        Shown(*weight_moment), Shown(*moment)
     )]
     WeightOutOfRange {
         /// Size of the weight moment, N m.
@@ -156,8 +161,9 @@ impl Body {
             attitude: Quat::of(Quat::from_components(near_one)).normalized() * self.inertia.frame(),
             momentum_body: self.inertia.scaled_momentum(omega_body),
         };
-        self.check_range(&inside)?;
-        Ok(inside)
+        let value = omega_body.magnitude();
+        let error = StateError::OutOfRange { quantity: "angular velocity", value, unit: "rad/s" };
+        if self.is_in_range(&inside) { Ok(inside) } else { Err(error) }
     }
 
     /// The state `x` (body axes) as kernels see it: principal axes, divided by the power of two.
@@ -171,8 +177,9 @@ impl Body {
         let momentum = Vec3(x.momentum_body.0.map(|m| Dd::of(m / scale)));
         let inside =
             State { attitude: Quat::of(x.attitude) * frame, momentum_body: frame.rotate_back(momentum) };
-        self.check_range(&inside)?;
-        Ok(inside)
+        let value = x.momentum_body.magnitude();
+        let error = StateError::OutOfRange { quantity: "momentum", value, unit: "kg m^2/s" };
+        if self.is_in_range(&inside) { Ok(inside) } else { Err(error) }
     }
 
     /// The state `x` of a kernel in body axes.
@@ -214,17 +221,14 @@ impl Body {
         Vec3(self.inertia.scaled_moments().map(|i| of_dd(Dd::ONE / i)))
     }
 
-    fn check_range(&self, inside: &State<Dd>) -> Result<(), StateError> {
+    /// Whether the energy is a double, with room for the errors of its products.
+    fn is_in_range(&self, inside: &State<Dd>) -> bool {
         let omega = inside.momentum_body.times(self.inverse_moments());
         let twice_energy = inside.momentum_body.dot(omega).hi();
         let energy = twice_energy * self.inertia.scale();
         let clear = |x: f64| x == 0.0 || clear(x);
         let at_rest = omega.0.iter().all(|w| w.hi() == 0.0);
-        if clear(twice_energy) && clear(energy) && (at_rest || energy != 0.0) {
-            Ok(())
-        } else {
-            Err(StateError::OutOfRange { omega: omega.magnitude() })
-        }
+        clear(twice_energy) && clear(energy) && (at_rest || energy != 0.0)
     }
 }
 

@@ -269,6 +269,10 @@ fn bodies_that_cannot_exist_are_refused() {
     refused("propagate --moments 1e308,1e308,1e308 --omega 1,1,1 --times 1", &["range of a double", "units"]);
     refused("propagate --moments 1,2,3 --omega 1e200,0,0 --times 1", &["--omega", "1e200", "units"]);
     refused("propagate --moments 1,2,3 --omega 1e-310,0,0 --times 1", &["--omega", "e-310 rad/s", "units"]);
+    refused(
+        "propagate --moments 1e300,1e300,1e-30 --omega 1e-200,1e-200,0 --times 1",
+        &["--omega", "angular velocity 1e-200 rad/s", "range of a double"],
+    );
     moments(
         "1e-46,1e-46,3e-46",
         &["--moments", "principal moments 1e-46, 1e-46, 3e-46 violate", "by 9.999999999999998e-47 ("],
