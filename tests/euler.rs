@@ -143,6 +143,14 @@ fn omega_is_the_derivative_of_the_attitude() {
 }
 
 #[test]
+fn an_angle_of_any_size_has_an_attitude() {
+    for sequence in EulerSequence::ALL {
+        let attitude = sequence.attitude([f64::MAX, 1e31, -1e300]);
+        assert!((attitude.norm() - 1.0).abs() < 1e-15, "{sequence}: {attitude}");
+    }
+}
+
+#[test]
 fn in_lock_a_reachable_velocity_has_rates_and_others_have_none() {
     for sequence in EulerSequence::ALL {
         let lock = if is_proper(sequence) { 0.0 } else { FRAC_PI_2 };

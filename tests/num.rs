@@ -265,6 +265,16 @@ fn infinite_undefined_and_zero_parts_do_not_spread() {
     assert_eq!(Dd::ZERO.ln(), -inf);
     assert!((-Dd::ZERO * one).hi().is_sign_negative() && (-Dd::ZERO).sqrt().hi().is_sign_negative());
     assert!((-Dd::ZERO).sin_cos().0.hi().is_sign_negative());
+    // mpmath 1.3: sin and cos of 2^100, of 2^100 + 2^40 + 1/8 and of the largest double
+    let two_100 = Dd::from(2.0).scaled(99);
+    for (x, sin, cos) in [
+        (two_100, -0.872_183_605_418_267_3, 0.489_178_656_974_721_46),
+        (two_100 + libm::exp2(40.0) + 0.125, 0.494_186_201_602_538_6, -0.869_356_082_480_392_5),
+        (Dd::from(f64::MAX), 0.004_961_954_789_184_062, -0.999_987_689_426_559_9),
+    ] {
+        let (s, c) = x.sin_cos();
+        assert!((s.hi() - sin).abs() < 1e-15 && (c.hi() - cos).abs() < 1e-15, "{x:?}: {s:?}, {c:?}");
+    }
     assert!(inf.sin_cos().0.hi().is_nan() && inf.sin_cos().1.hi().is_nan());
     assert!(trig::sin_cos(f64::NEG_INFINITY).0.is_nan() && trig::sin_cos(f64::NAN).1.is_nan());
 }

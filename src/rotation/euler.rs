@@ -61,7 +61,8 @@ impl EulerSequence {
         self.0
     }
 
-    /// The attitude with these angles, rad; each component is rounded once.
+    /// The attitude with these angles, rad, each finite; each component is rounded once, but for angles beyond 2¹⁰⁰ rad,
+    /// where the sine of the exact number is known to the digits of an `f64`.
     pub fn attitude(self, angles: [f64; 3]) -> UnitQuaternion<f64> {
         let q = self.turn(0, angles) * self.turn(1, angles) * self.turn(2, angles);
         let [w, x, y, z] = q.components().map(Dd::hi);

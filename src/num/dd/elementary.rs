@@ -59,13 +59,15 @@ fn series<const FIRST: usize, const STRIDE: usize>(x: Dd) -> Dd {
     INVERSE_FACTORIAL[FIRST].plus_smaller(x * sum)
 }
 
-/// Sine and cosine; undefined from [`FAR`] on, where neighbouring numbers are more than 10⁻² apart.
+/// Sine and cosine; from [`FAR`] on, where the trailing part itself makes whole turns, to the digits of a `f64`.
 pub(super) fn sin_cos(x: Dd) -> (Dd, Dd) {
     if x.hi.abs() <= core::f64::consts::FRAC_PI_4 {
         return sin_cos_kernel(x);
     }
     if x.hi.is_nan() || x.hi.abs() >= FAR {
-        return (Dd::of(f64::NAN), Dd::of(f64::NAN));
+        let (sin, cos) = libm::sincos(x.hi);
+        let (s, c) = if x.lo == 0.0 { (Dd::of(0.0), Dd::ONE) } else { sin_cos(Dd::of(x.lo)) };
+        return (s * cos + c * sin, c * cos - s * sin);
     }
     let quarters = (x / Dd::FRAC_PI_2 + 0.5).floor();
     let (s, c) = sin_cos_kernel(minus_half_pi(x, quarters));
