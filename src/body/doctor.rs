@@ -156,7 +156,13 @@ fn equivalent_box(tensor: &Matrix3<f64>, mass: Option<f64>) -> [f64; 3] {
     let spectrum = Spectrum::of_finite(tensor);
     let second = second_moments(&spectrum);
     match mass {
-        Some(mass) => second.map(|j| (12.0 * j * (spectrum.scale / mass)).sqrt()),
+        Some(mass) => {
+            // powers of two apart: the quotient may have no double where its root has one
+            let n = libm::ilogb(spectrum.scale);
+            let half = (n - libm::ilogb(mass)) / 2;
+            let quotient = libm::scalbn(spectrum.scale, -n) / libm::scalbn(mass, 2 * half - n);
+            second.map(|j| libm::scalbn((12.0 * j * quotient).sqrt(), half))
+        }
         None if second[0] > 0.0 => second.map(|j| (j / second[0]).sqrt()),
         None => [0.0; 3],
     }

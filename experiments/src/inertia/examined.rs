@@ -91,12 +91,15 @@ impl Examined {
                 found.distance
             );
         }
-        let [a, b, c] = found.equivalent_box;
-        let unit = if self.given.mass.is_some() { "m" } else { "(relative)" };
-        let _ = write!(
-            text,
-            "\n  box of that inertia: {a:.6} x {b:.6} x {c:.6} {unit}, along the principal axes"
-        );
+        let edges = found.equivalent_box;
+        if edges.iter().all(|edge| edge.is_finite()) {
+            // written out where that is short
+            let short = edges[0] == 0.0 || (1e-3..1e6).contains(&edges[0]);
+            let [a, b, c] =
+                edges.map(|edge| if short { format!("{edge:.6}") } else { format!("{edge:.6e}") });
+            let unit = if self.given.mass.is_some() { "m" } else { "(relative)" };
+            let _ = write!(text, "\n  box of that inertia: {a} x {b} x {c} {unit}, along the principal axes");
+        }
         text
     }
 }

@@ -135,6 +135,15 @@ fn every_shape_is_golden() {
 }
 
 #[test]
+fn the_box_of_a_tiny_mass_has_edges_or_is_left_out() {
+    let scratch = workshop("box");
+    let said = |mass: &str| scratch.run(&format!("tensor 1.5,0.6,0.05,0,0,0 --mass {mass}")).err;
+    let found = said("1e-310");
+    assert!(found.contains("box of that inertia: ") && found.contains("e155 x "), "{found}");
+    assert!(!found.contains("inf") && !said("5e-324").contains("inf"), "{found}");
+}
+
+#[test]
 fn json_and_table_are_golden() {
     let scratch = workshop("golden");
     golden("box.json", &scratch.output("box 1,2,3 --mass 12 --format json"));
