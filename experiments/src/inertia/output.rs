@@ -109,7 +109,7 @@ fn sheet(examined: &Examined) -> String {
         }
     }
     format!(
-        "{}\n{SIGN}, about the centre of mass; axes: quaternion, principal axes to frame\n",
+        "{}\n{SIGN}, about the centre of mass;\naxes: quaternion, principal axes to frame\n",
         table.terminal()
     )
 }

@@ -147,7 +147,9 @@ fn the_box_of_a_tiny_mass_has_edges_or_is_left_out() {
 fn json_and_table_are_golden() {
     let scratch = workshop("golden");
     golden("box.json", &scratch.output("box 1,2,3 --mass 12 --format json"));
-    golden("disk.txt", &scratch.output("disk 1 --mass 2 --about 1,2,3 --format table"));
+    let text = scratch.output("disk 1 --mass 2 --about 1,2,3 --format table");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    golden("disk.txt", &text);
     golden("corner.json", &scratch.output("mesh corner.stl --density 6 --format json"));
     golden("hammer.json", &scratch.output("parts hammer.toml --format json"));
     golden("tensor.json", &scratch.output("tensor 2,2,3,-0.25,0.125,0.5 --format json"));
