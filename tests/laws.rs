@@ -13,8 +13,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use polhode::body::{Body, Inertia, State};
 use polhode::flow::FreeMotion;
 use polhode::method::{
-    AnyMethod, AxisOrder, Claimed, Claims, Composed, Cost, Energy, LiePoisson, Method, Rattle, Rk4, SUZUKI_4,
-    Step, StepError, catalogue, method,
+    AnyMethod, AxisOrder, Claimed, Claims, Composed, Cost, Energy, KickDrift, LiePoisson, Method, Rattle,
+    Rk4, SUZUKI_4, Step, StepError, catalogue, method,
 };
 use polhode::num::{Dd, Real};
 use polhode::observe::{Drift, Invariants, secular_drift};
@@ -262,6 +262,42 @@ fn rounding_does_not_bias_an_energy_that_is_kept() {
         let end = run.samples(Schedule::every(1_000_000, 1_000_000)).last().unwrap().unwrap();
         assert!(end.worst.energy < 2e-14, "{}: {:e}", method.name(), end.worst.energy);
         assert!(end.worst.momentum.unwrap() < 2e-14, "{}: {:?}", method.name(), end.worst.momentum);
+    }
+}
+
+/// Largest difference of `steps` steps of kick-drift, in double-double and in `f64`, from the free motion; of the
+/// momentum relative to it.
+fn errors_of_kick_drift(moments: [f64; 3], omega: [f64; 3], h: f64, steps: u64) -> [f64; 2] {
+    let body = Body::free(Inertia::from_moments(moments).unwrap());
+    let start = body.enter_omega(Quat::identity(), Vec3(omega)).unwrap();
+    let rounded =
+        State { attitude: Quat::identity(), momentum_body: Vec3(start.momentum_body.0.map(Dd::hi)) };
+    let off = |x: State<Dd>, start: State<Dd>| {
+        let exact = FreeMotion::new(&body, start).inside_at_dd(Dd::of(h) * Dd::from(steps));
+        let momentum = (x.momentum_body - exact.momentum_body).magnitude() / exact.momentum_body.magnitude();
+        (x.attitude - exact.attitude).magnitude().max(momentum)
+    };
+    let problem = Problem { body: body.clone(), start, span: h, exact: start };
+    let precise = *integrate(&problem, &KickDrift, h, steps).last().unwrap();
+    let mut quick = rounded;
+    KickDrift.prepare_f64(h, &body, &rounded).unwrap().advance_unseen(&mut quick, steps);
+    [off(precise, start), off(State::of(quick), State::of(rounded))]
+}
+
+/// What a drift gives back to the energy is divided by how far ω is from m; in double-double it is rounding alone.
+#[test]
+fn kick_drift_is_exact_next_to_a_steady_turn() {
+    for exponent in (-32..=0).map(|half| 0.5 * f64::from(half)) {
+        let e = libm::exp10(exponent);
+        for (moments, omega) in [
+            ([1.0, 2.0, 2.5], [0.3 * e, 0.2 * e, 1.0]),
+            ([1.0, 2.0, 2.5], [1.0, 0.3 * e, 0.2 * e]),
+            ([1.0, 1.0 + e, 1.0 + 1.5 * e], [0.3, 0.2, 1.0]),
+        ] {
+            let [precise, quick] = errors_of_kick_drift(moments, omega, 0.25, 10);
+            assert!(precise < 1e-30, "{moments:?} {omega:?}: {precise:.1e} in double-double");
+            assert!(quick < 1e-14, "{moments:?} {omega:?}: {quick:.1e}");
+        }
     }
 }
 
