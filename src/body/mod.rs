@@ -6,6 +6,7 @@ mod distribution;
 mod doctor;
 mod frame;
 mod gravity;
+mod gyroscopic;
 mod inertia;
 mod mass;
 mod mesh;
@@ -20,6 +21,7 @@ pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Verdict
 pub(crate) use frame::of_dd;
 pub use frame::{Body, StateError};
 pub use gravity::{Gravity, vertical};
+pub(crate) use gyroscopic::Gyroscopic;
 pub use inertia::{Inertia, InertiaError, InertiaShape, Symmetry};
 pub use mass::{Amount, Class, MassError, MassProperties};
 pub use mesh::{Edge, Mesh, MeshError};

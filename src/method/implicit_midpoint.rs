@@ -1,9 +1,8 @@
 //! The implicit midpoint rule on m, with the Cayley map on the attitude.
 
-use super::gyroscopic::Gyroscopic;
 use super::stagnation::iterate;
 use super::{Claimed, Claims, Cost, Energy, Kept, KeptHeavy, Method, Step, StepError, usable};
-use crate::body::{Body, Carry, Gravity, State, vertical};
+use crate::body::{Body, Carry, Gravity, Gyroscopic, State, vertical};
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 

@@ -5,7 +5,6 @@ mod axis_order;
 mod catalogue;
 mod claims;
 mod composition;
-mod gyroscopic;
 mod implicit_midpoint;
 mod kick_drift;
 mod lie_poisson;

@@ -6,11 +6,10 @@
 //! | c | Cayley vector of the step, `tan(θ/2)` times its axis |
 //! | u | (2/h) I c, a momentum |
 
-use super::gyroscopic::Gyroscopic;
 use super::implicit_midpoint::cayley_turn;
 use super::stagnation::iterate;
 use super::{Claimed, Claims, Cost, Energy, Kept, KeptHeavy, Method, Step, StepError, usable};
-use crate::body::{Body, Carry, State, of_dd};
+use crate::body::{Body, Carry, Gyroscopic, State, of_dd};
 use crate::flow::Kick;
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
