@@ -301,6 +301,19 @@ fn kick_drift_is_exact_next_to_a_steady_turn() {
     }
 }
 
+/// Along a rod the momentum is small, and the moment that divides its rounding too.
+#[test]
+fn kick_drift_is_exact_for_rods() {
+    for exponent in (-24..=0).map(|half| 0.5 * f64::from(half)) {
+        let r = libm::exp10(exponent);
+        for h in [0.007_812_5, 0.0625, 0.25] {
+            let [precise, quick] = errors_of_kick_drift([0.7, 0.7 + 0.5 * r, r], [1.4, 0.4, 0.6], h, 1000);
+            assert!(precise < 1e-26, "{r:.1e}, {h}: {precise:.1e} in double-double");
+            assert!(quick < 1e-12, "{r:.1e}, {h}: {quick:.1e}");
+        }
+    }
+}
+
 /// The iteration of an implicit step must not take a small change for the last one. Of this nearly symmetric body the
 /// midpoint rule's first change happens to be smaller than its second in some steps.
 #[test]

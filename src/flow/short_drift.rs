@@ -1,6 +1,6 @@
 //! The free body over a short time, by the Taylor series of its motion summed to rounding.
 
-use crate::body::{Body, Carry, State};
+use crate::body::{Body, Carry, Gyroscopic, State};
 use crate::num::Precise;
 use crate::rotation::{Quat, Vec3};
 
@@ -13,17 +13,20 @@ const SHORT: f64 = 0.125;
 /// The exact flow of the free body as increments of m and q, so that what rounding takes can be carried.
 ///
 /// With `m = Σ m_n`, `q = Σ q_n` in powers of the time t: `(n + 1) m_{n+1} = t Σ m_k × I⁻¹m_{n−k}` and
-/// `2 (n + 1) q_{n+1} = t Σ q_k ∘ I⁻¹m_{n−k}`. An increment is good to its own rounding: over a short time that is far
+/// `2 (n + 1) q_{n+1} = t Σ q_k ∘ I⁻¹m_{n−k}`. The first sum is taken as `D_i Σ (m_k)_j (m_{n−k})_l`,
+/// `D_i = 1/I_l − 1/I_j`: of a rod the products `m × ω` cancel along the axis, where the rounding they leave is divided
+/// by the smallest moment. An increment is good to its own rounding: over a short time that is far
 /// less than the rounding of the state, which a flow by elliptic functions suffers at each call.
 #[derive(Clone, Copy, Debug)]
 pub struct ShortDrift<S> {
     inverse_moments: Vec3<S>,
+    gyroscopic: Gyroscopic<S>,
 }
 
 impl<S: Precise> ShortDrift<S> {
     /// The flow of `body` without its torque.
     pub fn new(body: &Body) -> Self {
-        ShortDrift { inverse_moments: body.inverse_moments() }
+        ShortDrift { inverse_moments: body.inverse_moments(), gyroscopic: Gyroscopic::new(body, 1.0) }
     }
 
     /// Moves `x` by the time `t`; false, and `x` untouched, if the turn is not short.
@@ -41,7 +44,7 @@ impl<S: Precise> ShortDrift<S> {
             let mut momentum = Vec3::zero();
             let mut attitude = Quat::zero();
             for k in 0..=n {
-                momentum = momentum + m[k].cross(w[n - k]);
+                momentum = momentum + self.gyroscopic.of(m[k], m[n - k]);
                 attitude = attitude + q[k].rate(w[n - k]);
             }
             let factor = t / S::of((n + 1) as f64);
