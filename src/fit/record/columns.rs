@@ -1,0 +1,226 @@
+//! Which columns of a text hold what: separators, header, names and the units in them.
+
+use super::{RecordError, TimeUnit};
+
+/// What follows the mark of a comment.
+pub(super) fn uncommented(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    line.starts_with('#').then(|| line.trim_start_matches('#').trim())
+}
+
+fn is_number(cell: &str) -> bool {
+    cell.parse::<f64>().is_ok()
+}
+
+/// The names of the columns, and where the lines after them begin.
+///
+/// That is the last line to name all columns before the first with numbers in them. Where no line does, a message needs
+/// the one that was meant: that before the first line of numbers, or else the first with as many cells as the last.
+pub(super) fn find_header(lines: &[(usize, &str)]) -> (usize, Vec<String>) {
+    let mut header: Option<(usize, Vec<String>, [usize; 4])> = None;
+    let mut named_by_comment = true;
+    for (k, (_, line)) in lines.iter().enumerate() {
+        let comment = uncommented(line);
+        let row = cells(comment.unwrap_or(line));
+        if let Ok(columns) = find_columns(&row) {
+            // prose may name t, x, y, z as well
+            if named_by_comment || comment.is_none() {
+                header = Some((k, row, columns));
+                named_by_comment = comment.is_some();
+            }
+        } else if comment.is_none() {
+            let numbers = |columns: &[usize; 4]| {
+                columns.iter().filter(|c| row.get(**c).is_some_and(|cell| is_number(cell))).count()
+            };
+            // one number alone may stand in a preamble
+            let is_row = header.as_ref().is_some_and(|(_, _, columns)| numbers(columns) > 1);
+            if is_row || row.first().is_some_and(|cell| is_number(cell)) {
+                break;
+            }
+        }
+    }
+    if let Some((k, names, _)) = header {
+        return (k + 1, names);
+    }
+    let mut before = Vec::new();
+    for (_, line) in lines {
+        let comment = uncommented(line);
+        let row = cells(comment.unwrap_or(line));
+        let numbers = row.iter().filter(|cell| is_number(cell)).count();
+        if comment.is_none() && (2 * numbers > row.len() || row.first().is_some_and(|cell| is_number(cell))) {
+            return (lines.len(), before);
+        }
+        if !row.is_empty() {
+            before = row;
+        }
+    }
+    let mut rows = lines.iter().map(|(_, line)| cells(uncommented(line).unwrap_or(line)));
+    (lines.len(), rows.find(|row| row.len() == before.len()).unwrap_or_default())
+}
+
+/// The parts of a line between separators that stand outside of quotes; a quote opens at the start of a part only.
+fn parts(line: &str, separates: impl Fn(char) -> bool) -> Vec<&str> {
+    let (mut parts, mut start, mut quoted) = (Vec::new(), 0, false);
+    for (i, c) in line.char_indices() {
+        if c == '"' {
+            let part = line[start..i].trim_start();
+            quoted ^= part.is_empty() || part.starts_with('"');
+        } else if separates(c) && !quoted {
+            parts.push(&line[start..i]);
+            start = i + c.len_utf8();
+        }
+    }
+    parts.push(&line[start..]);
+    parts
+}
+
+/// Whether a comma in a number has three digits after it and up to three before it, as one between thousands has.
+pub(super) fn may_part_thousands(cell: &str) -> bool {
+    let Some((whole, rest)) = cell.trim_start_matches(['+', '-']).split_once(',') else { return false };
+    let digits = rest.chars().take_while(char::is_ascii_digit).count();
+    digits == 3
+        && (1..=3).contains(&whole.len())
+        && !whole.starts_with('0')
+        && whole.chars().all(|c| c.is_ascii_digit())
+}
+
+/// The cells of a line, quotes removed. A comma in a number is a decimal one where semicolons or tabs part the cells, and
+/// within quotes where it cannot part thousands.
+pub(super) fn cells(line: &str) -> Vec<String> {
+    let delimiter =
+        [';', '\t', ','].into_iter().find(|&d| line.contains(d) && parts(line.trim(), |c| c == d).len() > 1);
+    let clean = |cell: &str| {
+        let cell = cell.trim().trim_matches('"').trim();
+        let is_decimal = matches!(delimiter, Some(';' | '\t')) || !may_part_thousands(cell);
+        let pointed = cell.replace(',', ".");
+        if is_decimal && is_number(&pointed) { pointed } else { cell.to_string() }
+    };
+    if let Some(delimiter) = delimiter {
+        return parts(line, |c| c == delimiter).into_iter().map(clean).collect();
+    }
+    // two spaces leave an empty part between them
+    let words = parts(line, char::is_whitespace);
+    let wide: Vec<String> =
+        words.split(|w| w.is_empty()).filter(|w| !w.is_empty()).map(|w| clean(&w.join(" "))).collect();
+    if wide.len() > 1 { wide } else { words.into_iter().filter(|w| !w.is_empty()).map(clean).collect() }
+}
+
+/// Lower case without blanks.
+pub(super) fn plain(text: &str) -> String {
+    text.trim().to_lowercase().split_whitespace().collect()
+}
+
+/// A name without its unit, reduced to letters and digits, with sub- and superscripts as letters.
+fn reduced(name: &str) -> String {
+    let name = split_unit(name).0;
+    let letters = name.to_lowercase();
+    letters
+        .chars()
+        .filter_map(|c| match c {
+            'ω' => Some('w'),
+            'ₓ' | 'ˣ' => Some('x'),
+            'ᵧ' | 'ʸ' => Some('y'),
+            'ᶻ' => Some('z'),
+            c if c.is_alphanumeric() => Some(c),
+            _ => None,
+        })
+        .collect()
+}
+
+/// "Gyroscope x (rad/s)" as its name and its unit.
+fn split_unit(name: &str) -> (&str, Option<&str>) {
+    let Some(open) = name.find(['(', '[']) else { return (name, None) };
+    let unit = name[open + 1..].trim_end().trim_end_matches([')', ']']);
+    (&name[..open], Some(unit))
+}
+
+/// The first that a header has is read, but one without a unit only where no other has one.
+const TIME_NAMES: [&str; 5] = ["secondselapsed", "t", "time", "timestamp", "elapsed"];
+
+const RATE_NAMES: [&str; 12] = [
+    "w",
+    "omega",
+    "omegabody",
+    "gyro",
+    "gyr",
+    "gyroscope",
+    "g",
+    "angularvelocity",
+    "angularvelocitybody",
+    "rate",
+    "rotationrate",
+    "",
+];
+
+/// The unit in the name of a time, as in `time_ms`.
+fn suffixed_unit(name: &str) -> Option<&'static str> {
+    let reduced = reduced(name);
+    TIME_NAMES.iter().find_map(|stem| match reduced.strip_prefix(stem)? {
+        "ms" => Some("ms"),
+        "us" => Some("us"),
+        "ns" => Some("ns"),
+        // `ts` and `times` name no unit, `t_s` does
+        "s" if !name.trim_end().to_lowercase().strip_suffix('s')?.ends_with(char::is_alphanumeric) => {
+            Some("s")
+        }
+        "" if *stem == "secondselapsed" => Some("s"),
+        _ => None,
+    })
+}
+
+/// How late a column is considered for the time, if it is one: names with a unit come first, since a bare time may be
+/// anything, such as nanoseconds since 1970.
+fn time_rank(name: &str) -> Option<(bool, usize, usize)> {
+    let reduced = reduced(name);
+    let (stem, suffix) = TIME_NAMES.iter().enumerate().find_map(|(stem, text)| {
+        let rest = reduced.strip_prefix(text)?;
+        Some((stem, ["", "s", "ms", "us", "ns"].iter().position(|suffix| *suffix == rest)?))
+    })?;
+    let unit = split_unit(name).1.or_else(|| suffixed_unit(name)).and_then(TimeUnit::named);
+    Some((unit.is_none(), stem, suffix))
+}
+
+/// Where time and the three rates stand, or what is missing.
+pub(super) fn find_columns(names: &[String]) -> Result<[usize; 4], &'static str> {
+    fn least<R: Ord>(ranks: impl Iterator<Item = Option<R>>) -> Option<usize> {
+        let ranked = ranks.enumerate().filter_map(|(k, rank)| rank.map(|r| (r, k)));
+        ranked.min().map(|(_, k)| k)
+    }
+    let reduced: Vec<String> = names.iter().map(|n| reduced(n)).collect();
+    let rate = |axis: char| {
+        least(reduced.iter().map(|n| {
+            let stem = n.strip_suffix(axis)?;
+            RATE_NAMES.iter().position(|name| *name == stem)
+        }))
+    };
+    Ok([
+        least(names.iter().map(|n| time_rank(n))).ok_or("time")?,
+        rate('x').ok_or("the rate about x")?,
+        rate('y').ok_or("the rate about y")?,
+        rate('z').ok_or("the rate about z")?,
+    ])
+}
+
+/// The unit of a column, from its header or the setting, which must not contradict each other.
+pub(super) fn unit<U: PartialEq + Copy + core::fmt::Display>(
+    name: &str,
+    file: &str,
+    setting: Option<U>,
+    named: impl Fn(&str) -> Option<U>,
+) -> Result<Option<U>, RecordError> {
+    let Some(text) = split_unit(name).1.or_else(|| suffixed_unit(name)) else { return Ok(setting) };
+    let header = named(text).ok_or_else(|| RecordError::Unit {
+        file: file.into(),
+        name: name.into(),
+        unit: text.into(),
+    })?;
+    match setting {
+        Some(setting) if setting != header => Err(RecordError::UnitClash {
+            file: file.into(),
+            name: name.into(),
+            header: header.to_string(),
+            setting: setting.to_string(),
+        }),
+        _ => Ok(Some(header)),
+    }
+}

@@ -1,0 +1,149 @@
+//! Why a record cannot be used.
+
+use thiserror::Error;
+
+/// Why a record cannot be used. Lines and columns count from 1, the header included.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RecordError {
+    /// No header names the columns that are needed.
+    #[error(
+        "{file}: no column for {missing}; the header has {}. Name the columns t, wx, wy, wz (or \"Time (s)\", \
+         \"Gyroscope x (rad/s)\", …)",
+        shown(found)
+    )]
+    Column {
+        /// Name of the file.
+        file: String,
+        /// What is missing.
+        missing: &'static str,
+        /// The names that were found.
+        found: Vec<String>,
+    },
+    /// A cell is not a finite number.
+    #[error(
+        "{file}, line {line}, column {column} ({name}): {} is not a finite number; remove the row, or leave a gap",
+        shown(value)
+    )]
+    Value {
+        /// Name of the file.
+        file: String,
+        /// Its line.
+        line: usize,
+        /// The column.
+        column: usize,
+        /// Name of the column.
+        name: String,
+        /// What stands there.
+        value: String,
+    },
+    /// A comma that would make a number of either size.
+    #[error(
+        "{file}, line {line}, column {column} ({name}): {} has a comma that may part thousands or decimals; write a \
+         decimal point and no other mark",
+        shown(value)
+    )]
+    Comma {
+        /// Name of the file.
+        file: String,
+        /// Its line.
+        line: usize,
+        /// The column.
+        column: usize,
+        /// Name of the column.
+        name: String,
+        /// What stands there.
+        value: String,
+    },
+    /// A row that ends before the last column that is needed, or has more cells than its header.
+    #[error(
+        "{file}, line {line}: {cells} cells where the header has {columns}; every row must have as many, with decimal \
+         points where commas part the cells"
+    )]
+    Cells {
+        /// Name of the file.
+        file: String,
+        /// Its line.
+        line: usize,
+        /// Cells of the row.
+        cells: usize,
+        /// Columns of the header.
+        columns: usize,
+    },
+    /// Time runs backwards.
+    #[error(
+        "{file}, line {line}: time {time} s comes after {before} s; times must not decrease. Sort the rows, or give the files apart"
+    )]
+    Order {
+        /// Name of the file.
+        file: String,
+        /// Its line.
+        line: usize,
+        /// The time, s.
+        time: f64,
+        /// The time before it, s.
+        before: f64,
+    },
+    /// A unit that is not known.
+    #[error(
+        "{file}: column {} is in {}; known are s, ms, us, ns for time and rad/s, deg/s, rpm for rates",
+        shown(name),
+        shown(unit)
+    )]
+    Unit {
+        /// Name of the file.
+        file: String,
+        /// The column.
+        name: String,
+        /// Its unit.
+        unit: String,
+    },
+    /// The header and a flag name different units.
+    #[error("{file}: column {} says {header}, the setting says {setting}; drop one of the two", shown(name))]
+    UnitClash {
+        /// Name of the file.
+        file: String,
+        /// The column.
+        name: String,
+        /// Unit of the header.
+        header: String,
+        /// Unit of the setting.
+        setting: String,
+    },
+    /// No rows, or none in the windows.
+    #[error("{file}: no samples{}", match window { Some((a, b)) => format!(" between {a} s and {b} s; the record runs from {} s to {} s", span.0, span.1), None => String::new() })]
+    Empty {
+        /// Name of the file.
+        file: String,
+        /// The window that has none, s.
+        window: Option<(f64, f64)>,
+        /// First and last time, s.
+        span: (f64, f64),
+    },
+    /// A window that ends before it begins.
+    #[error("window {start},{end}: a window is a start and a later end, in seconds")]
+    Window {
+        /// Its start, s.
+        start: f64,
+        /// Its end, s.
+        end: f64,
+    },
+    /// As many times as rates are needed.
+    #[error("{times} times but {rates} rates; every sample needs both")]
+    Lengths {
+        /// Times.
+        times: usize,
+        /// Rates.
+        rates: usize,
+    },
+}
+
+/// Characters of a file that a message shows; a file of another kind may be a single line.
+const SHOWN: usize = 60;
+
+fn shown(what: &impl core::fmt::Debug) -> String {
+    let whole = format!("{what:?}");
+    match whole.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &whole[..end]),
+        None => whole,
+    }
+}
