@@ -210,6 +210,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
     }
     let root = weak.root / (variance * misfit.max(1.0)).sqrt();
+    // R⁻¹, a factor of the covariance
     let free = root
         .try_inverse()
         .ok_or_else(|| FitError::Solver { status: "the information is not positive".into() })?;
