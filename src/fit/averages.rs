@@ -27,7 +27,7 @@ impl fmt::Display for AverageAxis {
         let axis = direction(&self.axis);
         write!(
             f,
-            "{axis} is a principal axis, but for products of inertia below {:.4} of the trace",
+            "{axis} is a principal axis if no torque acted, but for products of inertia below {:.4} of the trace",
             self.product
         )
     }

@@ -55,7 +55,7 @@ pub enum FitError {
     #[error(
         "the rates change, but in {rounds} rounds at any radius no tensor settled: the noise of {noise:.3e} rad/s hides \
          the motion, torques make it, or the body is slender; record longer, with a larger wobble, or name a radius{}",
-        known_without_torques(axes)
+        known(axes)
     )]
     Unsettled {
         /// Rounds of reweighting at each radius.
@@ -140,7 +140,6 @@ pub enum FitError {
     },
 }
 
-fn known_without_torques(axes: &[AverageAxis]) -> String {
-    let known = axes.iter().map(|axis| format!(". Known, if no torque acted: {axis}"));
-    known.collect()
+fn known(axes: &[AverageAxis]) -> String {
+    axes.iter().map(|axis| format!(". Known: {axis}")).collect()
 }

@@ -57,7 +57,8 @@ pub enum LagrangeError {
     },
     /// The axis is all but at rest on the vertical.
     #[error(
-        "the axis starts {tilt:.1e} away from rest on the vertical, too little for its fourth power to have digits; give it 0 or at least {UPRIGHT:e}"
+        "the axis starts {tilt:.1e} away from rest on the vertical, too little for its fourth power to have digits; give it \
+         0 or at least {UPRIGHT:e}"
     )]
     Upright {
         /// Largest of the quaternion's components that would be zero and of angular velocity over the fastest rate.

@@ -33,9 +33,12 @@ impl Facts {
     }
 
     pub(super) fn unsettled(axes: &[AverageAxis]) -> Self {
-        let known = axes.iter().map(|axis| format!("{axis}, if no torque acted"));
         let open = "the ratios of the moments, and all else of the axes: no tensor settled";
-        Facts { rank: None, known: known.collect(), open: vec![open.into()] }
+        Facts {
+            rank: None,
+            known: axes.iter().map(AverageAxis::to_string).collect(),
+            open: vec![open.into()],
+        }
     }
 
     pub(super) fn report(&self, record: &Record, format: Format) -> String {
