@@ -10,6 +10,7 @@ mod kick_drift;
 mod lie_poisson;
 mod rattle;
 mod runge_kutta;
+pub mod schemes;
 mod stagnation;
 
 pub use axis_order::AxisOrder;
