@@ -3,11 +3,10 @@
 
 #![allow(clippy::expect_used)]
 
-use polhode::body::{Body, State};
+use polhode::body::Body;
 use polhode::catalog;
 use polhode::flow::FreeMotion;
 use polhode::method::catalogue;
-use polhode::num::Dd;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Schedule};
 
@@ -18,22 +17,22 @@ fn main() {
     let start = body.state(Default::default(), dyadic.omega_body.into()).expect("a valid start");
     println!("method,steps,energy_error,momentum_error,momentum_vector_error,attitude_error,status");
     for method in catalogue() {
-        let mut run = Run::new(method.as_ref(), &body, &start, 1.0 / 64.0).expect("a valid run");
-        let exact = FreeMotion::new(&body, State::of(run.start()));
+        let mut run = Run::new(&method, &body, &start, 1.0 / 64.0).expect("a valid run");
+        let exact = FreeMotion::from_point(body.inertia(), run.start().to_dd());
         for sample in run.samples(Schedule::logarithmic(total, 1)) {
             let (sample, status) = match sample {
                 Ok(sample) => (sample, "ok"),
                 Err(RunError::Diverged { last } | RunError::Unsolved { last, .. }) => (*last, "diverged"),
                 Err(error) => unreachable!("the run was valid: {error}"),
             };
-            let attitude = State::<Dd>::of(sample.inside).attitude;
-            let error = rotation_angle(attitude, exact.inside_at_dd(sample.elapsed).attitude).hi();
+            let attitude = sample.point.to_dd().attitude;
+            let error = rotation_angle(attitude, exact.point_at_dd(sample.elapsed).attitude).hi();
             let worst = sample.worst;
             println!(
                 "{},{},{:e},{:e},{:e},{error:e},{status}",
                 method.name(),
                 sample.steps,
-                worst.energy,
+                worst.energy.unwrap_or_default(),
                 worst.momentum.unwrap_or_default(),
                 worst.momentum_vector.unwrap_or_default()
             );

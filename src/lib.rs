@@ -5,16 +5,17 @@
 //!
 //! ```
 //! use nalgebra::{UnitQuaternion, Vector3};
-//! use polhode::body::{Body, Inertia};
+//! use polhode::body::{Body, Conserved, Inertia};
 //! use polhode::method::method;
 //! use polhode::run::Run;
 //!
 //! let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
 //! let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
-//! let mut run = Run::new(method("lie-poisson")?.as_ref(), &body, &start, 0.01)?;
+//! let mut run = Run::new(&method("lie-poisson")?, &body, &start, 0.01)?;
 //! let after = run.advance_to(1_000_000)?;
-//! assert!(after.worst.energy < 1e-6); // it swings, and does not grow
-//! assert!(after.worst.momentum_vector.unwrap_or_default() < 1e-13); // rounding alone
+//! let error = |quantity| after.worst.of(quantity);
+//! assert!(error(Conserved::Energy).is_some_and(|error| error < 1e-6)); // it swings, and does not grow
+//! assert!(error(Conserved::Momentum).is_some_and(|error| error < 1e-13)); // L in space: rounding alone
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -24,11 +25,11 @@
 //! |---|---|
 //! | [`num`] | numbers: `f64`, double-double, sums, elliptic functions |
 //! | [`rotation`] | vectors, quaternions, distances on SO(3) |
-//! | [`body`] | inertia, states, bodies as kernels see them |
-//! | [`flow`] | exact flows: the turn about an axis, the free body |
+//! | [`body`] | inertia, forces, states, the solver frame of kernels |
+//! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the top |
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
-//! | [`method`] | the integrators, what they claim, the catalogue |
-//! | [`run`] | long propagation, schedules, orders of convergence |
+//! | [`method`] | the integrators, their schemes, what they claim, the catalogue |
+//! | [`run`] | long propagation, schedules, checkpoints, orders of convergence |
 //! | [`catalog`] | named bodies with their sources |
 //!
 //! Each uses only those above it.

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use nalgebra::Matrix3;
-use polhode::body::{Body, Inertia, State};
+use polhode::body::{Body, Inertia, Point};
 use polhode::catalog;
 use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
@@ -84,8 +84,8 @@ pub(crate) struct StartArguments {
 }
 
 impl StartArguments {
-    /// The exact start of `body` as kernels see it.
-    pub(crate) fn inside(&self, body: &Body) -> Result<State<Dd>, Error> {
+    /// The exact start of `body` in the solver frame.
+    pub(crate) fn inside(&self, body: &Body) -> Result<Point<Dd>, Error> {
         let start = body.enter_omega(Quat::from_components(self.attitude), Vec3(self.omega));
         start.map_err(|error| Error::Input(format!("--omega: {error}")))
     }

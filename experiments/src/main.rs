@@ -15,7 +15,6 @@ mod propagate;
 mod provenance;
 mod publish;
 mod random;
-mod reference;
 mod simulate;
 mod sphere;
 mod table;

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::method::catalogue;
+use polhode::body::Problem;
+use polhode::method::{Claimed, catalogue};
 
 use crate::error::Error;
 use crate::files::emit;
@@ -58,11 +59,14 @@ pub(crate) fn table() -> Table {
         "Jacobi, J. reine angew. Math. 39 (1850) 293; two theta functions, constants in double-double"
     ]);
     for method in catalogue() {
-        let claims = method.claims();
-        let kept = claims.free;
+        let Some(claims) = method.claims(Problem::Free) else { continue };
+        let kept = claims.kept;
+        // where free motion is exact, the order of motion in a potential
+        let in_potential = || method.claims(Problem::Potential).and_then(|claims| claims.order);
+        let order = claims.order.or_else(in_potential);
         table.push(row![
             method.name(),
-            u64::from(claims.order),
+            order.map(u64::from),
             kept.energy.to_string(),
             yes(kept.momentum),
             yes(kept.momentum_space),

@@ -32,7 +32,7 @@ pub(crate) struct Motion {
 impl Motion {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let body = self.body.free()?;
-        let motion = FreeMotion::new(&body, self.start.inside(&body)?);
+        let motion = FreeMotion::from_point(body.inertia(), self.start.inside(&body)?);
         let character = motion.character().map_err(|error| Error::Input(format!("--omega: {error}")))?;
         let mode = match character.mode {
             Mode::LongAxis => "long-axis",

@@ -3,18 +3,18 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::body::{Body, State};
-use polhode::method::{AnyMethod, StepError, UnknownMethod, catalogue, method};
-use polhode::num::{Dd, Precise};
+use polhode::body::{Body, Clock, Point, Time};
+use polhode::flow::ExactMotion;
+use polhode::method::{AnyMethod, Claimed, StepError, UnknownMethod, catalogue, method};
+use polhode::num::Dd;
 use polhode::observe::{Errors, Monitor};
-use polhode::rotation::{Quat, Vec3, rotation_angle};
-use polhode::run::{Run, RunError};
+use polhode::rotation::rotation_angle;
+use polhode::run::{Run, RunError, Schedule, ScheduleError};
 
 use crate::arguments::{Times, number, numbers, positive, regular, times};
 use crate::body_arguments::{BodyArguments, StartArguments};
 use crate::error::{Error, warn};
 use crate::files::emit;
-use crate::reference::Reference;
 use crate::table::{Column, Format, Table, row};
 
 const USAGE: &str = "polhode propagate <BODY> --omega <wx,wy,wz> <TIMES> [OPTIONS]
@@ -98,39 +98,39 @@ impl Propagate {
         if self.until.is_some() { "--until" } else { "--times" }
     }
 
-    fn exact(&self, body: &Body, start: State<Dd>, times: &[f64], table: &mut Table) -> Result<(), Error> {
+    fn exact(&self, body: &Body, start: Point<Dd>, times: &[f64], table: &mut Table) -> Result<(), Error> {
         if self.step.is_some() {
             return Err(Error::Input(
                 "--step: has no meaning with --method exact, which needs none; leave it out, or name a method".into(),
             ));
         }
-        let motion = Reference::new(body, start).map_err(|error| {
+        let motion = ExactMotion::from_point(body, start).map_err(|error| {
             Error::Input(format!("--method exact: {error}; take kick-drift:4 and a --step"))
         })?;
         for &t in times {
             let elapsed = t - self.start_time;
             // an overflow of the difference is out of reach too
             motion
-                .check(elapsed)
+                .at(elapsed)
                 .map_err(|error| Error::Input(format!("{}: {t:?}: {error}", self.times_flag())))?;
         }
-        let mut monitor = Monitor::new(body, &rounded(&start));
+        let mut monitor = Monitor::new(body, Clock::new(1.0), &start.to_f64());
         for &t in times {
             let elapsed = Dd::from(t) - Dd::from(self.start_time);
-            let exact = motion.inside_at_dd(elapsed);
-            let x = rounded(&exact);
+            let exact = motion.point_at_dd(elapsed);
+            let x = exact.to_f64();
             if monitor.observe(&[x]) == 0 {
                 return Err(Error::Failed(format!(
                     "--method exact: at {t:?} s the state is not finite; take kick-drift:4 and a --step"
                 )));
             }
-            let error = rotation_angle(State::<Dd>::of(x).attitude, exact.attitude).hi();
-            table.push(self::row(body, t, &x, monitor.worst(), Some(error)));
+            let error = rotation_angle(x.to_dd().attitude, exact.attitude).hi();
+            table.push(self::row(body, Time::from_seconds(t), &x, monitor.worst(), Some(error)));
         }
         Ok(())
     }
 
-    fn stepped(&self, body: &Body, start: State<Dd>, times: &[f64], table: &mut Table) -> Result<(), Error> {
+    fn stepped(&self, body: &Body, start: Point<Dd>, times: &[f64], table: &mut Table) -> Result<(), Error> {
         let method = self.stepping_method()?;
         let Some(h) = self.step else {
             return Err(Error::Input(format!(
@@ -138,15 +138,13 @@ impl Propagate {
                 self.method
             )));
         };
-        let steps = self.step_counts(h, times)?;
-        let mut run =
-            Run::new(method.as_ref(), body, &body.leave(&start), h).map_err(|error| match error {
-                RunError::Step(error @ StepError::Torque { .. }) => {
-                    Error::Input(format!("--weight-moment: {error}"))
-                }
-                error => Error::Input(format!("--step: {error}")),
-            })?;
-        let speed = body.omega_body(&start).norm();
+        let clock = Clock { start: self.start_time, step: h };
+        let steps = Schedule::at_times(clock, times).map_err(|error| self.unreachable(&error))?;
+        let mut run = Run::from_point(&method, body, start.to_f64(), clock).map_err(|error| match error {
+            RunError::Step(error @ StepError::Refused { .. }) => Error::Input(format!("--method: {error}")),
+            error => Error::Input(format!("--step: {error}")),
+        })?;
+        let speed = body.omega_of(&start).norm();
         if h * speed > 1.0 {
             warn(&format!(
                 "--step: '{h:?}': turns the body by {:?} rad a step; above 1 rad expect little of any stepping method, take a smaller one",
@@ -154,20 +152,22 @@ impl Propagate {
             ));
         }
         // a heavy body that is no Lagrange top has no closed form: its attitude error is left empty
-        let exact = Reference::new(body, State::of(run.start())).ok();
+        let exact = ExactMotion::from_point(body, run.start().to_dd()).ok();
         for (&t, n) in times.iter().zip(steps) {
             let sample = match run.advance_to(n) {
                 Ok(sample) => sample,
-                Err(error @ (RunError::Diverged { .. } | RunError::Unsolved { .. })) => {
+                Err(
+                    error @ (RunError::Diverged { .. } | RunError::Unsolved { .. } | RunError::Force { .. }),
+                ) => {
                     return Err(Error::Failed(format!("--method {}: {error}", self.method)));
                 }
                 Err(error) => return Err(Error::Input(error.to_string())),
             };
             let error = exact.as_ref().map(|exact| {
-                let there = exact.inside_at_dd(sample.elapsed);
-                rotation_angle(State::<Dd>::of(sample.inside).attitude, there.attitude).hi()
+                let there = exact.point_at_dd(sample.elapsed);
+                rotation_angle(sample.point.to_dd().attitude, there.attitude).hi()
             });
-            table.push(self::row(body, t, &sample.inside, sample.worst, error));
+            table.push(self::row(body, Time::from_seconds(t), &sample.point, sample.worst, error));
         }
         Ok(())
     }
@@ -185,72 +185,49 @@ impl Propagate {
                 "has an argument that it cannot take",
                 &format!("allowed: {rule}"),
             ),
+            error => Error::Input(format!("--method: {error}")),
         })
     }
 
-    /// The whole number of steps to each time.
-    fn step_counts(&self, h: f64, times: &[f64]) -> Result<Vec<u64>, Error> {
-        let start = self.start_time;
-        let mut counts = Vec::with_capacity(times.len());
-        let mut before = start;
-        for &t in times {
-            if t < before {
-                return Err(Error::Input(format!(
-                    "{}: {t:?} comes after {before:?}; a stepping method wants ascending times from --start-time on, use --method exact or sort them",
-                    self.times_flag()
-                )));
-            }
-            before = t;
-            let n = ((t - start) / h).round();
-            if n >= 9_007_199_254_740_992.0 {
-                return Err(Error::Input(format!(
-                    "--step: '{h:?}': takes {n:e} steps to t = {t:?}, and at most 2^53 can be counted; take a larger step"
-                )));
-            }
-            let reached = (Dd::from(start) + Dd::product(n, h)).to_f64();
-            if (reached - t).abs() > 4.0 * ulp(t.abs().max(start.abs()).max(h)) {
-                return Err(Error::Input(format!(
-                    "--step: '{h:?}': does not reach the output time {t:?} in whole steps; the nearest time that it reaches is {reached:?}"
-                )));
-            }
-            counts.push(n as u64);
-        }
-        Ok(counts)
-    }
-}
-
-/// Distance of doubles at `x` > 0.
-fn ulp(x: f64) -> f64 {
-    x.next_up() - x
-}
-
-fn rounded(x: &State<Dd>) -> State<f64> {
-    State {
-        attitude: Quat::from_components(x.attitude.components().map(Dd::hi)),
-        momentum_body: Vec3(x.momentum_body.0.map(Dd::hi)),
+    /// Why no steps lead to the times that were asked for.
+    fn unreachable(&self, error: &ScheduleError) -> Error {
+        let step = self.step.unwrap_or_default();
+        Error::Input(match *error {
+            ScheduleError::NotAscending { t, before } => format!(
+                "{}: {t:?} comes after {before:?}; a stepping method wants ascending times from --start-time on, use --method exact or sort them",
+                self.times_flag()
+            ),
+            ScheduleError::TooMany { t, steps, .. } => format!(
+                "--step: '{step:?}': takes {steps:e} steps to t = {t:?}, and at most 2^53 can be counted; take a larger step"
+            ),
+            ScheduleError::NotReached { t, nearest, .. } => format!(
+                "--step: '{step:?}': does not reach the output time {t:?} in whole steps; the nearest time that it reaches is {nearest:?}"
+            ),
+            error => format!("--step: {error}"),
+        })
     }
 }
 
 fn row(
     body: &Body,
-    t: f64,
-    inside: &State<f64>,
+    at: Time,
+    x: &Point<f64>,
     worst: Errors,
     attitude_error: Option<f64>,
 ) -> Vec<crate::table::Cell> {
-    let invariants = polhode::observe::Invariants::of(body, inside);
-    let [w, x, y, z] = body.leave(inside).attitude.components();
-    let omega = body.omega_body(inside);
+    let invariants = polhode::observe::Invariants::of(body, at, x);
+    let [q_w, q_x, q_y, q_z] = body.leave(x).attitude.components();
+    let omega = body.omega_of(x);
     row![
-        t,
-        w,
-        x,
-        y,
-        z,
+        at.seconds::<f64>(),
+        q_w,
+        q_x,
+        q_y,
+        q_z,
         omega.x,
         omega.y,
         omega.z,
-        body.energy(inside),
+        body.energy_of(at, x).hi(),
         invariants.momentum().hi() * body.scale(),
         worst.energy,
         worst.momentum,

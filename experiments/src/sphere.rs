@@ -275,7 +275,7 @@ pub(crate) fn polhodes() -> Result<Drawing, Error> {
             let period = free.character().map_err(unexpected)?.polhode_period;
             let period = period.ok_or_else(|| unexpected("a polhode without period"))?;
             let points: Vec<V> = (0..=360)
-                .map(|k| free.inside_at(period * f64::from(k) / 360.0).momentum_body.into())
+                .map(|k| free.point_at(period * f64::from(k) / 360.0).momentum_body.into())
                 .collect();
             let points: Vec<V> = points.into_iter().map(|m: V| m.normalize()).collect();
             panel.curve(&points, colour, 1.5);

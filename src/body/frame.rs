@@ -1,9 +1,10 @@
-//! A body as kernels see it: along principal axes, divided by one power of two.
+//! A body and what acts on it, with the two doors between a user's axes and the solver frame.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use super::{Gravity, Inertia, State};
+use super::field::{Evaluated, Field, Forces, Witness};
+use super::{Conserved, Force, Gravity, Inertia, Point, Rotor, State, Time};
 use crate::num::{Dd, Precise, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
@@ -47,23 +48,38 @@ pub enum StateError {
     },
 }
 
-/// A rigid body and what acts on it: nothing, or uniform gravity about a fixed point.
+/// What kind of motion a method is asked for; its claims differ between them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Problem {
+    /// Nothing acts.
+    Free,
+    /// Uniform gravity about a fixed point, whose torque is linear in the vertical.
+    Gravity,
+    /// Torques that come from potentials.
+    Potential,
+    /// Any torque.
+    Torque,
+}
+
+/// A rigid body and what acts on it: nothing, uniform gravity about a fixed point, or any [forces](Force).
 ///
-/// A user's state refers to the body axes that the inertia was given in; kernels work along principal axes with
-/// moments and momenta divided by a power of two, so that fourth powers neither over- nor underflow and a change
-/// of the unit of mass by a power of two changes no bit. [`enter`](Body::enter) and [`leave`](Body::leave) are
-/// the two doors.
-#[derive(Clone, Debug, PartialEq)]
+/// A user's [`State`] refers to the body axes that the inertia was given in. Kernels work on a [`Point`] in the solver
+/// frame: along principal axes, with moments and momenta divided by a power of two, so that fourth powers neither over- nor
+/// underflow and a change of the unit of mass by a power of two changes no bit. [`enter`](Body::enter) and
+/// [`leave`](Body::leave) are the two doors.
+#[derive(Clone, Debug)]
 pub struct Body {
     inertia: Inertia,
-    /// Along a kernel's axes and in its scale.
+    /// In the solver frame.
     gravity: Option<Gravity<Dd>>,
+    forces: Vec<Force>,
+    witness: Option<Witness>,
 }
 
 impl Body {
     /// A body on which no torque acts.
     pub fn free(inertia: Inertia) -> Self {
-        Body { inertia, gravity: None }
+        Body { inertia, gravity: None, forces: Vec::new(), witness: None }
     }
 
     /// A body with a fixed point, the origin, under uniform gravity along −Z of space.
@@ -79,7 +95,7 @@ impl Body {
     /// use polhode::body::{Body, Inertia};
     /// let top = Body::heavy(Inertia::from_moments([1.0, 1.0, 0.25])?, Vector3::new(0.0, 0.0, 2.0))?;
     /// let start = top.state(UnitQuaternion::identity(), Vector3::new(0.0, 0.0, 4.0))?;
-    /// assert_eq!(top.energy(&top.enter(&start)?), 4.0); // 2 J of spin, 2 J of height
+    /// assert_eq!(top.energy(&start), 4.0); // 2 J of spin, 2 J of height
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn heavy(inertia: Inertia, weight_moment: Vector3<f64>) -> Result<Self, StateError> {
@@ -94,7 +110,14 @@ impl Body {
             return Err(StateError::WeightOutOfRange { weight_moment, moment });
         }
         let weight_moment = inertia.frame().rotate_back(Vec3::of(scaled));
-        Ok(Body { inertia, gravity: Some(Gravity { weight_moment }) })
+        Ok(Body { gravity: Some(Gravity { weight_moment }), ..Body::free(inertia) })
+    }
+
+    /// The same body with one more force; all add up.
+    #[must_use]
+    pub fn with(mut self, force: Force) -> Self {
+        self.forces.push(force);
+        self
     }
 
     /// Its inertia.
@@ -102,28 +125,102 @@ impl Body {
         &self.inertia
     }
 
-    /// Gravity along a kernel's axes and in its scale; `None` for a free body.
+    /// The forces that act besides uniform gravity.
+    pub fn forces(&self) -> &[Force] {
+        &self.forces
+    }
+
+    /// What kind of motion it makes.
+    pub fn problem(&self) -> Problem {
+        match (&self.gravity, self.forces.is_empty()) {
+            (None, true) => Problem::Free,
+            (Some(_), true) => Problem::Gravity,
+            _ if self.forces.iter().all(Force::has_potential) => Problem::Potential,
+            _ => Problem::Torque,
+        }
+    }
+
+    /// What the motion conserves, in exact arithmetic.
+    pub fn conserved(&self) -> Vec<Conserved> {
+        let free =
+            vec![Conserved::Energy, Conserved::MomentumNorm, Conserved::Momentum, Conserved::MomentumZ];
+        let gravity = self.gravity.map(|_| vec![Conserved::Energy, Conserved::MomentumZ]);
+        let forces = self.forces.iter().map(Force::conserved);
+        gravity.into_iter().chain(forces).fold(free, |a, b| {
+            let mut both = Vec::new();
+            for quantity in a.iter().chain(&b) {
+                if follows(*quantity, &a) && follows(*quantity, &b) && !both.contains(quantity) {
+                    both.push(*quantity);
+                }
+            }
+            both
+        })
+    }
+
+    /// Uniform gravity in the solver frame; `None` without weight moment.
     pub fn gravity<S: Real>(&self) -> Option<Gravity<S>> {
-        self.gravity.map(|g| Gravity { weight_moment: Vec3(g.weight_moment.0.map(of_dd)) })
+        self.gravity.map(|g| Gravity { weight_moment: g.weight_moment.map(S::from_dd) })
     }
 
-    /// Kinetic and potential energy, J, of a kernel's state.
-    pub fn energy<S: Precise>(&self, x: &State<S>) -> f64 {
-        let x = State {
-            attitude: Quat::from_components(x.attitude.components().map(S::to_dd)),
-            momentum_body: Vec3(x.momentum_body.0.map(S::to_dd)),
-        };
-        self.scaled_energy(&x).hi() * self.scale()
+    /// The constants that kernels read.
+    pub fn rotor(&self) -> Rotor {
+        Rotor::new(Vec3(self.inertia.scaled_moments()))
     }
 
-    /// ½ m·I⁻¹m + U in a kernel's scale.
-    pub(crate) fn scaled_energy(&self, x: &State<Dd>) -> Dd {
-        let m = x.momentum_body;
-        let kinetic = m.times(self.inverse_moments()).dot(m) * Dd::of(0.5);
-        match self.gravity {
+    /// The same body, a force of which that is not finite is told to `witness`.
+    pub(crate) fn witnessed(&self, witness: Witness) -> Body {
+        Body { witness: Some(witness), ..self.clone() }
+    }
+
+    /// Every force in the solver frame, in one value.
+    pub(crate) fn field<S: Evaluated>(&self) -> Forces<S> {
+        let frame = (!self.inertia.is_along_principal_axes()).then(|| self.inertia.frame());
+        Forces::new(self.gravity(), &self.forces, frame, self.scale(), self.witness.clone())
+    }
+
+    /// Kinetic and potential energy, J, at the time 0, where a potential depends on the time.
+    pub fn energy(&self, x: &State) -> f64 {
+        self.energy_at(0.0, x)
+    }
+
+    /// Kinetic and potential energy, J, at the time `t`, s.
+    pub fn energy_at(&self, t: f64, x: &State) -> f64 {
+        self.energy_of(Time::from_seconds(t), &self.inside(x)).hi()
+    }
+
+    /// Kinetic and potential energy, J, of a point of the solver frame.
+    pub fn energy_of<S: Precise>(&self, at: Time, x: &Point<S>) -> Dd {
+        self.scaled_energy(at, &x.to_dd()) * self.scale()
+    }
+
+    /// Torque of all that acts, in the solver frame, divided by the [scale](Self::scale).
+    pub fn torque_of(&self, at: Time, x: &Point<Dd>) -> Vec3<Dd> {
+        let omega = x.momentum_body.times(self.rotor().inverse_moments());
+        self.field().torque(at, x.attitude, omega)
+    }
+
+    /// Kinetic and potential energy, divided by the scale.
+    pub(crate) fn scaled_energy(&self, at: Time, x: &Point<Dd>) -> Dd {
+        let kinetic = self.rotor().kinetic_energy(x.momentum_body);
+        let energy = match self.gravity {
             Some(gravity) => kinetic + gravity.potential(x.attitude),
             None => kinetic,
+        };
+        if self.forces.is_empty() {
+            return energy;
         }
+        energy + self.field().energy_besides_gravity(at, x.attitude)
+    }
+
+    /// Σ (|U| + |τ|) over the forces besides gravity at the point `x`, divided by the scale.
+    pub(crate) fn size_of_forces(&self, at: Time, x: &Point<Dd>) -> Dd {
+        let omega = x.momentum_body.times(self.rotor().inverse_moments());
+        let sizes = self.forces.iter().map(|force| {
+            let alone = Body { gravity: None, forces: vec![force.clone()], ..self.clone() }.field::<Dd>();
+            let torque = alone.torque_besides_gravity(at, x.attitude, omega).norm();
+            alone.energy_besides_gravity(at, x.attitude).abs() + torque
+        });
+        sizes.fold(Dd::ZERO, |sum, size| sum + size)
     }
 
     /// The state with angular velocity `omega_body` (rad/s, body axes): m = I ω.
@@ -143,87 +240,80 @@ impl Body {
         &self,
         attitude: UnitQuaternion<f64>,
         omega_body: Vector3<f64>,
-    ) -> Result<State<f64>, StateError> {
+    ) -> Result<State, StateError> {
         let inside = self.enter_omega(attitude.into(), omega_body.into())?;
         Ok(self.leave(&inside))
     }
 
-    /// The exact state with angular velocity `omega_body` as kernels see it; the attitude may have any norm but zero.
+    /// The exact point of the solver frame with angular velocity `omega_body`, rad/s, body axes; the attitude may have any
+    /// norm but zero.
     ///
     /// # Errors
     /// As [`state`](Self::state).
-    pub fn enter_omega(&self, attitude: Quat<f64>, omega_body: Vec3<f64>) -> Result<State<Dd>, StateError> {
-        let largest = check_attitude(attitude)?;
+    pub fn enter_omega(&self, attitude: Quat<f64>, omega_body: Vec3<f64>) -> Result<Point<Dd>, StateError> {
+        let attitude = unit(attitude)?;
         check("angular velocity", &omega_body.0)?;
-        // the power of two keeps the squares in range
-        let near_one = attitude.components().map(|x| libm::scalbn(x, -libm::ilogb(largest)));
-        let inside = State {
-            attitude: Quat::of(Quat::from_components(near_one)).normalized() * self.inertia.frame(),
-            momentum_body: self.inertia.scaled_momentum(omega_body),
-        };
+        let inside = Point::new(attitude * self.inertia.frame(), self.inertia.scaled_momentum(omega_body));
         let value = omega_body.magnitude();
         let error = StateError::OutOfRange { quantity: "angular velocity", value, unit: "rad/s" };
         if self.is_in_range(&inside) { Ok(inside) } else { Err(error) }
     }
 
-    /// The state `x` (body axes) as kernels see it: principal axes, divided by the power of two.
+    /// The state `x` in the solver frame: principal axes, divided by the power of two; the attitude may have any norm but
+    /// zero, and is normalised.
     ///
     /// # Errors
     /// As [`state`](Self::state).
-    pub fn enter(&self, x: &State<f64>) -> Result<State<Dd>, StateError> {
-        check_attitude(x.attitude)?;
+    pub fn enter(&self, x: &State) -> Result<Point<Dd>, StateError> {
+        let attitude = unit(x.attitude)?;
         check("momentum", &x.momentum_body.0)?;
-        let (frame, scale) = (self.inertia.frame(), self.inertia.scale());
-        let momentum = Vec3(x.momentum_body.0.map(|m| Dd::of(m / scale)));
-        let inside =
-            State { attitude: Quat::of(x.attitude) * frame, momentum_body: frame.rotate_back(momentum) };
+        let inside = Point::new(attitude * self.inertia.frame(), self.inside(x).momentum_body);
         let value = x.momentum_body.magnitude();
         let error = StateError::OutOfRange { quantity: "momentum", value, unit: "kg m^2/s" };
         if self.is_in_range(&inside) { Ok(inside) } else { Err(error) }
     }
 
-    /// The state `x` of a kernel in body axes.
-    pub fn leave<S: Precise>(&self, x: &State<S>) -> State<f64> {
+    /// The state `x` in the solver frame, whatever it is.
+    fn inside(&self, x: &State) -> Point<Dd> {
+        let (frame, scale) = (self.inertia.frame(), self.inertia.scale());
+        let momentum = x.momentum_body.map(|m| Dd::of(m / scale));
+        Point::new(Quat::of(x.attitude) * frame, frame.rotate_back(momentum))
+    }
+
+    /// The point `x` of the solver frame as a state in body axes.
+    pub fn leave<S: Precise>(&self, x: &Point<S>) -> State {
         let (mut attitude, mut momentum) = (x.attitude, x.momentum_body);
         if !self.inertia.is_along_principal_axes() {
-            let frame = Quat::from_components(self.inertia.frame().components().map(S::from_dd));
+            let frame = self.inertia.frame().map(S::from_dd);
             attitude = attitude * frame.conjugate();
             momentum = frame.rotate(momentum);
         }
         let scale = self.inertia.scale();
-        State {
-            attitude: Quat::from_components(attitude.components().map(S::to_f64)),
-            momentum_body: Vec3(momentum.0.map(|m| m.to_f64() * scale)),
-        }
+        State { attitude: attitude.map(S::to_f64), momentum_body: momentum.map(|m| m.to_f64() * scale) }
     }
 
-    /// Angular velocity ω = I⁻¹ m in body axes, rad/s, of a kernel's state.
-    pub fn omega_body<S: Precise>(&self, x: &State<S>) -> Vector3<f64> {
-        let mut omega = x.momentum_body.times(self.inverse_moments());
+    /// Angular velocity ω = I⁻¹ m in body axes, rad/s.
+    pub fn omega_body(&self, x: &State) -> Vector3<f64> {
+        self.omega_of(&self.inside(x))
+    }
+
+    /// Angular velocity in body axes, rad/s, of a point of the solver frame.
+    pub fn omega_of<S: Precise>(&self, x: &Point<S>) -> Vector3<f64> {
+        let mut omega = x.momentum_body.times(self.rotor().inverse_moments());
         if !self.inertia.is_along_principal_axes() {
-            omega = Quat::from_components(self.inertia.frame().components().map(S::from_dd)).rotate(omega);
+            omega = self.inertia.frame().map(S::from_dd).rotate(omega);
         }
-        Vec3(omega.0.map(S::to_f64)).into()
+        omega.map(S::to_f64).into()
     }
 
-    /// The power of two that a kernel's moments, momenta and energies are to be multiplied with.
+    /// The power of two that moments, momenta and energies of the solver frame are to be multiplied with.
     pub fn scale(&self) -> f64 {
         self.inertia.scale()
     }
 
-    /// Principal moments along a kernel's axes, divided by the power of two.
-    pub fn moments<S: Real>(&self) -> Vec3<S> {
-        Vec3(self.inertia.scaled_moments().map(of_dd))
-    }
-
-    /// Reciprocals of [`moments`](Self::moments), each rounded once.
-    pub fn inverse_moments<S: Real>(&self) -> Vec3<S> {
-        Vec3(self.inertia.scaled_moments().map(|i| of_dd(Dd::ONE / i)))
-    }
-
     /// Whether the energy is a double, with room for the errors of its products.
-    fn is_in_range(&self, inside: &State<Dd>) -> bool {
-        let omega = inside.momentum_body.times(self.inverse_moments());
+    fn is_in_range(&self, inside: &Point<Dd>) -> bool {
+        let omega = inside.momentum_body.times(self.rotor().inverse_moments());
         let twice_energy = inside.momentum_body.dot(omega).hi();
         let energy = twice_energy * self.inertia.scale();
         let clear = |x: f64| x == 0.0 || clear(x);
@@ -232,21 +322,32 @@ impl Body {
     }
 }
 
+/// Whether `quantity` is conserved where all of `conserved` are.
+fn follows(quantity: Conserved, conserved: &[Conserved]) -> bool {
+    let has = |other| conserved.contains(&other);
+    has(quantity)
+        || match quantity {
+            Conserved::MomentumNorm | Conserved::MomentumZ => has(Conserved::Momentum),
+            Conserved::Jacobi { .. } => has(Conserved::Energy) && follows(Conserved::MomentumZ, conserved),
+            Conserved::Energy | Conserved::Momentum => false,
+        }
+}
+
 /// Dekker products of squares need the exponent to stay clear of both ends.
 fn clear(x: f64) -> bool {
     (1e-240..1e240).contains(&x.abs())
 }
 
-/// A double-double in any scalar, rounded once where it has fewer digits.
-pub(crate) fn of_dd<S: Real>(x: Dd) -> S {
-    S::of(x.hi()) + S::of(x.lo())
-}
-
-/// The largest component.
-fn check_attitude(attitude: Quat<f64>) -> Result<f64, StateError> {
+/// The attitude with norm 1, to the digits of double-double.
+fn unit(attitude: Quat<f64>) -> Result<Quat<Dd>, StateError> {
     check("attitude", &attitude.components())?;
     let largest = attitude.magnitude();
-    if largest > 0.0 { Ok(largest) } else { Err(StateError::NoAttitude) }
+    if largest == 0.0 {
+        return Err(StateError::NoAttitude);
+    }
+    // the power of two keeps the squares in range
+    let near_one = attitude.map(|x| libm::scalbn(x, -libm::ilogb(largest)));
+    Ok(Quat::of(near_one).normalized())
 }
 
 fn check(quantity: &'static str, components: &[f64]) -> Result<(), StateError> {

@@ -11,7 +11,7 @@ use super::circulation::Circulation;
 use super::phase::{Spin, turn};
 use super::polhode::{Polhode, ascending, exact_separation, rounded_separation};
 use super::theta::Theta;
-use crate::body::{Body, Inertia, State, StateError};
+use crate::body::{Body, Inertia, Phase, Point, Rotor, State, StateError, Time};
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};
 
@@ -32,7 +32,7 @@ use crate::rotation::{Quat, Vec3};
 #[derive(Clone, Debug)]
 pub struct FreeMotion {
     body: Body,
-    start: State<Dd>,
+    start: Point<Dd>,
     kind: Kind,
     reach: f64,
 }
@@ -98,24 +98,23 @@ impl FreeMotion {
         attitude: UnitQuaternion<f64>,
         omega_body: Vector3<f64>,
     ) -> Result<Self, StateError> {
-        let body = Body::free(inertia.clone());
-        let start = body.enter_omega(attitude.into(), omega_body.into())?;
-        Ok(Self::new(&body, start))
+        let start = Body::free(inertia.clone()).enter_omega(attitude.into(), omega_body.into())?;
+        Ok(Self::from_point(inertia, start))
     }
 
     /// From a state at t = 0, body axes.
     ///
     /// # Errors
     /// As [`from_omega`](Self::from_omega).
-    pub fn from_state(inertia: &Inertia, start: &State<f64>) -> Result<Self, StateError> {
-        let body = Body::free(inertia.clone());
-        let start = body.enter(start)?;
-        Ok(Self::new(&body, start))
+    pub fn from_state(inertia: &Inertia, start: &State) -> Result<Self, StateError> {
+        let start = Body::free(inertia.clone()).enter(start)?;
+        Ok(Self::from_point(inertia, start))
     }
 
-    /// From a state at t = 0 as kernels see it.
-    pub fn new(body: &Body, start: State<Dd>) -> Self {
-        let (moments, momentum) = (body.moments(), start.momentum_body);
+    /// From a point of the solver frame at t = 0.
+    pub fn from_point(inertia: &Inertia, start: Point<Dd>) -> Self {
+        let body = Body::free(inertia.clone());
+        let (moments, momentum) = (body.rotor().moments(), start.momentum_body);
         let norm = momentum.norm();
         let kind = if norm == Dd::ZERO {
             Kind::Rest
@@ -130,7 +129,7 @@ impl FreeMotion {
         };
         // no part of the phase runs faster than G/I_l
         let reach = MOST_RADIANS * (moments[ascending(moments)[0]] / norm).to_f64();
-        FreeMotion { body: body.clone(), start, kind, reach }
+        FreeMotion { body, start, kind, reach }
     }
 
     /// The body that moves.
@@ -142,9 +141,9 @@ impl FreeMotion {
     ///
     /// # Errors
     /// A time that is not finite, or beyond [`reach`](Self::reach).
-    pub fn at(&self, t: f64) -> Result<State<f64>, TimeError> {
+    pub fn at(&self, t: f64) -> Result<State, TimeError> {
         self.check(t)?;
-        Ok(self.body.leave(&self.inside_at(t)))
+        Ok(self.body.leave(&self.point_at(t)))
     }
 
     /// The largest |t| at which the phase still has digits, s: some 2⁹⁶ rad; infinite at rest.
@@ -166,7 +165,7 @@ impl FreeMotion {
     ///
     /// # Errors
     /// As [`at`](Self::at), of the first time that has no state.
-    pub fn at_many(&self, times: &[f64]) -> Result<Vec<State<f64>>, TimeError> {
+    pub fn at_many(&self, times: &[f64]) -> Result<Vec<State>, TimeError> {
         times.iter().map(|&t| self.at(t)).collect()
     }
 
@@ -176,7 +175,7 @@ impl FreeMotion {
     /// As [`at`](Self::at).
     pub fn omega_at(&self, t: f64) -> Result<Vector3<f64>, TimeError> {
         self.check(t)?;
-        Ok(self.body.omega_body(&self.inside_at(t)))
+        Ok(self.body.omega_of(&self.point_at(t)))
     }
 
     /// Periods, mode and distance to the separatrix.
@@ -187,7 +186,7 @@ impl FreeMotion {
         match &self.kind {
             Kind::Rest => Err(AtRest),
             Kind::Steady(spin) => {
-                let moments: Vec3<Dd> = self.body.moments();
+                let moments: Vec3<Dd> = self.body.rotor().moments();
                 let moment = self.start.momentum_body.norm() / spin.rate();
                 Ok(Character::steady(spin.rate(), moment, moments[ascending(moments)[1]]))
             }
@@ -203,30 +202,30 @@ impl FreeMotion {
         }
     }
 
-    /// The state at time `t` (s), finite and within [`reach`](Self::reach), as kernels see it.
+    /// The point of the solver frame at time `t` (s), finite and within [`reach`](Self::reach).
     ///
     /// The quaternion is the continuous lift from the start: it does not jump from `q` to `−q`.
     #[inline]
-    pub fn inside_at(&self, t: f64) -> State<f64> {
+    pub fn point_at(&self, t: f64) -> Point<f64> {
         if t == 0.0 {
-            return rounded(&self.start);
+            return self.start.to_f64();
         }
         let quick = match &self.kind {
             Kind::Circulating(orbit) => orbit.quick.at(t),
             Kind::Steady(spin) => spin.quick(t).map(|turn| {
-                let start = rounded(&self.start);
+                let start = self.start.to_f64();
                 (start.attitude * turn, start.momentum_body)
             }),
             Kind::Rest => None,
         };
         match quick {
-            Some((attitude, momentum_body)) => State { attitude, momentum_body },
-            None => rounded(&self.inside_at_dd(Dd::from(t))),
+            Some((attitude, momentum_body)) => Point::new(attitude, momentum_body),
+            None => self.point_at_dd(Dd::from(t)).to_f64(),
         }
     }
 
     /// The same in double-double, by an independent form of the solution.
-    pub fn inside_at_dd(&self, t: Dd) -> State<Dd> {
+    pub fn point_at_dd(&self, t: Dd) -> Point<Dd> {
         if t == Dd::ZERO {
             return self.start;
         }
@@ -235,14 +234,7 @@ impl FreeMotion {
             Kind::Steady(spin) => (spin.precise(t), self.start.momentum_body),
             Kind::Rest => (Quat::identity(), Vec3::zero()),
         };
-        State { attitude: self.start.attitude * turn, momentum_body }
-    }
-}
-
-fn rounded(x: &State<Dd>) -> State<f64> {
-    State {
-        attitude: Quat::from_components(x.attitude.components().map(Dd::hi)),
-        momentum_body: Vec3(x.momentum_body.0.map(Dd::hi)),
+        Point::new(self.start.attitude * turn, momentum_body)
     }
 }
 
@@ -262,14 +254,14 @@ pub struct FreeBody<S> {
 }
 
 impl<S: Precise> FreeBody<S> {
-    /// The flow of `body` without its torque.
-    pub fn new(body: &Body) -> Self {
-        FreeBody { moments: body.moments() }
+    /// The free flow of a body with the constants `rotor`.
+    pub fn new(rotor: &Rotor) -> Self {
+        FreeBody { moments: rotor.moments() }
     }
 }
 
 impl<S: Precise> Flow<S> for FreeBody<S> {
-    fn flow(&self, t: S, x: &mut State<S>) {
+    fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
         let (i, m) = (self.moments, x.momentum_body);
         let norm = m.norm();
         if norm == S::of(0.0) {
@@ -286,6 +278,6 @@ impl<S: Precise> Flow<S> for FreeBody<S> {
                 (turn(axis, rate * t), m)
             }
         };
-        *x = State { attitude: x.attitude * turn, momentum_body };
+        x.set_phase(Phase { attitude: x.attitude * turn, momentum_body });
     }
 }

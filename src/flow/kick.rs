@@ -1,36 +1,33 @@
 //! The kick of a potential: the exact flow of the potential energy alone.
 
+use core::marker::PhantomData;
+
 use super::Flow;
-use crate::body::{Body, Carry, Gravity, State};
+use crate::body::{Field, Point, Time};
 use crate::num::Real;
+use crate::rotation::Vec3;
 
-/// The exact flow of U(q): the attitude stays, Φ_t: `m ← m + t τ(q)`. For a free body nothing happens.
+/// The exact flow of U(t, q): the attitude stays, and so does the time, Φ_t: `m ← m + t τ(at, q)`.
 ///
-/// Keeps L_z: the torque of gravity has no part along the vertical.
-#[derive(Clone, Copy, Debug)]
-pub struct Kick<S> {
-    gravity: Option<Gravity<S>>,
+/// Under gravity it keeps L_z, as the torque has no part along the vertical. Where nothing acts nothing happens.
+#[derive(Clone, Debug)]
+pub struct Kick<S, F> {
+    field: F,
+    scalar: PhantomData<S>,
 }
 
-impl<S: Real> Kick<S> {
-    /// The kick of the gravity on `body`.
-    pub fn new(body: &Body) -> Self {
-        Kick { gravity: body.gravity() }
+impl<S: Real, F: Field<S>> Kick<S, F> {
+    /// The kick of `field`, which must not depend on the angular velocity.
+    pub fn new(field: F) -> Self {
+        Kick { field, scalar: PhantomData }
     }
+}
 
-    /// The same, rounding errors carried.
+impl<S: Real, F: Field<S>> Flow<S> for Kick<S, F> {
     #[inline]
-    pub fn carried(&self, t: S, x: &mut State<S>, carry: &mut Carry<S>) {
-        if let Some(gravity) = &self.gravity {
-            carry.add_momentum(x, gravity.torque(x.attitude) * t);
-        }
-    }
-}
-
-impl<S: Real> Flow<S> for Kick<S> {
-    fn flow(&self, t: S, x: &mut State<S>) {
-        if let Some(gravity) = &self.gravity {
-            x.momentum_body = x.momentum_body + gravity.torque(x.attitude) * t;
+    fn flow(&self, at: Time, t: S, x: &mut Point<S>) {
+        if F::ACTS {
+            x.add_momentum(self.field.torque(at, x.attitude, Vec3::zero()) * t);
         }
     }
 }

@@ -7,7 +7,7 @@ use super::TimeError;
 use super::free_body::MOST_RADIANS;
 use super::nutation::{Nutation, cast};
 use super::phase::reduce;
-use crate::body::{Body, State, StateError};
+use crate::body::{Body, Point, State, StateError};
 use crate::num::{Dd, Precise, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
@@ -21,7 +21,7 @@ const WEAKEST: f64 = 1e-80;
 const UPRIGHT: f64 = 1e-70;
 
 /// Why a body is not a Lagrange top, or has no motion in doubles.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum LagrangeError {
     /// There is no weight moment.
     #[error("the body is free: it has no weight moment; its exact motion is that of the free body")]
@@ -33,7 +33,7 @@ pub enum LagrangeError {
         Shown(moments[0]), Shown(moments[1]), Shown(moments[2]), relative
     )]
     NotSymmetric {
-        /// The principal moments, in the order of the principal axes that kernels use.
+        /// The principal moments, in the order of the principal axes of the solver frame.
         moments: [f64; 3],
         /// Smallest difference over the sum.
         relative: f64,
@@ -64,6 +64,12 @@ pub enum LagrangeError {
         /// Largest of the quaternion's components that would be zero and of angular velocity over the fastest rate.
         tilt: f64,
     },
+    /// Something else acts besides gravity.
+    #[error("{force} acts on the body besides uniform gravity; a Lagrange top has nothing but its weight")]
+    Forced {
+        /// Name of the force.
+        force: String,
+    },
     /// The start is not usable.
     #[error(transparent)]
     State(#[from] StateError),
@@ -92,12 +98,12 @@ pub enum LagrangeError {
 #[derive(Clone, Debug)]
 pub struct LagrangeTop {
     body: Body,
-    /// Takes coordinates with e₃ along the weight moment to a kernel's axes.
+    /// Takes coordinates with e₃ along the weight moment to the solver frame.
     frame: Quat<Dd>,
     transverse: Dd, // A
     axial: Dd,      // C
     weight: Dd,     // |c|
-    start: State<Dd>,
+    start: Point<Dd>,
     motion: Motion,
 }
 
@@ -121,29 +127,32 @@ impl LagrangeTop {
         attitude: UnitQuaternion<f64>,
         omega_body: Vector3<f64>,
     ) -> Result<Self, LagrangeError> {
-        Self::new(body, body.enter_omega(attitude.into(), omega_body.into())?)
+        Self::from_point(body, body.enter_omega(attitude.into(), omega_body.into())?)
     }
 
     /// From a state at t = 0, body axes.
     ///
     /// # Errors
     /// As [`from_omega`](Self::from_omega).
-    pub fn from_state(body: &Body, start: &State<f64>) -> Result<Self, LagrangeError> {
-        Self::new(body, body.enter(start)?)
+    pub fn from_state(body: &Body, start: &State) -> Result<Self, LagrangeError> {
+        Self::from_point(body, body.enter(start)?)
     }
 
-    /// From a state at t = 0 as kernels see it.
+    /// From a point of the solver frame at t = 0.
     ///
     /// # Errors
     /// A body that is not a Lagrange top, a weight that is too weak or a start too near to rest on the vertical.
-    pub fn new(body: &Body, start: State<Dd>) -> Result<Self, LagrangeError> {
+    pub fn from_point(body: &Body, start: Point<Dd>) -> Result<Self, LagrangeError> {
+        if let Some(force) = body.forces().first() {
+            return Err(LagrangeError::Forced { force: force.name().into() });
+        }
         let weight_moment = body.gravity::<Dd>().ok_or(LagrangeError::Free)?.weight_moment;
         let (axis, transverse, axial) = symmetry_axis(body, weight_moment)?;
         let frame = turn_to(axis);
         let weight = weight_moment.norm_of_any_size();
         let attitude = start.attitude.normalized() * frame;
         let momentum_body = frame.rotate_back(start.momentum_body);
-        let start = State { attitude, momentum_body };
+        let start = Point::new(attitude, momentum_body);
 
         let ([m1, m2, _], Quat { w, v }) = (momentum_body.0, attitude);
         let upright = v[0].magnitude().max(v[1].magnitude());
@@ -181,14 +190,14 @@ impl LagrangeTop {
     ///
     /// # Errors
     /// A time that is not finite, or beyond [`reach`](Self::reach).
-    pub fn at(&self, t: f64) -> Result<State<f64>, TimeError> {
+    pub fn at(&self, t: f64) -> Result<State, TimeError> {
         if !t.is_finite() {
             return Err(TimeError::NotFinite { t });
         }
         if t.abs() > self.reach() {
             return Err(TimeError::OutOfReach { t, reach: self.reach() });
         }
-        Ok(self.body.leave(&self.inside_at(t)))
+        Ok(self.body.leave(&self.point_at(t)))
     }
 
     /// The largest |t| at which the phases still have digits, s: some 2⁹⁶ rad.
@@ -200,20 +209,20 @@ impl LagrangeTop {
         MOST_RADIANS / fastest
     }
 
-    /// The state at time `t` (s), finite and within [`reach`](Self::reach), as kernels see it.
+    /// The point of the solver frame at time `t` (s), finite and within [`reach`](Self::reach).
     ///
     /// Phases are reduced in double-double; next to the separatrix of the sleeping top, where the axis makes many turns
     /// before it nods, they are evaluated in it as well. The quaternion is the continuous lift from the start.
-    pub fn inside_at(&self, t: f64) -> State<f64> {
+    pub fn point_at(&self, t: f64) -> Point<f64> {
         self.evaluate(Dd::from(t))
     }
 
     /// The same in double-double.
-    pub fn inside_at_dd(&self, t: Dd) -> State<Dd> {
+    pub fn point_at_dd(&self, t: Dd) -> Point<Dd> {
         self.evaluate(t)
     }
 
-    fn evaluate<S: Precise>(&self, t: Dd) -> State<S> {
+    fn evaluate<S: Precise>(&self, t: Dd) -> Point<S> {
         let m3 = self.start.momentum_body[2];
         let turn = |rate: Dd| {
             let (sin, cos) = cast::<S>(reduce(rate * t, Dd::TAU * 2.0) * Dd::of(0.5)).sin_cos();
@@ -233,7 +242,7 @@ impl LagrangeTop {
             }
         };
         let frame = Quat::from_components(self.frame.components().map(S::from_dd));
-        State { attitude: attitude * frame.conjugate(), momentum_body: frame.rotate(momentum) }
+        Point::new(attitude * frame.conjugate(), frame.rotate(momentum))
     }
 
     /// Smallest and largest tilt of the weight moment from the vertical, rad.
@@ -287,7 +296,7 @@ impl LagrangeTop {
 
 /// Unit vector along the weight moment, transverse and axial moment.
 fn symmetry_axis(body: &Body, weight_moment: Vec3<Dd>) -> Result<(Vec3<Dd>, Dd, Dd), LagrangeError> {
-    let i = body.moments::<Dd>();
+    let i = body.rotor().moments::<Dd>();
     let direction = weight_moment * (Dd::ONE / weight_moment.norm_of_any_size());
     let trace = i[0] + i[1] + i[2];
     let apart = |axis: usize| ((i[(axis + 1) % 3] - i[(axis + 2) % 3]) / trace).magnitude();

@@ -1,7 +1,7 @@
 //! The turn about a principal axis: the exact flow of `m_i²/(2 I_i)`.
 
 use super::Flow;
-use crate::body::{Body, Carry, State};
+use crate::body::{Point, Time};
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 
@@ -17,22 +17,21 @@ pub struct AxisTurn<S> {
 }
 
 impl<S: Real> AxisTurn<S> {
-    /// The turn about axis 0, 1 or 2 of `body`.
-    pub fn new(body: &Body, axis: usize) -> Self {
-        AxisTurn { axis, half_rate: body.inverse_moments::<S>()[axis] * S::of(0.5) }
+    /// The flow of `rate · m_axis²/2`, `half_rate` being half of that rate; `axis` is 0, 1 or, for all else, 2.
+    pub fn new(axis: usize, half_rate: S) -> Self {
+        AxisTurn { axis, half_rate }
     }
 }
 
 impl<S: Real> Flow<S> for AxisTurn<S> {
-    fn flow(&self, t: S, x: &mut State<S>) {
-        let mut carry = Carry::default();
+    #[inline]
+    fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
         let half_rate_time = t * self.half_rate;
         match self.axis {
-            0 => turn::<0, S>(x, &mut carry, half_rate_time),
-            1 => turn::<1, S>(x, &mut carry, half_rate_time),
-            _ => turn::<2, S>(x, &mut carry, half_rate_time),
+            0 => turn::<0, S>(x, half_rate_time),
+            1 => turn::<1, S>(x, half_rate_time),
+            _ => turn::<2, S>(x, half_rate_time),
         }
-        carry.renormalize(x);
     }
 }
 
@@ -43,19 +42,19 @@ impl<S: Real> Flow<S> for AxisTurn<S> {
 /// takes the same sine and cosine, so that `q m q*` keeps its direction. The axis is a constant so that the state
 /// stays in registers.
 #[inline]
-pub fn turn<const AXIS: usize, S: Real>(x: &mut State<S>, carry: &mut Carry<S>, half_rate_time: S) {
+pub fn turn<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
     let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
     let m = x.momentum_body;
     let (s, c) = (m[AXIS] * half_rate_time).sin_cos();
     let twice = s + s;
     let (v, w) = (twice * s, twice * c);
-    carry.add_component(x, j, w * m[k] - v * m[j]);
-    carry.add_component(x, k, -(w * m[j]) - v * m[k]);
+    x.add_component(j, w * m[k] - v * m[j]);
+    x.add_component(k, -(w * m[j]) - v * m[k]);
     // q ∘ (c, s e_i) − q, without the products by zero
     let (q, less) = (x.attitude, S::of(1.0) - c);
     let mut change = Quat::new(-(s * q.v[AXIS]) - less * q.w, Vec3::zero());
     change.v[AXIS] = s * q.w - less * q.v[AXIS];
     change.v[j] = s * q.v[k] - less * q.v[j];
     change.v[k] = -(s * q.v[j]) - less * q.v[k];
-    carry.add_attitude(x, change);
+    x.add_attitude(change);
 }

@@ -2,45 +2,121 @@
 
 use thiserror::Error;
 
+use super::map::Stepper;
+use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
-    Advance, AxisOrder, Claimed, Composed, ExplicitEuler, ImplicitMidpoint, KickDrift, LiePoisson, Method,
-    Rattle, Rk4, SUZUKI_4, SemiImplicitEuler, Step, StepError,
+    AxisOrder, AxisSplit, Claimed, Composed, Dmv, Drift, ExactDrift, ExplicitEuler, ImplicitMidpoint, Kicks,
+    Method, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step,
 };
-use crate::body::{Body, State};
+use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::Dd;
 
 /// A method whose type is known only at run time.
 pub trait AnyMethod: Claimed + Send + Sync {
-    /// As [`Method::prepare`], in `f64`.
+    /// Whole steps of `clock` for `body`, in `f64`.
     ///
     /// # Errors
-    /// As [`Method::prepare`].
-    fn prepare_f64(&self, h: f64, body: &Body, x: &State<f64>) -> Result<Box<dyn Advance>, StepError>;
+    /// A step that is zero or not finite, or a body that the method is not for.
+    fn prepare_f64(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<f64>>, StepError>;
 
-    /// As [`Method::prepare`], in double-double, for measuring below the rounding of `f64`.
+    /// The same in double-double, for measuring below the rounding of `f64`.
     ///
     /// # Errors
-    /// As [`Method::prepare`].
-    fn prepare_dd(&self, h: f64, body: &Body, x: &State<Dd>) -> Result<Box<dyn Step<Dd>>, StepError>;
+    /// As [`prepare_f64`](Self::prepare_f64).
+    fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError>;
 }
 
-impl<M: Method<f64> + Method<Dd> + Send + Sync> AnyMethod for M {
-    fn prepare_f64(&self, h: f64, body: &Body, x: &State<f64>) -> Result<Box<dyn Advance>, StepError> {
-        accepts(self, body)?;
-        Ok(Box::new(self.prepare(h, body, x)?))
+impl<M: Method<f64> + Method<Dd> + Claimed + Send + Sync> AnyMethod for M {
+    fn prepare_f64(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<f64>>, StepError> {
+        prepare(self, clock, body)
     }
-    fn prepare_dd(&self, h: f64, body: &Body, x: &State<Dd>) -> Result<Box<dyn Step<Dd>>, StepError> {
-        accepts(self, body)?;
-        Ok(Box::new(self.prepare(h, body, x)?))
+    fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError> {
+        prepare(self, clock, body)
     }
 }
 
-/// Refuses a heavy body for a method without torque.
-fn accepts(method: &impl Claimed, body: &Body) -> Result<(), StepError> {
-    if body.gravity::<f64>().is_some() && method.claims().potential.is_none() {
-        return Err(StepError::Torque { method: method.name() });
+impl Claimed for Box<dyn AnyMethod> {
+    fn name(&self) -> String {
+        (**self).name()
     }
-    Ok(())
+    fn claims(&self, problem: Problem) -> Option<super::Claims> {
+        (**self).claims(problem)
+    }
+}
+
+impl AnyMethod for Box<dyn AnyMethod> {
+    fn prepare_f64(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<f64>>, StepError> {
+        (**self).prepare_f64(clock, body)
+    }
+    fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError> {
+        (**self).prepare_dd(clock, body)
+    }
+}
+
+/// Steps of `method`, compiled for what acts on `body`.
+fn prepare<S, M>(method: &M, clock: Clock, body: &Body) -> Result<Box<dyn Step<S>>, StepError>
+where
+    S: Evaluated,
+    M: Method<S> + Claimed,
+{
+    if !(clock.step.is_finite() && clock.step != 0.0) {
+        return Err(StepError::NotAStep { h: clock.step });
+    }
+    if !clock.start.is_finite() {
+        return Err(StepError::NotATime { t: clock.start });
+    }
+    let problem = body.problem();
+    if method.claims(problem).is_none() {
+        let what =
+            match body.forces().iter().find(|force| problem != Problem::Torque || !force.has_potential()) {
+                Some(force) => force.name().into(),
+                None => "gravity".into(),
+            };
+        return Err(StepError::Refused { method: method.name(), force: what, problem });
+    }
+    let (h, rotor) = (Dd::from(clock.step), body.rotor());
+    Ok(match (problem, body.gravity::<S>()) {
+        (Problem::Free, _) => Box::new(Stepper::new(method.map(h, &rotor, &Free), clock)),
+        (Problem::Gravity, Some(gravity)) => Box::new(Stepper::new(method.map(h, &rotor, &gravity), clock)),
+        _ => Box::new(Stepper::new(method.map(h, &rotor, &body.field::<S>()), clock)),
+    })
+}
+
+/// Why a method cannot take steps of this size, or of this body.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum StepError {
+    /// The step is zero or not finite.
+    #[error("step {h} is not usable; it must be a finite number of seconds other than 0")]
+    NotAStep {
+        /// The step asked for, s.
+        h: f64,
+    },
+    /// The time of the start is not finite.
+    #[error("start time {t} is not usable; it must be a finite number of seconds")]
+    NotATime {
+        /// The time asked for, s.
+        t: f64,
+    },
+    /// The method is not for what acts on the body.
+    #[error("method {method:?} cannot take {force}, {}", remedy(*.problem))]
+    Refused {
+        /// Name of the method.
+        method: String,
+        /// Name of the force.
+        force: String,
+        /// The kind of motion that it makes.
+        problem: Problem,
+    },
+}
+
+fn remedy(problem: Problem) -> &'static str {
+    match problem {
+        Problem::Torque => {
+            "a torque without potential: it is for free motion and potentials; take rk4 or implicit-midpoint"
+        }
+        _ => "a potential: it is for free motion; take kick-drift, for one",
+    }
 }
 
 /// Every method, in the order in which tables show them.
@@ -51,54 +127,101 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(Rk4 { normalized: false }),
         Box::new(Rk4 { normalized: true }),
         Box::new(ImplicitMidpoint),
-        Box::new(Rattle),
-        Box::new(LiePoisson { axes: None }),
-        Box::new(KickDrift),
-        Box::new(Composed { base: KickDrift, scheme: SUZUKI_4 }),
+        Box::new(Splitting::strang(Dmv, Kicks)),
+        Box::new(Splitting::strang(AxisSplit { axes: None }, Kicks)),
+        Box::new(Splitting::strang(ExactDrift, Kicks)),
+        Box::new(Splitting::with_scheme(ExactDrift, Kicks, SUZUKI_4)),
     ]
 }
 
-/// The method called `name`, an entry of the catalogue or one with an argument, as `lie-poisson:321`.
+/// The bases of names.
+const BASES: [&str; 8] = [
+    "explicit-euler",
+    "semi-implicit-euler",
+    "rk4",
+    "rk4-normalized",
+    "implicit-midpoint",
+    "rattle",
+    "lie-poisson",
+    "kick-drift",
+];
+
+/// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in `lie-poisson:321@kahan-li-8`.
+///
+/// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
+/// order of axes as its argument; `kick-drift:4` is another name of `kick-drift@suzuki-4`.
 ///
 /// # Errors
-/// A name that the catalogue does not have, or an argument that the method does not take.
+/// A base or a scheme that does not exist, an argument that the base does not take, or a scheme that does not fit it.
 ///
 /// ```
-/// use polhode::method::method;
-/// assert_eq!(method("rattle")?.claims().order, 2);
+/// use polhode::body::Problem;
+/// use polhode::method::{Claimed, method};
+/// assert_eq!(method("rattle")?.claims(Problem::Free).unwrap().order, Some(2));
+/// assert_eq!(method("kick-drift@srkn-11b")?.claims(Problem::Gravity).unwrap().order, Some(6));
 /// assert!(method("rk5").is_err());
 /// # Ok::<(), polhode::method::UnknownMethod>(())
 /// ```
 pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
-    if let Some(axes) = name.strip_prefix("lie-poisson:") {
-        let order: AxisOrder = axes.parse().map_err(|_| UnknownMethod::Argument {
-            name: name.into(),
-            rule: "a permutation of 123, such as lie-poisson:321",
-        })?;
-        return Ok(Box::new(LiePoisson { axes: Some(order) }));
+    let (head, scheme_name) = match name.split_once('@') {
+        Some((head, scheme)) => (head, Some(scheme)),
+        None => (name, None),
+    };
+    let (base, argument) = match head.split_once(':') {
+        Some((base, argument)) => (base, Some(argument)),
+        None => (head, None),
+    };
+    if !BASES.contains(&base) {
+        return Err(UnknownMethod::Name { name: name.into() });
     }
-    let name = if name == "kick-drift:2" { "kick-drift" } else { name };
-    let mut known = catalogue();
-    if let Some(position) = known.iter().position(|method| method.name() == name) {
-        return Ok(known.swap_remove(position));
+    let refused = |rule| Err(UnknownMethod::Argument { name: name.into(), rule });
+    let chosen = scheme_name.map(scheme).transpose()?.copied();
+    let (axes, chosen) = match (base, argument, chosen) {
+        ("lie-poisson", Some(axes), _) => match axes.parse::<AxisOrder>() {
+            Ok(axes) => (Some(axes), chosen),
+            Err(_) => return refused("a permutation of 123, such as lie-poisson:321"),
+        },
+        ("kick-drift", Some("2"), None) => (None, None),
+        ("kick-drift", Some("4"), None) => (None, Some(SUZUKI_4)),
+        ("kick-drift", Some(_), None) => return refused("2 or 4, its order"),
+        (_, Some(_), _) => return refused("none: this method takes no argument"),
+        (_, None, _) => (None, chosen),
+    };
+    match base {
+        "explicit-euler" => plain(ExplicitEuler, chosen),
+        "semi-implicit-euler" => plain(SemiImplicitEuler, chosen),
+        "rk4" => plain(Rk4 { normalized: false }, chosen),
+        "rk4-normalized" => plain(Rk4 { normalized: true }, chosen),
+        "implicit-midpoint" => Ok(match chosen {
+            Some(scheme) if scheme != STRANG => Box::new(Composed::new(ImplicitMidpoint, scheme)?),
+            _ => Box::new(ImplicitMidpoint),
+        }),
+        "rattle" => kicked(Dmv, chosen),
+        "lie-poisson" => kicked(AxisSplit { axes }, chosen),
+        _ => kicked(ExactDrift, chosen),
     }
-    if let Some((head, _)) = name.split_once(':')
-        && known.iter().any(|method| method.name() == head)
-    {
-        return Err(UnknownMethod::Argument {
-            name: name.into(),
-            rule: if head == "kick-drift" {
-                "2 or 4, its order"
-            } else {
-                "none: this method takes no argument"
-            },
-        });
+}
+
+fn plain(
+    method: impl AnyMethod + 'static,
+    chosen: Option<Scheme>,
+) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
+    match chosen {
+        Some(scheme) => Err(SchemeError::NotSymmetric { scheme: scheme.name, base: method.name() }.into()),
+        None => Ok(Box::new(method)),
     }
-    Err(UnknownMethod::Name { name: name.into() })
+}
+
+fn kicked<A>(drift: A, chosen: Option<Scheme>) -> Result<Box<dyn AnyMethod>, UnknownMethod>
+where
+    A: Drift + Method<f64> + Method<Dd> + 'static,
+{
+    Ok(Box::new(Splitting::kicked(drift, chosen.unwrap_or(STRANG))?))
 }
 
 /// Why a method could not be found.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum UnknownMethod {
     /// No such name.
     #[error("there is no method {name:?}")]
@@ -114,4 +237,10 @@ pub enum UnknownMethod {
         /// What would have been right.
         rule: &'static str,
     },
+    /// No such scheme.
+    #[error(transparent)]
+    Scheme(#[from] UnknownScheme),
+    /// The scheme does not fit the base.
+    #[error(transparent)]
+    Unfit(#[from] SchemeError),
 }

@@ -1,29 +1,37 @@
 //! What a method claims: data that tables print and laws execute.
 
 use core::fmt;
+use core::ops::{Add, Mul};
 
-/// The claims of a method.
+use crate::body::Problem;
+
+/// What a method says of itself.
+pub trait Claimed {
+    /// Name in the catalogue, with argument and scheme.
+    fn name(&self) -> String;
+
+    /// What it keeps, its order, its cost and its source, for one kind of motion; `None` where it refuses it.
+    fn claims(&self, problem: Problem) -> Option<Claims>;
+}
+
+/// The claims of a method for one kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Claims {
-    /// Order of convergence of attitude and momentum.
-    pub order: u32,
+    /// Order of convergence of attitude and momentum; `None` where there is no error of discretisation.
+    pub order: Option<u32>,
     /// Φ_{−h} ∘ Φ_h = 1.
     pub symmetric: bool,
-    /// The map of momenta keeps the Lie–Poisson bracket.
+    /// Without torque the map of momenta keeps the Lie–Poisson bracket.
     pub poisson: bool,
-    /// What it keeps of free motion.
-    pub free: Kept,
-    /// Whether free motion is followed without any error of discretisation; the order then speaks of heavy bodies.
-    pub exact_when_free: bool,
-    /// What it keeps of the motion in a potential; `None` refuses bodies with a weight moment.
-    pub potential: Option<KeptHeavy>,
+    /// What is constant along the numerical solution.
+    pub kept: Kept,
     /// Work per step.
     pub cost: Cost,
     /// Where it comes from.
     pub source: &'static str,
 }
 
-/// What is constant along the numerical solution, in exact arithmetic.
+/// What is constant along the numerical solution, in exact arithmetic, where the motion conserves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kept {
     /// The energy.
@@ -32,25 +40,32 @@ pub struct Kept {
     pub momentum: bool,
     /// L in space, as a vector.
     pub momentum_space: bool,
-    /// |q| = 1.
-    pub norm: bool,
-}
-
-/// What is constant along the numerical solution in the potential of gravity, in exact arithmetic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct KeptHeavy {
-    /// The energy.
-    pub energy: Energy,
     /// The vertical component of L in space, p_φ of a top.
     pub momentum_z: bool,
     /// |q| = 1.
     pub norm: bool,
 }
 
-/// What becomes of the energy.
+impl Kept {
+    /// Nothing is constant, and the energy drifts.
+    pub const NOTHING: Kept = Kept {
+        energy: Energy::Drifts,
+        momentum: false,
+        momentum_space: false,
+        momentum_z: false,
+        norm: false,
+    };
+
+    /// Everything that free motion conserves, the energy as `energy` says.
+    pub const fn all_of_free_motion(energy: Energy) -> Kept {
+        Kept { energy, momentum: true, momentum_space: true, momentum_z: true, norm: true }
+    }
+}
+
+/// Long-time behaviour of the energy error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Energy {
-    /// Constant.
+    /// Zero.
     Exact,
     /// Within a bound ∝ h^order for exponentially long times.
     Bounded,
@@ -59,16 +74,73 @@ pub enum Energy {
 }
 
 /// Work per step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cost {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
     /// Evaluations of the right-hand side.
-    RightSides(u32),
+    pub right_sides: u32,
     /// Turns about an axis, one sine and cosine each.
-    Turns(u32),
+    pub turns: u32,
     /// Exact motions of the free body.
-    Drifts(u32),
+    pub drifts: u32,
     /// Solutions of three nonlinear equations by iteration.
-    Solves(u32),
+    pub solves: u32,
+    /// Kicks, one evaluation of the torque each.
+    pub kicks: u32,
+}
+
+impl Cost {
+    /// `n` evaluations of the right-hand side.
+    pub const fn right_sides(n: u32) -> Cost {
+        Cost { right_sides: n, ..Cost::NOTHING }
+    }
+
+    /// `n` turns.
+    pub const fn turns(n: u32) -> Cost {
+        Cost { turns: n, ..Cost::NOTHING }
+    }
+
+    /// `n` exact motions of the free body.
+    pub const fn drifts(n: u32) -> Cost {
+        Cost { drifts: n, ..Cost::NOTHING }
+    }
+
+    /// `n` solutions of three equations.
+    pub const fn solves(n: u32) -> Cost {
+        Cost { solves: n, ..Cost::NOTHING }
+    }
+
+    /// `n` kicks.
+    pub const fn kicks(n: u32) -> Cost {
+        Cost { kicks: n, ..Cost::NOTHING }
+    }
+
+    const NOTHING: Cost = Cost { right_sides: 0, turns: 0, drifts: 0, solves: 0, kicks: 0 };
+}
+
+impl Add for Cost {
+    type Output = Cost;
+    fn add(self, b: Cost) -> Cost {
+        Cost {
+            right_sides: self.right_sides + b.right_sides,
+            turns: self.turns + b.turns,
+            drifts: self.drifts + b.drifts,
+            solves: self.solves + b.solves,
+            kicks: self.kicks + b.kicks,
+        }
+    }
+}
+
+impl Mul<u32> for Cost {
+    type Output = Cost;
+    fn mul(self, n: u32) -> Cost {
+        Cost {
+            right_sides: self.right_sides * n,
+            turns: self.turns * n,
+            drifts: self.drifts * n,
+            solves: self.solves * n,
+            kicks: self.kicks * n,
+        }
+    }
 }
 
 impl fmt::Display for Energy {
@@ -83,14 +155,23 @@ impl fmt::Display for Energy {
 
 impl fmt::Display for Cost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Cost::RightSides(1) => f.write_str("1 right side"),
-            Cost::RightSides(n) => write!(f, "{n} right sides"),
-            Cost::Turns(n) => write!(f, "{n} turns"),
-            Cost::Drifts(1) => f.write_str("1 exact drift"),
-            Cost::Drifts(n) => write!(f, "{n} exact drifts"),
-            Cost::Solves(1) => f.write_str("3 equations solved"),
-            Cost::Solves(n) => write!(f, "3 equations solved {n} times"),
+        let counted = |n: u32, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
+        let mut parts = Vec::new();
+        for (n, one) in [
+            (self.right_sides, "right side"),
+            (self.turns, "turn"),
+            (self.drifts, "exact drift"),
+            (self.kicks, "kick"),
+        ] {
+            if n > 0 {
+                parts.push(counted(n, one));
+            }
         }
+        match self.solves {
+            0 => {}
+            1 => parts.insert(0, "3 equations solved".into()),
+            n => parts.insert(0, format!("3 equations solved {n} times")),
+        }
+        f.write_str(&parts.join(", "))
     }
 }

@@ -1,9 +1,9 @@
 //! The implicit midpoint rule on m, with the Cayley map on the attitude.
 
 use super::stagnation::iterate;
-use super::{Claimed, Claims, Cost, Energy, Kept, KeptHeavy, Method, Step, StepError, usable};
-use crate::body::{Body, Carry, Gravity, Gyroscopic, State, vertical};
-use crate::num::Real;
+use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method, Symmetric};
+use crate::body::{Field, Gyroscopic, Point, Problem, Rotor, Time, vertical};
+use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
 
 /// Implicit midpoint.
@@ -13,70 +13,74 @@ use crate::rotation::{Quat, Vec3};
 /// Lie–Poisson bracket only to O(h²): conservation is not accuracy.
 ///
 /// Under gravity `Γ̄ × c` joins the right side, `Γ̄ = ½(Γ + Γ')`. The Cayley map moves Γ by the midpoint rule too, so
-/// that energy and L_z = m·Γ, quadratic in (m, Γ), are kept.
+/// that energy and L_z = m·Γ, quadratic in (m, Γ), are kept. Any other torque is taken in the middle of the step: at the
+/// middle time, at q and half of the turn, and at I⁻¹m̄. Then the energy of a potential is not kept: the map is not symplectic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImplicitMidpoint;
 
-/// A prepared step of [`ImplicitMidpoint`].
-#[derive(Clone, Copy, Debug)]
-pub struct ImplicitMidpointStep<S> {
+/// A prepared [`ImplicitMidpoint`].
+#[derive(Clone, Debug)]
+pub struct ImplicitMidpointMap<S, F> {
     h: S,
     half: S,
+    half_duration: Dd,
     inverse_moments: Vec3<S>,
     gyroscopic: Gyroscopic<S>, // h u × I⁻¹u
-    gravity: Option<Gravity<S>>,
-    carry: Carry<S>,
+    field: F,
     worst_residual: f64,
 }
+
+impl Symmetric for ImplicitMidpoint {}
 
 impl Claimed for ImplicitMidpoint {
     fn name(&self) -> String {
         "implicit-midpoint".into()
     }
-    fn claims(&self) -> Claims {
-        Claims {
-            order: 2,
+    fn claims(&self, problem: Problem) -> Option<Claims> {
+        let kept = match problem {
+            Problem::Free => Kept::all_of_free_motion(Energy::Exact),
+            Problem::Gravity => Kept { energy: Energy::Exact, momentum_z: true, norm: true, ..Kept::NOTHING },
+            Problem::Potential | Problem::Torque => Kept { norm: true, ..Kept::NOTHING },
+        };
+        Some(Claims {
+            order: Some(2),
             symmetric: true,
             poisson: false,
-            free: Kept { energy: Energy::Exact, momentum: true, momentum_space: true, norm: true },
-            exact_when_free: false,
-            potential: Some(KeptHeavy { energy: Energy::Exact, momentum_z: true, norm: true }),
-            cost: Cost::Solves(1),
+            kept,
+            cost: Cost::solves(1),
             source: "Austin, Krishnaprasad and Wang, J. Comput. Phys. 107 (1993) 105; Lewis and Simo, J. Nonlinear Sci. 4 (1994) 253",
-        }
-    }
-}
-
-impl<S: Real> Method<S> for ImplicitMidpoint {
-    type Step = ImplicitMidpointStep<S>;
-    fn prepare(&self, h: f64, body: &Body, _: &State<S>) -> Result<ImplicitMidpointStep<S>, StepError> {
-        let h = usable(h)?;
-        Ok(ImplicitMidpointStep {
-            h: S::of(h),
-            half: S::of(0.5),
-            inverse_moments: body.inverse_moments(),
-            gyroscopic: Gyroscopic::new(body, h),
-            gravity: body.gravity(),
-            carry: Carry::default(),
-            worst_residual: 0.0,
         })
     }
 }
 
-impl<S: Real> Step<S> for ImplicitMidpointStep<S> {
+impl<S: Real> Method<S> for ImplicitMidpoint {
+    type Map<F: Field<S>> = ImplicitMidpointMap<S, F>;
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F> {
+        ImplicitMidpointMap {
+            h: S::from_dd(h),
+            half: S::of(0.5),
+            half_duration: h * 0.5,
+            inverse_moments: rotor.inverse_moments(),
+            gyroscopic: Gyroscopic::new(rotor, h),
+            field: field.clone(),
+            worst_residual: 0.0,
+        }
+    }
+}
+
+impl<S: Real, F: Field<S>> Map<S> for ImplicitMidpointMap<S, F> {
     #[inline]
-    fn step(&mut self, x: &mut State<S>) {
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
         let m = x.momentum_body;
-        let (delta, residual) = match &self.gravity {
-            None => iterate(m.magnitude(), self.gyroscopic.at(m), |delta| {
-                self.gyroscopic.at(m + delta * self.half)
-            }),
-            Some(gravity) => self.heavy(gravity, x),
+        let (delta, residual) = if F::ACTS {
+            self.forced(at, x)
+        } else {
+            iterate(m.magnitude(), self.gyroscopic.at(m), |delta| self.gyroscopic.at(m + delta * self.half))
         };
         self.worst_residual = self.worst_residual.max(residual);
         let c = (m + delta * self.half).times(self.inverse_moments) * (self.h * self.half);
-        self.carry.add_momentum(x, delta);
-        cayley_turn(x, &mut self.carry, c);
+        x.add_momentum(delta);
+        cayley_turn(x, c);
     }
 
     fn worst_residual(&self) -> f64 {
@@ -84,20 +88,41 @@ impl<S: Real> Step<S> for ImplicitMidpointStep<S> {
     }
 }
 
-impl<S: Real> ImplicitMidpointStep<S> {
-    /// The change of m under gravity, and the residual; apart, so that the free step stays in registers.
+impl<S: Real, F: Field<S>> ImplicitMidpointMap<S, F> {
+    /// The change of m with torque, and the residual; apart, so that the free step stays in registers.
     #[inline(never)]
-    fn heavy(&self, gravity: &Gravity<S>, x: &State<S>) -> (Vec3<S>, f64) {
-        let (m, up) = (x.momentum_body, vertical(x.attitude));
+    fn forced(&self, at: Time, x: &Point<S>) -> (Vec3<S>, f64) {
+        let (m, up, at) = (x.momentum_body, vertical(x.attitude), at.later(self.half_duration));
+        let gravity = self.field.gravity();
         let increment = |middle: Vec3<S>| {
             let omega = middle.times(self.inverse_moments);
-            let torque = middle_vertical(up, omega * (self.h * self.half)).cross(gravity.weight_moment);
+            let c = omega * (self.h * self.half);
+            let weight = gravity.map(|gravity| middle_vertical(up, c).cross(gravity.weight_moment));
+            let rest = F::ACTS_BESIDES_GRAVITY
+                .then(|| self.field.torque_besides_gravity(at, x.attitude * half_turn(c), omega));
+            let torque = match (weight, rest) {
+                (Some(weight), Some(rest)) => weight + rest,
+                (weight, rest) => weight.or(rest).unwrap_or(Vec3::zero()),
+            };
             self.gyroscopic.at(middle) + torque * self.h
         };
         // next to an equilibrium torques are differences of terms as large as the weight moment
-        let size = m.magnitude() + (gravity.weight_moment * self.h).magnitude();
-        iterate(size, increment(m), |delta| increment(m + delta * self.half))
+        let weight = gravity.map_or(0.0, |gravity| (gravity.weight_moment * self.h).magnitude());
+        let omega = m.times(self.inverse_moments);
+        let rest = if F::ACTS_BESIDES_GRAVITY {
+            (self.field.torque_besides_gravity(at, x.attitude, omega) * self.h).magnitude()
+        } else {
+            0.0
+        };
+        iterate(m.magnitude() + weight + rest, increment(m), |delta| increment(m + delta * self.half))
     }
+}
+
+/// Half of the turn with the Cayley vector c.
+#[inline]
+fn half_turn<S: Real>(c: Vec3<S>) -> Quat<S> {
+    let whole = Quat::cayley(c);
+    Quat::new(S::of(1.0) + whole.w, whole.v).normalized()
 }
 
 /// ½(Γ + Γ'), Γ' the vertical after the turn with the Cayley vector c: the solution of `Γ̄ = Γ + Γ̄ × c`.
@@ -108,11 +133,11 @@ fn middle_vertical<S: Real>(up: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
 
 /// `q ← q ∘ (1, c)/√(1 + |c|²)`, rounding carried: `p₀ − 1 = −|c|²/(α + √α)` has no cancellation.
 #[inline]
-pub(super) fn cayley_turn<S: Real>(x: &mut State<S>, carry: &mut Carry<S>, c: Vec3<S>) {
+pub(super) fn cayley_turn<S: Real>(x: &mut Point<S>, c: Vec3<S>) {
     let squared = c.norm_squared();
     let alpha = S::of(1.0) + squared;
     let root = alpha.sqrt();
     let less_one = Quat::new(-(squared / (alpha + root)), c * (S::of(1.0) / root));
-    carry.add_attitude(x, x.attitude * less_one);
-    carry.end_step(x);
+    x.add_attitude(x.attitude * less_one);
+    x.renormalize_at_times();
 }

@@ -1,46 +1,48 @@
 //! Explicit methods on (q, m): the yardsticks that people run today.
 //!
-//! The right-hand side is Euler's equation and the kinematic one, `m' = m × I⁻¹m + τ(q)`, `q' = ½ q ∘ (0, I⁻¹m)`.
+//! The right-hand side is Euler's equation and the kinematic one, `m' = m × I⁻¹m + τ(t, q, ω)`, `q' = ½ q ∘ (0, I⁻¹m)`.
 
-use super::{Claimed, Claims, Cost, Energy, Kept, KeptHeavy, Method, Step, StepError, usable};
-use crate::body::{Body, Gravity, State};
-use crate::num::Real;
+use super::{Claimed, Claims, Cost, Kept, Map, Method};
+use crate::body::{Field, Phase, Point, Problem, Rotor, Time};
+use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
-/// Nothing kept, energy drifting: what an explicit method on (q, m) can say.
-const NOTHING: Kept = Kept { energy: Energy::Drifts, momentum: false, momentum_space: false, norm: false };
-
-/// Of motion under gravity neither.
-const NOTHING_HEAVY: KeptHeavy = KeptHeavy { energy: Energy::Drifts, momentum_z: false, norm: false };
+/// What an explicit method on (q, m) claims of every motion: nothing kept but, with `norm`, |q|.
+fn claims(order: u32, norm: bool, right_sides: u32, source: &'static str) -> Option<Claims> {
+    Some(Claims {
+        order: Some(order),
+        symmetric: false,
+        poisson: false,
+        kept: Kept { norm, ..Kept::NOTHING },
+        cost: Cost::right_sides(right_sides),
+        source,
+    })
+}
 
 /// The right-hand side.
 #[derive(Clone, Copy, Debug)]
-struct Equations<S> {
+struct Equations<S, F> {
     inverse_moments: Vec3<S>,
-    gravity: Option<Gravity<S>>,
+    field: F,
 }
 
-impl<S: Real> Equations<S> {
-    fn of(body: &Body) -> Self {
-        Equations { inverse_moments: body.inverse_moments(), gravity: body.gravity() }
+impl<S: Real, F: Field<S>> Equations<S, F> {
+    fn new(rotor: &Rotor, field: &F) -> Self {
+        Equations { inverse_moments: rotor.inverse_moments(), field: field.clone() }
     }
 
     /// q' and m'.
     #[inline]
-    fn rate(&self, x: &State<S>) -> State<S> {
+    fn rate(&self, at: Time, x: &Phase<S>) -> Phase<S> {
         let omega = x.momentum_body.times(self.inverse_moments);
-        State { attitude: x.attitude.rate(omega), momentum_body: self.momentum_rate(x) }
+        Phase { attitude: x.attitude.rate(omega), momentum_body: self.momentum_rate(at, x, omega) }
     }
 
-    /// m × I⁻¹m + τ(q).
+    /// m × ω + τ.
     #[inline]
-    fn momentum_rate(&self, x: &State<S>) -> Vec3<S> {
-        let m = x.momentum_body;
-        let rate = m.cross(m.times(self.inverse_moments));
-        match &self.gravity {
-            Some(gravity) => rate + gravity.torque(x.attitude),
-            None => rate,
-        }
+    fn momentum_rate(&self, at: Time, x: &Phase<S>, omega: Vec3<S>) -> Vec3<S> {
+        let rate = x.momentum_body.cross(omega);
+        if F::ACTS { rate + self.field.torque(at, x.attitude, omega) } else { rate }
     }
 }
 
@@ -53,11 +55,13 @@ pub struct Rk4 {
     pub normalized: bool,
 }
 
-/// A prepared step of [`Rk4`].
-#[derive(Clone, Copy, Debug)]
-pub struct Rk4Step<S> {
+/// A prepared [`Rk4`].
+#[derive(Clone, Debug)]
+pub struct Rk4Map<S, F> {
     h: S,
-    equations: Equations<S>,
+    /// Half a step and a whole one, s.
+    later: [Dd; 2],
+    equations: Equations<S, F>,
     normalized: bool,
 }
 
@@ -65,40 +69,37 @@ impl Claimed for Rk4 {
     fn name(&self) -> String {
         if self.normalized { "rk4-normalized" } else { "rk4" }.into()
     }
-    fn claims(&self) -> Claims {
-        Claims {
-            order: 4,
-            symmetric: false,
-            poisson: false,
-            free: Kept { norm: self.normalized, ..NOTHING },
-            exact_when_free: false,
-            potential: Some(KeptHeavy { norm: self.normalized, ..NOTHING_HEAVY }),
-            cost: Cost::RightSides(4),
-            source: "Kutta 1901; Hairer, Norsett and Wanner, Solving ODEs I, table II.1.2",
-        }
+    fn claims(&self, _: Problem) -> Option<Claims> {
+        claims(4, self.normalized, 4, "Kutta 1901; Hairer, Norsett and Wanner, Solving ODEs I, table II.1.2")
     }
 }
 
 impl<S: Real> Method<S> for Rk4 {
-    type Step = Rk4Step<S>;
-    fn prepare(&self, h: f64, body: &Body, _: &State<S>) -> Result<Rk4Step<S>, StepError> {
-        let h = S::of(usable(h)?);
-        Ok(Rk4Step { h, equations: Equations::of(body), normalized: self.normalized })
+    type Map<F: Field<S>> = Rk4Map<S, F>;
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Rk4Map<S, F> {
+        Rk4Map {
+            h: S::from_dd(h),
+            later: [h * 0.5, h],
+            equations: Equations::new(rotor, field),
+            normalized: self.normalized,
+        }
     }
 }
 
-impl<S: Real> Step<S> for Rk4Step<S> {
+impl<S: Real, F: Field<S>> Map<S> for Rk4Map<S, F> {
     #[inline]
-    fn step(&mut self, x: &mut State<S>) {
+    fn apply(&mut self, at: Time, point: &mut Point<S>) {
         let (h, half, two) = (self.h, self.h * S::of(0.5), S::of(2.0));
-        let k1 = self.equations.rate(x);
-        let k2 = self.equations.rate(&(*x + k1 * half));
-        let k3 = self.equations.rate(&(*x + k2 * half));
-        let k4 = self.equations.rate(&(*x + k3 * h));
-        *x = *x + (k1 + (k2 + k3) * two + k4) * (h / S::of(6.0));
+        let (x, [middle, end]) = (point.phase(), self.later.map(|duration| at.later(duration)));
+        let k1 = self.equations.rate(at, &x);
+        let k2 = self.equations.rate(middle, &(x + k1 * half));
+        let k3 = self.equations.rate(middle, &(x + k2 * half));
+        let k4 = self.equations.rate(end, &(x + k3 * h));
+        let mut x = x + (k1 + (k2 + k3) * two + k4) * (h / S::of(6.0));
         if self.normalized {
             x.attitude = x.attitude.normalized();
         }
+        point.set_phase(x);
     }
 }
 
@@ -106,42 +107,34 @@ impl<S: Real> Step<S> for Rk4Step<S> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExplicitEuler;
 
-/// A prepared step of [`ExplicitEuler`].
-#[derive(Clone, Copy, Debug)]
-pub struct ExplicitEulerStep<S> {
+/// A prepared [`ExplicitEuler`].
+#[derive(Clone, Debug)]
+pub struct ExplicitEulerMap<S, F> {
     h: S,
-    equations: Equations<S>,
+    equations: Equations<S, F>,
 }
 
 impl Claimed for ExplicitEuler {
     fn name(&self) -> String {
         "explicit-euler".into()
     }
-    fn claims(&self) -> Claims {
-        Claims {
-            order: 1,
-            symmetric: false,
-            poisson: false,
-            free: NOTHING,
-            exact_when_free: false,
-            potential: Some(NOTHING_HEAVY),
-            cost: Cost::RightSides(1),
-            source: "Euler 1768; Hairer, Norsett and Wanner, Solving ODEs I, (I.7.3)",
-        }
+    fn claims(&self, _: Problem) -> Option<Claims> {
+        claims(1, false, 1, "Euler 1768; Hairer, Norsett and Wanner, Solving ODEs I, (I.7.3)")
     }
 }
 
 impl<S: Real> Method<S> for ExplicitEuler {
-    type Step = ExplicitEulerStep<S>;
-    fn prepare(&self, h: f64, body: &Body, _: &State<S>) -> Result<ExplicitEulerStep<S>, StepError> {
-        Ok(ExplicitEulerStep { h: S::of(usable(h)?), equations: Equations::of(body) })
+    type Map<F: Field<S>> = ExplicitEulerMap<S, F>;
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> ExplicitEulerMap<S, F> {
+        ExplicitEulerMap { h: S::from_dd(h), equations: Equations::new(rotor, field) }
     }
 }
 
-impl<S: Real> Step<S> for ExplicitEulerStep<S> {
+impl<S: Real, F: Field<S>> Map<S> for ExplicitEulerMap<S, F> {
     #[inline]
-    fn step(&mut self, x: &mut State<S>) {
-        *x = *x + self.equations.rate(x) * self.h;
+    fn apply(&mut self, at: Time, point: &mut Point<S>) {
+        let x = point.phase();
+        point.set_phase(x + self.equations.rate(at, &x) * self.h);
     }
 }
 
@@ -149,43 +142,38 @@ impl<S: Real> Step<S> for ExplicitEulerStep<S> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SemiImplicitEuler;
 
-/// A prepared step of [`SemiImplicitEuler`].
-#[derive(Clone, Copy, Debug)]
-pub struct SemiImplicitEulerStep<S> {
+/// A prepared [`SemiImplicitEuler`].
+#[derive(Clone, Debug)]
+pub struct SemiImplicitEulerMap<S, F> {
     h: S,
-    equations: Equations<S>,
+    equations: Equations<S, F>,
 }
 
 impl Claimed for SemiImplicitEuler {
     fn name(&self) -> String {
         "semi-implicit-euler".into()
     }
-    fn claims(&self) -> Claims {
-        Claims {
-            order: 1,
-            symmetric: false,
-            poisson: false,
-            free: Kept { norm: true, ..NOTHING },
-            exact_when_free: false,
-            potential: Some(KeptHeavy { norm: true, ..NOTHING_HEAVY }),
-            cost: Cost::RightSides(1),
-            source: "common in game engines; momentum first, attitude with the new one",
-        }
+    fn claims(&self, _: Problem) -> Option<Claims> {
+        claims(1, true, 1, "common in game engines; momentum first, attitude with the new one")
     }
 }
 
 impl<S: Real> Method<S> for SemiImplicitEuler {
-    type Step = SemiImplicitEulerStep<S>;
-    fn prepare(&self, h: f64, body: &Body, _: &State<S>) -> Result<SemiImplicitEulerStep<S>, StepError> {
-        Ok(SemiImplicitEulerStep { h: S::of(usable(h)?), equations: Equations::of(body) })
+    type Map<F: Field<S>> = SemiImplicitEulerMap<S, F>;
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> SemiImplicitEulerMap<S, F> {
+        SemiImplicitEulerMap { h: S::from_dd(h), equations: Equations::new(rotor, field) }
     }
 }
 
-impl<S: Real> Step<S> for SemiImplicitEulerStep<S> {
+impl<S: Real, F: Field<S>> Map<S> for SemiImplicitEulerMap<S, F> {
     #[inline]
-    fn step(&mut self, x: &mut State<S>) {
-        x.momentum_body = x.momentum_body + self.equations.momentum_rate(x) * self.h;
-        let omega = x.momentum_body.times(self.equations.inverse_moments);
+    fn apply(&mut self, at: Time, point: &mut Point<S>) {
+        let inverse = self.equations.inverse_moments;
+        let mut x = point.phase();
+        let omega = x.momentum_body.times(inverse);
+        x.momentum_body = x.momentum_body + self.equations.momentum_rate(at, &x, omega) * self.h;
+        let omega = x.momentum_body.times(inverse);
         x.attitude = (x.attitude + x.attitude.rate(omega) * self.h).normalized();
+        point.set_phase(x);
     }
 }

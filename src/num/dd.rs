@@ -304,6 +304,14 @@ impl Real for Dd {
         Dd::exact(x)
     }
     #[inline]
+    fn from_dd(x: Dd) -> Dd {
+        x
+    }
+    #[inline]
+    fn rounded(x: Dd) -> Dd {
+        x
+    }
+    #[inline]
     fn sqrt(self) -> Dd {
         let s = self.hi.sqrt();
         if !ordinary(s) {
@@ -322,10 +330,6 @@ impl Real for Dd {
 }
 
 impl Precise for Dd {
-    #[inline]
-    fn from_dd(x: Dd) -> Self {
-        x
-    }
     #[inline]
     fn to_dd(self) -> Dd {
         self

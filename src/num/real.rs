@@ -26,6 +26,16 @@ pub trait Real:
     const ROUNDOFF: f64;
     /// The scalar nearest to `x`.
     fn of(x: f64) -> Self;
+    /// The scalar nearest to `x`, rounded once where it has fewer digits.
+    #[inline]
+    fn from_dd(x: Dd) -> Self {
+        Self::of(x.hi()) + Self::of(x.lo())
+    }
+    /// `x` rounded to the digits of this scalar: a length of time that every kernel then shares.
+    #[inline]
+    fn rounded(x: Dd) -> Dd {
+        Dd::of(x.hi())
+    }
     /// Square root; NaN of a negative number.
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians, the same bits on every CPU.
@@ -36,8 +46,6 @@ pub trait Real:
 
 /// A scalar that can be compared, rounded and turned into an angle: `f64` and [`Dd`].
 pub trait Precise: Real + PartialOrd {
-    /// Nearest value of this type.
-    fn from_dd(x: Dd) -> Self;
     /// The same value, exactly.
     fn to_dd(self) -> Dd;
     /// Nearest `f64`.
@@ -63,6 +71,10 @@ impl Real for f64 {
         x
     }
     #[inline]
+    fn from_dd(x: Dd) -> Self {
+        x.hi()
+    }
+    #[inline]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
@@ -77,10 +89,6 @@ impl Real for f64 {
 }
 
 impl Precise for f64 {
-    #[inline]
-    fn from_dd(x: Dd) -> Self {
-        x.to_f64()
-    }
     #[inline]
     fn to_dd(self) -> Dd {
         Dd::of(self)

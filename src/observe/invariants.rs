@@ -1,12 +1,11 @@
 //! Energy and momentum with more digits than were integrated.
 
-use crate::body::{Body, State};
+use crate::body::{Body, Point, Time};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
-/// The quantities that motion keeps, in double-double, along a kernel's axes and in its scale.
-///
-/// Free motion keeps them all; under gravity the energy and the vertical component of L are left.
+/// Energy and momentum of a point in double-double, in the solver frame. Which of them stay is the
+/// [body's](Body::conserved) to say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Invariants {
     /// Energy ½ m·I⁻¹m + U.
@@ -18,11 +17,11 @@ pub struct Invariants {
 }
 
 impl Invariants {
-    /// Of the state `x` as kernels see it.
-    pub fn of(body: &Body, x: &State<f64>) -> Self {
-        let x = State::<Dd>::of(*x);
+    /// Of the point `x` at the time `at`.
+    pub fn of(body: &Body, at: Time, x: &Point<f64>) -> Self {
+        let x = x.to_dd();
         Invariants {
-            energy: body.scaled_energy(&x),
+            energy: body.scaled_energy(at, &x),
             momentum_squared: x.momentum_body.norm_squared(),
             momentum_space: x.momentum_space(),
         }

@@ -2,9 +2,13 @@
 //! the statistics of drift. Takes states and series only.
 
 mod drift;
+mod errors;
+mod flips;
 mod invariants;
 mod monitor;
 
 pub use drift::{Drift, secular_drift};
+pub use errors::Errors;
 pub use invariants::Invariants;
-pub use monitor::{BLOCK, Errors, Monitor};
+pub(crate) use monitor::Memory;
+pub use monitor::{BLOCK, Monitor};

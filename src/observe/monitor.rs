@@ -1,67 +1,24 @@
 //! The largest errors over every step of a run.
 
-use crate::body::{Body, Gravity, State};
+use super::flips::Flips;
+use super::{Errors, Invariants};
+use crate::body::{Body, Clock, Conserved, Point, Problem, Time};
 use crate::num::dd::{two_prod, two_sum};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
-/// Relative errors of the invariants against the start; 0 for a free body at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
-    /// |E − E₀| / |E₀|; under gravity |E − E₀| / (T₀ + |c|), c the weight moment.
-    pub energy: f64,
-    /// ||m| − |m₀|| / |m₀|; under gravity |m| is not kept.
-    pub momentum: Option<f64>,
-    /// |L − L₀| / |L₀|, L in space; under gravity it is not kept.
-    pub momentum_vector: Option<f64>,
-    /// |L_z − L_z0| / √(2 I (T₀ + |c|)), z of space, I the largest moment; only under gravity.
-    pub momentum_z: Option<f64>,
-}
-
-impl Errors {
-    fn none(heavy: bool) -> Self {
-        let (free, heavy) = if heavy { (None, Some(0.0)) } else { (Some(0.0), None) };
-        Errors { energy: 0.0, momentum: free, momentum_vector: free, momentum_z: heavy }
-    }
-
-    fn max(self, other: Self) -> Self {
-        let max = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a.max(b));
-        Errors {
-            energy: self.energy.max(other.energy),
-            momentum: max(self.momentum, other.momentum),
-            momentum_vector: max(self.momentum_vector, other.momentum_vector),
-            momentum_z: max(self.momentum_z, other.momentum_z),
-        }
-    }
-
-    fn is_finite(self) -> bool {
-        let finite = |e: Option<f64>| e.is_none_or(f64::is_finite);
-        self.energy.is_finite()
-            && finite(self.momentum)
-            && finite(self.momentum_vector)
-            && finite(self.momentum_z)
-    }
-
-    /// Whether no error of `self` exceeds that of `other`; not with a NaN.
-    fn within(self, other: Self) -> bool {
-        let within = |a: Option<f64>, b: Option<f64>| a.zip(b).is_none_or(|(a, b)| a <= b);
-        self.energy <= other.energy
-            && within(self.momentum, other.momentum)
-            && within(self.momentum_vector, other.momentum_vector)
-            && within(self.momentum_z, other.momentum_z)
-    }
-}
-
-/// Watches every step of a run: the largest error of each invariant, and how often the body flipped.
+/// Watches the steps of a run: the largest error of each invariant, and how often the body flipped.
 ///
-/// Steps come in blocks. A block is first looked at in plain `f64`, with a bound on what rounding may have hidden;
-/// only where that cannot rule out a new maximum are the errors evaluated with error-free transformations, to
-/// about 1e-30. Both loops are branch-free over the block, so that the compiler can vectorise them. Under gravity
+/// Steps come in blocks. A block of free motion is first looked at in plain `f64`, with a bound on what rounding may have
+/// hidden; only where that cannot rule out a new maximum are the errors evaluated with error-free transformations, to
+/// about 1e-30. Both loops are branch-free over the block, so that the compiler can vectorise them. With forces
 /// every step is evaluated in double-double.
 #[derive(Clone, Debug)]
 pub struct Monitor {
+    body: Body,
+    clock: Clock,
     inverse_moments: Vec3<Dd>,
-    heavy: Option<Heavy>,
+    forced: Option<Forced>,
     energy: Dd,
     momentum_squared: Dd,
     momentum_space: Vec3<Dd>,
@@ -70,21 +27,61 @@ pub struct Monitor {
     loud: u32, // blocks since the last plain look, while plain looks do not help
 }
 
-/// Gravity, and what errors under it are measured by.
+/// What a motion with forces conserves, and what its errors are measured by.
 #[derive(Clone, Copy, Debug)]
-struct Heavy {
-    gravity: Gravity<Dd>,
-    energy: f64,
-    momentum: f64,
+struct Forced {
+    energy: bool,
+    momentum: bool,
+    momentum_vector: bool,
+    momentum_z: bool,
+    /// Rate n of Jacobi's constant.
+    jacobi: Option<f64>,
+    energy_scale: f64,
+    momentum_scale: f64,
+    jacobi_scale: f64,
 }
 
-impl Heavy {
-    fn of(body: &Body, kinetic: Dd) -> Option<Self> {
-        let gravity = body.gravity::<Dd>()?;
-        let energy = (kinetic + gravity.weight_moment.norm_of_any_size()).hi();
-        let largest = body.moments::<f64>().magnitude();
-        Some(Heavy { gravity, energy, momentum: (2.0 * largest * energy).sqrt() })
+impl Forced {
+    fn of(body: &Body, at: Time, start: &Point<Dd>, kinetic: Dd) -> Option<Self> {
+        if body.problem() == Problem::Free {
+            return None;
+        }
+        let mut energy = kinetic;
+        if let Some(gravity) = body.gravity::<Dd>() {
+            energy = energy + gravity.weight_moment.norm_of_any_size();
+        }
+        if !body.forces().is_empty() {
+            energy = energy + body.size_of_forces(at, start);
+        }
+        let energy_scale = energy.hi();
+        let largest = body.rotor().moments::<f64>().magnitude();
+        let conserved = body.conserved();
+        let has = |quantity| conserved.contains(&quantity);
+        let jacobi = conserved.iter().find_map(|quantity| match quantity {
+            Conserved::Jacobi { rate } if !has(Conserved::Energy) => Some(*rate),
+            _ => None,
+        });
+        let turning = (start.momentum_body.norm_of_any_size() * jacobi.unwrap_or(0.0)).magnitude();
+        Some(Forced {
+            energy: has(Conserved::Energy),
+            momentum: has(Conserved::MomentumNorm),
+            momentum_vector: has(Conserved::Momentum),
+            momentum_z: has(Conserved::MomentumZ) && !has(Conserved::Momentum),
+            jacobi,
+            energy_scale,
+            momentum_scale: (2.0 * largest * energy_scale).sqrt(),
+            jacobi_scale: energy_scale + turning,
+        })
     }
+}
+
+/// What a monitor has seen so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Memory {
+    pub(crate) worst: Errors,
+    pub(crate) flips: u64,
+    pub(crate) positive: Option<bool>,
+    pub(crate) loud: u32,
 }
 
 /// How many steps a run takes between two looks at them.
@@ -101,50 +98,57 @@ const DEPTH: [f64; 3] = [6.0, 5.0, 24.0];
 type Differences = [f64; 3];
 
 impl Monitor {
-    /// Begins at the state `x` as kernels see it.
-    pub fn new(body: &Body, x: &State<f64>) -> Self {
-        let inverse_moments = body.inverse_moments();
-        let start = State::<Dd>::of(*x);
-        let kinetic = kinetic(inverse_moments, start.momentum_body);
-        let heavy = Heavy::of(body, kinetic);
-        let mut flips = Flips { axis: middle_axis(body.moments()), positive: None, count: 0 };
+    /// Begins at the point `x`, whose time is that of its step by `clock`.
+    pub fn new(body: &Body, clock: Clock, x: &Point<f64>) -> Self {
+        let rotor = body.rotor();
+        let at = clock.at(x.steps());
+        let start = x.to_dd();
+        let forced = Forced::of(body, at, &start, rotor.kinetic_energy(start.momentum_body));
+        let mut flips = Flips::new(rotor.middle_axis());
         flips.observe(x.momentum_body);
-        Monitor {
-            inverse_moments,
-            heavy,
-            energy: body.scaled_energy(&start),
+        let mut monitor = Monitor {
+            body: body.clone(),
+            clock,
+            inverse_moments: rotor.inverse_moments(),
+            forced,
+            energy: body.scaled_energy(at, &start),
             momentum_squared: start.momentum_body.norm_squared(),
             momentum_space: start.momentum_space(),
-            worst: Errors::none(heavy.is_some()),
+            worst: Errors::NONE,
             flips,
             loud: 0,
-        }
+        };
+        monitor.worst = monitor.errors(x);
+        monitor
     }
 
-    /// Takes note of consecutive steps, at most [`BLOCK`]; returns how many come before the first state that is
+    /// Takes note of consecutive steps, at most [`BLOCK`]; returns how many come before the first point that is
     /// not finite, and counts only those.
-    pub fn observe(&mut self, states: &[State<f64>]) -> usize {
-        if self.heavy.is_some() {
-            return self.observe_heavy(states);
+    pub fn observe(&mut self, points: &[Point<f64>]) -> usize {
+        if self.forced.is_some() {
+            return self.observe_forced(points);
         }
         let reference = Reference::of(self);
-        if self.loud == 0 && self.is_quiet(&reference, states) {
-            return self.count(states);
+        if self.loud == 0 && self.is_quiet(&reference, points) {
+            return self.count(points);
         }
         self.loud = (self.loud + 1) % LOUD;
-        let mut states = states;
-        let mut found = largest(states, |x| reference.compensated(x));
+        let mut points = points;
+        let mut found = largest(points, |x| reference.compensated(x));
         if !found.iter().all(|d| d.is_finite()) {
-            let holds = |x: &&State<f64>| reference.compensated(x).iter().all(|d| d.is_finite());
-            states = &states[..states.iter().take_while(holds).count()];
-            found = largest(states, |x| reference.compensated(x));
+            let holds = |x: &&Point<f64>| reference.compensated(x).iter().all(|d| d.is_finite());
+            points = &points[..points.iter().take_while(holds).count()];
+            found = largest(points, |x| reference.compensated(x));
         }
         self.worst = self.worst.max(self.errors_of(found));
-        self.count(states)
+        self.count(points)
     }
 
-    fn observe_heavy(&mut self, states: &[State<f64>]) -> usize {
-        for (n, x) in states.iter().enumerate() {
+    fn observe_forced(&mut self, points: &[Point<f64>]) -> usize {
+        for (n, x) in points.iter().enumerate() {
+            if !x.is_finite() {
+                return n;
+            }
             let now = self.errors(x);
             if !now.is_finite() {
                 return n;
@@ -152,50 +156,78 @@ impl Monitor {
             self.worst = self.worst.max(now);
             self.flips.observe(x.momentum_body);
         }
-        states.len()
+        points.len()
     }
 
     /// Whether plain evaluation rules out a new maximum; never with a NaN.
-    fn is_quiet(&self, reference: &Reference, states: &[State<f64>]) -> bool {
-        let (plain, slack) = (largest(states, |x| reference.plain(x)), reference.slack());
+    fn is_quiet(&self, reference: &Reference, points: &[Point<f64>]) -> bool {
+        let (plain, slack) = (largest(points, |x| reference.plain(x)), reference.slack());
         self.errors_of([0, 1, 2].map(|k| plain[k] + slack[k])).within(self.worst)
     }
 
-    fn count(&mut self, states: &[State<f64>]) -> usize {
-        for x in states {
+    fn count(&mut self, points: &[Point<f64>]) -> usize {
+        for x in points {
             self.flips.observe(x.momentum_body);
         }
-        states.len()
+        points.len()
     }
 
-    /// Errors of the state `x` itself, in double-double.
-    pub fn errors(&self, x: &State<f64>) -> Errors {
-        let x = State::<Dd>::of(*x);
-        let e = (self.energy_of(&x) - self.energy).magnitude();
-        if let Some(heavy) = self.heavy {
-            let z = (x.momentum_space()[2] - self.momentum_space[2]).magnitude();
-            let momentum_z = Some(z / heavy.momentum);
-            return Errors { energy: e / heavy.energy, momentum_z, ..Errors::none(true) };
+    /// Errors of the point `x` itself, in double-double.
+    pub fn errors(&self, x: &Point<f64>) -> Errors {
+        let Some(forced) = &self.forced else {
+            let kinetic = kinetic(self.inverse_moments, x.to_dd().momentum_body);
+            let now = self.invariants_with(kinetic, x);
+            return self.errors_of([
+                (now.energy - self.energy).magnitude(),
+                (now.momentum_squared - self.momentum_squared).magnitude(),
+                (now.momentum_space - self.momentum_space).norm().magnitude(),
+            ]);
+        };
+        let energy = if forced.energy || forced.jacobi.is_some() { self.energy_of(x) } else { self.energy };
+        let now = self.invariants_with(energy, x);
+        let e = now.energy - self.energy;
+        let l = now.momentum_space - self.momentum_space;
+        let relative = |error: f64, scale: f64| {
+            // a start at rest where potential and torque are zero has no scale of its own
+            let scale = if scale > 0.0 { scale } else { self.kinetic_of(x).hi() };
+            if error == 0.0 { 0.0 } else { error / scale }
+        };
+        let size = self.momentum_squared.sqrt().hi();
+        Errors {
+            energy: forced.energy.then(|| relative(e.magnitude(), forced.energy_scale)),
+            momentum: forced
+                .momentum
+                .then(|| relative((now.momentum() - self.momentum_squared.sqrt()).magnitude(), size)),
+            momentum_vector: forced.momentum_vector.then(|| relative(l.norm().magnitude(), size)),
+            momentum_z: forced.momentum_z.then(|| relative(l[2].magnitude(), forced.momentum_scale)),
+            jacobi: forced.jacobi.map(|n| relative((e - l[2] * n).magnitude(), forced.jacobi_scale)),
         }
-        self.errors_of([
-            e,
-            (x.momentum_body.norm_squared() - self.momentum_squared).magnitude(),
-            (x.momentum_space() - self.momentum_space).norm().magnitude(),
-        ])
     }
 
-    /// (E − E₀) / E₀ of the state `x`, with its sign; 0 at rest. Under gravity relative to T₀ + |c|.
-    pub fn energy_change(&self, x: &State<f64>) -> f64 {
-        let scale = self.heavy.map_or(self.energy, |heavy| Dd::of(heavy.energy));
+    /// (E − E₀) / E₀ of the point `x`, with its sign; 0 at rest. With forces relative to the scale of [`Errors`].
+    pub fn energy_change(&self, x: &Point<f64>) -> f64 {
+        let scale = self.forced.map_or(self.energy, |forced| Dd::of(forced.energy_scale));
         if scale.hi() == 0.0 {
             return 0.0;
         }
-        ((self.energy_of(&State::of(*x)) - self.energy) / scale).hi()
+        ((self.energy_of(x) - self.energy) / scale).hi()
     }
 
-    fn energy_of(&self, x: &State<Dd>) -> Dd {
-        let kinetic = kinetic(self.inverse_moments, x.momentum_body);
-        self.heavy.map_or(kinetic, |heavy| kinetic + heavy.gravity.potential(x.attitude))
+    fn energy_of(&self, x: &Point<f64>) -> Dd {
+        self.body.scaled_energy(self.clock.at(x.steps()), &x.to_dd())
+    }
+
+    fn kinetic_of(&self, x: &Point<f64>) -> Dd {
+        kinetic(self.inverse_moments, x.to_dd().momentum_body)
+    }
+
+    fn invariants_with(&self, energy: Dd, x: &Point<f64>) -> Invariants {
+        let x = x.to_dd();
+        Invariants {
+            energy,
+            momentum_squared: x.momentum_body.norm_squared(),
+            momentum_space: x.momentum_space(),
+        }
     }
 
     /// The largest errors so far.
@@ -208,19 +240,34 @@ impl Monitor {
         self.flips.count
     }
 
+    /// What is written down of a monitor: the largest errors, flips, the sign along the middle axis, loudness.
+    pub(crate) fn memory(&self) -> Memory {
+        let Flips { positive, count, .. } = self.flips;
+        Memory { worst: self.worst, flips: count, positive, loud: self.loud }
+    }
+
+    /// Goes on from what was written down.
+    pub(crate) fn remember(&mut self, memory: Memory) {
+        self.worst = memory.worst;
+        self.flips.count = memory.flips;
+        self.flips.positive = memory.positive;
+        self.loud = memory.loud;
+    }
+
     fn errors_of(&self, [e, m2, l]: Differences) -> Errors {
         let squared = self.momentum_squared.hi();
         if squared == 0.0 {
-            return Errors::none(false); // at rest nothing moves
+            let zero = Some(0.0); // at rest nothing moves
+            return Errors { energy: zero, momentum: zero, momentum_vector: zero, ..Errors::NONE };
         }
         // ||m| − |m₀|| = ||m|² − |m₀|²| / (|m| + |m₀|); the sign of the difference is not known here, and to first
         // order does not matter: the smaller root gives the larger error
         let relative = m2 / squared;
         Errors {
-            energy: e / self.energy.hi(),
+            energy: Some(e / self.energy.hi()),
             momentum: Some(relative / (1.0 + (1.0 - relative.min(1.0)).sqrt())),
             momentum_vector: Some(l / squared.sqrt()),
-            momentum_z: None,
+            ..Errors::NONE
         }
     }
 }
@@ -246,7 +293,7 @@ impl Reference {
     }
 
     #[inline]
-    fn plain(&self, x: &State<f64>) -> Differences {
+    fn plain(&self, x: &Point<f64>) -> Differences {
         let m = x.momentum_body;
         let l = x.momentum_space() - self.momentum_space[0];
         [
@@ -262,7 +309,7 @@ impl Reference {
     }
 
     #[inline]
-    fn compensated(&self, x: &State<f64>) -> Differences {
+    fn compensated(&self, x: &Point<f64>) -> Differences {
         let m = x.momentum_body;
         let [high, low] = self.inverse_moments;
         let mut twice_energy = Sum::minus([2.0 * self.energy[0], 2.0 * self.energy[1]]);
@@ -335,9 +382,9 @@ impl Sum {
 
 /// The largest of each difference over the states; NaN where one is NaN.
 #[inline]
-fn largest(states: &[State<f64>], differences: impl Fn(&State<f64>) -> Differences) -> Differences {
+fn largest(points: &[Point<f64>], differences: impl Fn(&Point<f64>) -> Differences) -> Differences {
     let mut worst = [0.0; 3];
-    for x in states {
+    for x in points {
         let now = differences(x);
         for k in 0..3 {
             worst[k] = if now[k] <= worst[k] { worst[k] } else { now[k] };
@@ -346,36 +393,7 @@ fn largest(states: &[State<f64>], differences: impl Fn(&State<f64>) -> Differenc
     worst
 }
 
-/// Changes of sign of the momentum along the middle axis.
-#[derive(Clone, Copy, Debug)]
-struct Flips {
-    axis: usize,
-    positive: Option<bool>,
-    count: u64,
-}
-
-impl Flips {
-    #[inline]
-    fn observe(&mut self, m: Vec3<f64>) {
-        let component = m[self.axis];
-        if component == 0.0 {
-            return;
-        }
-        let positive = component > 0.0;
-        if self.positive.is_some_and(|before| before != positive) {
-            self.count += 1;
-        }
-        self.positive = Some(positive);
-    }
-}
-
 /// ½ m·I⁻¹m.
 fn kinetic<S: Real>(inverse_moments: Vec3<S>, m: Vec3<S>) -> S {
     m.times(inverse_moments).dot(m) * S::of(0.5)
-}
-
-fn middle_axis(moments: Vec3<f64>) -> usize {
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
-    order[1]
 }

@@ -47,6 +47,12 @@ impl<S: Real> Quat<S> {
         Quat { w: S::of(0.0), v: Vec3::zero() }
     }
 
+    /// Each component mapped by `f`.
+    #[inline]
+    pub fn map<T>(self, mut f: impl FnMut(S) -> T) -> Quat<T> {
+        Quat { w: f(self.w), v: self.v.map(f) }
+    }
+
     /// The same numbers in another scalar.
     #[inline]
     pub fn of(q: Quat<f64>) -> Self {

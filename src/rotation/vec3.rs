@@ -25,6 +25,12 @@ impl<S: Real> Vec3<S> {
         e
     }
 
+    /// Each component mapped by `f`.
+    #[inline]
+    pub fn map<T>(self, f: impl FnMut(S) -> T) -> Vec3<T> {
+        Vec3(self.0.map(f))
+    }
+
     /// The same numbers in another scalar.
     #[inline]
     pub fn of(v: Vec3<f64>) -> Self {

@@ -1,7 +1,9 @@
 //! Convergence orders, measured in double-double so that no plateau of rounding flatters or hides a slope.
 
-use crate::body::{Body, State};
-use crate::flow::FreeMotion;
+use thiserror::Error;
+
+use crate::body::{Body, Clock, Point};
+use crate::flow::{ExactMotion, NoClosedForm};
 use crate::method::{AnyMethod, StepError};
 use crate::num::Dd;
 use crate::rotation::rotation_angle;
@@ -17,44 +19,62 @@ pub struct Halving {
     pub momentum_error: f64,
 }
 
-/// Errors of free motion after the time `span` for steps `span / 2^k`, k in `exponents`, integrated in double-double.
+/// Why an order cannot be measured.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum HalvingError {
+    /// The method does not take the step or the body.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// There is no exact motion to compare with.
+    #[error(transparent)]
+    NoClosedForm(#[from] NoClosedForm),
+    /// More halvings than steps can be counted.
+    #[error("{exponent} halvings make 2^{exponent} steps; at most 2^53 can be counted")]
+    TooMany {
+        /// How often the span was to be halved.
+        exponent: u32,
+    },
+}
+
+/// Errors of exact motion after the time `span` for steps `span / 2^k`, k in `exponents`, integrated in double-double.
 ///
-/// `start` is a state as kernels see it; `span` should be a power of two, so that every step is exact.
+/// `span` should be a power of two, so that every step is exact.
 ///
 /// # Errors
-/// A span that is no usable step.
+/// A span that is no usable step, a body that the method is not for, or one whose motion has no closed form.
 pub fn halvings(
     method: &dyn AnyMethod,
     body: &Body,
-    start: &State<Dd>,
+    start: &Point<Dd>,
     span: f64,
     exponents: core::ops::Range<u32>,
-) -> Result<Vec<Halving>, StepError> {
-    let exact = FreeMotion::new(body, *start).inside_at_dd(Dd::from(span));
+) -> Result<Vec<Halving>, HalvingError> {
+    let exact = ExactMotion::from_point(body, *start)?.point_at_dd(Dd::from(span));
     halvings_against(&exact, method, body, start, span, exponents)
 }
 
-/// As [`halvings`], for any body, against the state `exact` at the time `span`.
+/// As [`halvings`], for any body, against the point `exact` at the time `span`.
 ///
 /// # Errors
-/// As [`halvings`], or a body that the method is not for.
+/// As [`halvings`].
 pub fn halvings_against(
-    exact: &State<Dd>,
+    exact: &Point<Dd>,
     method: &dyn AnyMethod,
     body: &Body,
-    start: &State<Dd>,
+    start: &Point<Dd>,
     span: f64,
     exponents: core::ops::Range<u32>,
-) -> Result<Vec<Halving>, StepError> {
+) -> Result<Vec<Halving>, HalvingError> {
     exponents
-        .map(|k| {
-            let steps = 1_u64 << k;
+        .map(|exponent| {
+            if exponent > 53 {
+                return Err(HalvingError::TooMany { exponent });
+            }
+            let steps = 1_u64 << exponent;
             let h = span / steps as f64;
             let mut x = *start;
-            let mut step = method.prepare_dd(h, body, &x)?;
-            for _ in 0..steps {
-                step.step(&mut x);
-            }
+            method.prepare_dd(Clock::new(h), body)?.steps(&mut x, steps);
             let difference = x.momentum_body - exact.momentum_body;
             Ok(Halving {
                 h,

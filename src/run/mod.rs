@@ -1,18 +1,24 @@
-//! Long propagation: steps counted in `u64`, samples at scheduled steps, runs that diverge reported as data.
+//! Long propagation: steps counted in `u64`, samples at scheduled steps or times, runs that can be written down and taken
+//! up again, runs that diverge reported as data.
 
+mod checkpoint;
 mod convergence;
 mod schedule;
 
-pub use convergence::{Halving, halvings, halvings_against, observed_order};
-pub use schedule::Schedule;
+pub use checkpoint::{Checkpoint, CheckpointError};
+pub use convergence::{Halving, HalvingError, halvings, halvings_against, observed_order};
+pub use schedule::{Schedule, ScheduleError};
+
+use core::fmt;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector3;
 use thiserror::Error;
 
-use crate::body::{Body, State, StateError};
-use crate::method::{Advance, AnyMethod, StepError};
+use crate::body::{Body, Clock, Point, State, StateError, Witness};
+use crate::method::{AnyMethod, Step, StepError};
 use crate::num::{Dd, Precise, Shown};
-use crate::observe::{Errors, Invariants, Monitor};
+use crate::observe::{BLOCK, Errors, Invariants, Monitor};
 
 /// An implicit solve that ends further than this from its equation, relative, is no solution: the invariants would be
 /// lost by as much in every step. Rounding alone leaves about 1e-16.
@@ -25,58 +31,91 @@ const CHUNK: u64 = 4096;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use polhode::body::{Body, Inertia};
+/// use polhode::body::{Body, Conserved, Inertia};
 /// use polhode::method::method;
 /// use polhode::run::{Run, Schedule};
 ///
 /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
-/// let mut run = Run::new(method("lie-poisson")?.as_ref(), &body, &start, 0.01)?;
+/// let mut run = Run::new(&method("lie-poisson")?, &body, &start, 0.01)?;
 /// for sample in run.samples(Schedule::logarithmic(100_000, 2)) {
-///     let sample = sample?;
-///     assert!(sample.worst.energy < 1e-6 && sample.worst.momentum.unwrap_or_default() < 1e-14);
+///     let worst = sample?.worst;
+///     assert!(worst.of(Conserved::Energy).is_some_and(|error| error < 1e-6));
+///     assert!(worst.of(Conserved::MomentumNorm).is_some_and(|error| error < 1e-14));
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Run {
     body: Body,
-    step: Box<dyn Advance>,
-    h: f64,
-    start: State<f64>,
-    state: State<f64>,
-    steps: u64,
+    method: String,
+    step: Box<dyn Step<f64>>,
+    /// The same step, whose forces are looked at one by one, and what was seen; with forces only.
+    probe: Option<(Box<dyn Step<f64>>, Witness)>,
+    clock: Clock,
+    watch: Watch,
+    start: Point<f64>,
+    point: Point<f64>,
     monitor: Monitor,
+    residual: f64,
+}
+
+/// How often the largest errors of a run are looked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Watch {
+    /// At every step.
+    #[default]
+    EveryStep,
+    /// At samples alone: [`Sample::worst`] is the largest over them, and flips are not counted.
+    AtSamples,
+    /// Not at all: a step costs what the bare method costs. [`Sample::errors`] is still that of the sample.
+    Never,
+}
+
+impl fmt::Display for Watch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Watch::EveryStep => "every-step",
+            Watch::AtSamples => "at-samples",
+            Watch::Never => "never",
+        })
+    }
 }
 
 /// A run as it stands after a number of steps.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Sample {
     /// Steps taken.
     pub steps: u64,
     /// Time since the start, steps · h, s: exact.
     pub elapsed: Dd,
+    /// Time, s: that of the start and what has elapsed since.
+    pub time: Dd,
     /// Attitude and momentum, body axes.
-    pub state: State<f64>,
-    /// The same along a kernel's axes, as it was integrated.
-    pub inside: State<f64>,
+    pub state: State,
+    /// The same in the solver frame, as it was integrated.
+    pub point: Point<f64>,
     /// Angular velocity in body axes, rad/s.
     pub omega_body: Vector3<f64>,
-    /// Energy, J: kinetic and, under gravity, potential.
+    /// Kinetic and potential energy, J.
     pub energy: f64,
     /// |m|, kg m²/s.
     pub momentum: f64,
-    /// (E − E₀) / E₀ of this state, with its sign; relative to T₀ + |c| under gravity.
+    /// (E − E₀) / E₀ of this state, with its sign; with forces relative to the scale of [`Errors`].
     pub energy_change: f64,
     /// Errors of this state.
     pub errors: Errors,
-    /// The largest errors over every step so far.
+    /// The largest errors of what was watched so far; `None` each where nothing was.
     pub worst: Errors,
-    /// How often the momentum along the axis of the middle moment has changed sign so far.
-    pub flips: u64,
+    /// How often the errors were looked for.
+    pub watch: Watch,
+    /// How often the momentum along the axis of the middle moment has changed sign so far, where every step was watched.
+    pub flips: Option<u64>,
 }
 
 /// Why a run could not start or go on.
 #[derive(Clone, Debug, Error)]
+#[non_exhaustive]
 pub enum RunError {
     /// The step is not usable.
     #[error(transparent)]
@@ -84,17 +123,41 @@ pub enum RunError {
     /// The start is not usable.
     #[error(transparent)]
     State(#[from] StateError),
+    /// The checkpoint is not that of this run.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// The run is further on already.
+    #[error("{asked} steps were asked for, and the run has taken {taken}; it goes forwards only")]
+    Behind {
+        /// Steps asked for.
+        asked: u64,
+        /// Steps taken.
+        taken: u64,
+    },
     /// The next step leaves the range of numbers.
     #[error("diverged after {} steps, t = {} s: the next state is not finite; take a smaller step or another method",
-        .last.steps, Shown(.last.elapsed.to_f64()))]
+        .last.steps, Shown(.last.time.to_f64()))]
     Diverged {
+        /// The last finite sample.
+        last: Box<Sample>,
+    },
+    /// A force is not a finite number.
+    #[error(
+        "{force} is not finite at t = {} s, after {} steps; the state at t = {} s before it is finite: q = {:?}, omega_body = {:?} rad/s",
+        Shown(*.time), .last.steps, Shown(.last.time.to_f64()), .last.state.attitude.components(), .last.omega_body.as_slice()
+    )]
+    Force {
+        /// Name of the force.
+        force: String,
+        /// When it was evaluated, s.
+        time: f64,
         /// The last finite sample.
         last: Box<Sample>,
     },
     /// The equations of an implicit step could not be solved.
     #[error(
         "after {} steps, t = {} s, an implicit step was left with a relative residual of {residual:.1e} (at most {SOLVED:e}): \
-         it turns too far in one step; take a smaller one", .last.steps, Shown(.last.elapsed.to_f64())
+         it turns too far in one step; take a smaller one", .last.steps, Shown(.last.time.to_f64())
     )]
     Unsolved {
         /// The sample at which it was noticed.
@@ -105,56 +168,201 @@ pub enum RunError {
 }
 
 impl Run {
-    /// Prepares `method` for `body` with the step `h` (s), from the state `start` (body axes).
+    /// Prepares `method` for `body` with the step `h` (s), from the state `start` (body axes) at t = 0.
     ///
     /// # Errors
-    /// A step or a start that is not usable.
-    pub fn new(method: &dyn AnyMethod, body: &Body, start: &State<f64>, h: f64) -> Result<Self, RunError> {
-        let exact = body.enter(start)?;
-        let start = State {
-            attitude: crate::rotation::Quat::from_components(exact.attitude.components().map(Dd::to_f64)),
-            momentum_body: crate::rotation::Vec3(exact.momentum_body.0.map(Dd::to_f64)),
+    /// A step or a start that is not usable, or a body that the method is not for.
+    pub fn new(method: &dyn AnyMethod, body: &Body, start: &State, h: f64) -> Result<Self, RunError> {
+        Run::by_clock(method, body, start, Clock::new(h))
+    }
+
+    /// As [`new`](Self::new), by the steps and from the time of `clock` on.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn by_clock(
+        method: &dyn AnyMethod,
+        body: &Body,
+        start: &State,
+        clock: Clock,
+    ) -> Result<Self, RunError> {
+        Run::from_point(method, body, body.enter(start)?.to_f64(), clock)
+    }
+
+    /// As [`by_clock`](Self::by_clock), from a point of the solver frame.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_point(
+        method: &dyn AnyMethod,
+        body: &Body,
+        start: Point<f64>,
+        clock: Clock,
+    ) -> Result<Self, RunError> {
+        let probe = if body.forces().is_empty() {
+            None
+        } else {
+            let witness = Arc::new(OnceLock::new());
+            let watched = body.witnessed(Arc::clone(&witness));
+            Some((method.prepare_f64(clock, &watched)?, witness))
         };
         Ok(Run {
-            step: method.prepare_f64(h, body, &start)?,
-            monitor: Monitor::new(body, &start),
+            step: method.prepare_f64(clock, body)?,
+            method: method.name(),
+            probe,
+            monitor: Monitor::new(body, clock, &start),
             body: body.clone(),
-            h,
+            clock,
+            watch: Watch::default(),
             start,
-            state: start,
-            steps: 0,
+            point: start,
+            residual: 0.0,
         })
     }
 
-    /// The start along a kernel's axes, the doubles that are integrated: what an exact reference has to start from.
-    pub fn start(&self) -> State<f64> {
+    /// The same run, watched as `watch` says from here on.
+    #[must_use]
+    pub fn watching(mut self, watch: Watch) -> Self {
+        self.watch = watch;
+        self
+    }
+
+    /// The run as it stands, to be written down.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::body::{Body, Inertia};
+    /// use polhode::method::method;
+    /// use polhode::run::Run;
+    /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+    /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+    /// let rattle = method("rattle")?;
+    /// let mut straight = Run::new(&rattle, &body, &start, 0.01)?;
+    /// straight.advance_to(1000)?;
+    /// let text = straight.checkpoint().to_string();
+    /// let mut resumed = Run::resume(&rattle, &body, &text.parse()?)?;
+    /// assert_eq!(resumed.advance_to(2000)?.state, straight.advance_to(2000)?.state);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            method: self.method.clone(),
+            body: checkpoint::identity(&self.body),
+            clock: self.clock,
+            watch: self.watch,
+            start: self.start,
+            point: self.point,
+            memory: self.monitor.memory(),
+            residual: self.worst_residual(),
+        }
+    }
+
+    /// Takes up the run of `checkpoint`: it goes on as if it had not been interrupted, bit for bit.
+    ///
+    /// # Errors
+    /// A method or a body that is not that of the run.
+    pub fn resume(method: &dyn AnyMethod, body: &Body, checkpoint: &Checkpoint) -> Result<Self, RunError> {
+        checkpoint.check(&method.name(), body)?;
+        let mut run = Run::from_point(method, body, checkpoint.start, checkpoint.clock)?;
+        run.watch = checkpoint.watch;
+        run.point = checkpoint.point;
+        run.monitor.remember(checkpoint.memory);
+        run.residual = checkpoint.residual;
+        Ok(run)
+    }
+
+    /// The start in the solver frame, the doubles that are integrated: what an exact reference has to start from.
+    pub fn start(&self) -> Point<f64> {
         self.start
     }
 
     /// Goes on to `steps` steps from the start and looks at the state there.
     ///
     /// # Errors
-    /// [`RunError::Diverged`] or [`RunError::Unsolved`], with the last sample that can be relied on.
+    /// [`RunError::Diverged`], [`RunError::Force`] or [`RunError::Unsolved`], with the last sample that can be relied on;
+    /// [`RunError::Behind`] where the run is further on already.
     pub fn advance_to(&mut self, steps: u64) -> Result<Sample, RunError> {
-        while self.steps < steps {
-            let wanted = CHUNK.min(steps - self.steps);
-            let taken = self.step.advance(&mut self.state, wanted, &mut self.monitor);
-            self.steps += taken;
-            let residual = self.step.worst_residual();
+        let taken = self.point.steps();
+        if steps < taken {
+            return Err(RunError::Behind { asked: steps, taken });
+        }
+        while self.point.steps() < steps {
+            let wanted = CHUNK.min(steps - self.point.steps());
+            let finite = match self.watch {
+                Watch::EveryStep => self.watched(wanted),
+                Watch::AtSamples | Watch::Never => self.unwatched(wanted),
+            };
+            let residual = self.worst_residual();
             if residual > SOLVED {
                 return Err(RunError::Unsolved { last: Box::new(self.sample()), residual });
             }
-            if taken < wanted {
-                return Err(RunError::Diverged { last: Box::new(self.sample()) });
+            if !finite {
+                return Err(self.broken());
             }
+        }
+        if self.watch == Watch::AtSamples && self.monitor.observe(&[self.point]) == 0 {
+            return Err(self.broken());
         }
         Ok(self.sample())
     }
 
-    /// Samples at the steps of `schedule`; ends after the first error.
+    /// Takes `wanted` steps and looks at each; false, and the run at the last finite point, if one is not finite.
+    fn watched(&mut self, mut wanted: u64) -> bool {
+        let mut block = [self.point; BLOCK];
+        while wanted > 0 {
+            let before = self.point;
+            let block = &mut block[..wanted.min(BLOCK as u64) as usize];
+            self.step.fill(&mut self.point, block);
+            let finite = self.monitor.observe(block);
+            if finite < block.len() {
+                self.point = if finite == 0 { before } else { block[finite - 1] };
+                return false;
+            }
+            wanted -= block.len() as u64;
+        }
+        true
+    }
+
+    /// Takes `wanted` steps; false, and the run at the last finite point, if one is not finite.
+    fn unwatched(&mut self, wanted: u64) -> bool {
+        let before = self.point;
+        self.step.steps(&mut self.point, wanted);
+        if self.point.is_finite() {
+            return true;
+        }
+        self.point = before;
+        loop {
+            let mut next = self.point;
+            self.step.step(&mut next);
+            if !next.is_finite() {
+                return false;
+            }
+            self.point = next;
+        }
+    }
+
+    /// Why the next step is not finite.
+    fn broken(&mut self) -> RunError {
+        let last = Box::new(self.sample());
+        if let Some((step, witness)) = &mut self.probe {
+            let mut next = self.point;
+            step.step(&mut next);
+            if let Some(failure) = witness.get() {
+                return RunError::Force { force: failure.force.clone(), time: failure.time, last };
+            }
+        }
+        RunError::Diverged { last }
+    }
+
+    fn worst_residual(&self) -> f64 {
+        self.residual.max(self.step.worst_residual())
+    }
+
+    /// Samples at the steps of `schedule`, those left out that lie behind; ends after the first error.
     pub fn samples(&mut self, schedule: Schedule) -> impl Iterator<Item = Result<Sample, RunError>> {
         let mut failed = false;
-        schedule.into_iter().map_while(move |steps| {
+        let taken = self.point.steps();
+        schedule.into_iter().filter(move |steps| *steps >= taken).map_while(move |steps| {
             if failed {
                 return None;
             }
@@ -166,26 +374,24 @@ impl Run {
 
     /// The run as it stands.
     pub fn sample(&self) -> Sample {
-        let invariants = Invariants::of(&self.body, &self.state);
+        let at = self.clock.at(self.point.steps());
+        let invariants = Invariants::of(&self.body, at, &self.point);
         let scale = self.body.scale();
+        let watched = self.watch == Watch::EveryStep;
         Sample {
-            steps: self.steps,
-            elapsed: elapsed(self.steps, self.h),
-            state: self.body.leave(&self.state),
-            inside: self.state,
-            omega_body: self.body.omega_body(&self.state),
+            steps: self.point.steps(),
+            elapsed: self.clock.elapsed(self.point.steps()),
+            time: at.dd(),
+            state: self.body.leave(&self.point),
+            point: self.point,
+            omega_body: self.body.omega_of(&self.point),
             energy: invariants.energy.hi() * scale,
             momentum: invariants.momentum().hi() * scale,
-            energy_change: self.monitor.energy_change(&self.state),
-            errors: self.monitor.errors(&self.state),
-            worst: self.monitor.worst(),
-            flips: self.monitor.flips(),
+            energy_change: self.monitor.energy_change(&self.point),
+            errors: self.monitor.errors(&self.point),
+            worst: if self.watch == Watch::Never { Errors::NONE } else { self.monitor.worst() },
+            watch: self.watch,
+            flips: watched.then(|| self.monitor.flips()),
         }
     }
-}
-
-/// steps · h without rounding: an increment `t += h` would lose a second in a long enough run.
-fn elapsed(steps: u64, h: f64) -> Dd {
-    let (high, low) = (steps >> 32, steps & 0xffff_ffff);
-    Dd::product(high as f64 * 4_294_967_296.0, h) + Dd::product(low as f64, h)
 }

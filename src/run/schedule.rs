@@ -1,28 +1,87 @@
 //! At which steps a run is looked at.
 
-/// Ascending numbers of steps.
+use thiserror::Error;
+
+use crate::body::Clock;
+use crate::num::{Dd, Precise};
+
+/// Ascending numbers of steps; the start, step 0, is the first unless the steps are given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Schedule(Vec<u64>);
 
+/// Why times cannot be reached by steps.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ScheduleError {
+    /// The step is not positive.
+    #[error("step {step} s leads to no ascending times; it must be a positive number")]
+    NotAStep {
+        /// The step, s.
+        step: f64,
+    },
+    /// The time is not a number.
+    #[error("time {t} s is not a finite number")]
+    NotFinite {
+        /// The time, s.
+        t: f64,
+    },
+    /// A time lies before the one that precedes it, or before the start.
+    #[error("time {t} s comes after {before} s; steps lead to ascending times from the start on")]
+    NotAscending {
+        /// The time, s.
+        t: f64,
+        /// The time before it, s.
+        before: f64,
+    },
+    /// More steps than can be counted exactly.
+    #[error(
+        "{steps:e} steps of {step} s lead to t = {t} s, and at most 2^53 can be counted; take a larger step"
+    )]
+    TooMany {
+        /// The time, s.
+        t: f64,
+        /// The step, s.
+        step: f64,
+        /// How many there would be.
+        steps: f64,
+    },
+    /// No whole number of steps leads there.
+    #[error("steps of {step} s do not reach t = {t} s; the nearest time that they reach is {nearest} s")]
+    NotReached {
+        /// The time, s.
+        t: f64,
+        /// The step, s.
+        step: f64,
+        /// The nearest time, s.
+        nearest: f64,
+    },
+}
+
 impl Schedule {
-    /// Every `interval` steps up to `total`, and at `total`.
+    /// The start, every `interval` steps (at least 1) up to `total`, and `total`.
+    ///
+    /// ```
+    /// use polhode::run::Schedule;
+    /// let steps: Vec<u64> = Schedule::every(400, 1000).into_iter().collect();
+    /// assert_eq!(steps, [0, 400, 800, 1000]);
+    /// ```
     pub fn every(interval: u64, total: u64) -> Self {
-        let mut steps: Vec<u64> = (1..=total / interval.max(1)).map(|k| k * interval.max(1)).collect();
+        let mut steps: Vec<u64> = (0..=total / interval.max(1)).map(|k| k * interval.max(1)).collect();
         if steps.last() != Some(&total) {
             steps.push(total);
         }
         Schedule(steps)
     }
 
-    /// `per_decade` points in each decade of steps from 1 to `total`, and `total` itself.
+    /// The start, `per_decade` points in each decade of steps from 1 to `total`, and `total` itself.
     ///
     /// ```
     /// use polhode::run::Schedule;
     /// let steps: Vec<u64> = Schedule::logarithmic(1000, 3).into_iter().collect();
-    /// assert_eq!(steps, [1, 2, 5, 10, 22, 46, 100, 215, 464, 1000]);
+    /// assert_eq!(steps, [0, 1, 2, 5, 10, 22, 46, 100, 215, 464, 1000]);
     /// ```
     pub fn logarithmic(total: u64, per_decade: u32) -> Self {
-        let mut steps = Vec::new();
+        let mut steps = vec![0];
         for k in 0.. {
             let step = libm::round(libm::pow(10.0, f64::from(k) / f64::from(per_decade.max(1))));
             if step >= total as f64 {
@@ -39,6 +98,50 @@ impl Schedule {
     pub fn at(mut steps: Vec<u64>) -> Self {
         steps.sort_unstable();
         Schedule(steps)
+    }
+
+    /// At these times, s, ascending from the start of `clock` on. A whole number of steps has to lead to each, to within
+    /// four units in the last place of the largest of |t|, |start| and the step.
+    ///
+    /// # Errors
+    /// A step that is not positive, times that are not finite or not ascending, or that no whole number of steps reaches.
+    ///
+    /// ```
+    /// use polhode::body::Clock;
+    /// use polhode::run::Schedule;
+    /// let clock = Clock { start: 10.0, step: 0.1 };
+    /// let steps: Vec<u64> = Schedule::at_times(clock, &[10.0, 10.3, 20.0])?.into_iter().collect();
+    /// assert_eq!(steps, [0, 3, 100]);
+    /// assert!(Schedule::at_times(clock, &[10.25]).is_err());
+    /// # Ok::<(), polhode::run::ScheduleError>(())
+    /// ```
+    pub fn at_times(clock: Clock, times: &[f64]) -> Result<Self, ScheduleError> {
+        let Clock { start, step } = clock;
+        if !(step.is_finite() && step > 0.0) {
+            return Err(ScheduleError::NotAStep { step });
+        }
+        let mut counts = Vec::with_capacity(times.len());
+        let mut before = start;
+        for &t in times {
+            if !t.is_finite() {
+                return Err(ScheduleError::NotFinite { t });
+            }
+            if t < before {
+                return Err(ScheduleError::NotAscending { t, before });
+            }
+            before = t;
+            let steps = ((t - start) / step).round();
+            if steps.is_nan() || steps >= 9_007_199_254_740_992.0 {
+                return Err(ScheduleError::TooMany { t, step, steps });
+            }
+            let nearest = (Dd::from(start) + Dd::product(steps, step)).to_f64();
+            let largest = t.abs().max(start.abs()).max(step);
+            if (nearest - t).abs() > 4.0 * (largest.next_up() - largest) {
+                return Err(ScheduleError::NotReached { t, step, nearest });
+            }
+            counts.push(steps as u64);
+        }
+        Ok(Schedule(counts))
     }
 }
 

@@ -6,7 +6,12 @@ use proptest::test_runner::{Config, RngSeed};
 /// as many as it says.
 pub(crate) fn usual(count: u32) -> Config {
     match std::env::var_os("PROPTEST_CASES") {
-        Some(_) => Config::default(),
-        None => Config { cases: count, rng_seed: RngSeed::Fixed(1851), ..Config::default() },
+        Some(_) => Config { failure_persistence: None, ..Config::default() },
+        None => Config {
+            cases: count,
+            rng_seed: RngSeed::Fixed(1851),
+            failure_persistence: None,
+            ..Config::default()
+        },
     }
 }

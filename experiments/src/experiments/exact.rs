@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use polhode::body::{Body, Inertia, State};
+use polhode::body::{Body, Inertia, Point, State, Time};
 use polhode::catalog;
 use polhode::flow::{Flow, FreeBody, FreeMotion};
 use polhode::num::{Dd, Precise};
@@ -93,14 +93,13 @@ fn fixtures(report: &mut Report) -> Result<(), Error> {
         } else {
             body.enter(&State { attitude, momentum_body: start })
         };
-        let mut inside = inside.map_err(|_| broken())?;
-        inside.attitude = inside.attitude.normalized();
-        let motion = FreeMotion::new(&body, inside);
-        let x = motion.inside_at(t);
-        let mut plain = rounded(&inside);
-        FreeBody::<f64>::new(&body).flow(t, &mut plain);
+        let inside = inside.map_err(|_| broken())?;
+        let motion = FreeMotion::from_point(body.inertia(), inside);
+        let x = motion.point_at(t);
+        let mut plain = inside.to_f64();
+        FreeBody::<f64>::new(&body.rotor()).flow(Time::from_seconds(0.0), t, &mut plain);
         let scale = Dd::from(body.scale());
-        let exact = State { attitude: result, momentum_body: momentum * (Dd::ONE / scale) };
+        let exact = Point::new(result, momentum * (Dd::ONE / scale));
         let found = Worst { plain_attitude: attitude_error(&plain, &exact), ..errors(&body, &x, &exact) };
         by_regime.entry(fields[1]).or_default().include(found);
         let turned = motion.character().map_or(0.0, |c| c.spin * t.abs());
@@ -167,21 +166,14 @@ fn decade(turned: f64) -> i32 {
     [0, 3, 6, 9].into_iter().find(|power| turned <= libm::exp10(f64::from(*power))).unwrap_or(12)
 }
 
-fn rounded(x: &State<Dd>) -> State<f64> {
-    State {
-        attitude: Quat::from_components(x.attitude.components().map(Dd::hi)),
-        momentum_body: Vec3(x.momentum_body.0.map(Dd::hi)),
-    }
+fn attitude_error(x: &Point<f64>, exact: &Point<Dd>) -> f64 {
+    rotation_angle(x.to_dd().attitude, exact.attitude).to_f64()
 }
 
-fn attitude_error(x: &State<f64>, exact: &State<Dd>) -> f64 {
-    rotation_angle(State::<Dd>::of(*x).attitude, exact.attitude).to_f64()
-}
-
-fn errors(body: &Body, x: &State<f64>, exact: &State<Dd>) -> Worst {
-    let inverse: Vec3<Dd> = body.inverse_moments();
+fn errors(body: &Body, x: &Point<f64>, exact: &Point<Dd>) -> Worst {
+    let inverse: Vec3<Dd> = body.rotor().inverse_moments();
     let omega = exact.momentum_body.times(inverse);
-    let difference = State::<Dd>::of(*x).momentum_body.times(inverse) - omega;
+    let difference = x.to_dd().momentum_body.times(inverse) - omega;
     let size = omega.norm();
     let omega = if size == Dd::ZERO { difference.norm() } else { difference.norm() / size };
     Worst { cases: 1, attitude: attitude_error(x, exact), omega: omega.to_f64(), plain_attitude: 0.0 }
@@ -238,8 +230,8 @@ fn random(context: &Context, report: &mut Report) {
             let Ok(inertia) = Inertia::from_moments(moments) else { continue };
             let body = Body::free(inertia);
             let Ok(start) = body.enter_omega(Quat::identity(), Vec3(omega)) else { continue };
-            let motion = FreeMotion::new(&body, start);
-            let found = errors(&body, &motion.inside_at(t), &motion.inside_at_dd(Dd::from(t)));
+            let motion = FreeMotion::from_point(body.inertia(), start);
+            let found = errors(&body, &motion.point_at(t), &motion.point_at_dd(Dd::from(t)));
             if larger(worst.0.attitude, found.attitude) != worst.0.attitude {
                 worst.1 = Some((moments, omega, t));
             }
@@ -325,9 +317,9 @@ fn golden(name: &'static str) -> Result<Table, Error> {
     let near = (0..=100).map(|n| f64::from(n) * unit);
     let far = (10..=30).map(|power| libm::exp2(f64::from(power)) * unit);
     for t in near.chain(far) {
-        let inside = motion.inside_at_dd(Dd::from(t));
+        let inside = motion.point_at_dd(Dd::from(t));
         let [w, x, y, z] = motion.body().leave(&inside).attitude.components();
-        let omega = motion.body().omega_body(&inside);
+        let omega = motion.body().omega_of(&inside);
         table.push(row![t, w, x, y, z, omega.x, omega.y, omega.z]);
     }
     Ok(table)

@@ -23,7 +23,7 @@ pub(super) struct Followed {
 pub(super) fn follow(run: &mut Run, steps: u64) -> Result<Followed, Error> {
     let mut seen =
         Followed { last: run.sample(), status: "ok", times: Vec::new(), energy_changes: Vec::new() };
-    for sample in run.samples(Schedule::every((steps / LOOKS).max(1), steps)) {
+    for sample in run.samples(Schedule::every((steps / LOOKS).max(1), steps)).skip(1) {
         (seen.last, seen.status) = match sample {
             Ok(sample) => (sample, "ok"),
             Err(RunError::Diverged { last }) => (*last, "diverged"),

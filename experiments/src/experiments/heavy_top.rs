@@ -1,7 +1,7 @@
 //! What each method keeps of heavy tops, and how far its attitude is from the closed form.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use polhode::body::State;
+use polhode::body::{Point, Problem};
 use polhode::catalog::{self, NamedBody};
 use polhode::flow::{LagrangeError, LagrangeTop};
 use polhode::method::{AnyMethod, catalogue};
@@ -21,7 +21,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut parts = Vec::new();
     for top in catalog::tops() {
         for angle in [0.1, 0.025] {
-            for method in catalogue().into_iter().filter(|method| method.claims().potential.is_some()) {
+            for method in catalogue().into_iter().filter(|method| method.claims(Problem::Gravity).is_some()) {
                 parts.push((top.clone(), step_size(&top, angle)?, method));
             }
         }
@@ -84,15 +84,15 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
     let attitude = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
     let start = body.state(attitude, top.omega_body.into()).map_err(unexpected)?;
     let mut run = Run::new(method, &body, &start, h).map_err(unexpected)?;
-    let exact = match LagrangeTop::new(&body, State::of(run.start())) {
+    let exact = match LagrangeTop::from_point(&body, run.start().to_dd()) {
         Ok(exact) => Some(exact),
         Err(LagrangeError::NotSymmetric { .. } | LagrangeError::OffAxis { .. }) => None,
         Err(error) => return Err(unexpected(error)),
     };
     let Followed { last, status, times, energy_changes } = follow(&mut run, steps)?;
     let attitude_error = exact.map(|exact| {
-        let there: State<Dd> = exact.inside_at_dd(last.elapsed);
-        rotation_angle(there.attitude, State::of(last.inside).attitude).hi()
+        let there: Point<Dd> = exact.point_at_dd(last.elapsed);
+        rotation_angle(there.attitude, last.point.to_dd().attitude).hi()
     });
     let slope = secular_drift(&times, &energy_changes);
     Ok(row![
@@ -120,7 +120,7 @@ fn figure(errors: &Table) -> Figure {
         "largest relative energy error",
     )
     .scatter();
-    for method in catalogue().into_iter().filter(|method| method.claims().potential.is_some()) {
+    for method in catalogue().into_iter().filter(|method| method.claims(Problem::Gravity).is_some()) {
         let point = |row: &Vec<Cell>| match (&row[1], &row[4], &row[6], &row[9]) {
             (Cell::Text(name), Cell::Number(energy), Cell::Number(attitude), Cell::Text(status))
                 if *name == method.name() && status == "ok" =>

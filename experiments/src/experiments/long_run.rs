@@ -2,11 +2,10 @@
 
 use std::time::Instant;
 
-use polhode::body::{Body, State};
+use polhode::body::Body;
 use polhode::catalog;
 use polhode::flow::FreeMotion;
 use polhode::method::method;
-use polhode::num::Dd;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, Schedule};
 
@@ -107,13 +106,13 @@ fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
     let start = body.state(Default::default(), dyadic.omega_body.into()).map_err(|e| failed(&e))?;
     let method = method(name).map_err(|e| failed(&e))?;
     let mut run = Run::new(method.as_ref(), &body, &start, STEP).map_err(|e| failed(&e))?;
-    let exact = FreeMotion::new(&body, State::of(run.start()));
+    let exact = FreeMotion::from_point(body.inertia(), run.start().to_dd());
     let clock = Instant::now();
     let mut rows = Vec::new();
-    for sample in run.samples(Schedule::logarithmic(steps, 4)) {
+    for sample in run.samples(Schedule::logarithmic(steps, 4)).skip(1) {
         let sample = sample.map_err(|e| failed(&e))?;
-        let there = exact.inside_at_dd(sample.elapsed);
-        let attitude = rotation_angle(State::<Dd>::of(sample.inside).attitude, there.attitude).hi();
+        let there = exact.point_at_dd(sample.elapsed);
+        let attitude = rotation_angle(sample.point.to_dd().attitude, there.attitude).hi();
         let worst = sample.worst;
         rows.push(
             row![

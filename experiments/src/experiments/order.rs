@@ -1,6 +1,6 @@
 //! Convergence orders, measured in double-double against the exact motion.
 
-use polhode::body::Body;
+use polhode::body::{Body, Problem};
 use polhode::catalog;
 use polhode::method::{AnyMethod, catalogue};
 use polhode::run::{Halving, halvings};
@@ -25,7 +25,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let errors = halvings(method.as_ref(), &body, &start, SPAN, 4..finest + 1);
         errors.map(|errors| (method, errors)).map_err(|error| failed(&error))
     };
-    let stepping = catalogue().into_iter().filter(|method| !method.claims().exact_when_free).collect();
+    let order = |method: &dyn AnyMethod| method.claims(Problem::Free).and_then(|claims| claims.order);
+    let stepping = catalogue().into_iter().filter(|method| order(method).is_some()).collect();
     let series = context.in_parallel(stepping, measure);
 
     let mut errors = Table::new(
@@ -69,7 +70,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             last = (order(|e| e.attitude_error), order(|e| e.momentum_error));
             errors.push(row![method.name(), now.h, now.attitude_error, last.0, now.momentum_error, last.1]);
         }
-        orders.push(row![method.name(), u64::from(method.claims().order), last.0, last.1]);
+        orders.push(row![method.name(), order(&method).map(u64::from), last.0, last.1]);
         figure
             .series
             .push(Series::new(method.name(), halved.iter().map(|e| (e.h, e.attitude_error)).collect()));

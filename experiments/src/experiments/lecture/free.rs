@@ -1,7 +1,7 @@
 //! Section 17.4: the free top.
 
 use nalgebra::Vector3;
-use polhode::body::{Inertia, State};
+use polhode::body::{Inertia, Time};
 use polhode::catalog;
 use polhode::flow::FreeMotion;
 use polhode::num::elliptic::Modulus;
@@ -36,11 +36,11 @@ fn conserved(s: &mut Statements) -> Result<(), Error> {
         let omega = V::from(named.omega_body);
         let free = FreeMotion::from_omega(&named.inertia, Default::default(), omega).map_err(unexpected)?;
         let body = free.body();
-        let start = free.inside_at(0.0);
-        let (energy, momentum) = (body.energy(&start), V::from(start.momentum_space()));
+        let (start, at) = (free.point_at(0.0), Time::from_seconds(0.0));
+        let (energy, momentum) = (body.energy_of(at, &start).hi(), V::from(start.momentum_space()));
         for k in 1..=1000 {
-            let now: State<f64> = free.inside_at(f64::from(k) / omega.norm());
-            energy_error = larger(energy_error, (body.energy(&now) / energy - 1.0).abs());
+            let now = free.point_at(f64::from(k) / omega.norm());
+            energy_error = larger(energy_error, (body.energy_of(at, &now).hi() / energy - 1.0).abs());
             let off = V::from(now.momentum_space()) - momentum;
             momentum_error = larger(momentum_error, off.norm() / momentum.norm());
         }
@@ -90,7 +90,7 @@ fn next_to_axis(s: &mut Statements, axis: usize) -> Result<(), Error> {
         for small in smalls() {
             let free = perturbed(small)?;
             let t = 0.75;
-            let momentum = |t: Dd| free.inside_at_dd(t).momentum_body;
+            let momentum = |t: Dd| free.point_at_dd(t).momentum_body;
             let ratio = second_derivative(t, momentum)[i] / momentum(Dd::of(t))[i].hi();
             points.push(Point { small, formula: squared, computed: -ratio });
         }
@@ -109,7 +109,7 @@ fn next_to_axis(s: &mut Statements, axis: usize) -> Result<(), Error> {
             // from rest in the other component, w_j grows as cosh
             let t = 2.0;
             let grown =
-                free.inside_at_dd(Dd::of(t)).momentum_body[j] / free.inside_at_dd(Dd::ZERO).momentum_body[j];
+                free.point_at_dd(Dd::of(t)).momentum_body[j] / free.point_at_dd(Dd::ZERO).momentum_body[j];
             libm::acosh(grown.hi()) / t
         };
         points.push(Point { small, formula: rate, computed });
@@ -142,7 +142,7 @@ fn flips(s: &mut Statements) -> Result<(), Error> {
         let text = format!("{mode} mode: the body flips every 2K/nu");
         s.number(FREE, text, [formula, zeros[1] - zeros[0]], formula, 1e-14);
         let text = format!("{mode} mode: and is back on its polhode after 4K/nu");
-        let (start, back) = (free.inside_at_dd(Dd::ZERO), free.inside_at_dd(Dd::of(2.0 * formula)));
+        let (start, back) = (free.point_at_dd(Dd::ZERO), free.point_at_dd(Dd::of(2.0 * formula)));
         let off = V::from((back.momentum_body - start.momentum_body).0.map(Dd::hi));
         let period = 2.0 * (zeros[1] - zeros[0]);
         s.exact(
@@ -157,7 +157,7 @@ fn flips(s: &mut Statements) -> Result<(), Error> {
 
 /// The first two times at which the momentum along the middle axis changes sign, within `span`.
 fn zeros(free: &FreeMotion, span: f64) -> Result<[f64; 2], Error> {
-    let middle = |t: Dd| free.inside_at_dd(t).momentum_body[1].hi();
+    let middle = |t: Dd| free.point_at_dd(t).momentum_body[1].hi();
     let mut found = Vec::new();
     let steps = 64;
     for k in 0..steps {

@@ -1,12 +1,12 @@
 //! Section 17.6: the symmetric top under gravity.
 
 use nalgebra::Vector3;
-use polhode::body::{Body, Inertia, State};
+use polhode::body::{Body, Clock, Inertia, State};
 use polhode::catalog;
 use polhode::flow::LagrangeTop;
 use polhode::method::method;
 use polhode::num::{Dd, Real};
-use polhode::rotation::{EulerSequence, Quat, Vec3};
+use polhode::rotation::{EulerSequence, Vec3};
 
 use super::{Point, Statements, derivative, larger, unexpected};
 use crate::error::Error;
@@ -43,11 +43,11 @@ fn constants(s: &mut Statements) -> Result<(), Error> {
     let top = top(0.8, V::new(0.7, -0.4, 5.0))?;
     let state = |t: f64| top.at(t).map_err(unexpected);
     let start = state(0.0)?;
-    let energy = |x: &State<f64>| {
+    let energy = |x: &State| {
         let m = x.momentum();
         0.5 * m.dot(&m.component_div(&moments)) + WEIGHT * (x.rotation() * V::z()).z
     };
-    let vertical = |x: &State<f64>| (x.rotation() * x.momentum()).z;
+    let vertical = |x: &State| (x.rotation() * x.momentum()).z;
     let [energy_0, vertical_0, along_0] = [energy(&start), vertical(&start), start.momentum().z];
     let size = start.momentum().norm();
     let (mut energy_error, mut vertical_error, mut along_error, mut shape_error) =
@@ -79,8 +79,8 @@ fn constants(s: &mut Statements) -> Result<(), Error> {
         let text = format!("the axis turns back where V(theta) = E: {which} tilt");
         s.number(HEAVY, text, [energy_0, potential], energy_0, 1e-14);
     }
-    let rate = derivative(1.3, |t| top.inside_at_dd(t).momentum_space());
-    let now = top.inside_at_dd(Dd::of(1.3));
+    let rate = derivative(1.3, |t| top.point_at_dd(t).momentum_space());
+    let now = top.point_at_dd(Dd::of(1.3));
     let axis = V::from(now.attitude.rotate(Vec3::unit(2)).0.map(Dd::hi));
     let torque = axis.cross(&V::new(0.0, 0.0, -WEIGHT));
     s.vector(HEAVY, "dL/dt = M R x g", [torque, rate * top.body().scale()], 1e-13);
@@ -95,19 +95,17 @@ fn largest_fall(spin: f64, tilt: f64) -> Result<f64, Error> {
         .enter_omega(zxz.attitude([0.0, tilt, 0.0]).into(), Vec3([0.0, 0.0, spin]))
         .map_err(unexpected)?;
     let h = 1.0 / 64.0;
-    let rounded = |x: Vec3<Dd>| Vec3(x.0.map(Dd::hi));
-    let attitude = Quat::from_components(start.attitude.components().map(Dd::hi));
-    let mut x = State { attitude, momentum_body: rounded(start.momentum_body) };
-    let mut step =
-        method("kick-drift:4").map_err(unexpected)?.prepare_f64(h, &body, &x).map_err(unexpected)?;
+    let mut x = start.to_f64();
+    let method = method("kick-drift@suzuki-4").map_err(unexpected)?;
+    let mut step = method.prepare_f64(Clock::new(h), &body).map_err(unexpected)?;
     // 1 - cos theta without cancellation
-    let fall = |x: &State<f64>| {
+    let fall = |x: &polhode::body::Point<f64>| {
         let [_, a, b, _] = x.attitude.components();
         2.0 * (a * a + b * b)
     };
     let (mut before, mut now) = (fall(&x), fall(&x));
     for _ in 0..100_000 {
-        step.advance_unseen(&mut x, 1);
+        step.step(&mut x);
         let next = fall(&x);
         if now > before && next <= now {
             // the parabola through three steps has its vertex at the turning point

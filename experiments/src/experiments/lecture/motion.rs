@@ -242,9 +242,9 @@ fn yo_yo(s: &mut Statements) -> Result<(), Error> {
     Ok(())
 }
 
-/// The angular velocity of an inside state, in its own axes.
+/// The angular velocity in the axes of the solver frame.
 fn omega(body: &Body, momentum: Vec3<Dd>) -> Vec3<Dd> {
-    momentum.times(body.inverse_moments())
+    momentum.times(body.rotor().inverse_moments())
 }
 
 fn double(v: Vec3<Dd>) -> V {
@@ -262,7 +262,7 @@ fn rotating_frame(s: &mut Statements) -> Result<(), Error> {
         let (sin, cos) = t.sin_cos();
         Vec3([cos, sin * 2.0, t * t])
     };
-    let at = |t: Dd| free.inside_at_dd(t);
+    let at = |t: Dd| free.point_at_dd(t);
     let seen_from_space = derivative(t, |t| at(t).attitude.rotate(in_body(t)));
     let now = at(Dd::of(t));
     let w = double(omega(free.body(), now.momentum_body));
@@ -282,7 +282,7 @@ fn rotating_frame(s: &mut Statements) -> Result<(), Error> {
     let body = Body::heavy(inertia, c).map_err(unexpected)?;
     let tilted = EulerSequence::ALL[9].attitude([0.3, 0.8, 0.1]);
     let top = LagrangeTop::from_omega(&body, tilted, V::new(0.7, -0.4, 5.0)).map_err(unexpected)?;
-    let at = |t: Dd| top.inside_at_dd(t);
+    let at = |t: Dd| top.point_at_dd(t);
     let now = at(Dd::of(t));
     let w = double(omega(&body, now.momentum_body));
     let up = double(now.attitude.rotate_back(Vec3::unit(2)));
@@ -306,7 +306,7 @@ trait Rotation {
     fn rotation_of(&self, v: V) -> V;
 }
 
-impl Rotation for polhode::body::State<Dd> {
+impl Rotation for polhode::body::Point<Dd> {
     fn rotation_of(&self, v: V) -> V {
         double(self.attitude.rotate(Vec3::of(v.into())))
     }
@@ -364,7 +364,7 @@ fn bearings(s: &mut Statements) -> Result<(), Error> {
     let inertia = Inertia::from_moments(moments.into()).map_err(unexpected)?;
     let free = FreeMotion::from_omega(&inertia, Default::default(), w).map_err(unexpected)?;
     let bent = derivative(0.0, |t| {
-        free.inside_at_dd(t).attitude.rotate(omega(free.body(), free.inside_at_dd(t).momentum_body))
+        free.point_at_dd(t).attitude.rotate(omega(free.body(), free.point_at_dd(t).momentum_body))
     });
     let formula = -needed.component_div(&moments);
     let text = "without bearings w leaves the axle at the rate -I^-1 (w x I w)";

@@ -40,7 +40,7 @@ fn body_cone(s: &mut Statements, kind: &str, across: f64, along: f64) -> Result<
 
     // where neither component is zero
     let t = 0.8;
-    let momentum = |t: Dd| free.inside_at_dd(t).momentum_body;
+    let momentum = |t: Dd| free.point_at_dd(t).momentum_body;
     let accelerations = second_derivative(t, momentum);
     let squared = (across - along) / across * ((across - along) / across) * spin * spin;
     for axis in 0..2 {
@@ -68,7 +68,7 @@ fn body_cone(s: &mut Statements, kind: &str, across: f64, along: f64) -> Result<
     let state = |t: f64| free.at(t).map_err(unexpected);
     let start = state(0.0)?;
     let momentum = start.rotation() * start.momentum();
-    let axis = |x: State<f64>| x.rotation() * V::z();
+    let axis = |x: State| x.rotation() * V::z();
     let tilt = |t: f64| -> Result<f64, Error> {
         let axis = axis(state(t)?);
         Ok(libm::atan2(axis.cross(&momentum).norm(), axis.dot(&momentum)))
@@ -105,7 +105,7 @@ fn wobbling_plate(s: &mut Statements) -> Result<(), Error> {
         let (sin, cos) = libm::sincos(small);
         // I = 1, I3 = 2 and |L| = 2
         let free = motion(1.0, 2.0, V::new(2.0 * sin, 0.0, cos))?;
-        let (t, axis) = (0.5, |x: State<f64>| x.rotation() * V::z());
+        let (t, axis) = (0.5, |x: State| x.rotation() * V::z());
         let (start, later) = (free.at(0.0).map_err(unexpected)?, free.at(t).map_err(unexpected)?);
         let momentum = (start.rotation() * start.momentum()).normalize();
         // the azimuths about L of the axis then and now

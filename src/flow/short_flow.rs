@@ -1,7 +1,7 @@
 //! The free body over a short time, by the Taylor series of its motion summed to rounding.
 
-use crate::body::{Body, Carry, Gyroscopic, State};
-use crate::num::Precise;
+use crate::body::{Gyroscopic, Point, Rotor};
+use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};
 
 /// Terms before the series is given up.
@@ -18,19 +18,18 @@ const SHORT: f64 = 0.125;
 /// by the smallest moment. An increment is good to its own rounding: over a short time that is far
 /// less than the rounding of the state, which a flow by elliptic functions suffers at each call.
 #[derive(Clone, Copy, Debug)]
-pub struct ShortDrift<S> {
+pub(super) struct ShortFlow<S> {
     inverse_moments: Vec3<S>,
     gyroscopic: Gyroscopic<S>,
 }
 
-impl<S: Precise> ShortDrift<S> {
-    /// The flow of `body` without its torque.
-    pub fn new(body: &Body) -> Self {
-        ShortDrift { inverse_moments: body.inverse_moments(), gyroscopic: Gyroscopic::new(body, 1.0) }
+impl<S: Precise> ShortFlow<S> {
+    pub(super) fn new(rotor: &Rotor) -> Self {
+        ShortFlow { inverse_moments: rotor.inverse_moments(), gyroscopic: Gyroscopic::new(rotor, Dd::ONE) }
     }
 
     /// Moves `x` by the time `t`; false, and `x` untouched, if the turn is not short.
-    pub fn carried(&self, t: S, x: &mut State<S>, carry: &mut Carry<S>) -> bool {
+    pub(super) fn try_flow(&self, t: S, x: &mut Point<S>) -> bool {
         let omega = x.momentum_body.times(self.inverse_moments);
         let short = omega.magnitude() * t.magnitude() < SHORT;
         if !short {
@@ -65,8 +64,8 @@ impl<S: Precise> ShortDrift<S> {
             momentum = momentum + m[n];
             attitude = attitude + q[n];
         }
-        carry.add_momentum(x, momentum);
-        carry.add_attitude(x, attitude);
+        x.add_momentum(momentum);
+        x.add_attitude(attitude);
         true
     }
 }

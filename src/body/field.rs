@@ -1,0 +1,166 @@
+//! What acts on a body, in the solver frame, as kernels ask for it.
+
+use std::sync::{Arc, OnceLock};
+
+use super::force::Law;
+use super::{Force, Gravity, Potential, Time, Torque};
+use crate::num::{Dd, Precise, Real};
+use crate::rotation::{Quat, Vec3};
+
+/// The torque of everything that acts on a body, in the solver frame. Kernels are compiled for each kind.
+pub trait Field<S: Real>: Clone + Send + Sync + 'static {
+    /// Whether anything acts at all.
+    const ACTS: bool = true;
+
+    /// Whether anything acts besides uniform gravity.
+    const ACTS_BESIDES_GRAVITY: bool = true;
+
+    /// The part of uniform gravity, which is linear in the vertical.
+    fn gravity(&self) -> Option<&Gravity<S>>;
+
+    /// The torque of all the rest.
+    fn torque_besides_gravity(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S>;
+
+    /// The whole torque, divided by the scale.
+    #[inline]
+    fn torque(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
+        let rest = self.torque_besides_gravity(at, attitude, omega_body);
+        self.gravity().map_or(rest, |gravity| gravity.torque(attitude) + rest)
+    }
+}
+
+/// Nothing acts: free motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Free;
+
+impl<S: Real> Field<S> for Free {
+    const ACTS: bool = false;
+    const ACTS_BESIDES_GRAVITY: bool = false;
+    #[inline]
+    fn gravity(&self) -> Option<&Gravity<S>> {
+        None
+    }
+    #[inline]
+    fn torque_besides_gravity(&self, _: Time, _: Quat<S>, _: Vec3<S>) -> Vec3<S> {
+        Vec3::zero()
+    }
+}
+
+impl<S: Real> Field<S> for Gravity<S> {
+    const ACTS_BESIDES_GRAVITY: bool = false;
+    #[inline]
+    fn gravity(&self) -> Option<&Gravity<S>> {
+        Some(self)
+    }
+    #[inline]
+    fn torque_besides_gravity(&self, _: Time, _: Quat<S>, _: Vec3<S>) -> Vec3<S> {
+        Vec3::zero()
+    }
+    #[inline]
+    fn torque(&self, _: Time, attitude: Quat<S>, _: Vec3<S>) -> Vec3<S> {
+        Gravity::torque(self, attitude)
+    }
+}
+
+/// Gravity, if any, and forces, each evaluated in SI units and body axes.
+#[derive(Clone, Debug)]
+pub(crate) struct Forces<S> {
+    gravity: Option<Gravity<S>>,
+    forces: Arc<[Force]>,
+    /// Takes coordinates along principal axes to body coordinates; `None` where they are the same.
+    frame: Option<Quat<S>>,
+    /// What divides the torque.
+    scale: f64,
+    witness: Option<Witness>,
+}
+
+/// The first evaluation of a force that was not finite.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Failure {
+    /// Name of the force.
+    pub(crate) force: String,
+    /// When, s.
+    pub(crate) time: f64,
+}
+
+/// Takes note of the first force that is not finite.
+pub(crate) type Witness = Arc<OnceLock<Failure>>;
+
+/// The scalars in which every force can be evaluated.
+pub(crate) trait Evaluated: Precise {
+    fn torque(law: &Law, at: Time, attitude: Quat<Self>, omega_body: Vec3<Self>) -> Vec3<Self>;
+    fn energy(law: &Law, at: Time, attitude: Quat<Self>) -> Self;
+}
+
+macro_rules! evaluated {
+    ($scalar:ty) => {
+        impl Evaluated for $scalar {
+            fn torque(law: &Law, at: Time, attitude: Quat<Self>, omega_body: Vec3<Self>) -> Vec3<Self> {
+                match law {
+                    Law::Potential(potential) => Potential::<Self>::torque(&**potential, at, attitude),
+                    Law::Torque(torque) => Torque::<Self>::torque(&**torque, at, attitude, omega_body),
+                }
+            }
+            fn energy(law: &Law, at: Time, attitude: Quat<Self>) -> Self {
+                match law {
+                    Law::Potential(potential) => Potential::<Self>::energy(&**potential, at, attitude),
+                    Law::Torque(_) => Self::of(0.0),
+                }
+            }
+        }
+    };
+}
+evaluated!(f64);
+evaluated!(Dd);
+
+impl<S: Evaluated> Forces<S> {
+    pub(super) fn new(
+        gravity: Option<Gravity<S>>,
+        forces: &[Force],
+        frame: Option<Quat<Dd>>,
+        scale: f64,
+        witness: Option<Witness>,
+    ) -> Self {
+        let frame = frame.map(|frame| frame.map(S::from_dd));
+        Forces { gravity, forces: forces.into(), frame, scale, witness }
+    }
+
+    /// Potential energy besides that of gravity, divided by the scale.
+    pub(super) fn energy_besides_gravity(&self, at: Time, attitude: Quat<S>) -> S {
+        let attitude = self.frame.map_or(attitude, |frame| attitude * frame.conjugate());
+        let mut energy = S::of(0.0);
+        for force in self.forces.iter() {
+            energy = energy + S::energy(&force.law, at, attitude);
+        }
+        energy * S::of(1.0 / self.scale)
+    }
+}
+
+impl<S: Evaluated> Field<S> for Forces<S> {
+    #[inline]
+    fn gravity(&self) -> Option<&Gravity<S>> {
+        self.gravity.as_ref()
+    }
+
+    #[inline(never)]
+    fn torque_besides_gravity(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
+        let (attitude, omega_body) = match self.frame {
+            Some(frame) => (attitude * frame.conjugate(), frame.rotate(omega_body)),
+            None => (attitude, omega_body),
+        };
+        let mut torque = Vec3::zero();
+        for force in self.forces.iter() {
+            let one = S::torque(&force.law, at, attitude, omega_body);
+            if let Some(witness) = &self.witness
+                && !one.magnitude().is_finite()
+                && attitude.magnitude().is_finite()
+                && omega_body.magnitude().is_finite()
+            {
+                witness.get_or_init(|| Failure { force: force.name().into(), time: at.seconds() });
+            }
+            torque = torque + one;
+        }
+        let torque = self.frame.map_or(torque, |frame| frame.rotate_back(torque));
+        torque * S::of(1.0 / self.scale)
+    }
+}

@@ -1,0 +1,250 @@
+//! Forces as values: potentials and torques, those built in and a user's own.
+//!
+//! All quantities are in SI units, or any consistent ones, and in the body axes that the inertia was given in; what a
+//! kernel reads in the solver frame is made of them by [`Body`](super::Body).
+
+use core::fmt;
+use std::sync::Arc;
+
+use nalgebra::{UnitQuaternion, Vector3};
+use thiserror::Error;
+
+use super::Time;
+use crate::num::{Dd, Precise, Real};
+use crate::rotation::{Quat, Vec3};
+
+/// A torque that comes from a potential energy U(t, q).
+///
+/// An implementation for every `S: Real` serves steps in `f64` and references in double-double alike; a closure in `f64`
+/// becomes one by [`Force::potential_fn`].
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Conserved, Force, Inertia, Potential, Time};
+/// use polhode::num::Real;
+/// use polhode::rotation::{Quat, Vec3};
+///
+/// /// A magnet along body z in a field along space x: U = −s x·R e_z.
+/// struct Magnet(f64);
+///
+/// impl<S: Real> Potential<S> for Magnet {
+///     fn energy(&self, _: Time, attitude: Quat<S>) -> S {
+///         -(S::of(self.0) * attitude.rotate(Vec3::unit(2))[0])
+///     }
+///     fn torque(&self, _: Time, attitude: Quat<S>) -> Vec3<S> {
+///         Vec3::unit(2).cross(attitude.rotate_back(Vec3::unit(0))) * S::of(self.0)
+///     }
+/// }
+///
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("magnet", Magnet(0.5)));
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.0, 1.0, 0.0))?;
+/// assert_eq!(body.energy(&start), 1.0); // 1 J of spin; the magnet lies across the field
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait Potential<S: Real>: Send + Sync {
+    /// Potential energy, J, at the time `at` and the attitude `attitude`, body → space.
+    fn energy(&self, at: Time, attitude: Quat<S>) -> S;
+
+    /// Torque, N m, body axes: −∂U/∂θ of a turn θ about the body axes.
+    fn torque(&self, at: Time, attitude: Quat<S>) -> Vec3<S>;
+
+    /// What motion in this potential alone conserves: the energy, unless U depends on the time.
+    fn conserved(&self) -> Vec<Conserved> {
+        vec![Conserved::Energy]
+    }
+}
+
+/// A torque of any kind, such as drag or a thruster's.
+pub trait Torque<S: Real>: Send + Sync {
+    /// Torque, N m, body axes, at the time `at`, the attitude `attitude`, body → space, and the angular velocity
+    /// `omega_body`, rad/s, body axes.
+    fn torque(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S>;
+}
+
+/// A quantity that a motion may conserve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Conserved {
+    /// Kinetic and potential energy.
+    Energy,
+    /// |m|.
+    MomentumNorm,
+    /// The angular momentum L in space, as a vector.
+    Momentum,
+    /// The component of L along z of space.
+    MomentumZ,
+    /// Jacobi's constant E − n L_z, of a potential that turns about z of space at the rate n.
+    Jacobi {
+        /// n, rad/s.
+        rate: f64,
+    },
+}
+
+/// A potential or a torque with its name, which acts on a [`Body`](super::Body).
+#[derive(Clone)]
+pub struct Force {
+    name: String,
+    pub(crate) law: Law,
+}
+
+#[derive(Clone)]
+pub(crate) enum Law {
+    Potential(Arc<dyn PrecisePotential>),
+    Torque(Arc<dyn PreciseTorque>),
+}
+
+/// A potential in both precisions.
+pub(crate) trait PrecisePotential: Potential<f64> + Potential<Dd> {}
+impl<P: Potential<f64> + Potential<Dd>> PrecisePotential for P {}
+
+/// A torque in both precisions.
+pub(crate) trait PreciseTorque: Torque<f64> + Torque<Dd> {}
+impl<T: Torque<f64> + Torque<Dd>> PreciseTorque for T {}
+
+/// Why a force cannot act.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ForceError {
+    /// A parameter is not a finite number.
+    #[error("{force}: {quantity} is {value}; it must be a finite number")]
+    NotFinite {
+        /// Name of the force.
+        force: &'static str,
+        /// Which parameter.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A drag coefficient is negative.
+    #[error(
+        "{force}: {quantity} is {value}; drag takes energy from the body, so its coefficients are at least 0"
+    )]
+    Negative {
+        /// Name of the force.
+        force: &'static str,
+        /// Which parameter.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The eccentricity is that of no ellipse.
+    #[error("gravity gradient: the eccentricity is {eccentricity}; that of an elliptic orbit is in [0, 1)")]
+    Eccentricity {
+        /// The value.
+        eccentricity: f64,
+    },
+}
+
+impl Force {
+    /// The potential `potential`, called `name` in messages.
+    pub fn potential<P>(name: impl Into<String>, potential: P) -> Self
+    where
+        P: Potential<f64> + Potential<Dd> + 'static,
+    {
+        Force { name: name.into(), law: Law::Potential(Arc::new(potential)) }
+    }
+
+    /// The torque `torque`, called `name` in messages.
+    pub fn torque<T>(name: impl Into<String>, torque: T) -> Self
+    where
+        T: Torque<f64> + Torque<Dd> + 'static,
+    {
+        Force { name: name.into(), law: Law::Torque(Arc::new(torque)) }
+    }
+
+    /// A potential by two closures of the attitude, body → space: energy in J, and torque in N m, body axes.
+    ///
+    /// It does not depend on the time, so the energy is conserved; the run that watches the energy shows whether the
+    /// two belong together. Both are computed in `f64`, also where a reference is integrated in double-double.
+    pub fn potential_fn<U, T>(name: impl Into<String>, energy: U, torque: T) -> Self
+    where
+        U: Fn(UnitQuaternion<f64>) -> f64 + Send + Sync + 'static,
+        T: Fn(UnitQuaternion<f64>) -> Vector3<f64> + Send + Sync + 'static,
+    {
+        Force::potential(name, PotentialFn { energy, torque })
+    }
+
+    /// A torque, N m, body axes, by a closure of the time (s), the attitude (body → space) and the angular velocity
+    /// (rad/s, body axes), in `f64`.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::body::{Body, Force, Inertia};
+    /// use polhode::method::method;
+    /// use polhode::run::Run;
+    ///
+    /// let thruster = Force::torque_fn("thruster", |t, _, _| Vector3::new(0.0, 0.0, if t < 1.0 { 0.5 } else { 0.0 }));
+    /// let body = Body::free(Inertia::from_moments([1.0, 1.0, 2.0])?).with(thruster);
+    /// let start = body.state(UnitQuaternion::identity(), Vector3::zeros())?;
+    /// let end = Run::new(&method("rk4")?, &body, &start, 0.125)?.advance_to(8)?;
+    /// assert!((end.omega_body.z - 0.25).abs() < 0.01); // half a second's push is missing at the most
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn torque_fn<T>(name: impl Into<String>, torque: T) -> Self
+    where
+        T: Fn(f64, UnitQuaternion<f64>, Vector3<f64>) -> Vector3<f64> + Send + Sync + 'static,
+    {
+        Force::torque(name, TorqueFn(torque))
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it conserves, acting alone; nothing for a torque that has no potential.
+    pub fn conserved(&self) -> Vec<Conserved> {
+        match &self.law {
+            Law::Potential(potential) => Potential::<f64>::conserved(&**potential),
+            Law::Torque(_) => Vec::new(),
+        }
+    }
+
+    /// Whether it has a potential.
+    pub fn has_potential(&self) -> bool {
+        matches!(self.law, Law::Potential(_))
+    }
+}
+
+impl fmt::Debug for Force {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let law = if self.has_potential() { "potential" } else { "torque" };
+        write!(f, "Force({law} {:?})", self.name)
+    }
+}
+
+/// `value` if it is a finite number.
+pub(super) fn finite(force: &'static str, quantity: &'static str, value: f64) -> Result<f64, ForceError> {
+    if value.is_finite() { Ok(value) } else { Err(ForceError::NotFinite { force, quantity, value }) }
+}
+
+struct PotentialFn<U, T> {
+    energy: U,
+    torque: T,
+}
+
+impl<S: Precise, U, T> Potential<S> for PotentialFn<U, T>
+where
+    U: Fn(UnitQuaternion<f64>) -> f64 + Send + Sync,
+    T: Fn(UnitQuaternion<f64>) -> Vector3<f64> + Send + Sync,
+{
+    fn energy(&self, _: Time, attitude: Quat<S>) -> S {
+        S::of((self.energy)(attitude.map(S::to_f64).into()))
+    }
+    fn torque(&self, _: Time, attitude: Quat<S>) -> Vec3<S> {
+        Vec3::of((self.torque)(attitude.map(S::to_f64).into()).into())
+    }
+}
+
+struct TorqueFn<T>(T);
+
+impl<S: Precise, T> Torque<S> for TorqueFn<T>
+where
+    T: Fn(f64, UnitQuaternion<f64>, Vector3<f64>) -> Vector3<f64> + Send + Sync,
+{
+    fn torque(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
+        Vec3::of(
+            (self.0)(at.seconds(), attitude.map(S::to_f64).into(), omega_body.map(S::to_f64).into()).into(),
+        )
+    }
+}

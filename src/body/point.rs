@@ -1,0 +1,195 @@
+//! The phase point that kernels move: attitude and momentum in the solver frame, with what rounding took from them.
+
+use core::ops::{Add, Mul};
+
+use crate::num::sum::{Compensated, add_carried, exact_product};
+use crate::num::{Dd, Precise, Real};
+use crate::rotation::{Quat, Vec3};
+
+/// A phase point in the solver frame: along principal axes, momenta divided by a power of two.
+///
+/// [`State`](super::State) is what users hold, in SI units and their own body axes; [`Body::enter`](super::Body::enter)
+/// and [`Body::leave`](super::Body::leave) are the doors between the two. The momentum, not the angular velocity, is
+/// the variable: |m| is the Casimir of the Lie–Poisson bracket, kicks add to it, and `L = q m q*` is one product.
+///
+/// What rounding takes from an increment is carried to the next one (Kahan's compensated sum, component by
+/// component): the rounding of `m += δ` is then one unit of δ instead of one of m, a random walk that starts
+/// thousands of times lower. The number of steps is part of the point too, so that a run can be written down at any step
+/// and taken up again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point<S> {
+    /// Unit quaternion, scalar first, active, principal axes → space.
+    pub attitude: Quat<S>,
+    /// Angular momentum along the principal axes, divided by [`Body::scale`](super::Body::scale).
+    pub momentum_body: Vec3<S>,
+    carried: Phase<S>,
+    steps: u64,
+}
+
+/// Attitude and momentum as seven numbers, or a change of them, in the solver frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phase<S> {
+    /// Quaternion, or a change of it.
+    pub attitude: Quat<S>,
+    /// Momentum, or a change of it.
+    pub momentum_body: Vec3<S>,
+}
+
+/// Steps between renormalisations: meanwhile |q| walks by a few units of rounding.
+const RENORMALIZE_EVERY: u64 = 8;
+
+impl<S: Real> Point<S> {
+    /// A point at which no step has been taken.
+    #[inline]
+    pub fn new(attitude: Quat<S>, momentum_body: Vec3<S>) -> Self {
+        Point { attitude, momentum_body, carried: Phase::zero(), steps: 0 }
+    }
+
+    /// Angular momentum in space, `L = q m q*`, divided by the scale.
+    #[inline]
+    pub fn momentum_space(&self) -> Vec3<S> {
+        self.attitude.rotate(self.momentum_body)
+    }
+
+    /// The largest |component| as `f64`; NaN if one is NaN.
+    #[inline]
+    pub fn magnitude(&self) -> f64 {
+        let (q, m) = (self.attitude.magnitude(), self.momentum_body.magnitude());
+        if q.is_nan() || m.is_nan() { f64::NAN } else { q.max(m) }
+    }
+
+    /// Whether every component is a finite number.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        self.magnitude().is_finite()
+    }
+
+    /// Steps taken so far.
+    #[inline]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Counts a step.
+    #[inline]
+    pub fn count_step(&mut self) {
+        self.steps += 1;
+    }
+
+    /// `m += delta`.
+    #[inline]
+    pub fn add_momentum(&mut self, delta: Vec3<S>) {
+        for k in 0..3 {
+            self.add_component(k, delta[k]);
+        }
+    }
+
+    /// `m[axis] += delta`.
+    #[inline]
+    pub fn add_component(&mut self, axis: usize, delta: S) {
+        add_carried(&mut self.momentum_body[axis], &mut self.carried.momentum_body[axis], delta);
+    }
+
+    /// `q += delta`.
+    #[inline]
+    pub fn add_attitude(&mut self, delta: Quat<S>) {
+        add_carried(&mut self.attitude.w, &mut self.carried.attitude.w, delta.w);
+        for k in 0..3 {
+            add_carried(&mut self.attitude.v[k], &mut self.carried.attitude.v[k], delta.v[k]);
+        }
+    }
+
+    /// Attitude and momentum alone.
+    #[inline]
+    pub fn phase(&self) -> Phase<S> {
+        Phase { attitude: self.attitude, momentum_body: self.momentum_body }
+    }
+
+    /// Puts the point elsewhere, whatever is carried.
+    #[inline]
+    pub fn set_phase(&mut self, phase: Phase<S>) {
+        (self.attitude, self.momentum_body) = (phase.attitude, phase.momentum_body);
+    }
+
+    /// Brings |q| back to 1 in every eighth step.
+    #[inline]
+    pub fn renormalize_at_times(&mut self) {
+        if self.steps % RENORMALIZE_EVERY == RENORMALIZE_EVERY - 1 {
+            self.renormalize();
+        }
+    }
+
+    /// Brings |q| back to 1 to first order, `q += ½ (1 − |q|²) q`.
+    ///
+    /// |q|² includes what is carried, to twice the digits: a defect of the rounded q alone is noise that the carry
+    /// already holds, and feeding it back turns L steadily, by 1e-20 of it a step.
+    pub fn renormalize(&mut self) {
+        let (q, low) = (self.attitude, self.carried.attitude.components());
+        let mut excess = Compensated::new(S::of(-1.0));
+        for (q, low) in q.components().into_iter().zip(low) {
+            let (square, rest) = exact_product(q, q);
+            excess.add(square);
+            excess.add(rest + (q + q) * low);
+        }
+        self.add_attitude(q * (excess.value() * S::of(-0.5)));
+    }
+}
+
+impl<S: Precise> Point<S> {
+    /// The same attitude and momentum in double-double, exactly; nothing carried, no step counted.
+    pub fn to_dd(&self) -> Point<Dd> {
+        Point::new(self.attitude.map(S::to_dd), self.momentum_body.map(S::to_dd))
+    }
+
+    /// Attitude and momentum rounded to doubles; nothing carried, no step counted.
+    pub fn to_f64(&self) -> Point<f64> {
+        Point::new(self.attitude.map(S::to_f64), self.momentum_body.map(S::to_f64))
+    }
+}
+
+/// The parts of a `Point<f64>`, for writing it down and reading it back.
+impl Point<f64> {
+    /// Attitude, momentum, and what is carried of each, fourteen doubles.
+    pub(crate) fn parts(&self) -> [f64; 14] {
+        let mut parts = [0.0; 14];
+        let Phase { attitude, momentum_body } = self.carried;
+        let all = [self.attitude, attitude].into_iter().zip([self.momentum_body, momentum_body]);
+        for (slots, (q, m)) in parts.chunks_exact_mut(7).zip(all) {
+            slots[..4].copy_from_slice(&q.components());
+            slots[4..].copy_from_slice(&m.0);
+        }
+        parts
+    }
+
+    pub(crate) fn from_parts(p: [f64; 14], steps: u64) -> Self {
+        let phase = |k: usize| Phase {
+            attitude: Quat::from_components([p[k], p[k + 1], p[k + 2], p[k + 3]]),
+            momentum_body: Vec3([p[k + 4], p[k + 5], p[k + 6]]),
+        };
+        let Phase { attitude, momentum_body } = phase(0);
+        Point { attitude, momentum_body, carried: phase(7), steps }
+    }
+}
+
+impl<S: Real> Phase<S> {
+    /// Seven zeros.
+    #[inline]
+    pub fn zero() -> Self {
+        Phase { attitude: Quat::zero(), momentum_body: Vec3::zero() }
+    }
+}
+
+impl<S: Real> Add for Phase<S> {
+    type Output = Self;
+    #[inline]
+    fn add(self, b: Self) -> Self {
+        Phase { attitude: self.attitude + b.attitude, momentum_body: self.momentum_body + b.momentum_body }
+    }
+}
+impl<S: Real> Mul<S> for Phase<S> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, k: S) -> Self {
+        Phase { attitude: self.attitude * k, momentum_body: self.momentum_body * k }
+    }
+}

@@ -1,0 +1,74 @@
+//! The constants of a body that every kernel reads.
+
+use crate::num::{Dd, Real};
+use crate::rotation::Vec3;
+
+/// Principal moments in the solver frame, divided by [`Body::scale`](super::Body::scale), in double-double; what a
+/// kernel needs of them is worked out from here, each constant rounded once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotor {
+    moments: Vec3<Dd>,
+}
+
+impl Rotor {
+    pub(super) fn new(moments: Vec3<Dd>) -> Self {
+        Rotor { moments }
+    }
+
+    /// Principal moments.
+    pub fn moments<S: Real>(&self) -> Vec3<S> {
+        self.moments.map(S::from_dd)
+    }
+
+    /// Reciprocals of the [moments](Self::moments), each rounded once.
+    pub fn inverse_moments<S: Real>(&self) -> Vec3<S> {
+        self.moments.map(|i| S::from_dd(Dd::ONE / i))
+    }
+
+    /// Kinetic energy ½ m·I⁻¹m, divided by the scale.
+    pub(crate) fn kinetic_energy(&self, m: Vec3<Dd>) -> Dd {
+        m.times(self.inverse_moments()).dot(m) * Dd::of(0.5)
+    }
+
+    /// The axis of the middle moment.
+    pub(crate) fn middle_axis(&self) -> usize {
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| self.moments[i].hi().total_cmp(&self.moments[j].hi()));
+        order[1]
+    }
+}
+
+/// `factor · u × I⁻¹u` with principal moments: `D_i u_j u_k`, (i, j, k) cyclic, `D_i = factor (1/I_k − 1/I_j)`.
+///
+/// One product with one rounded constant, so that a method which uses it at every place keeps its symmetry whatever the
+/// constant's rounding. As a difference of two products the rounding is biased, and the energy follows it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gyroscopic<S>(Vec3<S>);
+
+impl<S: Real> Gyroscopic<S> {
+    pub(crate) fn new(rotor: &Rotor, factor: Dd) -> Self {
+        let i = rotor.moments;
+        // not as a difference of reciprocals: near a symmetric body it has fewer digits than the moments
+        Gyroscopic(Vec3(
+            [(1, 2), (2, 0), (0, 1)].map(|(j, k)| S::from_dd(factor * (i[j] - i[k]) / (i[j] * i[k]))),
+        ))
+    }
+
+    /// The term at `u`.
+    #[inline]
+    pub(crate) fn at(&self, u: Vec3<S>) -> Vec3<S> {
+        self.of(u, u)
+    }
+
+    /// `D_i u_j v_k`; with `D_i v_j u_k` added it is `factor (u × I⁻¹v + v × I⁻¹u)`.
+    #[inline]
+    pub(crate) fn of(&self, u: Vec3<S>, v: Vec3<S>) -> Vec3<S> {
+        Vec3([self.component(0, u[1], v[2]), self.component(1, u[2], v[0]), self.component(2, u[0], v[1])])
+    }
+
+    /// Its component i, of u_j and u_k.
+    #[inline]
+    pub(crate) fn component(&self, i: usize, u_j: S, u_k: S) -> S {
+        self.0[i] * u_j * u_k
+    }
+}

@@ -1,0 +1,75 @@
+//! Time without rounding: the start, whole steps, and what has gone by within a step.
+
+use crate::num::{Dd, Precise, Real};
+
+/// When a run starts and how long its steps are: step n begins at `start + n · step`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clock {
+    /// Time of the start, s.
+    pub start: f64,
+    /// Length of a step, s; negative backwards.
+    pub step: f64,
+}
+
+impl Clock {
+    /// Steps of `step` seconds from the time 0 on.
+    pub fn new(step: f64) -> Self {
+        Clock { start: 0.0, step }
+    }
+
+    /// The beginning of step `steps`.
+    #[inline]
+    pub fn at(&self, steps: u64) -> Time {
+        Time { clock: *self, steps, offset: Dd::ZERO }
+    }
+
+    /// Time since the start after `steps` steps, s, exact: a sum `t += h` would lose a second in a long enough run.
+    pub fn elapsed(&self, steps: u64) -> Dd {
+        let (high, low) = (steps >> 32, steps & 0xffff_ffff);
+        Dd::product(high as f64 * 4_294_967_296.0, self.step) + Dd::product(low as f64, self.step)
+    }
+}
+
+/// A point in time, `start + n · step + offset`, worked out only when a force asks for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Time {
+    clock: Clock,
+    steps: u64,
+    offset: Dd,
+}
+
+impl Time {
+    /// The time `t`, s.
+    pub fn from_seconds(t: f64) -> Self {
+        Clock { start: t, step: 0.0 }.at(0)
+    }
+
+    /// The time `t`, s, to the digits of double-double.
+    pub fn from_dd(t: Dd) -> Self {
+        Time::from_seconds(t.hi()).later(Dd::of(t.lo()))
+    }
+
+    /// The time `duration` (s) after this one.
+    #[inline]
+    #[must_use]
+    pub fn later(&self, duration: Dd) -> Self {
+        Time { offset: self.offset + duration, ..*self }
+    }
+
+    /// In seconds, exact to the digits of double-double.
+    pub fn dd(&self) -> Dd {
+        Dd::of(self.clock.start) + (self.clock.elapsed(self.steps) + self.offset)
+    }
+
+    /// In seconds, rounded once.
+    pub fn seconds<S: Real>(&self) -> S {
+        S::from_dd(self.dd())
+    }
+
+    /// The angle `rate · t` (rate in rad/s) less whole turns, in [−π, π], with the digits of the time and not only
+    /// those of the angle.
+    pub fn angle(&self, rate: f64) -> Dd {
+        let angle = self.dd() * rate;
+        angle - Dd::TAU * (angle / Dd::TAU).round()
+    }
+}

@@ -1,0 +1,88 @@
+//! The exact motion of any body that has one in closed form.
+
+use thiserror::Error;
+
+use super::{FreeMotion, LagrangeError, LagrangeTop, TimeError};
+use crate::body::{Body, Point, Problem, State, StateError};
+use crate::num::Dd;
+
+/// The motion of a body from one start in closed form: of a free body, or of a symmetric top under gravity.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Inertia};
+/// use polhode::flow::ExactMotion;
+/// let top = Body::heavy(Inertia::from_moments([1.25, 1.25, 0.75])?, Vector3::new(0.0, 0.0, 2.0))?;
+/// let start = top.state(UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5), Vector3::new(0.0, 0.0, 20.0))?;
+/// let later = ExactMotion::new(&top, &start)?.at(1e6)?;
+/// assert!((top.energy(&later) / top.energy(&start) - 1.0).abs() < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub enum ExactMotion {
+    /// Nothing acts on the body.
+    Free(Box<FreeMotion>),
+    /// A symmetric body under gravity, its weight on the axis.
+    Lagrange(Box<LagrangeTop>),
+}
+
+/// Why a motion has no closed form here.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum NoClosedForm {
+    /// The body is heavy and no Lagrange top.
+    #[error(transparent)]
+    Lagrange(#[from] LagrangeError),
+    /// A force acts that leaves no closed form.
+    #[error(
+        "{force} acts on the body; a closed form is known here for free bodies and for symmetric tops under gravity"
+    )]
+    Forced {
+        /// Name of the force.
+        force: String,
+    },
+    /// The start is not usable.
+    #[error(transparent)]
+    State(#[from] StateError),
+}
+
+impl ExactMotion {
+    /// From the state `start` at t = 0.
+    ///
+    /// # Errors
+    /// A start that is not usable, or a body whose motion has no closed form, with the condition that fails.
+    pub fn new(body: &Body, start: &State) -> Result<Self, NoClosedForm> {
+        Self::from_point(body, body.enter(start)?)
+    }
+
+    /// From a point of the solver frame at t = 0.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_point(body: &Body, start: Point<Dd>) -> Result<Self, NoClosedForm> {
+        match (body.problem(), body.forces()) {
+            (Problem::Free, _) => Ok(Self::Free(Box::new(FreeMotion::from_point(body.inertia(), start)))),
+            (_, [force, ..]) => Err(NoClosedForm::Forced { force: force.name().into() }),
+            _ => Ok(Self::Lagrange(Box::new(LagrangeTop::from_point(body, start)?))),
+        }
+    }
+
+    /// The state at the time `t` (s, of either sign), body axes.
+    ///
+    /// # Errors
+    /// A time that is not finite, or so far that the phases have no digits left.
+    pub fn at(&self, t: f64) -> Result<State, TimeError> {
+        match self {
+            Self::Free(motion) => motion.at(t),
+            Self::Lagrange(top) => top.at(t),
+        }
+    }
+
+    /// The point of the solver frame at the time `t`, s, in double-double; `t` finite and within reach.
+    pub fn point_at_dd(&self, t: Dd) -> Point<Dd> {
+        match self {
+            Self::Free(motion) => motion.point_at_dd(t),
+            Self::Lagrange(top) => top.point_at_dd(t),
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! The exact motion of the free body as the drift of a splitting.
+
+use super::{Cost, Drift, Energy, Map, Method, Symmetric};
+use crate::body::{Field, Point, Rotor, Time};
+use crate::flow::{Flow, FreeFlow};
+use crate::num::{Dd, Precise};
+
+/// The [free flow](FreeFlow): with kicks around it, the splitting of H = T + U into the two flows that are known exactly.
+///
+/// Keeps L_z and the bracket, and for exponentially long times the energy within O(h^order); a fast top under a weak
+/// torque is followed with an error in proportion to the torque. Without torque it is the exact motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExactDrift;
+
+impl Symmetric for ExactDrift {}
+
+impl Drift for ExactDrift {
+    fn name(&self) -> String {
+        "kick-drift".into()
+    }
+    fn order(&self) -> Option<u32> {
+        None
+    }
+    fn energy(&self) -> Energy {
+        Energy::Exact
+    }
+    fn cost(&self) -> Cost {
+        Cost::drifts(1)
+    }
+    fn source(&self) -> &'static str {
+        "Strang, SIAM J. Numer. Anal. 5 (1968) 506; Celledoni, Fasso, Safstrom and Zanna, SIAM J. Sci. Comput. 30 (2008) 2084"
+    }
+}
+
+impl<S: Precise> Method<S> for ExactDrift {
+    type Map<F: Field<S>> = ExactDriftMap<S>;
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> ExactDriftMap<S> {
+        ExactDriftMap { flow: FreeFlow::new(rotor), h: S::from_dd(h) }
+    }
+}
+
+/// A prepared [`ExactDrift`].
+#[derive(Clone, Copy, Debug)]
+pub struct ExactDriftMap<S> {
+    flow: FreeFlow<S>,
+    h: S,
+}
+
+impl<S: Precise> Map<S> for ExactDriftMap<S> {
+    #[inline]
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.flow.flow(at, self.h, x);
+        x.renormalize_at_times();
+    }
+}

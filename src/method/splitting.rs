@@ -1,0 +1,258 @@
+//! Splittings: two maps in turn, by the coefficients of a scheme.
+
+use thiserror::Error;
+
+use super::schemes::{Part, STRANG, Scheme, Stages};
+use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method, Symmetric};
+use crate::body::{Field, Point, Problem, Rotor, Time};
+use crate::flow::{Flow, Kick};
+use crate::num::{Dd, Real};
+
+/// A splitting of H = A + B: maps of A and of B in turn, for the shares of the step that `scheme` gives.
+///
+/// Strang's is Φ_h = B(h/2) A(h) B(h/2) (SIAM J. Numer. Anal. 5 (1968) 506). All schemes are palindromes, so that the
+/// splitting is symmetric where its parts are. Where two steps of a composition meet, their maps of B are merged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splitting<A, B> {
+    a: A,
+    b: B,
+    scheme: Scheme,
+}
+
+/// The map of the kinetic energy in a splitting of kinetic and potential energy: that of the free body, exact or not.
+pub trait Drift: Symmetric {
+    /// Name of the method that alternates it with kicks by Strang's scheme.
+    fn name(&self) -> String;
+    /// Order of the free motion; `None` where it is exact.
+    fn order(&self) -> Option<u32>;
+    /// The energy of free motion.
+    fn energy(&self) -> Energy;
+    /// Work of one map.
+    fn cost(&self) -> Cost;
+    /// Where it comes from.
+    fn source(&self) -> &'static str;
+}
+
+/// The [kicks](Kick) of the potential, as the part B of a splitting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kicks;
+
+/// A scheme does not fit its base.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SchemeError {
+    /// The scheme alternates two exact flows, and the drift of the base is not exact.
+    #[error(
+        "scheme {scheme:?} alternates two exact flows, and the drift of {base} has order {order}; take a composition, \
+         such as suzuki-4, or kick-drift@{scheme}"
+    )]
+    Drift {
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Name of the base.
+        base: String,
+        /// Order of its drift.
+        order: u32,
+    },
+    /// The scheme alternates two flows, and the base is one map.
+    #[error(
+        "scheme {scheme:?} alternates two flows, and {base} is one map; take a composition, such as suzuki-4"
+    )]
+    OneMap {
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Name of the base.
+        base: String,
+    },
+    /// A composition is of higher order only over a symmetric base.
+    #[error("{base} is not symmetric, and scheme {scheme:?} raises the order of symmetric methods only")]
+    NotSymmetric {
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Name of the base.
+        base: String,
+    },
+}
+
+impl<A, B> Splitting<A, B> {
+    /// Strang's splitting of `a` and `b`.
+    pub const fn strang(a: A, b: B) -> Self {
+        Splitting { a, b, scheme: STRANG }
+    }
+
+    /// `a` and `b` by `scheme`. Its order is that of the splitting where both are exact, and for a composition also
+    /// where they are symmetric.
+    pub const fn with_scheme(a: A, b: B, scheme: Scheme) -> Self {
+        Splitting { a, b, scheme }
+    }
+
+    /// The coefficients.
+    pub fn scheme(&self) -> &Scheme {
+        &self.scheme
+    }
+}
+
+impl<A: Drift> Splitting<A, Kicks> {
+    /// `drift` and the kicks of the potential by `scheme`.
+    ///
+    /// # Errors
+    /// A scheme for two exact flows with a drift that is not exact.
+    ///
+    /// ```
+    /// use polhode::body::Problem;
+    /// use polhode::method::schemes::{SRKN_6B, SUZUKI_4};
+    /// use polhode::method::{Claimed, Dmv, ExactDrift, Splitting};
+    /// let method = Splitting::kicked(ExactDrift, SUZUKI_4)?;
+    /// assert_eq!(method.name(), "kick-drift@suzuki-4");
+    /// let claims = method.claims(Problem::Gravity).unwrap();
+    /// assert_eq!((claims.order, claims.cost.to_string()), (Some(4), "5 exact drifts, 6 kicks".into()));
+    /// assert!(Splitting::kicked(Dmv, SRKN_6B).is_err());
+    /// # Ok::<(), polhode::method::SchemeError>(())
+    /// ```
+    pub fn kicked(drift: A, scheme: Scheme) -> Result<Self, SchemeError> {
+        match (drift.order(), scheme.stages) {
+            (Some(order), Stages::Alternating { .. }) => {
+                Err(SchemeError::Drift { scheme: scheme.name, base: drift.name(), order })
+            }
+            _ => Ok(Splitting { a: drift, b: Kicks, scheme }),
+        }
+    }
+}
+
+impl<A: Drift> Claimed for Splitting<A, Kicks> {
+    fn name(&self) -> String {
+        if self.scheme == STRANG { self.a.name() } else { format!("{}@{}", self.a.name(), self.scheme.name) }
+    }
+
+    fn claims(&self, problem: Problem) -> Option<Claims> {
+        let flows = self.scheme.flows();
+        let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u32;
+        let drifts = self.a.cost() * count(Part::A);
+        let source = if self.scheme == STRANG { self.a.source() } else { self.scheme.source };
+        let claims = |order, kept, cost| Claims { order, symmetric: true, poisson: true, kept, cost, source };
+        match problem {
+            Problem::Free => {
+                let order = self.a.order().map(|_| self.scheme.order);
+                Some(claims(order, Kept::all_of_free_motion(self.a.energy()), drifts))
+            }
+            Problem::Gravity | Problem::Potential => {
+                let kept = Kept { energy: Energy::Bounded, momentum_z: true, norm: true, ..Kept::NOTHING };
+                Some(claims(Some(self.scheme.order), kept, drifts + Cost::kicks(count(Part::B))))
+            }
+            Problem::Torque => None,
+        }
+    }
+}
+
+impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
+    type Map<F: Field<S>> = SplittingMap<A::Map<F>, B::Map<F>>;
+
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F> {
+        let flows = self.scheme.flows();
+        let lengths = |part| {
+            let shares: Vec<Dd> = flows.iter().filter(|flow| flow.0 == part).map(|flow| flow.1).collect();
+            lengths::<S>(h, &shares).into_iter()
+        };
+        let (mut a_lengths, mut b_lengths) = (lengths(Part::A), lengths(Part::B));
+        let mut map = SplittingMap { opening: None, pairs: Vec::new(), closing: None };
+        let (mut begun, mut drift) = (Dd::ZERO, None);
+        for (part, _) in &flows {
+            match part {
+                // the time goes by in A; in B it stands
+                Part::A => {
+                    let length = a_lengths.next().unwrap_or(Dd::ZERO);
+                    drift = Some(Timed { begun, map: self.a.map(length, rotor, field) });
+                    begun = begun + length;
+                }
+                Part::B => {
+                    let length = b_lengths.next().unwrap_or(Dd::ZERO);
+                    let kick = Timed { begun, map: self.b.map(length, rotor, field) };
+                    match drift.take() {
+                        Some(drift) => map.pairs.push((drift, kick)),
+                        None => map.opening = Some(kick),
+                    }
+                }
+            }
+        }
+        map.closing = drift;
+        map
+    }
+}
+
+/// A prepared [`Splitting`]: B where it comes first, pairs of A and B, A where it comes last.
+#[derive(Clone, Debug)]
+pub struct SplittingMap<A, B> {
+    opening: Option<Timed<B>>,
+    pairs: Vec<(Timed<A>, Timed<B>)>,
+    closing: Option<Timed<A>>,
+}
+
+/// A map and the time at which it begins, s since the beginning of the step.
+#[derive(Clone, Debug)]
+struct Timed<M> {
+    begun: Dd,
+    map: M,
+}
+
+impl<M> Timed<M> {
+    #[inline]
+    fn apply<S: Real>(&mut self, at: Time, x: &mut Point<S>)
+    where
+        M: Map<S>,
+    {
+        self.map.apply(at.later(self.begun), x);
+    }
+}
+
+impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
+    #[inline]
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        if let Some(b) = &mut self.opening {
+            b.apply(at, x);
+        }
+        for (a, b) in &mut self.pairs {
+            a.apply(at, x);
+            b.apply(at, x);
+        }
+        if let Some(a) = &mut self.closing {
+            a.apply(at, x);
+        }
+    }
+
+    fn worst_residual(&self) -> f64 {
+        let a = self.pairs.iter().map(|pair| pair.0.map.worst_residual());
+        let closing = self.closing.iter().map(|a| a.map.worst_residual());
+        a.chain(closing).fold(0.0, f64::max)
+    }
+}
+
+/// The `shares` of `h`, rounded to the digits of `S`; what closes the palindrome takes up what rounding the others has
+/// changed, or the clock would be off.
+pub(super) fn lengths<S: Real>(h: Dd, shares: &[Dd]) -> Vec<Dd> {
+    let n = shares.len();
+    let outer: Vec<Dd> = shares[..(n - 1) / 2].iter().map(|&share| S::rounded(h * share)).collect();
+    let left = outer.iter().fold(h, |left, &length| left - length * 2.0);
+    let centre = if n % 2 == 1 { vec![S::rounded(left)] } else { vec![S::rounded(left * 0.5); 2] };
+    outer.iter().copied().chain(centre).chain(outer.iter().rev().copied()).collect()
+}
+
+impl<S: Real> Method<S> for Kicks {
+    type Map<F: Field<S>> = KickMap<S, F>;
+    fn map<F: Field<S>>(&self, h: Dd, _: &Rotor, field: &F) -> KickMap<S, F> {
+        KickMap { kick: Kick::new(field.clone()), h: S::from_dd(h) }
+    }
+}
+
+/// A kick of one length.
+#[derive(Clone, Debug)]
+pub struct KickMap<S, F> {
+    kick: Kick<S, F>,
+    h: S,
+}
+
+impl<S: Real, F: Field<S>> Map<S> for KickMap<S, F> {
+    #[inline]
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.kick.flow(at, self.h, x);
+    }
+}

@@ -1,0 +1,78 @@
+//! Relative errors of what a motion conserves.
+
+use crate::body::Conserved;
+
+/// Relative errors of the invariants against the start; `None` where the motion does not conserve the quantity. All 0 for
+/// a free body at rest.
+///
+/// With forces, energies are measured by W = T₀ + |c| + Σ (|U₀| + |τ₀|): the kinetic energy at the start, the weight
+/// moment, and potential and torque of every other force at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Errors {
+    /// |E − E₀| / |E₀|; with forces |E − E₀| / W.
+    pub energy: Option<f64>,
+    /// ||m| − |m₀|| / |m₀|.
+    pub momentum: Option<f64>,
+    /// |L − L₀| / |L₀|, L in space.
+    pub momentum_vector: Option<f64>,
+    /// |L_z − L_z0| / √(2 I W), z of space, I the largest moment; where L as a whole is not conserved.
+    pub momentum_z: Option<f64>,
+    /// |J − J₀| / (W + n |L₀|) of Jacobi's constant J = E − n L_z; where the energy is not conserved.
+    pub jacobi: Option<f64>,
+}
+
+impl Errors {
+    /// No quantity is looked at.
+    pub(crate) const NONE: Errors =
+        Errors { energy: None, momentum: None, momentum_vector: None, momentum_z: None, jacobi: None };
+
+    /// The error of `quantity`; `None` where the motion does not conserve it.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::body::{Body, Conserved, Inertia};
+    /// use polhode::method::method;
+    /// use polhode::run::Run;
+    /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+    /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+    /// let end = Run::new(&method("rattle")?, &body, &start, 0.1)?.advance_to(1000)?;
+    /// assert!(end.worst.of(Conserved::MomentumNorm).is_some_and(|error| error < 1e-14));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of(&self, quantity: Conserved) -> Option<f64> {
+        match quantity {
+            Conserved::Energy => self.energy,
+            Conserved::MomentumNorm => self.momentum,
+            Conserved::Momentum => self.momentum_vector,
+            Conserved::MomentumZ => self.momentum_z.or(self.momentum_vector),
+            Conserved::Jacobi { .. } => self.jacobi,
+        }
+    }
+
+    pub(crate) fn parts(&self) -> [Option<f64>; 5] {
+        [self.energy, self.momentum, self.momentum_vector, self.momentum_z, self.jacobi]
+    }
+
+    pub(crate) fn from_parts(parts: [Option<f64>; 5]) -> Self {
+        let [energy, momentum, momentum_vector, momentum_z, jacobi] = parts;
+        Errors { energy, momentum, momentum_vector, momentum_z, jacobi }
+    }
+
+    pub(super) fn max(self, other: Self) -> Self {
+        let mut worst = self.parts();
+        for (worst, other) in worst.iter_mut().zip(other.parts()) {
+            *worst = worst.zip(other).map(|(a, b)| a.max(b));
+        }
+        Errors::from_parts(worst)
+    }
+
+    pub(super) fn is_finite(self) -> bool {
+        self.parts().iter().all(|error| error.is_none_or(f64::is_finite))
+    }
+
+    /// Whether no error of `self` exceeds that of `other`; not with a NaN.
+    pub(super) fn within(self, other: Self) -> bool {
+        self.parts().into_iter().zip(other.parts()).all(|(a, b)| a.zip(b).is_none_or(|(a, b)| a <= b))
+    }
+}
