@@ -8,6 +8,7 @@ mod experiments;
 mod figure;
 mod files;
 mod fit;
+mod force_arguments;
 mod inertia;
 mod methods;
 mod motion;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::body::{Body, Clock, Point, Time};
+use polhode::body::{Body, Clock, Conserved, Point, Problem, Time};
 use polhode::flow::ExactMotion;
 use polhode::method::{AnyMethod, Claimed, StepError, UnknownMethod, catalogue, method};
 use polhode::num::Dd;
@@ -11,10 +11,11 @@ use polhode::observe::{Errors, Monitor};
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Schedule, ScheduleError};
 
-use crate::arguments::{Times, number, numbers, positive, regular, times};
+use crate::arguments::{Times, number, positive, regular, times};
 use crate::body_arguments::{BodyArguments, StartArguments};
 use crate::error::{Error, warn};
 use crate::files::emit;
+use crate::force_arguments::ForceArguments;
 use crate::table::{Column, Format, Table, row};
 
 const USAGE: &str = "polhode propagate <BODY> --omega <wx,wy,wz> <TIMES> [OPTIONS]
@@ -29,9 +30,8 @@ pub(crate) struct Propagate {
     body: BodyArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// Weight moment M g x centre of mass, body axes: the body has a fixed point under gravity along -Z of space
-    #[arg(long, value_name = "cx,cy,cz", value_parser = numbers::<3>, allow_hyphen_values = true)]
-    weight_moment: Option<[f64; 3]>,
+    #[command(flatten)]
+    forces: ForceArguments,
     /// Output times, s
     #[arg(long, value_name = "t1,t2,...", value_parser = times, allow_hyphen_values = true,
           conflicts_with_all = ["until", "every"])]
@@ -61,10 +61,10 @@ pub(crate) struct Propagate {
 
 impl Propagate {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        let body = self.body.heavy(self.weight_moment)?;
+        let body = self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)?;
         let start = self.start.inside(&body)?;
         let times = self.output_times()?;
-        let mut table = Table::new("trajectory", "Motion of a free body.", columns());
+        let mut table = Table::new("trajectory", "Motion of a body.", columns(&body));
         let ended = if self.method == "exact" {
             self.exact(&body, start, &times, &mut table)
         } else {
@@ -105,7 +105,8 @@ impl Propagate {
             ));
         }
         let motion = ExactMotion::from_point(body, start).map_err(|error| {
-            Error::Input(format!("--method exact: {error}; take kick-drift:4 and a --step"))
+            let method = if body.problem() == Problem::Torque { "rk4" } else { "kick-drift@srkn-6b" };
+            Error::Input(format!("--method exact: {error}; take {method} and a --step"))
         })?;
         for &t in times {
             let elapsed = t - self.start_time;
@@ -121,7 +122,7 @@ impl Propagate {
             let x = exact.to_f64();
             if monitor.observe(&[x]) == 0 {
                 return Err(Error::Failed(format!(
-                    "--method exact: at {t:?} s the state is not finite; take kick-drift:4 and a --step"
+                    "--method exact: at {t:?} s the state is not finite; take kick-drift@srkn-6b and a --step"
                 )));
             }
             let error = rotation_angle(x.to_dd().attitude, exact.attitude).hi();
@@ -218,7 +219,7 @@ fn row(
     let invariants = polhode::observe::Invariants::of(body, at, x);
     let [q_w, q_x, q_y, q_z] = body.leave(x).attitude.components();
     let omega = body.omega_of(x);
-    row![
+    let mut cells = row![
         at.seconds::<f64>(),
         q_w,
         q_x,
@@ -235,12 +236,22 @@ fn row(
         worst.momentum_z,
         attitude_error,
     ]
-    .to_vec()
+    .to_vec();
+    if has_jacobi(body) {
+        cells.push(worst.jacobi.into());
+    }
+    cells
 }
 
-fn columns() -> Vec<Column> {
+/// Whether Jacobi's constant is what the motion conserves in place of the energy.
+fn has_jacobi(body: &Body) -> bool {
+    let conserved = body.conserved();
+    !conserved.contains(&Conserved::Energy) && conserved.iter().any(|q| matches!(q, Conserved::Jacobi { .. }))
+}
+
+fn columns(body: &Body) -> Vec<Column> {
     let column = Column::new;
-    vec![
+    let mut columns = vec![
         column("t", "s", "time").digits(6),
         column("q_w", "", "attitude, body to space, scalar part").digits(6),
         column("q_x", "", "attitude, x").digits(6),
@@ -256,5 +267,9 @@ fn columns() -> Vec<Column> {
         column("momentum_vector_error", "", "largest relative error of L in space so far").digits(2),
         column("momentum_z_error", "", "largest relative error of L along space z, under torque").digits(2),
         column("attitude_error", "rad", "angle to the exact attitude").digits(2),
-    ]
+    ];
+    if has_jacobi(body) {
+        columns.push(column("jacobi_error", "", "largest relative error of E - n L_z so far").digits(2));
+    }
+    columns
 }

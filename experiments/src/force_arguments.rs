@@ -1,0 +1,70 @@
+//! The flags that name what acts on a body.
+
+use clap::Args;
+use nalgebra::Vector3;
+use polhode::body::{Body, Force, ForceError};
+
+use crate::arguments::{list, numbers};
+use crate::error::Error;
+
+/// What acts on the body; several forces add.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ForceArguments {
+    /// Weight moment M g x centre of mass, body axes: the body has a fixed point under gravity along -Z of space
+    #[arg(long, value_name = "cx,cy,cz", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    pub(crate) weight_moment: Option<[f64; 3]>,
+    /// Gravity gradient on an orbit in the space x-y plane: mean motion, rad/s, and eccentricity (default 0); perigee on +x at t = 0
+    #[arg(long, value_name = "n[,e]", value_parser = one_or_two, allow_hyphen_values = true)]
+    gravity_gradient: Option<OneOrTwo>,
+    /// Constant torque in body axes, N m
+    #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    torque_body: Option<[f64; 3]>,
+    /// Constant torque in the axes of space, N m
+    #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    torque_space: Option<[f64; 3]>,
+    /// Drag -c1 w - c2 |w| w: linear coefficient, N m s, and quadratic one, N m s^2 (default 0)
+    #[arg(long, value_name = "c1[,c2]", value_parser = one_or_two, allow_hyphen_values = true)]
+    drag: Option<OneOrTwo>,
+}
+
+/// A number and a second one, 0 if it is left out.
+#[derive(Clone, Copy, Debug)]
+struct OneOrTwo([f64; 2]);
+
+fn one_or_two(text: &str) -> Result<OneOrTwo, String> {
+    match list(text)?[..] {
+        [one] => Ok(OneOrTwo([one, 0.0])),
+        [one, two] => Ok(OneOrTwo([one, two])),
+        ref found => {
+            Err(format!("{} given, 1 or 2 needed; separate them by commas, without spaces", found.len()))
+        }
+    }
+}
+
+impl ForceArguments {
+    /// `body` with the forces besides its weight.
+    pub(crate) fn act_on(&self, mut body: Body) -> Result<Body, Error> {
+        let refused = |flag: &str, error: ForceError| Error::Input(format!("{flag}: {error}"));
+        if let Some(OneOrTwo([mean_motion, eccentricity])) = self.gravity_gradient {
+            let force = Force::gravity_gradient(body.inertia(), mean_motion, eccentricity)
+                .map_err(|error| refused("--gravity-gradient", error))?;
+            body = body.with(force);
+        }
+        for (flag, torque, make) in [
+            (
+                "--torque-body",
+                self.torque_body,
+                Force::constant_torque_body as fn(Vector3<f64>) -> Result<Force, ForceError>,
+            ),
+            ("--torque-space", self.torque_space, Force::constant_torque_space),
+        ] {
+            if let Some(torque) = torque {
+                body = body.with(make(torque.into()).map_err(|error| refused(flag, error))?);
+            }
+        }
+        if let Some(OneOrTwo([linear, quadratic])) = self.drag {
+            body = body.with(Force::drag(linear, quadratic).map_err(|error| refused("--drag", error))?);
+        }
+        Ok(body)
+    }
+}
