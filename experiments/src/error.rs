@@ -12,6 +12,9 @@ pub(crate) enum Error {
     /// Input that cannot be used. Exit code 2.
     #[error("{0}")]
     Input(String),
+    /// The reader of standard output has seen enough, and the work ends. Exit code 0, and nothing is said.
+    #[error("standard output is read no further")]
+    Unread,
 }
 
 /// What ours alone can cause: catalogues and examples are valid; if one is not, that is what failed.
@@ -47,6 +50,7 @@ impl Error {
     /// The exit code of the process.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
+            Self::Unread => 0,
             Self::Failed(_) => 1,
             Self::Input(_) => 2,
         }

@@ -1,149 +1,136 @@
 //! Files that are written whole or not at all.
 
-use std::fs::{self, OpenOptions};
-use std::io::{self, Write};
+mod replacement;
+mod signals;
+mod staging;
+mod temporary;
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, ErrorKind, Read, Stdout, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
+use replacement::Replacement;
+pub(crate) use staging::{MARK, Staging};
 
-/// Writes `bytes` to `path`: a reader sees the old file or the new one, never a part.
+/// A line of a text file is no longer than this many bytes; whole models stand in one.
+const LONGEST_LINE: usize = 1 << 24;
+
+/// Where a command writes: a file, which is replaced as a whole in [`finish`](Self::finish), or standard output.
 ///
-/// Pipes and devices, which cannot be replaced, are written to directly.
-pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    replace_named_by("--out", path, bytes)
+/// It is opened before the work, so that a place that cannot be written is found out first.
+pub(crate) enum Output {
+    File { file: Replacement, flag: &'static str, path: PathBuf },
+    Standard(BufWriter<Stdout>),
 }
 
-/// The same for a path that another flag names.
-pub(crate) fn replace_named_by(flag: &str, path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    // A link is followed, so that its target is replaced and not the link.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    let written = match fs::metadata(&target) {
-        Ok(old) if old.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory)),
-        Ok(old) if !old.is_file() => {
-            OpenOptions::new().write(true).open(&target).and_then(|mut file| file.write_all(bytes))
+impl Output {
+    /// To the file of `--out` when given, else to standard output.
+    pub(crate) fn new(out: Option<&Path>) -> Result<Self, Error> {
+        match out {
+            Some(path) => Self::to_file("--out", path),
+            None => Ok(Self::Standard(BufWriter::new(io::stdout()))),
         }
-        _ => replace_file(&target, bytes),
-    };
-    written.map_err(|reason| unwritable(flag, path, &reason))
-}
-
-fn replace_file(target: &Path, bytes: &[u8]) -> io::Result<()> {
-    let temporary = beside(target, "new")?;
-    let written = write_synced(&temporary, bytes).and_then(|()| fs::rename(&temporary, target));
-    if written.is_err() {
-        let _ = fs::remove_file(&temporary);
     }
-    written
-}
 
-fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
-    file.write_all(bytes)?;
-    file.sync_all()
-}
+    /// To the file that `flag` names.
+    pub(crate) fn to_file(flag: &'static str, path: &Path) -> Result<Self, Error> {
+        let file = Replacement::new(path).map_err(|reason| unwritable(flag, path, &reason))?;
+        Ok(Self::File { file, flag, path: path.to_path_buf() })
+    }
 
-/// A hidden name in the same folder, so that a rename stays on one file system.
-fn beside(target: &Path, role: &str) -> io::Result<PathBuf> {
-    let name = target.file_name().ok_or(io::ErrorKind::InvalidInput)?;
-    Ok(target.with_file_name(format!(".{}.{}.{role}", name.to_string_lossy(), std::process::id())))
-}
-
-fn unwritable(flag: &str, path: &Path, reason: &io::Error) -> Error {
-    Error::Input(format!(
-        "{flag}: '{}': cannot be written: {reason}; name a place that exists and that you may write to",
-        path.display()
-    ))
-}
-
-/// A folder of results in the making; it takes its place in [`commit`](Self::commit), or vanishes.
-pub(crate) struct Staging {
-    target: PathBuf,
-    temporary: PathBuf,
-}
-
-/// The file by which a folder of results is known, and may be replaced.
-pub(crate) const MARK: &str = "run.toml";
-
-impl Staging {
-    /// Prepares to write `target`, which is left as it is until the commit.
-    ///
     /// # Errors
-    /// When no folder can be made there, or when one stands there that is not a folder of results.
-    pub(crate) fn new(target: &Path) -> Result<Self, Error> {
-        let foreign = fs::read_dir(target).is_ok_and(|mut entries| entries.next().is_some())
-            && !target.join(MARK).is_file();
-        if foreign {
-            return Err(Error::input(
-                "--out",
-                &target.display().to_string(),
-                &format!("holds files but no {MARK}, so it is not a folder of results to be replaced"),
-                "move it away or name another --out",
-            ));
+    /// [`Error::Unread`] where the reader of standard output has seen enough: `polhode … | head`.
+    pub(crate) fn write(&mut self, text: &str) -> Result<(), Error> {
+        match self {
+            Self::File { file, flag, path } => {
+                file.write(text.as_bytes()).map_err(|reason| unwritable(flag, path, &reason))
+            }
+            Self::Standard(stdout) => stdout.write_all(text.as_bytes()).map_err(|reason| unprinted(&reason)),
         }
-        let create = || {
-            if let Some(parent) = target.parent() {
-                fs::create_dir_all(parent)?;
-            }
-            let temporary = beside(target, "new")?;
-            fs::create_dir(&temporary)?;
-            Ok(temporary)
-        };
-        let temporary = create().map_err(|reason| unwritable("--out", target, &reason))?;
-        Ok(Self { target: target.to_path_buf(), temporary })
     }
 
-    /// Writes one file of the folder.
-    pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Error> {
-        let path = self.temporary.join(name);
-        write_synced(&path, bytes).map_err(|reason| unwritable("--out", &self.target.join(name), &reason))
+    /// Puts the file in its place.
+    pub(crate) fn finish(self) -> Result<(), Error> {
+        match self {
+            Self::File { file, flag, path } => {
+                file.commit().map_err(|reason| unwritable(flag, &path, &reason))
+            }
+            Self::Standard(mut stdout) => stdout.flush().map_err(|reason| unprinted(&reason)),
+        }
     }
 
-    /// Puts the folder in place of the one that stood there.
-    pub(crate) fn commit(self) -> Result<(), Error> {
-        let exchange = || {
-            let old = beside(&self.target, "old")?;
-            let replaced = self.target.exists();
-            if replaced {
-                fs::rename(&self.target, &old)?;
-            }
-            if let Err(reason) = fs::rename(&self.temporary, &self.target) {
-                if replaced {
-                    fs::rename(&old, &self.target)?;
-                }
-                return Err(reason);
-            }
-            if replaced { fs::remove_dir_all(&old) } else { Ok(()) }
-        };
-        exchange().map_err(|reason: io::Error| unwritable("--out", &self.target, &reason))
+    /// The whole of a text that is short.
+    pub(crate) fn write_whole(mut self, text: &str) -> Result<(), Error> {
+        match self.write(text).and_then(|()| self.finish()) {
+            Err(Error::Unread) => Ok(()),
+            other => other,
+        }
     }
 }
 
-impl Drop for Staging {
-    fn drop(&mut self) {
-        // After a commit the temporary folder has moved, and there is nothing to remove.
-        let _ = fs::remove_dir_all(&self.temporary);
+/// Writes `text` to the file of `--out` when given, else to standard output.
+pub(crate) fn emit(text: &str, out: Option<&Path>) -> Result<(), Error> {
+    Output::new(out)?.write_whole(text)
+}
+
+fn unprinted(reason: &io::Error) -> Error {
+    match reason.kind() {
+        ErrorKind::BrokenPipe => Error::Unread,
+        _ => Error::Input(format!("standard output: cannot be written: {reason}; use --out FILE")),
     }
+}
+
+/// Why `path` cannot be written, and what helps.
+fn unwritable(flag: &str, path: &Path, reason: &io::Error) -> Error {
+    let remedy = match reason.kind() {
+        ErrorKind::NotFound => "the folder does not exist; make it first",
+        ErrorKind::NotADirectory | ErrorKind::AlreadyExists => {
+            "a file stands where a folder is needed; name another place"
+        }
+        ErrorKind::IsADirectory => "name a file in it",
+        ErrorKind::PermissionDenied => {
+            "name a place that you may write to; as the file is replaced as a whole, that holds for its folder too"
+        }
+        ErrorKind::ReadOnlyFilesystem => "name a place on another file system",
+        ErrorKind::StorageFull => "free some space, or name a place on another disk",
+        ErrorKind::QuotaExceeded => "free some of your share of the disk, or name a place on another one",
+        ErrorKind::FileTooLarge => "raise the limit of file sizes, or ask for fewer rows",
+        ErrorKind::InvalidFilename => "name a shorter one",
+        ErrorKind::InvalidInput => "name a file",
+        _ => "name another place",
+    };
+    // one that is wrapped names a hidden file, which would not help
+    let cause = reason.raw_os_error().map_or_else(|| reason.kind().to_string(), |_| reason.to_string());
+    Error::Input(format!("{flag}: '{}': cannot be written: {cause}; {remedy}", path.display()))
 }
 
 /// Reads a text file; the message of a failure ends in `remedy`.
 pub(crate) fn read(path: &Path, remedy: &str) -> Result<String, Error> {
-    fs::read_to_string(path)
-        .map_err(|reason| Error::Input(format!("{}: cannot be read: {reason}; {remedy}", path.display())))
-}
-
-/// Rows for the user: to the file of `--out` when given, else to standard output.
-pub(crate) fn emit(text: &str, out: Option<&Path>) -> Result<(), Error> {
-    if let Some(path) = out {
-        return replace(path, text.as_bytes());
-    }
-    match io::stdout().lock().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
-        // The reader has seen enough: `polhode … | head`.
-        Err(reason) if reason.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        Err(reason) => {
-            Err(Error::Input(format!("standard output: cannot be written: {reason}; use --out FILE")))
+    let refused = |reason: &dyn std::fmt::Display| {
+        Error::Input(format!("{}: cannot be read: {reason}; {remedy}", path.display()))
+    };
+    let lines = || {
+        let file = File::open(path)?;
+        let mut bytes = Vec::new();
+        let size = file.metadata().map_or(0, |found| found.len());
+        let _ = bytes.try_reserve_exact(usize::try_from(size).unwrap_or(0));
+        let mut reader = BufReader::new(file);
+        let mut count = 0_u64;
+        loop {
+            count += 1;
+            match reader.by_ref().take(LONGEST_LINE as u64 + 1).read_until(b'\n', &mut bytes)? {
+                0 => return Ok(bytes),
+                length if length > LONGEST_LINE => {
+                    let long = format!("line {count} is longer than {LONGEST_LINE} bytes");
+                    return Err(io::Error::new(ErrorKind::InvalidData, long));
+                }
+                _ => {}
+            }
         }
-        Ok(()) => Ok(()),
-    }
+    };
+    let bytes = lines().map_err(|reason: io::Error| refused(&reason))?;
+    String::from_utf8(bytes).map_err(|_| refused(&"stream did not contain valid UTF-8"))
 }
 
 /// An empty folder for one test, removed with it.
@@ -183,16 +170,38 @@ pub(crate) mod scratch {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::scratch::Scratch;
     use super::*;
+
+    fn replace(path: &Path, text: &str) -> Result<(), Error> {
+        emit(text, Some(path))
+    }
 
     #[test]
     fn a_file_is_replaced_and_nothing_is_left_beside_it() {
         let scratch = Scratch::new("replace");
         let path = scratch.path().join("rows.csv");
-        replace(&path, b"old").unwrap();
-        replace(&path, b"new").unwrap();
+        replace(&path, "old").unwrap();
+        // as a killed run leaves it
+        let stale = scratch.path().join(".rows.csv.abcdef.polhode-new");
+        fs::write(&stale, "half").unwrap();
+        replace(&path, "new").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert_eq!(scratch.names(), ["rows.csv"]);
+    }
+
+    #[test]
+    fn an_output_that_is_not_finished_changes_nothing() {
+        let scratch = Scratch::new("unfinished");
+        let path = scratch.path().join("rows.csv");
+        replace(&path, "old").unwrap();
+        let mut output = Output::new(Some(&path)).unwrap();
+        output.write("new").unwrap();
+        assert_eq!(scratch.names().len(), 2);
+        drop(output);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(scratch.names(), ["rows.csv"]);
     }
 
@@ -201,11 +210,18 @@ mod tests {
         let scratch = Scratch::new("refuse");
         let file = scratch.path().join("file");
         fs::write(&file, "kept").unwrap();
-        for path in [scratch.path().to_path_buf(), file.join("rows.csv"), scratch.path().join("no/rows.csv")]
-        {
-            let error = replace(&path, b"x").unwrap_err();
+        for (path, remedy) in [
+            (scratch.path().to_path_buf(), "name a file in it"),
+            (file.join("rows.csv"), "a file stands where a folder is needed"),
+            (scratch.path().join("no/rows.csv"), "make it first"),
+            (scratch.path().join("x".repeat(256)), "name a shorter one"),
+        ] {
+            let error = replace(&path, "x").unwrap_err();
             assert_eq!(error.exit_code(), 2);
-            assert!(error.to_string().contains(&path.display().to_string()), "{error}");
+            for part in [&path.display().to_string(), remedy] {
+                assert!(error.to_string().contains(part), "{error}");
+            }
+            assert!(!error.to_string().contains("polhode-new"), "{error}");
         }
         assert!(Staging::new(&file.join("smoke/drift")).is_err());
         assert_eq!(scratch.names(), ["file"]);
@@ -213,38 +229,58 @@ mod tests {
     }
 
     #[test]
-    fn results_are_exchanged_as_a_whole() {
-        let scratch = Scratch::new("exchange");
-        let target = scratch.path().join("drift");
-        for (name, content) in [("old.csv", "1"), ("new.csv", "2")] {
-            let staging = Staging::new(&target).unwrap();
-            staging.write(MARK, b"").unwrap();
-            staging.write(name, content.as_bytes()).unwrap();
-            staging.commit().unwrap();
+    fn a_name_may_be_as_long_as_the_system_allows() {
+        let scratch = Scratch::new("long");
+        for name in ["x".repeat(255), "é".repeat(127)] {
+            replace(&scratch.path().join(&name), "rows").unwrap();
+            assert_eq!(fs::read(scratch.path().join(&name)).unwrap(), b"rows");
         }
-        assert!(target.join("new.csv").is_file() && !target.join("old.csv").exists());
-        assert_eq!(scratch.names(), ["drift"]);
-    }
-
-    #[test]
-    fn an_abandoned_folder_vanishes_and_a_foreign_one_is_kept() {
-        let scratch = Scratch::new("foreign");
-        let target = scratch.path().join("drift");
-        drop(Staging::new(&target).unwrap());
-        assert!(scratch.names().is_empty());
-        fs::create_dir(&target).unwrap();
-        fs::write(target.join("thesis.tex"), "years of work").unwrap();
-        assert!(Staging::new(&target).err().unwrap().to_string().contains("run.toml"));
+        assert_eq!(scratch.names().len(), 2);
     }
 
     #[test]
     fn a_link_is_followed() {
         let scratch = Scratch::new("link");
         let (file, link) = (scratch.path().join("file"), scratch.path().join("link"));
-        fs::write(&file, "old").unwrap();
-        std::os::unix::fs::symlink(&file, &link).unwrap();
-        replace(&link, b"new").unwrap();
-        assert_eq!(fs::read(&file).unwrap(), b"new");
-        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        std::os::unix::fs::symlink("file", &link).unwrap();
+        // the second time it leads to a file
+        for text in ["old", "new"] {
+            replace(&link, text).unwrap();
+            assert_eq!(fs::read_to_string(&file).unwrap(), text);
+            assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        }
+        let circle = scratch.path().join("circle");
+        std::os::unix::fs::symlink("circle", &circle).unwrap();
+        assert_eq!(replace(&circle, "x").unwrap_err().exit_code(), 2);
+        assert!(fs::symlink_metadata(&circle).unwrap().is_symlink());
+        assert_eq!(scratch.names(), ["circle", "file", "link"]);
+    }
+
+    #[test]
+    fn a_replaced_file_keeps_its_mode() {
+        use std::os::unix::fs::PermissionsExt;
+        let scratch = Scratch::new("mode");
+        let path = scratch.path().join("rows.csv");
+        let mode = || fs::metadata(&path).unwrap().permissions().mode() & 0o7777;
+        for kept in [0o600, 0o664, 0o444] {
+            replace(&path, "old").unwrap();
+            fs::set_permissions(&path, fs::Permissions::from_mode(kept)).unwrap();
+            replace(&path, "new").unwrap();
+            assert_eq!(mode(), kept);
+        }
+        fs::remove_file(&path).unwrap();
+        fs::write(scratch.path().join("plain"), "").unwrap();
+        replace(&path, "fresh").unwrap();
+        let plain = fs::metadata(scratch.path().join("plain")).unwrap().permissions().mode() & 0o7777;
+        assert_eq!(mode(), plain);
+    }
+
+    #[test]
+    fn a_line_without_end_is_refused() {
+        let error = read(Path::new("/dev/zero"), "name a text file").unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "/dev/zero: cannot be read: line 1 is longer than 16777216 bytes; name a text file"
+        );
     }
 }

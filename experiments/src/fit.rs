@@ -12,7 +12,7 @@ use report::Facts;
 
 use crate::arguments::{number, numbers, positive};
 use crate::error::{Error, warn};
-use crate::files::{emit, read, replace_named_by};
+use crate::files::{Output, read};
 use crate::table::Format;
 
 /// Inertia tensor of a freely turning body from its measured angular velocity
@@ -124,6 +124,9 @@ fn rate_unit(text: &str) -> Result<RateUnit, String> {
 impl Fit {
     pub(crate) fn run(&self) -> Result<(), Error> {
         self.check_paths()?;
+        let output = Output::new(self.out.as_deref())?;
+        let residuals = self.residuals.as_deref().map(|path| Output::to_file("--residuals", path));
+        let residuals = residuals.transpose()?;
         let record = self.record()?;
         let bound = |axis: &[f64; 4]| Bound {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
@@ -150,18 +153,17 @@ impl Fit {
                     _ => return Err(Error::Input(format!("{}: {error}", self.names()))),
                 };
                 if let Some(facts) = facts {
-                    emit(&facts.report(&record, format), self.out.as_deref())?;
+                    output.write_whole(&facts.report(&record, format))?;
                 }
                 return Err(Error::Failed(format!("{}: {error}", self.names())));
             }
         };
-        let drawing = self.residuals.as_deref().map(|path| plot::residuals(&estimate).map(|svg| (path, svg)));
-        let drawing = drawing.transpose()?;
-        emit(&report::identified(&estimate, format), self.out.as_deref())?;
+        let drawing = residuals.map(|file| plot::residuals(&estimate).map(|svg| (file, svg))).transpose()?;
+        output.write_whole(&report::identified(&estimate, format))?;
         // the JSON holds them too; a file of rows does not
         estimate.warnings.iter().for_each(|warning| warn(warning));
         match drawing {
-            Some((path, svg)) => replace_named_by("--residuals", path, svg.as_bytes()),
+            Some((file, svg)) => file.write_whole(&svg),
             None => Ok(()),
         }
     }

@@ -14,7 +14,7 @@ use polhode::body::{Amount, InertiaError, MassError, MassProperties, Mesh, MeshE
 
 use crate::arguments::{list, numbers, positive};
 use crate::error::{Error, warn};
-use crate::files::{emit, read};
+use crate::files::{Output, read};
 use examined::Examined;
 use given::Given;
 
@@ -89,6 +89,7 @@ enum Form {
 
 impl Inertia {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        let file = Output::new(self.out.as_deref())?;
         let given = self.given()?;
         if self.about.is_some() && given.iter().any(|body| body.mass.is_none()) {
             let rule = "missing: --about moves a tensor by M (R^2 1 - R R^T)";
@@ -113,7 +114,7 @@ impl Inertia {
         }
         // a model must not take over a tensor that no body has; a report shows it
         if invalid.is_empty() || matches!(form, Form::Table | Form::Csv | Form::Json) {
-            emit(&output::write(&bodies, form), self.out.as_deref())?;
+            file.write_whole(&output::write(&bodies, form))?;
         }
         if invalid.is_empty() { Ok(()) } else { Err(Error::Failed(invalid.join("\n"))) }
     }

@@ -82,7 +82,7 @@ enum ExperimentCommand {
 
 fn main() -> ExitCode {
     match run(CommandLine::parse().command) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) | Err(Error::Unread) => ExitCode::SUCCESS,
         Err(error) => {
             error::tell("error", &error.to_string());
             ExitCode::from(error.exit_code())

@@ -10,7 +10,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::error::Error;
-use crate::files::{read, replace};
+use crate::files::{emit, read};
 use crate::methods;
 
 const RESULTS: &str = "experiments/results/paper";
@@ -61,9 +61,9 @@ pub(crate) fn run(root: &Path) -> Result<(), Error> {
     std::fs::create_dir_all(&generated)
         .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", generated.display())))?;
     for (path, text) in &files {
-        replace(path, text.as_bytes())?;
+        emit(text, Some(path))?;
     }
-    replace(&readme_path, readme.as_bytes())
+    emit(&readme, Some(&readme_path))
 }
 
 fn origin(experiment: &Path) -> Result<Origin, Error> {

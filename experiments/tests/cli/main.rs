@@ -8,3 +8,5 @@ mod commands;
 mod fit;
 mod harness;
 mod inertia;
+#[cfg(unix)]
+mod interrupted;
