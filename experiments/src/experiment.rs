@@ -95,33 +95,35 @@ impl Context {
         Self { scale, bar }
     }
 
-    /// `work` on each of `parts`, on as many threads as there are cores. Results stand in the order of the parts,
-    /// so that they do not depend on the threads.
+    /// `work` on each of `parts`, on as many threads as there are cores, or as many of them as the system grants, this
+    /// one at least. Results stand in the order of the parts, so that they do not depend on the threads.
     pub(crate) fn in_parallel<T: Send, R: Send>(
         &self,
         parts: Vec<T>,
         work: impl Fn(T) -> R + Sync,
     ) -> Vec<R> {
         self.bar.set_length(parts.len() as u64);
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let helpers = cores.min(parts.len()).saturating_sub(1);
         let results = Mutex::new(Vec::with_capacity(parts.len()));
         let queue = Mutex::new(parts.into_iter().enumerate());
         let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
-        std::thread::scope(|scope| {
-            for _ in 0..threads {
-                scope.spawn(|| {
-                    while let Some((place, part)) = next() {
-                        let result = work(part);
-                        results.lock().unwrap_or_else(PoisonError::into_inner).push((place, result));
-                        // nothing is drawn for work that is over within a second
-                        if self.bar.elapsed() > Duration::from_secs(1) {
-                            self.bar.inc(1);
-                        } else {
-                            self.bar.update(|state| state.set_pos(state.pos() + 1));
-                        }
-                    }
-                });
+        let work_through = || {
+            while let Some((place, part)) = next() {
+                let result = work(part);
+                results.lock().unwrap_or_else(PoisonError::into_inner).push((place, result));
+                // nothing is drawn for work that is over within a second
+                if self.bar.elapsed() > Duration::from_secs(1) {
+                    self.bar.inc(1);
+                } else {
+                    self.bar.update(|state| state.set_pos(state.pos() + 1));
+                }
             }
+        };
+        std::thread::scope(|scope| {
+            let start = || std::thread::Builder::new().spawn_scoped(scope, work_through);
+            let _helpers: Vec<_> = (0..helpers).map_while(|_| start().ok()).collect();
+            work_through();
         });
         let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
         results.sort_by_key(|(place, _)| *place);
@@ -138,11 +140,14 @@ pub(crate) fn run(names: &[String], scale: Scale, out: &Path) -> Result<(), Erro
     // each once, however often it is named
     let asked = |name: &str| names.iter().any(|asked| asked == name || asked == "all");
     let chosen = experiments::ALL.iter().filter(|experiment| asked(experiment.name));
+    let chosen: Vec<_> =
+        chosen.map(|experiment| (experiment, out.join(scale.to_string()).join(experiment.name))).collect();
+    // a place that cannot be written is found out before the work, not after it
+    for (_, folder) in &chosen {
+        drop(Staging::new(folder)?);
+    }
     let mut failures = Vec::new();
-    for experiment in chosen {
-        let folder = out.join(scale.to_string()).join(experiment.name);
-        // an unwritable place is found out before the work, not after it
-        drop(Staging::new(&folder)?);
+    for (experiment, folder) in chosen {
         let context = Context::new(experiment.name, scale);
         let report = (experiment.run)(&context)?;
         context.bar.finish_and_clear();
