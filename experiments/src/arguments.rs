@@ -56,7 +56,7 @@ pub(crate) fn times(text: &str) -> Result<Times, String> {
     list(text).map(Times)
 }
 
-/// Rows of one run, which stand in memory until all are known: somewhat over a gigabyte.
+/// Rows of one run: more are rather a slip of the pen than a wish.
 const MOST_ROWS: f64 = 2e6;
 
 /// The times `start`, `start + every`, … up to `until`.
@@ -82,7 +82,7 @@ pub(crate) fn regular(
     let rows = span / every;
     if rows.is_nan() || rows > MOST_ROWS {
         return Err(format!(
-            "--every: '{every:?}': {rows:.0e} rows up to --until {until:?}, and at most {MOST_ROWS:e} are kept; give a larger distance"
+            "--every: '{every:?}': {rows:.0e} rows up to --until {until:?}, and at most {MOST_ROWS:e} are written; give a larger distance"
         ));
     }
     let ulp = f64::EPSILON * until.abs().max(start.abs()).max(every.abs());

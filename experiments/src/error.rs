@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::io::Write as _;
 
+use crate::text::{visible, visible_lines};
+
 /// A message for standard error and the exit code that goes with it.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
@@ -27,7 +29,7 @@ impl Error {
     pub(crate) fn input(place: &str, value: &str, rule: &str, remedy: &str) -> Self {
         let mut message = format!("{place}: ");
         if !value.is_empty() {
-            let _ = write!(message, "'{value}': ");
+            let _ = write!(message, "'{}': ", visible(value));
         }
         let _ = write!(message, "{rule}; {remedy}");
         Self::Input(message)
@@ -64,7 +66,7 @@ pub(crate) fn warn(message: &str) {
 
 /// A line on standard error. Where nobody listens (`2>&1 | head`), nothing is said.
 pub(crate) fn tell(kind: &str, message: &str) {
-    let _ = writeln!(std::io::stderr(), "{kind}: {message}");
+    let _ = writeln!(std::io::stderr(), "{kind}: {}", visible_lines(message));
 }
 
 /// The known name with the fewest edits from `name`, if more than half of the letters are right.

@@ -15,6 +15,7 @@ use polhode::body::{Amount, InertiaError, MassError, MassProperties, Mesh, MeshE
 use crate::arguments::{list, numbers, positive};
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
+use crate::text::visible;
 use examined::Examined;
 use given::Given;
 
@@ -98,7 +99,8 @@ impl Inertia {
         let point = self.about.map(Vector3::from);
         let mut bodies = Vec::new();
         for body in given {
-            let name = if body.name.is_empty() { String::new() } else { format!(" of '{}'", body.name) };
+            let name =
+                if body.name.is_empty() { String::new() } else { format!(" of '{}'", visible(&body.name)) };
             let refused = |error| Error::Input(format!("{} {}{name}: {error}", self.shape, self.argument));
             bodies.push(Examined::of(body, point).map_err(refused)?);
         }

@@ -19,6 +19,7 @@ mod random;
 mod simulate;
 mod sphere;
 mod table;
+mod text;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -9,8 +9,7 @@ use polhode::fit::{Random, rehearse};
 use crate::arguments::{number, numbers, positive, regular};
 use crate::body_arguments::BodyArguments;
 use crate::error::Error;
-use crate::files::emit;
-use crate::table::{Column, Format, Table, row};
+use crate::table::{Column, Format, Rows, Table, row};
 
 const USAGE: &str = "polhode simulate <BODY> --omega <wx,wy,wz> --until <T> --every <DT>
   BODY: --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
@@ -73,7 +72,7 @@ impl Simulate {
         let rates = rehearse(body.inertia(), Vector3::from(self.omega), &times, self.noise, &mut random)
             .map_err(|error| Error::Input(format!("--omega: {error}")))?;
         let rate = |name, axis| Column::new(name, "rad/s", axis);
-        let mut table = Table::new(
+        let table = Table::new(
             "record",
             "Angular velocity with noise.",
             vec![
@@ -83,9 +82,10 @@ impl Simulate {
                 rate("wz", "angular velocity about the third body axis"),
             ],
         );
+        let mut rows = Rows::new(table, self.format, self.out.as_deref(), times.len())?;
         for (t, w) in times.iter().zip(&rates) {
-            table.push(row![*t, w.x, w.y, w.z]);
+            rows.push(row![*t, w.x, w.y, w.z])?;
         }
-        emit(&Format::or_default(self.format, self.out.is_some()).write(&table), self.out.as_deref())
+        rows.finish()
     }
 }

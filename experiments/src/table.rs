@@ -3,8 +3,12 @@
 mod markup;
 mod print;
 mod rounded;
+mod rows;
 
 use serde_json::Value;
+
+use crate::text::{visible_json, visible_lines};
+pub(crate) use rows::Rows;
 
 /// One value of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,10 +161,15 @@ impl Table {
 
     /// Adds a row; a short one ends in empty cells.
     pub(crate) fn push(&mut self, row: impl IntoIterator<Item = Cell>) {
+        self.rows.push(self.whole(row));
+    }
+
+    /// A row with a cell for every column.
+    fn whole(&self, row: impl IntoIterator<Item = Cell>) -> Vec<Cell> {
         let mut row: Vec<Cell> = row.into_iter().collect();
         debug_assert_eq!(row.len(), self.columns.len(), "cells of a row of {}", self.name);
         row.resize(self.columns.len(), Cell::Empty);
-        self.rows.push(row);
+        row
     }
 
     pub(crate) fn rows(&self) -> &[Vec<Cell>] {
@@ -169,25 +178,28 @@ impl Table {
 
     /// Header row, then every row in full precision.
     pub(crate) fn csv(&self) -> String {
-        let mut lines =
-            vec![self.columns.iter().map(|column| quoted(column.name)).collect::<Vec<_>>().join(",")];
-        lines.extend(
-            self.rows
-                .iter()
-                .map(|row| row.iter().map(|cell| quoted(&cell.exact())).collect::<Vec<_>>().join(",")),
-        );
-        lines.join("\n") + "\n"
+        self.csv_head() + &self.rows.iter().map(|row| self.csv_row(row)).collect::<String>()
+    }
+
+    fn csv_head(&self) -> String {
+        self.columns.iter().map(|column| quoted(column.name)).collect::<Vec<_>>().join(",") + "\n"
+    }
+
+    fn csv_row(&self, row: &[Cell]) -> String {
+        row.iter().map(|cell| quoted(&visible_lines(&cell.exact()))).collect::<Vec<_>>().join(",") + "\n"
     }
 
     /// An array of objects, a row a line; an empty cell is null.
     pub(crate) fn json(&self) -> String {
+        let rows: Vec<String> = self.rows.iter().map(|row| self.json_row(row)).collect();
+        if rows.is_empty() { "[]\n".into() } else { format!("[\n{}\n]\n", rows.join(",\n")) }
+    }
+
+    fn json_row(&self, row: &[Cell]) -> String {
         let entry =
             |(column, cell): (&Column, &Cell)| format!("{}:{}", Value::from(column.name), cell.json());
-        let object = |row: &Vec<Cell>| {
-            format!("  {{{}}}", self.columns.iter().zip(row).map(entry).collect::<Vec<_>>().join(","))
-        };
-        let rows: Vec<String> = self.rows.iter().map(object).collect();
-        if rows.is_empty() { "[]\n".into() } else { format!("[\n{}\n]\n", rows.join(",\n")) }
+        let entries: Vec<String> = self.columns.iter().zip(row).map(entry).collect();
+        format!("  {{{}}}", visible_json(&entries.join(",")))
     }
 
     /// The columns of the rounded tables, with their place in a row.

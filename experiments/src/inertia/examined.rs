@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::body::{Diagnosis, Evidence, InertiaError, MassError, MassProperties, Verdict, diagnose};
 
 use super::given::Given;
+use crate::text::visible;
 
 pub(super) struct Examined {
     pub(super) given: Given,
@@ -72,7 +73,7 @@ impl Examined {
     /// Everything that is to be said about a tensor that is not simply valid.
     pub(super) fn report(&self) -> String {
         let found = &self.diagnosis;
-        let name = if self.given.name.is_empty() { "the tensor" } else { &self.given.name };
+        let name = if self.given.name.is_empty() { "the tensor".into() } else { visible(&self.given.name) };
         let trouble = self.trouble().unwrap_or_else(|| "valid, but hardly of the body described".into());
         let mut text = format!("{name}: {trouble}");
         for (place, explanation) in found.causes.iter().take(3).enumerate() {

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::Form;
 use super::examined::{Examined, six};
 use crate::table::{Cell, Column, Format, Table, row};
+use crate::text::{visible, visible_json};
 
 /// The sign of the products, which no two programs agree on.
 const SIGN: &str = "I_xy = -int x y dm";
@@ -161,8 +162,8 @@ fn json(examined: &Examined) -> String {
             json!({"point": vector(point.as_slice()), "inertia": tensor.as_ref().map(matrix)}),
         ));
     }
-    let lines: Vec<String> = entries.iter().map(|(name, value)| format!("  \"{name}\": {value}")).collect();
-    format!("{{\n{}\n}}", lines.join(",\n"))
+    let line = |(name, value): &(&str, Value)| format!("  \"{name}\": {}", visible_json(&value.to_string()));
+    format!("{{\n{}\n}}", entries.iter().map(line).collect::<Vec<_>>().join(",\n"))
 }
 
 fn quaternion(q: UnitQuaternion<f64>) -> [f64; 4] {
@@ -176,7 +177,7 @@ fn digits(values: &[f64], separator: &str) -> String {
 
 /// `<!-- … -->`; two hyphens would end it early.
 fn comment(examined: &Examined, axes: &str) -> String {
-    let name = examined.given.name.replace("--", "- -");
+    let name = visible(&examined.given.name).replace("--", "- -");
     let of = if name.is_empty() { name } else { format!("{name}: ") };
     format!("<!-- {of}kg, m; tensor entries, {SIGN}, about the centre of mass, {axes} -->\n")
 }
@@ -215,8 +216,11 @@ fn mjcf_diagonal(examined: &Examined, body: &MassProperties) -> String {
 
 fn toml(examined: &Examined, body: &MassProperties) -> String {
     let name = &examined.given.name;
-    let name =
-        if name.is_empty() { String::new() } else { format!("name = {}\n", Value::from(name.as_str())) };
+    let name = if name.is_empty() {
+        String::new()
+    } else {
+        format!("name = {}\n", visible_json(&Value::from(name.as_str()).to_string()))
+    };
     let center: Vector3<f64> = body.center_of_mass();
     format!(
         "# kg, m; inertia: Ixx, Iyy, Izz, Ixy, Ixz, Iyz, {SIGN}, about the centre of mass, which is at `at`\n\

@@ -11,6 +11,7 @@ use super::{read_mesh, scaled};
 use crate::arguments::number;
 use crate::error::Error;
 use crate::files::read;
+use crate::text::visible;
 
 const KEYS: [&str; 10] =
     ["name", "shape", "size", "mass", "density", "at", "turn", "file", "length_unit", "inertia"];
@@ -54,7 +55,7 @@ impl File<'_> {
     fn error(&self, place: usize, message: &str) -> Error {
         let line =
             self.text.as_bytes()[..place.min(self.text.len())].iter().filter(|&&b| b == b'\n').count() + 1;
-        Error::Input(format!("{}:{line}: {message}", self.path.display()))
+        Error::Input(format!("{}:{line}: {}", self.path.display(), visible(message)))
     }
 }
 

@@ -9,6 +9,7 @@ use roxmltree::{Document, Node};
 use super::given::Given;
 use crate::arguments::number;
 use crate::error::Error;
+use crate::text::visible;
 
 /// Every link of a URDF model.
 pub(super) fn urdf(path: &Path, text: &str) -> Result<Vec<Given>, Error> {
@@ -121,7 +122,8 @@ impl Element<'_, '_> {
         let line = self.node.document().text_pos_at(self.node.range().start).row;
         let tag = self.node.tag_name().name();
         let of = if self.name.is_empty() { String::new() } else { format!(" of '{}'", self.name) };
-        Error::Input(format!("{}:{line}: <{tag}>{of}: {message}", self.path.display()))
+        let message = format!("<{tag}>{of}: {message}");
+        Error::Input(format!("{}:{line}: {}", self.path.display(), visible(&message)))
     }
 }
 

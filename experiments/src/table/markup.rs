@@ -2,6 +2,7 @@
 
 use super::rounded::rounded;
 use super::{Cell, Column, Table};
+use crate::text::visible;
 
 impl Table {
     pub(crate) fn markdown(&self) -> String {
@@ -58,12 +59,12 @@ fn latex_heading(column: &Column) -> String {
 }
 
 fn escaped_markdown(text: &str) -> String {
-    text.replace('|', "\\|").replace('<', "&lt;").replace('\n', " ")
+    visible(&text.replace('|', "\\|").replace('<', "&lt;").replace('\n', " ")).into_owned()
 }
 
 fn escaped_latex(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in visible(&text.replace('\n', " ")).chars() {
         match c {
             '&' | '%' | '$' | '#' | '_' | '{' | '}' => escaped.extend(['\\', c]),
             '\\' => escaped += r"\textbackslash{}",
@@ -72,7 +73,6 @@ fn escaped_latex(text: &str) -> String {
             '|' => escaped += r"\textbar{}",
             '<' => escaped += r"\textless{}",
             '>' => escaped += r"\textgreater{}",
-            '\n' => escaped.push(' '),
             'Δ' => escaped += r"$\Delta$",
             'ω' => escaped += r"$\omega$",
             '²' => escaped += r"\textsuperscript{2}",

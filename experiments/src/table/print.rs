@@ -5,6 +5,7 @@ use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Width, pr
 use super::markup::with_unit;
 use super::rounded::rounded;
 use super::{Cell, Column, Table};
+use crate::text::visible;
 
 const WIDTH: usize = 80;
 /// Texts are wrapped rather than let push numbers out of sight.
@@ -68,7 +69,7 @@ fn headings(column: &Column) -> String {
 fn text(cell: &Cell, column: &Column) -> String {
     match cell {
         Cell::Number(x) => rounded(*x, column.digits).plain(),
-        other => other.exact(),
+        other => visible(&other.exact()).into_owned(),
     }
 }
 

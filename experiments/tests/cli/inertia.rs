@@ -419,6 +419,50 @@ fn refusals_are_golden() {
     assert_eq!(names(&scratch.0), before, "something was written");
 }
 
+#[test]
+fn what_a_terminal_would_obey_is_written_out() {
+    let scratch = Scratch::new("terminal");
+    let name = "\u{1b}]0;arm\u{7}\u{9b}2J\u{202e}gpj\n";
+    let body = |inertia: &str| {
+        let name = serde_json::to_string(name).unwrap();
+        format!("{{\"name\": {name}, \"mass\": 1, \"inertia\": {inertia}}}")
+    };
+    scratch.file("valid.json", body("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"));
+    scratch.file("invalid.json", body("[[1, 0, 0], [0, 1, 0], [0, 0, 3]]"));
+    scratch.file("skew.json", body("[[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]"));
+    scratch.file("title.stl", "solid s\n\u{1b}]0;title\u{7}\n");
+    scratch.file("key.toml", "[[part]]\n\"\\u001b[2J\" = 1\n");
+    scratch.file("shape.toml", "[[part]]\nshape = \"\\u202e\"\n");
+    scratch.file("name.urdf", ROBOT.replace("\"arm\"", "\"\u{202e}\u{9b}\""));
+    let obeyed = |c: char| c != '\n' && (c.is_control() || ('\u{202a}'..='\u{202e}').contains(&c));
+    for line in [
+        "json valid.json --format table",
+        "json valid.json --format csv",
+        "json valid.json --format json",
+        "json valid.json --format urdf",
+        "json valid.json --format mjcf",
+        "json valid.json --format toml",
+        "json invalid.json",
+        "json skew.json",
+        "mesh title.stl --mass 1",
+        "parts key.toml",
+        "parts shape.toml",
+        "urdf name.urdf",
+    ] {
+        let Answer { code, out, err } = scratch.run(line);
+        assert!(!out.contains(obeyed) && !err.contains(obeyed), "{line}: {out:?} {err:?}");
+        assert!((code == 0) == line.contains("valid.json --format"), "{line}: {err}");
+        assert!(format!("{out}{err}").contains("\\u"), "{line}: {out:?} {err:?}");
+    }
+    // a line of its own would look like one of ours
+    assert_eq!(scratch.run("json skew.json").err.lines().count(), 1);
+    let read_back: serde_json::Value =
+        serde_json::from_str(&scratch.output("json valid.json --format json")).unwrap();
+    assert_eq!(read_back["name"], name);
+    scratch.file("back.toml", scratch.output("json valid.json --format toml"));
+    assert!(scratch.output("parts back.toml").contains(",valid,"));
+}
+
 /// The same faces seen from the other side.
 fn reversed(obj: &str) -> String {
     let turn = |line: &str| match line.strip_prefix("f ") {
