@@ -14,9 +14,8 @@ use polhode::run::{Run, RunError, Schedule, ScheduleError};
 use crate::arguments::{Times, number, positive, regular, times};
 use crate::body_arguments::{BodyArguments, StartArguments};
 use crate::error::{Error, warn};
-use crate::files::emit;
 use crate::force_arguments::ForceArguments;
-use crate::table::{Column, Format, Table, row};
+use crate::table::{Column, Format, Rows, Table, row};
 
 const USAGE: &str = "polhode propagate <BODY> --omega <wx,wy,wz> <TIMES> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
@@ -64,14 +63,15 @@ impl Propagate {
         let body = self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)?;
         let start = self.start.inside(&body)?;
         let times = self.output_times()?;
-        let mut table = Table::new("trajectory", "Motion of a body.", columns(&body));
+        let table = Table::new("trajectory", "Motion of a body.", columns(&body));
+        let mut rows = Rows::new(table, self.format, self.out.as_deref(), times.len())?;
         let ended = if self.method == "exact" {
-            self.exact(&body, start, &times, &mut table)
+            self.exact(&body, start, &times, &mut rows)
         } else {
-            self.stepped(&body, start, &times, &mut table)
+            self.stepped(&body, start, &times, &mut rows)
         };
         if matches!(ended, Ok(()) | Err(Error::Failed(_))) {
-            emit(&Format::or_default(self.format, self.out.is_some()).write(&table), self.out.as_deref())?;
+            rows.finish()?;
         }
         ended
     }
@@ -98,7 +98,7 @@ impl Propagate {
         if self.until.is_some() { "--until" } else { "--times" }
     }
 
-    fn exact(&self, body: &Body, start: Point<Dd>, times: &[f64], table: &mut Table) -> Result<(), Error> {
+    fn exact(&self, body: &Body, start: Point<Dd>, times: &[f64], rows: &mut Rows) -> Result<(), Error> {
         if self.step.is_some() {
             return Err(Error::Input(
                 "--step: has no meaning with --method exact, which needs none; leave it out, or name a method".into(),
@@ -126,12 +126,12 @@ impl Propagate {
                 )));
             }
             let error = rotation_angle(x.to_dd().attitude, exact.attitude).hi();
-            table.push(self::row(body, Time::from_seconds(t), &x, monitor.worst(), Some(error)));
+            rows.push(self::row(body, Time::from_seconds(t), &x, monitor.worst(), Some(error)))?;
         }
         Ok(())
     }
 
-    fn stepped(&self, body: &Body, start: Point<Dd>, times: &[f64], table: &mut Table) -> Result<(), Error> {
+    fn stepped(&self, body: &Body, start: Point<Dd>, times: &[f64], rows: &mut Rows) -> Result<(), Error> {
         let method = self.stepping_method()?;
         let Some(h) = self.step else {
             return Err(Error::Input(format!(
@@ -168,7 +168,7 @@ impl Propagate {
                 let there = exact.point_at_dd(sample.elapsed);
                 rotation_angle(sample.point.to_dd().attitude, there.attitude).hi()
             });
-            table.push(self::row(body, Time::from_seconds(t), &sample.point, sample.worst, error));
+            rows.push(self::row(body, Time::from_seconds(t), &sample.point, sample.worst, error))?;
         }
         Ok(())
     }

@@ -380,6 +380,39 @@ fn rows_go_whole_into_the_file_and_replace_the_old_ones() {
     assert_eq!(scratch.names(), ["rows.csv"]);
 }
 
+/// Two hundred thousand rows took 190 MB when they were collected first.
+#[cfg(target_os = "linux")]
+#[test]
+fn long_runs_need_no_memory_for_their_rows() {
+    let scratch = Scratch::new("memory");
+    for format in ["csv", "json"] {
+        let out = scratch.0.join(format).display().to_string();
+        let line = with(&format!("--until 2e5 --every 1 --format {format} --out {out}"));
+        let mut child =
+            std::process::Command::new(env!("CARGO_BIN_EXE_polhode")).args(words(&line)).spawn().unwrap();
+        let mut most = 0;
+        while child.try_wait().unwrap().is_none() {
+            let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+            let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.strip_suffix("kB"));
+            most = most.max(peak.map_or(0, |peak| peak.trim().parse().unwrap()));
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        assert!(most > 0 && most < 30_000, "{format}: {most} kB");
+        assert!(fs::read_to_string(out).unwrap().lines().count() > 200_000);
+    }
+}
+
+#[test]
+fn a_table_that_nobody_reads_is_refused() {
+    let line = with("--until 10000 --every 1 --format table");
+    refused(&line, &["--format: 'table'", "10001 rows", "at most 10000", "give --format csv"]);
+    assert!(run(&line.replace("--until 10000", "--until 100")).out.contains("omega_body_x"));
+    refused(
+        "simulate --body phone --omega 1,1,1 --until 20 --every 0.001 --format table",
+        &["--format: 'table'", "20001 rows"],
+    );
+}
+
 #[test]
 fn a_step_of_more_than_a_radian_is_warned_of() {
     let answer = run(&with("--method lie-poisson --step 1 --times 2"));
