@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::fmt::Write;
+use std::io::Read;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::body::{Amount, MassProperties, Mesh, Solid};
@@ -209,6 +210,35 @@ fn cavities_count_negative_and_parts_add() {
         "the mesh is inside out: the part with edge (5.25, 0.25, 0.125)-(5.25, 0.5, 0.125) of triangle 13 encloses \
          the volume -0.125; list the corners of its triangles counterclockwise as seen from outside"
     );
+}
+
+/// Grains with a pore each, too many to look at every grain for every pore.
+#[test]
+fn many_cavities_are_found_in_their_parts() {
+    let n = 40;
+    let at = |k: usize| Vector3::new((k % n) as f64, (k / n % n) as f64, (k / n / n) as f64) * 2.0;
+    let mut triangles = Vec::new();
+    for k in 0..n * n * n {
+        let pore = mapped(&cube(1), |v| v * 0.5 + at(k) + Vector3::repeat(0.25));
+        triangles.extend(pore.iter().map(|[a, b, c]| [*a, *c, *b]));
+        triangles.extend(mapped(&cube(1), |v| v + at(k)));
+    }
+    let mesh = Mesh::new(triangles.clone()).unwrap();
+    assert!((mesh.volume() / (0.875 * (n * n * n) as f64) - 1.0).abs() < 1e-13);
+    // one pore moved out of its grain
+    triangles[..12].iter_mut().flatten().for_each(|v| v.x += 1.0);
+    let error = Mesh::new(triangles).unwrap_err().to_string();
+    assert!(error.contains("inside out") && error.contains("of triangle 1 "), "{error}");
+}
+
+#[test]
+fn a_line_without_end_is_refused() {
+    let long = "line 2 is longer than 1048576 bytes; is this the right file?";
+    let endless = |head: &'static [u8]| std::io::BufReader::new(head.chain(std::io::repeat(b'1')));
+    assert_eq!(Mesh::from_obj(endless(b"# cube\nv 0 0 ")).unwrap_err().to_string(), long);
+    assert_eq!(Mesh::from_stl(endless(b"solid s\nvertex 0 0 ")).unwrap_err().to_string(), long);
+    let edge = Mesh::new(mapped(&cube(1)[..11], |v| v * 1e-200)).unwrap_err().to_string();
+    assert!(edge.contains("(0, 1e-200, 1e-200)") && edge.len() < 200, "{edge}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Bodies bounded by triangles: mass, centre of mass and inertia of what a closed mesh encloses.
 
+mod boxes;
 mod closed;
 mod obj;
 mod stl;
@@ -73,6 +74,12 @@ pub enum MeshError {
         found: String,
         /// What belongs there.
         expected: &'static str,
+    },
+    /// A line of text that does not end.
+    #[error("line {line} is longer than {} bytes; is this the right file?", obj::LONGEST_LINE)]
+    LongLine {
+        /// Number of the line.
+        line: u64,
     },
     /// A face names a vertex that is not there.
     #[error("line {line}: face names vertex {index}, but {vertices} vertices stand above it")]
@@ -163,7 +170,13 @@ impl core::fmt::Display for Edge {
         write!(
             f,
             "edge ({}, {}, {})-({}, {}, {}) of triangle {}",
-            a.x, a.y, a.z, b.x, b.y, b.z, self.triangle
+            Shown(a.x),
+            Shown(a.y),
+            Shown(a.z),
+            Shown(b.x),
+            Shown(b.y),
+            Shown(b.z),
+            self.triangle
         )
     }
 }

@@ -1,5 +1,6 @@
 //! Triangles that share vertices, and whether they close.
 
+use super::boxes::{Bounds, Boxes};
 use super::{Edge, MeshError};
 use crate::rotation::Vec3;
 
@@ -161,9 +162,10 @@ impl Welded {
             }
             parts[part_of[root] as usize].add(self.corners(triangle));
         }
+        let outer = parts.iter().filter(|part| part.volume6 > 0.0);
+        let outer = Boxes::new(outer.map(|part| part.bounds).collect());
         for inner in parts.iter().filter(|part| part.volume6 < 0.0) {
-            let is_cavity = |outer: &Part| outer.volume6 > 0.0 && outer.bounds.contain(&inner.bounds);
-            if !parts.iter().any(is_cavity) {
+            if !outer.contain(&inner.bounds) {
                 let edge = self.named_edge(inner.place, directed(self.triangles[inner.place])[0]);
                 return Err(MeshError::InsideOut { edge, volume: inner.volume6 / 6.0 });
             }
@@ -200,28 +202,6 @@ impl Part {
         let [a, b, c] = corners.map(|v| v + -self.origin);
         self.volume6 += a.dot(b.cross(c));
         corners.iter().for_each(|v| self.bounds.add(&v.0));
-    }
-}
-
-struct Bounds {
-    low: [f64; 3],
-    high: [f64; 3],
-}
-
-impl Default for Bounds {
-    fn default() -> Self {
-        Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] }
-    }
-}
-
-impl Bounds {
-    fn add(&mut self, at: &[f64; 3]) {
-        self.low = [0, 1, 2].map(|k| self.low[k].min(at[k]));
-        self.high = [0, 1, 2].map(|k| self.high[k].max(at[k]));
-    }
-
-    fn contain(&self, inner: &Bounds) -> bool {
-        (0..3).all(|k| self.low[k] <= inner.low[k] && inner.high[k] <= self.high[k])
     }
 }
 

@@ -1,11 +1,14 @@
 //! OBJ files: vertices and faces.
 
-use std::io::{self, BufRead};
+use std::io::{BufRead, Read};
 
 use super::MeshError;
 use super::closed::Welded;
 use super::stl::beginning;
 use crate::rotation::Vec3;
+
+/// A line is no longer than this many bytes, or a file without line ends would fill the memory.
+pub(super) const LONGEST_LINE: u64 = 1 << 20;
 
 pub(super) fn read(reader: impl BufRead) -> Result<Welded, MeshError> {
     let mut mesh = Welded::default();
@@ -80,14 +83,17 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// The next line and its number, from 1.
-    pub(super) fn next(&mut self) -> io::Result<Option<(u64, &str)>> {
+    pub(super) fn next(&mut self) -> Result<Option<(u64, &str)>, MeshError> {
         self.buffer.clear();
-        let read = self.reader.read_until(b'\n', &mut self.buffer)?;
+        let read = self.reader.by_ref().take(LONGEST_LINE + 1).read_until(b'\n', &mut self.buffer)? as u64;
         if read == 0 {
             return Ok(None);
         }
-        self.bytes += read as u64;
+        self.bytes += read;
         self.line += 1;
+        if read > LONGEST_LINE {
+            return Err(MeshError::LongLine { line: self.line });
+        }
         self.text.clear();
         self.text.push_str(&String::from_utf8_lossy(&self.buffer));
         Ok(Some((self.line, &self.text)))
