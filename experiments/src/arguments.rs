@@ -1,5 +1,7 @@
 //! Numbers on the command line. clap puts the flag and the value before each message.
 
+use nalgebra::{Quaternion, UnitQuaternion};
+
 /// A finite number.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
     let text = text.trim();
@@ -45,6 +47,15 @@ pub(crate) fn quaternion(text: &str) -> Result<[f64; 4], String> {
         );
     }
     Ok(q)
+}
+
+/// The turn of a quaternion w,x,y,z of any non-zero norm; `None` of zeros.
+pub(crate) fn turn(q: [f64; 4]) -> Option<UnitQuaternion<f64>> {
+    let largest = q.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    // the power of two keeps the squares in range, and changes no digit
+    let near_one = |x| libm::scalbn(x, -libm::ilogb(largest));
+    let [w, x, y, z] = if largest > 0.0 { q.map(near_one) } else { return None };
+    Some(UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)))
 }
 
 /// Output times as typed, a value of its own because clap reads `Vec` as a repeated flag.
@@ -113,6 +124,16 @@ mod tests {
         assert_eq!(positive("0").unwrap_err(), "0.0 is not positive; give a number above zero");
         assert!(quaternion("0,0,-0,0").unwrap_err().contains("zero quaternion"));
         assert_eq!(quaternion("1,0.1,0,0"), Ok([1.0, 0.1, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn a_turn_does_not_depend_on_the_norm() {
+        let unit = UnitQuaternion::new_normalize(Quaternion::new(1.0, -3.0, 0.5, 0.25));
+        for k in [-1072, -700, 0, 1, 600, 1022] {
+            let scale = libm::scalbn(1.0, k);
+            assert_eq!(turn([1.0, -3.0, 0.5, 0.25].map(|x| x * scale)), Some(unit), "2^{k}");
+        }
+        assert_eq!(turn([0.0, -0.0, 0.0, 0.0]), None);
     }
 
     #[test]

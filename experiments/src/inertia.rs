@@ -15,7 +15,7 @@ use polhode::body::{Amount, InertiaError, MassError, MassProperties, Mesh, MeshE
 use crate::arguments::{list, numbers, positive};
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
-use crate::text::visible;
+use crate::text::{short, visible};
 use examined::Examined;
 use given::Given;
 
@@ -88,6 +88,13 @@ enum Form {
     Toml,
 }
 
+impl Form {
+    /// Whether it says what is known of a tensor, also of one that no body has; the others are models to be used.
+    fn is_report(self) -> bool {
+        matches!(self, Self::Table | Self::Csv | Self::Json)
+    }
+}
+
 impl Inertia {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let file = Output::new(self.out.as_deref())?;
@@ -95,6 +102,11 @@ impl Inertia {
         if self.about.is_some() && given.iter().any(|body| body.mass.is_none()) {
             let rule = "missing: --about moves a tensor by M (R^2 1 - R R^T)";
             return Err(Error::input("--mass", "", rule, "give --mass M"));
+        }
+        let terminal = || self.out.is_none() && std::io::IsTerminal::is_terminal(&std::io::stdout());
+        let form = self.format.unwrap_or_else(|| if terminal() { Form::Table } else { Form::Csv });
+        if !form.is_report() {
+            self.check_masses(&given, form)?;
         }
         let point = self.about.map(Vector3::from);
         let mut bodies = Vec::new();
@@ -104,21 +116,36 @@ impl Inertia {
             let refused = |error| Error::Input(format!("{} {}{name}: {error}", self.shape, self.argument));
             bodies.push(Examined::of(body, point).map_err(refused)?);
         }
-        let terminal = || self.out.is_none() && std::io::IsTerminal::is_terminal(&std::io::stdout());
-        let form = self.format.unwrap_or_else(|| if terminal() { Form::Table } else { Form::Csv });
-        let invalid: Vec<String> = bodies
+        if bodies
             .iter()
-            .filter(|body| body.diagnosis.verdict == Verdict::Invalid)
-            .map(Examined::report)
-            .collect();
-        for body in bodies.iter().filter(|body| body.diagnosis.verdict == Verdict::Suspicious) {
+            .any(|body| matches!(body.about, Some((_, Some(t))) if !t.iter().all(|x| x.is_finite())))
+        {
+            let value = self.about.unwrap_or_default().map(short).join(",");
+            let rule = "the tensor about this point is outside the range of a double";
+            return Err(Error::input("--about", &value, rule, "name a nearer one"));
+        }
+        let invalid: Vec<String> =
+            bodies.iter().filter(|body| body.verdict() == Verdict::Invalid).map(Examined::report).collect();
+        for body in bodies.iter().filter(|body| body.verdict() == Verdict::Suspicious) {
             warn(&body.report());
         }
         // a model must not take over a tensor that no body has; a report shows it
-        if invalid.is_empty() || matches!(form, Form::Table | Form::Csv | Form::Json) {
+        if invalid.is_empty() || form.is_report() {
             file.write_whole(&output::write(&bodies, form))?;
         }
         if invalid.is_empty() { Ok(()) } else { Err(Error::Failed(invalid.join("\n"))) }
+    }
+
+    /// A model states masses, and none is made up.
+    fn check_masses(&self, given: &[Given], form: Form) -> Result<(), Error> {
+        let Some(body) = given.iter().find(|body| body.mass.is_none()) else { return Ok(()) };
+        let form = form.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+        let rule = format!("missing: --format {form} states a mass");
+        if self.shape == "tensor" {
+            return Err(Error::input("--mass", "", &rule, "give --mass M"));
+        }
+        let place = format!("{}: \"mass\" of '{}'", self.argument, visible(&body.name));
+        Err(Error::input(&place, "", &rule, "write it into the file"))
     }
 
     /// The bodies that the arguments describe.

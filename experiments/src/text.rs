@@ -1,4 +1,4 @@
-//! Text from files as it is shown.
+//! Text from files and numbers as they are shown.
 
 use std::borrow::Cow;
 
@@ -32,6 +32,15 @@ fn escaped(text: &str, which: impl Fn(char) -> bool, how: impl Fn(char) -> Strin
     text.chars().map(each).collect::<String>().into()
 }
 
+/// A number with all its digits, written out where that is short.
+pub(crate) fn short(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() || (1e-5..1e15).contains(&x.abs()) {
+        format!("{x}")
+    } else {
+        format!("{x:e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -55,5 +64,13 @@ mod tests {
         let shown = visible_json(&written);
         assert!(shown.is_ascii() && !shown.contains('\u{7f}'), "{shown}");
         assert_eq!(serde_json::from_str::<String>(&shown).unwrap(), name);
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (x, expected) in [(5e-324, "5e-324"), (1e300, "1e300"), (0.25, "0.25"), (3.0, "3"), (-0.0, "-0")]
+        {
+            assert_eq!(short(x), expected);
+        }
     }
 }

@@ -6,12 +6,12 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::body::{Diagnosis, Evidence, InertiaError, MassError, MassProperties, Verdict, diagnose};
 
 use super::given::Given;
-use crate::text::visible;
+use crate::text::{short, visible};
 
 pub(super) struct Examined {
     pub(super) given: Given,
     pub(super) diagnosis: Diagnosis,
-    /// In the axes of the frame; of unit mass if none is known, and absent if no body has the tensor.
+    /// In the axes of the frame; of unit mass if none is known, and absent if no body that turns has the tensor.
     pub(super) body: Option<MassProperties>,
     /// A point and the tensor about it, if there is one.
     pub(super) about: Option<(Vector3<f64>, Option<Matrix3<f64>>)>,
@@ -38,6 +38,7 @@ impl Examined {
         }
         let body = match &diagnosis.violation {
             Some(_) => None,
+            None if is_zero(&given.tensor) => None,
             None => {
                 let mass = given.mass.unwrap_or(1.0);
                 let body = MassProperties::new(mass, Vector3::zeros(), given.tensor)?;
@@ -48,8 +49,13 @@ impl Examined {
         Ok(Examined { given, diagnosis, body, about })
     }
 
-    pub(super) fn verdict(&self) -> &'static str {
-        match self.diagnosis.verdict {
+    /// What the tensor is worth; a point, which has none, does not turn.
+    pub(super) fn verdict(&self) -> Verdict {
+        if is_zero(&self.given.tensor) { Verdict::Invalid } else { self.diagnosis.verdict }
+    }
+
+    pub(super) fn verdict_name(&self) -> &'static str {
+        match self.verdict() {
             Verdict::Valid => "valid",
             Verdict::Suspicious => "suspicious",
             Verdict::Invalid => "invalid",
@@ -59,6 +65,9 @@ impl Examined {
     /// Which law is broken and by how much, in one sentence.
     pub(super) fn trouble(&self) -> Option<String> {
         let found = &self.diagnosis;
+        if is_zero(&self.given.tensor) {
+            return Some(ZERO.into());
+        }
         if let Some(law) = &found.violation {
             return Some(law.to_string());
         }
@@ -76,15 +85,18 @@ impl Examined {
         let name = if self.given.name.is_empty() { "the tensor".into() } else { visible(&self.given.name) };
         let trouble = self.trouble().unwrap_or_else(|| "valid, but hardly of the body described".into());
         let mut text = format!("{name}: {trouble}");
+        if is_zero(&self.given.tensor) {
+            return text;
+        }
         for (place, explanation) in found.causes.iter().take(3).enumerate() {
-            let entries = six(&explanation.corrected).map(|x| x.to_string()).join(",");
+            let entries = six(&explanation.corrected).map(short).join(",");
             let _ = write!(text, "\n  cause {}: {}\n    then it is {entries}", place + 1, explanation.cause);
         }
         if found.causes.is_empty() {
             text += "\n  no single mistake of the kinds that are tested explains it";
         }
         if found.distance > 0.0 {
-            let nearest = six(&found.nearest).map(|x| x.to_string()).join(",");
+            let nearest = six(&found.nearest).map(short).join(",");
             let percent = 100.0 * found.distance / self.given.tensor.norm();
             let _ = write!(
                 text,
@@ -103,6 +115,13 @@ impl Examined {
         }
         text
     }
+}
+
+const ZERO: &str = "every entry of the tensor is zero, as of a point, which does not turn; give the sizes of a body, \
+                    or its entries in a smaller unit";
+
+fn is_zero(tensor: &Matrix3<f64>) -> bool {
+    tensor.iter().all(|entry| *entry == 0.0)
 }
 
 /// Ixx, Iyy, Izz, Ixy, Ixz, Iyz, without signed zeros.

@@ -63,7 +63,7 @@ fn quantities(examined: &Examined) -> Vec<(&'static str, &'static str, Cell)> {
     }
     add(&["margin_1", "margin_2", "margin_3"], "kg m^2", &margins);
     list.push(("class", "", class(examined).into()));
-    list.push(("verdict", "", examined.verdict().into()));
+    list.push(("verdict", "", examined.verdict_name().into()));
     list.push(("trouble", "", examined.trouble().into()));
     list.push(("cause", "", found.causes.first().map(|explanation| explanation.cause.to_string()).into()));
     let mut add = |names: &[&'static str], unit, values: &[f64]| {
@@ -145,7 +145,7 @@ fn json(examined: &Examined) -> String {
         ("class", class(examined).into()),
         ("triangle_margins", vector(&body.map_or(found.triangle_margins, MassProperties::triangle_margins))),
         ("sign", SIGN.into()),
-        ("verdict", examined.verdict().into()),
+        ("verdict", examined.verdict_name().into()),
         ("trouble", examined.trouble().into()),
         ("causes", causes.into()),
         // in the axes it was typed in, like the causes; of a valid tensor it is the tensor itself

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use polhode::body::{Amount, MassError, MassProperties, Solid};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::{read_mesh, scaled};
-use crate::arguments::number;
+use crate::arguments::{number, turn};
 use crate::error::Error;
 use crate::files::read;
 use crate::text::visible;
@@ -114,12 +114,9 @@ impl Part<'_> {
             }
         };
         let turned = match self.numbers::<4>("turn")? {
-            Some([0.0, 0.0, 0.0, 0.0]) => {
-                return Err(
-                    self.at("turn", "the zero quaternion is no turn; [1, 0, 0, 0] leaves a part as it is")
-                );
-            }
-            Some([w, x, y, z]) => body.turned(UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))),
+            Some(q) => body.turned(turn(q).ok_or_else(|| {
+                self.at("turn", "the zero quaternion is no turn; [1, 0, 0, 0] leaves a part as it is")
+            })?),
             None => body,
         };
         let by = Vector3::from(self.numbers::<3>("at")?.unwrap_or_default());

@@ -7,7 +7,7 @@ use polhode::num::trig::sin_cos;
 use roxmltree::{Document, Node};
 
 use super::given::Given;
-use crate::arguments::number;
+use crate::arguments::{number, turn};
 use crate::error::Error;
 use crate::text::visible;
 
@@ -16,16 +16,15 @@ pub(super) fn urdf(path: &Path, text: &str) -> Result<Vec<Given>, Error> {
     inertials(path, text, |element| {
         let child = |name: &'static str| {
             let found = element.node.children().find(|node| node.has_tag_name(name));
-            found
-                .map(|node| Element { node, ..*element })
-                .ok_or_else(|| element.missing(&format!("<{name}>")))
+            found.map(|node| Element { node, ..*element })
         };
+        let needed = |name| child(name).ok_or_else(|| element.missing(&format!("<{name}>")));
         let (xyz, rpy) = match child("origin") {
-            Ok(origin) => (origin.optional::<3>("xyz")?, origin.optional::<3>("rpy")?),
-            Err(_) => (None, None),
+            Some(origin) => (origin.optional::<3>("xyz")?, origin.optional::<3>("rpy")?),
+            None => (None, None),
         };
-        let [mass] = child("mass")?.needed::<1>("value")?;
-        let inertia = child("inertia")?;
+        let [mass] = needed("mass")?.needed::<1>("value")?;
+        let inertia = needed("inertia")?;
         let entry = |name| inertia.needed::<1>(name).map(|[value]| value);
         let [xx, xy, xz] = [entry("ixx")?, entry("ixy")?, entry("ixz")?];
         let [yy, yz, zz] = [entry("iyy")?, entry("iyz")?, entry("izz")?];
@@ -56,8 +55,7 @@ pub(super) fn mjcf(path: &Path, text: &str) -> Result<Vec<Given>, Error> {
             }
         };
         let turn = match element.optional::<4>("quat")? {
-            Some([0.0, 0.0, 0.0, 0.0]) => return Err(element.error("quat is zero; 1 0 0 0 is no turn")),
-            Some([w, x, y, z]) => UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)),
+            Some(q) => turn(q).ok_or_else(|| element.error("quat is zero; 1 0 0 0 is no turn"))?,
             None => UnitQuaternion::identity(),
         };
         let center_of_mass = Vector3::from(element.optional::<3>("pos")?.unwrap_or_default());
@@ -70,11 +68,12 @@ fn inertials(
     text: &str,
     read: impl Fn(&Element<'_, '_>) -> Result<Given, Error>,
 ) -> Result<Vec<Given>, Error> {
+    let parsed = Document::parse(text);
     // several fragments side by side are no document
-    let wrapped = Document::parse(text).is_err().then(|| format!("<fragments>{text}</fragments>"));
+    let wrapped = parsed.is_err().then(|| format!("<fragments>{text}</fragments>"));
     let parsed = match &wrapped {
-        Some(wrapped) => Document::parse(wrapped).or_else(|_| Document::parse(text)),
-        None => Document::parse(text),
+        Some(wrapped) => Document::parse(wrapped).or(parsed),
+        None => parsed,
     };
     let document = parsed.map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
     let mut found = Vec::new();

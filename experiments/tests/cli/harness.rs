@@ -43,6 +43,7 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+#[derive(Debug)]
 pub(crate) struct Answer {
     pub(crate) code: i32,
     pub(crate) out: String,

@@ -340,6 +340,10 @@ fn refusals_are_golden() {
     scratch.file("two.xml", "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1\"/>");
     scratch.file("skew.json", "{\"mass\": 1, \"inertia\": [[2, 0.5, 0], [0.25, 2, 0], [0, 0, 3]]}");
     scratch.file("keys.json", "{\"mass\": 1}");
+    scratch.file(
+        "massless.json",
+        "{\"name\": \"arm\", \"mass\": null, \"inertia\": [[2, 0, 0], [0, 2, 0], [0, 0, 3]]}",
+    );
     let before: Vec<_> = names(&scratch.0);
     let lines = [
         "bax 1,2,3 --mass 1",
@@ -364,6 +368,10 @@ fn refusals_are_golden() {
         "tensor 1,2,3,0,0,0 --density 1",
         "tensor 1,2,3,0,0,0 --about 1,0,0",
         "tensor 1,2,3,0,0,0 --given-about 1,0,0",
+        "tensor 1,2,3,0,0,0 --format urdf",
+        "tensor 1,2,3,0,0,0 --format mjcf-diagonal",
+        "tensor 1,2,3,0,0,0 --mass 1 --about 1e155,0,0",
+        "json massless.json --format toml",
         "tensor 1,2,3,0,0,0 --extents 1,0,1",
         "mesh nowhere.stl --mass 1",
         "mesh cube.ply --mass 1",
@@ -417,6 +425,55 @@ fn refusals_are_golden() {
     }
     golden("refusals.txt", &text);
     assert_eq!(names(&scratch.0), before, "something was written");
+}
+
+#[test]
+fn a_tensor_of_zeros_is_no_body() {
+    let scratch = Scratch::new("zero");
+    scratch.file("point.toml", "[[part]]\nshape = \"point\"\nmass = 1\n");
+    for line in ["tensor 0,0,0,0,-0,0 --mass 1", "sphere 1e-170 --mass 1", "parts point.toml"] {
+        let answer = scratch.run(&format!("{line} --format json"));
+        assert_eq!(answer.code, 1, "{line}");
+        assert!(answer.err.starts_with("error: the tensor: every entry of the tensor is zero"), "{answer:?}");
+        let body: serde_json::Value = serde_json::from_str(&answer.out).unwrap();
+        assert_eq!((&body["verdict"], &body["class"]), (&"invalid".into(), &"none".into()), "{line}");
+        for model in ["urdf", "mjcf", "mjcf-diagonal", "toml"] {
+            let answer = scratch.run(&format!("{line} --format {model}"));
+            assert_eq!((answer.code, answer.out.as_str()), (1, ""), "{line}");
+        }
+    }
+}
+
+#[test]
+fn a_quaternion_of_any_norm_is_a_turn() {
+    let scratch = Scratch::new("norms");
+    let inertia = |line: &str| numbers(&scratch.json(line)["inertia"]);
+    let mut found = Vec::new();
+    for scale in ["1", "1e-200", "1e200", "5e-324"] {
+        let model = format!("<inertial quat=\"{scale} 0 0 {scale}\" mass=\"1\" diaginertia=\"1 1.5 2\"/>");
+        scratch.file("model.xml", model);
+        let part = format!(
+            "[[part]]\nshape = \"tensor\"\nmass = 1\ninertia = [1, 1.5, 2, 0, 0, 0]\nturn = [{scale}, 0, 0, {scale}]\n"
+        );
+        scratch.file("part.toml", part);
+        found.push(inertia("mjcf model.xml"));
+        found.push(inertia("parts part.toml"));
+    }
+    for (k, expected) in [1.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0].into_iter().enumerate() {
+        assert!((found[0][k] - expected).abs() < 1e-15, "{found:?}");
+    }
+    assert!(found.iter().all(|tensor| *tensor == found[0]), "{found:?}");
+}
+
+#[test]
+fn no_number_is_written_out_to_hundreds_of_digits() {
+    let scratch = Scratch::new("digits");
+    for line in ["tensor 1e-320,1e-320,1e-319,0,0,0", "tensor 1e300,1e300,3e300,0,0,0 --mass 1"] {
+        let Answer { code, out, err } = scratch.run(line);
+        assert_eq!(code, 1, "{line}: {err}");
+        let mut runs = [&out, &err].into_iter().flat_map(|text| text.split(|c: char| !c.is_ascii_digit()));
+        assert!(!runs.any(|digits| digits.len() > 25), "{line}: {out} {err}");
+    }
 }
 
 #[test]
