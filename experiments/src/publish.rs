@@ -3,9 +3,10 @@
 //! A block in README.md between `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced
 //! by that table of the committed results of paper scale; every LaTeX table and CSV goes to paper/generated, headed by
 //! the experiment, commit and scale that made it. A block `<!-- begin generated: methods -->` holds the catalogue.
+//! Nothing is read or written outside of the root, whatever the results and the markers say.
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
@@ -15,6 +16,7 @@ use crate::methods;
 
 const RESULTS: &str = "experiments/results/paper";
 const METHODS: &str = "methods";
+const NAMES: &str = "names have small letters, digits and hyphens";
 const REMEDY: &str = "run `polhode experiment run all --scale paper --out experiments/results` first";
 
 #[derive(Deserialize)]
@@ -33,15 +35,16 @@ impl fmt::Display for Origin {
 }
 
 pub(crate) fn run(root: &Path) -> Result<(), Error> {
-    let results = root.join(RESULTS);
-    let readme_path = root.join("README.md");
+    let results = within(root, root.join(RESULTS))?;
+    let readme_path = within(root, root.join("README.md"))?;
     let readme = with_blocks_filled(&read(&readme_path, "run this in the project's root")?, &results)?;
-    let generated = root.join("paper/generated");
+    let generated = within(root, root.join("paper/generated"))?;
     let mut files = Vec::new();
     for experiment in folders(&results)? {
         let origin = origin(&experiment)?;
         let head = origin.to_string();
         for path in sorted_entries(&experiment)? {
+            let path = within(root, path)?;
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let target = generated.join(format!("{}-{name}", origin.experiment));
             match path.extension().and_then(|ending| ending.to_str()) {
@@ -60,6 +63,9 @@ pub(crate) fn run(root: &Path) -> Result<(), Error> {
     // all is known before the first file is touched
     std::fs::create_dir_all(&generated)
         .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", generated.display())))?;
+    for (path, _) in &files {
+        within(root, path.clone())?;
+    }
     for (path, text) in &files {
         emit(text, Some(path))?;
     }
@@ -68,15 +74,40 @@ pub(crate) fn run(root: &Path) -> Result<(), Error> {
 
 fn origin(experiment: &Path) -> Result<Origin, Error> {
     let path = experiment.join("run.toml");
-    toml::from_str(&read(&path, REMEDY)?)
-        .map_err(|error| Error::Input(format!("{}: {error}", path.display())))
+    let origin: Origin = toml::from_str(&read(&path, REMEDY)?)
+        .map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
+    if !is_name(&origin.experiment) {
+        let place = format!("{}: experiment", path.display());
+        return Err(Error::input(&place, &origin.experiment, NAMES, REMEDY));
+    }
+    Ok(origin)
 }
 
-fn folders(results: &Path) -> Result<Vec<std::path::PathBuf>, Error> {
+/// Whether `name` can be that of an experiment or a table: it leads to no other folder.
+fn is_name(name: &str) -> bool {
+    !name.is_empty() && name.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'-'))
+}
+
+/// `path`, if no link leads out of `root`.
+fn within(root: &Path, path: PathBuf) -> Result<PathBuf, Error> {
+    let leads_out = match (root.canonicalize(), path.canonicalize()) {
+        (Ok(root), Ok(end)) => !end.starts_with(root),
+        // what is not there yet is made here, unless a link says where
+        _ => path.is_symlink(),
+    };
+    if leads_out {
+        let value = path.display().to_string();
+        let remedy = "put a file or folder in its place";
+        return Err(Error::input("--root", &value, "is a link that leads out of it", remedy));
+    }
+    Ok(path)
+}
+
+fn folders(results: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(sorted_entries(results)?.into_iter().filter(|path| path.is_dir()).collect())
 }
 
-fn sorted_entries(folder: &Path) -> Result<Vec<std::path::PathBuf>, Error> {
+fn sorted_entries(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let unreadable = |reason: std::io::Error| {
         Error::Input(format!("{}: cannot be read: {reason}; {REMEDY}", folder.display()))
     };
@@ -102,7 +133,11 @@ fn with_blocks_filled(text: &str, results: &Path) -> Result<String, Error> {
         let end = block.find(END).ok_or_else(unclosed)?;
         let table = match name {
             METHODS => methods::table().markdown(),
-            _ => read(&results.join(format!("{name}.md")), REMEDY)?,
+            _ if !name.split('/').all(is_name) || name.split('/').count() != 2 => {
+                let remedy = "write <!-- begin generated: experiment/table -->";
+                return Err(Error::input("README.md: begin generated", name, NAMES, remedy));
+            }
+            _ => read(&within(results, results.join(format!("{name}.md")))?, REMEDY)?,
         };
         out += &format!("{before}{marker}\n{table}{END}");
         rest = &block[end + END.len()..];
@@ -127,6 +162,47 @@ mod tests {
         let filled = with_blocks_filled(text, scratch.path()).unwrap();
         assert_eq!(filled, text.replace("old", "new"));
         assert_eq!(with_blocks_filled(&filled, scratch.path()).unwrap(), filled);
+    }
+
+    #[test]
+    fn nothing_outside_of_the_root_is_read_or_written() {
+        let scratch = Scratch::new("publish-outside");
+        let root = scratch.path().join("root");
+        let results = root.join(RESULTS).join("drift");
+        std::fs::create_dir_all(&results).unwrap();
+        std::fs::write(scratch.path().join("secret.md"), "secret").unwrap();
+        let readme = root.join("README.md");
+        let refused = |part: &str| {
+            let error = super::run(&root).unwrap_err().to_string();
+            assert!(error.contains(part), "{error}");
+            assert_eq!(scratch.names(), ["root", "secret.md"]);
+        };
+        let mark = |experiment: &str| {
+            let origin = format!(
+                "experiment = \"{experiment}\"\nscale = \"paper\"\ncommit = \"0\"\nchanged = \"false\"\n"
+            );
+            std::fs::write(results.join("run.toml"), origin).unwrap();
+        };
+        mark("drift");
+        for name in ["../../../../secret", "drift/../secret", "drift", "/secret", "drift/"] {
+            std::fs::write(&readme, format!("<!-- begin generated: {name} -->\n<!-- end generated -->\n"))
+                .unwrap();
+            refused("small letters, digits and hyphens");
+        }
+        std::fs::write(&readme, "text\n").unwrap();
+        mark("../../../evil");
+        refused("'../../../evil': names have small letters");
+        mark("drift");
+        std::fs::create_dir_all(root.join("paper")).unwrap();
+        let generated = root.join("paper/generated");
+        std::os::unix::fs::symlink(scratch.path(), &generated).unwrap();
+        refused("leads out");
+        std::fs::remove_file(&generated).unwrap();
+        super::run(&root).unwrap();
+        assert!(generated.join("drift-origin.tex").is_file());
+        std::fs::remove_file(generated.join("drift-origin.tex")).unwrap();
+        std::os::unix::fs::symlink(scratch.path().join("new"), generated.join("drift-origin.tex")).unwrap();
+        refused("leads out");
     }
 
     #[test]
