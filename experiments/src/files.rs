@@ -83,25 +83,29 @@ fn unprinted(reason: &io::Error) -> Error {
 
 /// Why `path` cannot be written, and what helps.
 fn unwritable(flag: &str, path: &Path, reason: &io::Error) -> Error {
-    let remedy = match reason.kind() {
-        ErrorKind::NotFound => "the folder does not exist; make it first",
+    let other = reason.to_string();
+    let (cause, remedy) = match reason.kind() {
+        ErrorKind::NotFound => ("the folder does not exist", "make it first"),
         ErrorKind::NotADirectory | ErrorKind::AlreadyExists => {
-            "a file stands where a folder is needed; name another place"
+            ("a file stands where a folder is needed", "name another place")
         }
-        ErrorKind::IsADirectory => "name a file in it",
-        ErrorKind::PermissionDenied => {
-            "name a place that you may write to; as the file is replaced as a whole, that holds for its folder too"
+        ErrorKind::IsADirectory => ("it is a folder", "name a file in it"),
+        ErrorKind::PermissionDenied => (
+            "permission denied",
+            "name a place that you may write to; as a file is replaced as a whole, that holds for its folder too",
+        ),
+        ErrorKind::ReadOnlyFilesystem => ("the file system is read-only", "name a place on another one"),
+        ErrorKind::StorageFull => ("the disk is full", "free some space, or name a place on another one"),
+        ErrorKind::QuotaExceeded => {
+            ("your share of the disk is full", "free some space, or name a place on another one")
         }
-        ErrorKind::ReadOnlyFilesystem => "name a place on another file system",
-        ErrorKind::StorageFull => "free some space, or name a place on another disk",
-        ErrorKind::QuotaExceeded => "free some of your share of the disk, or name a place on another one",
-        ErrorKind::FileTooLarge => "raise the limit of file sizes, or ask for fewer rows",
-        ErrorKind::InvalidFilename => "name a shorter one",
-        ErrorKind::InvalidInput => "name a file",
-        _ => "name another place",
+        ErrorKind::FileTooLarge => {
+            ("it grows beyond the size that files may have here", "raise that limit, or ask for fewer rows")
+        }
+        ErrorKind::InvalidFilename => ("the name is too long", "name a shorter one"),
+        ErrorKind::InvalidInput => ("it names no file", "name one"),
+        _ => (other.as_str(), "name another place"),
     };
-    // one that is wrapped names a hidden file, which would not help
-    let cause = reason.raw_os_error().map_or_else(|| reason.kind().to_string(), |_| reason.to_string());
     Error::Input(format!("{flag}: '{}': cannot be written: {cause}; {remedy}", path.display()))
 }
 
@@ -211,9 +215,9 @@ mod tests {
         let file = scratch.path().join("file");
         fs::write(&file, "kept").unwrap();
         for (path, remedy) in [
-            (scratch.path().to_path_buf(), "name a file in it"),
+            (scratch.path().to_path_buf(), "it is a folder; name a file in it"),
             (file.join("rows.csv"), "a file stands where a folder is needed"),
-            (scratch.path().join("no/rows.csv"), "make it first"),
+            (scratch.path().join("no/rows.csv"), "the folder does not exist; make it first"),
             (scratch.path().join("x".repeat(256)), "name a shorter one"),
         ] {
             let error = replace(&path, "x").unwrap_err();

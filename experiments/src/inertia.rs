@@ -244,6 +244,15 @@ impl Inertia {
                 Err(MassError::Inertia(law @ InertiaError::NotSymmetric { .. })) => {
                     return Err(Error::Input(format!("{place}: {law}")));
                 }
+                Err(MassError::Inertia(InertiaError::NotFinite { .. })) => {
+                    let rule = "moves the tensor outside the range of a double";
+                    return Err(Error::input(
+                        "--given-about",
+                        &point.map(short).join(","),
+                        rule,
+                        "name a nearer one",
+                    ));
+                }
                 Err(error) => {
                     let rule = format!("too small for a tensor about --given-about: {error}");
                     return Err(Error::Failed(format!("{place}: {rule}")));

@@ -97,11 +97,11 @@ impl Examined {
         }
         if found.distance > 0.0 {
             let nearest = six(&found.nearest).map(short).join(",");
-            let percent = 100.0 * found.distance / self.given.tensor.norm();
             let _ = write!(
                 text,
-                "\n  nearest valid tensor: {nearest}\n    Frobenius distance {:.6e}, {percent:.3} % of its norm",
-                found.distance
+                "\n  nearest valid tensor: {nearest}\n    Frobenius distance {:.6e}, {:.3} % of its norm",
+                found.distance,
+                100.0 * share_of_norm(found.distance, &self.given.tensor)
             );
         }
         let edges = found.equivalent_box;
@@ -122,6 +122,12 @@ const ZERO: &str = "every entry of the tensor is zero, as of a point, which does
 
 fn is_zero(tensor: &Matrix3<f64>) -> bool {
     tensor.iter().all(|entry| *entry == 0.0)
+}
+
+/// `distance` over the norm of `tensor`, whose squares may be no doubles.
+fn share_of_norm(distance: f64, tensor: &Matrix3<f64>) -> f64 {
+    let largest = tensor.amax();
+    distance / largest / tensor.map(|entry| entry / largest).norm()
 }
 
 /// Ixx, Iyy, Izz, Ixy, Ixz, Iyz, without signed zeros.

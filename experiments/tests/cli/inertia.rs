@@ -371,6 +371,7 @@ fn refusals_are_golden() {
         "tensor 1,2,3,0,0,0 --format urdf",
         "tensor 1,2,3,0,0,0 --format mjcf-diagonal",
         "tensor 1,2,3,0,0,0 --mass 1 --about 1e155,0,0",
+        "tensor 1,2,3,0,0,0 --mass 1 --given-about 1e155,0,0",
         "json massless.json --format toml",
         "tensor 1,2,3,0,0,0 --extents 1,0,1",
         "mesh nowhere.stl --mass 1",
@@ -468,11 +469,16 @@ fn a_quaternion_of_any_norm_is_a_turn() {
 #[test]
 fn no_number_is_written_out_to_hundreds_of_digits() {
     let scratch = Scratch::new("digits");
-    for line in ["tensor 1e-320,1e-320,1e-319,0,0,0", "tensor 1e300,1e300,3e300,0,0,0 --mass 1"] {
+    for line in [
+        "tensor 1e-320,1e-320,1e-319,0,0,0",
+        "tensor 5e-324,5e-324,1e-322,0,0,0",
+        "tensor 1e300,1e300,3e300,0,0,0 --mass 1",
+    ] {
         let Answer { code, out, err } = scratch.run(line);
         assert_eq!(code, 1, "{line}: {err}");
         let mut runs = [&out, &err].into_iter().flat_map(|text| text.split(|c: char| !c.is_ascii_digit()));
         assert!(!runs.any(|digits| digits.len() > 25), "{line}: {out} {err}");
+        assert!(!err.contains("inf %") && !err.contains("NaN"), "{line}: {err}");
     }
 }
 
