@@ -21,11 +21,8 @@ pub(super) fn file(target: &Path, is_private: bool) -> io::Result<(NamedTempFile
     let (folder, prefix) = hidden(target)?;
     clear(folder, &prefix, target);
     let mut builder = builder(&prefix);
-    #[cfg(unix)]
     if !is_private {
-        use std::os::unix::fs::PermissionsExt;
-        // what the user's mask leaves of it
-        builder.permissions(fs::Permissions::from_mode(0o666));
+        share(&mut builder);
     }
     let mut paused = pause();
     loop {
@@ -38,6 +35,16 @@ pub(super) fn file(target: &Path, is_private: bool) -> io::Result<(NamedTempFile
         }
     }
 }
+
+/// Lets others read the file, as far as the user's mask lets them.
+#[cfg(unix)]
+fn share(builder: &mut Builder<'_, '_>) {
+    use std::os::unix::fs::PermissionsExt;
+    builder.permissions(fs::Permissions::from_mode(0o666));
+}
+
+#[cfg(not(unix))]
+fn share(_: &mut Builder<'_, '_>) {}
 
 /// The same for a folder. The file is the lock, which ends with the process.
 pub(super) fn folder(target: &Path) -> io::Result<(TempDir, Option<File>, Unfinished)> {
