@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use polhode::body::Problem;
+use polhode::method::schemes::{self, Class, Part, Stages};
 use polhode::method::{Claimed, catalogue};
 
 use crate::error::Error;
@@ -13,6 +14,9 @@ use crate::table::{Column, Format, Table, row};
 /// The methods: order, what each keeps of free motion, cost per step, source
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Methods {
+    /// List the schemes of composition and splitting instead, as in kick-drift@srkn-6b
+    #[arg(long)]
+    schemes: bool,
     /// How rows are printed: table on a terminal, csv otherwise
     #[arg(long, value_enum)]
     format: Option<Format>,
@@ -23,7 +27,8 @@ pub(crate) struct Methods {
 
 impl Methods {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        emit(&Format::or_default(self.format, self.out.is_some()).write(&table()), self.out.as_deref())
+        let table = if self.schemes { schemes() } else { table() };
+        emit(&Format::or_default(self.format, self.out.is_some()).write(&table), self.out.as_deref())
     }
 }
 
@@ -75,6 +80,45 @@ pub(crate) fn table() -> Table {
             yes(claims.poisson),
             claims.cost.to_string(),
             claims.source,
+        ]);
+    }
+    table
+}
+
+/// One row a scheme.
+fn schemes() -> Table {
+    let mut table = Table::new(
+        "schemes",
+        "Schemes, to be named behind the base of a method; a composition raises the order of any symmetric base, the others \
+         alternate two exact flows, as in kick-drift.",
+        vec![
+            Column::new("name", "", "name behind the @"),
+            Column::new("order", "", "order of the whole"),
+            Column::new("kind", "", "composition, or what the two flows have to be"),
+            Column::new("maps", "", "maps of a composition, or drifts, in a step"),
+            Column::new("kicks", "", "kicks in a step"),
+            Column::new("source", "", "where the coefficients come from"),
+        ],
+    );
+    for scheme in schemes::ALL {
+        let flows = scheme.flows();
+        let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u64;
+        let kind = match scheme.stages {
+            Stages::Composition(_) => "composition".to_owned(),
+            Stages::Alternating { class: Class::Any, .. } => "any two flows".to_owned(),
+            Stages::Alternating { class: Class::Nystrom, .. } => "kinetic and potential".to_owned(),
+            Stages::Alternating { class: Class::NearIntegrable(orders), .. } => {
+                let orders: Vec<String> = orders.iter().map(u32::to_string).collect();
+                format!("weak potential ({})", orders.join(","))
+            }
+        };
+        table.push(row![
+            scheme.name,
+            u64::from(scheme.order),
+            kind,
+            count(Part::A),
+            count(Part::B),
+            scheme.source,
         ]);
     }
     table

@@ -44,7 +44,7 @@ pub(crate) struct Propagate {
     /// Time of the start, s
     #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0")]
     start_time: f64,
-    /// Method: exact, or one of `polhode methods`
+    /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
     #[arg(long, value_name = "NAME", default_value = "exact")]
     method: String,
     /// Step of a stepping method, s

@@ -125,6 +125,12 @@ impl<S: Evaluated> Forces<S> {
         Forces { gravity, forces: forces.into(), frame, scale, witness }
     }
 
+    /// Potential energy, divided by the scale.
+    pub(crate) fn energy(&self, at: Time, attitude: Quat<S>) -> S {
+        let gravity = self.gravity.map_or(S::of(0.0), |gravity| gravity.potential(attitude));
+        if self.forces.is_empty() { gravity } else { gravity + self.energy_besides_gravity(at, attitude) }
+    }
+
     /// Potential energy besides that of gravity, divided by the scale.
     pub(super) fn energy_besides_gravity(&self, at: Time, attitude: Quat<S>) -> S {
         let attitude = self.frame.map_or(attitude, |frame| attitude * frame.conjugate());

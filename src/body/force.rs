@@ -106,7 +106,7 @@ impl<T: Torque<f64> + Torque<Dd>> PreciseTorque for T {}
 #[non_exhaustive]
 pub enum ForceError {
     /// A parameter is not a finite number.
-    #[error("{force}: {quantity} is {value}; it must be a finite number")]
+    #[error("{quantity} of the {force} is {value}; it must be a finite number")]
     NotFinite {
         /// Name of the force.
         force: &'static str,
@@ -117,7 +117,7 @@ pub enum ForceError {
     },
     /// A drag coefficient is negative.
     #[error(
-        "{force}: {quantity} is {value}; drag takes energy from the body, so its coefficients are at least 0"
+        "{quantity} of the {force} is {value}; drag takes energy from the body, so its coefficients are at least 0: change the sign"
     )]
     Negative {
         /// Name of the force.
@@ -128,7 +128,7 @@ pub enum ForceError {
         value: f64,
     },
     /// The eccentricity is that of no ellipse.
-    #[error("gravity gradient: the eccentricity is {eccentricity}; that of an elliptic orbit is in [0, 1)")]
+    #[error("the eccentricity is {eccentricity}; that of an elliptic orbit is in [0, 1), and 0 is a circle")]
     Eccentricity {
         /// The value.
         eccentricity: f64,

@@ -202,14 +202,10 @@ impl Body {
     /// Kinetic and potential energy, divided by the scale.
     pub(crate) fn scaled_energy(&self, at: Time, x: &Point<Dd>) -> Dd {
         let kinetic = self.rotor().kinetic_energy(x.momentum_body);
-        let energy = match self.gravity {
-            Some(gravity) => kinetic + gravity.potential(x.attitude),
-            None => kinetic,
-        };
-        if self.forces.is_empty() {
-            return energy;
+        if self.problem() == Problem::Free {
+            return kinetic;
         }
-        energy + self.field().energy_besides_gravity(at, x.attitude)
+        kinetic + self.field().energy(at, x.attitude)
     }
 
     /// Σ (|U| + |τ|) over the forces besides gravity at the point `x`, divided by the scale.

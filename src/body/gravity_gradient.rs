@@ -78,8 +78,9 @@ impl GravityGradient {
     /// The solution of Kepler's equation `E − e sin E = M`, M in [−π, π].
     fn eccentric_anomaly<S: Real>(&self, mean: Dd) -> S {
         let (e, m) = (self.eccentricity, mean.to_f64().abs());
-        // M + e is an upper bound, and from above Newton's iteration descends to the root, as E − e sin E is convex
-        let mut x = m + e;
+        // M + e and π are upper bounds, and from above Newton's iteration descends to the root, as E − e sin E is convex
+        // up to π
+        let mut x = (m + e).min(core::f64::consts::PI);
         loop {
             let (sin, cos) = Real::sin_cos(x);
             let next = x - (x - e * sin - m) / (1.0 - e * cos);

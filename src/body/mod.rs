@@ -22,7 +22,7 @@ mod time;
 
 pub use distribution::{DistributionError, Region, integrate_mass};
 pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Verdict, diagnose};
-pub(crate) use field::{Evaluated, Witness};
+pub(crate) use field::{Evaluated, Forces, Witness};
 pub use field::{Field, Free};
 pub use force::{Conserved, Force, ForceError, Potential, Torque};
 pub use frame::{Body, Problem, StateError};

@@ -92,29 +92,31 @@ impl<S: Real, F: Field<S>> ImplicitMidpointMap<S, F> {
     /// The change of m with torque, and the residual; apart, so that the free step stays in registers.
     #[inline(never)]
     fn forced(&self, at: Time, x: &Point<S>) -> (Vec3<S>, f64) {
-        let (m, up, at) = (x.momentum_body, vertical(x.attitude), at.later(self.half_duration));
-        let gravity = self.field.gravity();
+        let (m, up) = (x.momentum_body, vertical(x.attitude));
+        let rest = |middle: Vec3<S>| self.rest(at, x.attitude, middle);
+        let Some(gravity) = self.field.gravity() else {
+            let increment = |middle: Vec3<S>| self.gyroscopic.at(middle) + rest(middle);
+            let size = m.magnitude() + rest(m).magnitude();
+            return iterate(size, increment(m), |delta| increment(m + delta * self.half));
+        };
         let increment = |middle: Vec3<S>| {
-            let omega = middle.times(self.inverse_moments);
-            let c = omega * (self.h * self.half);
-            let weight = gravity.map(|gravity| middle_vertical(up, c).cross(gravity.weight_moment));
-            let rest = F::ACTS_BESIDES_GRAVITY
-                .then(|| self.field.torque_besides_gravity(at, x.attitude * half_turn(c), omega));
-            let torque = match (weight, rest) {
-                (Some(weight), Some(rest)) => weight + rest,
-                (weight, rest) => weight.or(rest).unwrap_or(Vec3::zero()),
-            };
-            self.gyroscopic.at(middle) + torque * self.h
+            let c = middle.times(self.inverse_moments) * (self.h * self.half);
+            let torque = middle_vertical(up, c).cross(gravity.weight_moment);
+            let increment = self.gyroscopic.at(middle) + torque * self.h;
+            if F::ACTS_BESIDES_GRAVITY { increment + rest(middle) } else { increment }
         };
         // next to an equilibrium torques are differences of terms as large as the weight moment
-        let weight = gravity.map_or(0.0, |gravity| (gravity.weight_moment * self.h).magnitude());
-        let omega = m.times(self.inverse_moments);
-        let rest = if F::ACTS_BESIDES_GRAVITY {
-            (self.field.torque_besides_gravity(at, x.attitude, omega) * self.h).magnitude()
-        } else {
-            0.0
-        };
-        iterate(m.magnitude() + weight + rest, increment(m), |delta| increment(m + delta * self.half))
+        let weight = (gravity.weight_moment * self.h).magnitude();
+        let others = if F::ACTS_BESIDES_GRAVITY { rest(m).magnitude() } else { 0.0 };
+        iterate(m.magnitude() + weight + others, increment(m), |delta| increment(m + delta * self.half))
+    }
+
+    /// The change of m by what acts besides gravity, in the middle of a step with the mean momentum `middle`.
+    #[inline(never)]
+    fn rest(&self, at: Time, attitude: Quat<S>, middle: Vec3<S>) -> Vec3<S> {
+        let omega = middle.times(self.inverse_moments);
+        let attitude = attitude * half_turn(omega * (self.h * self.half));
+        self.field.torque_besides_gravity(at.later(self.half_duration), attitude, omega) * self.h
     }
 }
 

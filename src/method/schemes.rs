@@ -524,7 +524,7 @@ pub const SRKN_14A: Scheme = Scheme {
 pub const BCE_22: Scheme = Scheme {
     name: "bce-22",
     order: 8,
-    source: "Blanes, Casas & Escorihuela-Tomàs, Appl. Numer. Math. 182 (2022) 14",
+    source: "Blanes, Casas & Escorihuela-Tomàs, arXiv:2202.01541 (2022)",
     stages: Stages::Alternating {
         first: Part::A,
         a: &[

@@ -65,7 +65,10 @@ pub enum SchemeError {
         base: String,
     },
     /// A composition is of higher order only over a symmetric base.
-    #[error("{base} is not symmetric, and scheme {scheme:?} raises the order of symmetric methods only")]
+    #[error(
+        "{base} is not symmetric, and scheme {scheme:?} raises the order of symmetric methods only; take implicit-midpoint, \
+         rattle, lie-poisson or kick-drift"
+    )]
     NotSymmetric {
         /// Name of the scheme.
         scheme: &'static str,

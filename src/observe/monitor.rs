@@ -1,8 +1,8 @@
 //! The largest errors over every step of a run.
 
+use super::Errors;
 use super::flips::Flips;
-use super::{Errors, Invariants};
-use crate::body::{Body, Clock, Conserved, Point, Problem, Time};
+use crate::body::{Body, Clock, Conserved, Forces, Point, Problem, Time};
 use crate::num::dd::{two_prod, two_sum};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
@@ -15,7 +15,7 @@ use crate::rotation::Vec3;
 /// every step is evaluated in double-double.
 #[derive(Clone, Debug)]
 pub struct Monitor {
-    body: Body,
+    field: Forces<Dd>,
     clock: Clock,
     inverse_moments: Vec3<Dd>,
     forced: Option<Forced>,
@@ -107,7 +107,7 @@ impl Monitor {
         let mut flips = Flips::new(rotor.middle_axis());
         flips.observe(x.momentum_body);
         let mut monitor = Monitor {
-            body: body.clone(),
+            field: body.field(),
             clock,
             inverse_moments: rotor.inverse_moments(),
             forced,
@@ -175,32 +175,34 @@ impl Monitor {
     /// Errors of the point `x` itself, in double-double.
     pub fn errors(&self, x: &Point<f64>) -> Errors {
         let Some(forced) = &self.forced else {
-            let kinetic = kinetic(self.inverse_moments, x.to_dd().momentum_body);
-            let now = self.invariants_with(kinetic, x);
+            let x = x.to_dd();
             return self.errors_of([
-                (now.energy - self.energy).magnitude(),
-                (now.momentum_squared - self.momentum_squared).magnitude(),
-                (now.momentum_space - self.momentum_space).norm().magnitude(),
+                (self.kinetic(&x) - self.energy).magnitude(),
+                (x.momentum_body.norm_squared() - self.momentum_squared).magnitude(),
+                (x.momentum_space() - self.momentum_space).norm().magnitude(),
             ]);
         };
-        let energy = if forced.energy || forced.jacobi.is_some() { self.energy_of(x) } else { self.energy };
-        let now = self.invariants_with(energy, x);
-        let e = now.energy - self.energy;
-        let l = now.momentum_space - self.momentum_space;
+        let (at, point) = (self.clock.at(x.steps()), x.to_dd());
         let relative = |error: f64, scale: f64| {
             // a start at rest where potential and torque are zero has no scale of its own
-            let scale = if scale > 0.0 { scale } else { self.kinetic_of(x).hi() };
+            let scale = if scale > 0.0 { scale } else { self.kinetic(&point).hi() };
             if error == 0.0 { 0.0 } else { error / scale }
         };
-        let size = self.momentum_squared.sqrt().hi();
+        let energy = || self.kinetic(&point) + self.field.energy(at, point.attitude) - self.energy;
+        let momentum = || point.momentum_space() - self.momentum_space;
+        let size = || self.momentum_squared.sqrt();
         Errors {
-            energy: forced.energy.then(|| relative(e.magnitude(), forced.energy_scale)),
+            energy: forced.energy.then(|| relative(energy().magnitude(), forced.energy_scale)),
             momentum: forced
                 .momentum
-                .then(|| relative((now.momentum() - self.momentum_squared.sqrt()).magnitude(), size)),
-            momentum_vector: forced.momentum_vector.then(|| relative(l.norm().magnitude(), size)),
-            momentum_z: forced.momentum_z.then(|| relative(l[2].magnitude(), forced.momentum_scale)),
-            jacobi: forced.jacobi.map(|n| relative((e - l[2] * n).magnitude(), forced.jacobi_scale)),
+                .then(|| relative((point.momentum_body.norm() - size()).magnitude(), size().hi())),
+            momentum_vector: forced
+                .momentum_vector
+                .then(|| relative(momentum().norm().magnitude(), size().hi())),
+            momentum_z: forced.momentum_z.then(|| relative(momentum()[2].magnitude(), forced.momentum_scale)),
+            jacobi: forced
+                .jacobi
+                .map(|n| relative((energy() - momentum()[2] * n).magnitude(), forced.jacobi_scale)),
         }
     }
 
@@ -210,24 +212,16 @@ impl Monitor {
         if scale.hi() == 0.0 {
             return 0.0;
         }
-        ((self.energy_of(x) - self.energy) / scale).hi()
+        let (at, x) = (self.clock.at(x.steps()), x.to_dd());
+        let energy = match self.forced {
+            Some(_) => self.kinetic(&x) + self.field.energy(at, x.attitude),
+            None => self.kinetic(&x),
+        };
+        ((energy - self.energy) / scale).hi()
     }
 
-    fn energy_of(&self, x: &Point<f64>) -> Dd {
-        self.body.scaled_energy(self.clock.at(x.steps()), &x.to_dd())
-    }
-
-    fn kinetic_of(&self, x: &Point<f64>) -> Dd {
-        kinetic(self.inverse_moments, x.to_dd().momentum_body)
-    }
-
-    fn invariants_with(&self, energy: Dd, x: &Point<f64>) -> Invariants {
-        let x = x.to_dd();
-        Invariants {
-            energy,
-            momentum_squared: x.momentum_body.norm_squared(),
-            momentum_space: x.momentum_space(),
-        }
+    fn kinetic(&self, x: &Point<Dd>) -> Dd {
+        kinetic(self.inverse_moments, x.momentum_body)
     }
 
     /// The largest errors so far.

@@ -6,6 +6,7 @@
 
 mod commands;
 mod fit;
+mod forces;
 mod harness;
 mod inertia;
 #[cfg(unix)]

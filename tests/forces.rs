@@ -1,0 +1,389 @@
+//! Forces against closed forms, against fixtures of 30 digits (tests/data/forces, mpmath) and against what they conserve.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::body::{
+    Body, Clock, Conserved, Force, ForceError, Inertia, Point, Potential, Problem, State, Time,
+};
+use polhode::method::{AnyMethod, method};
+use polhode::num::{Dd, Real};
+use polhode::observe::secular_drift;
+use polhode::rotation::{Quat, Vec3, rotation_angle};
+use polhode::run::{Run, RunError, Schedule, Watch};
+
+fn inertia(moments: [f64; 3]) -> Inertia {
+    Inertia::from_moments(moments).unwrap()
+}
+
+fn run(name: &str, body: &Body, omega: [f64; 3], h: f64) -> Run {
+    let start = body.state(UnitQuaternion::identity(), omega.into()).unwrap();
+    Run::new(&method(name).unwrap(), body, &start, h).unwrap()
+}
+
+/// A satellite, tilted, on an orbit with the eccentricity `e`.
+fn satellite(e: f64) -> Body {
+    let inertia = inertia([10.0, 25.0, 30.0]);
+    let gradient = Force::gravity_gradient(&inertia, 0.001, e).unwrap();
+    Body::free(inertia).with(gradient)
+}
+
+const TUMBLING: [f64; 3] = [2e-4, -3e-4, 1.2e-3];
+
+#[test]
+fn jacobis_constant_is_bounded_without_secular_slope_on_a_circular_orbit() {
+    let body = satellite(0.0);
+    assert_eq!(body.conserved(), [Conserved::Jacobi { rate: 0.001 }]);
+    for (name, most) in [("lie-poisson", 1e-3), ("rattle", 1e-3), ("kick-drift@srkn-6b", 1e-7)] {
+        // 63 steps an orbit: a million steps are 16 000 orbits
+        let mut run = run(name, &body, TUMBLING, 100.0).watching(Watch::AtSamples);
+        let (mut times, mut errors) = (Vec::new(), Vec::new());
+        let jacobi = |run: &Run| {
+            let sample = run.sample();
+            let l = sample.state.momentum_space();
+            body.energy_at(sample.time.hi(), &sample.state) - 0.001 * l.z
+        };
+        let (start, mut early) = (jacobi(&run), 0.0);
+        for steps in (1..=2000).map(|k| 500 * k) {
+            let sample = run.advance_to(steps).unwrap();
+            assert_eq!((sample.worst.energy, sample.worst.momentum_z), (None, None));
+            times.push(sample.elapsed.hi());
+            errors.push(jacobi(&run) / start - 1.0);
+            if steps == 100_000 {
+                early = sample.worst.jacobi.unwrap();
+            }
+        }
+        let (drift, worst) = (secular_drift(&times, &errors).unwrap(), run.sample().worst.jacobi.unwrap());
+        println!("{name}: {worst:.1e}, {drift:?}");
+        assert!(worst < most && worst > 1e-16, "{name}: {worst:.1e}");
+        assert!(worst < 1.5 * early, "{name}: {worst:.1e}, in the first tenth {early:.1e}");
+        assert!(drift.slope.abs() < 2.0 * drift.half_width, "{name}: {drift:?}");
+    }
+    // a method that keeps nothing loses it
+    let mut run = run("rk4", &body, TUMBLING, 100.0);
+    let early = run.advance_to(100_000).unwrap().worst.jacobi.unwrap();
+    let late = run.advance_to(1_000_000).unwrap().worst.jacobi.unwrap();
+    assert!(late > 1e-5 && late > 5.0 * early, "{late:e}, in the first tenth {early:e}");
+}
+
+#[test]
+fn on_an_elliptic_orbit_doubles_and_double_double_are_the_same_map() {
+    let body = satellite(0.3);
+    assert_eq!(body.conserved(), []);
+    for name in ["lie-poisson:321@kahan-li-6", "kick-drift@srkn-11b", "rattle", "rk4", "implicit-midpoint"] {
+        let method = method(name).unwrap();
+        let clock = Clock { start: 12_345.678, step: 99.9 };
+        let state = body.state(UnitQuaternion::identity(), TUMBLING.into()).unwrap();
+        let mut quick = body.enter(&state).unwrap().to_f64();
+        let mut precise = quick.to_dd();
+        let mut quick_step = method.prepare_f64(clock, &body).unwrap();
+        let mut precise_step = method.prepare_dd(clock, &body).unwrap();
+        // rounding alone, which the tumbling stretches
+        for (steps, most) in [(20, 1e-13), (180, 2e-11)] {
+            quick_step.steps(&mut quick, steps);
+            precise_step.steps(&mut precise, steps);
+            let apart = rotation_angle(quick.to_dd().attitude, precise.attitude).hi();
+            assert!(apart < most, "{name}: {apart:.1e} after {steps} steps more");
+        }
+    }
+}
+
+/// The yaw axis along r, the roll axis along the velocity, the pitch axis along the normal: small pitch swings as
+/// n √(3 (I_roll − I_yaw)/I_pitch) (Hughes, Spacecraft Attitude Dynamics, §9.1).
+#[test]
+fn small_pitch_librates_with_the_frequency_of_the_linear_theory() {
+    let (n, [yaw, roll, pitch]) = (0.001, [10.0, 25.0, 30.0]);
+    let expected = n * (3.0 * (roll - yaw) / pitch).sqrt();
+    let body = satellite(0.0);
+    for amplitude in [1e-2, 1e-3, 1e-4] {
+        let (sin, cos) = libm::sincos(0.5 * amplitude);
+        let start = State {
+            attitude: Quat::from_components([cos, 0.0, 0.0, sin]),
+            momentum_body: Vec3([0.0, 0.0, pitch * n]),
+        };
+        let mut run = Run::new(&method("kick-drift@srkn-11b").unwrap(), &body, &start, 20.0).unwrap();
+        // the angle from r, about z, at the zeros of which half a period has gone by
+        let angle = |x: &Point<f64>, t: f64| {
+            let (sin, cos) = libm::sincos(n * t);
+            let r = x.attitude.rotate_back(Vec3([cos, sin, 0.0]));
+            -libm::atan2(r[1], r[0])
+        };
+        let (mut zeros, mut before) = (Vec::new(), None::<(f64, f64)>);
+        for sample in run.samples(Schedule::every(1, 20_000)) {
+            let sample = sample.unwrap();
+            let t = sample.time.hi();
+            let now = (t, angle(&sample.point, t));
+            if let Some(before) = before.filter(|before| before.1 * now.1 < 0.0) {
+                zeros.push(before.0 - before.1 * (now.0 - before.0) / (now.1 - before.1));
+            }
+            before = Some(now);
+        }
+        let half_periods = (zeros.len() - 1) as f64;
+        let found = core::f64::consts::PI * half_periods / (zeros[zeros.len() - 1] - zeros[0]);
+        let off = found / expected - 1.0;
+        // a pendulum of 2θ is slower by (2θ)²/16
+        let slower = -(2.0 * amplitude) * (2.0 * amplitude) / 16.0;
+        println!("amplitude {amplitude:.0e} rad: {off:.3e} off, {slower:.3e} expected");
+        assert!((off - slower).abs() < 2e-8 + 0.02 * slower.abs(), "{amplitude}: {off:e}");
+    }
+}
+
+#[test]
+fn drag_slows_a_ball_as_its_closed_form_says() {
+    let (moment, omega) = (2.0, Vec3([0.3, -0.6, 0.6]));
+    let speed = omega.norm();
+    for (c1, c2) in [(0.1, 0.0), (0.0, 0.2), (0.1, 0.2)] {
+        let body = Body::free(inertia([moment; 3])).with(Force::drag(c1, c2).unwrap());
+        assert_eq!((body.problem(), body.conserved()), (Problem::Torque, vec![]));
+        let mut run = run("rk4", &body, omega.0, 0.01);
+        for steps in [100, 1000, 10_000] {
+            let sample = run.advance_to(steps).unwrap();
+            let t = sample.elapsed.hi();
+            // I ω' = −c₁ ω − c₂ ω²
+            let exact = if c1 == 0.0 {
+                speed / (1.0 + c2 * speed * t / moment)
+            } else {
+                let fallen = libm::exp(-c1 * t / moment);
+                speed * fallen / (1.0 + c2 * speed / c1 * (1.0 - fallen))
+            };
+            let off = sample.momentum / (moment * exact) - 1.0;
+            assert!(off.abs() < 1e-12, "c1 = {c1}, c2 = {c2}, t = {t}: {off:.1e}");
+            let direction = sample.omega_body.normalize() - Vector3::from(omega) / speed;
+            assert!(direction.norm() < 1e-14, "{direction:?}");
+            assert_eq!(sample.worst.energy, None);
+        }
+    }
+}
+
+#[test]
+fn constant_torques_add_up_in_their_axes() {
+    let torque = Vector3::new(0.1, -0.2, 0.05);
+    // in space: L = L₀ + τ t, whatever the body
+    let asymmetric = Body::free(inertia([1.0, 2.0, 2.5])).with(Force::constant_torque_space(torque).unwrap());
+    let mut moving = run("rk4-normalized", &asymmetric, [0.3, 1.0, -0.4], 0.005);
+    let start = moving.sample().state.momentum_space();
+    let end = moving.advance_to(2000).unwrap();
+    let off = (end.state.momentum_space() - start - torque * 10.0).norm();
+    assert!(off < 1e-8 && off > 1e-16, "{off:.1e}");
+    // in the body: I ω = τ t of a ball at rest
+    let ball = Body::free(inertia([2.0; 3])).with(Force::constant_torque_body(torque).unwrap());
+    let end = run("implicit-midpoint", &ball, [0.0; 3], 0.01).advance_to(1000).unwrap();
+    assert!((end.state.momentum() - torque * 10.0).norm() < 1e-13);
+}
+
+/// One line of tests/data/forces/reference.csv.
+struct Fixture {
+    name: String,
+    body: Body,
+    start: Point<Dd>,
+    begin: f64,
+    end: f64,
+    exact: Point<Dd>,
+}
+
+fn fixtures() -> Vec<Fixture> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/forces/reference.csv");
+    let text = std::fs::read_to_string(path).unwrap();
+    let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    rows.map(|line| {
+        let fields: Vec<&str> = line.split(',').collect();
+        assert_eq!(fields.len(), 23, "{line}");
+        let double = |k: usize| fields[k].parse::<f64>().unwrap();
+        let digits = |k: usize| fields[k].parse::<Dd>().unwrap();
+        let inertia = inertia([1, 2, 3].map(double));
+        let parameters = [11, 12, 13].map(double);
+        let force = match fields[0] {
+            "gradient" => Force::gravity_gradient(&inertia, parameters[0], parameters[1]),
+            "body" => Force::constant_torque_body(parameters.into()),
+            "space" => Force::constant_torque_space(parameters.into()),
+            "drag" => Force::drag(parameters[0], parameters[1]),
+            other => panic!("{other}"),
+        };
+        let body = Body::free(inertia).with(force.unwrap());
+        let state = State {
+            attitude: Quat::from_components([4, 5, 6, 7].map(double)),
+            momentum_body: Vec3([8, 9, 10].map(double)),
+        };
+        let exact = Vec3([20, 21, 22].map(digits)) * (Dd::ONE / Dd::from(body.scale()));
+        Fixture {
+            name: format!("{} {parameters:?}", fields[0]),
+            start: body.enter(&state).unwrap(),
+            begin: double(14),
+            end: double(15),
+            exact: Point::new(Quat::from_components([16, 17, 18, 19].map(digits)), exact),
+            body,
+        }
+    })
+    .collect()
+}
+
+/// The end of the fixture by `steps` steps of `method` in double-double: angle, and momentum over |m|.
+fn errors(fixture: &Fixture, method: &dyn AnyMethod, steps: u64) -> f64 {
+    let clock = Clock { start: fixture.begin, step: (fixture.end - fixture.begin) / steps as f64 };
+    let mut x = fixture.start;
+    method.prepare_dd(clock, &fixture.body).unwrap().steps(&mut x, steps);
+    let angle = rotation_angle(x.attitude, fixture.exact.attitude);
+    let momentum =
+        (x.momentum_body - fixture.exact.momentum_body).norm() / fixture.exact.momentum_body.norm();
+    (angle + momentum).hi()
+}
+
+/// Also that every evaluation takes the right time: in a substep of a composition the wrong one costs all orders.
+#[test]
+fn motions_under_forces_are_those_of_the_fixtures() {
+    let fixtures = fixtures();
+    assert_eq!(fixtures.len(), 6);
+    for fixture in &fixtures {
+        let methods: &[(&str, u64, f64)] = match fixture.body.problem() {
+            Problem::Potential => &[
+                ("kick-drift@sofroniou-spaletta-10", 2048, 1e-19),
+                ("lie-poisson@kahan-li-8", 1024, 1e-13),
+                ("implicit-midpoint@kahan-li-6", 1024, 1e-10),
+            ],
+            _ => &[("implicit-midpoint@kahan-li-8", 1024, 1e-15), ("rk4", 4096, 1e-9)],
+        };
+        for (name, steps, most) in methods {
+            let error = errors(fixture, &method(name).unwrap(), *steps);
+            println!("{}: {name} {error:.1e}", fixture.name);
+            assert!(error < *most, "{}: {name} {error:.1e}", fixture.name);
+        }
+    }
+}
+
+/// The asymmetric heavy body at about 80 exact drifts per unit time, over 64 units.
+#[test]
+fn nystrom_schemes_are_far_more_accurate_than_suzukis_at_equal_cost() {
+    let body = Body::heavy(inertia([0.625, 0.75, 1.0]), [0.1, -0.2, 0.4].into()).unwrap();
+    let start = body.enter_omega(Quat::identity(), Vec3([0.3, 1.0, -0.4])).unwrap().to_f64();
+    let span = 64;
+    let reference = |per_unit: u64| {
+        let mut x = start.to_dd();
+        let clock = Clock::new(1.0 / per_unit as f64);
+        method("kick-drift@sofroniou-spaletta-10")
+            .unwrap()
+            .prepare_dd(clock, &body)
+            .unwrap()
+            .steps(&mut x, span * per_unit);
+        x.attitude
+    };
+    let exact = reference(16);
+    assert!(rotation_angle(reference(8), exact).hi() < 1e-15);
+    let error = |name: &str, per_unit: u64| {
+        let mut x = start;
+        let clock = Clock::new(1.0 / per_unit as f64);
+        method(name).unwrap().prepare_f64(clock, &body).unwrap().steps(&mut x, span * per_unit);
+        rotation_angle(x.to_dd().attitude, exact).hi()
+    };
+    let suzuki = error("kick-drift@suzuki-4", 16); // 80 drifts per unit
+    let fourth = error("kick-drift@srkn-6b", 13); // 78
+    let sixth = error("kick-drift@srkn-11b", 7); // 77
+    println!(
+        "suzuki-4 {suzuki:.2e}, srkn-6b {fourth:.2e} ({:.0} times), srkn-11b {sixth:.2e} ({:.0} times)",
+        suzuki / fourth,
+        suzuki / sixth
+    );
+    assert!(suzuki > 20.0 * fourth && suzuki > 20.0 * sixth, "{suzuki:e}, {fourth:e}, {sixth:e}");
+}
+
+#[test]
+fn what_is_conserved_together_is_what_each_conserves() {
+    let moments = inertia([1.0, 2.0, 2.5]);
+    let gradient = |n| Force::gravity_gradient(&moments, n, 0.0).unwrap();
+    let heavy = Body::heavy(moments.clone(), [0.1, 0.0, 0.2].into()).unwrap();
+    let jacobi = |rate| Conserved::Jacobi { rate };
+    let free = Body::free(moments.clone());
+    assert!(free.conserved().contains(&Conserved::Momentum));
+    assert_eq!(heavy.conserved(), [Conserved::Energy, Conserved::MomentumZ]);
+    assert_eq!(free.clone().with(gradient(0.5)).conserved(), [jacobi(0.5)]);
+    // gravity along z turns with the orbit: Jacobi's constant is left
+    assert_eq!(heavy.with(gradient(0.5)).conserved(), [jacobi(0.5)]);
+    assert_eq!(free.clone().with(gradient(0.5)).with(gradient(0.25)).conserved(), []);
+    assert_eq!(free.with(gradient(0.5)).with(Force::drag(0.1, 0.0).unwrap()).conserved(), []);
+}
+
+#[test]
+fn a_potential_by_closures_is_sampled_and_its_energy_watched() {
+    let (strength, axis) = (0.2, Vector3::z());
+    let make = |wrong: f64| {
+        Force::potential_fn(
+            "magnet",
+            move |q| -strength * (q * axis).x,
+            move |q| wrong * strength * axis.cross(&(q.inverse() * Vector3::x())),
+        )
+    };
+    // a typed tensor off its principal axes, and a scale that is not 1: the closures see body axes and newton metres
+    let tensor = nalgebra::Matrix3::new(20.0, 1.0, -2.0, 1.0, 30.0, 3.0, -2.0, 3.0, 40.0);
+    let body = |wrong| Body::free(Inertia::from_tensor(tensor).unwrap()).with(make(wrong));
+    let right = body(1.0);
+    let worst = |body: &Body| {
+        run("kick-drift@srkn-6b", body, [0.1, 0.05, 0.02], 0.5).advance_to(20_000).unwrap().worst
+    };
+    assert_eq!(right.conserved(), [Conserved::Energy]);
+    let energy = worst(&right).of(Conserved::Energy).unwrap();
+    assert!(energy < 1e-7 && energy > 1e-17, "{energy:e}");
+    // and a torque that does not belong to the energy is seen
+    assert!(worst(&body(-1.0)).energy.unwrap() > 0.1);
+    // the same by an implementation in every scalar
+    struct Magnet;
+    impl<S: Real> Potential<S> for Magnet {
+        fn energy(&self, _: Time, attitude: Quat<S>) -> S {
+            -(attitude.rotate(Vec3::unit(2))[0] * S::of(0.2))
+        }
+        fn torque(&self, _: Time, attitude: Quat<S>) -> Vec3<S> {
+            Vec3::unit(2).cross(attitude.rotate_back(Vec3::unit(0))) * S::of(0.2)
+        }
+    }
+    let same = Body::free(Inertia::from_tensor(tensor).unwrap()).with(Force::potential("magnet", Magnet));
+    let end =
+        |body: &Body| run("rattle", body, [0.1, 0.05, 0.02], 0.5).advance_to(500).unwrap().state.rotation();
+    assert!(end(&right).angle_to(&end(&same)) < 1e-11);
+}
+
+#[test]
+fn a_force_that_is_not_finite_ends_the_run_with_its_name_and_time() {
+    let body =
+        |late: f64| {
+            Body::free(inertia([10.0, 20.0, 30.0])).with(Force::drag(0.1, 0.0).unwrap()).with(
+                Force::torque_fn("thruster", move |t, _, _| Vector3::x() / if t < late { 1.0 } else { 0.0 }),
+            )
+        };
+    for watch in [Watch::EveryStep, Watch::AtSamples, Watch::Never] {
+        let mut run = run("rk4", &body(0.96), [0.4, 1.0, -0.3], 0.125).watching(watch);
+        // the fourth stage of the step from 0.875 on is at 1 s
+        match run.advance_to(100).unwrap_err() {
+            RunError::Force { force, time, last } => {
+                assert_eq!((force.as_str(), time, last.steps), ("thruster", 1.0, 7));
+                assert!(last.state.is_finite());
+            }
+            other => panic!("{other}"),
+        }
+    }
+    let error = run("implicit-midpoint", &body(-1.0), [0.4, 1.0, -0.3], 0.125).advance_to(1).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "thruster is not finite at t = 0.0625 s, after 0 steps; the state at t = 0 s before it is finite: \
+         q = [1.0, 0.0, 0.0, 0.0], omega_body = [0.4, 1.0, -0.3] rad/s"
+    );
+}
+
+#[test]
+fn parameters_that_no_force_has_are_refused() {
+    let moments = inertia([1.0, 2.0, 2.5]);
+    let refused = |result: Result<Force, ForceError>| result.map(|_| ()).unwrap_err().to_string();
+    assert_eq!(
+        refused(Force::drag(-0.1, 0.0)),
+        "c1 of the drag is -0.1; drag takes energy from the body, so its coefficients are at least 0: change the sign"
+    );
+    assert_eq!(
+        refused(Force::gravity_gradient(&moments, 0.001, 1.0)),
+        "the eccentricity is 1; that of an elliptic orbit is in [0, 1), and 0 is a circle"
+    );
+    assert!(Force::gravity_gradient(&moments, 0.001, -0.1).is_err());
+    assert!(Force::gravity_gradient(&moments, 0.001, f64::NAN).is_err());
+    assert_eq!(
+        refused(Force::gravity_gradient(&moments, f64::INFINITY, 0.0)),
+        "the mean motion of the gravity gradient is inf; it must be a finite number"
+    );
+    assert!(Force::constant_torque_body(Vector3::new(0.0, f64::NAN, 0.0)).is_err());
+    assert!(Force::constant_torque_space(Vector3::new(0.0, f64::INFINITY, 0.0)).is_err());
+}
