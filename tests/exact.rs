@@ -10,6 +10,8 @@ use polhode::flow::{AtRest, Flow, FreeBody, FreeMotion, Mode, TimeError};
 use polhode::num::{Dd, Precise, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 
+const FILES: [&str; 3] = ["fixtures.csv", "reference.csv", "brink.csv"];
+
 fn motion(case: &FreeCase) -> FreeMotion {
     // some published problems have moments that no body has
     let inertia = Inertia::from_positive_moments(case.moments).unwrap();
@@ -51,7 +53,7 @@ fn worst<S: Precise>(file: &str, at: impl Fn(&FreeMotion, f64) -> Point<S>) -> [
 
 #[test]
 fn f64_states_are_exact_to_1e_14_in_every_regime_at_any_time() {
-    for file in ["fixtures.csv", "reference.csv"] {
+    for file in FILES {
         let [attitude, momentum] = worst(file, |motion, t| motion.point_at(t));
         println!(
             "{file}: attitude {:.2e} rad, {}; momentum {:.2e}, {}",
@@ -64,7 +66,7 @@ fn f64_states_are_exact_to_1e_14_in_every_regime_at_any_time() {
 
 #[test]
 fn double_double_states_are_exact_to_conditioning() {
-    for file in ["fixtures.csv", "reference.csv"] {
+    for file in FILES {
         let [attitude, momentum] = worst(file, |motion, t| motion.point_at_dd(Dd::from(t)));
         println!(
             "{file}: attitude {:.2e} rad, {}; momentum {:.2e}, {}",
@@ -178,8 +180,8 @@ fn rest_and_steady_turns_have_no_periods() {
 
 #[test]
 fn the_flow_of_a_splitting_agrees_with_the_motion() {
-    for case in free_body("fixtures.csv").iter().filter(|case| case.t.abs() <= 1.0) {
-        let exact = motion(case);
+    for case in FILES.into_iter().flat_map(free_body).filter(|case| case.t.abs() <= 1.0) {
+        let exact = motion(&case);
         let mut x = exact.point_at(0.0);
         let mut precise = exact.point_at_dd(Dd::ZERO);
         let (rotor, now) = (exact.body().rotor(), Time::from_seconds(0.0));
@@ -188,8 +190,10 @@ fn the_flow_of_a_splitting_agrees_with_the_motion() {
         let there = exact.point_at_dd(Dd::from(case.t));
         let angle = rotation_angle(x.to_dd().attitude, there.attitude).hi();
         let turned = exact.character().map_or(0.0, |c| c.spin * case.t.abs());
-        assert!(angle < 1e-14 * (1.0 + turned), "{}: {angle:e} after {turned} rad", case.scenario);
+        // the phase of a start next to the unstable axis is the logarithm of its distance
+        let long = if case.regime == "brink" { 20.0 } else { 1.0 };
+        assert!(angle < long * 1e-14 * (1.0 + turned), "{}: {angle:e} after {turned} rad", case.scenario);
         let angle = rotation_angle(precise.attitude, there.attitude).hi();
-        assert!(angle < 1e-29 * (1.0 + turned), "{}: {angle:e} after {turned} rad", case.scenario);
+        assert!(angle < long * 1e-29 * (1.0 + turned), "{}: {angle:e} after {turned} rad", case.scenario);
     }
 }

@@ -41,6 +41,90 @@ fn apart(a: &Point<Dd>, b: &Point<Dd>) -> f64 {
     m.magnitude() + rotation_angle(a.attitude, b.attitude).magnitude()
 }
 
+/// Sign and size, the size log-uniform over `decades` below one, down to the smallest double.
+fn any_size(decades: f64) -> impl Strategy<Value = f64> {
+    (-decades..0.0, any::<bool>()).prop_map(|(exponent, negative)| {
+        let size = libm::exp10(exponent).max(f64::from_bits(1));
+        if negative { -size } else { size }
+    })
+}
+
+/// What `at` must tell at any time: finite numbers, a unit quaternion, L in space, the energy, and Euler's equations
+/// by a central difference.
+fn check_motion(inertia: &Inertia, omega: nalgebra::Vector3<f64>, t: f64) -> Result<(), TestCaseError> {
+    let motion = FreeMotion::from_omega(inertia, Default::default(), omega).unwrap();
+    let start = motion.at(0.0).unwrap();
+    let (l, twice_energy) = (start.momentum(), start.momentum().dot(&omega));
+    let d = 1.0 / f64::from(1_u32 << 13);
+    let [before, now, after] = [-d, 0.0, d].map(|d| motion.at(t + d).unwrap());
+    let spin = motion.omega_at(t).unwrap();
+    prop_assert!(now.is_finite() && spin.iter().all(|w| w.is_finite()), "{now:?}");
+    let norm = now.attitude.norm_squared();
+    prop_assert!((norm - 1.0).abs() < 1e-14, "|q|^2 = {norm}");
+    let turned = (now.rotation() * now.momentum() - l).norm() / l.norm();
+    prop_assert!(turned < 1e-14, "L in space is off by {turned:e}");
+    let lost = (now.momentum().dot(&spin) - twice_energy).abs() / twice_energy;
+    prop_assert!(lost < 1e-14, "the energy is off by {lost:e}");
+    let momentum_rate = (after.momentum() - before.momentum()) / (2.0 * d);
+    let residual = (momentum_rate - now.momentum().cross(&spin)).norm() / l.norm();
+    prop_assert!(residual < 1e-7, "m' is off by {residual:e}");
+    let attitude_rate = (after.attitude - before.attitude) * (0.5 / d);
+    let residual = (attitude_rate - now.attitude.rate(spin.into())).magnitude();
+    prop_assert!(residual < 1e-7, "q' is off by {residual:e}");
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(cases::usual(2000))]
+
+    #[test]
+    fn a_turn_about_the_middle_axis_is_exact_at_any_deviation(
+        [a, b, c] in [0.01..1.0_f64, 0.01..1.0, 0.01..1.0], near in any_size(16.0),
+        low in any_size(324.0), high in any_size(324.0), both in any::<u8>(), middle in any_size(1.0),
+        t in any_size(8.0),
+    ) {
+        // one of the moments may agree with the middle one to any digit
+        let mut moments = [b + c, a + c, a + b];
+        moments.sort_by(f64::total_cmp);
+        if both & 1 == 1 {
+            moments[0] = moments[1] * (1.0 - 0.99 * near.abs());
+        } else if both & 2 == 2 {
+            moments[2] = moments[1] * (1.0 + near.abs());
+        }
+        moments[2] = moments[2].min(moments[0] + moments[1]);
+        moments.rotate_left(usize::from(both) % 3);
+        let mut order = [0, 1, 2];
+        order.sort_by(|&j, &k| moments[j].total_cmp(&moments[k]));
+        let mut omega = [0.0; 3];
+        omega[order[0]] = if both & 12 == 12 { 0.0 } else { low };
+        omega[order[1]] = middle;
+        omega[order[2]] = if both & 12 == 8 { 0.0 } else { high };
+        check_motion(&Inertia::from_moments(moments).unwrap(), omega.into(), 1e5 * t)?;
+    }
+
+    #[test]
+    fn a_near_sphere_is_exact_as_arithmetic_leaves_it(
+        ulps in [0..9_u8, 0..9, 0..9], frame in any_attitude(), omega in any_vector(), axis in 0..4_usize,
+        off in any_size(40.0).prop_map(|x| 1e-15 * x), t in any_size(8.0),
+    ) {
+        let turn: nalgebra::UnitQuaternion<f64> = Quat::from_components(frame).into();
+        let r = turn.to_rotation_matrix();
+        let moments = ulps.map(|n| 1.0 + f64::from(n) * f64::EPSILON);
+        let tensor = r.matrix() * nalgebra::Matrix3::from_diagonal(&moments.into()) * r.matrix().transpose();
+        let tensor = match ulps[0] {
+            0 => nalgebra::Matrix3::from_diagonal(&tensor.diagonal()),
+            1 => tensor.map(|entry| if entry.abs() < 0.5 { off } else { entry }),
+            _ => tensor,
+        };
+        let inertia = Inertia::from_tensor((tensor + tensor.transpose()) * 0.5).unwrap();
+        let mut omega = nalgebra::Vector3::from(omega);
+        if let Some(component) = omega.iter().copied().nth(axis) {
+            omega = nalgebra::Vector3::ith(axis, component + 0.1 * component.signum());
+        }
+        check_motion(&inertia, omega, 1e5 * t)?;
+    }
+}
+
 proptest! {
     #![proptest_config(cases::usual(200))]
 

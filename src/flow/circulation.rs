@@ -18,7 +18,7 @@
 //!   `tests/data/free_body/reference.csv`, scenario E4.
 
 use super::phase::reduce;
-use super::polhode::Polhode;
+use super::polhode::{Polhode, scaled};
 use crate::num::elliptic::{Modulus, r_j};
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};
@@ -30,6 +30,8 @@ pub(super) struct Circulation<S> {
     modulus: Modulus<S>,
     phase: S,
     swing_back: Quat<S>,
+    /// A, B, C and G over one power of two near G: products of three of them are formed.
+    relative: [S; 4],
     twist_rate: S, // G/I_c or G/I_a
     about_c: bool,
     characteristic: S, // n or n̂
@@ -50,20 +52,21 @@ impl<S: Precise> Circulation<S> {
     pub(super) fn of(polhode: Polhode<S>, m: Vec3<S>) -> Self {
         let one = S::of(1.0);
         let [amp_a, amp_b, amp_c] = polhode.amplitude;
+        let relative @ [amp_a, amp_b, amp_c, norm] =
+            [amp_a, amp_b, amp_c, polhode.norm].map(|x| scaled(x, -polhode.unit));
         let [i_a, i_b, i_c] = polhode.moments;
-        let norm = polhode.norm;
         let n = -(i_a * (i_c - i_b)) / (i_c * (i_b - i_a));
         // of the two complementary characteristics (n n̂ = k²) the smaller: the other loses digits
         let about_c = n * n <= polhode.parameter;
         let third = one / S::of(3.0);
         let (characteristic, factor, secular) = if about_c {
-            (n, norm * amp_b / (amp_a * amp_c) * n * third, norm / i_c)
+            (n, norm * amp_b / (amp_a * amp_c) * n * third, polhode.norm / i_c)
         } else {
             let n_hat = -(amp_c * amp_c) / (amp_a * amp_a);
-            (n_hat, norm * amp_b * amp_c / (amp_a * amp_a * amp_a) * third, norm / i_a)
+            (n_hat, norm * amp_b * amp_c / (amp_a * amp_a * amp_a) * third, polhode.norm / i_a)
         };
-        // on the separatrix the integral of the third kind is elementary: its part linear in u joins the rate
-        let twist_rate = if polhode.is_separatrix() {
+        // near the separatrix the integral of the third kind is elementary: its part linear in u joins the rate
+        let twist_rate = if polhode.asymptotic.is_some() {
             secular - polhode.delta * S::of(3.0) * factor / (one - characteristic) * polhode.rate
         } else {
             secular
@@ -72,6 +75,7 @@ impl<S: Precise> Circulation<S> {
             modulus: Modulus::new(polhode.complement),
             phase: polhode.phase(),
             swing_back: polhode.swing(m).conjugate(),
+            relative,
             twist_rate,
             about_c,
             characteristic,
@@ -89,17 +93,26 @@ impl<S: Precise> Circulation<S> {
     pub(super) fn with_period(mut self) -> Self {
         if !self.polhode.is_separatrix() {
             let (zero, one) = (S::of(0.0), S::of(1.0));
-            let complete = r_j(zero, self.polhode.complement, one, one - self.characteristic);
+            let complete = if self.polhode.asymptotic.is_some() {
+                self.elementary_twist(one)
+            } else {
+                self.factor * r_j(zero, self.polhode.complement, one, one - self.characteristic)
+            };
             let pi = if self.about_c { S::from_dd(Dd::PI) } else { zero };
-            let half = S::of(2.0) * self.modulus.quarter_period();
-            self.period = Some(Period { half, twist: S::of(2.0) * self.factor * complete - pi });
+            let half = S::of(2.0) * self.quarter_period();
+            self.period = Some(Period { half, twist: S::of(2.0) * complete - pi });
         }
         self
     }
 
     /// Whether the phase at `t` lies within a quarter period of zero, as that of the start does.
     pub(super) fn is_near(&self, t: S) -> bool {
-        (self.phase + self.polhode.rate * t).abs() <= self.modulus.quarter_period()
+        (self.phase + self.polhode.rate * t).abs() <= self.quarter_period()
+    }
+
+    fn quarter_period(&self) -> S {
+        let quarter = self.polhode.asymptotic.and_then(|limits| limits.quarter);
+        quarter.unwrap_or_else(|| self.modulus.quarter_period())
     }
 
     /// 2K, a half period of the phase; `None` on the separatrix.
@@ -145,7 +158,10 @@ impl<S: Precise> Circulation<S> {
                 (u - half_turns * half, is_odd(half_turns), secular - polhode.delta * twist * half_turns)
             }
         };
-        let (sn, cn, dn) = self.modulus.sn_cn_dn(reduced);
+        let (sn, cn, dn) = match &polhode.asymptotic {
+            Some(limits) => limits.sn_cn_dn(reduced),
+            None => self.modulus.sn_cn_dn(reduced),
+        };
         let [a, b, c] = polhode.axes;
         let [amp_a, amp_b, amp_c] = polhode.amplitude;
         let parity = S::of(if odd == polhode.half_turned { 1.0 } else { -1.0 });
@@ -165,12 +181,11 @@ impl<S: Precise> Circulation<S> {
     /// The part of the twist that depends on the place on the polhode alone, at sn = x, cn = y ≥ 0.
     fn periodic_twist(&self, x: S, y: S) -> S {
         let polhode = &self.polhode;
-        let [amp_a, amp_b, amp_c] = polhode.amplitude;
+        let [amp_a, amp_b, amp_c, norm] = self.relative;
         let (one, n) = (S::of(1.0), self.characteristic);
         let d2 = polhode.complement + polhode.parameter * y * y;
-        let third_kind = if polhode.is_separatrix() {
-            let root = (-n).sqrt();
-            -(S::of(3.0) * self.factor / ((one - n) * root) * (root * x).atan2(one))
+        let third_kind = if polhode.asymptotic.is_some() {
+            self.elementary_twist(x)
         } else {
             self.factor * x * x * x * r_j(y * y, d2, one, one - n * x * x)
         };
@@ -179,9 +194,16 @@ impl<S: Precise> Circulation<S> {
             third_kind - bx.atan2(cy)
         } else {
             let along = amp_a * d2.sqrt();
-            let g = (bx * bx + cy * cy) / (polhode.norm + along);
-            third_kind + (bx * cy * g).atan2(along * cy * cy + polhode.norm * bx * bx)
+            let g = (bx * bx + cy * cy) / (norm + along);
+            third_kind + (bx * cy * g).atan2(along * cy * cy + norm * bx * bx)
         }
+    }
+
+    /// The integral of the third kind for k' = 0 at sn = x, without its part linear in u.
+    fn elementary_twist(&self, x: S) -> S {
+        let (one, n) = (S::of(1.0), self.characteristic);
+        let root = (-n).sqrt();
+        -(S::of(3.0) * self.factor / ((one - n) * root) * (root * x).atan2(one))
     }
 }
 

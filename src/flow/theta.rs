@@ -63,7 +63,9 @@ enum Form {
     Direct,
     /// Hyperbolic sums in β, which is `width` times the reduced half periods; each half period adds `jump` turns to Ψ.
     Dual { width: f64, jump: Pair },
-    /// The dual form without a period.
+    /// The dual form for q' so small that only the first terms count.
+    Limit { width: f64, jump: Pair },
+    /// The same without a period.
     Separatrix,
 }
 
@@ -106,7 +108,7 @@ impl Theta {
             least = if self.about_smallest { sum } else { c * sum };
         } else {
             let (beta, sign) = match self.form {
-                Form::Dual { width, jump } => {
+                Form::Dual { width, jump } | Form::Limit { width, jump } => {
                     let n = nearest(phase);
                     let (turns, rest) = two_prod(jump[0], n);
                     let (sum, error) = two_sum(psi, turns - nearest(turns));
@@ -115,19 +117,27 @@ impl Theta {
                     let odd = nearest(0.5 * n) != 0.5 * n;
                     (((phase - n) + phase_low) * width, if odd { -1.0 } else { 1.0 })
                 }
-                // e^{±350} is as good as infinity and its square still finite
-                _ => ((phase + phase_low).clamp(-350.0, 350.0), 1.0),
+                _ => (phase + phase_low, 1.0),
             };
+            // e^{±350} is as good as infinity and its square still finite
+            let beta = beta.clamp(-350.0, 350.0);
             let grown = libm::exp(beta.abs());
             let shrunk = 1.0 / grown;
             let cosh = 0.5 * (grown + shrunk);
             let sinh = 0.5 * (grown - shrunk);
             let sinh = if beta < 0.0 { -sinh } else { sinh };
-            // cosh 2β, except on the separatrix, where all polynomials are constants and it might overflow
-            let x = if let Form::Separatrix = self.form { 1.0 } else { cosh * cosh + sinh * sinh };
+            // cosh 2β, except where all polynomials are constants and it might overflow
+            let x = if let Form::Dual { .. } = self.form { cosh * cosh + sinh * sinh } else { 1.0 };
             z = [cosh * value(&self.z[0], x), sinh * value(&self.z[1], x)];
             w = [sign * sinh * value(&self.w[0], x), sign * cosh * value(&self.w[1], x)];
-            let sum = least_value(&self.least, 2.0 * x * x - 1.0);
+            let sum = match self.form {
+                // 1 ± 2q' cosh 4β with q' = e^{−2 width}, and no power of cosh
+                Form::Limit { width, .. } => {
+                    let end = libm::exp(4.0 * beta.abs() - 2.0 * width);
+                    self.least[0] * if self.about_smallest { 1.0 + end } else { 1.0 - end }
+                }
+                _ => least_value(&self.least, 2.0 * x * x - 1.0),
+            };
             least = if self.about_smallest { sum } else { sign * sum };
         }
         Some(self.assemble(z, w, least, sin_cos_turns(psi, psi_low)))
@@ -285,10 +295,10 @@ fn dual(polhode: &Polhode<Dd>) -> Built {
     let [amp_a, amp_b, amp_c] = polhode.amplitude;
     let [i_a, i_b, i_c] = polhode.moments;
     let (norm, delta) = (polhode.norm, polhode.delta);
-    let on_separatrix = polhode.is_separatrix();
-    let quarter = Modulus::new(polhode.complement).quarter_period();
+    let quarter = polhode.quarter_period();
     let dual_quarter = Modulus::new(polhode.parameter).quarter_period(); // K'; π/2 for k = 1
-    let q = if on_separatrix { Dd::ZERO } else { (-(Dd::PI * quarter / dual_quarter)).exp() };
+    let is_limit = polhode.asymptotic.is_some();
+    let q = if is_limit { Dd::ZERO } else { (-(Dd::PI * quarter / dual_quarter)).exp() };
     let ratio = amp_c / amp_b; // sn(η | k')
     let cosine = i_a * (i_c - i_b) / (i_b * (i_c - i_a)); // 1 − (C/B)², without cancellation
     let eta = ratio * r_f(cosine, Dd::ONE - polhode.complement * ratio * ratio, Dd::ONE);
@@ -314,11 +324,12 @@ fn dual(polhode: &Polhode<Dd>) -> Built {
     let beta_rate = polhode.rate * per_phase;
     let twist_rate = rate_at_zero(polhode) * 0.5 - delta * beta_rate * slope / z0;
     let beta = polhode.phase() * per_phase;
-    let (form, phase) = if on_separatrix {
+    let (form, phase) = if polhode.is_separatrix() {
         (Form::Separatrix, Phase::new(beta_rate, beta))
     } else {
         let half = quarter * 2.0;
-        let form = Form::Dual { width: (per_phase * half).hi(), jump: pair(delta * alpha * 2.0 / Dd::TAU) };
+        let (width, jump) = ((per_phase * half).hi(), pair(delta * alpha * 2.0 / Dd::TAU));
+        let form = if is_limit { Form::Limit { width, jump } } else { Form::Dual { width, jump } };
         (form, Phase::new(polhode.rate / half, polhode.phase() / half))
     };
     let mut theta = common(polhode, form, phase, twist_rate);
@@ -351,16 +362,25 @@ fn dual(polhode: &Polhode<Dd>) -> Built {
     };
     theta.least = polynomial([0, 1, 2, 3, 4].map(term), T);
 
+    Built { theta, start: dual_start(even, odd.map(|v| v * delta), beta) }
+}
+
+/// Re Z and Im Z at `beta`, up to a common factor.
+fn dual_start(even: [Dd; DD_TERMS], odd: [Dd; DD_TERMS], beta: Dd) -> (Dd, Dd) {
+    // from here on cosh (2n+1)β overflows, and the terms beyond the first are below e^{−2β} of it
+    if beta.hi().abs() > 60.0 {
+        return (even[0], if beta.hi() < 0.0 { -odd[0] } else { odd[0] });
+    }
     let (grown, shrunk) = (beta.exp(), (-beta).exp());
     let (mut sh, mut ch) = ((grown - shrunk) * 0.5, (grown + shrunk) * 0.5);
     let (sh2, ch2) = (sh * ch * 2.0, ch * ch + sh * sh);
     let (mut re, mut im) = (Dd::ZERO, Dd::ZERO);
     for n in 0..DD_TERMS {
         re = re + even[n] * ch;
-        im = im + delta * odd[n] * sh;
+        im = im + odd[n] * sh;
         (sh, ch) = (sh * ch2 + ch * sh2, ch * ch2 + sh * sh2);
     }
-    Built { theta, start: (re, im) }
+    (re, im)
 }
 
 /// First two members F₀ = c, F₁ = a + bX of a family with F_{n+1} = 2X F_n − F_{n−1}, as [c, a, b].

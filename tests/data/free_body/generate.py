@@ -1,4 +1,4 @@
-"""Writes fixtures.csv and reference.csv: the exact torque-free rigid body.
+"""Writes fixtures.csv, reference.csv and brink.csv: the exact torque-free rigid body.
 
     python3 tests/data/free_body/generate.py        (python 3.11, mpmath 1.3)
 
@@ -318,6 +318,17 @@ def scenarios():
         yield omega(f"random-{number + 1}", "random", body, w, (0.37, 10.0, 1e6, 1e9), attitude)
 
 
+def brink():
+    """Deviations from a turn about the middle axis, down to the smallest double."""
+    body = (1.0, 1.5, 1.75)
+    for off, name in ((1e-40, "1e-40"), (1e-56, "1e-56"), (1e-75, "1e-75"), (1e-100, "1e-100"), (1e-145, "1e-145"),
+                      (1e-158, "1e-158"), (1e-200, "1e-200"), (1e-300, "1e-300"), (5e-324, "5e-324")):
+        for which, m in (("small", (off, 1.0, 0.0)), ("large", (0.0, -1.0, off)), ("both", (-off, 0.75, 3 * off))):
+            order = ORDERS[1] if which == "both" else ORDERS[0]
+            name_of = f"brink-{name}-{which}"
+            yield momentum(name_of, "brink", place(body, order), place(m, order), (1.0, -100.0, 3e3, 1e6), TILTED)
+
+
 def references():
     """Problems of the literature, in the doubles next to their decimal data. E4 to E7 break the triangle inequality:
     the equations do not mind, but no body has such moments."""
@@ -451,3 +462,4 @@ if __name__ == "__main__":
     check_known()
     write("reference.csv", "Published and tabulated free-body problems", references())
     write("fixtures.csv", "Exact torque-free rotation of a rigid body by regime", scenarios())
+    write("brink.csv", "Exact torque-free rotation of a rigid body that turns about its middle axis but for a deviation", brink())
