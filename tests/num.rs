@@ -423,6 +423,68 @@ fn integrals_of_undefined_arguments_end() {
             .iter()
             .all(|value| value.is_nan())
     );
+    const EXTREMES: [f64; 11] =
+        [0.0, -0.0, 1.0, -1.0, 5e-324, 1e-200, 1e200, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+    for x in EXTREMES {
+        for y in EXTREMES {
+            for z in EXTREMES {
+                for p in EXTREMES {
+                    let values = [r_f(x, y, z), r_c(x, y), r_d(x, y, z), r_j(x, y, z, p)];
+                    let good = [x, y, z, p].iter().all(|argument| *argument >= 0.0);
+                    assert!(!good || values.iter().all(|value| *value >= 0.0), "{x} {y} {z} {p}: {values:?}");
+                }
+            }
+        }
+    }
+    assert_eq!(r_f(f64::INFINITY, 1.0, 2.0), 0.0);
+}
+
+/// mpmath 1.3 with 60 digits; for R_J the trapezoidal rule in ln t, as its own function errs at 1e±200.
+#[test]
+fn integrals_keep_their_digits_over_the_range_of_a_double() {
+    let (tiny, max) = (5e-324, f64::MAX);
+    let off = |value: f64, exact: f64| (value - exact).abs() / exact;
+    for (value, exact) in [
+        (r_f(max, max, max), 7.458340731200207e-155),
+        (r_f(0.0, 1e-300, max), 5.233259742556014e-152),
+        (r_f(tiny, tiny, 0.0), 7.066877263035343e161),
+        (r_f(tiny, 2.0 * tiny, 3.0 * tiny), 3.270467096968179e161),
+        (r_f(0.0, 1e-300, 1e-305), 7.142772450581778e150),
+        (r_c(0.0, tiny), 7.066877263035343e161),
+        (r_c(max, 0.5 * max), 9.296452386499823e-155),
+        (r_d(1e200, 0.0, 1e-200), 3.0000000000000001e100),
+        (r_d(1e-150, 2e-150, 1e200), 1.207371936144175e-297),
+        (r_j(1e-215, 2e-216, 0.0, 1e153), 2.1413729938255953e-45),
+        (r_j(1e200, 1e-200, 0.0, 1.0), 6.928549694398935e-98),
+        (r_j(1e-190, 1e-190, 3e-190, 2e-190), 4.56054123043036e284),
+        (r_j(1.0, 1e-80, 1e-90, 1e100), 2.8046906424279515e-98),
+    ] {
+        assert!(off(value, exact) < 2e-15, "{value:e} {exact:e}");
+    }
+    let [a, b, c] = [1e-215, 2e-216, 0.0].map(Dd::from);
+    let exact: Dd = "2.141372993825595274060764630577741e-45".parse().unwrap();
+    assert!(relative_error(r_j(a, b, c, Dd::from(1e153)), exact) < 1e-29);
+}
+
+#[test]
+fn jacobi_stays_on_its_curve_where_no_digit_of_the_place_is_left() {
+    for m1 in [0.0, 1e-300, 1e-221, 0.3, 1.0] {
+        for u in [1e17, 1e60, 1e200, f64::MAX] {
+            let (sn, cn, dn) = jacobi(u, m1);
+            assert!(
+                (sn * sn + cn * cn - 1.0).abs() < 1e-15 && (0.0..=1.0).contains(&dn),
+                "{u} {m1}: {sn} {cn} {dn}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_sum_of_two_parts_is_exact_next_to_the_end_of_the_range() {
+    let sum = Dd::sum(-6.871931e307, f64::MAX);
+    assert_eq!(sum.hi(), f64::MAX - 6.871931e307);
+    assert_eq!((sum.hi() - f64::MAX) + sum.lo(), -6.871931e307);
+    assert_eq!(Dd::sum(f64::MAX, -6.871931e307), sum);
 }
 
 // ---------------------------------------------------------------------------- sums and exact expansions

@@ -107,7 +107,14 @@ impl Dd {
     #[inline]
     pub const fn sum(a: f64, b: f64) -> Dd {
         let (hi, lo) = two_sum(a, b);
-        if hi.is_finite() { Dd { hi, lo } } else { Dd::exact(hi) }
+        if !hi.is_finite() {
+            return Dd::exact(hi);
+        }
+        if lo.is_finite() {
+            return Dd { hi, lo };
+        }
+        // next to the end of the range a difference within overflows, unless the larger comes first
+        if a.abs() < b.abs() { Dd::quick(b, a) } else { Dd::quick(a, b) }
     }
 
     /// The exact product of two `f64`.

@@ -18,6 +18,9 @@ impl<S: Real> Vec3<S> {
     }
 
     /// The unit vector along axis 0, 1 or 2.
+    ///
+    /// # Panics
+    /// For any other axis.
     #[inline]
     pub fn unit(axis: usize) -> Self {
         let mut e = Self::zero();

@@ -4,10 +4,13 @@
 //! in their elementary symmetric functions serves. With terms up to degree seven the error is of the eighth order,
 //! so arguments within ε^⅛ of their mean give full precision ε: four steps in `f64`, seven in `Dd`.
 //!
+//! The integrals end for every argument: with a negative or undefined one the result is NaN, with an infinite one it is
+//! the limit 0.
+//!
 //! Sources: B. C. Carlson, Numerical computation of real or complex elliptic integrals, Numer. Algorithms 10
 //! (1995) 13–26; the series to degree seven from NIST DLMF §19.36(i).
 
-use crate::num::Precise;
+use crate::num::{Dd, Precise};
 
 /// Largest relative distance from the mean at which the series serve.
 fn tolerance<S: Precise>() -> f64 {
@@ -20,6 +23,46 @@ fn together<S: Precise, const N: usize>(mean: f64, arguments: [S; N]) -> bool {
     !arguments.iter().any(|x| (mean - x.to_f64()).abs() > limit)
 }
 
+/// 2⁻²³⁰: p so far beyond the other arguments leaves two terms of the series of R_J (NIST DLMF 19.27.11).
+const FAR: f64 = 5.795_634_610_449_096e-70;
+
+/// The value at arguments that are no ordinary ones, of which `zeros` make the integral diverge.
+fn extreme<S: Precise, const N: usize>(arguments: [S; N], zeros: bool) -> Option<S> {
+    let mut largest = 0.0_f64;
+    for argument in arguments.map(S::to_f64) {
+        if argument.is_nan() || argument < 0.0 {
+            return Some(S::of(f64::NAN));
+        }
+        largest = largest.max(argument);
+    }
+    match (zeros, largest.is_infinite()) {
+        (true, _) => Some(S::of(f64::INFINITY)),
+        (false, true) => Some(S::of(0.0)),
+        (false, false) => None,
+    }
+}
+
+/// `x` 2ⁿ.
+fn scaled<S: Precise>(x: S, n: i32) -> S {
+    S::from_dd(x.to_dd().scaled(n))
+}
+
+/// Half the exponent of the power of four that takes the largest of `arguments` clear of the ends of the range, where
+/// sums overflow and subnormal numbers never meet: R(4ⁿ x) = 2⁻ⁿ R(x), for R_D and R_J 8⁻ⁿ R(x).
+fn lift<S: Precise, const N: usize>(arguments: [S; N], range: core::ops::Range<i32>) -> Option<i32> {
+    let largest = arguments.iter().fold(0.0_f64, |largest, argument| largest.max(argument.to_f64()));
+    match libm::ilogb(largest) {
+        n if n < range.start => Some(range.end.min(600) / 2),
+        n if n >= range.end => Some((range.end - 2 - n) / 2),
+        _ => None,
+    }
+}
+
+/// Exponents of arguments of which sums and products of two roots are formed.
+const SUMS: core::ops::Range<i32> = -900..1020;
+/// The same for products of three roots.
+const PRODUCTS: core::ops::Range<i32> = -600..600;
+
 /// (denominator + Σ coefficientₖ termₖ) / (denominator · scale).
 fn series<S: Precise, const N: usize>(denominator: f64, terms: [(f64, S); N], scale: S) -> S {
     let add = |sum: S, &(coefficient, term): &(f64, S)| sum + S::of(coefficient) * term;
@@ -27,11 +70,19 @@ fn series<S: Precise, const N: usize>(denominator: f64, terms: [(f64, S); N], sc
     sum / (S::of(denominator) * scale)
 }
 
+/// How many of `arguments` are zero.
+fn zeros<S: Precise>(arguments: [S; 3]) -> usize {
+    arguments.iter().filter(|&&argument| argument == S::of(0.0)).count()
+}
+
 /// R_F(x, y, z) = ½ ∫₀^∞ dt / √((t+x)(t+y)(t+z)) for x, y, z ≥ 0; infinite when two of them are zero.
 pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
-    let zero = S::of(0.0);
-    if [x, y, z].iter().filter(|&&argument| argument == zero).count() > 1 {
-        return S::of(f64::INFINITY);
+    if let Some(value) = extreme([x, y, z], zeros([x, y, z]) > 1) {
+        return value;
+    }
+    if let Some(n) = lift([x, y, z], SUMS) {
+        let [x, y, z] = [x, y, z].map(|argument| scaled(argument, 2 * n));
+        return scaled(r_f(x, y, z), n);
     }
     while !together((x.to_f64() + y.to_f64() + z.to_f64()) / 3.0, [x, y, z]) {
         let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
@@ -59,8 +110,11 @@ pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
 
 /// R_C(x, y) = R_F(x, y, y) for x ≥ 0 and y > 0; infinite at y = 0.
 pub fn r_c<S: Precise>(mut x: S, mut y: S) -> S {
-    if y == S::of(0.0) {
-        return S::of(f64::INFINITY);
+    if let Some(value) = extreme([x, y], y == S::of(0.0)) {
+        return value;
+    }
+    if let Some(n) = lift([x, y], SUMS) {
+        return scaled(r_c(scaled(x, 2 * n), scaled(y, 2 * n)), n);
     }
     while !together((x.to_f64() + 2.0 * y.to_f64()) / 3.0, [x, y]) {
         let shift = S::of(2.0) * x.sqrt() * y.sqrt() + y;
@@ -83,20 +137,33 @@ pub fn r_c<S: Precise>(mut x: S, mut y: S) -> S {
     )
 }
 
-/// R_J(x, y, z, p) = 3/2 ∫₀^∞ dt / ((t+p) √((t+x)(t+y)(t+z))) for x, y, z ≥ 0, at most one of them zero, and
-/// p > 0; otherwise infinite.
+/// R_J(x, y, z, p) = 3/2 ∫₀^∞ dt / ((t+p) √((t+x)(t+y)(t+z))) for x, y, z, p ≥ 0; infinite when two of x, y, z or p
+/// are zero, or when no double holds the value.
 ///
 /// Every step adds a positive R_C(1, 2√p (p+λ)/d): unlike Carlson's 1 + δ/d² it does not cancel when p is small.
 pub fn r_j<S: Precise>(mut x: S, mut y: S, mut z: S, mut p: S) -> S {
     let zero = S::of(0.0);
-    if p == zero || [x, y, z].iter().filter(|&&argument| argument == zero).count() > 1 {
-        return S::of(f64::INFINITY);
+    if let Some(value) = extreme([x, y, z, p], p == zero || zeros([x, y, z]) > 1) {
+        return value;
+    }
+    // duplication would take a step for each factor of four between p and the others
+    let is_far = [x, y, z].iter().all(|argument| argument.to_f64() < FAR * p.to_f64());
+    if let Some(n) = lift([x, y, z, p], if is_far { SUMS } else { PRODUCTS }) {
+        let [x, y, z, p] = [x, y, z, p].map(|argument| scaled(argument, 2 * n));
+        return scaled(r_j(x, y, z, p), 3 * n);
+    }
+    if is_far {
+        let second = S::from_dd(Dd::FRAC_PI_2) / p.sqrt();
+        return S::of(3.0) / p * (r_f(x, y, z) - second);
     }
     let (mut sum, mut scale) = (zero, S::of(1.0));
     while !together((x.to_f64() + y.to_f64() + z.to_f64() + 2.0 * p.to_f64()) / 5.0, [x, y, z, p]) {
         let (a, b, c, r) = (x.sqrt(), y.sqrt(), z.sqrt(), p.sqrt());
         let shift = a * b + b * c + c * a;
         let d = (r + a) * (r + b) * (r + c);
+        if d == zero {
+            return S::of(f64::INFINITY);
+        }
         sum = sum + scale / d * r_c(S::of(1.0), S::of(2.0) * r * (p + shift) / d);
         scale = scale * S::of(0.25);
         [x, y, z, p] = [x, y, z, p].map(|argument| (argument + shift) * S::of(0.25));
@@ -105,11 +172,16 @@ pub fn r_j<S: Precise>(mut x: S, mut y: S, mut z: S, mut p: S) -> S {
     S::of(6.0) * sum + scale * third_kind(mean, x, y, z)
 }
 
-/// R_D(x, y, z) = R_J(x, y, z, z) for x, y ≥ 0, at most one of them zero, and z > 0; otherwise infinite.
+/// R_D(x, y, z) = R_J(x, y, z, z) for x, y, z ≥ 0; infinite when z or both of x and y are zero, or when no double holds
+/// the value.
 pub fn r_d<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
     let zero = S::of(0.0);
-    if z == zero || (x == zero && y == zero) {
-        return S::of(f64::INFINITY);
+    if let Some(value) = extreme([x, y, z], z == zero || (x == zero && y == zero)) {
+        return value;
+    }
+    if let Some(n) = lift([x, y, z], PRODUCTS) {
+        let [x, y, z] = [x, y, z].map(|argument| scaled(argument, 2 * n));
+        return scaled(r_d(x, y, z), 3 * n);
     }
     let (mut sum, mut scale) = (zero, S::of(1.0));
     while !together((x.to_f64() + y.to_f64() + 3.0 * z.to_f64()) / 5.0, [x, y, z]) {

@@ -3,6 +3,11 @@
 use super::r_f;
 use crate::num::{Dd, Precise};
 
+/// Products with integers of this size are still doubles.
+const FAR: f64 = 1e300;
+/// 2¹⁰⁶ to this power is beyond it.
+const PASSES: usize = 10;
+
 /// Steps of the arithmetic-geometric mean that the smallest subnormal m1 needs in `Dd`.
 const STEPS: usize = 20;
 
@@ -87,7 +92,7 @@ fn hyperbolic<S: Precise>(u: S) -> (S, S, S) {
 /// (sn u, cn u, dn u) of any real argument, for a complementary parameter as in [`Modulus::new`].
 ///
 /// Everything is done in double-double, so in `f64` the results are right to the last place for |u| up to about
-/// 10¹², next to the zeros of cn too. Where one m1 serves many arguments, [`Modulus`] is many times faster.
+/// 10¹², next to the zeros of cn too; they stay on the curve sn² + cn² = 1 at any u. Where one m1 serves many arguments, [`Modulus`] is many times faster.
 ///
 /// ```
 /// use polhode::num::elliptic::jacobi;
@@ -98,11 +103,22 @@ fn hyperbolic<S: Precise>(u: S) -> (S, S, S) {
 pub fn jacobi<S: Precise>(u: S, m1: S) -> (S, S, S) {
     let modulus = Modulus::new(m1.to_dd());
     let (mut rest, mut sign) = (u.to_dd(), 1.0);
-    if m1 != S::of(0.0) {
-        let half_period = modulus.quarter_period() * 2.0;
+    let half_period = modulus.quarter_period() * 2.0;
+    if rest.hi().abs() >= FAR && rest.hi().is_finite() {
+        // no digit of the place in the period is left
+        rest = Dd::from(FAR.copysign(rest.hi()));
+    }
+    // each pass takes off the leading 106 bits of the quotient, which mostly are all
+    for _ in 0..PASSES {
+        if m1 == S::of(0.0) {
+            break;
+        }
         let halves = (rest / half_period).round();
         rest = rest - half_period * halves;
-        sign -= 2.0 * halves.rem_euclid(2.0);
+        sign *= 1.0 - 2.0 * halves.rem_euclid(2.0);
+        if rest.hi().abs() <= half_period.hi() {
+            break;
+        }
     }
     let (sn, cn, dn) = modulus.sn_cn_dn(rest);
     (S::from_dd(sn * sign), S::from_dd(cn * sign), S::from_dd(dn))
