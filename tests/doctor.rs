@@ -296,3 +296,39 @@ fn a_unit_of_mass_that_is_a_power_of_two_changes_no_bit_of_the_nearest() {
         assert_eq!(causes(&a.causes), causes(&b.causes), "{name}");
     }
 }
+
+#[test]
+fn extremes_of_size_and_zeros_are_refused_in_words() {
+    let out_of_range = |tensor: Matrix3<f64>, evidence: Evidence| {
+        let error = diagnose(tensor, &evidence).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "masses and lengths put a moment of inertia outside the range of a double; change the units"
+        );
+    };
+    let one = Matrix3::identity();
+    let max = f64::MAX;
+    let spoiled = Matrix3::new(max, 3.4e-74, 1e-200, 3.4e-74, max, -max, 1e-200, -max, 1e-200);
+    out_of_range(spoiled, Evidence { mass: Some(0.798), ..Evidence::default() });
+    out_of_range(one * 1e300, Evidence::default());
+    out_of_range(one * 1e-300, Evidence::default());
+    out_of_range(one, Evidence { extents: Some([1.0, 1e-200, 1.0]), ..Evidence::default() });
+    out_of_range(one, Evidence { mass: Some(1e-250), extents: Some([1e-50; 3]), ..Evidence::default() });
+    out_of_range(
+        one,
+        Evidence { center_of_mass: Some(Vector3::new(1e200, 0.0, 0.0)), ..Evidence::default() },
+    );
+    // a mass without extents has a box, however large
+    let light = diagnose(one, &Evidence { mass: Some(1e-310), ..Evidence::default() }).unwrap();
+    assert!(light.equivalent_box.iter().all(|edge| (1e155..1e156).contains(edge)), "{light:?}");
+
+    let evidence = Evidence {
+        mass: Some(1.0),
+        center_of_mass: Some(Vector3::new(1.0, 0.0, 0.0)),
+        ..Evidence::default()
+    };
+    let nothing = diagnose(Matrix3::zeros(), &evidence).unwrap();
+    assert_eq!(nothing.verdict, Verdict::Invalid);
+    assert_eq!(nothing.violation, Some(InertiaError::NotPositive { moments: [0.0; 3] }));
+    assert!(nothing.causes.is_empty());
+}

@@ -7,7 +7,8 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::body::{
-    Amount, Class, Inertia, MassError, MassProperties, Region, Solid, Symmetry, integrate_mass,
+    Amount, Class, Inertia, InertiaError, InertiaShape, MassError, MassProperties, Region, Solid, Symmetry,
+    integrate_mass,
 };
 use polhode::num::trig::sin_cos;
 
@@ -372,4 +373,80 @@ fn nearly_singular_tensors_have_finite_axes() {
         assert!(body.principal_axes().coords.iter().all(|q| q.is_finite()), "{tiny}");
         assert_eq!(body.class(), Class::Linear);
     }
+}
+
+#[test]
+fn products_are_typed_with_the_sign_of_cad() {
+    // a body in the first octant: designers print +sum m x y > 0, the entries of the tensor are negative
+    let points = [[1.0, 2.0, 0.5], [2.0, 0.5, 1.0], [0.5, 1.0, 3.0]].map(|at| (2.0, Vector3::from(at)));
+    let tensor = direct(&points, Vector3::zeros());
+    let product = |j: usize, k: usize| points.iter().map(|(m, at)| m * at[j] * at[k]).sum::<f64>();
+    let products = [product(0, 1), product(0, 2), product(1, 2)];
+    assert_eq!(products, [7.0, 8.0, 9.0]);
+    let diagonal = [0, 1, 2].map(|k| tensor[(k, k)]);
+    let inertia = Inertia::from_products(diagonal, products).unwrap();
+    assert_eq!(inertia.tensor(), tensor);
+    assert_eq!([(0, 1), (0, 2), (1, 2)].map(|at| inertia.tensor()[at]), [-7.0, -8.0, -9.0]);
+    // and of these each has its place
+    assert_ne!(Inertia::from_products(diagonal, [8.0, 7.0, 9.0]).unwrap().tensor(), tensor);
+    let moments = [2.0, 3.0, 4.0];
+    let plain = Inertia::from_products(moments, [0.0; 3]).unwrap();
+    assert_eq!(plain.principal_moments(), moments);
+    assert!(Inertia::from_products([1.0; 3], [f64::NAN, 0.0, 0.0]).is_err());
+}
+
+#[test]
+fn a_shape_takes_any_trace_that_is_one() {
+    let tensor = Matrix3::new(2.0, -0.25, 0.125, -0.25, 3.0, 0.5, 0.125, 0.5, 3.0);
+    let shape = InertiaShape::from_tensor(tensor * 7.0).unwrap();
+    assert!(apart(&shape.tensor(), &(tensor / 8.0)) < 1e-15);
+    for trace in [8.0, 1e-47, 1e33, 1e-240, 1e308] {
+        let inertia = shape.with_trace(trace).unwrap();
+        assert!(apart(&inertia.tensor(), &(tensor * (trace / 8.0))) < 1e-15, "{trace}");
+    }
+    let message = |trace: f64| shape.with_trace(trace).unwrap_err().to_string();
+    for trace in [0.0, 1e-250, 5e-324] {
+        assert!(message(trace).ends_with("outside the range of a double; change the units"), "{trace}");
+    }
+    assert_eq!(message(f64::NAN), "inertia has the entry NaN; every entry must be a finite number");
+    assert_eq!(message(f64::INFINITY), "inertia has the entry inf; every entry must be a finite number");
+    assert!(matches!(shape.with_trace(-1.0), Err(InertiaError::NotPositive { moments }) if moments[0] < 0.0));
+    assert!(InertiaShape::from_tensor(tensor * -1.0).is_err());
+}
+
+#[test]
+fn extremes_of_size_are_right_or_refused() {
+    // beyond half of the largest double the sum with the transpose overflows
+    let max = f64::MAX;
+    let top =
+        Inertia::from_tensor(Matrix3::from_diagonal(&Vector3::new(max, 0.75 * max, 0.5 * max))).unwrap();
+    assert_eq!(top.tensor()[(0, 0)], max);
+    assert_eq!(top.principal_moments(), [0.5 * max, 0.75 * max, max]);
+    let skew = Matrix3::new(max, -0.5 * max, 0.0, -0.5 * max, max, 0.0, 0.0, 0.0, max);
+    assert_eq!(Inertia::from_tensor(skew), Err(InertiaError::OutOfRange { value: max }));
+    assert_eq!(
+        Inertia::from_tensor(skew).unwrap_err().to_string(),
+        "inertia of the size 1.7976931348623157e308 puts a moment outside the range of a double; change the units"
+    );
+    let bottom = Inertia::from_moments([5e-324, 1e-323, 1e-323]).unwrap();
+    assert_eq!(bottom.principal_moments(), [5e-324, 1e-323, 1e-323]);
+    for moments in [[1e154, 1e154, 3.1e-213], [1e200, 1e-154, 1e-162], [1e-70, 1.0, 1.0]] {
+        let error = Inertia::from_positive_moments(moments).unwrap_err();
+        assert_eq!(error, InertiaError::Slender { moments });
+        assert!(error.to_string().contains("the smallest is less than 2^-200 (6e-61) of the largest"));
+        assert!(Inertia::from_tensor(Matrix3::from_diagonal(&moments.into())).is_err());
+    }
+    assert!(Inertia::from_moments([1e-60, 1.0, 1.0]).is_ok());
+    let out_of_range = |result: Result<MassProperties, MassError>| {
+        assert_eq!(result, Err(MassError::OutOfRange));
+    };
+    out_of_range(Solid::Sphere { radius: 1e-170 }.with(Amount::Mass(1.0)));
+    out_of_range(Solid::Sphere { radius: 1e-130 }.with(Amount::Mass(1e-100)));
+    out_of_range(Solid::Box([1e-160, 1.0, 1.0]).with(Amount::Mass(1.0)));
+    out_of_range(Solid::Rod { length: 1e100 }.with(Amount::Density(1e200)));
+    let at = |z: f64| (1.0, Vector3::new(0.0, 0.0, z));
+    out_of_range(MassProperties::of_points([at(0.0), at(1e-170)]));
+    out_of_range(MassProperties::of_points([at(0.0), at(1e170)]));
+    out_of_range(MassProperties::point(1e-300, Vector3::zeros()));
+    assert_eq!(MassProperties::of_points([at(1.0), at(1.0)]).unwrap().class(), Class::Point);
 }

@@ -389,3 +389,27 @@ fn a_file_cut_anywhere_is_refused() {
         assert!(Mesh::from_obj(noise.as_slice()).is_err());
     }
 }
+
+#[test]
+fn meshes_out_of_range_are_refused_and_others_scale() {
+    let unit = cube(2);
+    for exponent in [-180, 180] {
+        let size = libm::scalbn(1.0, exponent);
+        let mesh = Mesh::new(mapped(&unit, |v| v * size)).unwrap();
+        assert_eq!(mesh.volume(), libm::scalbn(1.0, 3 * exponent));
+        let moment = mesh.with(Amount::Density(1.0)).unwrap().principal_moments()[0];
+        assert!((libm::scalbn(moment, -5 * exponent) - 1.0 / 6.0).abs() < 1e-15, "{moment}");
+    }
+    for (size, extent) in [(1e308, "1e308"), (1e100, "1e100"), (1e-100, "1e-100"), (5e-324, "5e-324")] {
+        let error = Mesh::new(mapped(&unit, |v| v * size)).unwrap_err().to_string();
+        let start = format!("the mesh measures {extent} and reaches out to {extent}: its second moments are");
+        assert!(error.starts_with(&start) || size < 1e-300, "{error}");
+    }
+    let across = Mesh::new(mapped(&unit, |v| (v * 2.0 - Vector3::repeat(1.0)) * f64::MAX));
+    assert!(across.unwrap_err().to_string().starts_with("the mesh measures 1.797"));
+    // two triangles back to back in one plane with the origin enclose rounding errors
+    let [a, b, c] = [[0.3, 0.1, 0.7], [-0.3, -0.1, -0.7], [1.1, 0.9, -0.4]].map(Vector3::from);
+    for turned in [[a, c, b], [c, b, a], [b, a, c]] {
+        assert_eq!(Mesh::new([[a, b, c], turned]).unwrap_err().to_string(), "the mesh encloses no volume");
+    }
+}

@@ -7,7 +7,7 @@ use core::f64::consts::PI;
 use nalgebra::{Matrix3, Vector3};
 use thiserror::Error;
 
-use super::mass::{MassError, MassProperties, positive};
+use super::mass::{MassError, MassProperties, length, positive};
 use crate::num::trig::sin_cos;
 use crate::num::{Compensated, Real, Shown};
 
@@ -111,11 +111,11 @@ impl Region {
         match *self {
             Region::Box(sizes) | Region::Ellipsoid(sizes) => {
                 for size in sizes {
-                    positive("extent of the region", size)?;
+                    length("extent of the region", size)?;
                 }
             }
             Region::Layer { inner, outer } => {
-                positive("outer radius", outer)?;
+                length("outer radius", outer)?;
                 if !(0.0..outer).contains(&inner) {
                     return Err(MassError::Sizes {
                         shape: "layer",
@@ -127,8 +127,8 @@ impl Region {
                 }
             }
             Region::Cylinder { radius, height } => {
-                positive("radius", radius)?;
-                positive("height", height)?;
+                length("radius", radius)?;
+                length("height", height)?;
             }
         }
         Ok(())

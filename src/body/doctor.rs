@@ -6,7 +6,7 @@ mod nearest;
 use nalgebra::{Matrix3, Vector3};
 
 use super::inertia::{InertiaError, ROUNDING, check_symmetric};
-use super::mass::{MassError, check_tensor, finite, positive};
+use super::mass::{LENGTHS, MassError, SIZES, check_tensor, finite, length, positive};
 use super::tensor::{Spectrum, Tensor};
 pub use causes::{Cause, Entry};
 
@@ -98,31 +98,44 @@ pub struct Diagnosis {
 
 /// Examines a tensor (entries `I_xy = −∫ x y dm`, supposed to be about the centre of mass).
 ///
-/// The law is ½ tr(I)·1 − I ⪰ 0 up to 1e-12 of the trace; points, rods and plates obey it. A cause is tested by
-/// undoing it: it explains the tensor if the corrected one obeys the law and fits into the extents. Explanations
+/// The law is ½ tr(I)·1 − I ⪰ 0 up to 1e-12 of the trace; rods and plates obey it. A tensor of zeros belongs to no
+/// body with an extent, and is invalid. A cause is tested by undoing it: it explains the tensor if the corrected one obeys the law and fits into the extents. Explanations
 /// are ranked by how rare the mistake is, how well the corrected body fills the extents (or how ordinary its
 /// density is, if only the mass is known, in kg and m), how large its products are, and how flat it is.
 ///
 /// # Errors
-/// Entries or evidence that are not finite, a mass or extents that are not positive.
+/// Entries or evidence that are not finite, a mass or extents that are not positive, sizes outside the range of a double.
 pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, MassError> {
+    let spectrum = Spectrum::of(&tensor)?;
+    let is_zero = tensor.amax() == 0.0;
+    let mut in_range = is_zero || SIZES.contains(&tensor.amax());
     if let Some(mass) = evidence.mass {
         positive("mass", mass)?;
     }
     if let Some(center) = evidence.center_of_mass {
         finite("centre of mass", &center)?;
+        in_range &= center.amax() < *LENGTHS.end();
     }
     for extent in evidence.extents.into_iter().flatten() {
-        positive("extent", extent)?;
+        length("extent", extent)?;
     }
-    let spectrum = Spectrum::of(&tensor)?;
-    let violation = check_tensor(&tensor).err();
+    if !in_range || evidence.fill(&tensor).into_iter().flatten().any(|share| !share.is_finite()) {
+        return Err(MassError::OutOfRange);
+    }
+    let violation = if is_zero {
+        Some(InertiaError::NotPositive { moments: [0.0; 3] })
+    } else {
+        check_tensor(&tensor).err()
+    };
     let misfit = evidence.misfit(&tensor);
     let broken = violation.is_some() || misfit.is_some();
     // a valid tensor is believed unless another one is clearly less odd
     let accepted = if broken { f64::INFINITY } else { evidence.oddness(&tensor, ORDINARY) - 1.0 };
-    let mut causes: Vec<Explanation> = causes::candidates(&tensor, evidence)
+    // from zeros nothing can be told
+    let candidates = if is_zero { Vec::new() } else { causes::candidates(&tensor, evidence) };
+    let mut causes: Vec<Explanation> = candidates
         .into_iter()
+        .filter(|(_, corrected, _)| SIZES.contains(&corrected.amax()))
         .filter(|(_, corrected, _)| check_tensor(corrected).is_ok() && evidence.misfit(corrected).is_none())
         .map(|(cause, corrected, rareness)| {
             let cost = rareness + evidence.oddness(&corrected, 0.0);

@@ -11,6 +11,9 @@ use crate::rotation::{Quat, Vec3};
 /// Rounding that a tensor may show, relative to its trace: symmetry and triangle inequalities are judged up to it.
 pub(super) const ROUNDING: f64 = 1e-12;
 
+/// 2⁻²⁰⁰. Products of moments and momenta of bodies that are more slender than that leave the range of a double.
+const SLENDER: f64 = 6.223_015_277_861_142e-61;
+
 /// Why a tensor is not the inertia of a body.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum InertiaError {
@@ -48,6 +51,24 @@ pub enum InertiaError {
     NotPositive {
         /// The principal moments.
         moments: [f64; 3],
+    },
+    /// A moment is so small beside the largest that nothing can be computed from both.
+    #[error(
+        "principal moments {}, {}, {}: the smallest is less than 2^-200 (6e-61) of the largest; so slender a body is beyond \
+         the range of a double",
+        Shown(moments[0]),
+        Shown(moments[1]),
+        Shown(moments[2])
+    )]
+    Slender {
+        /// The principal moments.
+        moments: [f64; 3],
+    },
+    /// A moment is no double, or has lost digits as one.
+    #[error("inertia of the size {} puts a moment outside the range of a double; change the units", Shown(*value))]
+    OutOfRange {
+        /// The largest entry, or the trace that was asked for.
+        value: f64,
     },
     /// Two moments together are less than the third.
     #[error(
@@ -142,7 +163,8 @@ impl Inertia {
     /// From principal moments: the k-th belongs to the k-th body axis, in any order.
     ///
     /// # Errors
-    /// A moment that is not finite or not positive, or moments that break a triangle inequality.
+    /// A moment that is not finite, not positive, or less than 2⁻²⁰⁰ of the largest; moments that break a triangle
+    /// inequality.
     pub fn from_moments(moments: [f64; 3]) -> Result<Self, InertiaError> {
         let inertia = Self::from_positive_moments(moments)?;
         check_triangle(moments.map(|i| i / inertia.scale), inertia.scale)?;
@@ -154,13 +176,16 @@ impl Inertia {
     /// No body has such moments, but Euler's equations are defined for them, and published test problems use them.
     ///
     /// # Errors
-    /// A moment that is not finite or not positive.
+    /// A moment that is not finite, not positive, or less than 2⁻²⁰⁰ of the largest.
     pub fn from_positive_moments(moments: [f64; 3]) -> Result<Self, InertiaError> {
         check_finite(&moments)?;
         if moments.iter().any(|&i| i <= 0.0) {
             return Err(InertiaError::NotPositive { moments });
         }
         let scale = power_of_two_below(moments[0].max(moments[1]).max(moments[2]));
+        if is_slender(moments.map(|i| i / scale)) {
+            return Err(InertiaError::Slender { moments });
+        }
         Ok(Inertia {
             tensor: Matrix3::from_diagonal(&Vector3::from(moments)),
             scale,
@@ -174,20 +199,29 @@ impl Inertia {
     /// Differences across the diagonal below 1e-12 of the trace are taken for rounding and averaged.
     ///
     /// # Errors
-    /// Entries that are not finite, a tensor that is not symmetric, moments that are not positive or break a
-    /// triangle inequality.
+    /// Entries that are not finite, a tensor that is not symmetric, a moment that no double holds, moments that are not
+    /// positive, break a triangle inequality, or are less than 2⁻²⁰⁰ of the largest.
     pub fn from_tensor(tensor: Matrix3<f64>) -> Result<Self, InertiaError> {
         check_symmetric(&tensor)?;
         let Spectrum { scale, moments, axes } = Spectrum::of_finite(&tensor);
         let rounded = moments.map(Dd::hi);
+        if rounded.iter().any(|i| !(i * scale).is_finite()) {
+            return Err(InertiaError::OutOfRange { value: tensor.amax() });
+        }
         if rounded[0] <= 0.0 {
             return Err(InertiaError::NotPositive { moments: rounded.map(|i| i * scale) });
         }
+        if rounded.iter().any(|i| !(i * scale).is_normal()) {
+            return Err(InertiaError::OutOfRange { value: tensor.amax() });
+        }
         check_triangle(rounded, scale)?;
+        if is_slender(rounded) {
+            return Err(InertiaError::Slender { moments: rounded.map(|i| i * scale) });
+        }
         // the largest moment, not the largest entry, sets the scale of everything that follows
         let rescale = power_of_two_below(rounded[2]);
         Ok(Inertia {
-            tensor: (tensor + tensor.transpose()) * 0.5,
+            tensor: (tensor / scale + tensor.transpose() / scale) * 0.5 * scale,
             scale: scale * rescale,
             moments: moments.map(|i| i / Dd::of(rescale)),
             frame: frame_quaternion(axes),
@@ -297,8 +331,12 @@ impl InertiaShape {
     /// The inertia of this shape whose trace is `trace`, kg m².
     ///
     /// # Errors
-    /// A trace that is not a positive finite number.
+    /// A trace that is not a positive finite number, or so small that entries would lose digits.
     pub fn with_trace(&self, trace: f64) -> Result<Inertia, InertiaError> {
+        check_finite(&[trace])?;
+        if trace.abs() < f64::MIN_POSITIVE / SLENDER {
+            return Err(InertiaError::OutOfRange { value: trace });
+        }
         Inertia::from_tensor(self.tensor * trace)
     }
 }
@@ -332,6 +370,11 @@ pub(super) fn check_symmetric(tensor: &Matrix3<f64>) -> Result<(), InertiaError>
         }
     }
     Ok(())
+}
+
+/// Of moments in any unit in which the largest is near one.
+fn is_slender([a, b, c]: [f64; 3]) -> bool {
+    a.min(b).min(c) < SLENDER * a.max(b).max(c)
 }
 
 /// The triangle inequalities for moments divided by `scale`.

@@ -1,5 +1,7 @@
 //! Mass, centre of mass and inertia of a body and of its parts.
 
+use core::ops::RangeInclusive;
+
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use thiserror::Error;
 
@@ -73,6 +75,11 @@ pub enum MassError {
     Inertia(#[from] InertiaError),
 }
 
+/// Masses and moments for which Dekker products stay clear of both ends of the range.
+pub(super) const SIZES: RangeInclusive<f64> = 1e-290..=1e290;
+/// Lengths whose squares do.
+pub(super) const LENGTHS: RangeInclusive<f64> = 1e-140..=1e140;
+
 /// How much matter a shape holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
@@ -88,7 +95,7 @@ impl Amount {
         match self {
             Amount::Mass(mass) => positive("mass", mass),
             Amount::Density(density) => match positive("density", density)? * measure {
-                mass if mass > 0.0 && mass.is_finite() => Ok(mass),
+                mass if SIZES.contains(&mass) && measure.is_normal() => Ok(mass),
                 _ => Err(MassError::OutOfRange),
             },
         }
@@ -227,10 +234,16 @@ impl MassProperties {
         }
         let center = moment * (Dd::ONE / mass);
         let mut tensor = Tensor::zero();
+        let mut apart = 0.0_f64;
         for part in &parts {
             let offset = difference(part.center_of_mass, origin) - center;
+            apart = apart.max(offset.magnitude());
             tensor =
                 tensor + Tensor::symmetric_part(&part.tensor) + Tensor::of_point(Dd::of(part.mass), offset);
+        }
+        // parts so close to one another that squares of their distances vanish are no point
+        if apart > 0.0 && tensor.rounded().trace() == 0.0 {
+            return Err(MassError::OutOfRange);
         }
         let center = Vec3::of(origin.into()) + center;
         Self::checked(mass.hi(), Vec3(center.0.map(Dd::hi)).into(), tensor.rounded())
@@ -337,10 +350,11 @@ impl MassProperties {
         center_of_mass: Vector3<f64>,
         tensor: Matrix3<f64>,
     ) -> Result<Self, MassError> {
-        // squares of lengths and Dekker products must stay clear of the end of the range
-        let clear = mass < 1e290
-            && center_of_mass.iter().all(|value| value.abs() < 1e140)
-            && tensor.iter().all(|value| value.abs() < 1e290);
+        let trace = tensor.trace();
+        let clear = SIZES.contains(&mass)
+            && center_of_mass.iter().all(|value| value.abs() < *LENGTHS.end())
+            && tensor.iter().all(|value| value.abs() < *SIZES.end())
+            && (trace == 0.0 || trace > *SIZES.start());
         if clear { Ok(MassProperties { mass, center_of_mass, tensor }) } else { Err(MassError::OutOfRange) }
     }
 }
@@ -373,6 +387,12 @@ pub(super) fn check_tensor(tensor: &Matrix3<f64>) -> Result<(), InertiaError> {
 
 pub(super) fn positive(quantity: &'static str, value: f64) -> Result<f64, MassError> {
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(MassError::NotPositive { quantity, value }) }
+}
+
+/// A positive length whose square is a double with all its digits.
+pub(super) fn length(quantity: &'static str, value: f64) -> Result<f64, MassError> {
+    positive(quantity, value)?;
+    if LENGTHS.contains(&value) { Ok(value) } else { Err(MassError::OutOfRange) }
 }
 
 pub(super) fn finite(quantity: &'static str, v: &Vector3<f64>) -> Result<(), MassError> {

@@ -148,6 +148,19 @@ pub enum MeshError {
         /// Signed volume of the part.
         volume: f64,
     },
+    /// Its size or place leaves the range of a double.
+    #[error(
+        "the mesh measures {} and reaches out to {}: its second moments are outside the range of a double; change the unit \
+         of length",
+        Shown(*extent),
+        Shown(*reach)
+    )]
+    OutOfRange {
+        /// The longest edge of its bounding box, at most the largest double.
+        extent: f64,
+        /// The largest coordinate, without sign.
+        reach: f64,
+    },
     /// The mesh is closed and flat, or its cavities leave nothing.
     #[error("the mesh encloses no volume")]
     Flat,
@@ -215,8 +228,8 @@ impl Mesh {
     /// From triangles, corners counterclockwise as seen from outside.
     ///
     /// # Errors
-    /// Coordinates that are not finite, and meshes that are open, not manifold, not consistently oriented, inside
-    /// out or flat; the message names an edge.
+    /// Coordinates that are not finite, meshes below 1e-57 or above 1e57 in extent, and meshes that are open, not
+    /// manifold, not consistently oriented, inside out or flat; the message names an edge.
     pub fn new(triangles: impl IntoIterator<Item = [Vector3<f64>; 3]>) -> Result<Self, MeshError> {
         let mut welded = Welded::default();
         for corners in triangles {
@@ -245,9 +258,10 @@ impl Mesh {
         if mesh.triangles.is_empty() {
             return Err(MeshError::Empty);
         }
+        let extent = mesh.extent()?;
         mesh.check_edges()?;
         mesh.check_parts()?;
-        let unit = Enclosed::by(&mesh)?;
+        let unit = Enclosed::by(&mesh, extent)?;
         Ok(Mesh { triangles: mesh.triangles.len(), vertices: mesh.vertices.len(), unit })
     }
 
@@ -269,7 +283,7 @@ impl Mesh {
     /// Mass properties with so much matter in it, in the frame of the vertices.
     ///
     /// # Errors
-    /// A mass or density that is not finite or not above zero.
+    /// A mass or density that is not finite or not above zero, or with which no double holds the moments.
     pub fn with(&self, amount: Amount) -> Result<MassProperties, MassError> {
         let mass = amount.mass(self.unit.volume)?;
         let density = match amount {
@@ -291,10 +305,11 @@ struct Enclosed {
 impl Enclosed {
     /// Of the tetrahedron (0, a, b, c) with s = a + b + c: 6V = a·(b × c), ∫ x = V s/4,
     /// ∫ x xᵀ = V (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/20; summed with sign over all triangles.
-    fn by(mesh: &Welded) -> Result<Self, MeshError> {
+    fn by(mesh: &Welded, extent: f64) -> Result<Self, MeshError> {
         let origin = mesh.middle();
         let mut sums = [Compensated::new(0.0); 10];
-        let mut absolute = 0.0;
+        let (mut absolute, mut squares) = (0.0, 0.0);
+        let cube = extent * extent * extent;
         for &triangle in &mesh.triangles {
             let [a, b, c] = mesh.corners(triangle).map(|v| v + -origin);
             let v6 = a.dot(b.cross(c));
@@ -316,9 +331,12 @@ impl Enclosed {
                 sum.add(term);
             }
             absolute += v6.abs();
+            let size = largest_triple(a, b, c) / cube;
+            squares += size * size;
         }
         let [v6, x, y, z, xx, yy, zz, xy, xz, yz] = sums.map(|sum| sum.value());
-        if v6 <= 16.0 * f64::EPSILON * absolute {
+        // triangles in one plane with the origin have a v6 of mere rounding, as large as that of its terms
+        if v6.is_nan() || v6 <= 16.0 * f64::EPSILON * (absolute + squares.sqrt() * cube) {
             return Err(MeshError::Flat);
         }
         let offset = Vec3([x, y, z]) * (1.0 / (4.0 * v6));
@@ -328,4 +346,10 @@ impl Enclosed {
         let tensor = (Tensor::symmetric_part(&about_origin) - term).rounded();
         Ok(Enclosed { volume, center: (origin + offset).into(), tensor })
     }
+}
+
+/// a·(b × c) if all its terms had one sign.
+fn largest_triple(a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>) -> f64 {
+    let [a, b, c] = [a, b, c].map(|v| v.0.map(f64::abs));
+    (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] + b[(k + 2) % 3] * c[(k + 1) % 3])).sum()
 }

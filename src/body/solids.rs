@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::mass::{Amount, MassError, MassProperties, positive};
+use super::mass::{Amount, MassError, MassProperties, length};
 
 /// A homogeneous shape. Its symmetry axis, if it has one, is z; a rod lies along z, disks, plates and hoops in
 /// the plane z = 0. The origin is the centre, except of the cone, whose base is centred at the origin and whose
@@ -199,10 +199,10 @@ impl Solid {
     ///
     /// # Errors
     /// Sizes, a mass or a density that are not finite or not above zero; a tube whose radii are not ascending, a
-    /// torus whose tube is wider than its ring.
+    /// torus whose tube is wider than its ring; sizes and masses whose moments no double holds.
     pub fn with(&self, amount: Amount) -> Result<MassProperties, MassError> {
         for (&name, size) in SHAPES[self.place()].1.iter().zip(self.sizes()) {
-            positive(name, size)?;
+            length(name, size)?;
         }
         self.check_order()?;
         let m = amount.mass(self.measure())?;
@@ -259,6 +259,9 @@ impl Solid {
             Solid::Cone { height, .. } => Vector3::new(0.0, 0.0, height / 4.0),
             _ => Vector3::zeros(),
         };
+        if tensor.trace() == 0.0 {
+            return Err(MassError::OutOfRange);
+        }
         MassProperties::checked(m, center, tensor)
     }
 

@@ -1,11 +1,17 @@
 //! Triangles that share vertices, and whether they close.
 
+use core::ops::RangeInclusive;
+
+use super::super::mass::LENGTHS;
 use super::boxes::{Bounds, Boxes};
 use super::{Edge, MeshError};
 use crate::rotation::Vec3;
 
 /// Vertices are numbered below this, so that an edge and its direction fit into 64 bits.
 pub(super) const LIMIT: u32 = 1 << 31;
+
+/// Extents of a mesh.
+const EXTENTS: RangeInclusive<f64> = 1e-57..=1e57;
 
 /// Marks an empty place of the hash table.
 const NONE: u32 = u32::MAX;
@@ -94,6 +100,22 @@ impl Welded {
         let mut bounds = Bounds::default();
         self.vertices.iter().for_each(|at| bounds.add(at));
         Vec3([0, 1, 2].map(|k| bounds.low[k] + 0.5 * (bounds.high[k] - bounds.low[k])))
+    }
+
+    /// The longest edge of the bounding box, whose fifth power is a double with all its digits.
+    ///
+    /// # Errors
+    /// It is not, or the mesh is too far away.
+    pub(super) fn extent(&self) -> Result<f64, MeshError> {
+        let mut bounds = Bounds::default();
+        self.vertices.iter().for_each(|at| bounds.add(at));
+        let extent = (0..3).map(|k| bounds.high[k] - bounds.low[k]).fold(0.0, f64::max);
+        let reach = (0..3).map(|k| bounds.high[k].max(-bounds.low[k])).fold(0.0, f64::max);
+        if EXTENTS.contains(&extent) && LENGTHS.contains(&reach) {
+            Ok(extent)
+        } else {
+            Err(MeshError::OutOfRange { extent: extent.min(f64::MAX), reach })
+        }
     }
 
     /// Every edge bounds two triangles, once in each direction.
