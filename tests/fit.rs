@@ -5,8 +5,8 @@
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
 use polhode::body::Inertia;
 use polhode::fit::{
-    Baseline, Bound, Estimate, FitError, Known, Random, Reading, Record, Settings, baseline, fit,
-    foreseen_bound, rehearse,
+    Baseline, Bound, Estimate, FitError, Known, Random, Reading, Record, RecordError, Segment, Settings,
+    baseline, fit, foreseen_bound, rehearse,
 };
 
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
@@ -779,4 +779,31 @@ fn settings_out_of_range_are_refused_with_their_rule() {
     }
     let message = with(Settings { radius: Some(0.0401), ..Settings::default() });
     assert!(message.contains("nearly as many equations as there are samples"), "{message}");
+}
+
+#[test]
+fn a_segment_is_consistent_or_refused() {
+    let rates = |n: usize| vec![Vector3::new(0.5, 1.0, -2.0); n];
+    let good = Segment::new("a", vec![-1.0, 0.0, 5e-324], rates(3)).unwrap();
+    assert_eq!((good.source(), good.times(), good.rates()), ("a", &[-1.0, 0.0, 5e-324][..], &rates(3)[..]));
+    let refused = |times: Vec<f64>, rates: Vec<Vector3<f64>>| Segment::new("a", times, rates).unwrap_err();
+    let times: Vec<f64> = (0..40).map(f64::from).collect();
+    assert_eq!(refused(times, rates(3)), RecordError::Lengths { times: 40, rates: 3 });
+    let file = String::from("a");
+    assert_eq!(
+        refused(vec![0.0, 2.0, 1.0], rates(3)),
+        RecordError::Order { file: file.clone(), line: 3, time: 1.0, before: 2.0 }
+    );
+    assert!(matches!(refused(vec![0.0, 0.0], rates(2)), RecordError::Order { line: 2, .. }));
+    assert_eq!(refused(vec![], vec![]), RecordError::Empty { file, window: None, span: (0.0, 0.0) });
+    let mut broken = rates(3);
+    broken[1].y = f64::NAN;
+    assert_eq!(
+        refused(vec![0.0, 1.0, 2.0], broken).to_string(),
+        "a, line 2, column 3 (wy): \"NaN\" is not a finite number; remove the row, or leave a gap"
+    );
+    assert!(matches!(
+        refused(vec![0.0, f64::INFINITY], rates(2)),
+        RecordError::Value { line: 2, column: 1, .. }
+    ));
 }

@@ -11,7 +11,7 @@ use super::limits::Bound;
 use super::noise;
 use super::qp::{self, ActiveConstraint, Certificate, LIMIT};
 use super::radius::{self, Failure};
-use super::record::Record;
+use super::record::{Record, Segment};
 use super::rounds::{ROUNDS, WeakEstimate};
 use super::scale::Known;
 use super::test_functions::{SAMPLES_PER_TEST, Stretch};
@@ -128,14 +128,14 @@ pub(super) struct Normalised {
 
 pub(super) fn normalised(record: &Record) -> Result<Normalised, FitError> {
     let samples = record.samples();
-    let longest = record.segments.iter().map(|s| s.times.len()).max().unwrap_or(0);
+    let longest = record.segments.iter().map(|s| s.times().len()).max().unwrap_or(0);
     let needed = 2 * SAMPLES_PER_TEST as usize;
     if longest < needed {
         let (segments, saturated) = (record.segments.len(), record.saturated());
         return Err(FitError::TooFewSamples { samples, segments, longest, saturated, needed });
     }
     // the largest component first, so that squares neither over- nor underflow
-    let rates = || record.segments.iter().flat_map(|s| &s.rates);
+    let rates = || record.segments.iter().flat_map(Segment::rates);
     let largest = rates().map(|w| w.amax()).fold(0.0, f64::max);
     if largest == 0.0 {
         return Err(FitError::NoRotation { rms: 0.0, noise: 0.0 });
@@ -144,9 +144,9 @@ pub(super) fn normalised(record: &Record) -> Result<Normalised, FitError> {
     let rms = largest * mean.sqrt();
     let segments = record.segments.iter();
     let stretches = segments.map(|s| {
-        let start = s.times.first().copied().unwrap_or(0.0);
-        let times = s.times.iter().map(|t| (t - start) * rms).collect();
-        Stretch::new(times, s.rates.iter().map(|w| w / rms).collect())
+        let start = s.times().first().copied().unwrap_or(0.0);
+        let times = s.times().iter().map(|t| (t - start) * rms).collect();
+        Stretch::new(times, s.rates().iter().map(|w| w / rms).collect())
     });
     Ok(Normalised { stretches: stretches.collect(), rms })
 }
@@ -334,7 +334,7 @@ impl Facts<'_> {
             chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / self.weak.dof().max(1) as f64,
             pull,
             dof: self.weak.dof(),
-            samples: residuals.iter().map(|r| self.record.segments[r.segment].times.len()).sum(),
+            samples: residuals.iter().map(|r| self.record.segments[r.segment].times().len()).sum(),
             segments: residuals.len(),
             radius: self.weak.radius / self.rms,
             identifiability,
@@ -375,7 +375,7 @@ impl Facts<'_> {
         let deviation = self.variance.sqrt();
         let each = self.weak.parts.iter();
         each.map(|part| {
-            let start = self.record.segments[part.stretch].times.first().copied().unwrap_or(0.0);
+            let start = self.record.segments[part.stretch].times().first().copied().unwrap_or(0.0);
             let e = part.residuals(x);
             let values: Vec<[f64; 3]> =
                 e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();

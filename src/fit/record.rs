@@ -105,16 +105,75 @@ pub struct Reading {
     pub rate_unit: Option<RateUnit>,
 }
 
-/// Samples without a gap between them.
+/// Samples without a gap between them: finite, at ascending times.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::fit::Segment;
+/// let rates = vec![Vector3::new(0.1, 2.0, 0.3); 2];
+/// let segment = Segment::new("toss 1", vec![0.0, 0.01], rates.clone())?;
+/// assert_eq!((segment.source(), segment.times().len()), ("toss 1", 2));
+///
+/// let turned = Segment::new("toss 1", vec![0.01, 0.0], rates).unwrap_err();
+/// assert!(turned.to_string().starts_with("toss 1, line 2: time 0 s comes after 0.01 s"));
+/// # Ok::<(), polhode::fit::RecordError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
-    /// Where it comes from.
-    pub source: String,
-    /// Ascending times, s.
-    pub times: Vec<f64>,
-    /// Angular velocities in sensor axes, rad/s, one per time.
-    pub rates: Vec<Vector3<f64>>,
+    source: String,
+    times: Vec<f64>,
+    rates: Vec<Vector3<f64>>,
 }
+
+impl Segment {
+    /// From ascending `times` (s) and as many angular velocities (rad/s, sensor axes); `source` names them in messages.
+    ///
+    /// # Errors
+    /// Lists of different lengths, values that are not finite, times that do not ascend, no samples.
+    pub fn new(source: &str, times: Vec<f64>, rates: Vec<Vector3<f64>>) -> Result<Self, RecordError> {
+        if times.len() != rates.len() {
+            return Err(RecordError::Lengths { times: times.len(), rates: rates.len() });
+        }
+        if times.is_empty() {
+            return Err(RecordError::Empty { file: source.into(), window: None, span: (0.0, 0.0) });
+        }
+        for (line, (&t, w)) in times.iter().zip(&rates).enumerate() {
+            let row = [t, w.x, w.y, w.z];
+            if let Some(k) = row.iter().position(|v| !v.is_finite()) {
+                return Err(RecordError::Value {
+                    file: source.into(),
+                    line: line + 1,
+                    column: k + 1,
+                    name: NAMES[k].into(),
+                    value: row[k].to_string(),
+                });
+            }
+        }
+        if let Some(k) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
+            let (before, time) = (times[k], times[k + 1]);
+            return Err(RecordError::Order { file: source.into(), line: k + 2, time, before });
+        }
+        Ok(Segment { source: source.into(), times, rates })
+    }
+
+    /// Where it comes from.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// Ascending times, s.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Angular velocities in sensor axes, rad/s, one per time.
+    pub fn rates(&self) -> &[Vector3<f64>] {
+        &self.rates
+    }
+}
+
+/// Columns of a record that is not read from a text.
+const NAMES: [&str; 4] = ["t", "wx", "wy", "wz"];
 
 /// Measured angular velocities of one body: segments that share one tensor, each with a motion of its own.
 ///
@@ -123,8 +182,8 @@ pub struct Segment {
 /// let text = "t (ms), wx (deg/s), wy (deg/s), wz (deg/s)\n0, 0, 90, 180\n10, 1, 90, 180\n10, 3, 90, 180\n";
 /// let record = Record::read(text, "toss.csv", Reading::default())?;
 /// assert_eq!((record.samples(), record.merged()), (2, 1)); // rows of the same time are averaged
-/// assert_eq!(record.segments[0].times, [0.0, 0.01]);
-/// assert_eq!(record.segments[0].rates[1].z, core::f64::consts::PI);
+/// assert_eq!(record.segments[0].times(), [0.0, 0.01]);
+/// assert_eq!(record.segments[0].rates()[1].z, core::f64::consts::PI);
 ///
 /// let broken = Record::read("t,wx,wy,wz\n0,1,2,3\n1,1,nan,3\n", "toss.csv", Reading::default());
 /// assert!(broken.unwrap_err().to_string().starts_with("toss.csv, line 3, column 3 (wy): \"nan\""));
@@ -163,7 +222,7 @@ impl Record {
         }
         let rows =
             times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
-        Record::from_rows("samples", rows, ["t", "wx", "wy", "wz"].map(String::from), [1, 2, 3, 4])
+        Record::from_rows("samples", rows, NAMES.map(String::from), [1, 2, 3, 4])
     }
 
     /// From a text with a header: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas

@@ -79,7 +79,7 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) 
             list.push(format!(
                 "segment {} (from {} s) has {:.1} times the residuals of the median segment: check it",
                 r.segment + 1,
-                record.segments[r.segment].times.first().copied().unwrap_or(0.0),
+                record.segments[r.segment].times().first().copied().unwrap_or(0.0),
                 (r.misfit / median).sqrt()
             ));
         }

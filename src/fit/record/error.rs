@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::num::Shown;
+
 /// Why a record cannot be used. Lines and columns count from 1, the header included.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RecordError {
@@ -71,7 +73,9 @@ pub enum RecordError {
     },
     /// Time runs backwards.
     #[error(
-        "{file}, line {line}: time {time} s comes after {before} s; times must not decrease. Sort the rows, or give the files apart"
+        "{file}, line {line}: time {} s comes after {} s; times must not decrease. Sort the rows, or give the files apart",
+        Shown(*time),
+        Shown(*before)
     )]
     Order {
         /// Name of the file.
@@ -110,7 +114,7 @@ pub enum RecordError {
         setting: String,
     },
     /// No rows, or none in the windows.
-    #[error("{file}: no samples{}", match window { Some((a, b)) => format!(" between {a} s and {b} s; the record runs from {} s to {} s", span.0, span.1), None => String::new() })]
+    #[error("{file}: no samples{}", match window { Some((a, b)) => format!(" between {} s and {} s; the record runs from {} s to {} s", Shown(*a), Shown(*b), Shown(span.0), Shown(span.1)), None => String::new() })]
     Empty {
         /// Name of the file.
         file: String,
@@ -120,7 +124,7 @@ pub enum RecordError {
         span: (f64, f64),
     },
     /// A window that ends before it begins.
-    #[error("window {start},{end}: a window is a start and a later end, in seconds")]
+    #[error("window {},{}: a window is a start and a later end, in seconds", Shown(*start), Shown(*end))]
     Window {
         /// Its start, s.
         start: f64,
