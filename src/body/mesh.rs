@@ -258,10 +258,10 @@ impl Mesh {
         if mesh.triangles.is_empty() {
             return Err(MeshError::Empty);
         }
-        let extent = mesh.extent()?;
+        mesh.check_extent()?;
         mesh.check_edges()?;
         mesh.check_parts()?;
-        let unit = Enclosed::by(&mesh, extent)?;
+        let unit = Enclosed::by(&mesh)?;
         Ok(Mesh { triangles: mesh.triangles.len(), vertices: mesh.vertices.len(), unit })
     }
 
@@ -294,6 +294,9 @@ impl Mesh {
     }
 }
 
+/// Products of three lengths of an admissible mesh underflow by less than this.
+const LEAST: f64 = 1e-240;
+
 /// Volume, centre and tensor about it for density 1.
 #[derive(Clone, Debug, PartialEq)]
 struct Enclosed {
@@ -305,11 +308,10 @@ struct Enclosed {
 impl Enclosed {
     /// Of the tetrahedron (0, a, b, c) with s = a + b + c: 6V = a·(b × c), ∫ x = V s/4,
     /// ∫ x xᵀ = V (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/20; summed with sign over all triangles.
-    fn by(mesh: &Welded, extent: f64) -> Result<Self, MeshError> {
+    fn by(mesh: &Welded) -> Result<Self, MeshError> {
         let origin = mesh.middle();
         let mut sums = [Compensated::new(0.0); 10];
-        let (mut absolute, mut squares) = (0.0, 0.0);
-        let cube = extent * extent * extent;
+        let (mut absolute, mut largest) = (0.0, 0.0_f64);
         for &triangle in &mesh.triangles {
             let [a, b, c] = mesh.corners(triangle).map(|v| v + -origin);
             let v6 = a.dot(b.cross(c));
@@ -331,12 +333,12 @@ impl Enclosed {
                 sum.add(term);
             }
             absolute += v6.abs();
-            let size = largest_triple(a, b, c) / cube;
-            squares += size * size;
+            largest = largest.max(largest_triple(a, b, c));
         }
         let [v6, x, y, z, xx, yy, zz, xy, xz, yz] = sums.map(|sum| sum.value());
-        // triangles in one plane with the origin have a v6 of mere rounding, as large as that of its terms
-        if v6.is_nan() || v6 <= 16.0 * f64::EPSILON * (absolute + squares.sqrt() * cube) {
+        // the v6 of triangles in one plane with the origin is mere rounding of its terms
+        let rounding = (mesh.triangles.len() as f64).sqrt() * largest;
+        if v6.is_nan() || v6 < LEAST || v6 <= 16.0 * f64::EPSILON * (absolute + rounding) {
             return Err(MeshError::Flat);
         }
         let offset = Vec3([x, y, z]) * (1.0 / (4.0 * v6));

@@ -158,6 +158,10 @@ impl<S: Precise> Polhode<S> {
         if cb == zero && m[a].magnitude() < SYMMETRIC {
             return None;
         }
+        // of so small a circle about the axis a the radii are no doubles
+        if (i[b] * delta_a).magnitude().min((i[c] * delta_a).magnitude()) < f64::MIN_POSITIVE {
+            return None;
+        }
         let amp_a = (-(i[a] * delta_c) / ca).sqrt();
         let amp_b = (i[b] * delta_a / ba).sqrt();
         let amp_c = (i[c] * delta_a / ca).sqrt();
