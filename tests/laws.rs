@@ -24,7 +24,7 @@ use polhode::method::{
 use polhode::num::{Dd, Precise, Real};
 use polhode::observe::{Drift, Invariants, secular_drift};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
-use polhode::run::{Run, Schedule, halvings_against, observed_order};
+use polhode::run::{Run, RunError, Schedule, halvings, halvings_against, observed_order};
 
 use fixtures::FreeCase;
 
@@ -776,6 +776,48 @@ fn a_turn_about_a_principal_axis_is_steady_for_every_method() {
             assert_eq!(sample.state.momentum_body, start.momentum_body, "{}", method.name());
         }
     }
+}
+
+/// A state is in the axes and units of the user, whatever the solver frame is.
+#[test]
+fn readings_of_a_state_are_in_the_units_of_the_user() {
+    let body = Body::free(Inertia::from_moments([10.0, 20.0, 30.0]).unwrap());
+    assert_eq!(body.scale(), 16.0);
+    let omega = nalgebra::Vector3::new(0.4, 1.0, -0.3);
+    let start = body.state(Default::default(), omega).unwrap();
+    assert_eq!(body.energy(&start), 12.15);
+    assert!((body.omega_body(&start) - omega).norm() < 1e-15);
+    let by_state = FreeMotion::from_state(body.inertia(), &start).unwrap().at(1.0).unwrap();
+    let by_point = FreeMotion::from_point(body.inertia(), body.enter(&start).unwrap()).at(1.0).unwrap();
+    assert_eq!(by_state, by_point);
+    // no closed form drops gravity
+    let heavy = heavy();
+    let error = halvings(&method("rk4").unwrap(), &heavy.body, &heavy.start, 1.0, 4..6).unwrap_err();
+    assert!(error.to_string().contains("a Lagrange top is symmetric"), "{error}");
+}
+
+#[test]
+fn a_run_goes_forwards_and_ends_where_its_numbers_leave_the_range() {
+    let body = body();
+    let start = body.leave(&start_of(&body));
+    let mut run = Run::new(&method("rk4").unwrap(), &body, &start, 0.01).unwrap();
+    run.advance_to(100).unwrap();
+    let error = run.advance_to(50).unwrap_err().to_string();
+    assert_eq!(error, "50 steps were asked for, and the run has taken 100; it goes forwards only");
+    assert_eq!(run.advance_to(100).unwrap().steps, 100);
+    assert_eq!(Schedule::every(1, u64::MAX).into_iter().nth(3), Some(3));
+    assert_eq!(Schedule::every(7, 20).into_iter().collect::<Vec<_>>(), [0, 7, 14, 20]);
+    assert_eq!(Schedule::every(0, 2).into_iter().collect::<Vec<_>>(), [0, 1, 2]);
+    assert_eq!(Schedule::every(5, 0).into_iter().collect::<Vec<_>>(), [0]);
+
+    // a torque that lets the energy grow: in units of 1e200 kg m² it is no double long before it is none in the solver frame
+    let torque = Force::constant_torque_body([0.0, 0.0, 1e306].into()).unwrap();
+    let large = Body::free(Inertia::from_moments([1e200; 3]).unwrap()).with(torque);
+    let start = large.state(Default::default(), Default::default()).unwrap();
+    let mut run = Run::new(&method("rk4").unwrap(), &large, &start, 1e-55).unwrap();
+    assert!(run.advance_to(10).unwrap().energy > 1e300);
+    let error = run.advance_to(10_000).unwrap_err();
+    assert!(matches!(error, RunError::OutOfRange { .. }), "{error}");
 }
 
 #[test]

@@ -6,10 +6,10 @@ use clap::Args;
 use polhode::body::{Body, Clock, Conserved, Point, Problem, Time};
 use polhode::flow::ExactMotion;
 use polhode::method::{AnyMethod, Claimed, StepError, UnknownMethod, catalogue, method};
-use polhode::num::Dd;
+use polhode::num::{Dd, Precise};
 use polhode::observe::{Errors, Monitor};
 use polhode::rotation::rotation_angle;
-use polhode::run::{Run, RunError, Schedule, ScheduleError};
+use polhode::run::{Run, RunError, Sample, Schedule, ScheduleError};
 
 use crate::arguments::{Times, number, positive, regular, times};
 use crate::body_arguments::{BodyArguments, StartArguments};
@@ -126,7 +126,7 @@ impl Propagate {
                 )));
             }
             let error = rotation_angle(x.to_dd().attitude, exact.attitude).hi();
-            rows.push(self::row(body, Time::from_seconds(t), &x, monitor.worst(), Some(error)))?;
+            rows.push(self::row(body, Time::from_seconds(t), (&x, &exact), monitor.worst(), Some(error)))?;
         }
         Ok(())
     }
@@ -158,7 +158,10 @@ impl Propagate {
             let sample = match run.advance_to(n) {
                 Ok(sample) => sample,
                 Err(
-                    error @ (RunError::Diverged { .. } | RunError::Unsolved { .. } | RunError::Force { .. }),
+                    error @ (RunError::Diverged { .. }
+                    | RunError::Unsolved { .. }
+                    | RunError::Force { .. }
+                    | RunError::OutOfRange { .. }),
                 ) => {
                     return Err(Error::Failed(format!("--method {}: {error}", self.method)));
                 }
@@ -168,9 +171,30 @@ impl Propagate {
                 let there = exact.point_at_dd(sample.elapsed);
                 rotation_angle(sample.point.to_dd().attitude, there.attitude).hi()
             });
-            rows.push(self::row(body, Time::from_seconds(t), &sample.point, sample.worst, error))?;
+            let point = &sample.point;
+            rows.push(self::row(body, Time::from_seconds(t), (point, point), sample.worst, error))?;
+            self.check_sense(&sample)?;
         }
         Ok(())
+    }
+
+    /// Refuses to go on where the numbers no longer are those of a rotation.
+    fn check_sense(&self, sample: &Sample) -> Result<(), Error> {
+        let norm = sample.point.attitude.norm_squared().sqrt();
+        let lost = if (norm - 1.0).abs() > 0.5 {
+            format!("the quaternion of the attitude has the norm {norm:.1e}, not 1")
+        } else {
+            let errors = [("energy", sample.worst.energy), ("|m|", sample.worst.momentum)];
+            match errors.into_iter().find(|(_, error)| error.is_some_and(|error| error > 1.0)) {
+                Some((what, Some(error))) => format!("the relative error of {what} is {error:.1e}"),
+                _ => return Ok(()),
+            }
+        };
+        Err(Error::Failed(format!(
+            "--method {}: at {:?} s {lost}: nothing of the motion is left; take a smaller step or another method",
+            self.method,
+            sample.time.hi()
+        )))
     }
 
     fn stepping_method(&self) -> Result<Box<dyn AnyMethod>, Error> {
@@ -209,16 +233,17 @@ impl Propagate {
     }
 }
 
-fn row(
+/// `x` with more digits, where there are any, as `exact`: attitude and ω are read off it.
+fn row<S: Precise>(
     body: &Body,
     at: Time,
-    x: &Point<f64>,
+    (x, exact): (&Point<f64>, &Point<S>),
     worst: Errors,
     attitude_error: Option<f64>,
 ) -> Vec<crate::table::Cell> {
     let invariants = polhode::observe::Invariants::of(body, at, x);
-    let [q_w, q_x, q_y, q_z] = body.leave(x).attitude.components();
-    let omega = body.omega_of(x);
+    let [q_w, q_x, q_y, q_z] = body.leave(exact).attitude.components();
+    let omega = body.omega_of(exact);
     let mut cells = row![
         at.seconds::<f64>(),
         q_w,

@@ -7,7 +7,7 @@ mod schedule;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use convergence::{Halving, HalvingError, halvings, halvings_against, observed_order};
-pub use schedule::{Schedule, ScheduleError};
+pub use schedule::{Multiples, Schedule, ScheduleError};
 
 use core::fmt;
 use std::sync::{Arc, OnceLock};
@@ -141,6 +141,17 @@ pub enum RunError {
         /// The last finite sample.
         last: Box<Sample>,
     },
+    /// The state is finite in the solver frame, and in the units of the body it is not.
+    #[error(
+        "after {steps} steps, t = {} s, momentum or energy leave the range of a double in the units of the body; take a \
+         smaller step, or change the units", Shown(*.time)
+    )]
+    OutOfRange {
+        /// Steps taken.
+        steps: u64,
+        /// Time, s.
+        time: f64,
+    },
     /// A force is not a finite number.
     #[error(
         "{force} is not finite at t = {} s, after {} steps; the state at t = {} s before it is finite: q = {:?}, omega_body = {:?} rad/s",
@@ -165,6 +176,16 @@ pub enum RunError {
         /// The worst relative residual.
         residual: f64,
     },
+}
+
+impl Sample {
+    /// Whether state, energy and momentum are finite numbers in the units of the body.
+    fn is_finite(&self) -> bool {
+        self.state.is_finite()
+            && self.energy.is_finite()
+            && self.momentum.is_finite()
+            && self.omega_body.iter().all(|w| w.is_finite())
+    }
 }
 
 impl Run {
@@ -294,7 +315,10 @@ impl Run {
             };
             let residual = self.worst_residual();
             if residual > SOLVED {
-                return Err(RunError::Unsolved { last: Box::new(self.sample()), residual });
+                return Err(match self.finite_sample() {
+                    Ok(last) => RunError::Unsolved { last, residual },
+                    Err(error) => error,
+                });
             }
             if !finite {
                 return Err(self.broken());
@@ -303,7 +327,17 @@ impl Run {
         if self.watch == Watch::AtSamples && self.monitor.observe(&[self.point]) == 0 {
             return Err(self.broken());
         }
-        Ok(self.sample())
+        self.finite_sample().map(|sample| *sample)
+    }
+
+    /// The run as it stands, if that is finite in the units of the body.
+    fn finite_sample(&self) -> Result<Box<Sample>, RunError> {
+        let sample = self.sample();
+        if sample.is_finite() {
+            Ok(Box::new(sample))
+        } else {
+            Err(RunError::OutOfRange { steps: sample.steps, time: sample.time.to_f64() })
+        }
     }
 
     /// Takes `wanted` steps and looks at each; false, and the run at the last finite point, if one is not finite.
@@ -343,7 +377,10 @@ impl Run {
 
     /// Why the next step is not finite.
     fn broken(&mut self) -> RunError {
-        let last = Box::new(self.sample());
+        let last = match self.finite_sample() {
+            Ok(last) => last,
+            Err(error) => return error,
+        };
         if let Some((step, witness)) = &mut self.probe {
             let mut next = self.point;
             step.step(&mut next);

@@ -7,7 +7,14 @@ use crate::num::{Dd, Precise};
 
 /// Ascending numbers of steps; the start, step 0, is the first unless the steps are given.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Schedule(Vec<u64>);
+pub struct Schedule {
+    /// Multiples of an interval, below the end.
+    interval: u64,
+    /// How far they go.
+    end: u64,
+    /// What comes after them.
+    rest: Vec<u64>,
+}
 
 /// Why times cannot be reached by steps.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -66,14 +73,10 @@ impl Schedule {
     /// assert_eq!(steps, [0, 400, 800, 1000]);
     /// ```
     pub fn every(interval: u64, total: u64) -> Self {
-        let mut steps: Vec<u64> = (0..=total / interval.max(1)).map(|k| k * interval.max(1)).collect();
-        if steps.last() != Some(&total) {
-            steps.push(total);
-        }
-        Schedule(steps)
+        Schedule { interval: interval.max(1), end: total, rest: vec![total] }
     }
 
-    /// The start, `per_decade` points in each decade of steps from 1 to `total`, and `total` itself.
+    /// The start, `per_decade` points (at most 1000) in each decade of steps from 1 to `total`, and `total` itself.
     ///
     /// ```
     /// use polhode::run::Schedule;
@@ -83,21 +86,24 @@ impl Schedule {
     pub fn logarithmic(total: u64, per_decade: u32) -> Self {
         let mut steps = vec![0];
         for k in 0.. {
-            let step = libm::round(libm::pow(10.0, f64::from(k) / f64::from(per_decade.max(1))));
+            let step = libm::round(libm::pow(10.0, f64::from(k) / f64::from(per_decade.clamp(1, 1000))));
             if step >= total as f64 {
                 break;
             }
-            steps.push(step as u64);
+            if steps.last() != Some(&(step as u64)) {
+                steps.push(step as u64);
+            }
         }
-        steps.push(total);
-        steps.dedup();
-        Schedule(steps)
+        if steps.last() != Some(&total) {
+            steps.push(total);
+        }
+        Schedule::at(steps)
     }
 
     /// At these numbers of steps, sorted.
     pub fn at(mut steps: Vec<u64>) -> Self {
         steps.sort_unstable();
-        Schedule(steps)
+        Schedule { interval: 1, end: 0, rest: steps }
     }
 
     /// At these times, s, ascending from the start of `clock` on. A whole number of steps has to lead to each, to within
@@ -141,14 +147,32 @@ impl Schedule {
             }
             counts.push(steps as u64);
         }
-        Ok(Schedule(counts))
+        Ok(Schedule::at(counts))
     }
 }
 
 impl IntoIterator for Schedule {
     type Item = u64;
-    type IntoIter = std::vec::IntoIter<u64>;
+    type IntoIter = core::iter::Chain<Multiples, std::vec::IntoIter<u64>>;
     fn into_iter(self) -> Self::IntoIter {
-        self.0.into_iter()
+        let multiples = Multiples { next: Some(0), interval: self.interval, end: self.end };
+        multiples.chain(self.rest)
+    }
+}
+
+/// The multiples of an interval below an end.
+#[derive(Clone, Debug)]
+pub struct Multiples {
+    next: Option<u64>,
+    interval: u64,
+    end: u64,
+}
+
+impl Iterator for Multiples {
+    type Item = u64;
+    fn next(&mut self) -> Option<u64> {
+        let now = self.next.filter(|&now| now < self.end)?;
+        self.next = now.checked_add(self.interval);
+        Some(now)
     }
 }

@@ -270,7 +270,7 @@ fn bodies_that_cannot_exist_are_refused() {
     refused("propagate --moments 1,2,3 --omega 1e200,0,0 --times 1", &["--omega", "1e200", "units"]);
     refused("propagate --moments 1,2,3 --omega 1e-310,0,0 --times 1", &["--omega", "e-310 rad/s", "units"]);
     refused(
-        "propagate --moments 1e300,1e300,1e-30 --omega 1e-200,1e-200,0 --times 1",
+        "propagate --moments 1e300,1e300,1e290 --omega 1e-200,1e-200,0 --times 1",
         &["--omega", "angular velocity 1e-200 rad/s", "range of a double"],
     );
     moments(
@@ -430,7 +430,7 @@ fn a_run_that_diverges_prints_the_rows_so_far() {
     assert!(rows.len() > 1 && rows.len() < 12, "{}", answer.out);
     assert!(rows[1].starts_with("0.0,1.0,"), "{}", answer.out);
     let error = answer.err.lines().find(|line| line.starts_with("error: ")).unwrap();
-    for part in ["--method explicit-euler", "diverged after", "smaller step"] {
+    for part in ["--method explicit-euler", "nothing of the motion is left", "smaller step"] {
         assert!(error.contains(part), "{error}");
     }
 }

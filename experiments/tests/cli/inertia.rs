@@ -432,7 +432,7 @@ fn refusals_are_golden() {
 fn a_tensor_of_zeros_is_no_body() {
     let scratch = Scratch::new("zero");
     scratch.file("point.toml", "[[part]]\nshape = \"point\"\nmass = 1\n");
-    for line in ["tensor 0,0,0,0,-0,0 --mass 1", "sphere 1e-170 --mass 1", "parts point.toml"] {
+    for line in ["tensor 0,0,0,0,-0,0 --mass 1", "parts point.toml"] {
         let answer = scratch.run(&format!("{line} --format json"));
         assert_eq!(answer.code, 1, "{line}");
         assert!(answer.err.starts_with("error: the tensor: every entry of the tensor is zero"), "{answer:?}");
@@ -469,13 +469,15 @@ fn a_quaternion_of_any_norm_is_a_turn() {
 #[test]
 fn no_number_is_written_out_to_hundreds_of_digits() {
     let scratch = Scratch::new("digits");
-    for line in [
-        "tensor 1e-320,1e-320,1e-319,0,0,0",
-        "tensor 5e-324,5e-324,1e-322,0,0,0",
-        "tensor 1e300,1e300,3e300,0,0,0 --mass 1",
+    for (line, expected) in [
+        ("tensor 1e-320,1e-320,1e-319,0,0,0", 2),
+        ("tensor 5e-324,5e-324,1e-322,0,0,0", 2),
+        ("tensor 1e300,1e300,3e300,0,0,0 --mass 1", 2),
+        ("tensor 1e100,1e100,3e100,0,0,0 --mass 1", 1),
+        ("sphere 1e-170 --mass 1", 2),
     ] {
         let Answer { code, out, err } = scratch.run(line);
-        assert_eq!(code, 1, "{line}: {err}");
+        assert_eq!(code, expected, "{line}: {err}");
         let mut runs = [&out, &err].into_iter().flat_map(|text| text.split(|c: char| !c.is_ascii_digit()));
         assert!(!runs.any(|digits| digits.len() > 25), "{line}: {out} {err}");
         assert!(!err.contains("inf %") && !err.contains("NaN"), "{line}: {err}");
