@@ -54,14 +54,16 @@ pub enum FitError {
     /// The rates change, but no tensor explains how.
     #[error(
         "the rates change, but in {rounds} rounds at any radius no tensor settled: the noise of {noise:.3e} rad/s hides \
-         the motion, torques make it, or the body is slender; record longer, with a larger wobble, or name a radius{}",
-        known(axes)
+         the motion, torques make it, or the body is slender; record longer, with a larger wobble, or name a radius{}{}",
+        smaller(*factor), known(axes)
     )]
     Unsettled {
         /// Rounds of reweighting at each radius.
         rounds: usize,
         /// Noise of a component, rad/s.
         noise: f64,
+        /// Factor on rate × time from which on units would explain the record, if they do.
+        factor: Option<f64>,
         /// What is known all the same, if no torque acted.
         axes: Vec<AverageAxis>,
     },
@@ -73,8 +75,8 @@ pub enum FitError {
     Units {
         /// Factor on rate × time.
         factor: f64,
-        /// What may have happened.
-        hint: &'static str,
+        /// What may have happened, the smallest factor first.
+        hint: String,
         /// χ² per degree of freedom as given.
         misfit: f64,
         /// The same with the factor.
@@ -138,6 +140,15 @@ pub enum FitError {
         /// What happened.
         status: String,
     },
+}
+
+fn smaller(factor: Option<f64>) -> String {
+    factor.map_or(String::new(), |factor| {
+        format!(
+            ". With rate x time {factor:.4} times as large, or more, a body next to a sphere would move like that: are the \
+             units right?"
+        )
+    })
 }
 
 fn known(axes: &[AverageAxis]) -> String {

@@ -192,19 +192,21 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let misfit = weak.misfit_per_dof(variance);
     let better =
         if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
-    // without a settled tensor to compare with, a unit must explain the record by itself, and no other may: there is a
-    // tensor for a small wobble in most units
-    let convincing =
-        |b: &Better| if weak.settled() { b.misfit < 0.1 * misfit } else { b.misfit < 2.0 && b.next > 4.0 };
-    if let Some(Better { factor, hint, misfit: better, .. }) = better.filter(convincing) {
-        return Err(FitError::Units { factor, hint, misfit, better });
+    // without a settled tensor to compare with, a unit must explain the record by itself, and one of any size must not:
+    // there is a tensor next to the sphere for any small wobble in large enough a unit
+    let convincing = |b: &&Better| {
+        b.credible && if weak.settled() { b.misfit < 0.1 * misfit } else { b.misfit < 2.0 && !b.vague }
+    };
+    if let Some(b) = better.as_ref().filter(convincing) {
+        return Err(FitError::Units { factor: b.factor, hint: b.hint.clone(), misfit, better: b.misfit });
     }
     // what the noise does not explain enlarges the deviations
     let identifiability = identify(&weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
     if !weak.settled() && misfit > 1.0 + 5.0 * (2.0 / weak.dof().max(1) as f64).sqrt() {
         // the rates are not constant, and still no tensor explains them
         let axes = averages::axes(&stretches, variance);
-        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, axes });
+        let factor = better.filter(|b| b.misfit < 2.0).map(|b| b.factor);
+        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes });
     }
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
@@ -216,7 +218,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         .ok_or_else(|| FitError::Solver { status: "the information is not positive".into() })?;
     let nearest = qp::nearest(weak.x, root, &settings.bounds)?;
     let facts = Facts { record, settings, stretches: &stretches, rms, variance, weak: &weak, misfit };
-    facts.report(nearest, free, identifiability, better)
+    facts.report(nearest, free, identifiability, better.as_ref().filter(|b| b.credible))
 }
 
 fn check(settings: &Settings) -> Result<(), FitError> {
@@ -286,7 +288,7 @@ impl Facts<'_> {
         nearest: qp::Nearest,
         free: Form,
         identifiability: Identifiability,
-        better: Option<Better>,
+        better: Option<&Better>,
     ) -> Result<Estimate, FitError> {
         let root = self.weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
         let on_face = face_factor(&free, &nearest.face);

@@ -20,40 +20,70 @@ const UNITS: [(f64, &str); 12] = [
     (1e9, "seconds taken for nanoseconds"),
 ];
 
-/// A unit that explains the record better than the one it was read in.
-#[derive(Clone, Copy)]
+/// Units that explain the record better than the one it was read in.
 pub(super) struct Better {
-    /// On rate × time.
+    /// The smallest factor on rate × time.
     pub(super) factor: f64,
-    pub(super) hint: &'static str,
-    /// Mean square of the residuals over the noise in this unit.
+    /// What would have happened, of the smallest factors first.
+    pub(super) hint: String,
+    /// Mean square of the residuals over the noise in that unit.
     pub(super) misfit: f64,
-    /// The same in the next best.
-    pub(super) next: f64,
+    /// Whether the record determines the tensor in the best of them.
+    pub(super) credible: bool,
+    /// Whether many do, or one of any size: a small wobble then is that of a body next to a sphere.
+    pub(super) vague: bool,
 }
 
-/// The unit that explains the record best, where one does so at least three times better and with a credible tensor.
+/// Differences of χ² up to which units explain a record equally well.
+const EQUAL: f64 = 50.0;
+
+/// A factor beyond those of all units.
+const ANY: f64 = 1e12;
+
+/// Units that a message lists.
+const LISTED: usize = 3;
+
+/// The units that explain the record best, where they do so at least three times better.
 pub(super) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<Better> {
     let pilot = radius::pilot(stretches);
     let mut found = Vec::new();
-    for (factor, hint) in UNITS {
+    for (factor, hint) in UNITS.into_iter().chain([(ANY, "")]) {
         let scaled: Vec<Stretch> = pilot
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
         let settled = radius::estimate(&scaled, None, variance).ok().filter(WeakEstimate::settled);
-        found.extend(
-            settled.map(|weak| (weak.misfit_per_dof(variance), factor, hint, credible(&weak, variance))),
-        );
+        found.extend(settled.map(|weak| Found {
+            factor,
+            hint,
+            misfit: weak.misfit_per_dof(variance),
+            dof: weak.dof() as f64,
+            credible: credible(&weak, variance),
+        }));
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let next = found.get(1).map_or(f64::INFINITY, |f| f.0);
-    found.first().filter(|f| f.0 < misfit / 3.0 && f.3).map(|&(misfit, factor, hint, _)| Better {
-        factor,
-        hint,
-        misfit,
-        next,
+    found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+    let best = found.first().filter(|best| best.misfit < misfit / 3.0)?;
+    let equal = |f: &Found| (f.misfit - best.misfit) * best.dof <= EQUAL * best.misfit.max(1.0);
+    let mut units: Vec<&Found> = found.iter().filter(|f| equal(f)).collect();
+    units.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    let vague = units.pop_if(|f| f.factor == ANY).is_some() || units.len() > LISTED;
+    let hints: Vec<&str> = units.iter().take(LISTED).map(|f| f.hint).collect();
+    units.first().map(|first| Better {
+        factor: first.factor,
+        hint: hints.join(", or "),
+        misfit: first.misfit,
+        credible: best.credible,
+        vague,
     })
+}
+
+/// A unit at which a tensor settled.
+struct Found {
+    factor: f64,
+    hint: &'static str,
+    misfit: f64,
+    dof: f64,
+    credible: bool,
 }
 
 /// Largest deviation, as a share of the distance from the sphere, at which a tensor tells one unit from another.

@@ -19,7 +19,7 @@ fn samples(count: usize, one: &str, more: &str) -> String {
 }
 
 /// In words: what of the record, the residuals and the answer limits the use of `e`.
-pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<Better>) -> Vec<String> {
+pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<&Better>) -> Vec<String> {
     let mut list = Vec::new();
     let record = facts.record;
     if record.merged() > 0 {
