@@ -8,10 +8,15 @@ use std::fmt::Display;
 use std::time::{Duration, Instant};
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::{Amount, Evidence, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid, diagnose};
+use polhode::body::{
+    Amount, Body, Clock, Evidence, Force, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid, State,
+    diagnose,
+};
 use polhode::flow::FreeMotion;
+use polhode::method::{Claimed, method};
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
 use polhode::num::{Dd, Expansion, Precise, Real, trig};
+use polhode::run::{Checkpoint, Run, Watch};
 
 /// Random numbers by xorshift (Marsaglia 2003).
 struct Draw(u64);
@@ -514,5 +519,114 @@ fn records() {
             Ok(read) => all(read == Record::read(&text, "a.csv", Reading::default()).unwrap(), "read", &text),
             Err(error) => refused(&error),
         }
+    });
+}
+
+/// Forces of any parameters; those built in that are refused are left out.
+fn forces(draw: &mut Draw, inertia: &Inertia) -> Result<Vec<Force>, String> {
+    let made = [
+        Force::drag(draw.any(), draw.any()),
+        Force::constant_torque_body(draw.vector()),
+        Force::constant_torque_space(draw.vector()),
+        Force::gravity_gradient(inertia, draw.any(), draw.share() * 1.1),
+    ];
+    let mut kept = Vec::new();
+    for force in made {
+        match force {
+            Ok(force) if draw.one_in(3) => kept.push(force),
+            Ok(_) => {}
+            Err(error) => refused(&error)?,
+        }
+    }
+    if draw.one_in(6) {
+        let value = draw.any();
+        kept.push(Force::torque_fn("constant", move |_, _, _| Vector3::repeat(value)));
+    }
+    Ok(kept)
+}
+
+/// A state of a body, read in every way.
+fn check_state(body: &Body, x: &State, t: f64) -> Result<(), String> {
+    let at = |what: &str| format!("{what} of {body:?}");
+    all(x.is_finite(), &at("state"), x)?;
+    all(finite(body.omega_body(x).as_slice()), &at("omega"), x)?;
+    if body.forces().is_empty() {
+        all(body.energy_at(t, x).is_finite(), &at("energy"), x)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn bodies_and_runs() {
+    const METHODS: [&str; 9] = [
+        "explicit-euler",
+        "semi-implicit-euler",
+        "rk4",
+        "rk4-normalized",
+        "implicit-midpoint",
+        "rattle",
+        "lie-poisson:321@kahan-li-6",
+        "kick-drift",
+        "kick-drift@srkn-6b",
+    ];
+    hostile(11, 0.3, |draw| {
+        let Ok(inertia) = Inertia::from_moments(draw.list::<3>().map(f64::abs)) else { return Ok(()) };
+        let weight = if draw.one_in(2) { Vector3::zeros() } else { draw.vector() };
+        let mut body = match Body::heavy(inertia.clone(), weight) {
+            Ok(body) => body,
+            Err(error) => return refused(&error),
+        };
+        if draw.one_in(3) {
+            for force in forces(draw, &inertia)? {
+                body = body.with(force);
+            }
+        }
+        let attitude = polhode::rotation::Quat::from_components(draw.list());
+        let start = if draw.one_in(2) {
+            let point = body.enter_omega(attitude, polhode::rotation::Vec3(draw.list()));
+            point.map(|point| body.leave(&point))
+        } else {
+            let state = State { attitude, momentum_body: polhode::rotation::Vec3(draw.list()) };
+            body.enter(&state).map(|point| body.leave(&point))
+        };
+        let start = match start {
+            Ok(start) => start,
+            Err(error) => return refused(&error),
+        };
+        check_state(&body, &start, 0.0)?;
+        let rate = body.omega_body(&start).norm();
+        let step = if draw.one_in(3) { draw.any() } else { 0.1 * draw.share() / rate.max(1e-300) };
+        let clock = Clock { start: if draw.one_in(4) { draw.any() } else { 0.0 }, step };
+        let method = method(METHODS[draw.below(METHODS.len() as u64) as usize]).unwrap();
+        let watch = [Watch::EveryStep, Watch::AtSamples, Watch::Never][draw.below(3) as usize];
+        let run = match Run::by_clock(&method, &body, &start, clock) {
+            Ok(run) => run,
+            Err(error) => return refused(&error),
+        };
+        let mut run = run.watching(watch);
+        for steps in [0, 1, 40] {
+            match run.advance_to(steps) {
+                Ok(sample) => {
+                    let name = format!("{} {clock:?} {watch:?} {body:?} {start:?}", method.name());
+                    all(sample.state.is_finite(), &name, &sample.state)?;
+                    let readings = [sample.energy, sample.momentum, sample.energy_change, sample.time.hi()];
+                    all(finite(&readings), &name, &readings)?;
+                    for errors in [sample.errors, sample.worst] {
+                        let parts = [
+                            errors.energy,
+                            errors.momentum,
+                            errors.momentum_vector,
+                            errors.momentum_z,
+                            errors.jacobi,
+                        ];
+                        all(parts.into_iter().flatten().all(f64::is_finite), &name, &errors)?;
+                    }
+                }
+                Err(error) => return refused(&error),
+            }
+        }
+        let text = run.checkpoint().to_string();
+        let read = text.parse::<Checkpoint>().map_err(|error| error.to_string())?;
+        all(read == run.checkpoint(), "checkpoint", &text)
     });
 }

@@ -10,7 +10,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::Time;
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Precise, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
 /// A torque that comes from a potential energy U(t, q).
@@ -106,7 +106,7 @@ impl<T: Torque<f64> + Torque<Dd>> PreciseTorque for T {}
 #[non_exhaustive]
 pub enum ForceError {
     /// A parameter is not a finite number.
-    #[error("{quantity} of the {force} is {value}; it must be a finite number")]
+    #[error("{quantity} of the {force} is {}; it must be a finite number", Shown(*value))]
     NotFinite {
         /// Name of the force.
         force: &'static str,
@@ -117,7 +117,8 @@ pub enum ForceError {
     },
     /// A drag coefficient is negative.
     #[error(
-        "{quantity} of the {force} is {value}; drag takes energy from the body, so its coefficients are at least 0: change the sign"
+        "{quantity} of the {force} is {}; drag takes energy from the body, so its coefficients are at least 0: change the sign",
+        Shown(*value)
     )]
     Negative {
         /// Name of the force.
@@ -128,7 +129,9 @@ pub enum ForceError {
         value: f64,
     },
     /// The eccentricity is that of no ellipse.
-    #[error("the eccentricity is {eccentricity}; that of an elliptic orbit is in [0, 1), and 0 is a circle")]
+    #[error(
+        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle", Shown(*eccentricity)
+    )]
     Eccentricity {
         /// The value.
         eccentricity: f64,

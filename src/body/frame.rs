@@ -105,7 +105,7 @@ impl Body {
             return Ok(Body::free(inertia));
         }
         let scaled = Vec3(given.0.map(|c| c / inertia.scale()));
-        if !clear(scaled.magnitude()) {
+        if !(clear(scaled.magnitude()) && clear(given.magnitude())) {
             let (weight_moment, moment) = (given.magnitude(), inertia.scale());
             return Err(StateError::WeightOutOfRange { weight_moment, moment });
         }

@@ -267,6 +267,11 @@ impl<S: Precise> Flow<S> for FreeBody<S> {
         if norm == S::of(0.0) {
             return;
         }
+        if !norm.magnitude().is_finite() {
+            // no motion can be told: a run sees it diverge
+            x.set_phase(Phase { attitude: x.attitude * S::of(f64::NAN), momentum_body: m });
+            return;
+        }
         let (turn, momentum_body) = match Polhode::of(i, m, norm, rounded_separation(i, m)) {
             Some(polhode) => {
                 let circulation = Circulation::of(polhode, m);

@@ -9,7 +9,7 @@ use super::{
     Method, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
-use crate::num::Dd;
+use crate::num::{Dd, Shown};
 
 /// A method whose type is known only at run time.
 pub trait AnyMethod: Claimed + Send + Sync {
@@ -87,13 +87,13 @@ where
 #[non_exhaustive]
 pub enum StepError {
     /// The step is zero or not finite.
-    #[error("step {h} is not usable; it must be a finite number of seconds other than 0")]
+    #[error("step {} is not usable; it must be a finite number of seconds other than 0", Shown(*h))]
     NotAStep {
         /// The step asked for, s.
         h: f64,
     },
     /// The time of the start is not finite.
-    #[error("start time {t} is not usable; it must be a finite number of seconds")]
+    #[error("start time {} is not usable; it must be a finite number of seconds", Shown(*t))]
     NotATime {
         /// The time asked for, s.
         t: f64,

@@ -67,7 +67,7 @@ impl Errors {
         Errors::from_parts(worst)
     }
 
-    pub(super) fn is_finite(self) -> bool {
+    pub(crate) fn is_finite(self) -> bool {
         self.parts().iter().all(|error| error.is_none_or(f64::is_finite))
     }
 

@@ -53,7 +53,8 @@ impl Forced {
         if !body.forces().is_empty() {
             energy = energy + body.size_of_forces(at, start);
         }
-        let energy_scale = energy.hi();
+        // a force so large that its size is no double ends the run at its first step
+        let energy_scale = if energy.hi().is_finite() { energy.hi() } else { f64::MAX };
         let largest = body.rotor().moments::<f64>().magnitude();
         let conserved = body.conserved();
         let has = |quantity| conserved.contains(&quantity);

@@ -179,11 +179,13 @@ pub enum RunError {
 }
 
 impl Sample {
-    /// Whether state, energy and momentum are finite numbers in the units of the body.
+    /// Whether state, readings and errors are finite numbers in the units of the body.
     fn is_finite(&self) -> bool {
         self.state.is_finite()
             && self.energy.is_finite()
             && self.momentum.is_finite()
+            && self.energy_change.is_finite()
+            && self.errors.is_finite()
             && self.omega_body.iter().all(|w| w.is_finite())
     }
 }

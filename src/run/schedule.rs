@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::body::Clock;
-use crate::num::{Dd, Precise};
+use crate::num::{Dd, Precise, Shown};
 
 /// Ascending numbers of steps; the start, step 0, is the first unless the steps are given.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub struct Schedule {
 #[non_exhaustive]
 pub enum ScheduleError {
     /// The step is not positive.
-    #[error("step {step} s leads to no ascending times; it must be a positive number")]
+    #[error("step {} s leads to no ascending times; it must be a positive number", Shown(*step))]
     NotAStep {
         /// The step, s.
         step: f64,
@@ -33,7 +33,7 @@ pub enum ScheduleError {
         t: f64,
     },
     /// A time lies before the one that precedes it, or before the start.
-    #[error("time {t} s comes after {before} s; steps lead to ascending times from the start on")]
+    #[error("time {} s comes after {} s; steps lead to ascending times from the start on", Shown(*t), Shown(*before))]
     NotAscending {
         /// The time, s.
         t: f64,
@@ -53,7 +53,9 @@ pub enum ScheduleError {
         steps: f64,
     },
     /// No whole number of steps leads there.
-    #[error("steps of {step} s do not reach t = {t} s; the nearest time that they reach is {nearest} s")]
+    #[error(
+        "steps of {} s do not reach t = {} s; the nearest time that they reach is {} s", Shown(*step), Shown(*t), Shown(*nearest)
+    )]
     NotReached {
         /// The time, s.
         t: f64,
