@@ -26,7 +26,7 @@ MARKERS = ("<!-- begin generated: mutants -->", "<!-- end generated: mutants -->
 # files, every n-th mutant, arguments of cargo test
 MODULES = {
     "num": (["src/num/**"], 20, ["--lib", "--test", "num"]),
-    "rotation": (["src/rotation/**"], 8, ["--lib", "--test", "euler", "--test", "properties", "--test", "laws"]),
+    "rotation": (["src/rotation/**"], 8, ["--lib", "--test", "rotation", "--test", "euler", "--test", "properties", "--test", "laws"]),
     "flow": ([f"src/flow/{name}.rs" for name in ("theta", "circulation", "polhode", "phase", "nutation")], 40, ["--lib", "--test", "exact", "--test", "properties", "--test", "tops"]),
     "method": (["src/method/**"], 20, ["--lib", "--test", "laws"]),
     "observe": (["src/observe/**"], 10, ["--lib", "--test", "laws", "--test", "properties"]),
