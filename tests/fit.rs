@@ -859,3 +859,48 @@ fn a_segment_is_consistent_or_refused() {
         RecordError::Value { line: 2, column: 1, .. }
     ));
 }
+
+/// Principal axes and moments of tensors drawn from the covariance scatter as the report says.
+#[test]
+fn deviations_of_axes_and_moments_are_those_of_the_covariance() {
+    let (_, times, rates) = example(1e-2);
+    let e = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
+    let spread = e.covariance.symmetric_eigen();
+    let factor = spread.eigenvectors
+        * SMatrix::<f64, 6, 6>::from_diagonal(&spread.eigenvalues.map(|v| v.max(0.0).sqrt()));
+    let mean = e.axes.to_rotation_matrix().into_inner();
+    let mut random = Random::new(5);
+    let (mut turns, mut moments, mut ratios) = ([0.0; 3], [0.0; 3], [0.0; 2]);
+    let square = |x: f64| x * x;
+    let count = 4000.0;
+    for _ in 0..4000 {
+        let noise = factor * SMatrix::<f64, 6, 1>::from_fn(|_, _| random.normal());
+        let mut j = e.shape.tensor();
+        for (k, (a, b)) in ENTRIES.into_iter().enumerate() {
+            j[(a, b)] = e.shape.tensor()[(a, b)] + noise[k];
+            j[(b, a)] = j[(a, b)];
+        }
+        let drawn = j.symmetric_eigen();
+        let mut order = [0, 1, 2];
+        order.sort_by(|&a, &b| drawn.eigenvalues[a].total_cmp(&drawn.eigenvalues[b]));
+        let value = |k: usize| drawn.eigenvalues[order[k]];
+        for k in 0..3 {
+            // the turn about axis k takes the next axis towards the one after
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            let (next, after) = (drawn.eigenvectors.column(order[a]), mean.column(b));
+            turns[k] += square(next.dot(&after)) / count;
+            moments[k] += square(value(k) - e.principal[k]) / count;
+        }
+        for (k, (sum, ratio)) in ratios.iter_mut().zip(e.ratios).enumerate() {
+            *sum += square(value(k) / value(2) - ratio) / count;
+        }
+    }
+    let compare = |found: &[f64], said: &[f64]| {
+        for (found, said) in found.iter().zip(said) {
+            assert!((found.sqrt() / said - 1.0).abs() < 0.06, "{} but {said}", found.sqrt());
+        }
+    };
+    compare(&turns, &e.sigma_axes);
+    compare(&moments, &e.sigma_principal);
+    compare(&ratios, &e.sigma_ratios);
+}

@@ -11,7 +11,7 @@ fn cayleys_transform_turns_by_twice_the_arc_tangent() {
     for (c, angle) in [
         ([0.75, 0.0, 0.0], 1.287_002_217_586_569_3), // 2 atan 3/4
         ([0.0, 2.0, 0.0], 2.214_297_435_588_181),    // 2 atan 2
-        ([0.0, 0.0, -1e-3], -1.999_999_333_333_733_2e-3),
+        ([0.0, 0.0, -1e-3], -1.999_999_333_333_733e-3),
     ] {
         let axis = Vector3::from(c).map(|x: f64| if x == 0.0 { 0.0 } else { 1.0 });
         let expected = UnitQuaternion::from_scaled_axis(axis * angle);
