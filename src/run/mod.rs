@@ -141,16 +141,14 @@ pub enum RunError {
         /// The last finite sample.
         last: Box<Sample>,
     },
-    /// The state is finite in the solver frame, and in the units of the body it is not.
+    /// The state is finite in the solver frame, and in the units of the body time, momentum or energy are not.
     #[error(
-        "after {steps} steps, t = {} s, momentum or energy leave the range of a double in the units of the body; take a \
-         smaller step, or change the units", Shown(*.time)
+        "after {steps} steps time, momentum or energy leave the range of a double in the units of the body; take a smaller \
+         step, or change the units"
     )]
     OutOfRange {
         /// Steps taken.
         steps: u64,
-        /// Time, s.
-        time: f64,
     },
     /// A force is not a finite number.
     #[error(
@@ -182,6 +180,7 @@ impl Sample {
     /// Whether state, readings and errors are finite numbers in the units of the body.
     fn is_finite(&self) -> bool {
         self.state.is_finite()
+            && self.time.hi().is_finite()
             && self.energy.is_finite()
             && self.momentum.is_finite()
             && self.energy_change.is_finite()
@@ -338,7 +337,7 @@ impl Run {
         if sample.is_finite() {
             Ok(Box::new(sample))
         } else {
-            Err(RunError::OutOfRange { steps: sample.steps, time: sample.time.to_f64() })
+            Err(RunError::OutOfRange { steps: sample.steps })
         }
     }
 
