@@ -43,7 +43,7 @@
 //! | I | inertia tensor, body axes, kg m² or any consistent unit; entries are `I_xy = −∫ x y dm` |
 //! | m, `momentum_body` | angular momentum I ω, body axes |
 //! | L, `momentum_space` | the same in space, q m q* |
-//! | E | kinetic energy ½ m·I⁻¹m |
+//! | E | energy: kinetic, ½ m·I⁻¹m, and potential |
 //! | h | step, s |
 //!
 //! The k-th moment that is given belongs to the k-th body axis; nothing is sorted behind the caller's back.

@@ -367,6 +367,16 @@ fn a_force_that_is_not_finite_ends_the_run_with_its_name_and_time() {
 }
 
 #[test]
+fn a_potential_whose_energy_alone_is_not_finite_is_named() {
+    let hole = Force::potential_fn("hole", |q| (0.5 - q.w.abs()).sqrt(), |_| Vector3::zeros());
+    let body = Body::free(inertia([10.0, 20.0, 30.0])).with(hole);
+    let turned = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 2.5);
+    let start = body.state(turned, [0.0, 0.0, 1.0].into()).unwrap();
+    let error = Run::new(&method("rk4").unwrap(), &body, &start, 0.1).unwrap().advance_to(1000).unwrap_err();
+    assert!(error.to_string().starts_with("hole is not finite at t = "), "{error}");
+}
+
+#[test]
 fn parameters_that_no_force_has_are_refused() {
     let moments = inertia([1.0, 2.0, 2.5]);
     let refused = |result: Result<Force, ForceError>| result.map(|_| ()).unwrap_err().to_string();

@@ -778,6 +778,58 @@ fn a_turn_about_a_principal_axis_is_steady_for_every_method() {
     }
 }
 
+#[test]
+fn a_run_is_taken_up_only_by_its_method_and_body() {
+    let with = |c1: f64| body().with(Force::drag(c1, 0.0).unwrap());
+    let start = body().leave(&start_of(&body()));
+    let mut run = Run::new(&method("rk4").unwrap(), &with(0.1), &start, 0.01).unwrap();
+    run.advance_to(10).unwrap();
+    let text = run.checkpoint().to_string();
+    let resumed = |name: &str, body: &Body| {
+        let run = Run::resume(&method(name).unwrap(), body, &text.parse().unwrap());
+        run.map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(resumed("rk4", &with(0.1)), Ok(()));
+    assert!(
+        resumed("rk4-normalized", &with(0.1))
+            .unwrap_err()
+            .contains("is of a run by rk4, and the method given")
+    );
+    assert!(resumed("rk4", &with(0.2)).unwrap_err().contains("is of a body with"));
+    assert!(resumed("rk4", &body()).is_err());
+    for (broken, line) in [
+        (text.replace("checkpoint 1", "checkpoint 2"), 1),
+        (text.lines().take(4).collect::<Vec<_>>().join("\n"), 5),
+        (text.replace("residual", "rest"), text.lines().count()),
+        (format!("{text}more\n"), text.lines().count() + 1),
+        (text.replace("worst -", "worst NaN"), text.lines().count() - 2),
+    ] {
+        let error = broken.parse::<polhode::run::Checkpoint>().unwrap_err().to_string();
+        assert!(error.starts_with(&format!("line {line} of the checkpoint is")), "{error}");
+    }
+}
+
+#[test]
+fn an_unsolved_step_is_told_again_and_again() {
+    let body = body();
+    let start = body.leave(&start_of(&body));
+    let mut run = Run::new(&method("implicit-midpoint").unwrap(), &body, &start, 4.0).unwrap();
+    let error = run.advance_to(10).unwrap_err();
+    let RunError::Unsolved { last, .. } = error else { panic!("{error}") };
+    assert!(matches!(run.advance_to(last.steps), Err(RunError::Unsolved { .. })));
+}
+
+#[test]
+fn a_scheme_whose_lists_do_not_alternate_is_refused() {
+    const TWO: &[Dd] = &[Dd::sum(0.125, 0.0), Dd::sum(0.25, 0.0)];
+    let stages = Stages::Alternating { first: schemes::Part::B, a: &[], b: TWO, class: Class::Any };
+    let scheme = Scheme { name: "mine", order: 2, source: "", stages };
+    assert_eq!(
+        Splitting::kicked(ExactDrift, scheme).unwrap_err().to_string(),
+        "scheme \"mine\" lists 2 shares of the flow that is first and 0 of the other; of the first there are as many or one more"
+    );
+}
+
 /// A state is in the axes and units of the user, whatever the solver frame is.
 #[test]
 fn readings_of_a_state_are_in_the_units_of_the_user() {

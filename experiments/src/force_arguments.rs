@@ -10,7 +10,7 @@ use crate::error::Error;
 /// What acts on the body; several forces add.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ForceArguments {
-    /// Weight moment M g x centre of mass, body axes: the body has a fixed point under gravity along -Z of space
+    /// Weight moment M g x centre of mass, body axes, N m: the body has a fixed point under gravity along -Z of space
     #[arg(long, value_name = "cx,cy,cz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     pub(crate) weight_moment: Option<[f64; 3]>,
     /// Gravity gradient on an orbit in the space x-y plane: mean motion, rad/s, and eccentricity (default 0); perigee on +x at t = 0

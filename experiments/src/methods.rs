@@ -36,7 +36,7 @@ impl Methods {
 pub(crate) fn table() -> Table {
     let mut table = Table::new(
         "methods",
-        "What each method claims of free motion; every claim is tested.",
+        "What each method claims of free motion; the order of kick-drift, which is exact there, is that of motion in a potential. Every claim is tested.",
         vec![
             Column::new("name", "", "name on the command line"),
             Column::new("order", "", "order of convergence"),

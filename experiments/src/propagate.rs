@@ -152,7 +152,7 @@ impl Propagate {
                 h * speed
             ));
         }
-        // a heavy body that is no Lagrange top has no closed form: its attitude error is left empty
+        // without closed form the attitude error is left empty
         let exact = ExactMotion::from_point(body, run.start().to_dd()).ok();
         for (&t, n) in times.iter().zip(steps) {
             let sample = match run.advance_to(n) {

@@ -1,4 +1,4 @@
-//! What acts on a body, in the solver frame, as kernels ask for it.
+//! All forces on a body, in the solver frame, in the form that integrators call.
 
 use std::sync::{Arc, OnceLock};
 
@@ -7,7 +7,9 @@ use super::{Force, Gravity, Potential, Time, Torque};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
-/// The torque of everything that acts on a body, in the solver frame. Kernels are compiled for each kind.
+/// The torque of everything that acts on a body, along its principal axes, in N m divided by
+/// [`Body::scale`](super::Body::scale). The attitude is principal axes → space, the angular velocity in rad/s along principal
+/// axes. Maps are compiled for each kind.
 pub trait Field<S: Real>: Clone + Send + Sync + 'static {
     /// Whether anything acts at all.
     const ACTS: bool = true;

@@ -42,13 +42,15 @@ use crate::rotation::{Quat, Vec3};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Potential<S: Real>: Send + Sync {
-    /// Potential energy, J, at the time `at` and the attitude `attitude`, body → space.
+    /// Potential energy, J, at the time `at` and the attitude `attitude`, body → space. With methods that do not keep |q|
+    /// the attitude is not exactly of norm 1.
     fn energy(&self, at: Time, attitude: Quat<S>) -> S;
 
     /// Torque, N m, body axes: −∂U/∂θ of a turn θ about the body axes.
     fn torque(&self, at: Time, attitude: Quat<S>) -> Vec3<S>;
 
-    /// What motion in this potential alone conserves: the energy, unless U depends on the time.
+    /// What motion in this potential alone conserves. The default is the energy: override it if U depends on `at`, or if
+    /// L_z is conserved too.
     fn conserved(&self) -> Vec<Conserved> {
         vec![Conserved::Energy]
     }
@@ -157,8 +159,8 @@ impl Force {
 
     /// A potential by two closures of the attitude, body → space: energy in J, and torque in N m, body axes.
     ///
-    /// It does not depend on the time, so the energy is conserved; the run that watches the energy shows whether the
-    /// two belong together. Both are computed in `f64`, also where a reference is integrated in double-double.
+    /// U must not depend on the time, and equal attitudes must give equal values. If the energy error of a run does not shrink
+    /// with the step, the two closures do not match. Both are computed in `f64`, also where a reference is integrated in double-double.
     pub fn potential_fn<U, T>(name: impl Into<String>, energy: U, torque: T) -> Self
     where
         U: Fn(UnitQuaternion<f64>) -> f64 + Send + Sync + 'static,
@@ -168,7 +170,7 @@ impl Force {
     }
 
     /// A torque, N m, body axes, by a closure of the time (s), the attitude (body → space) and the angular velocity
-    /// (rad/s, body axes), in `f64`.
+    /// (rad/s, body axes), in `f64`. Equal arguments must give equal values.
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
@@ -180,7 +182,7 @@ impl Force {
     /// let body = Body::free(Inertia::from_moments([1.0, 1.0, 2.0])?).with(thruster);
     /// let start = body.state(UnitQuaternion::identity(), Vector3::zeros())?;
     /// let end = Run::new(&method("rk4")?, &body, &start, 0.125)?.advance_to(8)?;
-    /// assert!((end.omega_body.z - 0.25).abs() < 0.01); // half a second's push is missing at the most
+    /// assert!((end.omega_body.z - 0.25).abs() < 0.01); // the last stage, at t = 1 s, feels no push
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn torque_fn<T>(name: impl Into<String>, torque: T) -> Self

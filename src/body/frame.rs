@@ -1,4 +1,4 @@
-//! A body and what acts on it, with the two doors between a user's axes and the solver frame.
+//! A body and what acts on it, with the conversions between a user's axes and the solver frame.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
@@ -66,7 +66,7 @@ pub enum Problem {
 /// A user's [`State`] refers to the body axes that the inertia was given in. Kernels work on a [`Point`] in the solver
 /// frame: along principal axes, with moments and momenta divided by a power of two, so that fourth powers neither over- nor
 /// underflow and a change of the unit of mass by a power of two changes no bit. [`enter`](Body::enter) and
-/// [`leave`](Body::leave) are the two doors.
+/// [`leave`](Body::leave) convert between the two.
 #[derive(Clone, Debug)]
 pub struct Body {
     inertia: Inertia,
@@ -157,7 +157,7 @@ impl Body {
         })
     }
 
-    /// Uniform gravity in the solver frame; `None` without weight moment.
+    /// Uniform gravity with the weight moment in the solver frame, divided by the [scale](Self::scale); `None` without it.
     pub fn gravity<S: Real>(&self) -> Option<Gravity<S>> {
         self.gravity.map(|g| Gravity { weight_moment: g.weight_moment.map(S::from_dd) })
     }
@@ -219,6 +219,15 @@ impl Body {
         sizes.fold(Dd::ZERO, |sum, size| sum + size)
     }
 
+    /// The name of a force whose potential energy is not finite.
+    pub(crate) fn force_without_energy(&self, at: Time, x: &Point<Dd>) -> Option<&str> {
+        let of = |force: &&Force| {
+            let alone = Body { gravity: None, forces: vec![(*force).clone()], ..self.clone() };
+            !alone.field::<Dd>().energy(at, x.attitude).hi().is_finite()
+        };
+        self.forces.iter().find(of).map(Force::name)
+    }
+
     /// The state with angular velocity `omega_body` (rad/s, body axes): m = I ω.
     ///
     /// # Errors
@@ -269,11 +278,12 @@ impl Body {
         if self.is_in_range(&inside) { Ok(inside) } else { Err(error) }
     }
 
-    /// The state `x` in the solver frame, whatever it is.
+    /// The state `x` in the solver frame, with an attitude of norm 1 where it has a direction.
     fn inside(&self, x: &State) -> Point<Dd> {
         let (frame, scale) = (self.inertia.frame(), self.inertia.scale());
         let momentum = x.momentum_body.map(|m| Dd::of(m / scale));
-        Point::new(Quat::of(x.attitude) * frame, frame.rotate_back(momentum))
+        let attitude = unit(x.attitude).unwrap_or(Quat::of(x.attitude));
+        Point::new(attitude * frame, frame.rotate_back(momentum))
     }
 
     /// The point `x` of the solver frame as a state in body axes.
@@ -302,7 +312,7 @@ impl Body {
         omega.map(S::to_f64).into()
     }
 
-    /// The power of two that moments, momenta and energies of the solver frame are to be multiplied with.
+    /// Moments, momenta and energies of the solver frame times this power of two are those in the user's units.
     pub fn scale(&self) -> f64 {
         self.inertia.scale()
     }

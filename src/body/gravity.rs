@@ -13,7 +13,8 @@ pub fn vertical<S: Real>(attitude: Quat<S>) -> Vec3<S> {
 
 /// Uniform gravity along −Z of space, on a body whose origin is fixed.
 ///
-/// The weight moment c is the weight M g times the centre of mass in body axes, N m.
+/// The weight moment c is the weight M g times the centre of mass, in the axes of the attitude: for
+/// [`Body::gravity`](super::Body::gravity) the principal axes, and in N m divided by the scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gravity<S> {
     /// Weight moment c in body axes.

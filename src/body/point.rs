@@ -9,7 +9,7 @@ use crate::rotation::{Quat, Vec3};
 /// A phase point in the solver frame: along principal axes, momenta divided by a power of two.
 ///
 /// [`State`](super::State) is what users hold, in SI units and their own body axes; [`Body::enter`](super::Body::enter)
-/// and [`Body::leave`](super::Body::leave) are the doors between the two. The momentum, not the angular velocity, is
+/// and [`Body::leave`](super::Body::leave) convert between the two. The momentum, not the angular velocity, is
 /// the variable: |m| is the Casimir of the Lie–Poisson bracket, kicks add to it, and `L = q m q*` is one product.
 ///
 /// What rounding takes from an increment is carried to the next one (Kahan's compensated sum, component by
@@ -72,7 +72,7 @@ impl<S: Real> Point<S> {
 
     /// Counts a step.
     #[inline]
-    pub fn count_step(&mut self) {
+    pub(crate) fn count_step(&mut self) {
         self.steps += 1;
     }
 

@@ -37,9 +37,9 @@ impl State {
         self.momentum_body.into()
     }
 
-    /// Angular momentum in space, `L = q m q*`, kg m²/s.
+    /// Angular momentum in space, `L = q m q*` with q of norm 1, kg m²/s.
     pub fn momentum_space(&self) -> Vector3<f64> {
-        self.attitude.rotate(self.momentum_body).into()
+        self.rotation() * self.momentum()
     }
 
     /// Whether every component is a finite number.

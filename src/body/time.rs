@@ -66,8 +66,8 @@ impl Time {
         S::from_dd(self.dd())
     }
 
-    /// The angle `rate · t` (rate in rad/s) less whole turns, in [−π, π], with the digits of the time and not only
-    /// those of the angle.
+    /// The angle `rate · t` (rate in rad/s), reduced to [−π, π] in double-double, so that many turns cost no digits of a
+    /// double.
     pub fn angle(&self, rate: f64) -> Dd {
         let angle = self.dd() * rate;
         angle - Dd::TAU * (angle / Dd::TAU).round()

@@ -7,7 +7,7 @@ use crate::body::{Field, Point, Time};
 use crate::num::Real;
 use crate::rotation::Vec3;
 
-/// The exact flow of U(t, q): the attitude stays, and so does the time, Φ_t: `m ← m + t τ(at, q)`.
+/// The exact flow of U at fixed time and attitude: Φ_t: `m ← m + t τ(at, q)`.
 ///
 /// Under gravity it keeps L_z, as the torque has no part along the vertical. Where nothing acts nothing happens.
 #[derive(Clone, Debug)]

@@ -42,7 +42,7 @@ impl AxisOrder {
     /// Root mean square over the sphere |m| = 1 of the part of H₃ that moves the energy, where H̃ = H + h² H₃ + …
     /// is what the splitting keeps.
     ///
-    /// With a, b, c the reciprocal moments of the inner, middle and outer axis , expanding the
+    /// With a, b, c the reciprocal moments of the inner, middle and outer axis, expanding the
     /// symmetric Baker–Campbell–Hausdorff series,
     /// `24 H₃ = (−2a²b + 2a²c + ab² − 4abc + 2b²c) m₁²m₂² + (2a²b − 2a²c + 2abc + ac² − bc²) m₁²m₃²
     /// + (−ab² + 2abc − ac² − 2b²c + bc²) m₂²m₃²`; the part in the span of H², HC and C² is constant and drops out.

@@ -149,7 +149,8 @@ const BASES: [&str; 8] = [
 /// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in `lie-poisson:321@kahan-li-8`.
 ///
 /// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
-/// order of axes as its argument; `kick-drift:4` is another name of `kick-drift@suzuki-4`.
+/// order of axes as its argument; `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and
+/// `kick-drift@suzuki-4`.
 ///
 /// # Errors
 /// A base or a scheme that does not exist, an argument that the base does not take, or a scheme that does not fit it.
@@ -184,6 +185,7 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         ("kick-drift", Some("2"), None) => (None, None),
         ("kick-drift", Some("4"), None) => (None, Some(SUZUKI_4)),
         ("kick-drift", Some(_), None) => return refused("2 or 4, its order"),
+        ("kick-drift", Some(_), Some(_)) => return refused("none beside a scheme"),
         (_, Some(_), _) => return refused("none: this method takes no argument"),
         (_, None, _) => (None, chosen),
     };

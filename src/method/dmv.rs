@@ -22,7 +22,7 @@ use crate::rotation::Vec3;
 /// [kick](crate::flow::Kick) before and after, L_z is kept under gravity and the energy stays within O(h²).
 ///
 /// `u × c` has the same rounded constants in the equation and in the step, so that the map as computed is symmetric
-/// still and has two invariants next to E and |m|: what rounding adds is a random walk.
+/// still and has two invariants close to E and |m|: what rounding adds is a random walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dmv;
 

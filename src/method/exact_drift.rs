@@ -7,8 +7,9 @@ use crate::num::{Dd, Precise};
 
 /// The [free flow](FreeFlow): with kicks around it, the splitting of H = T + U into the two flows that are known exactly.
 ///
-/// Keeps L_z and the bracket, and for exponentially long times the energy within O(h^order); a fast top under a weak
-/// torque is followed with an error in proportion to the torque. Without torque it is the exact motion.
+/// The bracket is kept, L_z where the potential conserves it, and the energy of a potential that does not depend on time stays
+/// within O(h^order) for exponentially long times. The error is proportional to the torque; without torque the motion is
+/// exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExactDrift;
 

@@ -64,6 +64,19 @@ pub enum SchemeError {
         /// Name of the base.
         base: String,
     },
+    /// The two lists of a scheme do not alternate.
+    #[error(
+        "scheme {scheme:?} lists {outer} shares of the flow that is first and {inner} of the other; of the first there are as \
+         many or one more"
+    )]
+    Lengths {
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Shares listed of the flow that is first and last.
+        outer: usize,
+        /// Shares listed of the other.
+        inner: usize,
+    },
     /// A composition is of higher order only over a symmetric base.
     #[error(
         "{base} is not symmetric, and scheme {scheme:?} raises the order of symmetric methods only; take implicit-midpoint, \
@@ -83,9 +96,9 @@ impl<A, B> Splitting<A, B> {
         Splitting { a, b, scheme: STRANG }
     }
 
-    /// `a` and `b` by `scheme`. Its order is that of the splitting where both are exact, and for a composition also
-    /// where they are symmetric.
-    pub const fn with_scheme(a: A, b: B, scheme: Scheme) -> Self {
+    /// `a` and `b` by `scheme`, which has its order if both maps are exact; a composition also if they are symmetric and of
+    /// order 2.
+    pub(super) const fn with_scheme(a: A, b: B, scheme: Scheme) -> Self {
         Splitting { a, b, scheme }
     }
 
@@ -113,6 +126,12 @@ impl<A: Drift> Splitting<A, Kicks> {
     /// # Ok::<(), polhode::method::SchemeError>(())
     /// ```
     pub fn kicked(drift: A, scheme: Scheme) -> Result<Self, SchemeError> {
+        if let Stages::Alternating { first, a, b, .. } = scheme.stages {
+            let (outer, inner) = if first == Part::A { (a.len(), b.len()) } else { (b.len(), a.len()) };
+            if outer != inner && outer != inner + 1 {
+                return Err(SchemeError::Lengths { scheme: scheme.name, outer, inner });
+            }
+        }
         match (drift.order(), scheme.stages) {
             (Some(order), Stages::Alternating { .. }) => {
                 Err(SchemeError::Drift { scheme: scheme.name, base: drift.name(), order })
@@ -223,9 +242,10 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
     }
 
     fn worst_residual(&self) -> f64 {
-        let a = self.pairs.iter().map(|pair| pair.0.map.worst_residual());
+        let pairs = self.pairs.iter().map(|(a, b)| a.map.worst_residual().max(b.map.worst_residual()));
+        let opening = self.opening.iter().map(|b| b.map.worst_residual());
         let closing = self.closing.iter().map(|a| a.map.worst_residual());
-        a.chain(closing).fold(0.0, f64::max)
+        pairs.chain(opening).chain(closing).fold(0.0, f64::max)
     }
 }
 

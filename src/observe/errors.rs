@@ -2,10 +2,10 @@
 
 use crate::body::Conserved;
 
-/// Relative errors of the invariants against the start; `None` where the motion does not conserve the quantity. All 0 for
-/// a free body at rest.
+/// Relative errors of the invariants against the start; `None` where the motion does not conserve the quantity, or where
+/// that follows from one that is shown. All 0 for a free body at rest.
 ///
-/// With forces, energies are measured by W = T₀ + |c| + Σ (|U₀| + |τ₀|): the kinetic energy at the start, the weight
+/// With forces, energy errors are divided by W = T₀ + |c| + Σ (|U₀| + |τ₀|): the kinetic energy at the start, the weight
 /// moment, and potential and torque of every other force at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

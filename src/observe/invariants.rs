@@ -4,8 +4,8 @@ use crate::body::{Body, Point, Time};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
-/// Energy and momentum of a point in double-double, in the solver frame. Which of them stay is the
-/// [body's](Body::conserved) to say.
+/// Energy and momentum of a point in double-double, in the solver frame and divided by [`Body::scale`].
+/// [`Body::conserved`] tells which of them are constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Invariants {
     /// Energy ½ m·I⁻¹m + U.

@@ -184,26 +184,31 @@ impl Monitor {
             ]);
         };
         let (at, point) = (self.clock.at(x.steps()), x.to_dd());
-        let relative = |error: f64, scale: f64| {
-            // a start at rest where potential and torque are zero has no scale of its own
-            let scale = if scale > 0.0 { scale } else { self.kinetic(&point).hi() };
-            if error == 0.0 { 0.0 } else { error / scale }
+        // a start at rest where potential and torque are zero has no scale of its own: that of the point then serves
+        let relative = |error: f64, scale: f64, of_point: &dyn Fn() -> f64| match (error, scale) {
+            (0.0, _) => 0.0,
+            (error, 0.0) => error / of_point(),
+            (error, scale) => error / scale,
         };
+        let kinetic = || self.kinetic(&point).hi();
+        let norm = || point.momentum_body.norm().hi();
         let energy = || self.kinetic(&point) + self.field.energy(at, point.attitude) - self.energy;
         let momentum = || point.momentum_space() - self.momentum_space;
         let size = || self.momentum_squared.sqrt();
         Errors {
-            energy: forced.energy.then(|| relative(energy().magnitude(), forced.energy_scale)),
+            energy: forced.energy.then(|| relative(energy().magnitude(), forced.energy_scale, &kinetic)),
             momentum: forced
                 .momentum
-                .then(|| relative((point.momentum_body.norm() - size()).magnitude(), size().hi())),
+                .then(|| relative((point.momentum_body.norm() - size()).magnitude(), size().hi(), &norm)),
             momentum_vector: forced
                 .momentum_vector
-                .then(|| relative(momentum().norm().magnitude(), size().hi())),
-            momentum_z: forced.momentum_z.then(|| relative(momentum()[2].magnitude(), forced.momentum_scale)),
+                .then(|| relative(momentum().norm().magnitude(), size().hi(), &norm)),
+            momentum_z: forced
+                .momentum_z
+                .then(|| relative(momentum()[2].magnitude(), forced.momentum_scale, &norm)),
             jacobi: forced
                 .jacobi
-                .map(|n| relative((energy() - momentum()[2] * n).magnitude(), forced.jacobi_scale)),
+                .map(|n| relative((energy() - momentum()[2] * n).magnitude(), forced.jacobi_scale, &kinetic)),
         }
     }
 

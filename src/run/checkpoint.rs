@@ -25,6 +25,8 @@ pub struct Checkpoint {
     pub(super) point: Point<f64>,
     pub(super) memory: Memory,
     pub(super) residual: f64,
+    /// Whether steps have been taken that were not watched.
+    pub(super) missed: bool,
 }
 
 /// Why a run cannot be taken up.
@@ -62,14 +64,21 @@ pub enum CheckpointError {
 /// First line of the text; the number is that of the format.
 const HEAD: &str = "polhode checkpoint 1";
 
-/// What a body is identified by: moments and scale, weight moment, and the names of its forces.
-pub(super) fn identity(body: &Body) -> Vec<String> {
+/// What a body is identified by: moments, scale and principal axes, weight moment, the names of its forces, and energy and
+/// torque at the start, which tell forces of one name from each other.
+pub(super) fn identity(body: &Body, clock: Clock, start: &Point<f64>) -> Vec<String> {
     let numbers =
         |v: Vec3<Dd>| v.0.iter().map(|x| format!("{:?} {:?}", x.hi(), x.lo())).collect::<Vec<_>>().join(" ");
     let moments = format!("moments {} times {:?}", numbers(body.rotor().moments()), body.scale());
     let weight = body.gravity::<Dd>().map(|gravity| format!("weight {}", numbers(gravity.weight_moment)));
+    let axes = body.inertia().principal_axes();
+    let axes = format!("axes {:?} {:?} {:?} {:?}", axes.w, axes.i, axes.j, axes.k);
     let forces = body.forces().iter().map(|force| format!("force {:?}", force.name()));
-    core::iter::once(moments).chain(weight).chain(forces).collect()
+    let (at, start) = (clock.at(0), start.to_dd());
+    let energy = body.energy_of(at, &start);
+    let at_start =
+        format!("start {:?} {:?} {}", energy.hi(), energy.lo(), numbers(body.torque_of(at, &start)));
+    [moments, axes].into_iter().chain(weight).chain(forces).chain([at_start]).collect()
 }
 
 impl Checkpoint {
@@ -80,10 +89,11 @@ impl Checkpoint {
 
     /// Whether `method` and `body` are those of the run.
     pub(super) fn check(&self, method: &str, body: &Body) -> Result<(), CheckpointError> {
+        let method = method.escape_debug().to_string();
         if self.method != method {
-            return Err(CheckpointError::Method { expected: self.method.clone(), given: method.into() });
+            return Err(CheckpointError::Method { expected: self.method.clone(), given: method });
         }
-        let given = identity(body);
+        let given = identity(body, self.clock, &self.start);
         if self.body != given {
             let (expected, given) = (self.body.join(", "), given.join(", "));
             return Err(CheckpointError::Body { expected, given });
@@ -102,12 +112,12 @@ impl fmt::Display for Checkpoint {
             Some(true) => "+",
             Some(false) => "-",
         };
-        writeln!(f, "{HEAD}\nmethod {}", self.method)?;
+        writeln!(f, "{HEAD}\nmethod \"{}\"", self.method)?;
         for line in &self.body {
             writeln!(f, "body {line}")?;
         }
         writeln!(f, "clock {:?} {:?}", self.clock.start, self.clock.step)?;
-        writeln!(f, "watch {}", self.watch)?;
+        writeln!(f, "watch {} {}", self.watch, if self.missed { "missed" } else { "seen" })?;
         writeln!(f, "start {}", list(&self.start.parts()))?;
         writeln!(f, "steps {}", self.point.steps())?;
         writeln!(f, "point {}", list(&self.point.parts()))?;
@@ -119,18 +129,22 @@ impl fmt::Display for Checkpoint {
 
 /// Lines of a text with their numbers, each with its key.
 struct Lines<'a> {
-    lines: core::iter::Peekable<core::iter::Enumerate<core::str::Lines<'a>>>,
+    lines: core::iter::Peekable<core::str::Lines<'a>>,
+    /// Lines taken so far.
+    taken: usize,
 }
 
 impl<'a> Lines<'a> {
-    fn after(&mut self, key: &str, rule: &'static str) -> Result<(usize, &'a str), CheckpointError> {
-        let (n, line) = self.lines.next().unwrap_or((0, ""));
+    fn refused(&self, found: &str, rule: &'static str) -> CheckpointError {
+        CheckpointError::Text { line: self.taken, found: found.into(), rule }
+    }
+
+    /// What stands behind `key` in the next line.
+    fn after(&mut self, key: &str, rule: &'static str) -> Result<&'a str, CheckpointError> {
+        self.taken += 1;
+        let line = self.lines.next().unwrap_or("");
         let rest = line.strip_prefix(key).and_then(|rest| rest.strip_prefix(' '));
-        rest.map(|rest| (n + 1, rest)).ok_or_else(|| CheckpointError::Text {
-            line: n + 1,
-            found: line.into(),
-            rule,
-        })
+        rest.ok_or_else(|| self.refused(line, rule))
     }
 
     fn parsed<T>(
@@ -139,67 +153,78 @@ impl<'a> Lines<'a> {
         rule: &'static str,
         parse: impl Fn(&str) -> Option<T>,
     ) -> Result<T, CheckpointError> {
-        let (line, text) = self.after(key, rule)?;
-        parse(text).ok_or_else(|| CheckpointError::Text { line, found: text.into(), rule })
+        let text = self.after(key, rule)?;
+        parse(text).ok_or_else(|| self.refused(text, rule))
     }
 }
 
+fn finite(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|x: &f64| x.is_finite())
+}
+
 fn doubles<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let numbers: Option<Vec<f64>> =
-        text.split(' ').map(|x| x.parse().ok().filter(|x: &f64| x.is_finite())).collect();
-    numbers?.try_into().ok()
+    text.split(' ').map(finite).collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
+fn watched(text: &str) -> Option<(Watch, bool)> {
+    let (watch, missed) = text.split_once(' ')?;
+    let watch =
+        [Watch::EveryStep, Watch::AtSamples, Watch::Never].into_iter().find(|w| w.to_string() == watch)?;
+    match missed {
+        "seen" => Some((watch, false)),
+        "missed" => Some((watch, true)),
+        _ => None,
+    }
+}
+
+fn errors(text: &str) -> Option<[Option<f64>; 5]> {
+    let errors = text.split(' ').map(|error| if error == "-" { Some(None) } else { finite(error).map(Some) });
+    errors.collect::<Option<Vec<Option<f64>>>>()?.try_into().ok()
+}
+
+fn flips(text: &str) -> Option<(u64, Option<bool>, u32)> {
+    let [flips, sign, loud] = text.split(' ').collect::<Vec<&str>>().try_into().ok()?;
+    let positive = match sign {
+        "0" => None,
+        "+" => Some(true),
+        "-" => Some(false),
+        _ => return None,
+    };
+    Some((flips.parse().ok()?, positive, loud.parse().ok()?))
 }
 
 impl FromStr for Checkpoint {
     type Err = CheckpointError;
 
     fn from_str(text: &str) -> Result<Self, CheckpointError> {
-        let mut lines = Lines { lines: text.lines().enumerate().peekable() };
-        match lines.lines.next() {
-            Some((_, HEAD)) => {}
-            other => {
-                let found = other.map_or("", |(_, line)| line).into();
-                return Err(CheckpointError::Text {
-                    line: 1,
-                    found,
-                    rule: "it must be 'polhode checkpoint 1'",
-                });
-            }
+        let mut lines = Lines { lines: text.lines().peekable(), taken: 1 };
+        let head = lines.lines.next().unwrap_or("");
+        if head != HEAD {
+            return Err(lines.refused(head, "it must be 'polhode checkpoint 1'"));
         }
-        let method = lines.after("method", "it must name the method")?.1.into();
+        let quoted = |text: &str| Some(text.strip_prefix('"')?.strip_suffix('"')?.to_owned());
+        let method = lines.parsed("method", "it must name the method in quotes", quoted)?;
         let mut body = Vec::new();
-        while let Some((_, line)) = lines.lines.next_if(|(_, line)| line.starts_with("body ")) {
-            body.push(line.trim_start_matches("body ").into());
+        while lines.lines.peek().is_some_and(|line| line.starts_with("body ")) {
+            body.push(lines.after("body", "it must identify the body")?.into());
         }
         let [start, step] = lines.parsed("clock", "it must hold start time and step", doubles)?;
-        let watch = lines.parsed("watch", "it must say every-step, at-samples or never", |text| {
-            [Watch::EveryStep, Watch::AtSamples, Watch::Never]
-                .into_iter()
-                .find(|watch| watch.to_string() == text)
-        })?;
+        let (watch, missed) = lines.parsed(
+            "watch",
+            "it must say every-step, at-samples or never, and whether steps were seen or missed",
+            watched,
+        )?;
         let first = lines.parsed("start", "it must hold 14 numbers", doubles)?;
         let steps = lines.parsed("steps", "it must hold the number of steps", |text| text.parse().ok())?;
         let point = lines.parsed("point", "it must hold 14 numbers", doubles)?;
-        let worst = lines.parsed("worst", "it must hold 5 errors, - where there is none", |text| {
-            let errors: Option<Vec<Option<f64>>> = text
-                .split(' ')
-                .map(|error| if error == "-" { Some(None) } else { error.parse().ok().map(Some) })
-                .collect();
-            errors?.try_into().ok()
-        })?;
+        let worst = lines.parsed("worst", "it must hold 5 errors, - where there is none", errors)?;
         let (flips, positive, loud) =
-            lines.parsed("flips", "it must hold a count, a sign and a count", |text| {
-                let mut words = text.split(' ');
-                let flips = words.next()?.parse().ok()?;
-                let positive = match words.next()? {
-                    "0" => None,
-                    "+" => Some(true),
-                    "-" => Some(false),
-                    _ => return None,
-                };
-                Some((flips, positive, words.next()?.parse().ok()?))
-            })?;
-        let [residual] = lines.parsed("residual", "it must hold a number", doubles)?;
+            lines.parsed("flips", "it must hold a count, a sign and a count", flips)?;
+        let residual = lines.parsed("residual", "it must hold a number", |text| text.parse().ok())?;
+        if let Some(line) = lines.lines.next() {
+            lines.taken += 1;
+            return Err(lines.refused(line, "the line before is the last"));
+        }
         Ok(Checkpoint {
             method,
             body,
@@ -209,6 +234,7 @@ impl FromStr for Checkpoint {
             point: Point::from_parts(point, steps),
             memory: Memory { worst: Errors::from_parts(worst), flips, positive, loud },
             residual,
+            missed,
         })
     }
 }

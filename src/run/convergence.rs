@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::body::{Body, Clock, Point};
-use crate::flow::{ExactMotion, NoClosedForm};
+use crate::flow::{ExactMotion, NoClosedForm, TimeError};
 use crate::method::{AnyMethod, StepError};
 use crate::num::Dd;
 use crate::rotation::rotation_angle;
@@ -15,7 +15,7 @@ pub struct Halving {
     pub h: f64,
     /// Angle in rad between computed and exact attitude at the end.
     pub attitude_error: f64,
-    /// |m − m_exact| / |m_exact| at the end.
+    /// |m − m_exact| / |m_exact| at the end; 0 at rest.
     pub momentum_error: f64,
 }
 
@@ -29,6 +29,9 @@ pub enum HalvingError {
     /// There is no exact motion to compare with.
     #[error(transparent)]
     NoClosedForm(#[from] NoClosedForm),
+    /// The span is no time that the motion can be followed for.
+    #[error(transparent)]
+    Time(#[from] TimeError),
     /// More halvings than steps can be counted.
     #[error("{exponent} halvings make 2^{exponent} steps; at most 2^53 can be counted")]
     TooMany {
@@ -50,7 +53,9 @@ pub fn halvings(
     span: f64,
     exponents: core::ops::Range<u32>,
 ) -> Result<Vec<Halving>, HalvingError> {
-    let exact = ExactMotion::from_point(body, *start)?.point_at_dd(Dd::from(span));
+    let motion = ExactMotion::from_point(body, *start)?;
+    motion.at(span)?;
+    let exact = motion.point_at_dd(Dd::from(span));
     halvings_against(&exact, method, body, start, span, exponents)
 }
 
@@ -73,13 +78,14 @@ pub fn halvings_against(
             }
             let steps = 1_u64 << exponent;
             let h = span / steps as f64;
-            let mut x = *start;
+            let mut x = Point::new(start.attitude, start.momentum_body);
             method.prepare_dd(Clock::new(h), body)?.steps(&mut x, steps);
-            let difference = x.momentum_body - exact.momentum_body;
+            let difference = (x.momentum_body - exact.momentum_body).norm();
+            let size = exact.momentum_body.norm();
             Ok(Halving {
                 h,
                 attitude_error: rotation_angle(x.attitude, exact.attitude).hi(),
-                momentum_error: (difference.norm() / exact.momentum_body.norm()).hi(),
+                momentum_error: if difference == Dd::ZERO { 0.0 } else { (difference / size).hi() },
             })
         })
         .collect()

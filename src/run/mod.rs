@@ -57,6 +57,8 @@ pub struct Run {
     point: Point<f64>,
     monitor: Monitor,
     residual: f64,
+    /// Whether steps have been taken that were not watched.
+    missed: bool,
 }
 
 /// How often the largest errors of a run are looked for.
@@ -105,7 +107,7 @@ pub struct Sample {
     pub energy_change: f64,
     /// Errors of this state.
     pub errors: Errors,
-    /// The largest errors of what was watched so far; `None` each where nothing was.
+    /// The largest errors of what was watched so far; `None` each while nothing is watched.
     pub worst: Errors,
     /// How often the errors were looked for.
     pub watch: Watch,
@@ -211,7 +213,8 @@ impl Run {
         Run::from_point(method, body, body.enter(start)?.to_f64(), clock)
     }
 
-    /// As [`by_clock`](Self::by_clock), from a point of the solver frame.
+    /// As [`by_clock`](Self::by_clock), from a point of the solver frame, whose attitude has norm 1. Steps are counted from
+    /// here, whatever the point has counted.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -221,6 +224,12 @@ impl Run {
         start: Point<f64>,
         clock: Clock,
     ) -> Result<Self, RunError> {
+        let start = Point::new(start.attitude, start.momentum_body);
+        if let Some(&value) =
+            start.attitude.components().iter().chain(&start.momentum_body.0).find(|x| !x.is_finite())
+        {
+            return Err(StateError::NotFinite { quantity: "the start", value }.into());
+        }
         let probe = if body.forces().is_empty() {
             None
         } else {
@@ -239,6 +248,7 @@ impl Run {
             start,
             point: start,
             residual: 0.0,
+            missed: false,
         })
     }
 
@@ -268,14 +278,15 @@ impl Run {
     /// ```
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
-            method: self.method.clone(),
-            body: checkpoint::identity(&self.body),
+            method: self.method.escape_debug().to_string(),
+            body: checkpoint::identity(&self.body, self.clock, &self.start),
             clock: self.clock,
             watch: self.watch,
             start: self.start,
             point: self.point,
             memory: self.monitor.memory(),
             residual: self.worst_residual(),
+            missed: self.missed,
         }
     }
 
@@ -290,6 +301,7 @@ impl Run {
         run.point = checkpoint.point;
         run.monitor.remember(checkpoint.memory);
         run.residual = checkpoint.residual;
+        run.missed = checkpoint.missed;
         Ok(run)
     }
 
@@ -301,19 +313,15 @@ impl Run {
     /// Goes on to `steps` steps from the start and looks at the state there.
     ///
     /// # Errors
-    /// [`RunError::Diverged`], [`RunError::Force`] or [`RunError::Unsolved`], with the last sample that can be relied on;
+    /// [`RunError::Diverged`] and [`RunError::Force`] with the last finite sample; [`RunError::Unsolved`] with the sample at
+    /// which it was noticed, up to 4096 steps after the step that failed; [`RunError::OutOfRange`];
     /// [`RunError::Behind`] where the run is further on already.
     pub fn advance_to(&mut self, steps: u64) -> Result<Sample, RunError> {
         let taken = self.point.steps();
         if steps < taken {
             return Err(RunError::Behind { asked: steps, taken });
         }
-        while self.point.steps() < steps {
-            let wanted = CHUNK.min(steps - self.point.steps());
-            let finite = match self.watch {
-                Watch::EveryStep => self.watched(wanted),
-                Watch::AtSamples | Watch::Never => self.unwatched(wanted),
-            };
+        loop {
             let residual = self.worst_residual();
             if residual > SOLVED {
                 return Err(match self.finite_sample() {
@@ -321,7 +329,15 @@ impl Run {
                     Err(error) => error,
                 });
             }
-            if !finite {
+            if self.point.steps() >= steps {
+                break;
+            }
+            let wanted = CHUNK.min(steps - self.point.steps());
+            let finite = match self.watch {
+                Watch::EveryStep => self.watched(wanted),
+                Watch::AtSamples | Watch::Never => self.unwatched(wanted),
+            };
+            if !finite && self.worst_residual() <= SOLVED {
                 return Err(self.broken());
             }
         }
@@ -361,19 +377,21 @@ impl Run {
     /// Takes `wanted` steps; false, and the run at the last finite point, if one is not finite.
     fn unwatched(&mut self, wanted: u64) -> bool {
         let before = self.point;
+        self.missed = true;
         self.step.steps(&mut self.point, wanted);
         if self.point.is_finite() {
             return true;
         }
         self.point = before;
-        loop {
+        for _ in 0..wanted {
             let mut next = self.point;
             self.step.step(&mut next);
             if !next.is_finite() {
-                return false;
+                break;
             }
             self.point = next;
         }
+        false
     }
 
     /// Why the next step is not finite.
@@ -388,6 +406,10 @@ impl Run {
             if let Some(failure) = witness.get() {
                 return RunError::Force { force: failure.force.clone(), time: failure.time, last };
             }
+            let at = self.clock.at(next.steps());
+            if let Some(force) = self.body.force_without_energy(at, &next.to_dd()) {
+                return RunError::Force { force: force.into(), time: at.seconds(), last };
+            }
         }
         RunError::Diverged { last }
     }
@@ -396,7 +418,7 @@ impl Run {
         self.residual.max(self.step.worst_residual())
     }
 
-    /// Samples at the steps of `schedule`, those left out that lie behind; ends after the first error.
+    /// Samples at the steps of `schedule`, skipping those before the current step; ends after the first error.
     pub fn samples(&mut self, schedule: Schedule) -> impl Iterator<Item = Result<Sample, RunError>> {
         let mut failed = false;
         let taken = self.point.steps();
@@ -415,7 +437,7 @@ impl Run {
         let at = self.clock.at(self.point.steps());
         let invariants = Invariants::of(&self.body, at, &self.point);
         let scale = self.body.scale();
-        let watched = self.watch == Watch::EveryStep;
+        let watched = self.watch == Watch::EveryStep && !self.missed;
         Sample {
             steps: self.point.steps(),
             elapsed: self.clock.elapsed(self.point.steps()),

@@ -5,7 +5,8 @@ use thiserror::Error;
 use crate::body::Clock;
 use crate::num::{Dd, Precise, Shown};
 
-/// Ascending numbers of steps; the start, step 0, is the first unless the steps are given.
+/// Ascending numbers of steps. [`every`](Self::every) and [`logarithmic`](Self::logarithmic) begin at step 0, the start;
+/// [`at`](Self::at) and [`at_times`](Self::at_times) hold only what is given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Schedule {
     /// Multiples of an interval, below the end.
