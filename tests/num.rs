@@ -480,6 +480,43 @@ fn jacobi_stays_on_its_curve_where_no_digit_of_the_place_is_left() {
 }
 
 #[test]
+fn what_a_sum_cannot_hold_is_carried_to_the_next() {
+    let (mut total, mut carry) = (1.0, 0.0);
+    for _ in 0..1000 {
+        sum::add_carried(&mut total, &mut carry, 1e-17);
+    }
+    assert_eq!(Dd::sum(total, carry).hi(), 1.0 + 1e-14);
+    assert!((Dd::sum(total, carry) - Dd::sum(1.0, 1e-14)).magnitude() < 1e-29);
+}
+
+#[test]
+fn turns_are_reduced_without_a_rounded_pi() {
+    for k in -64..=64 {
+        for (rest, low) in [(0.0, 0.0), (1e-17, 1e-30), (3e-3, -1e-4), (-7e-3, 9e-4), (0.0, 1e-300)] {
+            let x = f64::from(k) / 128.0 + rest;
+            if x.abs() > 0.5 {
+                continue;
+            }
+            let (s, c) = trig::sin_cos_turns(x, low);
+            let (sin, cos) = (Dd::TAU * Dd::sum(x, low)).sin_cos();
+            let off = (Dd::from(s) - sin).magnitude().max((Dd::from(c) - cos).magnitude());
+            assert!(off < 4e-16, "{x} {low}: {off:e}");
+        }
+    }
+    // exact at whole quarters
+    let quarters = [
+        (0.0, (0.0, 1.0)),
+        (0.25, (1.0, 0.0)),
+        (0.5, (0.0, -1.0)),
+        (-0.25, (-1.0, 0.0)),
+        (-0.5, (0.0, -1.0)),
+    ];
+    for (x, exact) in quarters {
+        assert_eq!(trig::sin_cos_turns(x, 0.0), exact, "{x}");
+    }
+}
+
+#[test]
 fn a_sum_of_two_parts_is_exact_next_to_the_end_of_the_range() {
     let sum = Dd::sum(-6.871931e307, f64::MAX);
     assert_eq!(sum.hi(), f64::MAX - 6.871931e307);

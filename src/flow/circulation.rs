@@ -52,8 +52,11 @@ impl<S: Precise> Circulation<S> {
     pub(super) fn of(polhode: Polhode<S>, m: Vec3<S>) -> Self {
         let one = S::of(1.0);
         let [amp_a, amp_b, amp_c] = polhode.amplitude;
-        let relative @ [amp_a, amp_b, amp_c, norm] =
-            [amp_a, amp_b, amp_c, polhode.norm].map(|x| scaled(x, -polhode.unit));
+        let mut relative = [amp_a, amp_b, amp_c, polhode.norm];
+        if polhode.unit != 0 {
+            relative = relative.map(|x| scaled(x, -polhode.unit));
+        }
+        let [amp_a, amp_b, amp_c, norm] = relative;
         let [i_a, i_b, i_c] = polhode.moments;
         let n = -(i_a * (i_c - i_b)) / (i_c * (i_b - i_a));
         // of the two complementary characteristics (n n̂ = k²) the smaller: the other loses digits

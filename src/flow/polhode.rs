@@ -84,6 +84,7 @@ pub(super) struct Asymptotic<S> {
 
 impl<S: Precise> Asymptotic<S> {
     /// For k'² = 4ⁿ `complement` and a start with sn = ±1 and cn = 2ⁿ `cn` far below one.
+    #[cold]
     fn of(complement: S, sn: S, cn: S, n: i32) -> Self {
         let one = S::of(1.0);
         let ln_2 = S::from_dd(Dd::LN_2);
@@ -105,6 +106,7 @@ impl<S: Precise> Asymptotic<S> {
     }
 
     /// The same where the pair (sn, cn) keeps all digits.
+    #[cold]
     fn usual((sn, cn): (S, S), parameter: S, complement: S) -> Self {
         let separatrix = complement == S::of(0.0);
         Asymptotic {
@@ -133,12 +135,27 @@ impl<S: Precise> Polhode<S> {
     /// [`rounded_separation`], whose error decides the accuracy near the separatrix. `None` where the momentum stays
     /// fixed in the body.
     pub(super) fn of(i: Vec3<S>, m: Vec3<S>, norm: S, scaled_separation: S) -> Option<Self> {
+        let order = ascending(i);
+        let (unit, lift) = (exponent(norm), lift(m, order));
+        if unit == 0 && lift == 0 {
+            Self::at_scale::<false>(i, m, norm, scaled_separation, order, [0, 0])
+        } else {
+            Self::at_scale::<true>(i, m, norm, scaled_separation, order, [unit, lift - unit])
+        }
+    }
+
+    /// The same with powers of two: 2^unit ≈ G, and 2^(unit + n) ≈ the larger of |m_l| and |m_h|.
+    fn at_scale<const SCALED: bool>(
+        i: Vec3<S>,
+        given: Vec3<S>,
+        norm: S,
+        scaled_separation: S,
+        [l, mu, h]: [usize; 3],
+        [unit, n]: [i32; 2],
+    ) -> Option<Self> {
         let zero = S::of(0.0);
-        let order @ [l, mu, h] = ascending(i);
-        // powers of two: unit ≈ G, and 2ⁿ unit ≈ the larger of |m_l|, |m_h|, where these are far from one
-        let unit = exponent(norm);
-        let n = lift(m, order) - unit;
-        let (m, across) = (Vec3(m.0.map(|m| scaled(m, -unit))), m);
+        let scaled = |x: S, n: i32| if SCALED { scaled(x, n) } else { x };
+        let m = Vec3(given.0.map(|m| scaled(m, -unit)));
         let square = |k: usize| m[k] * m[k];
         // sums of terms of one sign: nothing cancels
         let delta_l = square(mu) * (i[mu] - i[l]) / i[mu] + square(h) * (i[h] - i[l]) / i[h];
@@ -147,12 +164,12 @@ impl<S: Precise> Polhode<S> {
         let about_smallest = separation <= zero;
         let (a, b, c) = if about_smallest { (l, mu, h) } else { (h, mu, l) };
         let (delta_a, delta_c) = if about_smallest { (delta_l, delta_h) } else { (delta_h, delta_l) };
-        if delta_a == zero || delta_c == zero || (across[a] == zero && across[c] == zero) {
+        if delta_a == zero || delta_c == zero || (given[a] == zero && given[c] == zero) {
             return None;
         }
 
         let one = S::of(1.0);
-        let sigma = if m[a] < zero { -one } else { one };
+        let sigma = if given[a] < zero { -one } else { one };
         let delta = if (b + 3 - a) % 3 == 1 { sigma } else { -sigma };
         let (ca, ba, cb) = (i[c] - i[a], i[b] - i[a], i[c] - i[b]);
         if cb == zero && m[a].magnitude() < SYMMETRIC {
@@ -167,21 +184,21 @@ impl<S: Precise> Polhode<S> {
         let amp_c = (i[c] * delta_a / ca).sqrt();
         let denominator = if about_smallest { delta_h * (i[mu] - i[l]) } else { delta_l * (i[h] - i[mu]) };
         let (x, y) = (m[b] / amp_b, m[c] / amp_c);
-        let half_turned = y < zero;
+        let half_turned = given[c] < zero;
         let length = (x * x + y * y).sqrt();
         let length = if half_turned { -length } else { length };
         let start = (x / length, y / length);
         let parameter = -(delta_a * cb) / (delta_c * ba);
         let lifted = separation * (i[h] - i[l]) / denominator;
         let complement = scaled(lifted, 2 * n);
-        let asymptotic = (complement.magnitude() < NEGLIGIBLE).then(|| {
-            if start.1.magnitude() < SMALL {
-                let cn = scaled(across[c], -(n + unit)) / (amp_c * length);
-                Asymptotic::of(lifted, start.0, cn, n)
-            } else {
-                Asymptotic::usual(start, parameter, complement)
-            }
-        });
+        let asymptotic = if complement.magnitude() >= NEGLIGIBLE {
+            None
+        } else if start.1.magnitude() < SMALL {
+            let cn = scaled(given[c], -(n + unit)) / (amp_c * length);
+            Some(Asymptotic::of(lifted, start.0, cn, n))
+        } else {
+            Some(Asymptotic::usual(start, parameter, complement))
+        };
         Some(Polhode {
             axes: [a, b, c],
             about_smallest,

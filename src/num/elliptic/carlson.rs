@@ -26,6 +26,17 @@ fn together<S: Precise, const N: usize>(mean: f64, arguments: [S; N]) -> bool {
 /// 2⁻²³⁰: p so far beyond the other arguments leaves two terms of the series of R_J (NIST DLMF 19.27.11).
 const FAR: f64 = 5.795_634_610_449_096e-70;
 
+/// Whether no argument is negative, undefined, or so large that sums and products of roots might leave the range.
+#[inline]
+fn ordinary<S: Precise, const N: usize>(arguments: [S; N]) -> bool {
+    let (mut lowest, mut sum) = (0.0_f64, 0.0);
+    for argument in arguments.map(S::to_f64) {
+        lowest = lowest.min(argument);
+        sum += argument;
+    }
+    lowest == 0.0 && (1e-150..1e150).contains(&sum)
+}
+
 /// The value at arguments that are no ordinary ones, of which `zeros` make the integral diverge.
 fn extreme<S: Precise, const N: usize>(arguments: [S; N], zeros: bool) -> Option<S> {
     let mut largest = 0.0_f64;
@@ -77,12 +88,15 @@ fn zeros<S: Precise>(arguments: [S; 3]) -> usize {
 
 /// R_F(x, y, z) = ½ ∫₀^∞ dt / √((t+x)(t+y)(t+z)) for x, y, z ≥ 0; infinite when two of them are zero.
 pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
-    if let Some(value) = extreme([x, y, z], zeros([x, y, z]) > 1) {
-        return value;
-    }
-    if let Some(n) = lift([x, y, z], SUMS) {
-        let [x, y, z] = [x, y, z].map(|argument| scaled(argument, 2 * n));
-        return scaled(r_f(x, y, z), n);
+    let diverges = zeros([x, y, z]) > 1;
+    if diverges || !ordinary([x, y, z]) {
+        if let Some(value) = extreme([x, y, z], diverges) {
+            return value;
+        }
+        if let Some(n) = lift([x, y, z], SUMS) {
+            let [x, y, z] = [x, y, z].map(|argument| scaled(argument, 2 * n));
+            return scaled(r_f(x, y, z), n);
+        }
     }
     while !together((x.to_f64() + y.to_f64() + z.to_f64()) / 3.0, [x, y, z]) {
         let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
@@ -109,13 +123,21 @@ pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
 }
 
 /// R_C(x, y) = R_F(x, y, y) for x ≥ 0 and y > 0; infinite at y = 0.
-pub fn r_c<S: Precise>(mut x: S, mut y: S) -> S {
-    if let Some(value) = extreme([x, y], y == S::of(0.0)) {
-        return value;
+pub fn r_c<S: Precise>(x: S, y: S) -> S {
+    let diverges = y == S::of(0.0);
+    if diverges || !ordinary([x, y]) {
+        if let Some(value) = extreme([x, y], diverges) {
+            return value;
+        }
+        if let Some(n) = lift([x, y], SUMS) {
+            return scaled(r_c(scaled(x, 2 * n), scaled(y, 2 * n)), n);
+        }
     }
-    if let Some(n) = lift([x, y], SUMS) {
-        return scaled(r_c(scaled(x, 2 * n), scaled(y, 2 * n)), n);
-    }
+    degenerate(x, y)
+}
+
+/// R_C of ordinary arguments.
+fn degenerate<S: Precise>(mut x: S, mut y: S) -> S {
     while !together((x.to_f64() + 2.0 * y.to_f64()) / 3.0, [x, y]) {
         let shift = S::of(2.0) * x.sqrt() * y.sqrt() + y;
         [x, y] = [x, y].map(|argument| (argument + shift) * S::of(0.25));
@@ -143,28 +165,32 @@ pub fn r_c<S: Precise>(mut x: S, mut y: S) -> S {
 /// Every step adds a positive R_C(1, 2√p (p+λ)/d): unlike Carlson's 1 + δ/d² it does not cancel when p is small.
 pub fn r_j<S: Precise>(mut x: S, mut y: S, mut z: S, mut p: S) -> S {
     let zero = S::of(0.0);
-    if let Some(value) = extreme([x, y, z, p], p == zero || zeros([x, y, z]) > 1) {
-        return value;
-    }
+    let diverges = p == zero || zeros([x, y, z]) > 1;
     // duplication would take a step for each factor of four between p and the others
-    let is_far = [x, y, z].iter().all(|argument| argument.to_f64() < FAR * p.to_f64());
-    if let Some(n) = lift([x, y, z, p], if is_far { SUMS } else { PRODUCTS }) {
-        let [x, y, z, p] = [x, y, z, p].map(|argument| scaled(argument, 2 * n));
-        return scaled(r_j(x, y, z, p), 3 * n);
-    }
-    if is_far {
-        let second = S::from_dd(Dd::FRAC_PI_2) / p.sqrt();
-        return S::of(3.0) / p * (r_f(x, y, z) - second);
+    let is_far = x.to_f64() + y.to_f64() + z.to_f64() < FAR * p.to_f64();
+    if diverges || is_far || !ordinary([x, y, z, p]) {
+        if let Some(value) = extreme([x, y, z, p], diverges) {
+            return value;
+        }
+        if let Some(n) = lift([x, y, z, p], if is_far { SUMS } else { PRODUCTS }) {
+            let [x, y, z, p] = [x, y, z, p].map(|argument| scaled(argument, 2 * n));
+            return scaled(r_j(x, y, z, p), 3 * n);
+        }
+        if is_far {
+            let second = S::from_dd(Dd::FRAC_PI_2) / p.sqrt();
+            return S::of(3.0) / p * (r_f(x, y, z) - second);
+        }
     }
     let (mut sum, mut scale) = (zero, S::of(1.0));
     while !together((x.to_f64() + y.to_f64() + z.to_f64() + 2.0 * p.to_f64()) / 5.0, [x, y, z, p]) {
         let (a, b, c, r) = (x.sqrt(), y.sqrt(), z.sqrt(), p.sqrt());
         let shift = a * b + b * c + c * a;
         let d = (r + a) * (r + b) * (r + c);
-        if d == zero {
+        let ratio = S::of(2.0) * r * (p + shift) / d; // from 0 to 2
+        if ratio.to_f64().is_nan() || ratio == zero {
             return S::of(f64::INFINITY);
         }
-        sum = sum + scale / d * r_c(S::of(1.0), S::of(2.0) * r * (p + shift) / d);
+        sum = sum + scale / d * degenerate(S::of(1.0), ratio);
         scale = scale * S::of(0.25);
         [x, y, z, p] = [x, y, z, p].map(|argument| (argument + shift) * S::of(0.25));
     }
@@ -176,12 +202,15 @@ pub fn r_j<S: Precise>(mut x: S, mut y: S, mut z: S, mut p: S) -> S {
 /// the value.
 pub fn r_d<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
     let zero = S::of(0.0);
-    if let Some(value) = extreme([x, y, z], z == zero || (x == zero && y == zero)) {
-        return value;
-    }
-    if let Some(n) = lift([x, y, z], PRODUCTS) {
-        let [x, y, z] = [x, y, z].map(|argument| scaled(argument, 2 * n));
-        return scaled(r_d(x, y, z), 3 * n);
+    let diverges = z == zero || (x == zero && y == zero);
+    if diverges || !ordinary([x, y, z]) {
+        if let Some(value) = extreme([x, y, z], diverges) {
+            return value;
+        }
+        if let Some(n) = lift([x, y, z], PRODUCTS) {
+            let [x, y, z] = [x, y, z].map(|argument| scaled(argument, 2 * n));
+            return scaled(r_d(x, y, z), 3 * n);
+        }
     }
     let (mut sum, mut scale) = (zero, S::of(1.0));
     while !together((x.to_f64() + y.to_f64() + 3.0 * z.to_f64()) / 5.0, [x, y, z]) {
