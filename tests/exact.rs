@@ -197,3 +197,22 @@ fn the_flow_of_a_splitting_agrees_with_the_motion() {
         assert!(angle < long * 1e-29 * (1.0 + turned), "{}: {angle:e} after {turned} rad", case.scenario);
     }
 }
+
+#[test]
+fn small_deviations_grow_with_all_their_digits() {
+    let mut checked = 0;
+    for case in free_body("brink.csv") {
+        let motion = motion(&case);
+        let found = motion.inside_at_dd(Dd::from(case.t)).momentum_body;
+        let scale = Dd::of(motion.body().scale());
+        for (found, exact) in found.0.into_iter().zip(case.momentum) {
+            // below, parts of a double-double are subnormal
+            if exact.magnitude() > 1e-270 {
+                let off = ((found * scale - exact) / exact).magnitude();
+                assert!(off < 1e-20, "{} at t = {}: {off:e} of {exact}", case.scenario, case.t);
+                checked += usize::from(exact.magnitude() < 1e-30);
+            }
+        }
+    }
+    assert!(checked > 50, "{checked}");
+}

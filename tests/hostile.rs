@@ -12,7 +12,7 @@ use polhode::body::{
     Amount, Body, Clock, Evidence, Force, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid, State,
     diagnose,
 };
-use polhode::flow::FreeMotion;
+use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::method::{Claimed, method};
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
 use polhode::num::{Dd, Expansion, Precise, Real, trig};
@@ -416,6 +416,47 @@ fn flow() {
             all(readings.into_iter().all(f64::is_finite), "character", &(&inertia, omega, found))?;
         }
         Ok(())
+    });
+}
+
+#[test]
+fn tops() {
+    hostile(10, 0.3, |draw| {
+        let [a, c] = draw.list::<2>().map(f64::abs);
+        let Ok(inertia) = Inertia::from_positive_moments([a, a, c]) else { return Ok(()) };
+        let (size, decades) = draw.scale();
+        let weight = Vector3::new(0.0, 0.0, a * draw.near(size, decades));
+        let body = match Body::heavy(inertia, weight) {
+            Ok(body) => body,
+            Err(error) => return refused(&error),
+        };
+        let omega = Vector3::from([0; 3].map(|_| draw.near(size, decades)));
+        let attitude = match draw.below(3) {
+            0 => UnitQuaternion::identity(),
+            1 => UnitQuaternion::from_scaled_axis(Vector3::new(
+                draw.near(1.0, 20.0).clamp(-3.0, 3.0),
+                0.0,
+                0.0,
+            )),
+            _ => draw.attitude(),
+        };
+        let top = match LagrangeTop::from_omega(&body, attitude, omega) {
+            Ok(top) => top,
+            Err(error) => return refused(&error),
+        };
+        all(top.reach() > 0.0, "reach", &(&body, attitude, omega))?;
+        for t in [draw.any(), 1.0 / omega.norm(), -3e3 / omega.norm(), draw.share() * top.reach(), 0.0] {
+            match top.at(t) {
+                Ok(x) => {
+                    let good = x.is_finite() && (x.attitude.norm_squared() - 1.0).abs() < 1e-12;
+                    all(good, "state", &(&body, attitude, omega, t, x))?;
+                }
+                Err(error) => refused(&error)?,
+            }
+        }
+        let readings = top.turning_points().into_iter().chain(top.nutation_period());
+        let mut readings = readings.chain(top.precession_per_nutation());
+        all(readings.all(f64::is_finite), "readings", &(&body, attitude, omega))
     });
 }
 
