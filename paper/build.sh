@@ -18,8 +18,7 @@ for file in lmodern.sty booktabs.sty microtype.sty pgfplots.sty; do
 done
 for file in drift-origin.tex order-origin.tex long-run-series.csv heavy-top-origin.tex fit-efficiency-origin.tex; do
   if [ ! -f "generated/$file" ]; then
-    echo "generated/$file is missing; make the results of paper scale and publish them:" >&2
-    echo "  cargo run --release -- experiment run all --scale paper --out experiments/results" >&2
+    echo "generated/$file is missing; make it from the committed results, in the project's root:" >&2
     echo "  cargo run --release -- experiment publish" >&2
     exit 2
   fi

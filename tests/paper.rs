@@ -49,7 +49,7 @@ fn every_file_that_the_article_names_is_there() {
             named.extend(arguments(&text, command));
         }
         let csv = text.split(['{', '}']).filter(|word| word.ends_with(".csv"));
-        for name in named.into_iter().chain(csv).filter(|name| !name.contains('#')) {
+        for name in named.into_iter().chain(csv) {
             let there = ["", ".tex", ".bib", ".pdf"]
                 .iter()
                 .any(|ending| root().join("paper").join(format!("{name}{ending}")).is_file());
@@ -117,6 +117,16 @@ fn no_result_is_typed_into_the_readme() {
     assert_eq!(results(&typed), [""; 0]);
     // a table that somebody typed
     assert!(!typed.lines().any(|line| line.starts_with('|') && line.contains(|c: char| c.is_ascii_digit())));
+}
+
+#[test]
+fn every_generated_file_is_named_by_the_article() {
+    let all: String = sources().into_iter().map(|(_, text)| text).collect();
+    let Ok(entries) = fs::read_dir(root().join("paper/generated")) else { return };
+    for name in entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()) {
+        let input = format!("{{generated/{}}}", name.strip_suffix(".tex").unwrap_or(&name));
+        assert!(all.contains(&input), "nobody reads paper/generated/{name}: delete it");
+    }
 }
 
 #[test]

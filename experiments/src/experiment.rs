@@ -56,7 +56,7 @@ pub(crate) struct Experiment {
 pub(crate) struct Report {
     /// Deterministic rows, in full precision.
     pub(crate) tables: Vec<Table>,
-    /// Rows that only programs read: CSV alone.
+    /// Rows that only programs read, the same at every scale: CSV alone.
     pub(crate) data: Vec<Table>,
     /// Parts of them for readers; where there are none, the tables themselves are shown.
     pub(crate) views: Vec<Table>,
@@ -131,26 +131,38 @@ impl Context {
     }
 }
 
-/// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`.
-pub(crate) fn run(names: &[String], scale: Scale, out: &Path) -> Result<(), Error> {
+impl Experiment {
+    /// Does the work.
+    pub(crate) fn report(&self, scale: Scale) -> Result<Report, Error> {
+        let context = Context::new(self.name, scale);
+        let report = (self.run)(&context)?;
+        context.bar.finish_and_clear();
+        Ok(report)
+    }
+}
+
+/// The experiments called `names` (or `all`), each once, however often it is named.
+pub(crate) fn chosen(command: &str, names: &[String]) -> Result<Vec<&'static Experiment>, Error> {
     let known = experiments::ALL.iter().map(|experiment| experiment.name).chain(["all"]);
     if let Some(name) = names.iter().find(|name| known.clone().all(|known| known != *name)) {
-        return Err(Error::unknown_name("experiment run", "experiment", name, known));
+        return Err(Error::unknown_name(command, "experiment", name, known));
     }
-    // each once, however often it is named
     let asked = |name: &str| names.iter().any(|asked| asked == name || asked == "all");
-    let chosen = experiments::ALL.iter().filter(|experiment| asked(experiment.name));
-    let chosen: Vec<_> =
-        chosen.map(|experiment| (experiment, out.join(scale.to_string()).join(experiment.name))).collect();
+    Ok(experiments::ALL.iter().filter(|experiment| asked(experiment.name)).collect())
+}
+
+/// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`.
+pub(crate) fn run(names: &[String], scale: Scale, out: &Path) -> Result<(), Error> {
+    let with_folder =
+        |experiment: &'static Experiment| (experiment, out.join(scale.to_string()).join(experiment.name));
+    let chosen: Vec<_> = chosen("experiment run", names)?.into_iter().map(with_folder).collect();
     // a place that cannot be written is found out before the work, not after it
     for (_, folder) in &chosen {
         drop(Staging::new(folder)?);
     }
     let mut failures = Vec::new();
     for (experiment, folder) in chosen {
-        let context = Context::new(experiment.name, scale);
-        let report = (experiment.run)(&context)?;
-        context.bar.finish_and_clear();
+        let report = experiment.report(scale)?;
         write(experiment, scale, &report, &folder)?;
         show(experiment, &report, &folder)?;
         failures.extend(report.failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod body_arguments;
+mod check;
 mod error;
 mod experiment;
 mod experiments;
@@ -73,11 +74,31 @@ enum ExperimentCommand {
         #[arg(long, default_value = "results")]
         out: PathBuf,
     },
-    /// Put committed results of paper scale into README.md and paper/generated
+    /// Run experiments at smoke scale and compare every number with the
+    /// committed ones
+    ///
+    /// Times are left out. Exit code 1 where a cell differs or a claim fails; the first differences are named by file, row,
+    /// column and both values.
+    Check {
+        /// Names of experiments, or all
+        #[arg(default_value = "all")]
+        names: Vec<String>,
+        /// Root of the project
+        #[arg(long, default_value = ".")]
+        root: PathBuf,
+        /// Put what was found in the place of what is committed
+        #[arg(long)]
+        accept: bool,
+    },
+    /// Put committed results of paper scale into README.md and the files that
+    /// the article names in paper/generated
     Publish {
         /// Root of the project
         #[arg(long, default_value = ".")]
         root: PathBuf,
+        /// Folder of new results to be taken over first, such as results/paper
+        #[arg(long, value_name = "DIR")]
+        from: Option<PathBuf>,
     },
 }
 
@@ -97,7 +118,12 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Experiment(ExperimentCommand::Run { names, scale, out }) => {
             experiment::run(&names, scale, &out)
         }
-        Command::Experiment(ExperimentCommand::Publish { root }) => publish::run(&root),
+        Command::Experiment(ExperimentCommand::Check { names, root, accept }) => {
+            check::run(&names, &root, accept)
+        }
+        Command::Experiment(ExperimentCommand::Publish { root, from }) => {
+            publish::run(&root, from.as_deref())
+        }
         Command::Propagate(propagate) => propagate.run(),
         Command::Motion(motion) => motion.run(),
         Command::Fit(fit) => fit.run(),

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::experiment::{Report, Scale};
+use crate::table::{Part, Shown, Table};
 
 #[derive(Serialize)]
 struct Provenance<'a> {
@@ -20,25 +21,33 @@ struct Provenance<'a> {
     cpu_features: Vec<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
-    tables: BTreeMap<String, Columns>,
+    tables: BTreeMap<String, Columns<'a>>,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    views: BTreeMap<&'a str, &'a Part>,
 }
 
 #[derive(Serialize)]
-struct Columns {
+struct Columns<'a> {
     caption: String,
     /// Name to meaning, with the unit in brackets.
-    columns: BTreeMap<&'static str, String>,
+    columns: BTreeMap<&'a str, String>,
+    /// How the rows are rounded for readers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shown: Vec<Shown>,
 }
 
 /// The contents of `run.toml`.
-pub(crate) fn describe(experiment: &str, scale: Scale, report: &Report) -> String {
+pub(crate) fn describe<'a>(experiment: &'a str, scale: Scale, report: &'a Report) -> String {
     let meaning = |unit: &str, meaning: &str| {
         if unit.is_empty() { meaning.into() } else { format!("{meaning} [{unit}]") }
     };
-    let tables = report.tables.iter().chain(&report.data).chain(&report.timing).map(|table| {
-        let columns = table.columns.iter().map(|c| (c.name, meaning(c.unit, c.meaning))).collect();
-        (format!("{}.csv", table.name), Columns { caption: table.caption.clone(), columns })
-    });
+    let described = |table: &'a Table, shown| {
+        let columns = table.columns.iter().map(|c| (&*c.name, meaning(&c.unit, c.meaning))).collect();
+        (format!("{}.csv", table.name), Columns { caption: table.caption.clone(), columns, shown })
+    };
+    let rounded = report.tables.iter().map(|table| described(table, table.layout()));
+    let others = report.data.iter().chain(&report.timing).map(|table| described(table, Vec::new()));
+    let views = report.views.iter().filter_map(|view| Some((view.name.as_str(), view.part.as_ref()?)));
     let provenance = Provenance {
         experiment,
         scale: scale.to_string(),
@@ -50,7 +59,8 @@ pub(crate) fn describe(experiment: &str, scale: Scale, report: &Report) -> Strin
         target: env!("POLHODE_TARGET"),
         cpu_features: cpu_features(),
         seed: report.seed,
-        tables: tables.collect(),
+        tables: rounded.chain(others).collect(),
+        views: views.collect(),
     };
     toml::to_string(&provenance).unwrap_or_default()
 }

@@ -1,30 +1,47 @@
 //! `polhode experiment publish`: numbers reach documents only from result files.
 //!
-//! A block in README.md between `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced
-//! by that table of the committed results of paper scale; every LaTeX table and CSV goes to paper/generated, headed by
-//! the experiment, commit and scale that made it. A block `<!-- begin generated: methods -->` holds the catalogue.
+//! The committed results are CSVs with a `run.toml` beside them. A block in README.md between
+//! `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced by that table in Markdown, and
+//! every `generated/experiment-table` that the article names is made: a LaTeX table, a CSV, or the experiment, commit and
+//! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both.
 //! Nothing is read or written outside of the root, whatever the results and the markers say.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
 use crate::error::Error;
-use crate::files::{emit, read};
+use crate::files::{MARK, Staging, emit, read};
 use crate::methods;
+use crate::table::{Part, Shown, Table};
 
-const RESULTS: &str = "experiments/results/paper";
+pub(crate) const RESULTS: &str = "experiments/results";
+const GENERATED: &str = "generated/";
 const METHODS: &str = "methods";
+const ORIGIN: &str = "origin";
 const NAMES: &str = "names have small letters, digits and hyphens";
-const REMEDY: &str = "run `polhode experiment run all --scale paper --out experiments/results` first";
+const REMEDY: &str =
+    "run `polhode experiment run all --scale paper`, then `polhode experiment publish --from results/paper`";
 
+/// What is read of a `run.toml`.
 #[derive(Deserialize)]
 struct Origin {
     experiment: String,
     scale: String,
     commit: String,
     changed: String,
+    #[serde(default)]
+    tables: BTreeMap<String, Described>,
+    #[serde(default)]
+    views: BTreeMap<String, Part>,
+}
+
+#[derive(Deserialize)]
+struct Described {
+    #[serde(default)]
+    shown: Vec<Shown>,
 }
 
 impl fmt::Display for Origin {
@@ -34,37 +51,66 @@ impl fmt::Display for Origin {
     }
 }
 
-pub(crate) fn run(root: &Path) -> Result<(), Error> {
+/// The committed results of one experiment.
+struct Results {
+    folder: PathBuf,
+    origin: Origin,
+}
+
+impl Results {
+    fn open(folder: PathBuf) -> Result<Self, Error> {
+        let path = folder.join(MARK);
+        let origin: Origin = toml::from_str(&read(&path, REMEDY)?)
+            .map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
+        let name = &origin.experiment;
+        if !is_name(name) || !folder.ends_with(name) {
+            let rule = if is_name(name) { "is not the name of its folder" } else { NAMES };
+            return Err(Error::input(&format!("{}: experiment", path.display()), name, rule, REMEDY));
+        }
+        Ok(Self { folder, origin })
+    }
+
+    fn csv(&self, table: &str) -> Result<String, Error> {
+        read(&within(&self.folder, self.folder.join(format!("{table}.csv")))?, REMEDY)
+    }
+
+    /// The table or view of that name, to be rounded.
+    fn table(&self, name: &str) -> Result<Table, Error> {
+        let part = self.origin.views.get(name);
+        let whole = part.map_or(name, |part| &part.table);
+        let described = self.origin.tables.get(&format!("{whole}.csv"));
+        let Some(described) = described.filter(|found| is_name(whole) && !found.shown.is_empty()) else {
+            let place = self.folder.join(MARK).display().to_string();
+            return Err(Error::input(&place, name, "is no table that it describes for readers", REMEDY));
+        };
+        let table = Table::from_csv(whole, &self.csv(whole)?, &described.shown).map_err(|reason| {
+            Error::Input(format!("{}/{whole}.csv: {reason}; {REMEDY}", self.folder.display()))
+        })?;
+        Ok(part.map_or_else(|| table.clone(), |part| part.of(&table)))
+    }
+}
+
+/// Fills README.md and paper/generated below `root`, after taking over the results of the folder `from`, if given.
+pub(crate) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
+    if let Some(from) = from {
+        take_over(root, from)?;
+    }
     let results = within(root, root.join(RESULTS))?;
     let readme_path = within(root, root.join("README.md"))?;
-    let readme = with_blocks_filled(&read(&readme_path, "run this in the project's root")?, &results)?;
-    let generated = within(root, root.join("paper/generated"))?;
-    let mut files = Vec::new();
-    for experiment in folders(&results)? {
-        let origin = origin(&experiment)?;
-        let head = origin.to_string();
-        for path in sorted_entries(&experiment)? {
-            let path = within(root, path)?;
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let target = generated.join(format!("{}-{name}", origin.experiment));
-            match path.extension().and_then(|ending| ending.to_str()) {
-                Some("tex") => files.push((target, format!("% {head}\n{}", read(&path, REMEDY)?))),
-                Some("csv") => files.push((target, read(&path, REMEDY)?)),
-                _ => {}
-            }
-        }
-        files.push((
-            generated.join(format!("{}-origin.tex", origin.experiment)),
-            format!("% {head}\n{head}%\n"),
-        ));
+    let readme = read(&readme_path, "run this in the project's root")?;
+    let results = folders(&results)?.into_iter().map(|folder| Results::open(within(root, folder)?));
+    let results = results.collect::<Result<Vec<_>, _>>()?;
+    let readme = with_blocks_filled(&readme, &results)?;
+    let generated = within(root, root.join("paper").join(GENERATED))?;
+    let mut files = BTreeMap::new();
+    for name in named_by_article(root)? {
+        let (file, text) = for_article(&name, &results)?;
+        files.insert(within(root, generated.join(file))?, text);
     }
-    let head = format!("% catalogue of methods, version {}\n", env!("CARGO_PKG_VERSION"));
-    files.push((generated.join("methods.tex"), head + &methods::table().latex()));
     // all is known before the first file is touched
-    std::fs::create_dir_all(&generated)
-        .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", generated.display())))?;
-    for (path, _) in &files {
-        within(root, path.clone())?;
+    if !files.is_empty() {
+        std::fs::create_dir_all(&generated)
+            .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", generated.display())))?;
     }
     for (path, text) in &files {
         emit(text, Some(path))?;
@@ -72,15 +118,72 @@ pub(crate) fn run(root: &Path) -> Result<(), Error> {
     emit(&readme, Some(&readme_path))
 }
 
-fn origin(experiment: &Path) -> Result<Origin, Error> {
-    let path = experiment.join("run.toml");
-    let origin: Origin = toml::from_str(&read(&path, REMEDY)?)
-        .map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
-    if !is_name(&origin.experiment) {
-        let place = format!("{}: experiment", path.display());
-        return Err(Error::input(&place, &origin.experiment, NAMES, REMEDY));
+/// Copies CSVs and `run.toml` of every experiment in `from`; the rest of what a run writes follows from them.
+fn take_over(root: &Path, from: &Path) -> Result<(), Error> {
+    for folder in folders(from)? {
+        let found = Results::open(folder)?;
+        if found.origin.scale != "paper" {
+            let place = format!("--from: {}: scale", found.folder.display());
+            return Err(Error::input(&place, &found.origin.scale, "documents hold paper scale", REMEDY));
+        }
+        let staging = Staging::new(&within(root, root.join(RESULTS).join(&found.origin.experiment))?)?;
+        for path in sorted_entries(&found.folder)? {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if name == MARK || name.ends_with(".csv") {
+                staging.write(&name, read(&path, REMEDY)?.as_bytes())?;
+            }
+        }
+        staging.commit()?;
     }
-    Ok(origin)
+    Ok(())
+}
+
+/// Every `generated/name` in braces in the article's sources, without the folder.
+fn named_by_article(root: &Path) -> Result<BTreeSet<String>, Error> {
+    let mut names = BTreeSet::new();
+    for folder in ["paper", "paper/sections"].map(|folder| root.join(folder)) {
+        if !folder.is_dir() {
+            continue;
+        }
+        for path in sorted_entries(&within(root, folder)?)? {
+            if path.extension().is_some_and(|ending| ending == "tex") {
+                let text = read(&within(root, path)?, "name a text file")?;
+                let words = text.lines().flat_map(|line| without_comment(line).split(['{', '}']));
+                names.extend(words.filter_map(|word| word.strip_prefix(GENERATED)).map(String::from));
+            }
+        }
+    }
+    Ok(names)
+}
+
+fn without_comment(line: &str) -> &str {
+    let comment = line.match_indices('%').find(|(at, _)| !line[..*at].ends_with('\\'));
+    comment.map_or(line, |(at, _)| &line[..at])
+}
+
+/// The file that the article names as `generated/name`, and its text.
+fn for_article(name: &str, results: &[Results]) -> Result<(String, String), Error> {
+    let stem = name.strip_suffix(".tex").unwrap_or(name);
+    if stem == METHODS {
+        let head = format!("% catalogue of methods, version {}\n", env!("CARGO_PKG_VERSION"));
+        return Ok(("methods.tex".into(), head + &methods::table().latex()));
+    }
+    let (stem, is_csv) = stem.strip_suffix(".csv").map_or((stem, false), |stem| (stem, true));
+    // of two experiments, one may be called as the other begins
+    let of =
+        |found: &&Results| stem.strip_prefix(&found.origin.experiment).is_some_and(|s| s.starts_with('-'));
+    let found = results.iter().filter(of).max_by_key(|found| found.origin.experiment.len());
+    let Some(found) = found.filter(|_| is_name(stem)) else {
+        let remedy = "name generated/<experiment>-<table>, with the ending .csv or without one";
+        return Err(Error::input("paper: generated", name, "no committed result is called so", remedy));
+    };
+    let table = &stem[found.origin.experiment.len() + 1..];
+    let head = found.origin.to_string();
+    match (table, is_csv) {
+        (_, true) => Ok((format!("{stem}.csv"), found.csv(table)?)),
+        (ORIGIN, false) => Ok((format!("{stem}.tex"), format!("% {head}\n{head}%\n"))),
+        (_, false) => Ok((format!("{stem}.tex"), format!("% {head}\n{}", found.table(table)?.latex()))),
+    }
 }
 
 /// Whether `name` can be that of an experiment or a table: it leads to no other folder.
@@ -119,7 +222,7 @@ fn sorted_entries(folder: &Path) -> Result<Vec<PathBuf>, Error> {
 }
 
 /// The text with each generated block replaced.
-fn with_blocks_filled(text: &str, results: &Path) -> Result<String, Error> {
+fn with_blocks_filled(text: &str, results: &[Results]) -> Result<String, Error> {
     const BEGIN: &str = "<!-- begin generated: ";
     const END: &str = "<!-- end generated -->";
     let mut out = String::new();
@@ -131,15 +234,18 @@ fn with_blocks_filled(text: &str, results: &Path) -> Result<String, Error> {
         let (marker, _) = block.split_once('\n').ok_or_else(unclosed)?;
         let name = marker.trim_start_matches(BEGIN).trim_end_matches("-->").trim();
         let end = block.find(END).ok_or_else(unclosed)?;
-        let table = match name {
-            METHODS => methods::table().markdown(),
-            _ if !name.split('/').all(is_name) || name.split('/').count() != 2 => {
-                let remedy = "write <!-- begin generated: experiment/table -->";
-                return Err(Error::input("README.md: begin generated", name, NAMES, remedy));
+        let refused = |rule, remedy| Error::input("README.md: begin generated", name, rule, remedy);
+        let table = match name.split_once('/') {
+            None if name == METHODS => methods::table(),
+            Some((experiment, table)) if is_name(experiment) && is_name(table) => {
+                let found = results.iter().find(|found| found.origin.experiment == experiment);
+                found
+                    .ok_or_else(|| refused("no such experiment has committed results", REMEDY))?
+                    .table(table)?
             }
-            _ => read(&within(results, results.join(format!("{name}.md")))?, REMEDY)?,
+            _ => return Err(refused(NAMES, "write <!-- begin generated: experiment/table -->")),
         };
-        out += &format!("{before}{marker}\n{table}{END}");
+        out += &format!("{before}{marker}\n{}{END}", table.markdown());
         rest = &block[end + END.len()..];
     }
     Ok(out + rest)
@@ -150,18 +256,85 @@ mod tests {
     use super::*;
     use crate::files::scratch::Scratch;
 
+    const CSV: &str = "method,steps,error\nrk4,10,0.25\nrattle,20,1e-9\n";
+
+    /// A folder of results with one table and one view.
+    fn write_results(folder: &Path, experiment: &str) {
+        let described = format!(
+            "experiment = \"{experiment}\"\nscale = \"paper\"\ncommit = \"0\"\nchanged = \"false\"\n\
+             [[tables.\"errors.csv\".shown]]\nname = \"method\"\n\
+             [[tables.\"errors.csv\".shown]]\nname = \"error\"\nunit = \"rad\"\ndigits = 2\n\
+             [views.best]\ntable = \"errors\"\ncolumn = \"method\"\nvalue = \"rattle\"\nhidden = [\"method\"]\n"
+        );
+        std::fs::create_dir_all(folder).unwrap();
+        std::fs::write(folder.join("run.toml"), described).unwrap();
+        std::fs::write(folder.join("errors.csv"), CSV).unwrap();
+    }
+
     #[test]
     fn blocks_are_replaced_and_the_rest_is_kept() {
         let scratch = Scratch::new("publish");
-        std::fs::create_dir(scratch.path().join("drift")).unwrap();
-        std::fs::write(scratch.path().join("drift/table.md"), "| new |\n").unwrap();
-        let catalogue =
-            with_blocks_filled("<!-- begin generated: methods -->\n<!-- end generated -->", scratch.path());
+        let folder = scratch.path().join("drift");
+        write_results(&folder, "drift");
+        let results = [Results::open(folder).unwrap()];
+        let catalogue = with_blocks_filled("<!-- begin generated: methods -->\n<!-- end generated -->", &[]);
         assert!(catalogue.unwrap().contains("| rattle |"));
-        let text = "a\n<!-- begin generated: drift/table -->\n| old |\n<!-- end generated -->\nb\n";
-        let filled = with_blocks_filled(text, scratch.path()).unwrap();
-        assert_eq!(filled, text.replace("old", "new"));
-        assert_eq!(with_blocks_filled(&filled, scratch.path()).unwrap(), filled);
+        let text = "a\n<!-- begin generated: drift/best -->\n| old |\n<!-- end generated -->\nb\n";
+        let filled = with_blocks_filled(text, &results).unwrap();
+        assert_eq!(filled, text.replace("| old |", "| error [rad] |\n| ---: |\n| 1e-9 |"));
+        assert_eq!(with_blocks_filled(&filled, &results).unwrap(), filled);
+    }
+
+    #[test]
+    fn the_article_gets_the_files_that_it_names() {
+        let scratch = Scratch::new("publish-article");
+        let root = scratch.path();
+        write_results(&root.join(RESULTS).join("drift"), "drift");
+        write_results(&root.join(RESULTS).join("drift-long"), "drift-long");
+        std::fs::write(root.join("README.md"), "text\n").unwrap();
+        std::fs::create_dir_all(root.join("paper/sections")).unwrap();
+        let main = root.join("paper/main.tex");
+        std::fs::write(
+            &main,
+            "\\input{generated/drift-long-best} 5\\% {generated/methods} % {generated/no}\n",
+        )
+        .unwrap();
+        let section = "table {generated/drift-errors.csv}; \\input{generated/drift-origin}\n";
+        std::fs::write(root.join("paper/sections/results.tex"), section).unwrap();
+        run(root, None).unwrap();
+        let generated = root.join("paper/generated");
+        let mut names: Vec<_> = sorted_entries(&generated)
+            .unwrap()
+            .iter()
+            .map(|path| path.file_name().unwrap().to_owned())
+            .collect();
+        names.sort();
+        assert_eq!(names, ["drift-errors.csv", "drift-long-best.tex", "drift-origin.tex", "methods.tex"]);
+        let text = |name: &str| std::fs::read_to_string(generated.join(name)).unwrap();
+        assert_eq!(text("drift-errors.csv"), CSV);
+        assert_eq!(
+            text("drift-origin.tex"),
+            "% drift, commit 0, scale paper\ndrift, commit 0, scale paper%\n"
+        );
+        assert!(text("drift-long-best.tex").contains("$10^{-9}$"));
+        for name in ["drift", "other-errors", "drift-x", "drift-../errors.csv", "drift-errors.svg"] {
+            std::fs::write(&main, format!("\\input{{generated/{name}}}\n")).unwrap();
+            assert!(run(root, None).is_err(), "{name}");
+        }
+    }
+
+    #[test]
+    fn results_are_taken_over_without_what_follows_from_them() {
+        let scratch = Scratch::new("publish-from");
+        let (root, from) = (scratch.path().join("root"), scratch.path().join("from"));
+        write_results(&from.join("drift"), "drift");
+        std::fs::write(from.join("drift/errors.md"), "").unwrap();
+        std::fs::create_dir(&root).unwrap();
+        std::fs::write(root.join("README.md"), "text\n").unwrap();
+        run(&root, Some(&from)).unwrap();
+        let committed = sorted_entries(&root.join(RESULTS).join("drift")).unwrap();
+        let names = committed.iter().map(|path| path.file_name().unwrap());
+        assert_eq!(names.collect::<Vec<_>>(), ["errors.csv", "run.toml"]);
     }
 
     #[test]
@@ -169,49 +342,47 @@ mod tests {
         let scratch = Scratch::new("publish-outside");
         let root = scratch.path().join("root");
         let results = root.join(RESULTS).join("drift");
-        std::fs::create_dir_all(&results).unwrap();
-        std::fs::write(scratch.path().join("secret.md"), "secret").unwrap();
+        write_results(&results, "drift");
+        std::fs::write(scratch.path().join("secret.csv"), "secret").unwrap();
         let readme = root.join("README.md");
         let refused = |part: &str| {
-            let error = super::run(&root).unwrap_err().to_string();
+            let error = super::run(&root, None).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
-            assert_eq!(scratch.names(), ["root", "secret.md"]);
+            assert_eq!(scratch.names(), ["root", "secret.csv"]);
         };
-        let mark = |experiment: &str| {
-            let origin = format!(
-                "experiment = \"{experiment}\"\nscale = \"paper\"\ncommit = \"0\"\nchanged = \"false\"\n"
-            );
-            std::fs::write(results.join("run.toml"), origin).unwrap();
-        };
-        mark("drift");
         for name in ["../../../../secret", "drift/../secret", "drift", "/secret", "drift/"] {
             std::fs::write(&readme, format!("<!-- begin generated: {name} -->\n<!-- end generated -->\n"))
                 .unwrap();
             refused("small letters, digits and hyphens");
         }
         std::fs::write(&readme, "text\n").unwrap();
-        mark("../../../evil");
+        write_results(&results, "../../../evil");
         refused("'../../../evil': names have small letters");
-        mark("drift");
+        write_results(&results, "evil");
+        refused("'evil': is not the name of its folder");
+        write_results(&results, "drift");
         std::fs::create_dir_all(root.join("paper")).unwrap();
+        std::fs::write(root.join("paper/main.tex"), "\\input{generated/drift-origin}\n").unwrap();
         let generated = root.join("paper/generated");
         std::os::unix::fs::symlink(scratch.path(), &generated).unwrap();
         refused("leads out");
         std::fs::remove_file(&generated).unwrap();
-        super::run(&root).unwrap();
+        super::run(&root, None).unwrap();
         assert!(generated.join("drift-origin.tex").is_file());
         std::fs::remove_file(generated.join("drift-origin.tex")).unwrap();
         std::os::unix::fs::symlink(scratch.path().join("new"), generated.join("drift-origin.tex")).unwrap();
+        refused("leads out");
+        std::fs::remove_file(generated.join("drift-origin.tex")).unwrap();
+        std::fs::write(root.join("paper/main.tex"), "\\input{generated/drift-errors.csv}\n").unwrap();
+        std::fs::remove_file(results.join("errors.csv")).unwrap();
+        std::os::unix::fs::symlink(scratch.path().join("secret.csv"), results.join("errors.csv")).unwrap();
         refused("leads out");
     }
 
     #[test]
     fn a_missing_result_and_an_open_block_are_refused() {
-        let scratch = Scratch::new("publish-missing");
         let missing = "<!-- begin generated: x/y -->\n<!-- end generated -->";
-        assert!(
-            with_blocks_filled(missing, scratch.path()).unwrap_err().to_string().contains("--scale paper")
-        );
-        assert!(with_blocks_filled("<!-- begin generated: x/y -->\n", scratch.path()).is_err());
+        assert!(with_blocks_filled(missing, &[]).unwrap_err().to_string().contains("--scale paper"));
+        assert!(with_blocks_filled("<!-- begin generated: x/y -->\n", &[]).is_err());
     }
 }

@@ -1,13 +1,17 @@
 //! A table: named columns, rows, and one writer for each reader.
 
+mod layout;
 mod markup;
 mod print;
 mod rounded;
 mod rows;
 
+use std::borrow::Cow;
+
 use serde_json::Value;
 
 use crate::text::{visible_json, visible_lines};
+pub(crate) use layout::{Part, Shown};
 pub(crate) use rows::Rows;
 
 /// One value of a row.
@@ -75,34 +79,45 @@ impl Cell {
     }
 }
 
+/// Significant digits where a column asks for no other number.
+const DIGITS: usize = 3;
+
 /// One quantity of a table.
 #[derive(Clone, Debug)]
 pub(crate) struct Column {
     /// Name in CSV and JSON.
-    pub(crate) name: &'static str,
+    pub(crate) name: Cow<'static, str>,
     /// Unit, "" for a pure number or a text.
-    pub(crate) unit: &'static str,
+    pub(crate) unit: Cow<'static, str>,
     /// What the quantity is, for `run.toml`.
     pub(crate) meaning: &'static str,
-    heading: &'static str,
-    latex: Option<&'static str>,
+    heading: Cow<'static, str>,
+    latex: Option<Cow<'static, str>>,
     digits: usize,
     shown: bool,
 }
 
 impl Column {
     pub(crate) fn new(name: &'static str, unit: &'static str, meaning: &'static str) -> Self {
-        Self { name, unit, meaning, heading: name, latex: None, digits: 3, shown: true }
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            meaning,
+            heading: name.into(),
+            latex: None,
+            digits: DIGITS,
+            shown: true,
+        }
     }
 
     /// Heading in Markdown and on the terminal, and in LaTeX when it has none of its own.
     pub(crate) fn heading(self, heading: &'static str) -> Self {
-        Self { heading, ..self }
+        Self { heading: heading.into(), ..self }
     }
 
     /// Heading in LaTeX, verbatim.
     pub(crate) fn latex(self, heading: &'static str) -> Self {
-        Self { latex: Some(heading), ..self }
+        Self { latex: Some(heading.into()), ..self }
     }
 
     /// Significant digits where the table is rounded.
@@ -126,6 +141,8 @@ pub(crate) struct Table {
     /// The quantities.
     pub(crate) columns: Vec<Column>,
     rows: Vec<Vec<Cell>>,
+    /// Of a view: which part of which table it is.
+    pub(crate) part: Option<Part>,
 }
 
 /// One row from values of any kind: `row!["rk4", 0.01, 1000_u64, None::<f64>]`.
@@ -136,26 +153,29 @@ pub(crate) use row;
 
 impl Table {
     pub(crate) fn new(name: impl Into<String>, caption: impl Into<String>, columns: Vec<Column>) -> Self {
-        Self { name: name.into(), caption: caption.into(), columns, rows: Vec::new() }
+        Self { name: name.into(), caption: caption.into(), columns, rows: Vec::new(), part: None }
     }
 
-    /// The rows that `keep` chooses, for readers of documents; the columns named in `hide` are left out there.
+    /// The rows that hold `value` in `column`, for readers of documents; the columns named in `hide` are left out there.
     pub(crate) fn view(
         &self,
         name: impl Into<String>,
         caption: impl Into<String>,
         hide: &[&str],
-        keep: impl Fn(&[Cell]) -> bool,
+        (column, value): (&str, &str),
     ) -> Self {
         let shown = |column: &Column| Column {
-            shown: column.shown && !hide.contains(&column.name),
+            shown: column.shown && !hide.contains(&&*column.name),
             ..column.clone()
         };
+        let place = self.columns.iter().position(|other| other.name == column);
+        let keep = |row: &&Vec<Cell>| place.is_some_and(|place| row[place].exact() == value);
         Self {
             name: name.into(),
             caption: caption.into(),
             columns: self.columns.iter().map(shown).collect(),
-            rows: self.rows.iter().filter(|row| keep(row)).cloned().collect(),
+            rows: self.rows.iter().filter(keep).cloned().collect(),
+            part: Some(Part::new(&self.name, column, value, hide)),
         }
     }
 
@@ -182,7 +202,7 @@ impl Table {
     }
 
     fn csv_head(&self) -> String {
-        self.columns.iter().map(|column| quoted(column.name)).collect::<Vec<_>>().join(",") + "\n"
+        self.columns.iter().map(|column| quoted(&column.name)).collect::<Vec<_>>().join(",") + "\n"
     }
 
     fn csv_row(&self, row: &[Cell]) -> String {
@@ -197,7 +217,7 @@ impl Table {
 
     fn json_row(&self, row: &[Cell]) -> String {
         let entry =
-            |(column, cell): (&Column, &Cell)| format!("{}:{}", Value::from(column.name), cell.json());
+            |(column, cell): (&Column, &Cell)| format!("{}:{}", Value::from(&*column.name), cell.json());
         let entries: Vec<String> = self.columns.iter().zip(row).map(entry).collect();
         format!("  {{{}}}", visible_json(&entries.join(",")))
     }

@@ -45,8 +45,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let hidden = ["body", "status"];
     for named in BODIES.iter().filter_map(|name| catalog::body(name)) {
         let caption = format!("{}: {}.", named.name, named.summary);
-        let of_body = |row: &[Cell]| row[0] == Cell::from(named.name);
-        report.views.push(drift.view(format!("drift-{}", named.name), caption, &hidden, of_body));
+        let name = format!("drift-{}", named.name);
+        report.views.push(drift.view(name, caption, &hidden, ("body", named.name)));
     }
     if let Some(textbook) = catalog::body("textbook") {
         for method in methods(&textbook) {

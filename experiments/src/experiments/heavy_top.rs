@@ -36,8 +36,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut report = Report::default();
     for top in catalog::tops() {
         let caption = format!("{}: {}.", top.name, top.summary);
-        let of_top = |row: &[Cell]| row[0] == Cell::from(top.name);
-        report.views.push(errors.view(format!("heavy-top-{}", top.name), caption, &["top"], of_top));
+        let name = format!("heavy-top-{}", top.name);
+        report.views.push(errors.view(name, caption, &["top"], ("top", top.name)));
     }
     report.figures.push(figure(&errors));
     report.tables.push(errors);

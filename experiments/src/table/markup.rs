@@ -44,15 +44,15 @@ impl Table {
 
 /// "step [s]"
 pub(super) fn with_unit(column: &Column) -> String {
-    match column.unit {
+    match &*column.unit {
         "" => column.heading.to_string(),
         unit => format!("{} [{unit}]", column.heading),
     }
 }
 
 fn latex_heading(column: &Column) -> String {
-    let heading = column.latex.map_or_else(|| escaped_latex(column.heading), str::to_string);
-    match column.unit {
+    let heading = column.latex.as_deref().map_or_else(|| escaped_latex(&column.heading), str::to_string);
+    match &*column.unit {
         "" => heading,
         unit => format!("{heading} [{}]", escaped_latex(unit)),
     }

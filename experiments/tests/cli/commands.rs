@@ -43,6 +43,7 @@ fn help_is_everywhere_and_fits_into_80_columns() {
         "experiment",
         "experiment list",
         "experiment run",
+        "experiment check",
         "experiment publish",
     ];
     for command in commands {
@@ -458,55 +459,106 @@ fn tree(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
+/// The root of this project.
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()
+}
+
 #[test]
 fn experiments_repeat_bit_for_bit_and_can_be_published() {
     let scratch = Scratch::new("experiments");
-    let run_into = |name: &str| {
-        let out = scratch.0.join(name);
-        let text = output(&format!("experiment run all --scale smoke --out {}", out.display()));
-        assert!(text.contains("Written to"), "{text}");
-        tree(&out.join("smoke"))
-    };
-    let (first, second) = (run_into("first"), run_into("second"));
-    let deterministic = |files: &[(String, Vec<u8>)]| -> Vec<(String, Vec<u8>)> {
-        files.iter().filter(|(name, _)| !name.ends_with("timing.csv")).cloned().collect()
-    };
-    assert_eq!(deterministic(&first), deterministic(&second));
+    let text = output(&format!("experiment run all --scale smoke --out {}", scratch.0.display()));
+    assert!(text.contains("Written to"), "{text}");
+    let files = tree(&scratch.0.join("smoke"));
     for experiment in ["drift", "order", "long-run"] {
         for ending in [".csv", ".md", ".tex", ".svg", "run.toml"] {
             let of_it = |(name, bytes): &&(String, Vec<u8>)| {
                 name.starts_with(&format!("{experiment}/")) && name.ends_with(ending) && !bytes.is_empty()
             };
-            assert!(first.iter().any(|file| of_it(&file)), "{experiment} has no {ending}");
+            assert!(files.iter().any(|file| of_it(&file)), "{experiment} has no {ending}");
         }
     }
-    for (name, bytes) in &first {
+    for (name, bytes) in &files {
         let text = String::from_utf8(bytes.clone()).unwrap();
         assert!(!text.contains("NaN") && !text.contains(",inf"), "{name}");
     }
-
     // the committed ones come from another profile and, it may be, another processor
-    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/smoke");
-    for (name, bytes) in deterministic(&first).iter().filter(|(name, _)| name.ends_with(".csv")) {
-        let same = fs::read(committed.join(name)).is_ok_and(|committed| committed == *bytes);
-        let remedy = "experiment run all --scale smoke --out experiments/results, and read the difference";
-        assert!(same, "{name} is not the committed one; if that is intended: {remedy}");
-    }
+    assert_eq!(output(&format!("experiment check --root {}", root().display())), "");
 
     // a project whose committed results are these
-    let root = scratch.0.join("project");
-    let results = root.join("experiments/results");
-    fs::create_dir_all(&results).unwrap();
-    fs::rename(scratch.0.join("first/smoke"), results.join("paper")).unwrap();
-    let block = "<!-- begin generated: order/orders -->\n<!-- end generated -->\n";
-    fs::write(root.join("README.md"), format!("Before.\n{block}After.\n")).unwrap();
-    assert_eq!(output(&format!("experiment publish --root {}", root.display())), "");
-    let readme = fs::read_to_string(root.join("README.md")).unwrap();
-    assert!(readme.starts_with("Before.\n") && readme.ends_with("After.\n"), "{readme}");
-    assert!(readme.contains("| lie-poisson"), "{readme}");
-    let table = fs::read_to_string(root.join("paper/generated/order-orders.tex")).unwrap();
-    assert!(table.starts_with("% order, commit "), "{table}");
-    assert!(root.join("paper/generated/long-run-series.csv").is_file());
+    let project = scratch.0.join("project");
+    fs::create_dir_all(project.join("experiments")).unwrap();
+    fs::create_dir_all(project.join("paper")).unwrap();
+    let results = project.join("experiments/results");
+    fs::rename(scratch.0.join("smoke"), &results).unwrap();
+    let rounded = files.iter().filter_map(|(name, bytes)| Some((name.strip_suffix(".tex")?, bytes)));
+    // the last rows of the long run are no part that can be cut from its table by a column
+    let rounded: Vec<_> = rounded.filter(|(name, _)| *name != "long-run/summary").collect();
+    assert!(rounded.len() > 20, "{}", rounded.len());
+    let readme = |text: fn(&Path, &str) -> String| {
+        let block = |name: &str| {
+            format!("<!-- begin generated: {name} -->\n{}<!-- end generated -->\n", text(&results, name))
+        };
+        rounded.iter().map(|(name, _)| block(name)).collect::<String>()
+    };
+    fs::write(project.join("README.md"), readme(|_, _| String::new())).unwrap();
+    let input = |(name, _): &(&str, _)| format!("\\input{{generated/{}}}\n", name.replacen('/', "-", 1));
+    let article: String = rounded.iter().map(input).collect();
+    fs::write(project.join("paper/main.tex"), article + "{generated/long-run-series.csv}").unwrap();
+    assert_eq!(output(&format!("experiment publish --root {}", project.display())), "");
+    // what is made from the CSVs is what the run made of its tables
+    let written = readme(|results, name| fs::read_to_string(results.join(format!("{name}.md"))).unwrap());
+    assert_eq!(fs::read_to_string(project.join("README.md")).unwrap(), written);
+    for (name, bytes) in &rounded {
+        let file = format!("paper/generated/{}.tex", name.replacen('/', "-", 1));
+        let text = fs::read_to_string(project.join(&file)).unwrap();
+        let (head, table) = text.split_once('\n').unwrap();
+        assert!(
+            head.starts_with(&format!("% {}, commit ", name.split_once('/').unwrap().0)),
+            "{file}: {head}"
+        );
+        assert_eq!(table.as_bytes(), *bytes, "{file}");
+    }
+    let series = fs::read(project.join("paper/generated/long-run-series.csv")).unwrap();
+    assert_eq!(series, fs::read(results.join("long-run/series.csv")).unwrap());
+}
+
+#[test]
+fn a_number_that_changed_is_told_with_its_place() {
+    let scratch = Scratch::new("check");
+    let golden_folder = "experiments/tests/golden/smoke/order";
+    let folder = scratch.0.join(golden_folder);
+    let line = format!("experiment check order --root {}", scratch.0.display());
+    refused(&line, &["--root", "holds no experiments/tests/golden/smoke", "name the project's root"]);
+    fs::create_dir_all(&folder).unwrap();
+    refused(
+        &line.replace("check order", "check ordre"),
+        &["experiment check: 'ordre'", "did you mean 'order'?"],
+    );
+    assert_eq!(output(&format!("{line} --accept")), "");
+    assert_eq!(output(&line), "");
+    assert_eq!(names(&folder), names(&root().join(golden_folder)));
+    let errors = folder.join("errors.csv");
+    let text = fs::read_to_string(&errors).unwrap();
+    let mut rows: Vec<String> = text.lines().map(String::from).collect();
+    let (head, last) = rows[2].rsplit_once(',').unwrap();
+    let next = f64::from_bits(last.parse::<f64>().unwrap().to_bits() + 1);
+    let expected = format!("row 2, column momentum_order: committed {next:?}, found {last}");
+    rows[2] = format!("{head},{next:?}");
+    fs::write(&errors, rows.join("\n") + "\n").unwrap();
+    fs::remove_file(folder.join("orders.csv")).unwrap();
+    fs::write(folder.join("order.csv"), "").unwrap();
+    let answer = run(&line);
+    assert_eq!((answer.code, answer.out.as_str()), (1, ""));
+    let place = |name: &str| format!("{golden_folder}/{name}");
+    for part in [
+        format!("{}: {expected}", place("errors.csv")),
+        format!("{}: is not there", place("orders.csv")),
+        format!("{}: no table is called so", place("order.csv")),
+        "experiment check --accept".to_string(),
+    ] {
+        assert!(answer.err.contains(&part), "'{part}' is not in: {}", answer.err);
+    }
 }
 
 #[test]
@@ -515,8 +567,15 @@ fn publishing_without_results_is_refused() {
     let line = format!("experiment publish --root {}", scratch.0.display());
     refused(&line, &["README.md", "cannot be read"]);
     fs::write(scratch.0.join("README.md"), "text\n").unwrap();
-    refused(&line, &["experiments/results/paper", "--scale paper"]);
+    refused(&line, &["experiments/results", "--scale paper", "--from results/paper"]);
     assert_eq!(scratch.names(), ["README.md"]);
+    let smoke = scratch.0.join("results/smoke/drift");
+    fs::create_dir_all(&smoke).unwrap();
+    let origin = "experiment = \"drift\"\nscale = \"smoke\"\ncommit = \"0\"\nchanged = \"false\"\n";
+    fs::write(smoke.join("run.toml"), origin).unwrap();
+    let from = format!("{line} --from {}", smoke.parent().unwrap().display());
+    refused(&from, &["--from", "'smoke'", "paper scale"]);
+    assert_eq!(scratch.names(), ["README.md", "results"]);
 }
 
 #[test]

@@ -1,0 +1,167 @@
+//! `polhode experiment check`: the committed numbers are those that the program finds.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+use crate::experiment::{Experiment, Report, Scale, chosen};
+use crate::files::{emit, read};
+use crate::publish::RESULTS;
+use crate::table::Table;
+
+/// The CSVs of smoke scale.
+const GOLDEN: &str = "experiments/tests/golden/smoke";
+/// Differences that are told one by one.
+const TOLD: usize = 8;
+const REMEDY: &str = "if that is intended, `polhode experiment check --accept` writes it";
+
+/// Runs the experiments called `names` (or `all`) at smoke scale and compares them with the files below `root`.
+pub(crate) fn run(names: &[String], root: &Path, accept: bool) -> Result<(), Error> {
+    if !root.join(GOLDEN).is_dir() {
+        let value = root.display().to_string();
+        return Err(Error::input("--root", &value, &format!("holds no {GOLDEN}"), "name the project's root"));
+    }
+    let mut differences = Vec::new();
+    for experiment in chosen("experiment check", names)? {
+        let report = experiment.report(Scale::Smoke)?;
+        differences.extend(report.failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));
+        if accept {
+            write(root, experiment, &report)?;
+        } else {
+            differences.extend(compare(root, experiment, &report)?);
+        }
+    }
+    if differences.is_empty() {
+        return Ok(());
+    }
+    let more = differences.len().saturating_sub(TOLD);
+    differences.truncate(TOLD);
+    if more > 0 {
+        differences.push(format!("and {more} more"));
+    }
+    if !accept {
+        differences.push(REMEDY.into());
+    }
+    Err(Error::Failed(differences.join("\n")))
+}
+
+/// Each deterministic table with the committed file that holds it, as a path below the root. Data are the same at every
+/// scale, and are committed with the results of paper scale.
+fn committed<'a>(
+    experiment: &Experiment,
+    report: &'a Report,
+) -> impl Iterator<Item = (PathBuf, &'a Table)> + use<'a> {
+    let [golden, results] = [GOLDEN, RESULTS].map(|folder| Path::new(folder).join(experiment.name));
+    let file = |folder: &Path, table: &Table| folder.join(format!("{}.csv", table.name));
+    let tables = report.tables.iter().map(move |table| (file(&golden, table), table));
+    tables.chain(report.data.iter().map(move |table| (file(&results, table), table)))
+}
+
+fn write(root: &Path, experiment: &Experiment, report: &Report) -> Result<(), Error> {
+    for (path, table) in committed(experiment, report) {
+        let path = root.join(path);
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder)
+                .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", folder.display())))?;
+        }
+        emit(&table.csv(), Some(&path))?;
+    }
+    Ok(())
+}
+
+fn compare(root: &Path, experiment: &Experiment, report: &Report) -> Result<Vec<String>, Error> {
+    let mut found = Vec::new();
+    let mut known = Vec::new();
+    for (path, table) in committed(experiment, report) {
+        known.push(root.join(&path));
+        match root.join(&path).is_file() {
+            true => found.extend(differences(&path, &read(&root.join(&path), REMEDY)?, &table.csv())?),
+            false => found.push(format!("{}: is not there", path.display())),
+        }
+    }
+    // a file that no table makes would never be compared
+    let folder = Path::new(GOLDEN).join(experiment.name);
+    let entries = std::fs::read_dir(root.join(&folder)).into_iter().flatten().filter_map(Result::ok);
+    let mut strangers: Vec<PathBuf> =
+        entries.map(|entry| entry.path()).filter(|path| !known.contains(path)).collect();
+    strangers.sort();
+    found.extend(strangers.iter().map(|path| format!("{}: no table is called so", path.display())));
+    Ok(found)
+}
+
+/// Each cell of the rows that is not the committed one, bit for bit.
+fn differences(path: &Path, committed: &str, found: &str) -> Result<Vec<String>, Error> {
+    if committed == found {
+        return Ok(Vec::new());
+    }
+    let place = path.display();
+    let (committed, found) = (cells(path, committed)?, cells(path, found)?);
+    let name = |k: usize| found.first().and_then(|header| header.get(k)).map_or("", String::as_str);
+    if committed.first() != found.first() {
+        let columns = |rows: &[Vec<String>]| rows.first().map_or(String::new(), |header| header.join(","));
+        return Ok(vec![format!(
+            "{place}: committed columns {}, found {}",
+            columns(&committed),
+            columns(&found)
+        )]);
+    }
+    let mut told = Vec::new();
+    for (number, (old, new)) in committed.iter().zip(&found).enumerate().skip(1) {
+        let differing = old.iter().zip(new).enumerate().filter(|(_, (old, new))| old != new);
+        told.extend(differing.map(|(k, (old, new))| {
+            format!(
+                "{place}: row {number}, column {}: committed {}, found {}",
+                name(k),
+                shown(old),
+                shown(new)
+            )
+        }));
+    }
+    if committed.len() != found.len() {
+        let rows = |rows: &[Vec<String>]| rows.len().saturating_sub(1);
+        told.push(format!("{place}: committed rows {}, found {}", rows(&committed), rows(&found)));
+    }
+    if told.is_empty() {
+        told.push(format!("{place}: the same cells, written differently"));
+    }
+    Ok(told)
+}
+
+fn shown(cell: &str) -> &str {
+    if cell.is_empty() { "nothing" } else { cell }
+}
+
+fn cells(path: &Path, text: &str) -> Result<Vec<Vec<String>>, Error> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
+    let rows = reader.records().map(|row| row.map(|row| row.iter().map(String::from).collect()));
+    rows.collect::<Result<_, _>>()
+        .map_err(|error| Error::Failed(format!("{}: {error}; {REMEDY}", path.display())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_place_and_both_values_are_told() {
+        let told = |committed: &str| {
+            let found = "method,error\nrk4,0.1\n\"a,b\",\n";
+            differences(Path::new("x.csv"), committed, found).map_err(|error| error.to_string())
+        };
+        let none: [&str; 0] = [];
+        assert_eq!(told("method,error\nrk4,0.1\n\"a,b\",\n").unwrap(), none);
+        assert_eq!(
+            told("method,error\nrk4,0.10000000000000002\n\"a,b\",1.0\n").unwrap(),
+            [
+                "x.csv: row 1, column error: committed 0.10000000000000002, found 0.1",
+                "x.csv: row 2, column error: committed 1.0, found nothing"
+            ]
+        );
+        assert_eq!(told("method,error\nrk4,0.1\n").unwrap(), ["x.csv: committed rows 1, found 2"]);
+        assert_eq!(told("method\nrk4\n").unwrap(), ["x.csv: committed columns method, found method,error"]);
+        assert_eq!(
+            told("method,error\n\"rk4\",0.1\n\"a,b\",\n").unwrap(),
+            ["x.csv: the same cells, written differently"]
+        );
+        assert!(told("method,error\nrk4\n").unwrap_err().starts_with("x.csv: CSV error"));
+    }
+}
