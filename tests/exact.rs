@@ -203,7 +203,7 @@ fn small_deviations_grow_with_all_their_digits() {
     let mut checked = 0;
     for case in free_body("brink.csv") {
         let motion = motion(&case);
-        let found = motion.inside_at_dd(Dd::from(case.t)).momentum_body;
+        let found = motion.point_at_dd(Dd::from(case.t)).momentum_body;
         let scale = Dd::of(motion.body().scale());
         for (found, exact) in found.0.into_iter().zip(case.momentum) {
             // below, parts of a double-double are subnormal
