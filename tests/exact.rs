@@ -216,3 +216,19 @@ fn small_deviations_grow_with_all_their_digits() {
     }
     assert!(checked > 50, "{checked}");
 }
+
+#[test]
+fn a_tensor_as_a_rotation_leaves_it_spins_on() {
+    let (x, y) = (1.0000000000000004, 1.0000000000000007);
+    let off = -3.944304526105059e-31;
+    let tensor = nalgebra::Matrix3::new(x, off, 0.0, off, y, 0.0, 0.0, 0.0, y);
+    let inertia = Inertia::from_tensor(tensor).unwrap();
+    let spin = -2.990015465709188;
+    let motion = FreeMotion::from_omega(&inertia, Default::default(), [0.0, 0.0, spin].into()).unwrap();
+    let found = motion.at(0.32).unwrap();
+    let (sin, cos) = polhode::num::trig::sin_cos(0.5 * 0.32 * spin);
+    let expected = [cos, 0.0, 0.0, sin];
+    for (found, expected) in found.attitude.components().into_iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+    }
+}
