@@ -461,6 +461,7 @@ fn a_drowned_spin_tells_its_axis_and_no_mistake_of_units() {
             FitError::Unsettled { axes, .. } => {
                 assert!(!axes.is_empty(), "trial {trial}: {error}");
                 for known in axes {
+                    assert!(known.to_string().ends_with("of the trace"), "{known}");
                     let across = j * known.axis - known.axis * known.axis.dot(&(j * known.axis));
                     assert!(across.norm() < known.product, "trial {trial}: {} of {known}", across.norm());
                 }

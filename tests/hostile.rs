@@ -421,7 +421,7 @@ fn flow() {
 
 #[test]
 fn tops() {
-    hostile(10, 0.3, |draw| {
+    hostile(10, 1.0, |draw| {
         let [a, c] = draw.list::<2>().map(f64::abs);
         let Ok(inertia) = Inertia::from_positive_moments([a, a, c]) else { return Ok(()) };
         let (size, decades) = draw.scale();
