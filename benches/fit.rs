@@ -2,8 +2,8 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use nalgebra::Vector3;
-use polhode::body::Inertia;
 use polhode::fit::{Random, Record, Settings, fit, rehearse};
+use polhode::inertia::Inertia;
 
 fn record(samples: u32) -> Option<Record> {
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).ok()?;

@@ -1,6 +1,7 @@
 //! A force and a splitting scheme of one's own: a spring that pulls the body upright, stepped by a scheme of order 4.
 
-use polhode::body::{Body, Conserved, Force, Inertia, Potential, Time};
+use polhode::body::{Body, Conserved, Force, Potential, Time};
+use polhode::inertia::Inertia;
 use polhode::method::schemes::{Class, Part, Scheme, Stages};
 use polhode::method::{ExactDrift, Splitting};
 use polhode::num::{Dd, Real};

@@ -4,7 +4,8 @@
 //! not tell the difference. Each comes with the start that the experiments give it. Tops have a fixed point, which
 //! their moments are about, and a weight.
 
-use crate::body::{Body, Inertia, StateError};
+use crate::body::{Body, StateError};
+use crate::inertia::Inertia;
 
 /// A body that everyone can ask for by name.
 #[derive(Clone, Debug)]

@@ -5,7 +5,8 @@
 //!
 //! ```
 //! use nalgebra::{UnitQuaternion, Vector3};
-//! use polhode::body::{Body, Conserved, Inertia};
+//! use polhode::body::{Body, Conserved};
+//! use polhode::inertia::Inertia;
 //! use polhode::method::method;
 //! use polhode::run::Run;
 //!
@@ -25,7 +26,8 @@
 //! |---|---|
 //! | [`num`] | numbers: `f64`, double-double, sums, elliptic functions |
 //! | [`rotation`] | vectors, quaternions, distances on SO(3) |
-//! | [`body`] | inertia, forces, states, the solver frame of kernels |
+//! | [`inertia`] | inertia tensors from moments, solids, meshes and mass distributions; what is wrong with a tensor |
+//! | [`body`] | inertia with forces, states, the solver frame of kernels |
 //! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the top |
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`method`] | the integrators, their schemes, what they claim, the catalogue |
@@ -58,6 +60,7 @@ pub mod catalog;
 #[cfg(feature = "fit")]
 pub mod fit;
 pub mod flow;
+pub mod inertia;
 pub mod method;
 pub mod num;
 pub mod observe;

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-use polhode::body::{Amount, Evidence, Inertia, InertiaError, MassProperties, Solid, Verdict, diagnose};
+use polhode::inertia::{Amount, Evidence, Inertia, InertiaError, MassProperties, Solid, Verdict, diagnose};
 
 /// A body, and what a user may know of it.
 struct Patient {
@@ -291,8 +291,9 @@ fn a_unit_of_mass_that_is_a_power_of_two_changes_no_bit_of_the_nearest() {
         assert_eq!(a.nearest * tiny, b.nearest, "{name}");
         assert_eq!(a.distance * tiny, b.distance, "{name}");
         assert_eq!(a.equivalent_box, b.equivalent_box, "{name}");
-        let causes =
-            |found: &[polhode::body::Explanation]| found.iter().map(|c| c.cause.clone()).collect::<Vec<_>>();
+        let causes = |found: &[polhode::inertia::Explanation]| {
+            found.iter().map(|c| c.cause.clone()).collect::<Vec<_>>()
+        };
         assert_eq!(causes(&a.causes), causes(&b.causes), "{name}");
     }
 }

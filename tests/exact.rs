@@ -5,8 +5,9 @@
 mod fixtures;
 
 use fixtures::{FreeCase, free_body};
-use polhode::body::{Body, Inertia, Point, State, Time};
+use polhode::body::{Body, Point, State, Time};
 use polhode::flow::{AtRest, Flow, FreeBody, FreeMotion, Mode, TimeError};
+use polhode::inertia::Inertia;
 use polhode::num::{Dd, Precise, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 

@@ -3,11 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
-use polhode::body::Inertia;
 use polhode::fit::{
     Baseline, Bound, Estimate, FitError, Known, Random, Reading, Record, RecordError, Segment, Settings,
     baseline, fit, foreseen_bound, rehearse,
 };
+use polhode::inertia::Inertia;
 
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 

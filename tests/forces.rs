@@ -3,9 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::body::{
-    Body, Clock, Conserved, Force, ForceError, Inertia, Point, Potential, Problem, State, Time,
-};
+use polhode::body::{Body, Clock, Conserved, Force, ForceError, Point, Potential, Problem, State, Time};
+use polhode::inertia::Inertia;
 use polhode::method::{AnyMethod, method};
 use polhode::num::{Dd, Real};
 use polhode::observe::secular_drift;

@@ -8,11 +8,11 @@ use std::fmt::Display;
 use std::time::{Duration, Instant};
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::{
-    Amount, Body, Clock, Evidence, Force, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid, State,
-    diagnose,
-};
+use polhode::body::{Body, Clock, Force, State};
 use polhode::flow::{FreeMotion, LagrangeTop};
+use polhode::inertia::{
+    Amount, Evidence, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid, diagnose,
+};
 use polhode::method::{Claimed, method};
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
 use polhode::num::{Dd, Expansion, Precise, Real, trig};

@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-use polhode::body::{
+use polhode::inertia::{
     Amount, Class, Inertia, InertiaError, InertiaShape, MassError, MassProperties, Region, Solid, Symmetry,
     integrate_mass,
 };

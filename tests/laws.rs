@@ -12,10 +12,10 @@ use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use polhode::body::{
-    Body, Clock, Conserved, Field, Force, Free, Gravity, Inertia, Point, Potential, Problem, State, Time,
-    Torque,
+    Body, Clock, Conserved, Field, Force, Free, Gravity, Point, Potential, Problem, State, Time, Torque,
 };
 use polhode::flow::FreeMotion;
+use polhode::inertia::Inertia;
 use polhode::method::schemes::{self, Class, Scheme, Stages};
 use polhode::method::{
     AnyMethod, AxisOrder, AxisSplit, Claimed, Claims, Composed, Cost, Dmv, Energy, ExactDrift, ExplicitEuler,

@@ -1,17 +1,17 @@
-//! Imports obey the order of the layers: num ← rotation ← body ← flow ← observe ← method ← run.
+//! Imports obey the order of the layers: num ← rotation ← inertia ← body ← flow ← observe ← method ← run.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const ORDER: [&str; 7] = ["num", "rotation", "body", "flow", "observe", "method", "run"];
+const ORDER: [&str; 8] = ["num", "rotation", "inertia", "body", "flow", "observe", "method", "run"];
 
 /// The layers that code in `layer` may name.
 fn allowed(layer: &str) -> Vec<&'static str> {
     match layer {
-        "fit" => vec!["fit", "num", "rotation", "body", "flow", "observe"],
-        "catalog" => vec!["catalog", "num", "rotation", "body"],
+        "fit" => vec!["fit", "num", "rotation", "inertia", "body", "flow", "observe"],
+        "catalog" => vec!["catalog", "num", "rotation", "inertia", "body"],
         _ => {
             let rank = ORDER.iter().position(|name| *name == layer);
             let rank = rank.unwrap_or_else(|| panic!("src/{layer} has no place in the order of the layers"));

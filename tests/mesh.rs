@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::io::Read;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-use polhode::body::{Amount, MassProperties, Mesh, Solid};
+use polhode::inertia::{Amount, MassProperties, Mesh, Solid};
 
 type Triangle = [Vector3<f64>; 3];
 

@@ -4,8 +4,9 @@
 
 mod cases;
 
-use polhode::body::{Body, Inertia, Point, State, StateError, Time};
+use polhode::body::{Body, Point, State, StateError, Time};
 use polhode::flow::FreeMotion;
+use polhode::inertia::Inertia;
 use polhode::method::method;
 use polhode::num::{Dd, Real};
 use polhode::observe::Invariants;

@@ -7,8 +7,9 @@ mod fixtures;
 use core::f64::consts::PI;
 
 use fixtures::{TopCase, tops};
-use polhode::body::{Body, Clock, Inertia, Point, State, Time};
+use polhode::body::{Body, Clock, Point, State, Time};
 use polhode::flow::{Casimir, Flow, FreeFlow, FreeMotion, LagrangeError, LagrangeTop, SymmetricTop};
+use polhode::inertia::Inertia;
 use polhode::method::method;
 use polhode::num::{Dd, Precise, Real};
 use polhode::observe::secular_drift;

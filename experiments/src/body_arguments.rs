@@ -2,8 +2,9 @@
 
 use clap::Args;
 use nalgebra::Matrix3;
-use polhode::body::{Body, Inertia, Point};
+use polhode::body::{Body, Point};
 use polhode::catalog;
+use polhode::inertia::Inertia;
 use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
 
@@ -54,7 +55,7 @@ impl BodyArguments {
     /// Inertia, and the weight moment that the catalogue has with it.
     fn described(&self) -> Result<(Inertia, [f64; 3]), Error> {
         let refused =
-            |flag: &str, error: polhode::body::InertiaError| Error::Input(format!("{flag}: {error}"));
+            |flag: &str, error: polhode::inertia::InertiaError| Error::Input(format!("{flag}: {error}"));
         if let Some(moments) = self.moments {
             Ok((Inertia::from_moments(moments).map_err(|error| refused("--moments", error))?, [0.0; 3]))
         } else if let Some([xx, yy, zz, xy, xz, yz]) = self.inertia {

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
-use polhode::body::{Amount, InertiaError, MassError, MassProperties, Mesh, MeshError, Solid, Verdict};
+use polhode::inertia::{Amount, InertiaError, MassError, MassProperties, Mesh, MeshError, Solid, Verdict};
 
 use crate::arguments::{list, numbers, positive};
 use crate::error::{Error, warn};

@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use nalgebra::Vector3;
-use polhode::body::{Body, Inertia};
+use polhode::body::Body;
 use polhode::flow::{FreeMotion, LagrangeTop};
+use polhode::inertia::Inertia;
 use polhode::rotation::EulerSequence;
 
 use crate::error::{Error, unexpected};

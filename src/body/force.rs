@@ -20,7 +20,8 @@ use crate::rotation::{Quat, Vec3};
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use polhode::body::{Body, Conserved, Force, Inertia, Potential, Time};
+/// use polhode::body::{Body, Conserved, Force, Potential, Time};
+/// use polhode::inertia::Inertia;
 /// use polhode::num::Real;
 /// use polhode::rotation::{Quat, Vec3};
 ///
@@ -174,7 +175,8 @@ impl Force {
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
-    /// use polhode::body::{Body, Force, Inertia};
+    /// use polhode::body::{Body, Force};
+    /// use polhode::inertia::Inertia;
     /// use polhode::method::method;
     /// use polhode::run::Run;
     ///

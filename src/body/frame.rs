@@ -4,7 +4,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::field::{Evaluated, Field, Forces, Witness};
-use super::{Conserved, Force, Gravity, Inertia, Point, Rotor, State, Time};
+use super::{Conserved, Force, Gravity, Point, Rotor, State, Time};
+use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
@@ -92,7 +93,8 @@ impl Body {
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
-    /// use polhode::body::{Body, Inertia};
+    /// use polhode::body::Body;
+    /// use polhode::inertia::Inertia;
     /// let top = Body::heavy(Inertia::from_moments([1.0, 1.0, 0.25])?, Vector3::new(0.0, 0.0, 2.0))?;
     /// let start = top.state(UnitQuaternion::identity(), Vector3::new(0.0, 0.0, 4.0))?;
     /// assert_eq!(top.energy(&start), 4.0); // 2 J of spin, 2 J of height
@@ -235,7 +237,8 @@ impl Body {
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
-    /// use polhode::body::{Body, Inertia};
+    /// use polhode::body::Body;
+    /// use polhode::inertia::Inertia;
     /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
     /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.5, 1.0, -0.25))?;
     /// assert_eq!(start.momentum(), Vector3::new(0.5, 2.0, -0.75));

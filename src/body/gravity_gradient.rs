@@ -5,7 +5,8 @@ use core::cmp::Ordering;
 use nalgebra::Matrix3;
 
 use super::force::finite;
-use super::{Conserved, Force, ForceError, Inertia, Potential, Time};
+use super::{Conserved, Force, ForceError, Potential, Time};
+use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -34,7 +35,8 @@ impl Force {
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
-    /// use polhode::body::{Body, Force, Inertia};
+    /// use polhode::body::{Body, Force};
+    /// use polhode::inertia::Inertia;
     /// let inertia = Inertia::from_moments([1.0, 2.0, 2.5])?;
     /// let gradient = Force::gravity_gradient(&inertia, 0.001, 0.0)?;
     /// let body = Body::free(inertia).with(gradient);

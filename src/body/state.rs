@@ -10,7 +10,8 @@ use crate::rotation::{Quat, Vec3};
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use polhode::body::{Body, Inertia};
+/// use polhode::body::Body;
+/// use polhode::inertia::Inertia;
 /// let body = Body::free(Inertia::from_moments([10.0, 20.0, 30.0])?);
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.5, 1.0, -0.25))?;
 /// assert_eq!(start.momentum(), Vector3::new(5.0, 20.0, -7.5));

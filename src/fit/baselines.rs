@@ -11,7 +11,7 @@ use super::qp;
 use super::record::Record;
 use super::stacked::Stacked;
 use super::test_functions::Stretch;
-use crate::body::InertiaShape;
+use crate::inertia::InertiaShape;
 use crate::num::Real;
 
 /// A formulation to compare with.

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use super::coordinates::{Coordinates, Form, basis, eigen, entries_of_coordinates, tensor};
 use super::test_functions::Stretch;
 use super::weak::cross_derivative;
-use crate::body::Inertia;
+use crate::inertia::Inertia;
 
 /// ∂ω/∂(x, ω₀), or ∂ω/∂ω₀ alone where N is 3.
 type Sensitivity<const N: usize> = SMatrix<f64, 3, N>;
@@ -279,7 +279,7 @@ impl<'a> Motions<'a> {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::{body::Inertia, fit::foreseen_bound};
+/// use polhode::{inertia::Inertia, fit::foreseen_bound};
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
 /// let tumble = foreseen_bound(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3).ok_or("tumbles")?;

@@ -18,7 +18,7 @@ use super::test_functions::{SAMPLES_PER_TEST, Stretch};
 use super::torque_free::{Drift, Whiteness, drifts};
 use super::units::{Better, better_unit};
 use super::warnings::warnings;
-use crate::body::{Inertia, InertiaShape};
+use crate::inertia::{Inertia, InertiaShape};
 
 /// What the user may fix; the default leaves everything to the record.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use nalgebra::Vector3;
-//! use polhode::body::Inertia;
+//! use polhode::inertia::Inertia;
 //! use polhode::fit::{Known, Random, Record, Settings, fit, rehearse};
 //!
 //! let body = Inertia::from_moments([1.0, 2.0, 2.6])?;

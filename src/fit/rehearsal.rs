@@ -2,8 +2,9 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::body::{Inertia, StateError};
+use crate::body::StateError;
 use crate::flow::FreeMotion;
+use crate::inertia::Inertia;
 use crate::num::Real;
 
 /// Random numbers, the same from the same seed on every machine.
@@ -54,7 +55,7 @@ impl Random {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::{body::Inertia, fit::{Random, rehearse}};
+/// use polhode::{inertia::Inertia, fit::{Random, rehearse}};
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let times: Vec<f64> = (0..500).map(|i| f64::from(i) / 100.0).collect();
 /// let exact = rehearse(&body, Vector3::new(0.1, 1.0, 0.2), &times, 0.0, &mut Random::new(1))?;

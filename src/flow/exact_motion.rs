@@ -10,7 +10,8 @@ use crate::num::Dd;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use polhode::body::{Body, Inertia};
+/// use polhode::body::Body;
+/// use polhode::inertia::Inertia;
 /// use polhode::flow::ExactMotion;
 /// let top = Body::heavy(Inertia::from_moments([1.25, 1.25, 0.75])?, Vector3::new(0.0, 0.0, 2.0))?;
 /// let start = top.state(UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5), Vector3::new(0.0, 0.0, 20.0))?;

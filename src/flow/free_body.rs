@@ -11,7 +11,8 @@ use super::circulation::Circulation;
 use super::phase::{Spin, turn};
 use super::polhode::{Polhode, ascending, exact_separation, rounded_separation};
 use super::theta::Theta;
-use crate::body::{Body, Inertia, Phase, Point, Rotor, State, StateError, Time};
+use crate::body::{Body, Phase, Point, Rotor, State, StateError, Time};
+use crate::inertia::Inertia;
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};
 
@@ -19,7 +20,7 @@ use crate::rotation::{Quat, Vec3};
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use polhode::body::Inertia;
+/// use polhode::inertia::Inertia;
 /// use polhode::flow::FreeMotion;
 ///
 /// let racket = Inertia::from_moments([1.0, 2.0, 3.0])?;

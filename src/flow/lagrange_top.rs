@@ -83,7 +83,8 @@ pub enum LagrangeError {
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use polhode::body::{Body, Inertia};
+/// use polhode::body::Body;
+/// use polhode::inertia::Inertia;
 /// use polhode::flow::LagrangeTop;
 ///
 /// let body = Body::heavy(Inertia::from_moments([1.25, 1.25, 0.75])?, Vector3::new(0.0, 0.0, 2.0))?;

@@ -18,11 +18,12 @@ impl<S: Real> SymmetricTop<S> {
     /// The free flow of a body with the constants `rotor`; `None` unless two of its principal moments are equal, exactly.
     ///
     /// ```
-    /// use polhode::body::{Body, Inertia};
+    /// use polhode::body::Body;
+    /// use polhode::inertia::Inertia;
     /// use polhode::flow::SymmetricTop;
     /// let plate = Body::free(Inertia::from_moments([1.0, 1.0, 2.0])?);
     /// assert!(SymmetricTop::<f64>::new(&plate.rotor()).is_some());
-    /// # Ok::<(), polhode::body::InertiaError>(())
+    /// # Ok::<(), polhode::inertia::InertiaError>(())
     /// ```
     pub fn new(rotor: &Rotor) -> Option<Self> {
         let moments = rotor.moments::<Dd>();

@@ -31,7 +31,8 @@ const CHUNK: u64 = 4096;
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
-/// use polhode::body::{Body, Conserved, Inertia};
+/// use polhode::body::{Body, Conserved};
+/// use polhode::inertia::Inertia;
 /// use polhode::method::method;
 /// use polhode::run::{Run, Schedule};
 ///
@@ -263,7 +264,8 @@ impl Run {
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
-    /// use polhode::body::{Body, Inertia};
+    /// use polhode::body::Body;
+    /// use polhode::inertia::Inertia;
     /// use polhode::method::method;
     /// use polhode::run::Run;
     /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);

@@ -4,9 +4,10 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use polhode::body::{Body, Inertia, Point, State, Time};
+use polhode::body::{Body, Point, State, Time};
 use polhode::catalog;
 use polhode::flow::{Flow, FreeBody, FreeMotion};
+use polhode::inertia::Inertia;
 use polhode::num::{Dd, Precise};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 

@@ -1,10 +1,10 @@
 //! How far each estimator of inertia stays from the Cramér–Rao bound, and whether its own errors are honest.
 
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
-use polhode::body::Inertia;
 use polhode::fit::{
     Baseline, Estimate, FitError, Random, Record, Settings, baseline, fit, foreseen_bound, rehearse,
 };
+use polhode::inertia::Inertia;
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};

@@ -7,7 +7,7 @@ mod shapes;
 use std::time::Instant;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use polhode::body::{Amount, MassProperties, Mesh, MeshError, Solid, integrate_mass};
+use polhode::inertia::{Amount, MassProperties, Mesh, MeshError, Solid, integrate_mass};
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};

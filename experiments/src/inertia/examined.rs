@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::body::{Diagnosis, Evidence, InertiaError, MassError, MassProperties, Verdict, diagnose};
+use polhode::inertia::{Diagnosis, Evidence, InertiaError, MassError, MassProperties, Verdict, diagnose};
 
 use super::given::Given;
 use crate::text::{short, visible};

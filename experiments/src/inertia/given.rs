@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::MassProperties;
+use polhode::inertia::MassProperties;
 use serde::Deserialize;
 
 use crate::error::Error;

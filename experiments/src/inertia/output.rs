@@ -1,7 +1,7 @@
 //! Bodies as rows, JSON and fragments of models.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::MassProperties;
+use polhode::inertia::MassProperties;
 use serde_json::{Value, json};
 
 use super::Form;

@@ -1,7 +1,7 @@
 //! How often the doctor notices a mistake, and how often it then names it first.
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::body::{Amount, Evidence, MassProperties, Solid, Verdict, diagnose};
+use polhode::inertia::{Amount, Evidence, MassProperties, Solid, Verdict, diagnose};
 
 use super::failed;
 use crate::error::Error;

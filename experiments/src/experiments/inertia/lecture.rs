@@ -1,7 +1,7 @@
 //! What the lecture says of inertia tensors (17.1) and of rotation about any point (17.2), tried on random points.
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::body::{Amount, MassProperties, Solid};
+use polhode::inertia::{Amount, MassProperties, Solid};
 
 use super::failed;
 use crate::error::Error;

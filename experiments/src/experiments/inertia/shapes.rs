@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
-use polhode::body::Solid;
+use polhode::inertia::Solid;
 use polhode::num::trig::sin_cos;
 
 /// Every shape, of sizes without a special ratio, with its moments over its mass.

@@ -1,9 +1,10 @@
 //! Section 17.4: the free top.
 
 use nalgebra::Vector3;
-use polhode::body::{Inertia, Time};
+use polhode::body::Time;
 use polhode::catalog;
 use polhode::flow::FreeMotion;
+use polhode::inertia::Inertia;
 use polhode::num::elliptic::Modulus;
 use polhode::num::{Dd, Real};
 

@@ -1,9 +1,10 @@
 //! Section 17.6: the symmetric top under gravity.
 
 use nalgebra::Vector3;
-use polhode::body::{Body, Clock, Inertia, State};
+use polhode::body::{Body, Clock, State};
 use polhode::catalog;
 use polhode::flow::LagrangeTop;
+use polhode::inertia::Inertia;
 use polhode::method::method;
 use polhode::num::{Dd, Real};
 use polhode::rotation::{EulerSequence, Vec3};

@@ -1,8 +1,9 @@
 //! Sections 17.2 and 17.3: motion in general, by direct sums over point masses.
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
-use polhode::body::{Body, Inertia};
+use polhode::body::Body;
 use polhode::flow::{FreeMotion, LagrangeTop};
+use polhode::inertia::Inertia;
 use polhode::num::elliptic::Modulus;
 use polhode::num::{Dd, Real};
 use polhode::rotation::{EulerSequence, Quat, Vec3};

@@ -1,8 +1,9 @@
 //! Section 17.5: the free symmetric top.
 
 use nalgebra::{Unit, UnitQuaternion, Vector3};
-use polhode::body::{Inertia, State};
+use polhode::body::State;
 use polhode::flow::FreeMotion;
+use polhode::inertia::Inertia;
 use polhode::num::{Dd, Real};
 
 use super::{Point, Statements, larger, second_derivative, unexpected};

@@ -5,9 +5,10 @@ use core::ops::RangeInclusive;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use super::inertia::{Inertia, InertiaError, ROUNDING, Symmetry, check_symmetric, check_triangle};
+use super::checks::{ROUNDING, check_symmetric, check_triangle};
 use super::principal::frame_quaternion;
-use super::tensor::{Spectrum, Tensor};
+use super::symmetric::{Spectrum, Tensor};
+use super::{Inertia, InertiaError, Symmetry};
 use crate::num::{Dd, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
@@ -135,7 +136,7 @@ impl Class {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::body::MassProperties;
+/// use polhode::inertia::MassProperties;
 ///
 /// // two balls on a light rod
 /// let dumbbell = MassProperties::of_points([
@@ -147,7 +148,7 @@ impl Class {
 /// assert_eq!(dumbbell.tensor_about(Vector3::zeros())[(0, 0)], 48.0);
 /// assert_eq!(dumbbell.class().name(), "linear");
 /// assert!(dumbbell.inertia().is_err()); // nothing resists a turn about the rod
-/// # Ok::<(), polhode::body::MassError>(())
+/// # Ok::<(), polhode::inertia::MassError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassProperties {
@@ -214,13 +215,13 @@ impl MassProperties {
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
-    /// use polhode::body::{Amount, MassProperties, Solid};
+    /// use polhode::inertia::{Amount, MassProperties, Solid};
     ///
     /// let handle = Solid::Cylinder { radius: 0.01, height: 0.3 }.with(Amount::Density(700.0))?;
     /// let head = Solid::Box([0.05, 0.12, 0.05]).with(Amount::Density(7800.0))?;
     /// let hammer = MassProperties::sum([handle, head.moved(Vector3::new(0.0, 0.0, 0.175))?])?;
     /// assert!(hammer.center_of_mass().z > 0.16);
-    /// # Ok::<(), polhode::body::MassError>(())
+    /// # Ok::<(), polhode::inertia::MassError>(())
     /// ```
     pub fn sum(parts: impl IntoIterator<Item = Self>) -> Result<Self, MassError> {
         let parts: Vec<Self> = parts.into_iter().collect();

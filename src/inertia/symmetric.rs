@@ -4,7 +4,7 @@ use core::ops::{Add, Sub};
 
 use nalgebra::Matrix3;
 
-use super::inertia::InertiaError;
+use super::InertiaError;
 use super::principal::principal_axes;
 use crate::num::Dd;
 use crate::rotation::{Quat, Vec3};

@@ -1,129 +1,16 @@
 //! Inertia tensors, checked at the door.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use thiserror::Error;
 
+use super::checks::{check_finite, check_symmetric, check_triangle};
 use super::principal::{frame_quaternion, principal_axes};
-use super::tensor::{Spectrum, power_of_two_below};
-use crate::num::{Dd, Real, Shown};
+use super::symmetric::{Spectrum, power_of_two_below};
+use super::{InertiaError, Symmetry};
+use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
-
-/// Rounding that a tensor may show, relative to its trace: symmetry and triangle inequalities are judged up to it.
-pub(super) const ROUNDING: f64 = 1e-12;
 
 /// 2⁻²⁰⁰. Products of moments and momenta of bodies that are more slender than that leave the range of a double.
 const SLENDER: f64 = 6.223_015_277_861_142e-61;
-
-/// Why a tensor is not the inertia of a body.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum InertiaError {
-    /// An entry is not a finite number.
-    #[error("inertia has the entry {value}; every entry must be a finite number")]
-    NotFinite {
-        /// The offending value.
-        value: f64,
-    },
-    /// The tensor is not symmetric.
-    #[error(
-        "inertia tensor is not symmetric: I_{row}{column} = {} but I_{column}{row} = {}, apart by {relative:.3e} of the trace; \
-         I_jk = -sum m x_j x_k is the same both ways",
-        Shown(*upper), Shown(*lower)
-    )]
-    NotSymmetric {
-        /// Axis name of the first index.
-        row: char,
-        /// Axis name of the second index.
-        column: char,
-        /// Entry above the diagonal.
-        upper: f64,
-        /// Entry below the diagonal.
-        lower: f64,
-        /// Their difference over the trace.
-        relative: f64,
-    },
-    /// A principal moment is zero or negative.
-    #[error(
-        "principal moments {}, {}, {}: each must be positive (a moment is a sum of mass times distance squared)",
-        Shown(moments[0]),
-        Shown(moments[1]),
-        Shown(moments[2])
-    )]
-    NotPositive {
-        /// The principal moments.
-        moments: [f64; 3],
-    },
-    /// A moment is so small beside the largest that nothing can be computed from both.
-    #[error(
-        "principal moments {}, {}, {}: the smallest is less than 2^-200 (6e-61) of the largest; so slender a body is beyond \
-         the range of a double",
-        Shown(moments[0]),
-        Shown(moments[1]),
-        Shown(moments[2])
-    )]
-    Slender {
-        /// The principal moments.
-        moments: [f64; 3],
-    },
-    /// A moment is no double, or has lost digits as one.
-    #[error("inertia of the size {} puts a moment outside the range of a double; change the units", Shown(*value))]
-    OutOfRange {
-        /// The largest entry, or the trace that was asked for.
-        value: f64,
-    },
-    /// Two moments together are less than the third.
-    #[error(
-        "principal moments {}, {}, {} violate I{} + I{} >= I{} by {} ({:.3} % of the largest); no mass distribution has them",
-        Shown(moments[0]), Shown(moments[1]), Shown(moments[2]), pair[0] + 1, pair[1] + 1, largest + 1, Shown(*excess), percent
-    )]
-    Triangle {
-        /// The principal moments.
-        moments: [f64; 3],
-        /// The two that are too small, from 0.
-        pair: [usize; 2],
-        /// The one that is too large, from 0.
-        largest: usize,
-        /// By how much, in the unit of the moments.
-        excess: f64,
-        /// The same in per cent of the largest moment.
-        percent: f64,
-    },
-}
-
-/// Which principal moments agree, up to rounding (1e-12 of the trace).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Symmetry {
-    /// All three differ.
-    Asymmetric,
-    /// The two larger moments agree: elongated, like a rod. The axes of the pair are arbitrary.
-    Prolate,
-    /// The two smaller moments agree: flattened, like a disk. The axes of the pair are arbitrary.
-    Oblate,
-    /// All three agree, as of a sphere or a cube. All axes are arbitrary.
-    Spherical,
-}
-
-impl Symmetry {
-    /// Of ascending moments.
-    pub(super) fn of([low, middle, high]: [f64; 3]) -> Self {
-        let rounding = ROUNDING * (low + middle + high);
-        match (middle - low <= rounding, high - middle <= rounding) {
-            (true, true) => Symmetry::Spherical,
-            (true, false) => Symmetry::Oblate,
-            (false, true) => Symmetry::Prolate,
-            (false, false) => Symmetry::Asymmetric,
-        }
-    }
-
-    /// In one lowercase word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Symmetry::Asymmetric => "asymmetric",
-            Symmetry::Prolate => "prolate",
-            Symmetry::Oblate => "oblate",
-            Symmetry::Spherical => "spherical",
-        }
-    }
-}
 
 /// The inertia tensor of a rigid body about a stated point, kg m² (or any consistent unit), in body axes.
 ///
@@ -131,7 +18,7 @@ impl Symmetry {
 /// triangle inequalities. There is no absolute tolerance: a molecule and an asteroid are both ordinary bodies.
 ///
 /// ```
-/// use polhode::body::{Inertia, Symmetry};
+/// use polhode::inertia::{Inertia, Symmetry};
 /// use nalgebra::Matrix3;
 ///
 /// let box_like = Inertia::from_moments([3.0, 1.0, 2.5])?;
@@ -147,7 +34,7 @@ impl Symmetry {
 ///     error.to_string(),
 ///     "principal moments 1, 2, 4 violate I1 + I2 >= I3 by 1 (25.000 % of the largest); no mass distribution has them"
 /// );
-/// # Ok::<(), polhode::body::InertiaError>(())
+/// # Ok::<(), polhode::inertia::InertiaError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inertia {
@@ -341,58 +228,9 @@ impl InertiaShape {
     }
 }
 
-fn check_finite(values: &[f64]) -> Result<(), InertiaError> {
-    match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(InertiaError::NotFinite { value }),
-        None => Ok(()),
-    }
-}
-
-/// Finite entries that agree across the diagonal up to rounding.
-pub(super) fn check_symmetric(tensor: &Matrix3<f64>) -> Result<(), InertiaError> {
-    check_finite(tensor.as_slice())?;
-    let largest = tensor.amax();
-    if largest == 0.0 {
-        return Ok(());
-    }
-    let scaled = tensor / power_of_two_below(largest);
-    let trace = scaled.trace().abs();
-    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
-        let difference = (scaled[(row, column)] - scaled[(column, row)]).abs();
-        if difference > ROUNDING * trace {
-            return Err(InertiaError::NotSymmetric {
-                row: ['x', 'y', 'z'][row],
-                column: ['x', 'y', 'z'][column],
-                upper: tensor[(row, column)],
-                lower: tensor[(column, row)],
-                relative: difference / trace,
-            });
-        }
-    }
-    Ok(())
-}
-
 /// Of moments in any unit in which the largest is near one.
 fn is_slender([a, b, c]: [f64; 3]) -> bool {
     a.min(b).min(c) < SLENDER * a.max(b).max(c)
-}
-
-/// The triangle inequalities for moments divided by `scale`.
-pub(super) fn check_triangle(scaled: [f64; 3], scale: f64) -> Result<(), InertiaError> {
-    let rounding = ROUNDING * (scaled[0] + scaled[1] + scaled[2]);
-    for (largest, pair) in [(0, [1, 2]), (1, [0, 2]), (2, [0, 1])] {
-        let excess = (Dd::of(scaled[largest]) - Dd::sum(scaled[pair[0]], scaled[pair[1]])).hi();
-        if excess > rounding {
-            return Err(InertiaError::Triangle {
-                moments: scaled.map(|i| i * scale),
-                pair,
-                largest,
-                excess: excess * scale,
-                percent: 100.0 * excess / scaled[largest],
-            });
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

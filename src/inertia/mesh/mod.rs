@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 use thiserror::Error;
 
 use super::mass::{Amount, MassError, MassProperties};
-use super::tensor::Tensor;
+use super::symmetric::Tensor;
 use crate::num::{Compensated, Dd, Shown};
 use crate::rotation::Vec3;
 use closed::Welded;
@@ -203,7 +203,7 @@ impl core::fmt::Display for Edge {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::body::{Amount, Mesh};
+/// use polhode::inertia::{Amount, Mesh};
 ///
 /// let [o, x, y, z] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector3::from);
 /// let faces = [[o, y, x], [o, x, z], [o, z, y], [x, y, z]];

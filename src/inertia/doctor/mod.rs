@@ -5,9 +5,10 @@ mod nearest;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::inertia::{InertiaError, ROUNDING, check_symmetric};
+use super::InertiaError;
+use super::checks::{ROUNDING, check_symmetric};
 use super::mass::{LENGTHS, MassError, SIZES, check_tensor, finite, length, positive};
-use super::tensor::{Spectrum, Tensor};
+use super::symmetric::{Spectrum, Tensor};
 pub use causes::{Cause, Entry};
 
 /// Densities within e^±14 of water's, from a thousandth of a kg/m³ to that of no known matter, accuse nobody.
@@ -59,7 +60,7 @@ pub struct Misfit {
 ///
 /// ```
 /// use nalgebra::Matrix3;
-/// use polhode::body::{Cause, Evidence, Verdict, diagnose};
+/// use polhode::inertia::{Cause, Evidence, Verdict, diagnose};
 ///
 /// // a designer's +∫ x y dm typed where tensor entries belong
 /// let typed = Matrix3::new(0.75, 0.3125, 0.3125, 0.3125, 0.75, 0.3125, 0.3125, 0.3125, 0.75);
@@ -71,7 +72,7 @@ pub struct Misfit {
 /// );
 /// assert_eq!(found.causes[0].cause, Cause::ProductSigns);
 /// assert_eq!(found.causes[0].corrected[(0, 1)], -0.3125);
-/// # Ok::<(), polhode::body::MassError>(())
+/// # Ok::<(), polhode::inertia::MassError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {

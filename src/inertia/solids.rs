@@ -13,11 +13,11 @@ use super::mass::{Amount, MassError, MassProperties, length};
 /// The moments are the integrals of `I_jk = ∫ (δ_jk s² − s_j s_k) dm` in closed form, each within a few roundings.
 ///
 /// ```
-/// use polhode::body::{Amount, Solid};
+/// use polhode::inertia::{Amount, Solid};
 /// let cube = Solid::Box([1.0, 1.0, 1.0]).with(Amount::Mass(6.0))?;
 /// assert_eq!(cube.principal_moments(), [1.0, 1.0, 1.0]);
 /// assert_eq!(cube.class().name(), "spherical"); // not only a sphere is a spherical top
-/// # Ok::<(), polhode::body::MassError>(())
+/// # Ok::<(), polhode::inertia::MassError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solid {

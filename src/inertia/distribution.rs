@@ -77,14 +77,14 @@ impl Region {
     /// A region without size, a density that is negative or not finite, or no convergence at 128 nodes an axis.
     ///
     /// ```
-    /// use polhode::body::{Region, Symmetry, Class};
+    /// use polhode::inertia::{Region, Symmetry, Class};
     /// // a planet whose density falls linearly from the centre to a third at the surface
     /// let planet = Region::Layer { inner: 0.0, outer: 2.0 };
     /// let body = planet.filled(|at| 3.0 - at.norm(), 1e-13)?;
     /// assert_eq!(body.class(), Class::Solid(Symmetry::Spherical));
     /// let factor = body.principal_moments()[0] / (body.mass() * 4.0);
     /// assert!((factor - 16.0 / 45.0).abs() < 1e-12); // 0.4 if it were homogeneous
-    /// # Ok::<(), polhode::body::DistributionError>(())
+    /// # Ok::<(), polhode::inertia::DistributionError>(())
     /// ```
     pub fn filled(
         &self,
@@ -173,7 +173,7 @@ fn spherical(r: f64, u: [f64; 3]) -> (Vector3<f64>, f64) {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::body::integrate_mass;
+/// use polhode::inertia::integrate_mass;
 /// use polhode::num::trig::sin_cos;
 /// // half a hoop of 1 kg and radius 1
 /// let half_hoop = integrate_mass(
@@ -184,7 +184,7 @@ fn spherical(r: f64, u: [f64; 3]) -> (Vector3<f64>, f64) {
 ///     1e-13,
 /// )?;
 /// assert!((half_hoop.center_of_mass().y - 2.0 / core::f64::consts::PI).abs() < 1e-14);
-/// # Ok::<(), polhode::body::DistributionError>(())
+/// # Ok::<(), polhode::inertia::DistributionError>(())
 /// ```
 pub fn integrate_mass(
     element: impl Fn([f64; 3]) -> Result<(Vector3<f64>, f64), DistributionError>,

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::body::tensor::Spectrum;
+use crate::inertia::symmetric::Spectrum;
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 

@@ -1,0 +1,80 @@
+//! Why a tensor is refused.
+
+use thiserror::Error;
+
+use crate::num::Shown;
+
+/// Why a tensor is not the inertia of a body.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum InertiaError {
+    /// An entry is not a finite number.
+    #[error("inertia has the entry {value}; every entry must be a finite number")]
+    NotFinite {
+        /// The offending value.
+        value: f64,
+    },
+    /// The tensor is not symmetric.
+    #[error(
+        "inertia tensor is not symmetric: I_{row}{column} = {} but I_{column}{row} = {}, apart by {relative:.3e} of the trace; \
+         I_jk = -sum m x_j x_k is the same both ways",
+        Shown(*upper), Shown(*lower)
+    )]
+    NotSymmetric {
+        /// Axis name of the first index.
+        row: char,
+        /// Axis name of the second index.
+        column: char,
+        /// Entry above the diagonal.
+        upper: f64,
+        /// Entry below the diagonal.
+        lower: f64,
+        /// Their difference over the trace.
+        relative: f64,
+    },
+    /// A principal moment is zero or negative.
+    #[error(
+        "principal moments {}, {}, {}: each must be positive (a moment is a sum of mass times distance squared)",
+        Shown(moments[0]),
+        Shown(moments[1]),
+        Shown(moments[2])
+    )]
+    NotPositive {
+        /// The principal moments.
+        moments: [f64; 3],
+    },
+    /// A moment is so small beside the largest that nothing can be computed from both.
+    #[error(
+        "principal moments {}, {}, {}: the smallest is less than 2^-200 (6e-61) of the largest; so slender a body is beyond \
+         the range of a double",
+        Shown(moments[0]),
+        Shown(moments[1]),
+        Shown(moments[2])
+    )]
+    Slender {
+        /// The principal moments.
+        moments: [f64; 3],
+    },
+    /// A moment is no double, or has lost digits as one.
+    #[error("inertia of the size {} puts a moment outside the range of a double; change the units", Shown(*value))]
+    OutOfRange {
+        /// The largest entry, or the trace that was asked for.
+        value: f64,
+    },
+    /// Two moments together are less than the third.
+    #[error(
+        "principal moments {}, {}, {} violate I{} + I{} >= I{} by {} ({:.3} % of the largest); no mass distribution has them",
+        Shown(moments[0]), Shown(moments[1]), Shown(moments[2]), pair[0] + 1, pair[1] + 1, largest + 1, Shown(*excess), percent
+    )]
+    Triangle {
+        /// The principal moments.
+        moments: [f64; 3],
+        /// The two that are too small, from 0.
+        pair: [usize; 2],
+        /// The one that is too large, from 0.
+        largest: usize,
+        /// By how much, in the unit of the moments.
+        excess: f64,
+        /// The same in per cent of the largest moment.
+        percent: f64,
+    },
+}

@@ -1,0 +1,23 @@
+//! Inertia tensors and where they come from: moments, mass properties, solids, distributions, meshes; and what is
+//! wrong with a tensor that no body has.
+
+mod checks;
+mod distribution;
+mod doctor;
+mod error;
+mod mass;
+mod mesh;
+mod principal;
+mod solids;
+mod symmetric;
+mod symmetry;
+mod tensor;
+
+pub use distribution::{DistributionError, Region, integrate_mass};
+pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Verdict, diagnose};
+pub use error::InertiaError;
+pub use mass::{Amount, Class, MassError, MassProperties};
+pub use mesh::{Edge, Mesh, MeshError};
+pub use solids::Solid;
+pub use symmetry::Symmetry;
+pub use tensor::{Inertia, InertiaShape};
