@@ -146,13 +146,13 @@ fn parallel_axis_agrees_with_direct_sums_of_points_both_ways() {
     // unequal offsets in all axes and of both signs: a wrong sign or index of the term shows in the first digit
     for q in [[0.7, -2.1, 3.9], [-11.0, 0.3, 5.5], [0.0, 0.0, 0.0], [1e3, -2e3, 3e3]].map(Vector3::from) {
         let about = direct(&points, q);
-        assert!(apart(&body.tensor_about(q), &about) < 1e-15, "{q:?}");
+        assert!(apart(&body.tensor_about(q).unwrap(), &about) < 1e-15, "{q:?}");
         let back = MassProperties::from_tensor_about(q, body.mass(), c, about).unwrap();
         // the digits that the larger tensor does not hold cannot come back
         let lost = about.amax() / body.tensor().amax();
         assert!(apart(&back.tensor(), &body.tensor()) < 1e-15 * lost, "{q:?}");
         let both = body.inertia_about(q).unwrap().tensor();
-        assert_eq!(both, body.tensor_about(q));
+        assert_eq!(both, body.tensor_about(q).unwrap());
     }
 }
 
@@ -263,7 +263,7 @@ fn thin_bodies_are_not_rejected_for_rounding() {
             let (a, b) = (0.1 * f64::from(k), 0.37 * f64::from(k));
             let q = UnitQuaternion::new_normalize(Quaternion::new(1.0, a - 7.0, b - 40.0, 3.0 - a * b));
             let turned = body.turned(q).moved(Vector3::new(0.1 * a, 2.0, -b)).unwrap();
-            let about = turned.tensor_about(Vector3::zeros());
+            let about = turned.tensor_about(Vector3::zeros()).unwrap();
             let again =
                 MassProperties::from_tensor_about(Vector3::zeros(), 0.3, turned.center_of_mass(), about);
             // far from its centre a nanometre hoop drowns in the rounding of the larger tensor: not a thin body's fault
@@ -296,10 +296,17 @@ fn statements_of_the_lecture() {
     assert!(normal.z.abs() > 1.0 - 1e-15);
     // a wheel about its contact point, and a pendulum about its pivot
     let wheel = Solid::Hoop { radius: 0.5 }.with(Amount::Mass(3.0)).unwrap();
-    assert_eq!(wheel.tensor_about(Vector3::new(0.0, -0.5, 0.0))[(2, 2)], 2.0 * 3.0 * 0.25);
+    assert_eq!(wheel.tensor_about(Vector3::new(0.0, -0.5, 0.0)).unwrap()[(2, 2)], 2.0 * 3.0 * 0.25);
     let pendulum = Solid::Rod { length: 1.5 }.with(Amount::Mass(2.0)).unwrap();
-    let about_pivot = pendulum.tensor_about(Vector3::new(0.0, 0.0, 0.75))[(0, 0)];
+    let about_pivot = pendulum.tensor_about(Vector3::new(0.0, 0.0, 0.75)).unwrap()[(0, 0)];
     assert!((about_pivot - 2.0 * 1.5 * 1.5 / 3.0).abs() < 1e-15);
+    // so far away that squares overflow
+    for point in [Vector3::new(1e155, 0.0, 0.0), Vector3::new(0.0, f64::MAX, f64::MAX)] {
+        assert!(matches!(pendulum.tensor_about(point), Err(MassError::OutOfRange)), "{point:?}");
+        assert!(matches!(pendulum.inertia_about(point), Err(MassError::OutOfRange)), "{point:?}");
+    }
+    let nowhere = pendulum.tensor_about(Vector3::new(0.0, f64::NAN, 0.0));
+    assert!(matches!(nowhere, Err(MassError::NotFinite { quantity: "point", .. })));
 }
 
 #[test]

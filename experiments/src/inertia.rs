@@ -116,10 +116,7 @@ impl Inertia {
             let refused = |error| Error::Input(format!("{} {}{name}: {error}", self.shape, self.argument));
             bodies.push(Examined::of(body, point).map_err(refused)?);
         }
-        if bodies
-            .iter()
-            .any(|body| matches!(body.about, Some((_, Some(t))) if !t.iter().all(|x| x.is_finite())))
-        {
+        if bodies.iter().any(|body| body.body.is_some() && matches!(body.about, Some((_, None)))) {
             let value = self.about.unwrap_or_default().map(short).join(",");
             let rule = "the tensor about this point is outside the range of a double";
             return Err(Error::input("--about", &value, rule, "name a nearer one"));

@@ -145,7 +145,7 @@ impl Class {
 /// ])?;
 /// assert_eq!(dumbbell.center_of_mass(), Vector3::new(0.0, 0.0, 3.0));
 /// assert_eq!(dumbbell.tensor()[(0, 0)], 12.0); // reduced mass times distance squared
-/// assert_eq!(dumbbell.tensor_about(Vector3::zeros())[(0, 0)], 48.0);
+/// assert_eq!(dumbbell.tensor_about(Vector3::zeros())?[(0, 0)], 48.0);
 /// assert_eq!(dumbbell.class().name(), "linear");
 /// assert!(dumbbell.inertia().is_err()); // nothing resists a turn about the rod
 /// # Ok::<(), polhode::inertia::MassError>(())
@@ -285,10 +285,16 @@ impl MassProperties {
         self.tensor
     }
 
-    /// Tensor about `point`: I_Q = I + M (R² 1 − R Rᵀ), R from the point to the centre of mass.
-    pub fn tensor_about(&self, point: Vector3<f64>) -> Matrix3<f64> {
+    /// Tensor about `point` (m), kg m²: I_Q = I + M (R² 1 − R Rᵀ), R from the point to the centre of mass.
+    ///
+    /// # Errors
+    /// A point that is not finite, or so far away that the tensor is outside the range of a double.
+    pub fn tensor_about(&self, point: Vector3<f64>) -> Result<Matrix3<f64>, MassError> {
+        finite("point", &point)?;
         let term = Tensor::of_point(Dd::of(self.mass), difference(self.center_of_mass, point));
-        (Tensor::symmetric_part(&self.tensor) + term).rounded()
+        let tensor = (Tensor::symmetric_part(&self.tensor) + term).rounded();
+        let in_range = tensor.iter().all(|value| value.abs() < *SIZES.end());
+        if in_range { Ok(tensor) } else { Err(MassError::OutOfRange) }
     }
 
     /// The inertia about the centre of mass, as a rotating body needs it.
@@ -302,9 +308,9 @@ impl MassProperties {
     /// The inertia about `point`, for a body that turns about it.
     ///
     /// # Errors
-    /// A moment that is zero up to rounding: points and rods that hold the point.
-    pub fn inertia_about(&self, point: Vector3<f64>) -> Result<Inertia, InertiaError> {
-        rotating(self.tensor_about(point))
+    /// As [`tensor_about`](Self::tensor_about); a moment that is zero up to rounding: points and rods that hold the point.
+    pub fn inertia_about(&self, point: Vector3<f64>) -> Result<Inertia, MassError> {
+        Ok(rotating(self.tensor_about(point)?)?)
     }
 
     /// Principal moments about the centre of mass, ascending, kg m²; never negative.

@@ -45,7 +45,7 @@ impl Examined {
                 Some(body.turned(given.turn).moved(given.center_of_mass)?)
             }
         };
-        let about = point.map(|point| (point, body.map(|body| body.tensor_about(point))));
+        let about = point.map(|point| (point, body.and_then(|body| body.tensor_about(point).ok())));
         Ok(Examined { given, diagnosis, body, about })
     }
 

@@ -12,6 +12,8 @@ use crate::table::{Column, Table, row};
 /// A random body, and what may be known of it.
 struct Patient {
     body: MassProperties,
+    /// Its tensor about the origin, kg m².
+    about_origin: Matrix3<f64>,
     evidence: Evidence,
 }
 
@@ -24,9 +26,9 @@ const MISTAKES: [Mistake; 12] = [
         let tensor = patient.body.tensor();
         tensor.map_with_location(|j, k, value| if j == k { value } else { -value })
     }),
-    ("about the origin", "another-point", |patient, _| patient.body.tensor_about(Vector3::zeros())),
+    ("about the origin", "another-point", |patient, _| patient.about_origin),
     ("parallel-axis term subtracted twice", "another-point", |patient, _| {
-        2.0 * patient.body.tensor() - patient.body.tensor_about(Vector3::zeros())
+        2.0 * patient.body.tensor() - patient.about_origin
     }),
     ("kg mm^2", "unit", |patient, _| patient.body.tensor() * 1e6),
     ("g mm^2", "unit", |patient, _| patient.body.tensor() * 1e9),
@@ -69,12 +71,13 @@ fn patient(random: &mut Random) -> Result<Patient, Error> {
         (low, high) = (low.inf(&(at - edges * 0.5)), high.sup(&(at + edges * 0.5)));
     }
     let body = MassProperties::sum(parts).map_err(|error| failed(&error))?;
+    let about_origin = body.tensor_about(Vector3::zeros()).map_err(|error| failed(&error))?;
     let evidence = Evidence {
         mass: Some(body.mass()),
         center_of_mass: Some(body.center_of_mass()),
         extents: Some((high - low).into()),
     };
-    Ok(Patient { body, evidence })
+    Ok(Patient { body, about_origin, evidence })
 }
 
 pub(super) fn rates(context: &Context, seed: u64, failures: &mut Vec<String>) -> Result<Table, Error> {

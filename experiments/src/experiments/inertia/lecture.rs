@@ -63,15 +63,16 @@ pub(super) fn statements(seed: u64, failures: &mut Vec<String>) -> Result<Table,
     say("17.1", "the cube is a spherical top", (c - a) / c);
 
     let about = direct(&points, q);
-    say("17.2", "I_Q = I + M (R_Q^2 - R_Q R_Q^t)", apart(&body.tensor_about(q), &about));
+    let moved = body.tensor_about(q).map_err(|error| failed(&error))?;
+    say("17.2", "I_Q = I + M (R_Q^2 - R_Q R_Q^t)", apart(&moved, &about));
     let back = MassProperties::from_tensor_about(q, mass, center, about).map_err(|error| failed(&error))?;
     say("17.2", "and back from Q to the centre of mass", apart(&back.tensor(), &body.tensor()));
     // a turn about Q: every point has the velocity omega x s
     let velocity = |at: Vector3<f64>| omega.cross(&(at - q));
     let momentum: Vector3<f64> = points.iter().map(|(m, at)| (at - q).cross(&velocity(*at)) * *m).sum();
-    say("17.2", "L = I_Q omega", (body.tensor_about(q) * omega - momentum).amax() / momentum.amax());
+    say("17.2", "L = I_Q omega", (moved * omega - momentum).amax() / momentum.amax());
     let energy: f64 = points.iter().map(|(m, at)| 0.5 * m * velocity(*at).norm_squared()).sum();
-    let rotation = 0.5 * omega.dot(&(body.tensor_about(q) * omega));
+    let rotation = 0.5 * omega.dot(&(moved * omega));
     say("17.2", "T = omega^t I_Q omega / 2", (rotation - energy).abs() / energy);
     let split = 0.5 * mass * velocity(center).norm_squared() + 0.5 * omega.dot(&(body.tensor() * omega));
     say("17.2", "T is that of M at the centre and that about it", (split - energy).abs() / energy);
