@@ -30,7 +30,7 @@ impl Drift {
 /// ```
 pub fn secular_drift(times: &[f64], values: &[f64]) -> Option<Drift> {
     const BLOCKS: usize = 16;
-    const STUDENT_95_14: f64 = 2.144_786_687_916_928;
+    const STUDENT_95_14: f64 = 2.144_786_687_917_804;
     let n = times.len().min(values.len());
     if n < BLOCKS {
         return None;
