@@ -1,0 +1,239 @@
+//! Schemes of composition and splitting: the lengths of the maps that make up one step, as data.
+//!
+//! ```text
+//! composition    Φ_h = S_{γ₁h} ∘ S_{γ₂h} ∘ … ∘ S_{γ₂h} ∘ S_{γ₁h}            S a symmetric map of order 2
+//! alternating    Φ_h = A_{a₁h} ∘ B_{b₁h} ∘ A_{a₂h} ∘ … ∘ B_{b₁h} ∘ A_{a₁h}   A, B flows; or B first and last
+//! ```
+//!
+//! Every scheme reads the same from both ends, so Φ_h is symmetric, Φ_{−h} Φ_h = 1, and its order is even. The
+//! constants hold the first half. What closes it follows: 1 − 2Σ in the centre of an odd number of lengths, ½ − Σ
+//! on either side of the middle of an even number. Coefficients are multiples of 2⁻¹⁰⁴: so their sums are exact in
+//! [`Dd`], and the lengths of a step add up to 1 without rounding.
+
+mod alternating;
+mod composition;
+
+pub use alternating::{
+    ABA_8_4, ABA_8_6_4, ABA_10_6_4, BCE_22, BLANES_MOAN_S6, BLANES_MOAN_S10, MCLACHLAN_S5, SABA_2, SABA_3,
+    SABA_4, SRKN_6B, SRKN_11B, SRKN_14A,
+};
+pub use composition::{
+    KAHAN_LI_6, KAHAN_LI_8, MCLACHLAN_4, SOFRONIOU_SPALETTA_6, SOFRONIOU_SPALETTA_8, SOFRONIOU_SPALETTA_10,
+    STRANG, SUZUKI_4, SUZUKI_UMENO_8, YOSHIDA_4, YOSHIDA_6,
+};
+
+use thiserror::Error;
+
+use crate::num::{Dd, Real};
+
+/// Coefficients of a composition or splitting method.
+///
+/// ```
+/// use polhode::method::schemes::{Part, STRANG, SUZUKI_4};
+/// use polhode::num::{Dd, Real};
+/// assert_eq!(SUZUKI_4.lengths().map(|lengths| lengths.len()), Some(5));
+/// let half = Dd::of(0.5);
+/// assert_eq!(STRANG.flows(), [(Part::B, half), (Part::A, Dd::ONE), (Part::B, half)]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scheme {
+    /// Name in [`ALL`].
+    pub name: &'static str,
+    /// Order of Φ_h.
+    pub order: u32,
+    /// Where the coefficients come from.
+    pub source: &'static str,
+    /// What they are coefficients of.
+    pub stages: Stages,
+}
+
+/// The maps of one step and the first half of their lengths, as shares of the step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stages {
+    /// γ₁, γ₂, … before the centre of a palindromic composition of one symmetric map of order 2; the centre is
+    /// 1 − 2Σγ.
+    Composition(&'static [Dd]),
+    /// Two flows in turn, palindromic: a₁, a₂, … and b₁, b₂, … of the first half, what closes each left out.
+    ///
+    /// The whole step has one flow more of the part that is first. Its number of flows is odd if its list is
+    /// longer by one than the other, and even if the lists are of the same length.
+    Alternating {
+        /// The part with which the step begins and ends.
+        first: Part,
+        /// Shares of A.
+        a: &'static [Dd],
+        /// Shares of B.
+        b: &'static [Dd],
+        /// The flows for which the scheme has its order.
+        class: Class,
+    },
+}
+
+/// One of the two flows of a splitting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The flow of A.
+    A,
+    /// The flow of B.
+    B,
+}
+
+/// The pairs of flows for which a splitting has its order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Any two flows.
+    Any,
+    /// Runge-Kutta-Nyström: A quadratic in the momenta, B a function of the attitude, so that `[B,[B,[B,A]]] = 0`.
+    Nystrom,
+    /// H = A + εB with p₁, p₂, …: the error is of size ε h^p₁ + ε² h^p₂ + …, the last p standing for all further
+    /// powers of ε. The order is the last p, the smallest.
+    NearIntegrable(&'static [u32]),
+}
+
+impl Scheme {
+    /// Lengths of the steps of one symmetric map, all of them, palindromic; none for two flows in turn.
+    pub fn lengths(&self) -> Option<Vec<Dd>> {
+        match self.stages {
+            Stages::Composition(gamma) => Some(closed(gamma, true)),
+            Stages::Alternating { .. } => None,
+        }
+    }
+
+    /// The flows of one step in order, each with its share of the step.
+    ///
+    /// A composition stands for that of Strang's map B(½) A(1) B(½), neighbouring flows of B merged into one.
+    pub fn flows(&self) -> Vec<(Part, Dd)> {
+        match self.stages {
+            Stages::Composition(gamma) => {
+                let a = closed(gamma, true);
+                let mut b = vec![a[0] * 0.5];
+                b.extend(a.windows(2).map(|pair| (pair[0] + pair[1]) * 0.5));
+                b.push(b[0]);
+                in_turn(Part::B, &b, &a)
+            }
+            Stages::Alternating { first, a, b, .. } => {
+                let (outer, inner) = if first == Part::A { (a, b) } else { (b, a) };
+                let odd = outer.len() > inner.len();
+                in_turn(first, &closed(outer, odd), &closed(inner, !odd))
+            }
+        }
+    }
+}
+
+/// The whole palindrome of a first half.
+fn closed(half: &[Dd], odd: bool) -> Vec<Dd> {
+    let sum = half.iter().fold(Dd::ZERO, |sum, &share| sum + share);
+    let mut all = half.to_vec();
+    if odd {
+        all.push(Dd::ONE - sum * 2.0);
+    } else {
+        all.extend([Dd::of(0.5) - sum; 2]);
+    }
+    all.extend(half.iter().rev());
+    all
+}
+
+/// `outer` and `inner` alternating, from the first of `outer` to its last.
+fn in_turn(first: Part, outer: &[Dd], inner: &[Dd]) -> Vec<(Part, Dd)> {
+    let second = if first == Part::A { Part::B } else { Part::A };
+    let mut flows = Vec::with_capacity(outer.len() + inner.len());
+    for (n, &share) in outer.iter().enumerate() {
+        flows.push((first, share));
+        flows.extend(inner.get(n).map(|&share| (second, share)));
+    }
+    flows
+}
+
+/// The scheme called `name`.
+///
+/// # Errors
+/// A name that is not in [`ALL`].
+///
+/// ```
+/// use polhode::method::schemes::scheme;
+/// assert_eq!(scheme("kahan-li-8")?.order, 8);
+/// assert_eq!(scheme("kahan-li8").map_err(|error| error.nearest), Err(Some("kahan-li-8")));
+/// # Ok::<(), polhode::method::schemes::UnknownScheme>(())
+/// ```
+pub fn scheme(name: &str) -> Result<&'static Scheme, UnknownScheme> {
+    ALL.iter()
+        .find(|scheme| scheme.name == name)
+        .ok_or_else(|| UnknownScheme { name: name.into(), nearest: nearest(name) })
+}
+
+/// A name that no scheme has.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("there is no scheme {name:?}{}; there are {}", suggestion(*nearest), names())]
+pub struct UnknownScheme {
+    /// What was asked for.
+    pub name: String,
+    /// The name that differs in the fewest letters, if that is a third of them at most.
+    pub nearest: Option<&'static str>,
+}
+
+fn suggestion(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |nearest| format!(", the nearest is {nearest}"))
+}
+
+fn names() -> String {
+    ALL.iter().map(|scheme| scheme.name).collect::<Vec<_>>().join(", ")
+}
+
+fn nearest(name: &str) -> Option<&'static str> {
+    let wanted = letters(name);
+    ALL.iter()
+        .map(|scheme| (letters(scheme.name), scheme.name))
+        .map(|(known, name)| (distance(&wanted, &known), known.len(), name))
+        .filter(|(distance, length, _)| 3 * distance <= *length)
+        .min_by_key(|(distance, ..)| *distance)
+        .map(|(.., name)| name)
+}
+
+/// Letters and digits in lower case: hyphens and capitals are no difference between names.
+fn letters(name: &str) -> Vec<char> {
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// How many letters must be changed, added or left out to turn `from` into `to` (Levenshtein).
+fn distance(from: &[char], to: &[char]) -> usize {
+    // row[n]: from what has been read of `from` to the first n letters of `to`
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for letter in from {
+        let mut diagonal = row[0];
+        row[0] += 1;
+        for (n, wanted) in to.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != wanted);
+            diagonal = row[n + 1];
+            row[n + 1] = replaced.min(row[n] + 1).min(diagonal + 1);
+        }
+    }
+    row[to.len()]
+}
+
+/// Every scheme: compositions first, each family by order.
+pub const ALL: &[Scheme] = &[
+    STRANG,
+    YOSHIDA_4,
+    SUZUKI_4,
+    MCLACHLAN_4,
+    YOSHIDA_6,
+    KAHAN_LI_6,
+    SOFRONIOU_SPALETTA_6,
+    SUZUKI_UMENO_8,
+    KAHAN_LI_8,
+    SOFRONIOU_SPALETTA_8,
+    SOFRONIOU_SPALETTA_10,
+    MCLACHLAN_S5,
+    BLANES_MOAN_S6,
+    BLANES_MOAN_S10,
+    SRKN_6B,
+    SRKN_11B,
+    SRKN_14A,
+    BCE_22,
+    SABA_2,
+    SABA_3,
+    SABA_4,
+    ABA_8_4,
+    ABA_8_6_4,
+    ABA_10_6_4,
+];
