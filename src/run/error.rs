@@ -1,0 +1,75 @@
+//! Why a run could not start or go on.
+
+use thiserror::Error;
+
+use super::{CheckpointError, Sample};
+use crate::body::StateError;
+use crate::method::StepError;
+use crate::num::{Precise, Shown};
+
+/// An implicit solve that ends further than this from its equation, relative, is no solution: the invariants would be
+/// lost by as much in every step. Rounding alone leaves about 1e-16.
+pub(super) const SOLVED: f64 = 1e-13;
+
+/// Why a run could not start or go on.
+#[derive(Clone, Debug, Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The step is not usable.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// The start is not usable.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// The checkpoint is not that of this run.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// The run is further on already.
+    #[error("{asked} steps were asked for, and the run has taken {taken}; it goes forwards only")]
+    Behind {
+        /// Steps asked for.
+        asked: u64,
+        /// Steps taken.
+        taken: u64,
+    },
+    /// The next step leaves the range of numbers.
+    #[error("diverged after {} steps, t = {} s: the next state is not finite; take a smaller step or another method",
+        .last.steps, Shown(.last.time.to_f64()))]
+    Diverged {
+        /// The last finite sample.
+        last: Box<Sample>,
+    },
+    /// The state is finite in the solver frame, and in the units of the body time, momentum or energy are not.
+    #[error(
+        "after {steps} steps time, momentum or energy leave the range of a double in the units of the body; take a smaller \
+         step, or change the units"
+    )]
+    OutOfRange {
+        /// Steps taken.
+        steps: u64,
+    },
+    /// A force is not a finite number.
+    #[error(
+        "{force} is not finite at t = {} s, after {} steps; the state at t = {} s before it is finite: q = {:?}, omega_body = {:?} rad/s",
+        Shown(*.time), .last.steps, Shown(.last.time.to_f64()), .last.state.attitude.components(), .last.omega_body.as_slice()
+    )]
+    Force {
+        /// Name of the force.
+        force: String,
+        /// When it was evaluated, s.
+        time: f64,
+        /// The last finite sample.
+        last: Box<Sample>,
+    },
+    /// The equations of an implicit step could not be solved.
+    #[error(
+        "after {} steps, t = {} s, an implicit step was left with a relative residual of {residual:.1e} (at most {SOLVED:e}): \
+         it turns too far in one step; take a smaller one", .last.steps, Shown(.last.time.to_f64())
+    )]
+    Unsolved {
+        /// The sample at which it was noticed.
+        last: Box<Sample>,
+        /// The worst relative residual.
+        residual: f64,
+    },
+}

@@ -1,0 +1,313 @@
+//! One propagation of one body by one method.
+
+use std::sync::{Arc, OnceLock};
+
+use super::error::SOLVED;
+use super::{Checkpoint, RunError, Sample, Schedule, Watch, checkpoint};
+use crate::body::{Body, Clock, Point, State, StateError, Witness};
+use crate::method::{AnyMethod, Step};
+use crate::observe::{BLOCK, Errors, Invariants, Monitor};
+
+/// Steps between looks at the residual of implicit methods.
+const CHUNK: u64 = 4096;
+
+/// One propagation of one body by one method.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Conserved};
+/// use polhode::inertia::Inertia;
+/// use polhode::method::method;
+/// use polhode::run::{Run, Schedule};
+///
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let mut run = Run::new(&method("lie-poisson")?, &body, &start, 0.01)?;
+/// for sample in run.samples(Schedule::logarithmic(100_000, 2)) {
+///     let worst = sample?.worst;
+///     assert!(worst.of(Conserved::Energy).is_some_and(|error| error < 1e-6));
+///     assert!(worst.of(Conserved::MomentumNorm).is_some_and(|error| error < 1e-14));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Run {
+    body: Body,
+    method: String,
+    step: Box<dyn Step<f64>>,
+    /// The same step, whose forces are looked at one by one, and what was seen; with forces only.
+    probe: Option<(Box<dyn Step<f64>>, Witness)>,
+    clock: Clock,
+    watch: Watch,
+    start: Point<f64>,
+    point: Point<f64>,
+    monitor: Monitor,
+    residual: f64,
+    /// Whether steps have been taken that were not watched.
+    missed: bool,
+}
+
+impl Run {
+    /// Prepares `method` for `body` with the step `h` (s), from the state `start` (body axes) at t = 0.
+    ///
+    /// # Errors
+    /// A step or a start that is not usable, or a body that the method is not for.
+    pub fn new(method: &dyn AnyMethod, body: &Body, start: &State, h: f64) -> Result<Self, RunError> {
+        Run::by_clock(method, body, start, Clock::new(h))
+    }
+
+    /// As [`new`](Self::new), by the steps and from the time of `clock` on.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn by_clock(
+        method: &dyn AnyMethod,
+        body: &Body,
+        start: &State,
+        clock: Clock,
+    ) -> Result<Self, RunError> {
+        Run::from_point(method, body, body.enter(start)?.to_f64(), clock)
+    }
+
+    /// As [`by_clock`](Self::by_clock), from a point of the solver frame, whose attitude has norm 1. Steps are counted from
+    /// here, whatever the point has counted.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_point(
+        method: &dyn AnyMethod,
+        body: &Body,
+        start: Point<f64>,
+        clock: Clock,
+    ) -> Result<Self, RunError> {
+        let start = Point::new(start.attitude, start.momentum_body);
+        if let Some(&value) =
+            start.attitude.components().iter().chain(&start.momentum_body.0).find(|x| !x.is_finite())
+        {
+            return Err(StateError::NotFinite { quantity: "the start", value }.into());
+        }
+        let probe = if body.forces().is_empty() {
+            None
+        } else {
+            let witness = Arc::new(OnceLock::new());
+            let watched = body.witnessed(Arc::clone(&witness));
+            Some((method.prepare_f64(clock, &watched)?, witness))
+        };
+        Ok(Run {
+            step: method.prepare_f64(clock, body)?,
+            method: method.name(),
+            probe,
+            monitor: Monitor::new(body, clock, &start),
+            body: body.clone(),
+            clock,
+            watch: Watch::default(),
+            start,
+            point: start,
+            residual: 0.0,
+            missed: false,
+        })
+    }
+
+    /// The same run, watched as `watch` says from here on.
+    #[must_use]
+    pub fn watching(mut self, watch: Watch) -> Self {
+        self.watch = watch;
+        self
+    }
+
+    /// The run as it stands, to be written down.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::body::Body;
+    /// use polhode::inertia::Inertia;
+    /// use polhode::method::method;
+    /// use polhode::run::Run;
+    /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+    /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+    /// let rattle = method("rattle")?;
+    /// let mut straight = Run::new(&rattle, &body, &start, 0.01)?;
+    /// straight.advance_to(1000)?;
+    /// let text = straight.checkpoint().to_string();
+    /// let mut resumed = Run::resume(&rattle, &body, &text.parse()?)?;
+    /// assert_eq!(resumed.advance_to(2000)?.state, straight.advance_to(2000)?.state);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            method: self.method.escape_debug().to_string(),
+            body: checkpoint::identity(&self.body, self.clock, &self.start),
+            clock: self.clock,
+            watch: self.watch,
+            start: self.start,
+            point: self.point,
+            memory: self.monitor.memory(),
+            residual: self.worst_residual(),
+            missed: self.missed,
+        }
+    }
+
+    /// Takes up the run of `checkpoint`: it goes on as if it had not been interrupted, bit for bit.
+    ///
+    /// # Errors
+    /// A method or a body that is not that of the run.
+    pub fn resume(method: &dyn AnyMethod, body: &Body, checkpoint: &Checkpoint) -> Result<Self, RunError> {
+        checkpoint.check(&method.name(), body)?;
+        let mut run = Run::from_point(method, body, checkpoint.start, checkpoint.clock)?;
+        run.watch = checkpoint.watch;
+        run.point = checkpoint.point;
+        run.monitor.remember(checkpoint.memory);
+        run.residual = checkpoint.residual;
+        run.missed = checkpoint.missed;
+        Ok(run)
+    }
+
+    /// The start in the solver frame, the doubles that are integrated: what an exact reference has to start from.
+    pub fn start(&self) -> Point<f64> {
+        self.start
+    }
+
+    /// Goes on to `steps` steps from the start and looks at the state there.
+    ///
+    /// # Errors
+    /// [`RunError::Diverged`] and [`RunError::Force`] with the last finite sample; [`RunError::Unsolved`] with the sample at
+    /// which it was noticed, up to 4096 steps after the step that failed; [`RunError::OutOfRange`];
+    /// [`RunError::Behind`] where the run is further on already.
+    pub fn advance_to(&mut self, steps: u64) -> Result<Sample, RunError> {
+        let taken = self.point.steps();
+        if steps < taken {
+            return Err(RunError::Behind { asked: steps, taken });
+        }
+        loop {
+            let residual = self.worst_residual();
+            if residual > SOLVED {
+                return Err(match self.finite_sample() {
+                    Ok(last) => RunError::Unsolved { last, residual },
+                    Err(error) => error,
+                });
+            }
+            if self.point.steps() >= steps {
+                break;
+            }
+            let wanted = CHUNK.min(steps - self.point.steps());
+            let finite = match self.watch {
+                Watch::EveryStep => self.watched(wanted),
+                Watch::AtSamples | Watch::Never => self.unwatched(wanted),
+            };
+            if !finite && self.worst_residual() <= SOLVED {
+                return Err(self.broken());
+            }
+        }
+        if self.watch == Watch::AtSamples && self.monitor.observe(&[self.point]) == 0 {
+            return Err(self.broken());
+        }
+        self.finite_sample().map(|sample| *sample)
+    }
+
+    /// The run as it stands, if that is finite in the units of the body.
+    fn finite_sample(&self) -> Result<Box<Sample>, RunError> {
+        let sample = self.sample();
+        if sample.is_finite() {
+            Ok(Box::new(sample))
+        } else {
+            Err(RunError::OutOfRange { steps: sample.steps })
+        }
+    }
+
+    /// Takes `wanted` steps and looks at each; false, and the run at the last finite point, if one is not finite.
+    fn watched(&mut self, mut wanted: u64) -> bool {
+        let mut block = [self.point; BLOCK];
+        while wanted > 0 {
+            let before = self.point;
+            let block = &mut block[..wanted.min(BLOCK as u64) as usize];
+            self.step.fill(&mut self.point, block);
+            let finite = self.monitor.observe(block);
+            if finite < block.len() {
+                self.point = if finite == 0 { before } else { block[finite - 1] };
+                return false;
+            }
+            wanted -= block.len() as u64;
+        }
+        true
+    }
+
+    /// Takes `wanted` steps; false, and the run at the last finite point, if one is not finite.
+    fn unwatched(&mut self, wanted: u64) -> bool {
+        let before = self.point;
+        self.missed = true;
+        self.step.steps(&mut self.point, wanted);
+        if self.point.is_finite() {
+            return true;
+        }
+        self.point = before;
+        for _ in 0..wanted {
+            let mut next = self.point;
+            self.step.step(&mut next);
+            if !next.is_finite() {
+                break;
+            }
+            self.point = next;
+        }
+        false
+    }
+
+    /// Why the next step is not finite.
+    fn broken(&mut self) -> RunError {
+        let last = match self.finite_sample() {
+            Ok(last) => last,
+            Err(error) => return error,
+        };
+        if let Some((step, witness)) = &mut self.probe {
+            let mut next = self.point;
+            step.step(&mut next);
+            if let Some(failure) = witness.get() {
+                return RunError::Force { force: failure.force.clone(), time: failure.time, last };
+            }
+            let at = self.clock.at(next.steps());
+            if let Some(force) = self.body.force_without_energy(at, &next.to_dd()) {
+                return RunError::Force { force: force.into(), time: at.seconds(), last };
+            }
+        }
+        RunError::Diverged { last }
+    }
+
+    fn worst_residual(&self) -> f64 {
+        self.residual.max(self.step.worst_residual())
+    }
+
+    /// Samples at the steps of `schedule`, skipping those before the current step; ends after the first error.
+    pub fn samples(&mut self, schedule: Schedule) -> impl Iterator<Item = Result<Sample, RunError>> {
+        let mut failed = false;
+        let taken = self.point.steps();
+        schedule.into_iter().filter(move |steps| *steps >= taken).map_while(move |steps| {
+            if failed {
+                return None;
+            }
+            let sample = self.advance_to(steps);
+            failed = sample.is_err();
+            Some(sample)
+        })
+    }
+
+    /// The run as it stands.
+    pub fn sample(&self) -> Sample {
+        let at = self.clock.at(self.point.steps());
+        let invariants = Invariants::of(&self.body, at, &self.point);
+        let scale = self.body.scale();
+        let watched = self.watch == Watch::EveryStep && !self.missed;
+        Sample {
+            steps: self.point.steps(),
+            elapsed: self.clock.elapsed(self.point.steps()),
+            time: at.dd(),
+            state: self.body.leave(&self.point),
+            point: self.point,
+            omega_body: self.body.omega_of(&self.point),
+            energy: invariants.energy.hi() * scale,
+            momentum: invariants.momentum().hi() * scale,
+            energy_change: self.monitor.energy_change(&self.point),
+            errors: self.monitor.errors(&self.point),
+            worst: if self.watch == Watch::Never { Errors::NONE } else { self.monitor.worst() },
+            watch: self.watch,
+            flips: watched.then(|| self.monitor.flips()),
+        }
+    }
+}

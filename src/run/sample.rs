@@ -1,0 +1,76 @@
+//! What a run shows of itself: how often it is looked at, and what is seen.
+
+use core::fmt;
+
+use nalgebra::Vector3;
+
+use crate::body::{Point, State};
+use crate::num::Dd;
+use crate::observe::Errors;
+
+/// How often the largest errors of a run are looked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Watch {
+    /// At every step.
+    #[default]
+    EveryStep,
+    /// At samples alone: [`Sample::worst`] is the largest over them, and flips are not counted.
+    AtSamples,
+    /// Not at all: a step costs what the bare method costs. [`Sample::errors`] is still that of the sample.
+    Never,
+}
+
+impl fmt::Display for Watch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Watch::EveryStep => "every-step",
+            Watch::AtSamples => "at-samples",
+            Watch::Never => "never",
+        })
+    }
+}
+
+/// A run as it stands after a number of steps.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Sample {
+    /// Steps taken.
+    pub steps: u64,
+    /// Time since the start, steps · h, s: exact.
+    pub elapsed: Dd,
+    /// Time, s: that of the start and what has elapsed since.
+    pub time: Dd,
+    /// Attitude and momentum, body axes.
+    pub state: State,
+    /// The same in the solver frame, as it was integrated.
+    pub point: Point<f64>,
+    /// Angular velocity in body axes, rad/s.
+    pub omega_body: Vector3<f64>,
+    /// Kinetic and potential energy, J.
+    pub energy: f64,
+    /// |m|, kg m²/s.
+    pub momentum: f64,
+    /// (E − E₀) / E₀ of this state, with its sign; with forces relative to the scale of [`Errors`].
+    pub energy_change: f64,
+    /// Errors of this state.
+    pub errors: Errors,
+    /// The largest errors of what was watched so far; `None` each while nothing is watched.
+    pub worst: Errors,
+    /// How often the errors were looked for.
+    pub watch: Watch,
+    /// How often the momentum along the axis of the middle moment has changed sign so far, where every step was watched.
+    pub flips: Option<u64>,
+}
+
+impl Sample {
+    /// Whether state, readings and errors are finite numbers in the units of the body.
+    pub(super) fn is_finite(&self) -> bool {
+        self.state.is_finite()
+            && self.time.hi().is_finite()
+            && self.energy.is_finite()
+            && self.momentum.is_finite()
+            && self.energy_change.is_finite()
+            && self.errors.is_finite()
+            && self.omega_body.iter().all(|w| w.is_finite())
+    }
+}
