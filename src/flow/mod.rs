@@ -1,30 +1,19 @@
 //! Exact flows: the atoms that splitting methods are composed of, and the references they are judged by.
 
 mod casimir;
-mod character;
-mod circulation;
-mod complex;
 mod exact_motion;
-mod free_body;
-mod free_flow;
+mod free;
 mod kick;
-mod lagrange_top;
-mod nutation;
-mod phase;
-mod polhode;
-mod short_flow;
-mod symmetric_top;
-mod theta;
+mod lagrange;
+mod reach;
 mod turn;
 
 pub use casimir::Casimir;
-pub use character::{AtRest, Character, Mode};
 pub use exact_motion::{ExactMotion, NoClosedForm};
-pub use free_body::{FreeBody, FreeMotion, TimeError};
-pub use free_flow::FreeFlow;
+pub use free::{AtRest, Character, FreeBody, FreeFlow, FreeMotion, Mode, SymmetricTop};
 pub use kick::Kick;
-pub use lagrange_top::{LagrangeError, LagrangeTop};
-pub use symmetric_top::SymmetricTop;
+pub use lagrange::{LagrangeError, LagrangeTop};
+pub use reach::TimeError;
 pub use turn::{AxisTurn, turn};
 
 use crate::body::{Point, Time};

@@ -10,6 +10,7 @@
 //! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
 //! same input gives the same bits on every CPU and at every optimisation level.
 
+pub(crate) mod complex;
 pub mod dd;
 pub mod elliptic;
 pub mod expansion;

@@ -1,8 +1,8 @@
-"""Writes coefficients.csv and prints the lists of src/method/schemes.rs.
+"""Writes coefficients.csv and prints the lists of src/method/schemes.
 
     python3 tests/data/schemes/generate.py        (python 3.11, mpmath 1.3)
 
-Coefficients are the printed digits of the sources named in schemes.rs, or are computed here with 40 digits where a
+Coefficients are the printed digits of the sources named there, or are computed here with 40 digits where a
 closed form or as many conditions as unknowns define them. Only the part of the first half that the sums leave free
 is listed. Each coefficient is rounded to a multiple of 2^-104, so that a double-double number holds every sum of
 coefficients exactly; that changes none by more than 2.5e-32.

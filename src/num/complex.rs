@@ -2,40 +2,40 @@
 
 use core::ops::{Add, Mul};
 
-use crate::num::Real;
+use super::Real;
 
 /// `re + i im`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Complex<S> {
-    pub(super) re: S,
-    pub(super) im: S,
+pub(crate) struct Complex<S> {
+    pub(crate) re: S,
+    pub(crate) im: S,
 }
 
 impl<S: Real> Complex<S> {
-    pub(super) fn new(re: S, im: S) -> Self {
+    pub(crate) fn new(re: S, im: S) -> Self {
         Complex { re, im }
     }
 
     /// e^{iφ}.
-    pub(super) fn phase(angle: S) -> Self {
+    pub(crate) fn phase(angle: S) -> Self {
         let (sin, cos) = angle.sin_cos();
         Complex::new(cos, sin)
     }
 
-    pub(super) fn conjugate(self) -> Self {
+    pub(crate) fn conjugate(self) -> Self {
         Complex::new(self.re, -self.im)
     }
 
-    pub(super) fn norm_squared(self) -> S {
+    pub(crate) fn norm_squared(self) -> S {
         self.re * self.re + self.im * self.im
     }
 
-    pub(super) fn scaled(self, k: S) -> Self {
+    pub(crate) fn scaled(self, k: S) -> Self {
         Complex::new(self.re * k, self.im * k)
     }
 
     /// 1 / conjugate: `self / |self|²`.
-    pub(super) fn inverse_conjugate(self) -> Self {
+    pub(crate) fn inverse_conjugate(self) -> Self {
         self.scaled(S::of(1.0) / self.norm_squared())
     }
 }

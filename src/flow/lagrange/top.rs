@@ -3,11 +3,10 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use super::TimeError;
-use super::free_body::MOST_RADIANS;
-use super::nutation::{Nutation, cast};
-use super::phase::reduce;
+use super::nutation::Nutation;
 use crate::body::{Body, Point, State, StateError};
+use crate::flow::free::reduce;
+use crate::flow::reach::{MOST_RADIANS, TimeError};
 use crate::num::{Dd, Precise, Real, Shown};
 use crate::rotation::{Quat, Vec3};
 
@@ -175,7 +174,7 @@ impl LagrangeTop {
                 return Err(LagrangeError::Upright { tilt });
             }
             let unit = -libm::ilogb(fastest);
-            let omega = Vec3(omega.0.map(|rate| rate.scaled(unit)));
+            let omega = omega.map(|rate| rate.scaled(unit));
             let nutation = Box::new(Nutation::new(b.scaled(2 * unit), attitude, omega));
             Motion::Nutating { nutation, unit }
         };
@@ -226,23 +225,23 @@ impl LagrangeTop {
     fn evaluate<S: Precise>(&self, t: Dd) -> Point<S> {
         let m3 = self.start.momentum_body[2];
         let turn = |rate: Dd| {
-            let (sin, cos) = cast::<S>(reduce(rate * t, Dd::TAU * 2.0) * Dd::of(0.5)).sin_cos();
+            let (sin, cos) = S::from_dd(reduce(rate * t, Dd::TAU * 2.0) * Dd::of(0.5)).sin_cos();
             Quat::new(cos, Vec3::unit(2) * sin)
         };
         let (attitude, momentum) = match &self.motion {
             Motion::Vertical => {
-                let q = Quat::from_components(self.start.attitude.components().map(S::from_dd));
-                (q * turn(m3 / self.axial), Vec3(self.start.momentum_body.0.map(S::from_dd)))
+                let q = self.start.attitude.map(S::from_dd);
+                (q * turn(m3 / self.axial), self.start.momentum_body.map(S::from_dd))
             }
             Motion::Nutating { nutation, unit } => {
                 let spin = turn(m3 / self.axial - m3 / self.transverse);
                 let (q, q_rate) = nutation.at::<S>(t.scaled(-unit));
-                let mut m = (q.conjugate() * q_rate).v * cast::<S>((self.transverse * 2.0).scaled(-unit));
-                m[2] = cast(m3);
+                let mut m = (q.conjugate() * q_rate).v * S::from_dd((self.transverse * 2.0).scaled(-unit));
+                m[2] = S::from_dd(m3);
                 (q * spin, spin.rotate_back(m))
             }
         };
-        let frame = Quat::from_components(self.frame.components().map(S::from_dd));
+        let frame = self.frame.map(S::from_dd);
         Point::new(attitude * frame.conjugate(), frame.rotate(momentum))
     }
 

@@ -1,8 +1,9 @@
 //! The free flow of any body in steps of any length, with what rounding takes given back.
 
 use super::short_flow::ShortFlow;
-use super::{Flow, FreeBody, SymmetricTop};
+use super::{FreeBody, SymmetricTop};
 use crate::body::{Point, Rotor, Time};
+use crate::flow::Flow;
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 

@@ -1,7 +1,7 @@
 //! The free symmetric top: two turns.
 
-use super::{AxisTurn, Casimir, Flow};
 use crate::body::{Point, Rotor, Time};
+use crate::flow::{AxisTurn, Casimir, Flow};
 use crate::num::{Dd, Real};
 
 /// The exact flow of the free symmetric body, `T = |m|²/(2A) + ½ (1/C − 1/A) m_k²`.

@@ -79,7 +79,13 @@ pub(super) fn turn<S: Precise>(axis: Vec3<S>, angle: S) -> Quat<S> {
     Quat::new(cos, axis * sin)
 }
 
+/// Axis and rate of a turn about a momentum that stays fixed in the body: ω is parallel to m.
+pub(super) fn steady<S: Precise>(moments: Vec3<S>, m: Vec3<S>, norm: S) -> (Vec3<S>, S) {
+    let omega = Vec3([m[0] / moments[0], m[1] / moments[1], m[2] / moments[2]]);
+    (m * (S::of(1.0) / norm), m.dot(omega) / norm)
+}
+
 /// `x` less the nearest multiple of `period`.
-pub(super) fn reduce<S: Precise>(x: S, period: S) -> S {
+pub(in crate::flow) fn reduce<S: Precise>(x: S, period: S) -> S {
     x - (x / period).round() * period
 }

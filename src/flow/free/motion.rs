@@ -1,17 +1,16 @@
-//! The free rigid body: its motion at any time, and the same as a flow for splittings.
-
-use nalgebra::{UnitQuaternion, Vector3};
-use thiserror::Error;
+//! The motion of the free rigid body at any time.
 
 use std::sync::OnceLock;
 
-use super::Flow;
+use nalgebra::{UnitQuaternion, Vector3};
+
 use super::character::{AtRest, Character};
 use super::circulation::Circulation;
-use super::phase::{Spin, turn};
-use super::polhode::{Polhode, ascending, exact_separation, rounded_separation};
+use super::phase::{Spin, steady};
+use super::polhode::{Polhode, ascending, exact_separation};
 use super::theta::Theta;
-use crate::body::{Body, Phase, Point, Rotor, State, StateError, Time};
+use crate::body::{Body, Point, State, StateError};
+use crate::flow::reach::{MOST_RADIANS, TimeError};
 use crate::inertia::Inertia;
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};
@@ -37,31 +36,6 @@ pub struct FreeMotion {
     kind: Kind,
     reach: f64,
 }
-
-/// Why there is no state at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum TimeError {
-    /// The time is not a number.
-    #[error("time {t} s is not a finite number")]
-    NotFinite {
-        /// The time, s.
-        t: f64,
-    },
-    /// The phase has lost its digits.
-    #[error(
-        "after {t:e} s the phase has no digits left: it is known to 106 bits, and the body has turned \
-         further than 2^96 rad; times up to {reach:e} s can be answered"
-    )]
-    OutOfReach {
-        /// The time, s.
-        t: f64,
-        /// The largest time that has an answer, s.
-        reach: f64,
-    },
-}
-
-/// Of the 106 bits of a phase in rad, ten are to be left after the whole turns.
-pub(super) const MOST_RADIANS: f64 = 79_228_162_514_264_337_593_543_950_336.0; // 2⁹⁶
 
 /// What becomes of the momentum in the body.
 #[derive(Clone, Debug)]
@@ -236,55 +210,5 @@ impl FreeMotion {
             Kind::Rest => (Quat::identity(), Vec3::zero()),
         };
         Point::new(self.start.attitude * turn, momentum_body)
-    }
-}
-
-/// Axis and rate of a turn about a momentum that stays fixed in the body: ω is parallel to m.
-fn steady<S: Precise>(moments: Vec3<S>, m: Vec3<S>, norm: S) -> (Vec3<S>, S) {
-    let omega = Vec3([m[0] / moments[0], m[1] / moments[1], m[2] / moments[2]]);
-    (m * (S::of(1.0) / norm), m.dot(omega) / norm)
-}
-
-/// The exact flow of the free body, set up anew from the state at each call, in the state's own scalar.
-///
-/// The drift between the kicks of a splitting. Only products and differences of `S` go into it: in `f64` a turn of
-/// one radian is good to 4e-14 rad; next to the unstable axis, where the phase is as long as the logarithm of the distance,
-/// to 2e-13 rad.
-#[derive(Clone, Copy, Debug)]
-pub struct FreeBody<S> {
-    moments: Vec3<S>,
-}
-
-impl<S: Precise> FreeBody<S> {
-    /// The free flow of a body with the constants `rotor`.
-    pub fn new(rotor: &Rotor) -> Self {
-        FreeBody { moments: rotor.moments() }
-    }
-}
-
-impl<S: Precise> Flow<S> for FreeBody<S> {
-    fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
-        let (i, m) = (self.moments, x.momentum_body);
-        let norm = m.norm();
-        if norm == S::of(0.0) {
-            return;
-        }
-        if !norm.magnitude().is_finite() {
-            // no motion can be told: a run sees it diverge
-            x.set_phase(Phase { attitude: x.attitude * S::of(f64::NAN), momentum_body: m });
-            return;
-        }
-        let (turn, momentum_body) = match Polhode::of(i, m, norm, rounded_separation(i, m)) {
-            Some(polhode) => {
-                let circulation = Circulation::of(polhode, m);
-                let near = circulation.is_near(t);
-                if near { circulation.at(t) } else { circulation.with_period().at(t) }
-            }
-            None => {
-                let (axis, rate) = steady(i, m, norm);
-                (turn(axis, rate * t), m)
-            }
-        };
-        x.set_phase(Phase { attitude: x.attitude * turn, momentum_body });
     }
 }

@@ -18,8 +18,9 @@
 //! part that jumps there is taken out of the integral (DLMF 19.7.9): its arc tangent multiplies with |α| to something
 //! linear in sn, cn and dn, and what remains in the integral is smooth.
 
-use super::complex::Complex;
-use super::phase::reduce;
+use super::cubic::Start;
+use crate::flow::free::reduce;
+use crate::num::complex::Complex;
 use crate::num::elliptic::{Modulus, incomplete, r_j};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
@@ -63,131 +64,17 @@ struct Moving<T> {
     rate: Complex<T>,
 }
 
-/// Constants of the ball and, at the start, x, y, u' and the squared transverse angular velocity.
-struct Start {
-    b: Dd,
-    a: Dd,
-    e: Dd,
-    d: Dd,
-    x: Dd,
-    y: Dd,
-    u_rate: Dd,
-    transverse: Dd,
-}
-
-impl Start {
-    /// Of the attitude q and the angular velocity ω of the ball, both with e₃ along the weight moment.
-    fn of(b: Dd, q: Quat<Dd>, omega: Vec3<Dd>) -> Self {
-        let (w, Vec3([x, y, z])) = (q.w, q.v);
-        let [w1, w2, a] = omega.0;
-        let two = Dd::of(2.0);
-        let gamma = [two * (x * z - w * y), two * (y * z + w * x)];
-        let along = w1 * gamma[0] + w2 * gamma[1];
-        let (upper, lower) = (two * (w * w + z * z), two * (x * x + y * y));
-        Start {
-            b,
-            a,
-            e: along + a * upper,
-            d: along - a * lower,
-            x: upper,
-            y: lower,
-            u_rate: gamma[0] * w2 - gamma[1] * w1,
-            transverse: w1 * w1 + w2 * w2,
-        }
-    }
-
-    /// x₁, x₂, x₃, y₁, y₂ and w₃. Where x₁ or y₂ vanishes, the axis passes through the vertical: their products with
-    /// the others, e²/b and d²/b, give them to their own precision.
-    fn zeros(&self) -> ([Dd; 3], [Dd; 2], Dd) {
-        let ([_, x2, x3], [y1, y2], w3) = self.separated_zeros();
-        let x1 = self.e * self.e / (self.b * x2 * x3);
-        let y2 = if y2 < w3 {
-            // by a power of two clear of the end of the range, where d² is not
-            let n = exponent(w3);
-            let (d, w3) = (self.d.scaled(-n), w3.scaled(-n));
-            (d * d / (self.b * y1 * w3)).scaled(n)
-        } else {
-            y2
-        };
-        ([x1, x2, x3], [y1, y2], w3)
-    }
-
-    /// The same from the quadratic that is left when the best separated zero is divided out.
-    fn separated_zeros(&self) -> ([Dd; 3], [Dd; 2], Dd) {
-        let Start { b, a, e, d, x, y, transverse, .. } = *self;
-        let two = Dd::of(2.0);
-        // b y³ − p2 y² − p1 y + d² has the zeros y₁, y₂, −w₃
-        let (p2, p1) = (two * b - (transverse - b * y) - a * a, two * (transverse - b * y) - two * a * d);
-        let v = largest_zero([p2, -(b * p1), -(b * b * d * d)]);
-        let y1 = largest_zero([-(p2 / b), -(p1 / b), d * d / b]);
-        let y1 = if y1 > two { two } else { y1 };
-        let y2 = p2 / b - y1 + v / b;
-        if v + b * two * y2 < b * y1 {
-            // u₂ and u₃ are the close pair
-            let half_difference = (d * d / y1 - p1) / (b * y1 * two); // (y₂ − w₃)/2
-            let n = exponent(if half_difference.abs() > d.abs() { half_difference } else { d });
-            let scaled = d.scaled(-n);
-            let product = scaled * scaled / (b * y1);
-            let (y2, w3) = pair(half_difference.scaled(-n), product);
-            let (y2, w3) = (y2.scaled(n), w3.scaled(n));
-            return ([two - y1, two - y2, two + w3], [y1, y2], w3);
-        }
-        if y < x {
-            // sum and product of y₁ and y₂, each from the coefficients that do not cancel
-            let (y1, y2) = if v < b * y1 {
-                let sum = (p2 + v) / b;
-                ordered(sum, (v * sum - p1) / b)
-            } else {
-                ordered((p1 + b * d * d / v) / v, d * d / v)
-            };
-            return ([two - y1, two - y2, two + v / b], [y1, y2], v / b);
-        }
-        // the same in x, where it is the small one: b x³ − q2 x² + q1 x − e² with the zeros x₁, x₂, x₃
-        let energy = transverse + b * x;
-        let (q2, q1) = (two * b + energy + a * a, two * energy + two * a * e);
-        let v = largest_zero([-q2, b * q1, -(b * b * e * e)]);
-        let (x2, x1) = ordered((q1 - b * e * e / v) / v, e * e / v);
-        ([x1, x2, v / b], [two - x1, two - x2], v / b - two)
-    }
-}
-
-/// n of the power 2ⁿ next below |x|; 0 for 0.
-fn exponent(x: Dd) -> i32 {
-    if x.hi() == 0.0 { 0 } else { libm::ilogb(x.magnitude()) }
-}
-
-/// The larger and the smaller zero of z² − sum z + product, both real and not negative.
-fn ordered(sum: Dd, product: Dd) -> (Dd, Dd) {
-    let half = sum * Dd::of(0.5);
-    let square = half * half - product;
-    let root = if square > Dd::ZERO { square.sqrt() } else { Dd::ZERO };
-    let larger = half + root;
-    if root.hi() == 0.0 { (half, half) } else { (larger, product / larger) }
-}
-
-/// y and w, not negative, with (y − w)/2 and y w given.
-fn pair(half_difference: Dd, product: Dd) -> (Dd, Dd) {
-    let size = half_difference.abs() + (half_difference * half_difference + product).sqrt();
-    let other = if size.hi() == 0.0 { Dd::ZERO } else { product / size };
-    if half_difference < Dd::ZERO { (other, size) } else { (size, other) }
-}
-
-/// The largest zero of z³ + p z² + q z + r, all three real: Newton from above comes down to it.
-fn largest_zero([p, q, r]: [Dd; 3]) -> Dd {
-    let bound = p.magnitude().max(q.magnitude().sqrt()).max(libm::cbrt(r.magnitude()));
-    let mut z = Dd::of(2.0 * bound);
-    // a triple zero takes two thirds of the way a step
-    for _ in 0..200 {
-        let value = ((z + p) * z + q) * z + r;
-        let slope = (z * Dd::of(3.0) + p * Dd::of(2.0)) * z + q;
-        let next = z - value / slope;
-        if next < z {
-            z = next;
-        } else {
-            break;
-        }
-    }
-    z
+/// `phase · value / √(2m)`, the form of a parameter that may come close to 0; derivatives in the elliptic argument.
+struct Quotient<T> {
+    /// e^{iJ} of the smooth phase J.
+    phase: Complex<T>,
+    /// J'.
+    phase_rate: T,
+    value: Complex<T>,
+    derivative: Complex<T>,
+    m: T,
+    /// Of m' = 2 n sn cn dn.
+    n: T,
 }
 
 impl Nutation {
@@ -260,7 +147,7 @@ impl Nutation {
     /// q and q' at time `t`.
     pub(super) fn at<T: Precise>(&self, t: Dd) -> (Quat<T>, Quat<T>) {
         let (alpha, beta) = self.parameters::<T>(t);
-        let lacking = |z: Complex<Dd>| Complex::new(cast::<T>(z.re), cast(z.im));
+        let lacking = |z: Complex<Dd>| Complex::new(T::from_dd(z.re), T::from_dd(z.im));
         let (alpha_start, beta_start) = (lacking(self.alpha_start), lacking(self.beta_start));
         let join = |alpha: Complex<T>, beta: Complex<T>| {
             let (alpha, beta) = (alpha * alpha_start, beta * beta_start);
@@ -299,9 +186,9 @@ impl Nutation {
     /// α and β without the phases of the start.
     fn parameters<T: Precise>(&self, t: Dd) -> (Moving<T>, Moving<T>) {
         let tau = self.phase + self.rate * t;
-        let modulus = Modulus::<T>::new(cast(self.complement));
+        let modulus = Modulus::<T>::new(T::from_dd(self.complement));
         let evaluate = |u: Dd| {
-            let (sn, cn, dn) = modulus.sn_cn_dn(cast(u));
+            let (sn, cn, dn) = modulus.sn_cn_dn(T::from_dd(u));
             Jacobi { u, sn, cn, dn }
         };
         let Some(half) = self.half else {
@@ -316,7 +203,7 @@ impl Nutation {
         // a quarter period on or back: sn → ±cd, cn → ∓k' sd, dn → k' nd
         let k = modulus.complementary_modulus();
         let quarter = |f: Jacobi<T>, u: Dd, side: Dd| {
-            let side = cast::<T>(side);
+            let side = T::from_dd(side);
             Jacobi { u, sn: side * f.cn / f.dn, cn: -(side * k * f.sn / f.dn), dn: k / f.dn }
         };
         let (from_lowest, from_highest) = if tau.abs() < sigma.abs() {
@@ -329,7 +216,7 @@ impl Nutation {
         let advanced = |f: Moving<T>, sign: Dd, advance: Dd, periods: Dd, jumps: bool| {
             let odd = jumps && periods.rem_euclid(2.0) != 0.0;
             let angle = reduce(sign_of(sign) * advance * periods, Dd::TAU);
-            let turn = Complex::phase(cast::<T>(angle)).scaled(T::of(if odd { -1.0 } else { 1.0 }));
+            let turn = Complex::phase(T::from_dd(angle)).scaled(T::of(if odd { -1.0 } else { 1.0 }));
             Moving { value: f.value * turn, rate: f.rate * turn }
         };
         (
@@ -353,10 +240,10 @@ impl Nutation {
         let [x1, x2, x3] = self.x;
         let rate = self.e.abs() / (self.rate * Dd::of(2.0));
         if self.alpha_jumps() {
-            cast::<T>(rate / (x3 - x1)) * self.third_kind(f, x1 / (x3 - x1))
+            T::from_dd(rate / (x3 - x1)) * self.third_kind(f, x1 / (x3 - x1))
         } else {
             let n = (x2 - x1) / x1;
-            cast::<T>(rate / x1) * (cast::<T>(f.u) - cast::<T>(n) * self.third_kind(f, n))
+            T::from_dd(rate / x1) * (T::from_dd(f.u) - T::from_dd(n) * self.third_kind(f, n))
         }
     }
 
@@ -368,7 +255,7 @@ impl Nutation {
             return self.alpha_phase(f);
         }
         let (sn, cn, dn) = Modulus::new(self.complement).sn_cn_dn(f.u);
-        cast(reduce(self.alpha_phase(Jacobi { u: f.u, sn, cn, dn }), Dd::TAU))
+        T::from_dd(reduce(self.alpha_phase(Jacobi { u: f.u, sn, cn, dn }), Dd::TAU))
     }
 
     /// The smooth part of |arg β|, an odd function of σ.
@@ -380,118 +267,104 @@ impl Nutation {
         }
         if self.beta_jumps() {
             let r = y2 / w3;
-            cast::<T>(-(rate / w3)) * (cast::<T>(f.u) - cast::<T>(Dd::ONE + r) * self.third_kind(f, r))
+            T::from_dd(-(rate / w3)) * (T::from_dd(f.u) - T::from_dd(Dd::ONE + r) * self.third_kind(f, r))
         } else {
             let n = self.parameter * w3 / y2;
-            cast::<T>(rate / y2) * (cast::<T>(f.u) - cast::<T>(self.parameter + n) * self.third_kind(f, n))
+            T::from_dd(rate / y2) * (T::from_dd(f.u) - T::from_dd(self.parameter + n) * self.third_kind(f, n))
         }
     }
 
     /// ∫ sn²/(1 + n sn²) from 0, n ≥ 0.
     fn third_kind<T: Precise>(&self, f: Jacobi<T>, n: Dd) -> T {
-        let (one, n) = (T::of(1.0), cast::<T>(n));
+        let (one, n) = (T::of(1.0), T::from_dd(n));
         if self.half.is_none() {
             // sn = tanh
             let root = n.sqrt();
             let arc = if root.magnitude() == 0.0 { f.sn } else { (root * f.sn).atan2(one) / root };
-            return (cast::<T>(f.u) - arc) / (one + n);
+            return (T::from_dd(f.u) - arc) / (one + n);
         }
         let s2 = f.sn * f.sn;
         f.sn * s2 * r_j(f.cn * f.cn, f.dn * f.dn, one, one + n * s2) / T::of(3.0)
     }
 
     fn alpha<T: Precise>(&self, f: Jacobi<T>) -> Moving<T> {
-        let sign = cast::<T>(sign_of(self.e));
+        let sign = T::from_dd(sign_of(self.e));
         let phase = Complex::phase(sign * self.alpha_angle(f));
         let [x1, x2, x3] = self.x;
         let Jacobi { sn, cn, dn, .. } = f;
         if !self.alpha_jumps() {
-            let x = cast::<T>(x1) + cast::<T>(self.span) * sn * sn;
+            let x = T::from_dd(x1) + T::from_dd(self.span) * sn * sn;
             return self.bounded(phase.scaled((x * T::of(0.5)).sqrt()), self.u_rate(f), self.e);
         }
         // α = e^{iJ} (√(x₁(x₃ − x₁)) cn dn ± i √(x₂x₃) sn) / √(2M), M = x₃ − x₁ + x₁ sn²
-        let (p, q) = (cast::<T>((x1 * (x3 - x1)).sqrt()), sign * cast((x2 * x3).sqrt()));
-        let x1 = cast::<T>(x1);
-        let m = cast::<T>(x3 - self.x[0]) + x1 * sn * sn;
+        let (p, q) = (T::from_dd((x1 * (x3 - x1)).sqrt()), sign * T::from_dd((x2 * x3).sqrt()));
+        let x1 = T::from_dd(x1);
+        let m = T::from_dd(x3 - self.x[0]) + x1 * sn * sn;
         let value = Complex::new(p * cn * dn, q * sn);
-        let k2 = cast::<T>(self.parameter);
+        let k2 = T::from_dd(self.parameter);
         let derivative = Complex::new(-(p * sn * (dn * dn + k2 * cn * cn)), q * cn * dn);
-        let phase_rate = sign * cast::<T>(self.e.abs() / (self.rate * Dd::of(2.0))) * sn * sn / m;
-        self.quotient(phase, value, derivative, phase_rate, x1, m, f)
+        let phase_rate = sign * T::from_dd(self.e.abs() / (self.rate * Dd::of(2.0))) * sn * sn / m;
+        self.quotient(Quotient { phase, phase_rate, value, derivative, m, n: x1 }, f)
     }
 
     fn beta<T: Precise>(&self, f: Jacobi<T>) -> Moving<T> {
-        let sign = cast::<T>(sign_of(self.d));
+        let sign = T::from_dd(sign_of(self.d));
         let phase = Complex::phase(sign * self.beta_phase(f));
         let ([y1, y2], w3) = (self.y, self.w3);
         let Jacobi { sn, cn, dn, .. } = f;
         if !self.beta_jumps() {
-            let y = (cast::<T>(y2) + cast::<T>(self.parameter * w3) * sn * sn) * T::of(0.5);
+            let y = (T::from_dd(y2) + T::from_dd(self.parameter * w3) * sn * sn) * T::of(0.5);
             return self.bounded(phase.scaled(y.sqrt() / dn), self.u_rate_from_highest(f), self.d);
         }
         // β = e^{iJ} (√y₂ cn ± i √(y₁w₃/(u₃ − u₁)) (1 + r) sd) / √(2M), M = 1 + r sn², r = y₂/w₃
         let between = y1 + w3;
         let r = y2 / w3;
-        let p = cast::<T>(y2.sqrt());
-        let q = sign * cast((y1 * w3 / between).sqrt() * (Dd::ONE + r));
-        let m = T::of(1.0) + cast::<T>(r) * sn * sn;
+        let p = T::from_dd(y2.sqrt());
+        let q = sign * T::from_dd((y1 * w3 / between).sqrt() * (Dd::ONE + r));
+        let m = T::of(1.0) + T::from_dd(r) * sn * sn;
         let value = Complex::new(p * cn, q * sn / dn);
         let derivative = Complex::new(-(p * sn * dn), q * cn / (dn * dn));
         let coefficient = self.d.abs() / (self.rate * Dd::of(2.0) * w3);
-        let phase_rate = -(sign * cast::<T>(coefficient) * cn * cn / m);
-        self.quotient(phase, value, derivative, phase_rate, cast(r), m, f)
+        let phase_rate = -(sign * T::from_dd(coefficient) * cn * cn / m);
+        self.quotient(Quotient { phase, phase_rate, value, derivative, m, n: T::from_dd(r) }, f)
     }
 
     /// β where u₂ and u₃ are both 1: √(y₁/2) sech τ.
     fn homoclinic_beta<T: Precise>(&self, f: Jacobi<T>) -> Moving<T> {
-        let size = cast::<T>((self.y[0] * Dd::of(0.5)).sqrt());
-        let rate = -(size * cast::<T>(self.rate) * f.sn * f.cn);
+        let size = T::from_dd((self.y[0] * Dd::of(0.5)).sqrt());
+        let rate = -(size * T::from_dd(self.rate) * f.sn * f.cn);
         let real = |x: T| Complex::new(x, T::of(0.0));
         Moving { value: real(size * f.cn), rate: real(rate) }
     }
 
-    /// `phase · value / √(2m)` and its derivative; m' = 2 n sn cn dn.
-    #[allow(clippy::too_many_arguments)]
-    fn quotient<T: Precise>(
-        &self,
-        phase: Complex<T>,
-        value: Complex<T>,
-        derivative: Complex<T>,
-        phase_rate: T,
-        n: T,
-        m: T,
-        f: Jacobi<T>,
-    ) -> Moving<T> {
+    /// The parameter that `quotient` stands for, and its derivative in t.
+    fn quotient<T: Precise>(&self, quotient: Quotient<T>, f: Jacobi<T>) -> Moving<T> {
+        let Quotient { phase, phase_rate, value, derivative, m, n } = quotient;
         let factor = phase.scaled(T::of(1.0) / (T::of(2.0) * m).sqrt());
         let logarithmic = Complex::new(-(n * f.sn * f.cn * f.dn / m), phase_rate);
         let rate = factor * (derivative + value * logarithmic);
-        Moving { value: factor * value, rate: rate.scaled(cast(self.rate)) }
+        Moving { value: factor * value, rate: rate.scaled(T::from_dd(self.rate)) }
     }
 
     /// A parameter that stays clear of 0, with (|α|²)' = ½ `size_rate` and |α|² (arg α)' = ¼ `momentum`.
     fn bounded<T: Precise>(&self, value: Complex<T>, size_rate: T, momentum: Dd) -> Moving<T> {
         let quarter = T::of(0.25);
-        let product = Complex::new(size_rate * quarter, cast::<T>(momentum) * quarter);
+        let product = Complex::new(size_rate * quarter, T::from_dd(momentum) * quarter);
         Moving { value, rate: product * value.inverse_conjugate() }
     }
 
     /// (1 + u)' from functions of τ.
     fn u_rate<T: Precise>(&self, f: Jacobi<T>) -> T {
-        cast::<T>(Dd::of(2.0) * self.rate * self.span) * f.sn * f.cn * f.dn
+        T::from_dd(Dd::of(2.0) * self.rate * self.span) * f.sn * f.cn * f.dn
     }
 
     /// (1 − u)' from functions of σ: sn cn dn of τ is −k'² sn cn/dn³ of σ.
     fn u_rate_from_highest<T: Precise>(&self, f: Jacobi<T>) -> T {
         let size = Dd::of(2.0) * self.rate * self.span * self.complement;
-        cast::<T>(size) * f.sn * f.cn / (f.dn * f.dn * f.dn)
+        T::from_dd(size) * f.sn * f.cn / (f.dn * f.dn * f.dn)
     }
 }
 
 fn sign_of(x: Dd) -> Dd {
     if x < Dd::ZERO { -Dd::ONE } else { Dd::ONE }
-}
-
-/// The same number in another scalar.
-pub(super) fn cast<T: Precise>(x: Dd) -> T {
-    T::from_dd(x)
 }

@@ -1,0 +1,53 @@
+//! The flow of the free rigid body, by elliptic functions.
+
+use super::circulation::Circulation;
+use super::phase::{steady, turn};
+use super::polhode::{Polhode, rounded_separation};
+use crate::body::{Phase, Point, Rotor, Time};
+use crate::flow::Flow;
+use crate::num::Precise;
+use crate::rotation::Vec3;
+
+/// The exact flow of the free body, set up anew from the state at each call, in the state's own scalar.
+///
+/// The drift between the kicks of a splitting. Only products and differences of `S` go into it: in `f64` a turn of
+/// one radian is good to 4e-14 rad; next to the unstable axis, where the phase is as long as the logarithm of the distance,
+/// to 2e-13 rad.
+#[derive(Clone, Copy, Debug)]
+pub struct FreeBody<S> {
+    moments: Vec3<S>,
+}
+
+impl<S: Precise> FreeBody<S> {
+    /// The free flow of a body with the constants `rotor`.
+    pub fn new(rotor: &Rotor) -> Self {
+        FreeBody { moments: rotor.moments() }
+    }
+}
+
+impl<S: Precise> Flow<S> for FreeBody<S> {
+    fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
+        let (i, m) = (self.moments, x.momentum_body);
+        let norm = m.norm();
+        if norm == S::of(0.0) {
+            return;
+        }
+        if !norm.magnitude().is_finite() {
+            // no motion can be told: a run sees it diverge
+            x.set_phase(Phase { attitude: x.attitude * S::of(f64::NAN), momentum_body: m });
+            return;
+        }
+        let (turn, momentum_body) = match Polhode::of(i, m, norm, rounded_separation(i, m)) {
+            Some(polhode) => {
+                let circulation = Circulation::of(polhode, m);
+                let near = circulation.is_near(t);
+                if near { circulation.at(t) } else { circulation.with_period().at(t) }
+            }
+            None => {
+                let (axis, rate) = steady(i, m, norm);
+                (turn(axis, rate * t), m)
+            }
+        };
+        x.set_phase(Phase { attitude: x.attitude * turn, momentum_body });
+    }
+}

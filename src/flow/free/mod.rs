@@ -1,0 +1,19 @@
+//! The free body: its motion at any time, and its flow for splittings.
+
+mod character;
+mod circulation;
+mod free_body;
+mod free_flow;
+mod motion;
+mod phase;
+mod polhode;
+mod short_flow;
+mod symmetric_top;
+mod theta;
+
+pub use character::{AtRest, Character, Mode};
+pub use free_body::FreeBody;
+pub use free_flow::FreeFlow;
+pub use motion::FreeMotion;
+pub(super) use phase::reduce;
+pub use symmetric_top::SymmetricTop;

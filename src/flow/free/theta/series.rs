@@ -1,0 +1,120 @@
+//! Theta series as polynomials: what the two forms share.
+
+use crate::flow::free::phase::{Pair, Phase};
+use crate::flow::free::polhode::Polhode;
+use crate::num::Dd;
+
+/// Terms of Z and W: the first left out are below 3e-20 of the sums.
+pub(super) const TERMS: usize = 4;
+
+/// Terms of the theta quotient along the smallest moment: below 7e-18.
+pub(super) const LEAST_TERMS: usize = 5;
+
+/// Terms where sums are taken in double-double.
+pub(super) const DD_TERMS: usize = 6;
+
+/// How the sums are evaluated.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Form {
+    /// Trigonometric sums in x.
+    Direct,
+    /// Hyperbolic sums in β, which is `width` times the reduced half periods; each half period adds `jump` turns to Ψ.
+    Dual { width: f64, jump: Pair },
+    /// The dual form for q' so small that only the first terms count.
+    Limit { width: f64, jump: Pair },
+    /// The same without a period.
+    Separatrix,
+}
+
+/// Z, W and the theta quotient of one polhode in one form.
+#[derive(Clone, Debug)]
+pub(super) struct Series {
+    pub(super) form: Form,
+    /// Turns of x; half periods of u; β on the separatrix.
+    pub(super) phase: Phase,
+    /// Ψ', rad/s.
+    pub(super) twist_rate: Dd,
+    /// Even and odd part of Z, and of W.
+    pub(super) z: [[f64; TERMS]; 2],
+    pub(super) w: [[f64; TERMS]; 2],
+    /// The component of m along the smallest moment, times n₂; both forms have n₂ = κ θ with the theta function of the
+    /// denominator.
+    pub(super) least: [f64; LEAST_TERMS],
+    /// Re Z and Im Z at the start, up to a common factor.
+    pub(super) start: (Dd, Dd),
+}
+
+/// ψ' at u = 0; the form without differences, which would cancel for rods.
+pub(super) fn rate_at_zero(polhode: &Polhode<Dd>) -> Dd {
+    let [a, ..] = polhode.amplitude;
+    (polhode.twice_energy + polhode.norm * a / polhode.moments[0]) / (polhode.norm + a)
+}
+
+/// Half a period of u changes the sign of W and of cn.
+pub(super) fn flip(polhode: &Polhode<Dd>) -> Dd {
+    if polhode.half_turned { -Dd::ONE } else { Dd::ONE }
+}
+
+/// First two members F₀ = c, F₁ = a + bX of a family with F_{n+1} = 2X F_n − F_{n−1}, as [c, a, b].
+pub(super) type Family = [f64; 3];
+/// cos 2nx of X = cos 2x.
+pub(super) const T: Family = [1.0, 0.0, 1.0];
+/// sin 2nx / sin 2x.
+pub(super) const U: Family = [0.0, 1.0, 0.0];
+/// sin (2n+1)x / sin x.
+pub(super) const V_PLUS: Family = [1.0, 1.0, 2.0];
+/// cos (2n+1)x / cos x.
+pub(super) const V_MINUS: Family = [1.0, -1.0, 2.0];
+
+/// Coefficients of powers of X in Σ v_n F_n(X), rounded once.
+pub(super) fn polynomial<const N: usize>(v: [Dd; N], [c, a, b]: Family) -> [f64; N] {
+    let mut sum = [Dd::ZERO; N];
+    let (mut before, mut now) = ([0.0; N], [0.0; N]);
+    before[0] = c;
+    now[0] = a;
+    now[1] = b;
+    for v in v {
+        for k in 0..N {
+            sum[k] = sum[k] + v * before[k];
+        }
+        let mut next = [0.0; N];
+        for k in 0..N {
+            next[k] = if k > 0 { 2.0 * now[k - 1] } else { 0.0 } - before[k];
+        }
+        (before, now) = (now, next);
+    }
+    sum.map(Dd::hi)
+}
+
+/// The cubic at `x`.
+#[inline]
+pub(super) fn value(p: &[f64; TERMS], x: f64) -> f64 {
+    (p[0] + p[1] * x) + x * x * (p[2] + p[3] * x)
+}
+
+/// The quartic at `x`.
+#[inline]
+pub(super) fn least_value(p: &[f64; LEAST_TERMS], x: f64) -> f64 {
+    let x2 = x * x;
+    (p[0] + p[1] * x) + x2 * ((p[2] + p[3] * x) + x2 * p[4])
+}
+
+pub(super) fn first(v: &[Dd; DD_TERMS]) -> [Dd; TERMS] {
+    [v[0], v[1], v[2], v[3]]
+}
+
+pub(super) fn total(v: &[Dd; DD_TERMS]) -> Dd {
+    v.iter().rev().fold(Dd::ZERO, |sum, &x| sum + x)
+}
+
+pub(super) fn power(x: Dd, n: u32) -> Dd {
+    let (mut result, mut base, mut n) = (Dd::ONE, x, n);
+    while n > 0 {
+        if n % 2 == 1 {
+            result = result * base;
+        }
+        base = base * base;
+        n /= 2;
+    }
+    result
+}

@@ -1,0 +1,7 @@
+//! The symmetric top under gravity: its motion at any time.
+
+mod cubic;
+mod nutation;
+mod top;
+
+pub use top::{LagrangeError, LagrangeTop};
