@@ -1,14 +1,14 @@
-//! Accurate long-time rotation of rigid bodies.
+//! Accurate long-time rotation of rigid bodies: free bodies, heavy tops, bodies under torques.
 //!
-//! Integrators on SO(3), the exact motion of the free body at any time, and the means to compare them: invariants in
-//! more digits than the integration, attitude errors against the exact motion, measured orders.
+//! * the exact motion of the free body and of Lagrange's top, at any time, to rounding;
+//! * integrators on SO(3), with what each keeps stated and tested, watched in more digits than they integrate;
+//! * inertia tensors from moments, solids, meshes and parts, and what is wrong with one that no body has;
+//! * with the feature `fit`, inertia tensors from noisy records of angular velocity.
 //!
 //! ```
 //! use nalgebra::{UnitQuaternion, Vector3};
-//! use polhode::body::{Body, Conserved};
-//! use polhode::inertia::Inertia;
-//! use polhode::method::method;
-//! use polhode::run::Run;
+//! use polhode::body::Conserved;
+//! use polhode::{Body, Inertia, Run, method};
 //!
 //! let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
 //! let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
@@ -33,8 +33,19 @@
 //! | [`method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence |
 //! | [`catalog`] | named bodies with their sources |
+//! | `fit` | inertia from measured angular velocity; with the feature `fit` |
+//! | [`guide`] | your own force, your own method |
 //!
-//! Each uses only those above it.
+//! Each of those that hold code uses only those above it. The types that most programs need are also at the root:
+//! [`Body`], [`Inertia`], [`State`], [`FreeMotion`], [`Run`], [`Schedule`] and [`method()`](method()).
+//!
+//! # Features
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `fit` | the module `fit`, with the solvers clarabel and faer |
+//!
+//! None is on by default. The oldest compiler that builds the crate is Rust 1.89.
 //!
 //! # Notation
 //!
@@ -55,6 +66,8 @@
 //! Functions that take what users type return typed errors with the value and the law it breaks. The same input gives
 //! the same bits on any processor.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 pub mod body;
 pub mod catalog;
 #[cfg(feature = "fit")]
@@ -66,6 +79,16 @@ pub mod num;
 pub mod observe;
 pub mod rotation;
 pub mod run;
+
+#[doc = include_str!("../docs/own-force-and-method.md")]
+pub mod guide {}
+
+pub use body::{Body, State};
+pub use flow::FreeMotion;
+pub use inertia::Inertia;
+pub use method::method;
+pub use nalgebra;
+pub use run::{Run, Schedule};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -31,6 +31,13 @@ pub struct Claims {
     pub source: &'static str,
 }
 
+impl Claims {
+    /// Of an explicit method of the order `order`, neither symmetric nor Poisson.
+    pub const fn explicit(order: u32, kept: Kept, cost: Cost, source: &'static str) -> Claims {
+        Claims { order: Some(order), symmetric: false, poisson: false, kept, cost, source }
+    }
+}
+
 /// What is constant along the numerical solution, in exact arithmetic, where the motion conserves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kept {

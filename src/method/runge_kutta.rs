@@ -9,14 +9,7 @@ use crate::rotation::Vec3;
 
 /// What an explicit method on (q, m) claims of every motion: nothing kept but, with `norm`, |q|.
 fn claims(order: u32, norm: bool, right_sides: u32, source: &'static str) -> Option<Claims> {
-    Some(Claims {
-        order: Some(order),
-        symmetric: false,
-        poisson: false,
-        kept: Kept { norm, ..Kept::NOTHING },
-        cost: Cost::right_sides(right_sides),
-        source,
-    })
+    Some(Claims::explicit(order, Kept { norm, ..Kept::NOTHING }, Cost::right_sides(right_sides), source))
 }
 
 /// The right-hand side.
