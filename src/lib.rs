@@ -30,7 +30,7 @@
 //! | [`body`] | inertia with forces, states, the solver frame of kernels |
 //! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the top |
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
-//! | [`method`] | the integrators, their schemes, what they claim, the catalogue |
+//! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence |
 //! | [`catalog`] | named bodies with their sources |
 //! | `fit` | inertia from measured angular velocity; with the feature `fit` |
