@@ -540,9 +540,13 @@ fn compensated_sums_lose_nothing() {
     }
     assert!(relative_error(small.value() - 1.0, Dd::from(1e-30)) < 0.01);
 
-    let (a, b) = (0.1, 1e17 + 16.0);
-    let (product, rest) = sum::exact_product(a, b);
-    assert_eq!((Dd::sum(product, rest) - Dd::product(a, b)).hi(), 0.0);
+    let (a, b) = ((1_i64 << 53) - 111, (1_i64 << 53) - 1_234_567);
+    let (product, rest) = (a as f64).two_prod(b as f64);
+    assert_eq!(product as i128 + rest as i128, i128::from(a) * i128::from(b));
+    let third = Dd::ONE / 3.0;
+    let (product, rest) = third.two_prod(third);
+    assert_eq!(product, third * third);
+    assert!(rest.hi() != 0.0 && rest.hi().abs() < 1e-32, "{rest}");
 }
 
 #[test]

@@ -18,7 +18,7 @@ pub use force::{Conserved, Force, ForceError, Potential, Torque};
 pub use frame::{Body, Problem, StateError};
 pub use gravity::{Gravity, vertical};
 pub use point::{Phase, Point};
-pub(crate) use rotor::Gyroscopic;
 pub use rotor::Rotor;
+pub(crate) use rotor::{Gyroscopic, kinetic_energy};
 pub use state::State;
 pub use time::{Clock, Time};

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Mul};
 
-use crate::num::sum::{Compensated, add_carried, exact_product};
+use crate::num::sum::{Compensated, add_carried};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -127,7 +127,7 @@ impl<S: Real> Point<S> {
         let (q, low) = (self.attitude, self.carried.attitude.components());
         let mut excess = Compensated::new(S::of(-1.0));
         for (q, low) in q.components().into_iter().zip(low) {
-            let (square, rest) = exact_product(q, q);
+            let (square, rest) = q.two_prod(q);
             excess.add(square);
             excess.add(rest + (q + q) * low);
         }

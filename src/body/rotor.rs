@@ -27,7 +27,7 @@ impl Rotor {
 
     /// Kinetic energy ½ m·I⁻¹m, divided by the scale.
     pub(crate) fn kinetic_energy(&self, m: Vec3<Dd>) -> Dd {
-        m.times(self.inverse_moments()).dot(m) * Dd::of(0.5)
+        kinetic_energy(self.inverse_moments(), m)
     }
 
     /// The axis of the middle moment.
@@ -36,6 +36,12 @@ impl Rotor {
         order.sort_by(|&i, &j| self.moments[i].hi().total_cmp(&self.moments[j].hi()));
         order[1]
     }
+}
+
+/// ½ m·I⁻¹m.
+#[inline]
+pub(crate) fn kinetic_energy<S: Real>(inverse_moments: Vec3<S>, m: Vec3<S>) -> S {
+    m.times(inverse_moments).dot(m) * S::of(0.5)
 }
 
 /// `factor · u × I⁻¹u` with principal moments: `D_i u_j u_k`, (i, j, k) cyclic, `D_i = factor (1/I_k − 1/I_j)`.

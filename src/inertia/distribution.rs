@@ -7,7 +7,8 @@ use core::f64::consts::PI;
 use nalgebra::{Matrix3, Vector3};
 use thiserror::Error;
 
-use super::mass::{MassError, MassProperties, length, positive};
+use super::mass::{length, positive};
+use super::{MassError, MassProperties};
 use crate::num::trig::sin_cos;
 use crate::num::{Compensated, Real, Shown};
 

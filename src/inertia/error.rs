@@ -1,4 +1,4 @@
-//! Why a tensor is refused.
+//! Why a tensor, or a body of mass, is refused.
 
 use thiserror::Error;
 
@@ -77,4 +77,68 @@ pub enum InertiaError {
         /// The same in per cent of the largest moment.
         percent: f64,
     },
+}
+
+/// Why something is no body, or has no mass properties.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum MassError {
+    /// A mass, length or density is zero, negative or not finite.
+    #[error("{quantity} is {}; it must be a finite number above zero", Shown(*value))]
+    NotPositive {
+        /// What was measured.
+        quantity: &'static str,
+        /// The offending value.
+        value: f64,
+    },
+    /// A coordinate is not a finite number.
+    #[error("{quantity} has the component {value}; every component must be a finite number")]
+    NotFinite {
+        /// What was measured.
+        quantity: &'static str,
+        /// The offending value.
+        value: f64,
+    },
+    /// One size of a shape must lie below another.
+    #[error("{shape}: {small_name} {} must be below {large_name} {}", Shown(*small), Shown(*large))]
+    Sizes {
+        /// The shape.
+        shape: &'static str,
+        /// The size that is too large.
+        small_name: &'static str,
+        /// Its value.
+        small: f64,
+        /// The size that it must not reach.
+        large_name: &'static str,
+        /// Its value.
+        large: f64,
+    },
+    /// No such shape.
+    #[error("no such shape '{name}'; known: {known}")]
+    UnknownShape {
+        /// What was asked for.
+        name: String,
+        /// The shapes there are.
+        known: String,
+    },
+    /// A shape with too many or too few sizes.
+    #[error("{shape} takes {needed} ({names}), but {given} given")]
+    SizeCount {
+        /// The shape.
+        shape: &'static str,
+        /// The number of sizes it has.
+        needed: usize,
+        /// Their names.
+        names: String,
+        /// The number of sizes given.
+        given: usize,
+    },
+    /// There is nothing to sum.
+    #[error("a body needs at least one part")]
+    Empty,
+    /// The masses and lengths put a moment outside the range of a double.
+    #[error("masses and lengths put a moment of inertia outside the range of a double; change the units")]
+    OutOfRange,
+    /// The tensor about the centre of mass belongs to no body.
+    #[error("about the centre of mass: {0}")]
+    Inertia(#[from] InertiaError),
 }

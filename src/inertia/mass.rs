@@ -3,78 +3,13 @@
 use core::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use thiserror::Error;
 
 use super::checks::{ROUNDING, check_symmetric, check_triangle};
 use super::principal::frame_quaternion;
 use super::symmetric::{Spectrum, Tensor};
-use super::{Inertia, InertiaError, Symmetry};
-use crate::num::{Dd, Real, Shown};
+use super::{Class, Inertia, InertiaError, MassError, Symmetry};
+use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
-
-/// Why something is no body, or has no mass properties.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum MassError {
-    /// A mass, length or density is zero, negative or not finite.
-    #[error("{quantity} is {}; it must be a finite number above zero", Shown(*value))]
-    NotPositive {
-        /// What was measured.
-        quantity: &'static str,
-        /// The offending value.
-        value: f64,
-    },
-    /// A coordinate is not a finite number.
-    #[error("{quantity} has the component {value}; every component must be a finite number")]
-    NotFinite {
-        /// What was measured.
-        quantity: &'static str,
-        /// The offending value.
-        value: f64,
-    },
-    /// One size of a shape must lie below another.
-    #[error("{shape}: {small_name} {} must be below {large_name} {}", Shown(*small), Shown(*large))]
-    Sizes {
-        /// The shape.
-        shape: &'static str,
-        /// The size that is too large.
-        small_name: &'static str,
-        /// Its value.
-        small: f64,
-        /// The size that it must not reach.
-        large_name: &'static str,
-        /// Its value.
-        large: f64,
-    },
-    /// No such shape.
-    #[error("no such shape '{name}'; known: {known}")]
-    UnknownShape {
-        /// What was asked for.
-        name: String,
-        /// The shapes there are.
-        known: String,
-    },
-    /// A shape with too many or too few sizes.
-    #[error("{shape} takes {needed} ({names}), but {given} given")]
-    SizeCount {
-        /// The shape.
-        shape: &'static str,
-        /// The number of sizes it has.
-        needed: usize,
-        /// Their names.
-        names: String,
-        /// The number of sizes given.
-        given: usize,
-    },
-    /// There is nothing to sum.
-    #[error("a body needs at least one part")]
-    Empty,
-    /// The masses and lengths put a moment outside the range of a double.
-    #[error("masses and lengths put a moment of inertia outside the range of a double; change the units")]
-    OutOfRange,
-    /// The tensor about the centre of mass belongs to no body.
-    #[error("about the centre of mass: {0}")]
-    Inertia(#[from] InertiaError),
-}
 
 /// Masses and moments for which Dekker products stay clear of both ends of the range.
 pub(super) const SIZES: RangeInclusive<f64> = 1e-290..=1e290;
@@ -99,31 +34,6 @@ impl Amount {
                 mass if SIZES.contains(&mass) && measure.is_normal() => Ok(mass),
                 _ => Err(MassError::OutOfRange),
             },
-        }
-    }
-}
-
-/// What the principal moments say about the shape of a body, up to rounding (1e-12 of the trace).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
-    /// All mass in one point: no moment.
-    Point,
-    /// All mass on a line: the moment about it is zero, the other two agree.
-    Linear,
-    /// All mass in a plane: I₃ = I₁ + I₂. A disk, whose two smaller moments agree as well, is planar here.
-    Planar,
-    /// A body with extent in all three directions.
-    Solid(Symmetry),
-}
-
-impl Class {
-    /// In one lowercase word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Class::Point => "point",
-            Class::Linear => "linear",
-            Class::Planar => "planar",
-            Class::Solid(symmetry) => symmetry.name(),
         }
     }
 }

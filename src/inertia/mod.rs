@@ -15,9 +15,9 @@ mod tensor;
 
 pub use distribution::{DistributionError, Region, integrate_mass};
 pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Verdict, diagnose};
-pub use error::InertiaError;
-pub use mass::{Amount, Class, MassError, MassProperties};
+pub use error::{InertiaError, MassError};
+pub use mass::{Amount, MassProperties};
 pub use mesh::{Edge, Mesh, MeshError};
 pub use solids::Solid;
-pub use symmetry::Symmetry;
+pub use symmetry::{Class, Symmetry};
 pub use tensor::{Inertia, InertiaShape};

@@ -4,7 +4,8 @@ use core::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::mass::{Amount, MassError, MassProperties, length};
+use super::mass::length;
+use super::{Amount, MassError, MassProperties};
 
 /// A homogeneous shape. Its symmetry axis, if it has one, is z; a rod lies along z, disks, plates and hoops in
 /// the plane z = 0. The origin is the centre, except of the cone, whose base is centred at the origin and whose

@@ -1,4 +1,4 @@
-//! Which principal moments agree.
+//! What principal moments say about the shape of a body.
 
 use super::checks::ROUNDING;
 
@@ -34,6 +34,31 @@ impl Symmetry {
             Symmetry::Prolate => "prolate",
             Symmetry::Oblate => "oblate",
             Symmetry::Spherical => "spherical",
+        }
+    }
+}
+
+/// What the principal moments say about the shape of a body, up to rounding (1e-12 of the trace).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// All mass in one point: no moment.
+    Point,
+    /// All mass on a line: the moment about it is zero, the other two agree.
+    Linear,
+    /// All mass in a plane: I₃ = I₁ + I₂. A disk, whose two smaller moments agree as well, is planar here.
+    Planar,
+    /// A body with extent in all three directions.
+    Solid(Symmetry),
+}
+
+impl Class {
+    /// In one lowercase word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Class::Point => "point",
+            Class::Linear => "linear",
+            Class::Planar => "planar",
+            Class::Solid(symmetry) => symmetry.name(),
         }
     }
 }

@@ -23,7 +23,7 @@ use core::cmp::Ordering;
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::Dd;
-use super::dd::{quick_two_sum, two_prod, two_sum};
+use super::error_free::{quick_two_sum, two_prod, two_sum};
 
 /// An exact sum of floating-point numbers.
 #[derive(Clone, Debug, Default)]

@@ -3,8 +3,7 @@
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Dd;
-use super::trig;
+use super::{Dd, error_free, trig};
 
 /// A scalar that explicit kernels are written over.
 ///
@@ -42,6 +41,24 @@ pub trait Real:
     fn sin_cos(self) -> (Self, Self);
     /// |x| as `f64`; of several lanes the largest, NaN if one is NaN.
     fn magnitude(self) -> f64;
+    /// `self + b` and the error of its rounding (Knuth): exact for `f64`, in any other scalar as good as its own rounding.
+    #[inline]
+    fn two_sum(self, b: Self) -> (Self, Self) {
+        let sum = self + b;
+        let added = sum - self;
+        (sum, (self - (sum - added)) + (b - added))
+    }
+    /// `self · b` and the error of its rounding (Dekker): exact for `f64`, in any other scalar as good as its own rounding.
+    #[inline]
+    fn two_prod(self, b: Self) -> (Self, Self) {
+        let split = |x: Self| {
+            let t = x * Self::of(134_217_729.0); // 2²⁷ + 1
+            let high = t - (t - x);
+            (high, x - high)
+        };
+        let ((a1, a2), (b1, b2), p) = (split(self), split(b), self * b);
+        (p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2)
+    }
 }
 
 /// A scalar that can be compared, rounded and turned into an angle: `f64` and [`Dd`].
@@ -85,6 +102,14 @@ impl Real for f64 {
     #[inline]
     fn magnitude(self) -> f64 {
         f64::abs(self)
+    }
+    #[inline]
+    fn two_sum(self, b: Self) -> (Self, Self) {
+        error_free::two_sum(self, b)
+    }
+    #[inline]
+    fn two_prod(self, b: Self) -> (Self, Self) {
+        error_free::two_prod(self, b)
     }
 }
 

@@ -29,13 +29,38 @@ impl<S: Real> Compensated<S> {
         Compensated { sum: start, carry: S::of(0.0) }
     }
 
+    /// A sum that starts at minus the number `high + low`.
+    #[inline]
+    pub(crate) fn minus([high, low]: [S; 2]) -> Self {
+        Compensated { sum: -high, carry: -low }
+    }
+
     /// Adds one term.
     #[inline]
     pub fn add(&mut self, term: S) {
-        let sum = self.sum + term;
-        let added = sum - self.sum;
-        self.carry = self.carry + ((self.sum - (sum - added)) + (term - added));
-        self.sum = sum;
+        let (sum, error) = self.sum.two_sum(term);
+        (self.sum, self.carry) = (sum, self.carry + error);
+    }
+
+    /// Adds a term in two parts, the second of the size of a rounding error of the first.
+    #[inline]
+    pub(crate) fn add_parts(&mut self, term: S, rest: S) {
+        let (sum, error) = self.sum.two_sum(term);
+        (self.sum, self.carry) = (sum, self.carry + (error + rest));
+    }
+
+    /// Adds `a · b` with the error of its rounding.
+    #[inline]
+    pub(crate) fn add_product(&mut self, a: S, b: S) {
+        let (product, rest) = a.two_prod(b);
+        self.add_parts(product, rest);
+    }
+
+    /// Adds another sum times `factor`.
+    #[inline]
+    pub(crate) fn add_scaled(&mut self, other: Self, factor: S) {
+        let (product, rest) = other.sum.two_prod(factor);
+        self.add_parts(product, rest + other.carry * factor);
     }
 
     /// The sum, rounded once.
@@ -54,17 +79,4 @@ pub fn add_carried<S: Real>(sum: &mut S, carry: &mut S, delta: S) {
     let new = *sum + delta;
     *carry = delta - (new - *sum);
     *sum = new;
-}
-
-/// `a · b` and the error of its rounding, by Dekker's splitting: exact for `f64` below 1e300, and in any other scalar as
-/// good as its own rounding.
-#[inline]
-pub fn exact_product<S: Real>(a: S, b: S) -> (S, S) {
-    let split = |x: S| {
-        let t = x * S::of(134_217_729.0); // 2²⁷ + 1
-        let high = t - (t - x);
-        (high, x - high)
-    };
-    let ((a1, a2), (b1, b2), p) = (split(a), split(b), a * b);
-    (p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2)
 }

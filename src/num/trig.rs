@@ -7,7 +7,7 @@
 
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_4};
 
-use super::dd::two_sum;
+use super::error_free::two_sum;
 
 // Interpolation on [0, (π/4)²] of (sin x − x)/x³ and (cos x − 1 + x²/2)/x⁴ in powers of x², made by
 // tests/data/num/kernel.py; the errors left in sin x / x and cos x are below 2⁻⁵⁸.

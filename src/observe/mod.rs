@@ -4,6 +4,8 @@
 mod drift;
 mod errors;
 mod flips;
+mod forced;
+mod free_errors;
 mod invariants;
 mod monitor;
 

@@ -1,6 +1,6 @@
 //! Phases counted in turns: products with any time, reduced without a rounded π.
 
-use crate::num::dd::{two_prod, two_sum};
+use crate::num::error_free::{two_prod, two_sum};
 use crate::num::trig::{nearest, sin_cos_turns};
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};

@@ -6,8 +6,9 @@ mod nearest;
 use nalgebra::{Matrix3, Vector3};
 
 use super::InertiaError;
+use super::MassError;
 use super::checks::{ROUNDING, check_symmetric};
-use super::mass::{LENGTHS, MassError, SIZES, check_tensor, finite, length, positive};
+use super::mass::{LENGTHS, SIZES, check_tensor, finite, length, positive};
 use super::symmetric::{Spectrum, Tensor};
 pub use causes::{Cause, Entry};
 

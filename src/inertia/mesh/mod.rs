@@ -4,14 +4,15 @@ mod boxes;
 mod closed;
 mod obj;
 mod stl;
+mod text;
 
 use std::io::{self, BufRead, Read};
 
 use nalgebra::{Matrix3, Vector3};
 use thiserror::Error;
 
-use super::mass::{Amount, MassError, MassProperties};
 use super::symmetric::Tensor;
+use super::{Amount, MassError, MassProperties};
 use crate::num::{Compensated, Dd, Shown};
 use crate::rotation::Vec3;
 use closed::Welded;
@@ -76,7 +77,7 @@ pub enum MeshError {
         expected: &'static str,
     },
     /// A line of text that does not end.
-    #[error("line {line} is longer than {} bytes; is this the right file?", obj::LONGEST_LINE)]
+    #[error("line {line} is longer than {} bytes; is this the right file?", text::LONGEST_LINE)]
     LongLine {
         /// Number of the line.
         line: u64,

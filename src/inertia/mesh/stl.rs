@@ -4,7 +4,7 @@ use std::io::{self, BufRead, BufReader, Cursor, Read};
 
 use super::MeshError;
 use super::closed::Welded;
-use super::obj::{Lines, numbers};
+use super::text::{Lines, beginning, numbers};
 use crate::rotation::Vec3;
 
 /// Bytes before the first triangle of a binary file.
@@ -83,15 +83,6 @@ fn ascii(reader: impl BufRead) -> Result<Welded, MeshError> {
         Ok(mesh)
     } else {
         Err(MeshError::TruncatedText { length: lines.bytes, line: lines.line, triangle: facets + 1 })
-    }
-}
-
-/// The first words of a line, for a message.
-pub(super) fn beginning(text: &str) -> String {
-    let text = text.trim();
-    match text.char_indices().nth(40) {
-        Some((end, _)) => format!("{}...", &text[..end]),
-        None => text.into(),
     }
 }
 

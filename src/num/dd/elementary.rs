@@ -3,9 +3,9 @@
 //! Each follows one plan: reduce the argument exactly, sum a Taylor polynomial whose last terms need only
 //! `f64`, or start from the `f64` function and correct it once through its inverse.
 
-use super::{Dd, two_prod};
+use super::Dd;
 use crate::num::Expansion;
-use crate::num::real::Real;
+use crate::num::error_free::two_prod;
 
 /// Coefficients that matter: 0.79ⁿ/n! drops below 2⁻¹⁰⁷ at n = 28.
 const DEGREE: usize = 29;
@@ -51,7 +51,7 @@ fn series<const FIRST: usize, const STRIDE: usize>(x: Dd) -> Dd {
         light = INVERSE_FACTORIAL[n].hi + x.hi * light;
         n -= STRIDE;
     }
-    let mut sum = Dd::of(light);
+    let mut sum = Dd::exact(light);
     while n > FIRST {
         sum = INVERSE_FACTORIAL[n].plus_smaller(x * sum);
         n -= STRIDE;
@@ -66,7 +66,7 @@ pub(super) fn sin_cos(x: Dd) -> (Dd, Dd) {
     }
     if x.hi.is_nan() || x.hi.abs() >= FAR {
         let (sin, cos) = libm::sincos(x.hi);
-        let (s, c) = if x.lo == 0.0 { (Dd::of(0.0), Dd::ONE) } else { sin_cos(Dd::of(x.lo)) };
+        let (s, c) = if x.lo == 0.0 { (Dd::exact(0.0), Dd::ONE) } else { sin_cos(Dd::exact(x.lo)) };
         return (s * cos + c * sin, c * cos - s * sin);
     }
     let quarters = (x / Dd::FRAC_PI_2 + 0.5).floor();
@@ -103,14 +103,14 @@ fn sin_cos_kernel(x: Dd) -> (Dd, Dd) {
 pub(super) fn atan2(y: Dd, x: Dd) -> Dd {
     let angle = libm::atan2(y.hi, x.hi);
     if angle.is_nan() {
-        return Dd::of(angle);
+        return Dd::exact(angle);
     }
     if y.hi == 0.0 || x.hi == 0.0 || y.hi.is_infinite() || x.hi.is_infinite() {
         return Dd::FRAC_PI_4 * (angle / core::f64::consts::FRAC_PI_4).round();
     }
     let exponent = libm::ilogb(y.hi.abs().max(x.hi.abs()));
     let (y, x) = (y.scaled(-exponent), x.scaled(-exponent));
-    let (s, c) = Dd::of(angle).sin_cos();
+    let (s, c) = sin_cos(Dd::exact(angle));
     let rest = y * c - x * s;
     Dd::sum(angle, rest.hi / (x.hi * c.hi + y.hi * s.hi))
 }
@@ -118,7 +118,7 @@ pub(super) fn atan2(y: Dd, x: Dd) -> Dd {
 pub(super) fn exp(x: Dd) -> Dd {
     let (n, r) = match reduced(x) {
         Ok(reduced) => reduced,
-        Err(limit) => return Dd::of(limit),
+        Err(limit) => return Dd::exact(limit),
     };
     (r * series::<1, 1>(r) + 1.0).scaled(n)
 }
@@ -144,12 +144,12 @@ fn reduced(x: Dd) -> Result<(i32, Dd), f64> {
 /// ln x = n ln 2 + y + ln(m e^−y) with x = 2ⁿ m and y the `f64` logarithm of m; near 1 nothing cancels.
 pub(super) fn ln(x: Dd) -> Dd {
     if !(x.hi > 0.0 && x.hi.is_finite()) {
-        return Dd::of(libm::log(x.hi));
+        return Dd::exact(libm::log(x.hi));
     }
     let n = libm::ilogb(x.hi * core::f64::consts::FRAC_1_SQRT_2) + 1;
     let m = x.scaled(-n);
     let y = libm::log(m.hi);
-    let rest = (m - 1.0) + m * exp_m1(Dd::of(-y));
+    let rest = (m - 1.0) + m * exp_m1(Dd::exact(-y));
     let log = rest - Dd::product(rest.hi, 0.5 * rest.hi) + y;
     Dd::LN_2 * f64::from(n) + log
 }

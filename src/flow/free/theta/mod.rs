@@ -26,7 +26,7 @@ mod series;
 use self::series::{Form, LEAST_TERMS, TERMS, least_value, value};
 use super::phase::{Pair, Phase, TOO_FAR};
 use super::polhode::Polhode;
-use crate::num::dd::{two_prod, two_sum};
+use crate::num::error_free::{two_prod, two_sum};
 use crate::num::trig::{nearest, sin_cos_turns};
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};

@@ -17,49 +17,18 @@
 //! 2¹⁰²³. Below, the trailing part fades until a `Dd` is as precise as an `f64`; above, results turn to ±∞.
 //! Infinite and undefined results have a zero trailing part and follow the rules of `f64`; a zero keeps its
 //! sign, except that a sum that is zero is +0.
-#![doc = include_str!("accuracy/dd.md")]
+#![doc = include_str!("../accuracy/dd.md")]
 
 mod elementary;
+mod scalar;
 mod text;
 
 use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::real::{Precise, Real};
+use super::error_free::{quick_two_sum, two_prod, two_sum};
 
 pub use text::ParseDdError;
-
-/// `a + b` as a rounded sum and its exact error (Knuth).
-#[inline]
-pub const fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    let v = s - a;
-    (s, (a - (s - v)) + (b - v))
-}
-
-/// `a + b` as a rounded sum and its exact error, for |a| ≥ |b| (Dekker).
-#[inline]
-pub const fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    (s, b - (s - a))
-}
-
-/// `a` as a sum of two numbers of at most 26 bits. Rounding the bit pattern does what Dekker's
-/// multiplication by 2²⁷ + 1 does, and cannot overflow below 2¹⁰²³.
-#[inline]
-const fn split(a: f64) -> (f64, f64) {
-    let hi = f64::from_bits(a.to_bits().wrapping_add(1 << 26) & !((1 << 27) - 1));
-    (hi, a - hi)
-}
-
-/// `a · b` as a rounded product and its exact error (Dekker's product: the same bits with and without FMA).
-#[inline]
-pub const fn two_prod(a: f64, b: f64) -> (f64, f64) {
-    let p = a * b;
-    let (ah, al) = split(a);
-    let (bh, bl) = split(b);
-    (p, ((ah * bh - p) + ah * bl + al * bh) + al * bl)
-}
 
 /// A number `hi + lo` with |lo| ≤ ½ ulp(hi).
 ///
@@ -301,70 +270,5 @@ impl PartialOrd for Dd {
             Some(Ordering::Equal) => self.lo.partial_cmp(&b.lo),
             other => other,
         }
-    }
-}
-
-impl Real for Dd {
-    const ROUNDOFF: f64 = f64::EPSILON * f64::EPSILON / 4.0;
-    #[inline]
-    fn of(x: f64) -> Dd {
-        Dd::exact(x)
-    }
-    #[inline]
-    fn from_dd(x: Dd) -> Dd {
-        x
-    }
-    #[inline]
-    fn rounded(x: Dd) -> Dd {
-        x
-    }
-    #[inline]
-    fn sqrt(self) -> Dd {
-        let s = self.hi.sqrt();
-        if !ordinary(s) {
-            return Dd::exact(s);
-        }
-        let (square, error) = two_prod(s, s);
-        Dd::quick(s, ((self.hi - square - error) + self.lo) / (2.0 * s))
-    }
-    fn sin_cos(self) -> (Dd, Dd) {
-        elementary::sin_cos(self)
-    }
-    #[inline]
-    fn magnitude(self) -> f64 {
-        self.hi.abs()
-    }
-}
-
-impl Precise for Dd {
-    #[inline]
-    fn to_dd(self) -> Dd {
-        self
-    }
-    #[inline]
-    fn to_f64(self) -> f64 {
-        self.hi
-    }
-    #[inline]
-    fn abs(self) -> Self {
-        if self.hi.is_sign_negative() { -self } else { self }
-    }
-    fn round(self) -> Self {
-        let size = self.abs();
-        let below = size.floor();
-        let nearest = if size - below < Dd::exact(0.5) { below } else { below + 1.0 };
-        if self.hi < 0.0 { -nearest } else { nearest }
-    }
-    fn atan2(self, x: Self) -> Self {
-        elementary::atan2(self, x)
-    }
-    fn exp(self) -> Self {
-        elementary::exp(self)
-    }
-    fn exp_m1(self) -> Self {
-        elementary::exp_m1(self)
-    }
-    fn ln(self) -> Self {
-        elementary::ln(self)
     }
 }

@@ -13,7 +13,7 @@
 //! assert!((u - 20.0).abs() < 1e-14);
 //! assert!(modulus.quarter_period() > 35.0);
 //! ```
-#![doc = include_str!("accuracy/elliptic.md")]
+#![doc = include_str!("../accuracy/elliptic.md")]
 
 mod carlson;
 mod jacobi;

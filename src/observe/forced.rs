@@ -1,0 +1,53 @@
+//! What a motion with forces conserves, and the scales of its errors.
+
+use crate::body::{Body, Conserved, Point, Problem, Time};
+use crate::num::{Dd, Real};
+
+/// What a motion with forces conserves, and what its errors are measured by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Forced {
+    pub(super) energy: bool,
+    pub(super) momentum: bool,
+    pub(super) momentum_vector: bool,
+    pub(super) momentum_z: bool,
+    /// Rate n of Jacobi's constant.
+    pub(super) jacobi: Option<f64>,
+    pub(super) energy_scale: f64,
+    pub(super) momentum_scale: f64,
+    pub(super) jacobi_scale: f64,
+}
+
+impl Forced {
+    pub(super) fn of(body: &Body, at: Time, start: &Point<Dd>, kinetic: Dd) -> Option<Self> {
+        if body.problem() == Problem::Free {
+            return None;
+        }
+        let mut energy = kinetic;
+        if let Some(gravity) = body.gravity::<Dd>() {
+            energy = energy + gravity.weight_moment.norm_of_any_size();
+        }
+        if !body.forces().is_empty() {
+            energy = energy + body.size_of_forces(at, start);
+        }
+        // a force so large that its size is no double ends the run at its first step
+        let energy_scale = if energy.hi().is_finite() { energy.hi() } else { f64::MAX };
+        let largest = body.rotor().moments::<f64>().magnitude();
+        let conserved = body.conserved();
+        let has = |quantity| conserved.contains(&quantity);
+        let jacobi = conserved.iter().find_map(|quantity| match quantity {
+            Conserved::Jacobi { rate } if !has(Conserved::Energy) => Some(*rate),
+            _ => None,
+        });
+        let turning = (start.momentum_body.norm_of_any_size() * jacobi.unwrap_or(0.0)).magnitude();
+        Some(Forced {
+            energy: has(Conserved::Energy),
+            momentum: has(Conserved::MomentumNorm),
+            momentum_vector: has(Conserved::Momentum),
+            momentum_z: has(Conserved::MomentumZ) && !has(Conserved::Momentum),
+            jacobi,
+            energy_scale,
+            momentum_scale: (2.0 * largest * energy_scale).sqrt(),
+            jacobi_scale: energy_scale + turning,
+        })
+    }
+}
