@@ -3,14 +3,15 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::coordinates::{basis, tensor};
 use super::cramer_rao::local_cubic;
 use super::error::FitError;
-use super::estimate::{normalised, shape_of};
-use super::qp;
+use super::physical::coordinates::{basis, tensor};
+use super::physical::nearest::nearest;
 use super::record::Record;
-use super::stacked::Stacked;
-use super::test_functions::Stretch;
+use super::report::facts::shape_of;
+use super::weak::normalised::normalised;
+use super::weak::stacked::Stacked;
+use super::weak::test_functions::Stretch;
 use crate::inertia::InertiaShape;
 use crate::num::Real;
 
@@ -70,7 +71,7 @@ pub fn baseline(record: &Record, form: Baseline) -> Result<InertiaShape, FitErro
         centre.ok_or_else(|| FitError::Solver { status: "the baseline's matrix is singular".into() })?;
     let spread = (stacked.misfit / rows.len() as f64).sqrt();
     let root = if spread > 0.0 { stacked.root / spread } else { stacked.root };
-    shape_of(&tensor(&qp::nearest(centre, root, &[])?.x))
+    shape_of(&tensor(&nearest(centre, root, &[])?.x))
 }
 
 fn regressor(mut column: impl FnMut(&Matrix3<f64>) -> Vector3<f64>, rows: &mut Vec<[f64; 6]>) {

@@ -2,9 +2,9 @@
 
 use thiserror::Error;
 
-use super::averages::AverageAxis;
-use super::identifiability::Identifiability;
-use super::test_functions::TESTS_PER_RADIUS;
+use super::report::averages::AverageAxis;
+use super::report::identifiability::Identifiability;
+use super::weak::test_functions::TESTS_PER_RADIUS;
 
 /// Two demands that no tensor meets.
 #[derive(Clone, Debug, PartialEq)]

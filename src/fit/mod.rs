@@ -30,40 +30,28 @@
 //! The tensor comes from rounds of linear least squares and one quadratic program at their end; a refinement by
 //! maximum likelihood would start where this ends.
 
-mod averages;
-mod banded;
 mod baselines;
-mod conic;
-mod coordinates;
 mod cramer_rao;
 mod error;
-mod estimate;
-mod identifiability;
-mod limits;
-mod noise;
-mod qp;
-mod quadrature;
-mod radius;
+mod estimator;
+mod physical;
 mod record;
 mod rehearsal;
-mod rounds;
-mod scale;
-mod stacked;
-mod test_functions;
-mod torque_free;
-mod units;
-mod warnings;
+mod report;
+mod settings;
 mod weak;
 
-pub use averages::AverageAxis;
 pub use baselines::{Baseline, baseline};
 pub use cramer_rao::foreseen_bound;
 pub use error::{Clash, FitError};
-pub use estimate::{Estimate, Residuals, Settings, fit};
-pub use identifiability::Identifiability;
-pub use limits::Bound;
-pub use qp::{ActiveConstraint, Certificate};
+pub use estimator::fit;
+pub use physical::certificate::{ActiveConstraint, Certificate};
+pub use physical::limits::Bound;
 pub use record::{RateUnit, Reading, Record, RecordError, Segment, TimeUnit};
 pub use rehearsal::{Random, rehearse};
-pub use scale::Known;
-pub use torque_free::{Drift, Whiteness};
+pub use report::averages::AverageAxis;
+pub use report::estimate::{Estimate, Residuals};
+pub use report::identifiability::Identifiability;
+pub use report::scale::Known;
+pub use report::torque_free::{Drift, Whiteness};
+pub use settings::Settings;

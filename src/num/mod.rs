@@ -11,11 +11,15 @@
 //! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
 //! same input gives the same bits on every CPU and at every optimisation level.
 
+#[cfg(feature = "fit")]
+pub(crate) mod banded;
 pub(crate) mod complex;
 pub mod dd;
 pub mod elliptic;
 pub mod error_free;
 pub mod expansion;
+#[cfg(feature = "fit")]
+pub(crate) mod quadrature;
 pub mod real;
 mod shown;
 pub mod sum;

@@ -1,6 +1,7 @@
 //! Which columns of a text hold what: separators, header, names and the units in them.
 
-use super::{RecordError, TimeUnit};
+use super::error::RecordError;
+use super::units::TimeUnit;
 
 /// What follows the mark of a comment.
 pub(super) fn uncommented(line: &str) -> Option<&str> {
@@ -103,11 +104,6 @@ pub(super) fn cells(line: &str) -> Vec<String> {
     let wide: Vec<String> =
         words.split(|w| w.is_empty()).filter(|w| !w.is_empty()).map(|w| clean(&w.join(" "))).collect();
     if wide.len() > 1 { wide } else { words.into_iter().filter(|w| !w.is_empty()).map(clean).collect() }
-}
-
-/// Lower case without blanks.
-pub(super) fn plain(text: &str) -> String {
-    text.trim().to_lowercase().split_whitespace().collect()
 }
 
 /// A name without its unit, reduced to letters and digits, with sub- and superscripts as letters.

@@ -4,54 +4,54 @@ use std::rc::Rc;
 
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 
-use super::banded::Banded;
-use super::quadrature;
+use crate::num::banded::Banded;
+use crate::num::quadrature;
 
 /// Test functions per radius.
-pub(super) const TESTS_PER_RADIUS: f64 = 4.0;
+pub(crate) const TESTS_PER_RADIUS: f64 = 4.0;
 /// Fewest samples in the support of one test function.
-pub(super) const SAMPLES_PER_TEST: f64 = 8.0;
+pub(crate) const SAMPLES_PER_TEST: f64 = 8.0;
 
 /// One stretch of samples without gaps, in units of the root mean square rate and its inverse.
 #[derive(Clone, Debug)]
-pub(super) struct Stretch {
-    pub(super) times: Vec<f64>,
-    pub(super) rates: Vec<Vector3<f64>>,
-    pub(super) weights: Vec<f64>,
+pub(crate) struct Stretch {
+    pub(crate) times: Vec<f64>,
+    pub(crate) rates: Vec<Vector3<f64>>,
+    pub(crate) weights: Vec<f64>,
 }
 
 impl Stretch {
-    pub(super) fn new(times: Vec<f64>, rates: Vec<Vector3<f64>>) -> Self {
+    pub(crate) fn new(times: Vec<f64>, rates: Vec<Vector3<f64>>) -> Self {
         let weights = quadrature::weights(&times);
         Stretch { times, rates, weights }
     }
 
-    pub(super) fn duration(&self) -> f64 {
+    pub(crate) fn duration(&self) -> f64 {
         self.times.last().zip(self.times.first()).map_or(0.0, |(b, a)| b - a)
     }
 
     /// Its first `count` samples.
-    pub(super) fn head(&self, count: usize) -> Stretch {
+    pub(crate) fn head(&self, count: usize) -> Stretch {
         Stretch::new(self.times[..count].to_vec(), self.rates[..count].to_vec())
     }
 }
 
 /// The test functions of one stretch: φ = (1 − u²)⁴, u = (t − centre)/radius, centres evenly spaced.
 #[derive(Clone, Debug)]
-pub(super) struct TestFunctions {
+pub(crate) struct TestFunctions {
     first: f64,
     spacing: f64,
-    pub(super) radius: f64,
-    pub(super) count: usize,
+    pub(crate) radius: f64,
+    pub(crate) count: usize,
     /// How many neighbours on one side a test overlaps.
-    pub(super) reach: usize,
+    pub(crate) reach: usize,
     /// Cubics q(u) of each test, with which φ' + φ q/radius sums by parts exactly: see [`by_parts`](Self::by_parts).
     corrections: Rc<[Vector4<f64>]>,
 }
 
 impl TestFunctions {
     /// `None` where the stretch is shorter than one test function, or has too few samples for it.
-    pub(super) fn new(stretch: &Stretch, radius: f64) -> Option<TestFunctions> {
+    pub(crate) fn new(stretch: &Stretch, radius: f64) -> Option<TestFunctions> {
         let duration = stretch.duration();
         let samples = stretch.times.len() as f64;
         // a radius that was cut from this very duration may exceed half of it by rounding
@@ -107,7 +107,7 @@ impl TestFunctions {
         if high < 0.0 { 0..0 } else { low..(high as usize + 1).min(self.count) }
     }
 
-    pub(super) fn centres(&self) -> Vec<f64> {
+    pub(crate) fn centres(&self) -> Vec<f64> {
         (0..self.count).map(|m| self.first + m as f64 * self.spacing).collect()
     }
 
@@ -123,15 +123,15 @@ impl TestFunctions {
 const MOST: usize = 30;
 
 /// The rows that see one sample, three to a test, with their weights w φ' and w φ.
-pub(super) struct Seen {
-    pub(super) first: usize,
-    pub(super) count: usize,
-    pub(super) slope: [f64; MOST],
-    pub(super) value: [f64; MOST],
+pub(crate) struct Seen {
+    pub(crate) first: usize,
+    pub(crate) count: usize,
+    pub(crate) slope: [f64; MOST],
+    pub(crate) value: [f64; MOST],
 }
 
 impl Seen {
-    pub(super) fn new(tests: &TestFunctions, t: f64, weight: f64) -> Seen {
+    pub(crate) fn new(tests: &TestFunctions, t: f64, weight: f64) -> Seen {
         let range = tests.at(t);
         let count = (3 * range.len()).min(MOST);
         let mut seen = Seen { first: 3 * range.start, count, slope: [0.0; MOST], value: [0.0; MOST] };
@@ -146,7 +146,7 @@ impl Seen {
     }
 
     /// −slope·a + value·b by row, with the rows of `a` and `b` in turn: one axis of the tests' share in a product.
-    pub(super) fn mix(&self, a: [f64; 3], b: [f64; 3]) -> [f64; MOST] {
+    pub(crate) fn mix(&self, a: [f64; 3], b: [f64; 3]) -> [f64; MOST] {
         let mut mixed = [0.0; MOST];
         for ((m, s), v) in mixed.chunks_mut(3).zip(self.slope.chunks(3)).zip(self.value.chunks(3)) {
             for q in 0..3 {
@@ -158,7 +158,7 @@ impl Seen {
 
     /// Σ over pairs of tests of the blocks Z of `inverse`, weighted by slope·slope, slope·value and value·value; in
     /// the second the row belongs to the value. Lower halves only are summed, then mirrored.
-    pub(super) fn sums(&self, inverse: &Banded) -> [Matrix3<f64>; 3] {
+    pub(crate) fn sums(&self, inverse: &Banded) -> [Matrix3<f64>; 3] {
         let (mut slopes, mut values) = ([[0.0; MOST]; 3], [[0.0; MOST]; 3]);
         for row in 0..self.count {
             let (a, b, p) = (self.slope[row], self.value[row], row % 3);

@@ -7,36 +7,36 @@ use clarabel::solver::{
 };
 
 use super::coordinates::Coordinates;
-use super::error::FitError;
+use crate::fit::error::FitError;
 
 /// Conditions a·x ≤ b and second-order cones, gathered for the solver.
-pub(super) struct Conditions {
+pub(crate) struct Conditions {
     variables: usize,
     nonnegative: Vec<(Vec<f64>, f64)>,
     second_order: Vec<(Vec<f64>, f64)>,
 }
 
 impl Conditions {
-    pub(super) fn new(variables: usize) -> Self {
+    pub(crate) fn new(variables: usize) -> Self {
         Conditions { variables, nonnegative: Vec::new(), second_order: Vec::new() }
     }
 
-    pub(super) fn nonnegative(&mut self, a: &[f64], b: f64) {
+    pub(crate) fn nonnegative(&mut self, a: &[f64], b: f64) {
         self.nonnegative.push((a.to_vec(), b));
     }
 
     /// base₀ + g₀·x ≥ |(base₁ + g₁·x, base₂ + g₂·x)|.
-    pub(super) fn second_order(&mut self, cone: [(Coordinates, f64); 3]) {
+    pub(crate) fn second_order(&mut self, cone: [(Coordinates, f64); 3]) {
         self.second_order.extend(cone.map(|(g, base)| ((-g).as_slice().to_vec(), base)));
     }
 
-    pub(super) fn solve(&self, diagonal: &[f64], linear: &[f64]) -> Result<Vec<f64>, FitError> {
+    pub(crate) fn solve(&self, diagonal: &[f64], linear: &[f64]) -> Result<Vec<f64>, FitError> {
         self.solve_with_duals(diagonal, linear).map(|(x, _)| x)
     }
 
     /// min ½ Σ diagonal x² + linear·x. Every status is looked at; an answer of less than full accuracy is passed on,
     /// since what follows certifies it.
-    pub(super) fn solve_with_duals(
+    pub(crate) fn solve_with_duals(
         &self,
         diagonal: &[f64],
         linear: &[f64],

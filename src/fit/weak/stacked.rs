@@ -3,34 +3,34 @@
 use faer::Mat;
 use nalgebra::SMatrix;
 
-use super::coordinates::{Coordinates, Form};
-use super::weak::Linearised;
+use super::linearised::Linearised;
+use crate::fit::physical::coordinates::{Coordinates, Form};
 
 /// min |R (x − origin) + z|²: what all stretches say together.
-pub(super) struct Stacked {
+pub(crate) struct Stacked {
     origin: Coordinates,
     /// Upper triangular, Rᵀ R = H.
-    pub(super) root: Form,
+    pub(crate) root: Form,
     z: Coordinates,
     /// Sum of squares of the whitened residuals that no x removes.
-    pub(super) misfit: f64,
+    pub(crate) misfit: f64,
     /// Equations.
-    pub(super) rows: usize,
+    pub(crate) rows: usize,
 }
 
 impl Stacked {
     /// The triangle of all whitened rows, without forming their squares.
-    pub(super) fn new(stretches: &[Linearised]) -> Stacked {
+    pub(crate) fn new(stretches: &[Linearised]) -> Stacked {
         let rows: Vec<[f64; 6]> = stretches.iter().flat_map(|s| s.rows.iter().copied()).collect();
         Stacked::triangle(&rows, stretches.first().map_or(Coordinates::zeros(), |s| s.origin))
     }
 
     /// The same of unweighted rows.
-    pub(super) fn of_rows(rows: &[[f64; 6]]) -> Stacked {
+    pub(crate) fn of_rows(rows: &[[f64; 6]]) -> Stacked {
         Stacked::triangle(rows, Coordinates::zeros())
     }
 
-    pub(super) fn triangle(rows: &[[f64; 6]], origin: Coordinates) -> Stacked {
+    pub(crate) fn triangle(rows: &[[f64; 6]], origin: Coordinates) -> Stacked {
         let stack = Mat::from_fn(rows.len().max(6), 6, |i, k| rows.get(i).map_or(0.0, |row| row[k]));
         let qr = stack.qr();
         let r = qr.thin_R();
@@ -44,16 +44,16 @@ impl Stacked {
     }
 
     /// Mean square of what is left over that of the noise, where it is more than 1.
-    pub(super) fn excess(&self, variance: f64) -> f64 {
+    pub(crate) fn excess(&self, variance: f64) -> f64 {
         (self.misfit / variance / self.rows.saturating_sub(5).max(1) as f64).max(1.0)
     }
 
-    pub(super) fn information(&self) -> Form {
+    pub(crate) fn information(&self) -> Form {
         self.root.transpose() * self.root
     }
 
     /// The x that makes |R (x − origin) + z|² + ridge |x|² least.
-    pub(super) fn ridge(&self, ridge: f64) -> Option<Coordinates> {
+    pub(crate) fn ridge(&self, ridge: f64) -> Option<Coordinates> {
         // far above the rounding of R, where the record tells nothing and has no noise either; only weights are at stake
         let weight = ridge.sqrt().max(1e-7 * self.root.norm());
         let mut stack = SMatrix::<f64, 10, 6>::zeros();
@@ -67,7 +67,7 @@ impl Stacked {
     }
 
     /// The x that makes |R (x − origin) + z| least.
-    pub(super) fn minimiser(&self) -> Option<Coordinates> {
+    pub(crate) fn minimiser(&self) -> Option<Coordinates> {
         Some(self.origin + self.root.solve_upper_triangular(&-self.z)?)
     }
 }

@@ -1,7 +1,9 @@
 //! What a reader of an estimate must know before its figures are used.
 
-use super::estimate::{Estimate, Facts};
-use super::units::Better;
+use super::estimate::Estimate;
+use crate::fit::record::Record;
+use crate::fit::weak::mistaken_units::Better;
+use crate::fit::weak::rounds::WeakEstimate;
 
 /// Standard deviations by which noise alone does not carry five numbers off the physical tensors.
 const FAR: f64 = 6.0;
@@ -18,10 +20,19 @@ fn samples(count: usize, one: &str, more: &str) -> String {
     if count == 1 { format!("1 sample {one}") } else { format!("{count} samples {more}") }
 }
 
+/// What warnings are drawn from, besides the estimate.
+pub(super) struct Grounds<'a> {
+    pub(super) record: &'a Record,
+    pub(super) weak: &'a WeakEstimate,
+    /// Mean square of the residuals over the noise.
+    pub(super) misfit: f64,
+    pub(super) better: Option<&'a Better>,
+}
+
 /// In words: what of the record, the residuals and the answer limits the use of `e`.
-pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<&Better>) -> Vec<String> {
+pub(crate) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<String> {
     let mut list = Vec::new();
-    let record = facts.record;
+    let Grounds { record, weak, misfit, better } = *grounds;
     if record.merged() > 0 {
         let samples = samples(record.merged(), "was", "were");
         list.push(format!("{samples} merged with the sample of the same time"));
@@ -37,8 +48,8 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<&Better>)
             record.segments.len()
         ));
     }
-    if facts.misfit > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
-        let times = facts.misfit.sqrt();
+    if misfit > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
+        let times = misfit.sqrt();
         let times = if times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
         list.push(format!(
             "the residuals are {times} times what the noise of {:.2e} rad/s explains: torques, outliers or a sensor that \
@@ -46,16 +57,16 @@ pub(super) fn warnings(e: &Estimate, facts: &Facts<'_>, better: Option<&Better>)
             e.noise_sigma
         ));
     }
-    if !facts.weak.still() {
+    if !weak.still() {
         list.push(format!(
             "the reweighting did not come to rest: a further round would move the tensor by {:.2} standard deviations",
-            facts.weak.moved
+            weak.moved
         ));
     }
-    if let Some(Better { factor, hint, misfit, .. }) = better {
+    if let Some(Better { factor, hint, misfit: with, .. }) = better {
         list.push(format!(
-            "with rate x time {factor:.4e} times as large the misfit falls from {:.2e} to {misfit:.2e}: {hint}?",
-            facts.misfit
+            "with rate x time {factor:.4e} times as large the misfit falls from {:.2e} to {with:.2e}: {hint}?",
+            misfit
         ));
     }
     if e.whiteness.significant() {

@@ -6,18 +6,18 @@
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// The five numbers that free motion can tell.
-pub(super) type Coordinates = SVector<f64, 5>;
+pub(crate) type Coordinates = SVector<f64, 5>;
 /// A quadratic form of them.
-pub(super) type Form = SMatrix<f64, 5, 5>;
+pub(crate) type Form = SMatrix<f64, 5, 5>;
 
 const HALF_ROOT: f64 = core::f64::consts::FRAC_1_SQRT_2;
 const SIXTH_ROOT: f64 = 0.408_248_290_463_863; // 1/√6
 
 /// The rows and columns of the order xx, yy, zz, xy, xz, yz.
-pub(super) const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+pub(crate) const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
 /// B_k.
-pub(super) fn basis(k: usize) -> Matrix3<f64> {
+pub(crate) fn basis(k: usize) -> Matrix3<f64> {
     match k {
         0 => Matrix3::from_diagonal(&Vector3::new(HALF_ROOT, -HALF_ROOT, 0.0)),
         1 => Matrix3::from_diagonal(&Vector3::new(SIXTH_ROOT, SIXTH_ROOT, -2.0 * SIXTH_ROOT)),
@@ -32,27 +32,27 @@ pub(super) fn basis(k: usize) -> Matrix3<f64> {
 }
 
 /// Σ x_k B_k.
-pub(super) fn trace_free(x: &Coordinates) -> Matrix3<f64> {
+pub(crate) fn trace_free(x: &Coordinates) -> Matrix3<f64> {
     (0..5).fold(Matrix3::zeros(), |sum, k| sum + basis(k) * x[k])
 }
 
 /// 1/3 + Σ x_k B_k.
-pub(super) fn tensor(x: &Coordinates) -> Matrix3<f64> {
+pub(crate) fn tensor(x: &Coordinates) -> Matrix3<f64> {
     Matrix3::identity() / 3.0 + trace_free(x)
 }
 
 /// The coordinates of a symmetric tensor, its trace put aside.
-pub(super) fn coordinates(tensor: &Matrix3<f64>) -> Coordinates {
+pub(crate) fn coordinates(tensor: &Matrix3<f64>) -> Coordinates {
     Coordinates::from_fn(|k, _| basis(k).dot(tensor))
 }
 
 /// vᵀ B_k w for each k.
-pub(super) fn pair(v: &Vector3<f64>, w: &Vector3<f64>) -> Coordinates {
+pub(crate) fn pair(v: &Vector3<f64>, w: &Vector3<f64>) -> Coordinates {
     Coordinates::from_fn(|k, _| v.dot(&(basis(k) * w)))
 }
 
 /// Eigenvalues, ascending, and eigenvectors (columns) of a symmetric matrix, by Jacobi's rotations.
-pub(super) fn eigen<const N: usize>(mut a: SMatrix<f64, N, N>) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+pub(crate) fn eigen<const N: usize>(mut a: SMatrix<f64, N, N>) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
     let mut v = SMatrix::<f64, N, N>::identity();
     // quadratic convergence: 53 bits take at most 6 or 7 sweeps, the rest is margin
     for _ in 0..16 {
@@ -87,7 +87,7 @@ pub(super) fn eigen<const N: usize>(mut a: SMatrix<f64, N, N>) -> (SVector<f64, 
 }
 
 /// The matrix that takes coordinates to the entries xx, yy, zz, xy, xz, yz.
-pub(super) fn entries_of_coordinates() -> SMatrix<f64, 6, 5> {
+pub(crate) fn entries_of_coordinates() -> SMatrix<f64, 6, 5> {
     SMatrix::from_fn(|row, k| basis(k)[ENTRIES[row]])
 }
 

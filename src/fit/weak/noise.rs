@@ -2,13 +2,16 @@
 
 use super::test_functions::Stretch;
 
+/// Standard deviations of a mean within which the true one is taken to lie.
+pub(crate) const SURE: f64 = 5.0;
+
 /// Variance of one component, from what local cubics leave of five neighbouring samples.
 ///
 /// The combination Σ c_i ω_i with c_i = 1/Π(t_i − t_j) vanishes for every cubic; divided by |c| it has the variance
 /// of the noise. It sees only what is too fast for the motion, so that what is slow (torques, a wrong unit, a tensor
 /// that does not fit) is left for χ² to show.
 /// Windows that exceed thirty medians (a chance of 1e-15 under normal noise: a blow, a catch) are left out.
-pub(super) fn variance(stretches: &[Stretch]) -> f64 {
+pub(crate) fn variance(stretches: &[Stretch]) -> f64 {
     let mut squares: Vec<f64> = Vec::new();
     for s in stretches {
         for (t, w) in s.times.windows(5).zip(s.rates.windows(5)) {

@@ -1,44 +1,29 @@
-//! The weak form of Euler's equation: nothing is differentiated.
-//!
-//! J ω' + ω × J ω = 0, multiplied by a test function φ of compact support and integrated by parts, is
-//! ∫ (−φ' J ω + φ ω × J ω) dt = 0: linear in J, and free of bias to first order in the noise of ω.
-//!
-//! The noise n of the samples enters test m as Σ_i A_mi n_i with A_mi = w_i (−φ'_m J + φ_m ([ω]ₓ J − [J ω]ₓ)), so the
-//! residuals have the banded covariance C = Σ_i A_mi A_m'iᵀ (times σ²). Each round solves the least-squares problem
-//! weighted by C⁻¹ at the samples ω − n̂ that the round before left on the constraints, n̂ = Aᵀ C⁻¹ r. Its fixed
-//! point minimises |n|² subject to the weak equations (Gauss–Helmert), which weights at the raw samples do not.
-//!
-//! | here | meaning |
-//! |---|---|
-//! | r, G | residuals of the weak equations, and their derivatives with respect to the coordinates x of J |
-//! | H | Gᵀ C⁻¹ G: information, in units of 1/σ² |
-//! | V | what the noise in G adds to H at raw samples, in expectation and in units of 1/σ² |
-//! | D | Dᵀ D is what errors of the mean rates may add to H where nothing but their mean stands out of the noise |
+//! The weak equations of one stretch, linearised.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::banded::Banded;
-use super::coordinates::{Coordinates, Form, basis, tensor};
 use super::test_functions::{Seen, Stretch, TestFunctions};
+use crate::fit::physical::coordinates::{Coordinates, Form, basis, tensor};
+use crate::num::banded::Banded;
 
 /// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
-pub(super) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
+pub(crate) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
     w.cross_matrix() * b - (b * w).cross_matrix()
 }
 
 /// The weak equations of one stretch, linearised at samples `rates` − `noise` and tensor J, whitened by L⁻¹.
-pub(super) struct Linearised {
+pub(crate) struct Linearised {
     tests: TestFunctions,
     factor: Banded,
     /// The coordinates that the last column is the residual of: what is left of x is small, and so is its rounding.
-    pub(super) origin: Coordinates,
+    pub(crate) origin: Coordinates,
     /// L⁻¹ [G | r], row by row.
-    pub(super) rows: Vec<[f64; 6]>,
+    pub(crate) rows: Vec<[f64; 6]>,
 }
 
 impl Linearised {
     /// `None` where the covariance is not positive, as for a tensor far from physical.
-    pub(super) fn new(
+    pub(crate) fn new(
         stretch: &Stretch,
         noise: &[Vector3<f64>],
         origin: Coordinates,
@@ -90,13 +75,13 @@ impl Linearised {
     }
 
     /// Whitened residuals at `x`.
-    pub(super) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
+    pub(crate) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
         let step = x - self.origin;
         self.rows.iter().map(|row| row[5] + (0..5).map(|k| row[k] * step[k]).sum::<f64>()).collect()
     }
 
     /// The noise n̂ = Aᵀ C⁻¹ r that carries the samples onto the weak equations of `x`.
-    pub(super) fn noise(
+    pub(crate) fn noise(
         &self,
         stretch: &Stretch,
         old: &[Vector3<f64>],
@@ -120,7 +105,7 @@ impl Linearised {
     }
 
     /// V of this stretch.
-    pub(super) fn inflation(&self, stretch: &Stretch, noise: &[Vector3<f64>]) -> Form {
+    pub(crate) fn inflation(&self, stretch: &Stretch, noise: &[Vector3<f64>]) -> Form {
         let inverse = self.factor.inverse_band();
         let bases: [Matrix3<f64>; 5] = core::array::from_fn(basis);
         let mut sum = Form::zeros();

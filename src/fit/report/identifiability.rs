@@ -2,11 +2,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::coordinates::{Coordinates, Form, eigen, trace_free};
+use crate::fit::physical::coordinates::{Coordinates, Form, eigen, trace_free};
 
 /// A combination of entries with a larger standard deviation (share of the trace) counts as undetermined: physical
 /// tensors differ by 0.4 at most from the sphere, so such a figure tells nothing.
-pub(super) const VAGUE: f64 = 0.1;
+pub(crate) const VAGUE: f64 = 0.1;
 
 /// The spectrum of information about the five numbers of a tensor of trace 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Identifiability {
 impl Identifiability {
     /// From the singular values of the whitened equations with their directions; `scatter` is the mean of ω ωᵀ and
     /// `estimate` the tensor so far.
-    pub(super) fn new(
+    pub(crate) fn new(
         (singular, directions): &(Coordinates, Form),
         scatter: &Matrix3<f64>,
         estimate: &Matrix3<f64>,
@@ -57,7 +57,7 @@ impl Identifiability {
 }
 
 /// A unit vector of either sign, the largest component positive.
-pub(super) fn direction(v: &Vector3<f64>) -> String {
+pub(crate) fn direction(v: &Vector3<f64>) -> String {
     let v = v * v[v.iamax()].signum();
     format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z)
 }

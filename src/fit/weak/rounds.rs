@@ -3,14 +3,15 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
-use super::coordinates::{Coordinates, Form, eigen, pair, tensor};
-use super::qp::LIMIT;
+use super::linearised::Linearised;
+use super::noise::SURE;
 use super::stacked::Stacked;
 use super::test_functions::{Stretch, TestFunctions};
-use super::weak::Linearised;
+use crate::fit::physical::coordinates::{Coordinates, Form, eigen, pair, tensor};
+use crate::fit::physical::law::LIMIT;
 
 /// Most rounds at one radius; at low noise two or three do.
-pub(super) const ROUNDS: usize = 12;
+pub(crate) const ROUNDS: usize = 12;
 /// Rounds that take their whole step.
 const FULL_ROUNDS: usize = 6;
 /// Shares of a step that are tried.
@@ -18,65 +19,63 @@ const SHARES: usize = 30;
 /// Standard deviations by which the last round may still move the tensor.
 const STILL: f64 = 0.01;
 /// The same beyond which there is no answer.
-pub(super) const RESTLESS: f64 = 0.5;
+pub(crate) const RESTLESS: f64 = 0.5;
 /// Misfit per equation that noise does not explain.
-pub(super) const TORQUES: f64 = 4.0;
+pub(crate) const TORQUES: f64 = 4.0;
 /// Fall of χ² that no wobble of pure noise brings about: its chance is e⁻²⁵ for each frequency that is tried.
 const SIGNIFICANT_GAIN: f64 = 50.0;
 /// What a round may leave of the smallest moment: at none at all the covariance of the equations has no inverse.
 const KEPT: f64 = 0.1;
 /// How far beyond the law, as a share of the trace, torques may carry an estimate that the law is to bring back.
 const BEYOND: f64 = 0.05;
-/// Standard deviations of a mean within which the true one is taken to lie.
-pub(super) const SURE: f64 = 5.0;
 
 /// The weak estimate of a record: where its rounds ended.
-pub(super) struct WeakEstimate {
-    pub(super) radius: f64,
-    pub(super) x: Coordinates,
+pub(crate) struct WeakEstimate {
+    pub(crate) radius: f64,
+    pub(crate) x: Coordinates,
     /// Standard deviations by which a further round would move x; infinite where no round could be made, and this is
     /// good for one question only: what is undetermined.
-    pub(super) moved: f64,
+    pub(crate) moved: f64,
     /// Upper triangular, Rᵀ R = H at a motion free of noise.
-    pub(super) root: Form,
+    pub(crate) root: Form,
     /// D of the mean rates; zero where R is taken at a motion that stands out of the noise.
     doubt: Form,
     /// Sum of squares of the whitened residuals.
-    pub(super) misfit: f64,
+    pub(crate) misfit: f64,
     /// Equations.
-    pub(super) rows: usize,
+    pub(crate) rows: usize,
     /// Each stretch that is long enough.
-    pub(super) parts: Vec<Part>,
+    pub(crate) parts: Vec<Part>,
 }
 
 /// The whitened equations of one stretch.
-pub(super) struct Part {
-    pub(super) stretch: usize,
-    pub(super) centres: Vec<f64>,
+pub(crate) struct Part {
+    pub(crate) stretch: usize,
+    pub(crate) centres: Vec<f64>,
     linearised: Linearised,
 }
 
 impl Part {
     /// Three for each centre.
-    pub(super) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
+    pub(crate) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
         self.linearised.residuals(x)
     }
 }
 
 impl WeakEstimate {
     /// Whether the rounds ended near enough to a fixed point.
-    pub(super) fn settled(&self) -> bool {
+    pub(crate) fn settled(&self) -> bool {
         self.moved <= RESTLESS
     }
 
     /// Whether they stood still there.
-    pub(super) fn still(&self) -> bool {
+    pub(crate) fn still(&self) -> bool {
         self.moved <= STILL
     }
 
     /// Whether a body may have this tensor, or one near it: J = n nᵀ solves the equations of any spin about n, with
     /// residuals and covariance that vanish together, and rounds may end there.
-    pub(super) fn possible(&self, variance: f64) -> bool {
+    pub(crate) fn possible(&self, variance: f64) -> bool {
         let (moments, axes) = eigen(tensor(&self.x));
         let top = axes.column(2).into_owned();
         let share = self.root.transpose().solve_lower_triangular(&pair(&top, &top));
@@ -86,18 +85,18 @@ impl WeakEstimate {
     }
 
     /// Equations beyond the unknowns.
-    pub(super) fn dof(&self) -> usize {
+    pub(crate) fn dof(&self) -> usize {
         self.rows - 5
     }
 
     /// Mean square of the residuals over the noise.
-    pub(super) fn misfit_per_dof(&self, variance: f64) -> f64 {
+    pub(crate) fn misfit_per_dof(&self, variance: f64) -> f64 {
         self.misfit / variance / self.dof().max(1) as f64
     }
 
     /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
     /// without its squares.
-    pub(super) fn spectrum(&self) -> Option<(Coordinates, Form)> {
+    pub(crate) fn spectrum(&self) -> Option<(Coordinates, Form)> {
         let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
         let (values, directions) = (svd.S().column_vector(), svd.V());
         let mut pairs: [(f64, Coordinates); 5] = core::array::from_fn(|k| {
@@ -110,14 +109,14 @@ impl WeakEstimate {
     }
 }
 
-pub(super) struct Rounds<'a> {
+pub(crate) struct Rounds<'a> {
     used: Vec<(usize, &'a Stretch, TestFunctions)>,
     noise: Vec<Vec<Vector3<f64>>>,
-    pub(super) x: Coordinates,
+    pub(crate) x: Coordinates,
 }
 
 impl<'a> Rounds<'a> {
-    pub(super) fn new(stretches: &'a [Stretch], radius: f64, x: Coordinates) -> Option<Self> {
+    pub(crate) fn new(stretches: &'a [Stretch], radius: f64, x: Coordinates) -> Option<Self> {
         let used: Vec<_> = stretches
             .iter()
             .enumerate()
@@ -131,7 +130,7 @@ impl<'a> Rounds<'a> {
         Some(Rounds { used, noise, x })
     }
 
-    pub(super) fn linearise(&self) -> Option<Vec<Linearised>> {
+    pub(crate) fn linearise(&self) -> Option<Vec<Linearised>> {
         self.used
             .iter()
             .zip(&self.noise)
@@ -142,7 +141,7 @@ impl<'a> Rounds<'a> {
     /// One round, and by how many standard deviations it would move the tensor if it took its whole step.
     ///
     /// A ridge as weak as one reading keeps x finite before it is known that the record determines it.
-    pub(super) fn round(&mut self, variance: f64, full: bool) -> Option<f64> {
+    pub(crate) fn round(&mut self, variance: f64, full: bool) -> Option<f64> {
         let parts = self.linearise()?;
         let stacked = Stacked::new(&parts);
         let x = stacked.ridge(variance)?;
@@ -174,7 +173,7 @@ impl<'a> Rounds<'a> {
     }
 
     /// Rounds until the tensor stands still, and by how many standard deviations the last would have moved it.
-    pub(super) fn settle(&mut self, variance: f64) -> Option<f64> {
+    pub(crate) fn settle(&mut self, variance: f64) -> Option<f64> {
         let mut moved = f64::INFINITY;
         for round in 0..ROUNDS {
             moved = self.round(variance, round < FULL_ROUNDS)?;
@@ -185,7 +184,7 @@ impl<'a> Rounds<'a> {
         Some(moved)
     }
 
-    pub(super) fn finish(&self, variance: f64, moved: f64) -> Option<WeakEstimate> {
+    pub(crate) fn finish(&self, variance: f64, moved: f64) -> Option<WeakEstimate> {
         let parts = self.linearise()?;
         let stacked = Stacked::new(&parts);
         let x = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite())).unwrap_or(self.x);
@@ -215,7 +214,7 @@ impl<'a> Rounds<'a> {
     }
 
     /// What can be said without any tensor to go by: the information of constant rates, weighted as for a sphere.
-    pub(super) fn at_sphere(mut self, variance: f64) -> Option<WeakEstimate> {
+    pub(crate) fn at_sphere(mut self, variance: f64) -> Option<WeakEstimate> {
         self.x = Coordinates::zeros();
         let ((root, doubt), misfit) = (self.constant_rates(variance)?, self.misfit_of_sphere()?);
         let rows = self.used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
@@ -266,7 +265,7 @@ impl<'a> Rounds<'a> {
     }
 
     /// V.
-    pub(super) fn inflation(&self, parts: &[Linearised]) -> Form {
+    pub(crate) fn inflation(&self, parts: &[Linearised]) -> Form {
         parts.iter().zip(&self.used).zip(&self.noise).map(|((p, (_, s, _)), n)| p.inflation(s, n)).sum()
     }
 }

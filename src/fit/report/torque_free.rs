@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::test_functions::Stretch;
+use crate::fit::weak::test_functions::Stretch;
 
 /// Relative change per second of a quantity that a free body keeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Whiteness {
 
 impl Whiteness {
     /// Of residuals with three components per test, test after test.
-    pub(super) fn new<'a>(residuals: impl Iterator<Item = &'a [f64]>) -> Self {
+    pub(crate) fn new<'a>(residuals: impl Iterator<Item = &'a [f64]>) -> Self {
         let (mut product, mut square, mut pairs) = (0.0, 0.0, 0.0);
         for e in residuals {
             square += e.iter().map(|e| e * e).sum::<f64>();
@@ -52,7 +52,7 @@ impl Whiteness {
 ///
 /// Each sample of |J ω|² has the variance 4 σ² |J² ω|², of ω·J ω the variance 4 σ² |J ω|²; the noise adds a constant to
 /// both means, which no slope sees.
-pub(super) fn drifts(stretches: &[Stretch], j: &Matrix3<f64>, variance: f64) -> (Drift, Drift) {
+pub(crate) fn drifts(stretches: &[Stretch], j: &Matrix3<f64>, variance: f64) -> (Drift, Drift) {
     let jj = j * j;
     let momentum = slope(stretches, |w| (w.dot(&(jj * w)), 4.0 * variance * (jj * w).norm_squared()));
     let energy = slope(stretches, |w| (w.dot(&(j * w)), 4.0 * variance * (j * w).norm_squared()));

@@ -1,15 +1,15 @@
 //! The half width of the test functions: chosen by least predicted covariance, doubled where the rounds do not settle.
 
-use super::coordinates::{Coordinates, Form};
 use super::rounds::{RESTLESS, Rounds, TORQUES, WeakEstimate};
 use super::stacked::Stacked;
 use super::test_functions::{SAMPLES_PER_TEST, Stretch, TestFunctions};
+use crate::fit::physical::coordinates::{Coordinates, Form};
 
 /// Test functions per sample beyond which the covariance of their noise is all but singular.
 const DENSE: f64 = 0.9;
 
 /// Why there is no weak estimate.
-pub(super) enum Failure {
+pub(crate) enum Failure {
     /// No stretch carries enough test functions.
     TooShort,
     /// The equations of the radius that was asked for are nearly as many as the samples.
@@ -72,7 +72,7 @@ fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinat
 const PILOT_SAMPLES: usize = 40_000;
 
 /// The weak estimate; `variance` is that of the noise in units of the mean square rate.
-pub(super) fn estimate(
+pub(crate) fn estimate(
     stretches: &[Stretch],
     radius: Option<f64>,
     variance: f64,
@@ -118,7 +118,7 @@ pub(super) fn estimate(
 }
 
 /// The longest stretches, up to a number of samples, in their order.
-pub(super) fn pilot(stretches: &[Stretch]) -> Vec<Stretch> {
+pub(crate) fn pilot(stretches: &[Stretch]) -> Vec<Stretch> {
     let mut longest: Vec<usize> = (0..stretches.len()).collect();
     longest.sort_by_key(|&k| core::cmp::Reverse(stretches[k].times.len()));
     let mut left = PILOT_SAMPLES;

@@ -2,14 +2,14 @@
 
 /// The lower band of a symmetric matrix, or of its factor: row i holds columns i − band … i.
 #[derive(Clone, Debug)]
-pub(super) struct Banded {
+pub(crate) struct Banded {
     size: usize,
     band: usize,
     rows: Vec<f64>,
 }
 
 impl Banded {
-    pub(super) fn zeros(size: usize, band: usize) -> Self {
+    pub(crate) fn zeros(size: usize, band: usize) -> Self {
         Banded { size, band, rows: vec![0.0; size * (band + 1)] }
     }
 
@@ -20,32 +20,32 @@ impl Banded {
     }
 
     #[inline]
-    pub(super) fn get(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn get(&self, i: usize, j: usize) -> f64 {
         let (i, j) = if i < j { (j, i) } else { (i, j) };
         if i - j > self.band { 0.0 } else { self.rows[self.at(i, j)] }
     }
 
     #[inline]
-    pub(super) fn add(&mut self, i: usize, j: usize, value: f64) {
+    pub(crate) fn add(&mut self, i: usize, j: usize, value: f64) {
         let at = self.at(i, j);
         self.rows[at] += value;
     }
 
     /// Row i from column `from` up to column `to`, exclusive.
     #[inline]
-    pub(super) fn row_mut(&mut self, i: usize, from: usize, to: usize) -> &mut [f64] {
+    pub(crate) fn row_mut(&mut self, i: usize, from: usize, to: usize) -> &mut [f64] {
         let at = self.at(i, from);
         &mut self.rows[at..at + (to - from)]
     }
 
     /// The same to read.
     #[inline]
-    pub(super) fn row(&self, i: usize, from: usize, to: usize) -> &[f64] {
+    pub(crate) fn row(&self, i: usize, from: usize, to: usize) -> &[f64] {
         &self.rows[self.at(i, from)..self.at(i, from) + (to - from)]
     }
 
     /// Replaces the matrix by its Cholesky factor; false where it is not positive.
-    pub(super) fn factor(&mut self) -> bool {
+    pub(crate) fn factor(&mut self) -> bool {
         for i in 0..self.size {
             let first = i.saturating_sub(self.band);
             for j in first..=i {
@@ -65,7 +65,7 @@ impl Banded {
     }
 
     /// L⁻¹ b, of a factor, in place, of several right-hand sides side by side.
-    pub(super) fn forward<const N: usize>(&self, b: &mut [[f64; N]]) {
+    pub(crate) fn forward<const N: usize>(&self, b: &mut [[f64; N]]) {
         for i in 0..self.size {
             let first = i.saturating_sub(self.band);
             let mut sum = b[i];
@@ -77,7 +77,7 @@ impl Banded {
     }
 
     /// L⁻ᵀ b, of a factor, in place.
-    pub(super) fn backward(&self, b: &mut [f64]) {
+    pub(crate) fn backward(&self, b: &mut [f64]) {
         for i in (0..self.size).rev() {
             let first = i.saturating_sub(self.band);
             b[i] /= self.get(i, i);
@@ -91,7 +91,7 @@ impl Banded {
     /// The band of (L Lᵀ)⁻¹, of a factor.
     ///
     /// Source: Takahashi, Fagan, Chin 1973: Z = L⁻ᵀ D⁻¹ + (1 − Lᵀ) Z with unit L, from the last row up.
-    pub(super) fn inverse_band(&self) -> Banded {
+    pub(crate) fn inverse_band(&self) -> Banded {
         let mut z = Banded::zeros(self.size, self.band);
         for j in (0..self.size).rev() {
             let last = (j + self.band).min(self.size - 1);

@@ -5,7 +5,7 @@
 ///
 /// A neighbour closer than a quarter of the interval is passed over for the next one: through two samples that
 /// nearly coincide a cubic would magnify their noise. On a uniform grid all inner weights are the spacing.
-pub(super) fn weights(times: &[f64]) -> Vec<f64> {
+pub(crate) fn weights(times: &[f64]) -> Vec<f64> {
     let n = times.len();
     let mut weights = vec![0.0; n];
     for i in 0..n.saturating_sub(1) {

@@ -21,17 +21,17 @@ const UNITS: [(f64, &str); 12] = [
 ];
 
 /// Units that explain the record better than the one it was read in.
-pub(super) struct Better {
+pub(crate) struct Better {
     /// The smallest factor on rate × time.
-    pub(super) factor: f64,
+    pub(crate) factor: f64,
     /// What would have happened, of the smallest factors first.
-    pub(super) hint: String,
+    pub(crate) hint: String,
     /// Mean square of the residuals over the noise in that unit.
-    pub(super) misfit: f64,
+    pub(crate) misfit: f64,
     /// Whether the record determines the tensor in the best of them.
-    pub(super) credible: bool,
+    pub(crate) credible: bool,
     /// Whether many do, or one of any size: a small wobble then is that of a body next to a sphere.
-    pub(super) vague: bool,
+    pub(crate) vague: bool,
 }
 
 /// Differences of χ² up to which units explain a record equally well.
@@ -44,7 +44,7 @@ const ANY: f64 = 1e12;
 const LISTED: usize = 3;
 
 /// The units that explain the record best, where they do so at least three times better.
-pub(super) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<Better> {
+pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<Better> {
     let pilot = radius::pilot(stretches);
     let mut found = Vec::new();
     for (factor, hint) in UNITS.into_iter().chain([(ANY, "")]) {

@@ -8,10 +8,10 @@ use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::coordinates::eigen;
 use super::identifiability::{VAGUE, direction};
-use super::rounds::SURE;
-use super::test_functions::{Seen, Stretch, TestFunctions};
+use crate::fit::physical::coordinates::eigen;
+use crate::fit::weak::noise::SURE;
+use crate::fit::weak::test_functions::{Seen, Stretch, TestFunctions};
 
 /// An axis that is principal within a bound, for every body on which no torque acted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,7 @@ impl fmt::Display for AverageAxis {
 }
 
 /// The axes whose products are bounded by a figure that tells something.
-pub(super) fn axes(stretches: &[Stretch], variance: f64) -> Vec<AverageAxis> {
+pub(crate) fn axes(stretches: &[Stretch], variance: f64) -> Vec<AverageAxis> {
     let (mut m, mut v) = (Matrix3::zeros(), Vector3::zeros());
     let (mut squares, mut slopes) = (0.0, 0.0);
     for s in stretches {

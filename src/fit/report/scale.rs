@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::coordinates::{Coordinates, ENTRIES, Form, basis, entries_of_coordinates, pair};
-use super::cramer_rao::Motions;
-use super::test_functions::Stretch;
+use crate::fit::cramer_rao::Motions;
+use crate::fit::physical::coordinates::{Coordinates, ENTRIES, Form, basis, entries_of_coordinates, pair};
+use crate::fit::weak::test_functions::Stretch;
 
 /// A quantity that is known besides the motion, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub enum Known {
 
 impl Known {
     /// The given value.
-    pub(super) fn value(self) -> f64 {
+    pub(crate) fn value(self) -> f64 {
         match self {
             Known::Momentum(v) | Known::TwiceEnergy(v) | Known::Trace(v) | Known::Moment { value: v, .. } => {
                 v
@@ -36,7 +36,7 @@ impl Known {
 
     /// The trace of a tensor of shape `j` from rates in units of their root mean square `rms`, rad/s, whose noise has
     /// `variance` in those units.
-    pub(super) fn scale(self, stretches: &[Stretch], rms: f64, j: &Matrix3<f64>, variance: f64) -> Scale {
+    pub(crate) fn scale(self, stretches: &[Stretch], rms: f64, j: &Matrix3<f64>, variance: f64) -> Scale {
         match self {
             Known::Trace(trace) => Scale { trace, slope: Coordinates::zeros(), mean: None },
             Known::Moment { axis, value } => {
@@ -99,8 +99,8 @@ impl Mean {
 }
 
 /// The trace of a tensor whose shape is known.
-pub(super) struct Scale {
-    pub(super) trace: f64,
+pub(crate) struct Scale {
+    pub(crate) trace: f64,
     /// Its gradient with respect to the coordinates of the shape.
     slope: Coordinates,
     /// The mean that it was read from, and its derivative with respect to that.
@@ -113,7 +113,7 @@ impl Scale {
     ///
     /// Shape and mean carry the same noise. Their covariance is taken as for an efficient estimate of the shape at the
     /// given motions; without motions, the two are taken to err together as badly as they can.
-    pub(super) fn covariance(
+    pub(crate) fn covariance(
         &self,
         j: &Matrix3<f64>,
         shape: &Form,

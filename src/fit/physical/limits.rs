@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use super::conic::Conditions;
 use super::coordinates::{Coordinates, eigen, pair, tensor};
-use super::error::{Clash, FitError};
-use super::qp::{CUTS, LIMIT};
+use super::law::{CUTS, LIMIT};
+use crate::fit::error::{Clash, FitError};
 
 /// A limit that is known beforehand: the moment of inertia about `axis` as a share of the trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,14 +22,14 @@ pub struct Bound {
 const ROOM: f64 = 1e-6;
 
 /// A limit in words.
-pub(super) fn describe(index: usize, bound: &Bound, upper: bool) -> String {
+pub(crate) fn describe(index: usize, bound: &Bound, upper: bool) -> String {
     let n = bound.axis;
     let (relation, value) = if upper { ("<=", bound.at_most) } else { (">=", bound.at_least) };
     let value = value.unwrap_or(f64::INFINITY);
     format!("bound {}: moment about ({}, {}, {}) {relation} {value} of the trace", index + 1, n.x, n.y, n.z)
 }
 
-pub(super) fn check_bounds(bounds: &[Bound]) -> Result<(), FitError> {
+pub(crate) fn check_bounds(bounds: &[Bound]) -> Result<(), FitError> {
     for (k, bound) in bounds.iter().enumerate() {
         let size = bound.axis.norm();
         if !(size > 0.0 && size.is_finite()) {
@@ -47,7 +47,7 @@ pub(super) fn check_bounds(bounds: &[Bound]) -> Result<(), FitError> {
 /// Phase 1: the least common relaxation t of all bounds over the physical tensors.
 ///
 /// Where t > 0 the bounds with the largest multipliers are those that clash.
-pub(super) fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
+pub(crate) fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
     let mut sides: Vec<(Coordinates, f64, String)> = Vec::new();
     for (k, bound) in bounds.iter().enumerate() {
         let n = bound.axis.normalize();

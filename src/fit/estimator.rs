@@ -1,0 +1,113 @@
+//! The estimator: from a record to a physical tensor.
+
+use nalgebra::Matrix3;
+
+use super::error::FitError;
+use super::physical::coordinates::tensor;
+use super::physical::nearest::nearest;
+use super::record::Record;
+use super::report::averages;
+use super::report::estimate::Estimate;
+use super::report::facts::Facts;
+use super::report::identifiability::Identifiability;
+use super::settings::Settings;
+use super::weak::mistaken_units::{Better, better_unit};
+use super::weak::noise;
+use super::weak::normalised::{Normalised, normalised};
+use super::weak::radius::{self, Failure};
+use super::weak::rounds::{ROUNDS, WeakEstimate};
+use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
+
+/// Fits one tensor to all segments of a record.
+///
+/// The estimator is the weak form of Euler's equation, weighted by the covariance of its noise at samples that are
+/// moved onto the equations from round to round; the physical law enters by a quadratic program in whitened increments.
+/// No unit of rate or time and no rotation of the sensor changes the result beyond rounding.
+///
+/// # Errors
+/// Too few samples; no rotation; a record that does not determine the tensor, with what it does determine; units that
+/// look mistaken; bounds that contradict each other or the physical law; a program without a certified answer.
+pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
+    settings.check()?;
+    let Normalised { stretches, rms } = normalised(record)?;
+    let variance = match settings.noise {
+        Some(sigma) => Some((sigma / rms) * (sigma / rms))
+            .filter(|v| v.is_normal())
+            .ok_or(FitError::Setting { name: "the noise", value: sigma })?,
+        None => noise::variance(&stretches),
+    };
+    // readings of a noiseless record carry at least the quadrature's error
+    let variance = variance.max(1e-20);
+    // the mean square is 1, of which the noise of three components is 3 σ²: a quarter is too much to fit
+    if 3.0 * variance > 0.25 {
+        return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
+    }
+    let singular = || FitError::Solver { status: "the residuals have no positive covariance".into() };
+    let weak =
+        radius::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| {
+            match failure {
+                Failure::Dense => settings.radius.map_or_else(singular, |radius| FitError::Dense { radius }),
+                Failure::TooShort => too_short(record, settings, &stretches, rms),
+                Failure::Singular => singular(),
+            }
+        })?;
+    let misfit = weak.misfit_per_dof(variance);
+    let better =
+        if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
+    // without a settled tensor to compare with, a unit must explain the record by itself, and one of any size must not:
+    // there is a tensor next to the sphere for any small wobble in large enough a unit
+    let convincing = |b: &&Better| {
+        b.credible && if weak.settled() { b.misfit < 0.1 * misfit } else { b.misfit < 2.0 && !b.vague }
+    };
+    if let Some(b) = better.as_ref().filter(convincing) {
+        return Err(FitError::Units { factor: b.factor, hint: b.hint.clone(), misfit, better: b.misfit });
+    }
+    // what the noise does not explain enlarges the deviations
+    let identifiability = identify(&weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
+    if !weak.settled() && misfit > 1.0 + 5.0 * (2.0 / weak.dof().max(1) as f64).sqrt() {
+        // the rates are not constant, and still no tensor explains them
+        let axes = averages::axes(&stretches, variance);
+        let factor = better.filter(|b| b.misfit < 2.0).map(|b| b.factor);
+        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes });
+    }
+    if !identifiability.complete() {
+        return Err(FitError::Unidentifiable(Box::new(identifiability)));
+    }
+    let root = weak.root / (variance * misfit.max(1.0)).sqrt();
+    // R⁻¹, a factor of the covariance
+    let free = root
+        .try_inverse()
+        .ok_or_else(|| FitError::Solver { status: "the information is not positive".into() })?;
+    let answer = nearest(weak.x, root, &settings.bounds)?;
+    let facts = Facts { record, settings, stretches: &stretches, rms, variance, weak: &weak, misfit };
+    facts.report(answer, free, identifiability, better.as_ref().filter(|b| b.credible))
+}
+
+fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f64) -> FitError {
+    let needed = SAMPLES_PER_TEST as usize;
+    match settings.radius {
+        Some(radius) => {
+            let longest = stretches.iter().map(Stretch::duration).fold(0.0, f64::max) / rms;
+            FitError::Radius { radius, longest, needed }
+        }
+        None => FitError::TooFewSamples {
+            samples: record.samples(),
+            segments: record.segments.len(),
+            longest: stretches.iter().map(|s| s.times.len()).max().unwrap_or(0),
+            saturated: record.saturated(),
+            needed: 2 * needed,
+        },
+    }
+}
+
+fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
+    let mut scatter = Matrix3::zeros();
+    let mut count = 0.0;
+    for w in stretches.iter().flat_map(|s| &s.rates) {
+        scatter += w * w.transpose();
+        count += 1.0;
+    }
+    let (singular, directions) = weak.spectrum()?;
+    let spectrum = (singular / variance.sqrt(), directions);
+    Some(Identifiability::new(&spectrum, &(scatter / count), &tensor(&weak.x)))
+}

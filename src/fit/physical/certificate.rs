@@ -1,0 +1,28 @@
+//! What was checked of an answer, and what holds it.
+
+/// Largest violation, complementarity and negative multiplier of a certified answer.
+pub(crate) const CERTIFIED: f64 = 1e-9;
+/// Its largest residual of stationarity: a millionth of a standard deviation. Conditions of 1e10 reach no further.
+pub(crate) const STATIONARY: f64 = 1e-6;
+
+/// What the solver's answer was checked against: largest residuals of the optimality conditions, in whitened units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certificate {
+    /// |y + Σ multiplier · gradient| over 1 + |y|.
+    pub stationarity: f64,
+    /// Largest violation of a constraint, and |Z (½ − J)| over 1 + the largest multiplier, as shares of the trace.
+    pub violation: f64,
+    /// Most negative multiplier, over 1 + the largest.
+    pub dual_violation: f64,
+    /// Rounds of cuts until the physical law held.
+    pub rounds: usize,
+}
+
+/// A constraint that holds the answer, with its multiplier: the decrease of χ²/2 per unit of its relaxation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ActiveConstraint {
+    /// The constraint in words.
+    pub name: String,
+    /// Its multiplier, ≥ 0.
+    pub multiplier: f64,
+}

@@ -1,0 +1,181 @@
+//! The nearest physical tensor within limits.
+
+use super::coordinates::{Coordinates, Form};
+use super::face::Nearest;
+use super::law::LIMIT;
+use super::limits::{Bound, check_bounds, feasible};
+use super::program::{Program, Row};
+use crate::fit::error::FitError;
+
+/// The physical tensor within `bounds` that is nearest to `centre` in the metric of `root`ᵀ `root`.
+pub(crate) fn nearest(centre: Coordinates, root: Form, bounds: &[Bound]) -> Result<Nearest, FitError> {
+    check_bounds(bounds)?;
+    let mut program = Program { centre, root, rows: Vec::new() };
+    for (k, bound) in bounds.iter().enumerate() {
+        let n = bound.axis.normalize();
+        let share = program.reading(&n, &n);
+        // of bounds about one axis the tighter one, since two of them could not be told apart
+        let twins =
+            || bounds.iter().enumerate().filter(|(_, b)| b.axis.normalize().dot(&n).abs() > 1.0 - 1e-12);
+        let tighter = |of: fn(&Bound) -> Option<f64>, sign: f64| {
+            let value = of(bound)?;
+            let outdoes = |(i, b): (usize, &Bound)| {
+                of(b).is_some_and(|other| sign * other > sign * value || (other == value && i < k))
+            };
+            (!twins().any(outdoes)).then_some(value)
+        };
+        // what the law says anyway would only stand beside it
+        if let Some(low) = tighter(|b| b.at_least, 1.0).filter(|low| *low > 0.0) {
+            program.rows.push((Row { base: low - share.base, g: -share.g }, k, false));
+        }
+        if let Some(high) = tighter(|b| b.at_most, -1.0).filter(|high| *high < LIMIT) {
+            program.rows.push((Row { base: share.base - high, g: share.g }, k, true));
+        }
+    }
+    if !bounds.is_empty() {
+        feasible(bounds)?;
+    }
+    let (y, rounds) = program.cut()?;
+    program.polish(y, rounds, bounds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::physical::coordinates::{basis, coordinates, eigen, tensor};
+    use nalgebra::{Matrix3, Vector3};
+
+    /// Uniform on (−1, 1), from a linear congruence.
+    fn numbers(mut state: u64) -> impl FnMut() -> f64 {
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+    }
+
+    #[test]
+    fn a_physical_centre_is_its_own_answer() {
+        let centre = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)));
+        let answer = nearest(centre, Form::identity() * 1e3, &[]).unwrap();
+        assert_eq!(answer.x, centre);
+        assert!(answer.active.is_empty());
+    }
+
+    #[test]
+    fn with_the_identity_as_metric_the_answer_is_the_clipped_spectrum() {
+        // eigenvalues (0.05, 0.25, 0.7): the nearest with trace 1 and λ ≤ ½ shares the excess equally among the others
+        let centre = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.05, 0.25, 0.7)));
+        let answer = nearest(centre, Form::identity() * 1e4, &[]).unwrap();
+        let expected = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.15, 0.35, 0.5)));
+        assert!((answer.x - expected).norm() < 1e-14, "{}", (answer.x - expected).norm());
+        assert_eq!(answer.active.len(), 1);
+        // two eigenvalues above: both end at ½, and the third is nothing: a rod
+        let centre = coordinates(&Matrix3::from_diagonal(&Vector3::new(-0.4, 0.65, 0.75)));
+        let answer = nearest(centre, Form::identity() * 1e4, &[]).unwrap();
+        let expected = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.0, 0.5, 0.5)));
+        assert!((answer.x - expected).norm() < 1e-14);
+        assert!(answer.active[0].name.contains("rod"));
+    }
+
+    /// Every answer is certified inside; here hard metrics (condition up to 1e8 and more) and centres far outside the cone.
+    #[test]
+    fn hard_random_programs_end_certified_and_no_feasible_tensor_is_nearer() {
+        let mut next = numbers(4);
+        let mut held = 0;
+        for trial in 0..300 {
+            let mut root = Form::from_fn(|i, k| if i < k { next() } else { 0.0 });
+            for k in 0..5 {
+                root[(k, k)] = libm::pow(10.0, 2.5 + 2.0 * next());
+            }
+            let centre = Coordinates::from_fn(|_, _| 0.5 * next());
+            let answer = nearest(centre, root, &[]).unwrap_or_else(|error| panic!("{trial}: {error}"));
+            let (moments, _) = eigen(tensor(&answer.x));
+            assert!(moments[2] <= LIMIT + 1e-12 && moments[0] >= -1e-12, "{trial}: {moments}");
+            held += answer.active.len();
+            let cost = (root * (answer.x - centre)).norm();
+            for _ in 0..20 {
+                // a step towards any physical tensor stays physical, and must not help
+                let other = Coordinates::from_fn(|_, _| 0.06 * next());
+                let step = answer.x + (other - answer.x) * 1e-5;
+                assert!((root * (step - centre)).norm() >= cost * (1.0 - 1e-13), "{trial}");
+            }
+        }
+        assert!(held > 100);
+    }
+
+    /// A flat body well measured: the law is a hair's breadth away, the other walls 1e5 standard deviations.
+    #[test]
+    fn remote_walls_do_not_stop_the_solver() {
+        let mut next = numbers(31);
+        for trial in 0..200 {
+            let mut root = Form::from_fn(|i, k| if i < k { 1e4 * next() } else { 0.0 });
+            for k in 0..5 {
+                root[(k, k)] = libm::pow(10.0, 5.5 + 1.5 * next());
+            }
+            let (a, b) = (0.2 + 0.05 * next(), 1e-6 * next().abs());
+            let flat = Matrix3::from_diagonal(&Vector3::new(a, 0.5 - a - b, 0.5 + b));
+            let centre = coordinates(&flat) + Coordinates::from_fn(|_, _| 1e-6 * next());
+            let answer = nearest(centre, root, &[]).unwrap_or_else(|error| panic!("{trial}: {error}"));
+            assert!(eigen(tensor(&answer.x)).0[2] <= LIMIT, "{trial}");
+        }
+    }
+
+    #[test]
+    fn the_answer_turns_with_the_axes() {
+        let turn = *nalgebra::Rotation3::from_axis_angle(&Vector3::y_axis(), 0.7).matrix()
+            * nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), -1.1).matrix();
+        let map = Form::from_fn(|i, k| basis(i).dot(&(turn * basis(k) * turn.transpose())));
+        let mut next = numbers(11);
+        for _ in 0..20 {
+            let root = Form::from_fn(|i, k| {
+                if i < k {
+                    next()
+                } else if i == k {
+                    5.0 + 4.0 * next()
+                } else {
+                    0.0
+                }
+            }) * 100.0;
+            let centre = Coordinates::from_fn(|_, _| 0.4 * next());
+            let a = nearest(centre, root, &[]).unwrap();
+            let turned = (root * map.transpose()).qr().r();
+            let b = nearest(map * centre, turned, &[]).unwrap();
+            assert!((map * a.x - b.x).norm() < 1e-13, "{:e}", (map * a.x - b.x).norm());
+        }
+    }
+
+    #[test]
+    fn bounds_hold_and_contradictions_are_named() {
+        let centre = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)));
+        let root = Form::identity() * 100.0;
+        let x = |at_least, at_most| Bound { axis: Vector3::x(), at_least, at_most };
+        let answer = nearest(centre, root, &[x(Some(0.25), None)]).unwrap();
+        assert!((tensor(&answer.x)[(0, 0)] - 0.25).abs() < 1e-15);
+        assert!(answer.active[0].name.starts_with("bound 1"), "{:?}", answer.active);
+        assert!(answer.active[0].multiplier > 0.0);
+
+        let clash =
+            nearest(centre, root, &[x(Some(0.4), None), x(None, Some(0.3))]).err().unwrap().to_string();
+        assert!(clash.contains("bound 1") && clash.contains("bound 2"), "{clash}");
+        let law = nearest(centre, root, &[x(Some(0.6), None)]).err().unwrap().to_string();
+        assert!(law.contains("half the trace"), "{law}");
+
+        // the same bound twice, once looser, and one that the law implies
+        let twice = [x(Some(0.25), None), x(Some(0.25), None), x(Some(0.22), Some(0.5))];
+        let answer = nearest(centre, root, &twice).unwrap();
+        assert!((tensor(&answer.x)[(0, 0)] - 0.25).abs() < 1e-15);
+        assert_eq!(answer.active.len(), 1);
+        for edge in [
+            &[x(Some(0.3), Some(0.3))][..],
+            &[x(Some(0.3), None), x(None, Some(0.300_000_1))],
+            &[x(Some(0.2), Some(0.199_999_9))],
+            &[x(Some(0.5), None)],
+            &[x(None, Some(0.0))],
+        ] {
+            let error = nearest(centre, root, edge).err().unwrap();
+            assert!(matches!(error, FitError::NoRoom(_)), "{error}");
+        }
+        let outside = nearest(centre, root, &[x(Some(5000.0), None)]).err().unwrap().to_string();
+        assert!(outside.contains("bound 1 is 5000"), "{outside}");
+    }
+}

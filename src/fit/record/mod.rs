@@ -1,0 +1,149 @@
+//! Records of angular velocity: read from text, checked row by row, split where they have gaps.
+
+mod clean;
+mod columns;
+mod error;
+mod read;
+mod segment;
+mod units;
+
+use nalgebra::Vector3;
+
+use clean::{Cleaned, Finding, cleaned};
+pub use error::RecordError;
+pub use read::Reading;
+use read::{Rows, rows};
+use segment::NAMES;
+pub use segment::Segment;
+pub use units::{RateUnit, TimeUnit};
+
+/// Measured angular velocities of one body: segments that share one tensor, each with a motion of its own.
+///
+/// ```
+/// use polhode::fit::{Reading, Record};
+/// let text = "t (ms), wx (deg/s), wy (deg/s), wz (deg/s)\n0, 0, 90, 180\n10, 1, 90, 180\n10, 3, 90, 180\n";
+/// let record = Record::read(text, "toss.csv", Reading::default())?;
+/// assert_eq!((record.samples(), record.merged()), (2, 1)); // rows of the same time are averaged
+/// assert_eq!(record.segments[0].times(), [0.0, 0.01]);
+/// assert_eq!(record.segments[0].rates()[1].z, core::f64::consts::PI);
+///
+/// let broken = Record::read("t,wx,wy,wz\n0,1,2,3\n1,1,nan,3\n", "toss.csv", Reading::default());
+/// assert!(broken.unwrap_err().to_string().starts_with("toss.csv, line 3, column 3 (wy): \"nan\""));
+/// # Ok::<(), polhode::fit::RecordError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Record {
+    /// Its segments.
+    pub segments: Vec<Segment>,
+    /// What was found among the rows, and when, s.
+    findings: Vec<(f64, Finding)>,
+}
+impl Record {
+    /// From times (s) and angular velocities (rad/s, sensor axes).
+    ///
+    /// # Errors
+    /// Lists of different lengths, values that are not finite, times that decrease, no samples.
+    pub fn from_samples(times: &[f64], rates: &[Vector3<f64>]) -> Result<Record, RecordError> {
+        if times.len() != rates.len() {
+            return Err(RecordError::Lengths { times: times.len(), rates: rates.len() });
+        }
+        let rows =
+            times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
+        Record::cleaned("samples", Rows { rows, names: NAMES.map(String::from), columns: [1, 2, 3, 4] })
+    }
+    /// From a text with a header: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas
+    /// where semicolons or tabs part them, or within quotes; lines before the header and lines that begin with `#` may
+    /// hold anything, and so may columns that are not needed. Of several times the one whose name has a unit is read.
+    ///
+    /// # Errors
+    /// Missing columns, unknown units, rows that do not fit the header, cells that are not finite numbers, times that
+    /// decrease.
+    pub fn read(text: &str, file: &str, reading: Reading) -> Result<Record, RecordError> {
+        Record::cleaned(file, rows(text, file, reading)?)
+    }
+
+    fn cleaned(file: &str, rows: Rows) -> Result<Record, RecordError> {
+        let Cleaned { segments, findings } = cleaned(file, rows)?;
+        Ok(Record { segments, findings })
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.segments.iter().map(|s| s.times.len()).sum()
+    }
+
+    /// Number of samples that were merged into one of the same time.
+    pub fn merged(&self) -> usize {
+        self.count(Finding::Merged)
+    }
+
+    /// Number of samples left out because a component stood at the end of the sensor's range.
+    pub fn saturated(&self) -> usize {
+        self.count(Finding::Saturated)
+    }
+
+    /// Number of places where the record was split because of a gap.
+    pub fn gaps(&self) -> usize {
+        self.count(Finding::Gap)
+    }
+
+    fn count(&self, what: Finding) -> usize {
+        self.findings.iter().filter(|(_, finding)| *finding == what).count()
+    }
+
+    /// The parts that lie in the windows (start, end), s, both ends included. Windows that overlap count as one, so that no
+    /// sample serves twice.
+    ///
+    /// # Errors
+    /// A window that is not ascending, or without samples.
+    pub fn windows(&self, windows: &[(f64, f64)]) -> Result<Record, RecordError> {
+        if let Some(&(start, end)) =
+            windows.iter().find(|(start, end)| !(start.is_finite() && end.is_finite() && start < end))
+        {
+            return Err(RecordError::Window { start, end });
+        }
+        let mut cut = Record::default();
+        for (start, end) in joined(windows) {
+            cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
+            let before = cut.segments.len();
+            for s in &self.segments {
+                let (a, b) =
+                    (s.times.partition_point(|&t| t < start), s.times.partition_point(|&t| t <= end));
+                if a < b {
+                    cut.segments.push(Segment {
+                        source: s.source.clone(),
+                        times: s.times[a..b].to_vec(),
+                        rates: s.rates[a..b].to_vec(),
+                    });
+                }
+            }
+            if cut.segments.len() == before {
+                let first = self.segments.first().and_then(|s| s.times.first()).copied().unwrap_or(0.0);
+                let last = self.segments.last().and_then(|s| s.times.last()).copied().unwrap_or(0.0);
+                let file = self.segments.first().map_or(String::new(), |s| s.source.clone());
+                return Err(RecordError::Empty { file, window: Some((start, end)), span: (first, last) });
+            }
+        }
+        Ok(cut)
+    }
+
+    /// This record and another of the same body.
+    pub fn join(mut self, other: Record) -> Record {
+        self.segments.extend(other.segments);
+        self.findings.extend(other.findings);
+        self
+    }
+}
+/// The windows with those that overlap made one, in the order of their starts.
+fn joined(windows: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut sorted = windows.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut joined: Vec<(f64, f64)> = Vec::new();
+    for (start, end) in sorted {
+        match joined.last_mut() {
+            Some(last) if start < last.1 => last.1 = last.1.max(end),
+            _ => joined.push((start, end)),
+        }
+    }
+    joined
+}

@@ -1,0 +1,162 @@
+//! The report, drawn from the record, its weak estimate and the nearest physical tensor.
+
+use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
+
+use super::estimate::{Estimate, Residuals};
+use super::identifiability::Identifiability;
+use super::torque_free::{Drift, Whiteness, drifts};
+use super::warnings::{Grounds, warnings};
+use crate::fit::cramer_rao::Motions;
+use crate::fit::error::FitError;
+use crate::fit::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, pair, tensor};
+use crate::fit::physical::face::Nearest;
+use crate::fit::physical::law::LIMIT;
+use crate::fit::record::Record;
+use crate::fit::settings::Settings;
+use crate::fit::weak::mistaken_units::Better;
+use crate::fit::weak::rounds::WeakEstimate;
+use crate::fit::weak::test_functions::Stretch;
+use crate::inertia::{Inertia, InertiaShape};
+
+/// What the report is drawn from.
+pub(crate) struct Facts<'a> {
+    pub(crate) record: &'a Record,
+    pub(crate) settings: &'a Settings,
+    pub(crate) stretches: &'a [Stretch],
+    pub(crate) rms: f64,
+    pub(crate) variance: f64,
+    pub(crate) weak: &'a WeakEstimate,
+    pub(crate) misfit: f64,
+}
+
+impl Facts<'_> {
+    /// Everything that can be said of the answer.
+    pub(crate) fn report(
+        &self,
+        nearest: Nearest,
+        free: Form,
+        identifiability: Identifiability,
+        better: Option<&Better>,
+    ) -> Result<Estimate, FitError> {
+        let root = self.weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
+        let on_face = face_factor(&free, &nearest.face);
+        let shape = shape_of(&tensor(&nearest.x))?;
+        let j = shape.tensor();
+        let (moments, _) = eigen(j);
+        let axes = Inertia::from_tensor(j).map_or(UnitQuaternion::identity(), |i| i.principal_axes());
+        let v: [Vector3<f64>; 3] = core::array::from_fn(|k| axes * Vector3::ith(k, 1.0));
+        let deviation = |g: Coordinates| (on_face.transpose() * g).norm();
+        let sigma_principal = core::array::from_fn(|k| deviation(pair(&v[k], &v[k])));
+        let sigma_axes = core::array::from_fn(|k| {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            deviation(pair(&v[a], &v[b])) / (moments[a] - moments[b]).abs()
+        });
+        let ratio = |k: usize| {
+            let slope = (pair(&v[k], &v[k]) - pair(&v[2], &v[2]) * (moments[k] / moments[2])) / moments[2];
+            (moments[k] / moments[2], deviation(slope))
+        };
+        let entries = entries_of_coordinates();
+        // of a factor, so that no variance is negative
+        let spread = |factor: Form| (entries * factor) * (entries * factor).transpose();
+        let motions = Motions::nearest(self.stretches, &nearest.x, self.variance);
+        let bound = motions.as_ref().and_then(|m| m.bound(self.variance));
+        let bound_ratio = bound.map(|b| free.norm() / b.trace().sqrt());
+        let covariance = on_face * on_face.transpose();
+        let (inertia, inertia_covariance) = self.absolute(&j, &covariance, motions.as_ref())?;
+        let (momentum, energy) = drifts(self.stretches, &j, self.variance);
+        let per_second = |d: Drift| Drift { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
+        let residuals = self.residuals(&nearest.x);
+        let pull = (root * (nearest.x - self.weak.x)).norm();
+        let mut estimate = Estimate {
+            principal: [moments[0], moments[1], moments[2]],
+            sigma_principal,
+            axes,
+            sigma_axes,
+            ratios: [ratio(0).0, ratio(1).0],
+            sigma_ratios: [ratio(0).1, ratio(1).1],
+            covariance: spread(on_face),
+            free_covariance: spread(free),
+            bound: bound.map(|b| entries * b * entries.transpose()),
+            bound_ratio,
+            inertia,
+            inertia_covariance,
+            noise_sigma: self.variance.sqrt() * self.rms,
+            chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / self.weak.dof().max(1) as f64,
+            pull,
+            dof: self.weak.dof(),
+            samples: residuals.iter().map(|r| self.record.segments[r.segment].times().len()).sum(),
+            segments: residuals.len(),
+            radius: self.weak.radius / self.rms,
+            identifiability,
+            triangle_slack: (2.0 * (LIMIT - moments[2])).max(0.0),
+            active_constraints: nearest.active,
+            certificate: nearest.certificate,
+            momentum_drift: per_second(momentum),
+            energy_drift: per_second(energy),
+            whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
+            residuals,
+            warnings: Vec::new(),
+            shape,
+        };
+        let grounds = Grounds { record: self.record, weak: self.weak, misfit: self.misfit, better };
+        estimate.warnings = warnings(&estimate, &grounds);
+        Ok(estimate)
+    }
+
+    fn absolute(
+        &self,
+        j: &Matrix3<f64>,
+        covariance: &Form,
+        motions: Option<&Motions<'_>>,
+    ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+        let Some(known) = self.settings.known else { return Ok((None, None)) };
+        let scale = known.scale(self.stretches, self.rms, j, self.variance);
+        let trace = scale.trace;
+        // its covariance goes with the square
+        if !(trace * trace).is_normal() {
+            return Err(FitError::Setting { name: "the known quantity", value: known.value() });
+        }
+        let inertia = Inertia::from_tensor(j * trace)
+            .map_err(|error| FitError::Solver { status: format!("no absolute tensor: {error}") })?;
+        let excess = self.misfit.max(1.0);
+        Ok((Some(inertia), Some(scale.covariance(j, covariance, excess, motions))))
+    }
+
+    fn residuals(&self, x: &Coordinates) -> Vec<Residuals> {
+        let deviation = self.variance.sqrt();
+        let each = self.weak.parts.iter();
+        each.map(|part| {
+            let start = self.record.segments[part.stretch].times().first().copied().unwrap_or(0.0);
+            let e = part.residuals(x);
+            let values: Vec<[f64; 3]> =
+                e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
+            Residuals {
+                segment: part.stretch,
+                times: part.centres.iter().map(|c| start + c / self.rms).collect(),
+                misfit: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
+                values,
+            }
+        })
+        .collect()
+    }
+}
+
+/// A factor F, with covariance F Fᵀ, of an answer that is held on a face: increments along the active gradients are gone.
+///
+/// With the projector Q onto the face in whitened increments it is R⁻¹ Q.
+fn face_factor(free: &Form, face: &[Coordinates]) -> Form {
+    // gradients span a subspace of the whitened increments y; orthonormal by Gram and Schmidt
+    let mut q: Vec<Coordinates> = Vec::new();
+    for g in face {
+        let rest = q.iter().chain(q.iter()).fold(*g, |r, u| r - u * u.dot(&r));
+        if rest.norm() > 1e-10 * g.norm() {
+            q.push(rest.normalize());
+        }
+    }
+    q.iter().fold(*free, |f, u| f - (f * u) * u.transpose())
+}
+
+/// A tensor as a checked shape.
+pub(crate) fn shape_of(j: &Matrix3<f64>) -> Result<InertiaShape, FitError> {
+    InertiaShape::from_tensor(*j).map_err(|error| FitError::Solver { status: error.to_string() })
+}

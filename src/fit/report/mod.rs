@@ -1,0 +1,9 @@
+//! The report: an estimate with its deviations, its scale, what the record leaves open, and what it contradicts.
+
+pub(crate) mod averages;
+pub(crate) mod estimate;
+pub(crate) mod facts;
+pub(crate) mod identifiability;
+pub(crate) mod scale;
+pub(crate) mod torque_free;
+mod warnings;

@@ -1,0 +1,51 @@
+//! What the user may fix.
+
+use super::error::FitError;
+use super::physical::limits::Bound;
+use super::report::scale::Known;
+
+/// What the user may fix; the default leaves everything to the record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Half width of the test functions, s; chosen by least predicted covariance without it.
+    pub radius: Option<f64>,
+    /// Standard deviation of the noise of one component, rad/s, at least 1e-10 of the rates; read from the samples
+    /// without it.
+    pub noise: Option<f64>,
+    /// What is known of the moments beforehand.
+    pub bounds: Vec<Bound>,
+    /// What gives the absolute size.
+    pub known: Option<Known>,
+    /// Whether a unit that explains the record ten times better is an error.
+    pub check_units: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { radius: None, noise: None, bounds: Vec::new(), known: None, check_units: true }
+    }
+}
+
+impl Settings {
+    /// Whether each value is one that a fit can use.
+    pub(super) fn check(&self) -> Result<(), FitError> {
+        let known = self.known.map(Known::value);
+        for (name, value) in
+            [("the radius", self.radius), ("the noise", self.noise), ("the known quantity", known)]
+        {
+            if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+                return Err(FitError::Setting { name, value });
+            }
+        }
+        if let Some(Known::Moment { axis, .. }) = self.known {
+            let size = axis.norm();
+            if !(size > 0.0 && size.is_finite()) {
+                return Err(FitError::Setting {
+                    name: "the length of the axis of the known moment",
+                    value: size,
+                });
+            }
+        }
+        Ok(())
+    }
+}

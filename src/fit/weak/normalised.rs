@@ -1,0 +1,37 @@
+//! A record in its own units.
+
+use super::test_functions::{SAMPLES_PER_TEST, Stretch};
+use crate::fit::error::FitError;
+use crate::fit::record::{Record, Segment};
+
+/// A record in units of its own mean square rate and of the time in which the body turns by one radian.
+pub(crate) struct Normalised {
+    pub(crate) stretches: Vec<Stretch>,
+    /// Root mean square rate, rad/s.
+    pub(crate) rms: f64,
+}
+
+pub(crate) fn normalised(record: &Record) -> Result<Normalised, FitError> {
+    let samples = record.samples();
+    let longest = record.segments.iter().map(|s| s.times().len()).max().unwrap_or(0);
+    let needed = 2 * SAMPLES_PER_TEST as usize;
+    if longest < needed {
+        let (segments, saturated) = (record.segments.len(), record.saturated());
+        return Err(FitError::TooFewSamples { samples, segments, longest, saturated, needed });
+    }
+    // the largest component first, so that squares neither over- nor underflow
+    let rates = || record.segments.iter().flat_map(Segment::rates);
+    let largest = rates().map(|w| w.amax()).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return Err(FitError::NoRotation { rms: 0.0, noise: 0.0 });
+    }
+    let mean = rates().map(|w| (w / largest).norm_squared()).sum::<f64>() / samples as f64;
+    let rms = largest * mean.sqrt();
+    let segments = record.segments.iter();
+    let stretches = segments.map(|s| {
+        let start = s.times().first().copied().unwrap_or(0.0);
+        let times = s.times().iter().map(|t| (t - start) * rms).collect();
+        Stretch::new(times, s.rates().iter().map(|w| w / rms).collect())
+    });
+    Ok(Normalised { stretches: stretches.collect(), rms })
+}
