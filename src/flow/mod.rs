@@ -14,7 +14,8 @@ pub use free::{AtRest, Character, FreeBody, FreeFlow, FreeMotion, Mode, Symmetri
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop};
 pub use reach::TimeError;
-pub use turn::{AxisTurn, turn};
+pub use turn::AxisTurn;
+pub(crate) use turn::{turn, turn_about};
 
 use crate::body::{Point, Time};
 use crate::num::Real;

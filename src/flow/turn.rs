@@ -26,12 +26,17 @@ impl<S: Real> AxisTurn<S> {
 impl<S: Real> Flow<S> for AxisTurn<S> {
     #[inline]
     fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
-        let half_rate_time = t * self.half_rate;
-        match self.axis {
-            0 => turn::<0, S>(x, half_rate_time),
-            1 => turn::<1, S>(x, half_rate_time),
-            _ => turn::<2, S>(x, half_rate_time),
-        }
+        turn_about(self.axis, x, t * self.half_rate);
+    }
+}
+
+/// As [`turn`], about an axis that is known at run time only.
+#[inline]
+pub(crate) fn turn_about<S: Real>(axis: usize, x: &mut Point<S>, half_rate_time: S) {
+    match axis {
+        0 => turn::<0, S>(x, half_rate_time),
+        1 => turn::<1, S>(x, half_rate_time),
+        _ => turn::<2, S>(x, half_rate_time),
     }
 }
 
@@ -42,7 +47,7 @@ impl<S: Real> Flow<S> for AxisTurn<S> {
 /// takes the same sine and cosine, so that `q m q*` keeps its direction. The axis is a constant so that the state
 /// stays in registers.
 #[inline]
-pub fn turn<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
+pub(crate) fn turn<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
     let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
     let m = x.momentum_body;
     let (s, c) = (m[AXIS] * half_rate_time).sin_cos();

@@ -5,6 +5,7 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
+use super::modified_energy::{ModifiedEnergy, Orbit};
 use crate::rotation::Vec3;
 
 /// An order of the three axes, outermost turn first: `321` is Φ = R3(h/2) R2(h/2) R1(h) R2(h/2) R3(h/2).
@@ -49,10 +50,7 @@ impl AxisOrder {
     pub fn energy_oscillation(self, moments: Vec3<f64>) -> f64 {
         let [outer, middle, inner] = self.0;
         let (a, b, c) = (1.0 / moments[inner], 1.0 / moments[middle], 1.0 / moments[outer]);
-        let k12 = -2.0 * a * a * b + 2.0 * a * a * c + a * b * b - 4.0 * a * b * c + 2.0 * b * b * c;
-        let k13 = 2.0 * a * a * b - 2.0 * a * a * c + 2.0 * a * b * c + a * c * c - b * c * c;
-        let k23 = -a * b * b + 2.0 * a * b * c - a * c * c - 2.0 * b * b * c + b * c * c;
-        let h3 = Quadratic([0.0, 0.0, 0.0, k23 / 24.0, k13 / 24.0, k12 / 24.0]);
+        let h3 = Quadratic::mixed(self.leading_term(moments).0, [inner, middle, outer]);
         let h = [0.5 * a, 0.5 * b, 0.5 * c];
         let constants = [
             Quadratic::linear_product([1.0; 3], [1.0; 3]),
@@ -61,6 +59,42 @@ impl AxisOrder {
         ];
         h3.outside(constants)
     }
+
+    /// H₃ of [`energy_oscillation`](Self::energy_oscillation) at the momentum `m`: the splitting keeps H + h² H₃ up to O(h⁴).
+    pub fn modified_energy(self, m: Vec3<f64>, moments: Vec3<f64>) -> f64 {
+        self.leading_term(moments).at(m)
+    }
+
+    /// Root mean square of the rate at which the attitude of free motion runs away on the orbit through the momentum `m`, over
+    /// h²: rad/s³. `None` for pure spins, spheres and next to the separatrix.
+    pub fn attitude_error_rate(self, m: Vec3<f64>, moments: Vec3<f64>) -> Option<f64> {
+        Some(self.leading_term(moments).attitude_error_rate(&Orbit::through(m, moments)?))
+    }
+
+    /// The order whose leading error of the attitude is smallest on the orbit through the momentum `m`, as a root mean square
+    /// over all starts on it; where there is none, the [best](Self::best) for the energy.
+    pub fn best_for_orbit(m: Vec3<f64>, moments: Vec3<f64>) -> Self {
+        let Some(orbit) = Orbit::through(m, moments) else { return Self::best(moments) };
+        let mut best = (f64::INFINITY, Self::best(moments));
+        for order in Self::ALL {
+            let rate = order.leading_term(moments).mean_attitude_error_rate(&orbit);
+            if rate < best.0 {
+                best = (rate, order);
+            }
+        }
+        best.1
+    }
+
+    fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {
+        let [outer, middle, inner] = self.0;
+        let (a, b, c) = (1.0 / moments[inner], 1.0 / moments[middle], 1.0 / moments[outer]);
+        let mut mixed = [0.0; 3];
+        mixed[outer] =
+            (-2.0 * a * a * b + 2.0 * a * a * c + a * b * b - 4.0 * a * b * c + 2.0 * b * b * c) / 24.0;
+        mixed[middle] = (2.0 * a * a * b - 2.0 * a * a * c + 2.0 * a * b * c + a * c * c - b * c * c) / 24.0;
+        mixed[inner] = (-a * b * b + 2.0 * a * b * c - a * c * c - 2.0 * b * b * c + b * c * c) / 24.0;
+        ModifiedEnergy(mixed)
+    }
 }
 
 /// A quadratic form in the squares s_i = m_i²: coefficients of s₁², s₂², s₃², s₂s₃, s₁s₃, s₁s₂.
@@ -68,6 +102,12 @@ impl AxisOrder {
 struct Quadratic([f64; 6]);
 
 impl Quadratic {
+    /// Σ κ_i s_j s_k, the axes in the order `axes`.
+    fn mixed(coefficients: [f64; 3], axes: [usize; 3]) -> Self {
+        let [k1, k2, k3] = axes.map(|axis| coefficients[axis]);
+        Quadratic([0.0, 0.0, 0.0, k1, k2, k3])
+    }
+
     /// (u·s)(v·s).
     fn linear_product(u: [f64; 3], v: [f64; 3]) -> Self {
         let mixed = |i: usize, j: usize| u[i] * v[j] + u[j] * v[i];

@@ -2,8 +2,8 @@
 
 use super::{AxisOrder, Cost, Drift, Energy, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
-use crate::flow::turn;
-use crate::num::{Dd, Real};
+use crate::flow::{turn, turn_about};
+use crate::num::{Dd, Precise, Real};
 
 /// Strang splitting of the kinetic energy by axes.
 ///
@@ -12,7 +12,8 @@ use crate::num::{Dd, Real};
 /// exponentially long times. The order of the axes changes the size of that oscillation up to a hundredfold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AxisSplit {
-    /// Outermost axis first; `None` takes the [best](AxisOrder::best) for the body.
+    /// Outermost axis first; `None` takes that with the smallest leading error of the attitude on the
+    /// [orbit](AxisOrder::best_for_orbit) of the start.
     pub axes: Option<AxisOrder>,
 }
 
@@ -34,53 +35,102 @@ impl Drift for AxisSplit {
     fn cost(&self) -> Cost {
         Cost::turns(5)
     }
+    fn cost_in_sequence(&self) -> Cost {
+        Cost::turns(4)
+    }
     fn source(&self) -> &'static str {
         "McLachlan, Phys. Rev. Lett. 71 (1993) 3043; Touma and Wisdom, Astron. J. 107 (1994) 1189"
     }
 }
 
-impl<S: Real> Method<S> for AxisSplit {
+impl<S: Precise> Method<S> for AxisSplit {
     type Map<F: Field<S>> = AxisSplitMap<S>;
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> AxisSplitMap<S> {
-        let axes = self.axes.unwrap_or_else(|| AxisOrder::best(rotor.moments())).axes();
-        let inverse = rotor.inverse_moments::<Dd>();
-        let rate = |axis: usize, time: Dd| S::from_dd(inverse[axis] * (time * 0.5));
-        let [outer, middle, inner] = axes;
-        let half_rates = [rate(outer, h * 0.5), rate(middle, h * 0.5), rate(inner, h)];
-        AxisSplitMap { axes, half_rates }
+        let mut map = AxisSplitMap {
+            rotor: *rotor,
+            h,
+            free_to_choose: false,
+            axes: [0, 1, 2],
+            half_rates: [S::of(0.0); 3],
+        };
+        map.choose(self.axes.unwrap_or_else(|| AxisOrder::best(rotor.moments())));
+        map.free_to_choose = self.axes.is_none();
+        map
     }
 }
 
 /// A prepared [`AxisSplit`].
 #[derive(Clone, Copy, Debug)]
 pub struct AxisSplitMap<S> {
+    rotor: Rotor,
+    h: Dd,
+    free_to_choose: bool,
     axes: [usize; 3],
     half_rates: [S; 3], // time of the turn over 2 I
 }
 
-impl<S: Real> Map<S> for AxisSplitMap<S> {
+impl<S: Precise> Map<S> for AxisSplitMap<S> {
     #[inline]
     fn apply(&mut self, _: Time, x: &mut Point<S>) {
+        let [outer, middle, inner] = self.half_rates;
+        self.turns(x, [(0, outer), (1, middle), (2, inner), (1, middle), (0, outer)]);
+    }
+
+    fn open(&mut self, _: Time, x: &mut Point<S>) {
+        if self.free_to_choose {
+            let m = x.momentum_body.map(S::to_f64);
+            self.choose(AxisOrder::best_for_orbit(m, self.rotor.moments()));
+        }
+        turn_about(self.axes[0], x, self.half_rates[0]);
+    }
+
+    #[inline]
+    fn advance(&mut self, _: Time, x: &mut Point<S>) {
+        let [outer, middle, inner] = self.half_rates;
+        self.turns(x, [(1, middle), (2, inner), (1, middle), (0, outer + outer)]);
+    }
+
+    #[inline]
+    fn close(&mut self, _: Time, x: &mut Point<S>) {
+        turn_about(self.axes[0], x, -self.half_rates[0]);
+    }
+}
+
+impl<S: Precise> AxisSplitMap<S> {
+    fn choose(&mut self, order: AxisOrder) {
+        let inverse = self.rotor.inverse_moments::<Dd>();
+        let rate = |axis: usize, time: Dd| S::from_dd(inverse[axis] * (time * 0.5));
+        let axes = order.axes();
+        let [outer, middle, inner] = axes;
+        self.axes = axes;
+        self.half_rates = [rate(outer, self.h * 0.5), rate(middle, self.h * 0.5), rate(inner, self.h)];
+    }
+
+    /// Turns about outer (0), middle (1) and inner axis (2).
+    #[inline]
+    fn turns<const N: usize>(&self, x: &mut Point<S>, turns: [(usize, S); N]) {
         match self.axes {
-            [0, 1, _] => self.turns::<0, 1, 2>(x),
-            [0, ..] => self.turns::<0, 2, 1>(x),
-            [1, 0, _] => self.turns::<1, 0, 2>(x),
-            [1, ..] => self.turns::<1, 2, 0>(x),
-            [_, 0, _] => self.turns::<2, 0, 1>(x),
-            _ => self.turns::<2, 1, 0>(x),
+            [0, 1, _] => turns_about::<0, 1, 2, N, S>(x, turns),
+            [0, ..] => turns_about::<0, 2, 1, N, S>(x, turns),
+            [1, 0, _] => turns_about::<1, 0, 2, N, S>(x, turns),
+            [1, ..] => turns_about::<1, 2, 0, N, S>(x, turns),
+            [_, 0, _] => turns_about::<2, 0, 1, N, S>(x, turns),
+            _ => turns_about::<2, 1, 0, N, S>(x, turns),
         }
         x.renormalize_at_times();
     }
 }
 
-impl<S: Real> AxisSplitMap<S> {
-    #[inline]
-    fn turns<const OUTER: usize, const MIDDLE: usize, const INNER: usize>(&self, x: &mut Point<S>) {
-        let [outer, middle, inner] = self.half_rates;
-        turn::<OUTER, S>(x, outer);
-        turn::<MIDDLE, S>(x, middle);
-        turn::<INNER, S>(x, inner);
-        turn::<MIDDLE, S>(x, middle);
-        turn::<OUTER, S>(x, outer);
+#[inline(always)]
+fn turns_about<const OUTER: usize, const MIDDLE: usize, const INNER: usize, const N: usize, S: Real>(
+    x: &mut Point<S>,
+    turns: [(usize, S); N],
+) {
+    for (which, half_rate) in turns {
+        match which {
+            0 => turn::<OUTER, S>(x, half_rate),
+            1 => turn::<MIDDLE, S>(x, half_rate),
+            _ => turn::<INNER, S>(x, half_rate),
+        }
     }
 }

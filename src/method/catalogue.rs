@@ -6,7 +6,7 @@ use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
     AxisOrder, AxisSplit, Claimed, Composed, Dmv, Drift, ExactDrift, ExplicitEuler, ImplicitMidpoint, Kicks,
-    Method, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step,
+    Method, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -129,27 +129,16 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(ImplicitMidpoint),
         Box::new(Splitting::strang(Dmv, Kicks)),
         Box::new(Splitting::strang(AxisSplit { axes: None }, Kicks)),
+        Box::new(Splitting::strang(TwoTurn { axes: None }, Kicks)),
         Box::new(Splitting::strang(ExactDrift, Kicks)),
         Box::new(Splitting::with_scheme(ExactDrift, Kicks, SUZUKI_4)),
     ]
 }
 
-/// The bases of names.
-const BASES: [&str; 8] = [
-    "explicit-euler",
-    "semi-implicit-euler",
-    "rk4",
-    "rk4-normalized",
-    "implicit-midpoint",
-    "rattle",
-    "lie-poisson",
-    "kick-drift",
-];
-
 /// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in `lie-poisson:321@kahan-li-8`.
 ///
 /// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
-/// order of axes as its argument; `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and
+/// order of axes as its argument, `two-turn` its two axes; `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and
 /// `kick-drift@suzuki-4`.
 ///
 /// # Errors
@@ -172,35 +161,40 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         Some((base, argument)) => (base, Some(argument)),
         None => (head, None),
     };
-    if !BASES.contains(&base) {
-        return Err(UnknownMethod::Name { name: name.into() });
+    fn no<T>(name: &str, rule: &'static str) -> Result<T, UnknownMethod> {
+        Err(UnknownMethod::Argument { name: name.into(), rule })
     }
-    let refused = |rule| Err(UnknownMethod::Argument { name: name.into(), rule });
     let chosen = scheme_name.map(scheme).transpose()?.copied();
-    let (axes, chosen) = match (base, argument, chosen) {
-        ("lie-poisson", Some(axes), _) => match axes.parse::<AxisOrder>() {
-            Ok(axes) => (Some(axes), chosen),
-            Err(_) => return refused("a permutation of 123, such as lie-poisson:321"),
-        },
-        ("kick-drift", Some("2"), None) => (None, None),
-        ("kick-drift", Some("4"), None) => (None, Some(SUZUKI_4)),
-        ("kick-drift", Some(_), None) => return refused("2 or 4, its order"),
-        ("kick-drift", Some(_), Some(_)) => return refused("none beside a scheme"),
-        (_, Some(_), _) => return refused("none: this method takes no argument"),
-        (_, None, _) => (None, chosen),
+    let none = |argument: Option<&str>| match argument {
+        Some(_) => no(name, "none: this method takes no argument"),
+        None => Ok(()),
     };
     match base {
-        "explicit-euler" => plain(ExplicitEuler, chosen),
-        "semi-implicit-euler" => plain(SemiImplicitEuler, chosen),
-        "rk4" => plain(Rk4 { normalized: false }, chosen),
-        "rk4-normalized" => plain(Rk4 { normalized: true }, chosen),
-        "implicit-midpoint" => Ok(match chosen {
+        "explicit-euler" => none(argument).and(plain(ExplicitEuler, chosen)),
+        "semi-implicit-euler" => none(argument).and(plain(SemiImplicitEuler, chosen)),
+        "rk4" => none(argument).and(plain(Rk4 { normalized: false }, chosen)),
+        "rk4-normalized" => none(argument).and(plain(Rk4 { normalized: true }, chosen)),
+        "implicit-midpoint" => none(argument).and(Ok(match chosen {
             Some(scheme) if scheme != STRANG => Box::new(Composed::new(ImplicitMidpoint, scheme)?),
             _ => Box::new(ImplicitMidpoint),
-        }),
-        "rattle" => kicked(Dmv, chosen),
-        "lie-poisson" => kicked(AxisSplit { axes }, chosen),
-        _ => kicked(ExactDrift, chosen),
+        })),
+        "rattle" => none(argument).and(kicked(Dmv, chosen)),
+        "lie-poisson" => match argument.map(str::parse::<AxisOrder>).transpose() {
+            Ok(axes) => kicked(AxisSplit { axes }, chosen),
+            Err(_) => no(name, "a permutation of 123, such as lie-poisson:321"),
+        },
+        "two-turn" => match argument.map(str::parse::<TwoAxes>).transpose() {
+            Ok(axes) => kicked(TwoTurn { axes }, chosen),
+            Err(_) => no(name, "two different ones of 123, the outer axis first, such as two-turn:31"),
+        },
+        "kick-drift" => match (argument, chosen) {
+            (None, _) => kicked(ExactDrift, chosen),
+            (Some("2"), None) => kicked(ExactDrift, None),
+            (Some("4"), None) => kicked(ExactDrift, Some(SUZUKI_4)),
+            (Some(_), None) => no(name, "2 or 4, its order"),
+            (Some(_), Some(_)) => no(name, "none beside a scheme"),
+        },
+        _ => Err(UnknownMethod::Name { name: name.into() }),
     }
 }
 

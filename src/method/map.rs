@@ -15,9 +15,31 @@ pub trait Method<S: Real> {
 }
 
 /// One map Φ_h.
+///
+/// Where a symmetric map begins and ends with the same flow, Φ_h = P(h/2) M P(h/2), the last P of a step and the first of
+/// the next are one: [`open`](Self::open) takes P(h/2), each [`advance`](Self::advance) M and then P(h), and
+/// [`close`](Self::close) takes P(−h/2) back.
 pub trait Map<S: Real>: Send + 'static {
     /// x ← Φ_h(x), from the time `at` on. Cannot fail; an implicit map keeps its worst residual instead.
     fn apply(&mut self, at: Time, x: &mut Point<S>);
+
+    /// Before the first step: takes a state to the form in which [`advance`](Self::advance) moves it.
+    #[inline]
+    fn open(&mut self, _at: Time, _x: &mut Point<S>) {}
+
+    /// One step in that form.
+    #[inline]
+    fn advance(&mut self, at: Time, x: &mut Point<S>) {
+        self.apply(at, x);
+    }
+
+    /// Takes that form to one with the energy and the momenta of the state, from which it differs by no more than a turn
+    /// about the momentum.
+    #[inline]
+    fn close(&mut self, _at: Time, _x: &mut Point<S>) {}
+
+    /// Takes that turn, of the time `elapsed` (s) since [`open`](Self::open).
+    fn synchronize(&self, _elapsed: Dd, _x: &mut Point<S>) {}
 
     /// The worst relative residual at which an implicit solve ended; 0 for explicit maps.
     fn worst_residual(&self) -> f64 {
@@ -26,18 +48,34 @@ pub trait Map<S: Real>: Send + 'static {
 }
 
 /// Whole steps, counted and timed: what the dynamic outside sees of a [`Map`], with one virtual call for many steps.
+///
+/// [`steps`](Self::steps) takes a state to a state. A long run is [opened](Self::open) once, [advanced](Self::advance) in
+/// pieces and [read](Self::reading) between them: so its bits do not depend on where it was read.
 pub trait Step<S: Real>: Send {
-    /// Takes one step.
-    fn step(&mut self, x: &mut Point<S>);
+    /// Takes a state to the form in which [`advance`](Self::advance) moves it.
+    fn open(&mut self, x: &mut Point<S>);
 
-    /// Takes `n` steps.
-    fn steps(&mut self, x: &mut Point<S>, n: u64);
+    /// Takes `n` steps in that form.
+    fn advance(&mut self, x: &mut Point<S>, n: u64);
 
-    /// Takes as many steps as `block` has places, and leaves in each the point after its step.
+    /// The state behind that form.
+    fn reading(&mut self, x: &Point<S>) -> Point<S>;
+
+    /// Takes as many steps in that form as `block` has places. Leaves in each a point with the energy and the momenta of
+    /// the state after its step, whose attitude may differ by a turn about the momentum.
     fn fill(&mut self, x: &mut Point<S>, block: &mut [Point<S>]);
 
     /// As [`Map::worst_residual`].
     fn worst_residual(&self) -> f64;
+
+    /// Takes `n` steps, from a state to a state.
+    fn steps(&mut self, x: &mut Point<S>, n: u64) {
+        if n > 0 {
+            self.open(x);
+            self.advance(x, n);
+            *x = self.reading(x);
+        }
+    }
 }
 
 /// A map that is applied step by step.
@@ -45,31 +83,40 @@ pub trait Step<S: Real>: Send {
 pub(super) struct Stepper<M> {
     map: M,
     clock: Clock,
+    opened: u64, // steps taken when the map was opened
 }
 
 impl<M> Stepper<M> {
     pub(super) fn new(map: M, clock: Clock) -> Self {
-        Stepper { map, clock }
+        Stepper { map, clock, opened: 0 }
     }
 }
 
 impl<S: Real, M: Map<S>> Step<S> for Stepper<M> {
-    #[inline]
-    fn step(&mut self, x: &mut Point<S>) {
-        self.map.apply(self.clock.at(x.steps()), x);
-        x.count_step();
+    fn open(&mut self, x: &mut Point<S>) {
+        self.opened = x.steps();
+        self.map.open(self.clock.at(x.steps()), x);
     }
 
-    fn steps(&mut self, x: &mut Point<S>, n: u64) {
+    fn advance(&mut self, x: &mut Point<S>, n: u64) {
         for _ in 0..n {
-            self.step(x);
+            self.map.advance(self.clock.at(x.steps()), x);
+            x.count_step();
         }
+    }
+
+    fn reading(&mut self, x: &Point<S>) -> Point<S> {
+        let mut x = *x;
+        self.map.close(self.clock.at(x.steps()), &mut x);
+        self.map.synchronize(self.clock.elapsed(x.steps()) - self.clock.elapsed(self.opened), &mut x);
+        x
     }
 
     fn fill(&mut self, x: &mut Point<S>, block: &mut [Point<S>]) {
         for place in block {
-            self.step(x);
+            self.advance(x, 1);
             *place = *x;
+            self.map.close(self.clock.at(x.steps()), place);
         }
     }
 

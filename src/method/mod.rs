@@ -10,10 +10,12 @@ mod dmv;
 mod exact_drift;
 mod implicit_midpoint;
 mod map;
+mod modified_energy;
 mod runge_kutta;
 pub mod schemes;
 mod splitting;
 mod stagnation;
+mod two_turn;
 
 pub use axis_order::AxisOrder;
 pub use axis_split::AxisSplit;
@@ -26,6 +28,7 @@ pub use implicit_midpoint::ImplicitMidpoint;
 pub use map::{Map, Method, Step};
 pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
 pub use splitting::{Drift, Kicks, SchemeError, Splitting};
+pub use two_turn::{TwoAxes, TwoAxesError, TwoTurn};
 
 /// Turns about the principal axes, with [kicks](Kicks) around them.
 pub type LiePoisson = Splitting<AxisSplit, Kicks>;

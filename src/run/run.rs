@@ -39,7 +39,10 @@ pub struct Run {
     clock: Clock,
     watch: Watch,
     start: Point<f64>,
+    /// In the form in which the step moves it.
     point: Point<f64>,
+    /// The state behind that form.
+    reading: Point<f64>,
     monitor: Monitor,
     residual: f64,
     /// Whether steps have been taken that were not watched.
@@ -90,10 +93,14 @@ impl Run {
         } else {
             let witness = Arc::new(OnceLock::new());
             let watched = body.witnessed(Arc::clone(&witness));
-            Some((method.prepare_f64(clock, &watched)?, witness))
+            let mut step = method.prepare_f64(clock, &watched)?;
+            step.open(&mut start.clone());
+            Some((step, witness))
         };
+        let (mut step, mut point) = (method.prepare_f64(clock, body)?, start);
+        step.open(&mut point);
         Ok(Run {
-            step: method.prepare_f64(clock, body)?,
+            step,
             method: method.name(),
             probe,
             monitor: Monitor::new(body, clock, &start),
@@ -101,7 +108,8 @@ impl Run {
             clock,
             watch: Watch::default(),
             start,
-            point: start,
+            point,
+            reading: start,
             residual: 0.0,
             missed: false,
         })
@@ -155,6 +163,7 @@ impl Run {
         let mut run = Run::from_point(method, body, checkpoint.start, checkpoint.clock)?;
         run.watch = checkpoint.watch;
         run.point = checkpoint.point;
+        run.read();
         run.monitor.remember(checkpoint.memory);
         run.residual = checkpoint.residual;
         run.missed = checkpoint.missed;
@@ -197,14 +206,20 @@ impl Run {
                 return Err(self.broken());
             }
         }
-        if self.watch == Watch::AtSamples && self.monitor.observe(&[self.point]) == 0 {
+        self.read();
+        if self.watch == Watch::AtSamples && self.monitor.observe(&[self.reading]) == 0 {
             return Err(self.broken());
         }
         self.finite_sample().map(|sample| *sample)
     }
 
+    fn read(&mut self) {
+        self.reading = self.step.reading(&self.point);
+    }
+
     /// The run as it stands, if that is finite in the units of the body.
-    fn finite_sample(&self) -> Result<Box<Sample>, RunError> {
+    fn finite_sample(&mut self) -> Result<Box<Sample>, RunError> {
+        self.read();
         let sample = self.sample();
         if sample.is_finite() {
             Ok(Box::new(sample))
@@ -222,7 +237,8 @@ impl Run {
             self.step.fill(&mut self.point, block);
             let finite = self.monitor.observe(block);
             if finite < block.len() {
-                self.point = if finite == 0 { before } else { block[finite - 1] };
+                self.point = before;
+                self.step.advance(&mut self.point, finite as u64);
                 return false;
             }
             wanted -= block.len() as u64;
@@ -234,14 +250,14 @@ impl Run {
     fn unwatched(&mut self, wanted: u64) -> bool {
         let before = self.point;
         self.missed = true;
-        self.step.steps(&mut self.point, wanted);
+        self.step.advance(&mut self.point, wanted);
         if self.point.is_finite() {
             return true;
         }
         self.point = before;
         for _ in 0..wanted {
             let mut next = self.point;
-            self.step.step(&mut next);
+            self.step.advance(&mut next, 1);
             if !next.is_finite() {
                 break;
             }
@@ -258,7 +274,8 @@ impl Run {
         };
         if let Some((step, witness)) = &mut self.probe {
             let mut next = self.point;
-            step.step(&mut next);
+            step.advance(&mut next, 1);
+            let next = step.reading(&next);
             if let Some(failure) = witness.get() {
                 return RunError::Force { force: failure.force.clone(), time: failure.time, last };
             }
@@ -290,21 +307,22 @@ impl Run {
 
     /// The run as it stands.
     pub fn sample(&self) -> Sample {
-        let at = self.clock.at(self.point.steps());
-        let invariants = Invariants::of(&self.body, at, &self.point);
+        let point = self.reading;
+        let at = self.clock.at(point.steps());
+        let invariants = Invariants::of(&self.body, at, &point);
         let scale = self.body.scale();
         let watched = self.watch == Watch::EveryStep && !self.missed;
         Sample {
-            steps: self.point.steps(),
-            elapsed: self.clock.elapsed(self.point.steps()),
+            steps: point.steps(),
+            elapsed: self.clock.elapsed(point.steps()),
             time: at.dd(),
-            state: self.body.leave(&self.point),
-            point: self.point,
-            omega_body: self.body.omega_of(&self.point),
+            state: self.body.leave(&point),
+            point,
+            omega_body: self.body.omega_of(&point),
             energy: invariants.energy.hi() * scale,
             momentum: invariants.momentum().hi() * scale,
-            energy_change: self.monitor.energy_change(&self.point),
-            errors: self.monitor.errors(&self.point),
+            energy_change: self.monitor.energy_change(&point),
+            errors: self.monitor.errors(&point),
             worst: if self.watch == Watch::Never { Errors::NONE } else { self.monitor.worst() },
             watch: self.watch,
             flips: watched.then(|| self.monitor.flips()),

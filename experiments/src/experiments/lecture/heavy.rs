@@ -106,7 +106,7 @@ fn largest_fall(spin: f64, tilt: f64) -> Result<f64, Error> {
     };
     let (mut before, mut now) = (fall(&x), fall(&x));
     for _ in 0..100_000 {
-        step.step(&mut x);
+        step.steps(&mut x, 1);
         let next = fall(&x);
         if now > before && next <= now {
             // the parabola through three steps has its vertex at the turning point
