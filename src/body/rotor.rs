@@ -32,9 +32,7 @@ impl Rotor {
 
     /// The axis of the middle moment.
     pub(crate) fn middle_axis(&self) -> usize {
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| self.moments[i].hi().total_cmp(&self.moments[j].hi()));
-        order[1]
+        self.moments.ascending()[1]
     }
 }
 

@@ -5,6 +5,7 @@ use nalgebra::Matrix3;
 use super::InertiaError;
 use super::symmetric::power_of_two_below;
 use crate::num::{Dd, Real};
+use crate::rotation::AXES;
 
 /// Rounding that a tensor may show, relative to its trace: symmetry and triangle inequalities are judged up to it.
 pub(super) const ROUNDING: f64 = 1e-12;
@@ -30,8 +31,8 @@ pub(super) fn check_symmetric(tensor: &Matrix3<f64>) -> Result<(), InertiaError>
         let difference = (scaled[(row, column)] - scaled[(column, row)]).abs();
         if difference > ROUNDING * trace {
             return Err(InertiaError::NotSymmetric {
-                row: ['x', 'y', 'z'][row],
-                column: ['x', 'y', 'z'][column],
+                row: AXES[row],
+                column: AXES[column],
                 upper: tensor[(row, column)],
                 lower: tensor[(column, row)],
                 relative: difference / trace,
@@ -39,6 +40,11 @@ pub(super) fn check_symmetric(tensor: &Matrix3<f64>) -> Result<(), InertiaError>
         }
     }
     Ok(())
+}
+
+/// By how much the sum of the other two moments exceeds the k-th.
+pub(super) fn triangle_margins<S: Real>([a, b, c]: [S; 3]) -> [S; 3] {
+    [b + c - a, a + c - b, a + b - c]
 }
 
 /// The triangle inequalities for moments divided by `scale`.

@@ -4,10 +4,11 @@
 
 use core::f64::consts::PI;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use thiserror::Error;
 
 use super::mass::{length, positive};
+use super::symmetric::from_second_moments;
 use super::{MassError, MassProperties};
 use crate::num::trig::sin_cos;
 use crate::num::{Compensated, Real, Shown};
@@ -236,9 +237,9 @@ fn with_nodes(
             }
         }
     }
-    let [mass, x, y, z, xx, yy, zz, xy, xz, yz] = sums.map(|sum| sum.value());
+    let [mass, x, y, z, second @ ..] = sums.map(|sum| sum.value());
     positive("mass of the distribution", mass)?;
-    let tensor = Matrix3::new(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy);
+    let tensor = from_second_moments(second);
     Ok(MassProperties::from_tensor_about(Vector3::zeros(), mass, Vector3::new(x, y, z) / mass, tensor)?)
 }
 

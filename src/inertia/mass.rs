@@ -4,7 +4,7 @@ use core::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::checks::{ROUNDING, check_symmetric, check_triangle};
+use super::checks::{ROUNDING, check_symmetric, check_triangle, triangle_margins};
 use super::principal::frame_quaternion;
 use super::symmetric::{Spectrum, Tensor};
 use super::{Class, Inertia, InertiaError, MassError, Symmetry};
@@ -238,8 +238,7 @@ impl MassProperties {
 
     /// By how much the sum of the other two principal moments exceeds the k-th, kg m²: 0 for a plate's third.
     pub fn triangle_margins(&self) -> [f64; 3] {
-        let [a, b, c] = self.principal_moments();
-        [(b + c) - a, (a + c) - b, (a + b) - c]
+        triangle_margins(self.principal_moments())
     }
 
     /// What the principal moments say about the shape.

@@ -64,6 +64,16 @@ impl Sub for Tensor {
     }
 }
 
+/// The symmetric matrix with the entries xx, yy, zz, xy, xz, yz.
+pub(super) fn from_entries([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
+    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+}
+
+/// tr(J) 1 − J of the second moments J = ∫ x xᵀ dm, given in the same order.
+pub(super) fn from_second_moments([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
+    from_entries([yy + zz, xx + zz, xx + yy, -xy, -xz, -yz])
+}
+
 /// Eigenvalues and eigenvectors of a symmetric tensor, whatever their signs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spectrum {

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::checks::{check_finite, check_symmetric, check_triangle};
 use super::principal::{frame_quaternion, principal_axes};
-use super::symmetric::{Spectrum, power_of_two_below};
+use super::symmetric::{Spectrum, from_entries, power_of_two_below};
 use super::{InertiaError, Symmetry};
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
@@ -120,9 +120,8 @@ impl Inertia {
     /// # Errors
     /// As [`from_tensor`](Self::from_tensor).
     pub fn from_products(diagonal: [f64; 3], products: [f64; 3]) -> Result<Self, InertiaError> {
-        let [xx, yy, zz] = diagonal;
-        let [xy, xz, yz] = products;
-        Self::from_tensor(Matrix3::new(xx, -xy, -xz, -xy, yy, -yz, -xz, -yz, zz))
+        let ([xx, yy, zz], [xy, xz, yz]) = (diagonal, products);
+        Self::from_tensor(from_entries([xx, yy, zz, -xy, -xz, -yz]))
     }
 
     /// The tensor in body axes.

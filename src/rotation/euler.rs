@@ -10,7 +10,7 @@ use core::str::FromStr;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use super::{Quat, Vec3};
+use super::{AXES, Quat, Vec3};
 use crate::num::{Dd, Precise, Real};
 
 /// A pair of components, or a sine, below this is rounding: the outer angles are then not two but one.
@@ -144,7 +144,7 @@ impl EulerSequence {
 
 impl fmt::Display for EulerSequence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [i, j, k] = self.0.map(|axis| ['x', 'y', 'z'][axis]);
+        let [i, j, k] = self.0.map(|axis| AXES[axis]);
         write!(f, "{i}{j}{k}")
     }
 }

@@ -11,4 +11,5 @@ mod vec3;
 pub use distance::rotation_angle;
 pub use euler::{EulerAngles, EulerSequence, EulerSequenceError};
 pub use quaternion::Quat;
+pub(crate) use vec3::AXES;
 pub use vec3::Vec3;

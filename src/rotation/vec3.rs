@@ -1,10 +1,14 @@
 //! Three components over any [`Real`].
 
+use core::cmp::Ordering;
 use core::ops::{Add, Index, IndexMut, Mul, Neg, Sub};
 
 use nalgebra::Vector3;
 
-use crate::num::{Dd, Real};
+use crate::num::{Dd, Precise, Real};
+
+/// Names of the axes.
+pub(crate) const AXES: [char; 3] = ['x', 'y', 'z'];
 
 /// A vector of three components.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +84,15 @@ impl<S: Real> Vec3<S> {
         let [a, b, c] = self.0.map(S::magnitude);
         // f64::max would drop a NaN
         if a.is_nan() || b.is_nan() || c.is_nan() { f64::NAN } else { a.max(b).max(c) }
+    }
+}
+
+impl<S: Precise> Vec3<S> {
+    /// The axes of the smallest, middle and largest component; equal ones, and those that are NaN, in their own order.
+    pub(crate) fn ascending(self) -> [usize; 3] {
+        let mut order = [0, 1, 2];
+        order.sort_by(|&j, &k| self[j].partial_cmp(&self[k]).unwrap_or(Ordering::Equal));
+        order
     }
 }
 

@@ -7,7 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::character::{AtRest, Character};
 use super::circulation::Circulation;
 use super::phase::{Spin, steady};
-use super::polhode::{Polhode, ascending, exact_separation};
+use super::polhode::{Polhode, exact_separation};
 use super::theta::Theta;
 use crate::body::{Body, Point, State, StateError};
 use crate::flow::reach::{MOST_RADIANS, TimeError};
@@ -103,7 +103,7 @@ impl FreeMotion {
             Kind::Steady(Box::new(Spin::new(axis, rate)))
         };
         // no part of the phase runs faster than G/I_l
-        let reach = MOST_RADIANS * (moments[ascending(moments)[0]] / norm).to_f64();
+        let reach = MOST_RADIANS * (moments[moments.ascending()[0]] / norm).to_f64();
         FreeMotion { body, start, kind, reach }
     }
 
@@ -163,7 +163,7 @@ impl FreeMotion {
             Kind::Steady(spin) => {
                 let moments: Vec3<Dd> = self.body.rotor().moments();
                 let moment = self.start.momentum_body.norm() / spin.rate();
-                Ok(Character::steady(spin.rate(), moment, moments[ascending(moments)[1]]))
+                Ok(Character::steady(spin.rate(), moment, moments[moments.ascending()[1]]))
             }
             Kind::Circulating(orbit) => Ok(Character::circulating(&orbit.polhode, orbit.precise())),
         }

@@ -135,7 +135,7 @@ impl<S: Precise> Polhode<S> {
     /// [`rounded_separation`], whose error decides the accuracy near the separatrix. `None` where the momentum stays
     /// fixed in the body.
     pub(super) fn of(i: Vec3<S>, m: Vec3<S>, norm: S, scaled_separation: S) -> Option<Self> {
-        let order = ascending(i);
+        let order = i.ascending();
         let (unit, lift) = (exponent(norm), lift(m, order));
         if unit == 0 && lift == 0 {
             Self::at_scale::<false>(i, m, norm, scaled_separation, order, [0, 0])
@@ -266,20 +266,13 @@ fn lift<S: Precise>(m: Vec3<S>, [l, _, h]: [usize; 3]) -> i32 {
     if larger == 0.0 { 0 } else { exponent(S::of(larger)) }
 }
 
-/// The axes of the smallest, middle and largest moment.
-pub(super) fn ascending<S: Precise>(i: Vec3<S>) -> [usize; 3] {
-    let mut order = [0, 1, 2];
-    order.sort_by(|&j, &k| i[j].partial_cmp(&i[k]).unwrap_or(core::cmp::Ordering::Equal));
-    order
-}
-
 /// `I_l I_h Δ_μ = m_h² I_l (I_h − I_μ) − m_l² I_h (I_μ − I_l)`, exactly, then rounded once; m is divided by 2ⁿ, where n
 /// is 0 unless both components are far from one.
 ///
 /// Its relative error is twice that of the period near the separatrix, where the two terms agree in all digits:
 /// nothing less than the exact value will do.
 pub(super) fn exact_separation(i: Vec3<Dd>, m: Vec3<Dd>) -> Dd {
-    let order @ [l, mu, h] = ascending(i);
+    let order @ [l, mu, h] = i.ascending();
     let n = lift(m, order);
     let term = |j: usize, other: usize, higher: usize, lower: usize| {
         let m = Expansion::from(scaled(m[j], -n));
@@ -291,7 +284,7 @@ pub(super) fn exact_separation(i: Vec3<Dd>, m: Vec3<Dd>) -> Dd {
 
 /// The same in the scalar's own arithmetic.
 pub(super) fn rounded_separation<S: Precise>(i: Vec3<S>, m: Vec3<S>) -> S {
-    let order @ [l, mu, h] = ascending(i);
+    let order @ [l, mu, h] = i.ascending();
     let n = lift(m, order);
     let (low, high) = (scaled(m[l], -n), scaled(m[h], -n));
     high * high * i[l] * (i[h] - i[mu]) - low * low * i[h] * (i[mu] - i[l])

@@ -5,6 +5,7 @@ use core::fmt;
 use nalgebra::Matrix3;
 
 use super::{Evidence, check_symmetric, parallel_axis_term};
+use crate::rotation::AXES;
 
 /// One of the six entries of a symmetric tensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,8 +13,7 @@ pub struct Entry(usize, usize);
 
 impl fmt::Display for Entry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = |k: usize| ['x', 'y', 'z'][k];
-        write!(f, "I_{}{}", name(self.0), name(self.1))
+        write!(f, "I_{}{}", AXES[self.0], AXES[self.1])
     }
 }
 

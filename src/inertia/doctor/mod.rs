@@ -5,11 +5,12 @@ mod nearest;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::InertiaError;
-use super::MassError;
-use super::checks::{ROUNDING, check_symmetric};
+use super::checks::{ROUNDING, check_symmetric, triangle_margins};
 use super::mass::{LENGTHS, SIZES, check_tensor, finite, length, positive};
 use super::symmetric::{Spectrum, Tensor};
+use super::{InertiaError, MassError};
+use crate::num::{Dd, Real};
+use crate::rotation::{AXES, Vec3};
 pub use causes::{Cause, Entry};
 
 /// Densities within e^±14 of water's, from a thousandth of a kg/m³ to that of no known matter, accuse nobody.
@@ -152,13 +153,13 @@ pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, 
         (false, true) => Verdict::Valid,
     };
     let (nearest, distance) = nearest::nearest_valid(&tensor);
-    let [a, b, c] = spectrum.moments.map(|i| i.hi() * spectrum.scale);
+    let principal_moments = spectrum.moments.map(|i| i.hi() * spectrum.scale);
     Ok(Diagnosis {
         verdict,
         violation,
         misfit,
-        principal_moments: [a, b, c],
-        triangle_margins: [(b + c) - a, (a + c) - b, (a + b) - c],
+        principal_moments,
+        triangle_margins: triangle_margins(principal_moments),
         causes,
         nearest,
         distance,
@@ -185,8 +186,7 @@ fn equivalent_box(tensor: &Matrix3<f64>, mass: Option<f64>) -> [f64; 3] {
 
 /// Second moments along the principal axes over the scale, descending, never negative.
 fn second_moments(spectrum: &Spectrum) -> [f64; 3] {
-    let [a, b, c] = spectrum.moments;
-    [b + c - a, a + c - b, a + b - c].map(|twice| (0.5 * twice.hi()).max(0.0))
+    triangle_margins(spectrum.moments).map(|twice| (0.5 * twice.hi()).max(0.0))
 }
 
 impl Evidence {
@@ -195,7 +195,7 @@ impl Evidence {
         let ratios = self.fill(tensor)?;
         let k = [0, 1, 2].into_iter().max_by(|&i, &j| ratios[i].total_cmp(&ratios[j]))?;
         let ratio = ratios[k] / 3.0;
-        (ratio > 1.0 + 1e-9).then_some(Misfit { axis: ['x', 'y', 'z'][k], ratio })
+        (ratio > 1.0 + 1e-9).then_some(Misfit { axis: AXES[k], ratio })
     }
 
     /// Second moments along the axes over those of a homogeneous box of the extents: 1 for a box, 3 at most.
@@ -238,8 +238,6 @@ impl Evidence {
 
 /// The parallel-axis term of the evidence, if it has a mass and a centre away from the origin.
 fn parallel_axis_term(evidence: &Evidence) -> Option<Matrix3<f64>> {
-    use crate::num::{Dd, Real};
-    use crate::rotation::Vec3;
     let (mass, center) = (evidence.mass?, evidence.center_of_mass?);
     (center != Vector3::zeros()).then(|| Tensor::of_point(Dd::of(mass), Vec3::of(center.into())).rounded())
 }

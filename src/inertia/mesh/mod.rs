@@ -11,7 +11,7 @@ use std::io::{self, BufRead, Read};
 use nalgebra::{Matrix3, Vector3};
 use thiserror::Error;
 
-use super::symmetric::Tensor;
+use super::symmetric::{Tensor, from_second_moments};
 use super::{Amount, MassError, MassProperties};
 use crate::num::{Compensated, Dd, Shown};
 use crate::rotation::Vec3;
@@ -336,14 +336,14 @@ impl Enclosed {
             absolute += v6.abs();
             largest = largest.max(largest_triple(a, b, c));
         }
-        let [v6, x, y, z, xx, yy, zz, xy, xz, yz] = sums.map(|sum| sum.value());
+        let [v6, x, y, z, second @ ..] = sums.map(|sum| sum.value());
         // the v6 of triangles in one plane with the origin is mere rounding of its terms
         let rounding = (mesh.triangles.len() as f64).sqrt() * largest;
         if v6.is_nan() || v6 < LEAST || v6 <= 16.0 * f64::EPSILON * (absolute + rounding) {
             return Err(MeshError::Flat);
         }
         let offset = Vec3([x, y, z]) * (1.0 / (4.0 * v6));
-        let about_origin = Matrix3::new(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy) / 120.0;
+        let about_origin = from_second_moments(second) / 120.0;
         let volume = v6 / 6.0;
         let term = Tensor::of_point(Dd::sum(volume, 0.0), Vec3::of(offset));
         let tensor = (Tensor::symmetric_part(&about_origin) - term).rounded();
