@@ -4,7 +4,7 @@
 #![allow(clippy::expect_used)]
 
 use polhode::body::Body;
-use polhode::catalog;
+use polhode::catalogue;
 use polhode::flow::FreeMotion;
 use polhode::method::catalogue;
 use polhode::rotation::rotation_angle;
@@ -12,7 +12,7 @@ use polhode::run::{Run, RunError, Schedule};
 
 fn main() {
     let total = std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(1_000_000);
-    let dyadic = catalog::body("dyadic").expect("in the catalogue");
+    let dyadic = catalogue::body("dyadic").expect("in the catalogue");
     let body = Body::free(dyadic.inertia);
     let start = body.state(Default::default(), dyadic.omega_body.into()).expect("a valid start");
     println!("method,steps,energy_error,momentum_error,momentum_vector_error,attitude_error,status");
@@ -33,7 +33,7 @@ fn main() {
                 method.name(),
                 sample.steps,
                 worst.energy.unwrap_or_default(),
-                worst.momentum.unwrap_or_default(),
+                worst.momentum_norm.unwrap_or_default(),
                 worst.momentum_vector.unwrap_or_default()
             );
         }

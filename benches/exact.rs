@@ -5,14 +5,14 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use polhode::catalog;
+use polhode::catalogue;
 use polhode::flow::FreeMotion;
 
 fn exact(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("exact");
     // from far off the separatrix to close beside it
     for name in ["spacecraft", "textbook", "racket"] {
-        let body = catalog::body(name).expect("in the catalogue");
+        let body = catalogue::body(name).expect("in the catalogue");
         let set_up = || FreeMotion::from_omega(&body.inertia, Default::default(), body.omega_body.into());
         let motion = set_up().expect("a valid start");
         group.bench_function(format!("set-up, {name}"), |b| b.iter(|| black_box(set_up())));
@@ -24,7 +24,7 @@ fn exact(criterion: &mut Criterion) {
             });
         });
     }
-    let body = catalog::body("textbook").expect("in the catalogue");
+    let body = catalogue::body("textbook").expect("in the catalogue");
     let motion = FreeMotion::from_omega(&body.inertia, Default::default(), body.omega_body.into());
     let motion = motion.expect("a valid start");
     let times: Vec<f64> = (0..100_000).map(|n| 12.345 * f64::from(n)).collect();

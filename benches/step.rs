@@ -8,7 +8,7 @@ use std::hint::black_box;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use polhode::body::{Body, Clock, State};
-use polhode::catalog;
+use polhode::catalogue;
 use polhode::method::{AnyMethod, catalogue, method};
 use polhode::run::{Run, Watch};
 
@@ -51,7 +51,7 @@ fn rk4_by_hand(x: &mut Numbers, inverse: [f64; 3], c: [f64; 3], h: f64, steps: u
 }
 
 fn step(criterion: &mut Criterion) {
-    let textbook = catalog::body("textbook").expect("in the catalogue");
+    let textbook = catalogue::body("textbook").expect("in the catalogue");
     let free = Body::free(textbook.inertia.clone());
     let heavy = Body::heavy(textbook.inertia, [0.1, -0.2, 0.4].into()).expect("a valid weight");
     for (kind, body, weight) in [("free", free, [0.0; 3]), ("heavy", heavy, [0.1, -0.2, 0.4])] {

@@ -2,8 +2,8 @@
 
 use polhode::body::{Body, Conserved, Force, Potential, Time};
 use polhode::inertia::Inertia;
-use polhode::method::schemes::{Class, Part, Scheme, Stages};
-use polhode::method::{ExactDrift, Splitting};
+use polhode::method::schemes::{Pairs, Part, Scheme, Stages};
+use polhode::method::{ExactFlow, Splitting};
 use polhode::num::{Dd, Real};
 use polhode::rotation::{Quat, Vec3};
 use polhode::run::Run;
@@ -23,14 +23,14 @@ impl<S: Real> Potential<S> for Spring {
 /// Kicks and drifts of Forest and Ruth, Physica D 43 (1990) 105: half of each palindrome, less what closes it.
 const B: &[Dd] = &[Dd::sum(0.675_603_595_979_828_8, 4.213_708_877_725_88e-17)];
 const A: &[Dd] = &[Dd::sum(1.351_207_191_959_657_5, 8.427_417_755_451_76e-17)];
-const STAGES: Stages = Stages::Alternating { first: Part::B, a: A, b: B, class: Class::Any };
+const STAGES: Stages = Stages::Alternating { first: Part::B, a: A, b: B, pairs: Pairs::Any };
 const RUTH_4: Scheme = Scheme { name: "ruth-4", order: 4, source: "Forest and Ruth 1990", stages: STAGES };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let body =
         Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("spring", Spring(0.5)));
     let start = body.state(Default::default(), [0.1, 0.7, 0.3].into())?;
-    let mut run = Run::new(&Splitting::kicked(ExactDrift, RUTH_4)?, &body, &start, 0.05)?;
+    let mut run = Run::new(&Splitting::kicked(ExactFlow, RUTH_4)?, &body, &start, 0.05)?;
     let end = run.advance_to(100_000)?;
     println!("{:?} after {} s", end.worst.of(Conserved::Energy), end.elapsed.hi());
     Ok(())
@@ -42,7 +42,7 @@ fn the_scheme_has_its_order_in_the_field_of_the_force() -> Result<(), Box<dyn st
         Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("spring", Spring(0.5)));
     let start = body.state(Default::default(), [0.1, 0.7, 0.3].into())?;
     let worst = |h: f64| -> Result<f64, Box<dyn std::error::Error>> {
-        let mut run = Run::new(&Splitting::kicked(ExactDrift, RUTH_4)?, &body, &start, h)?;
+        let mut run = Run::new(&Splitting::kicked(ExactFlow, RUTH_4)?, &body, &start, h)?;
         Ok(run.advance_to((50.0 / h) as u64)?.worst.of(Conserved::Energy).unwrap_or(f64::NAN))
     };
     let ratio = worst(0.0625)? / worst(0.03125)?;

@@ -32,7 +32,7 @@
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence |
-//! | [`catalog`] | named bodies with their sources |
+//! | [`catalogue`] | named bodies with their sources |
 //! | `fit` | inertia from measured angular velocity; with the feature `fit` |
 //! | [`guide`] | your own force, your own method |
 //!
@@ -69,7 +69,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod body;
-pub mod catalog;
+pub mod catalogue;
 #[cfg(feature = "fit")]
 pub mod fit;
 pub mod flow;

@@ -145,7 +145,7 @@ fn drag_slows_a_ball_as_its_closed_form_says() {
                 let fallen = libm::exp(-c1 * t / moment);
                 speed * fallen / (1.0 + c2 * speed / c1 * (1.0 - fallen))
             };
-            let off = sample.momentum / (moment * exact) - 1.0;
+            let off = sample.momentum_norm / (moment * exact) - 1.0;
             assert!(off.abs() < 1e-12, "c1 = {c1}, c2 = {c2}, t = {t}: {off:.1e}");
             let direction = sample.omega_body.normalize() - Vector3::from(omega) / speed;
             assert!(direction.norm() < 1e-14, "{direction:?}");
@@ -249,7 +249,7 @@ fn motions_under_forces_are_those_of_the_fixtures() {
     }
 }
 
-/// The asymmetric heavy body at about 80 exact drifts per unit time, over 64 units.
+/// The asymmetric heavy body at about 80 free flows per unit time, over 64 units.
 #[test]
 fn nystrom_schemes_are_far_more_accurate_than_suzukis_at_equal_cost() {
     let body = Body::heavy(inertia([0.625, 0.75, 1.0]), [0.1, -0.2, 0.4].into()).unwrap();
@@ -273,7 +273,7 @@ fn nystrom_schemes_are_far_more_accurate_than_suzukis_at_equal_cost() {
         method(name).unwrap().prepare_f64(clock, &body).unwrap().steps(&mut x, span * per_unit);
         rotation_angle(x.to_dd().attitude, exact).hi()
     };
-    let suzuki = error("kick-drift@suzuki-4", 16); // 80 drifts per unit
+    let suzuki = error("kick-drift@suzuki-4", 16); // 80 free flows per unit
     let fourth = error("kick-drift@srkn-6b", 13); // 78
     let sixth = error("kick-drift@srkn-11b", 7); // 77
     println!(

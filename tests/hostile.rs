@@ -650,12 +650,13 @@ fn bodies_and_runs() {
                 Ok(sample) => {
                     let name = format!("{} {clock:?} {watch:?} {body:?} {start:?}", method.name());
                     all(sample.state.is_finite(), &name, &sample.state)?;
-                    let readings = [sample.energy, sample.momentum, sample.energy_change, sample.time.hi()];
+                    let readings =
+                        [sample.energy, sample.momentum_norm, sample.energy_change, sample.time.hi()];
                     all(finite(&readings), &name, &readings)?;
                     for errors in [sample.errors, sample.worst] {
                         let parts = [
                             errors.energy,
-                            errors.momentum,
+                            errors.momentum_norm,
                             errors.momentum_vector,
                             errors.momentum_z,
                             errors.jacobi,

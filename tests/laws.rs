@@ -16,9 +16,9 @@ use polhode::body::{
 };
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
-use polhode::method::schemes::{self, Class, Scheme, Stages};
+use polhode::method::schemes::{self, Pairs, Scheme, Stages};
 use polhode::method::{
-    AnyMethod, AxisOrder, AxisSplit, Claimed, Claims, Composed, Cost, Dmv, Energy, ExactDrift, ExplicitEuler,
+    AnyMethod, AxisOrder, AxisSplit, Claimed, Claims, Composed, Cost, Dmv, Energy, ExactFlow, ExplicitEuler,
     ImplicitMidpoint, Kicks, Map, Method, Rk4, SemiImplicitEuler, Splitting, StepError, TwoTurn, catalogue,
     method,
 };
@@ -265,17 +265,19 @@ fn each_method_converges_with_its_order_and_no_better() {
     }
 }
 
-/// Every scheme over the exact drift, and every composition over drifts of order 2, in the steps at which its order shows.
+/// Every scheme over the exact free flow, and every composition over free maps of order 2, in the steps at which its order shows.
 #[test]
 fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
     let (potential, free) = (potential(), free());
     for scheme in schemes::ALL {
-        let exact = Splitting::kicked(ExactDrift, *scheme).unwrap();
+        let exact = Splitting::kicked(ExactFlow, *scheme).unwrap();
         assert_scheme_order(&potential, &exact, scheme);
         let split = Splitting::kicked(AxisSplit { axes: None }, *scheme);
         match scheme.stages {
             Stages::Composition(_) => assert_scheme_order(&free, &split.unwrap(), scheme),
-            Stages::Alternating { .. } => assert!(split.is_err(), "{} fits no drift of order 2", scheme.name),
+            Stages::Alternating { .. } => {
+                assert!(split.is_err(), "{} fits no free map of order 2", scheme.name)
+            }
         }
     }
 }
@@ -294,7 +296,7 @@ fn assert_scheme_order(case: &Case, method: &dyn AnyMethod, scheme: &Scheme) {
     let order = libm::log2(coarse / fine);
     let claimed = f64::from(scheme.order);
     let near_integrable =
-        matches!(scheme.stages, Stages::Alternating { class: Class::NearIntegrable(_), .. });
+        matches!(scheme.stages, Stages::Alternating { pairs: Pairs::NearIntegrable(_), .. });
     // the terms of the least order in h have the highest power of ε: at these steps they need not be the largest
     let most = if near_integrable { 2.6 * claimed } else { 1.05 * claimed };
     assert!(
@@ -322,7 +324,7 @@ fn each_method_keeps_what_it_claims_and_loses_what_it_does_not() {
             let worst = worst(&case, &integrate(&case, &method, 0.125, 240));
             for (quantity, what, claimed, error) in [
                 (Conserved::Energy, "energy", kept.energy == Energy::Exact, worst.energy),
-                (Conserved::MomentumNorm, "|m|", kept.momentum, worst.momentum),
+                (Conserved::MomentumNorm, "|m|", kept.momentum_norm, worst.momentum),
                 (Conserved::Momentum, "L", kept.momentum_space, worst.space),
                 (Conserved::MomentumZ, "L_z", kept.momentum_z, worst.vertical),
             ] {
@@ -415,7 +417,7 @@ fn rounding_does_not_bias_an_energy_that_is_kept() {
         let end = run.samples(Schedule::every(1_000_000, 1_000_000)).last().unwrap().unwrap();
         let energy = end.worst.energy.unwrap();
         assert!(energy < 2e-14, "{}: {energy:e}", method.name());
-        assert!(end.worst.momentum.unwrap() < 2e-14, "{}: {:?}", method.name(), end.worst.momentum);
+        assert!(end.worst.momentum_norm.unwrap() < 2e-14, "{}: {:?}", method.name(), end.worst.momentum_norm);
     }
 }
 
@@ -437,7 +439,7 @@ fn errors_of_kick_drift(moments: [f64; 3], omega: [f64; 3], h: f64, steps: u64) 
     [off(precise, start), off(quick.to_dd(), rounded.to_dd())]
 }
 
-/// What a drift gives back to the energy is divided by how far ω is from m; in double-double it is rounding alone.
+/// What a free flow gives back to the energy is divided by how far ω is from m; in double-double it is rounding alone.
 #[test]
 fn kick_drift_is_exact_next_to_a_steady_turn() {
     for exponent in (-32..=0).map(|half| 0.5 * f64::from(half)) {
@@ -698,7 +700,7 @@ fn counted<M: Method<Counted> + Claimed>(
 const ASYMMETRIC: [f64; 3] = [0.625, 0.75, 1.0];
 const SYMMETRIC: [f64; 3] = [0.75, 0.75, 1.0];
 
-/// A turn takes one sine, a solved equation one square root, for its Cayley map, an exact drift of a symmetric body two
+/// A turn takes one sine, a solved equation one square root, for its Cayley map, a free flow of a symmetric body two
 /// sines; a kick and a right-hand side take one torque.
 #[test]
 fn each_method_costs_what_it_claims() {
@@ -706,13 +708,13 @@ fn each_method_costs_what_it_claims() {
         for problem in [Problem::Free, Problem::Gravity] {
             let name = name(problem, method);
             let ([sines, roots, torques], cost) = counted(method, problem, ASYMMETRIC);
-            if cost.drifts == 0 {
+            if cost.free_flows == 0 {
                 assert_eq!(sines, cost.turns, "{name}: turns");
                 assert!(implicit || cost.solves == 0, "{name}");
                 assert!(!implicit || roots == cost.solves, "{name}: {roots} roots, {cost:?}");
             } else {
                 let ([sines, ..], _) = counted(method, problem, SYMMETRIC);
-                assert_eq!(sines, 2 * cost.drifts, "{name}: drifts");
+                assert_eq!(sines, 2 * cost.free_flows, "{name}: free flows");
             }
             if problem == Problem::Gravity {
                 assert_eq!(torques, cost.kicks + cost.right_sides, "{name}: torques");
@@ -734,14 +736,14 @@ fn each_method_costs_what_it_claims() {
             assert_cost(&Splitting::kicked(Dmv, *scheme).unwrap(), true);
             assert_cost(&Splitting::kicked(TwoTurn { axes: None }, *scheme).unwrap(), false);
         }
-        assert_cost(&Splitting::kicked(ExactDrift, *scheme).unwrap(), false);
+        assert_cost(&Splitting::kicked(ExactFlow, *scheme).unwrap(), false);
     }
 }
 
 #[test]
 fn neighbouring_kicks_of_a_composition_are_merged() {
     let claims = method("kick-drift@suzuki-4").unwrap().claims(Problem::Gravity).unwrap();
-    assert_eq!((claims.cost.drifts, claims.cost.kicks), (5, 5));
+    assert_eq!((claims.cost.free_flows, claims.cost.kicks), (5, 5));
     let claims = method("rattle@kahan-li-8").unwrap().claims(Problem::Potential).unwrap();
     assert_eq!((claims.cost.solves, claims.cost.kicks), (17, 17));
 }
@@ -831,10 +833,10 @@ fn an_unsolved_step_is_told_again_and_again() {
 #[test]
 fn a_scheme_whose_lists_do_not_alternate_is_refused() {
     const TWO: &[Dd] = &[Dd::sum(0.125, 0.0), Dd::sum(0.25, 0.0)];
-    let stages = Stages::Alternating { first: schemes::Part::B, a: &[], b: TWO, class: Class::Any };
+    let stages = Stages::Alternating { first: schemes::Part::B, a: &[], b: TWO, pairs: Pairs::Any };
     let scheme = Scheme { name: "mine", order: 2, source: "", stages };
     assert_eq!(
-        Splitting::kicked(ExactDrift, scheme).unwrap_err().to_string(),
+        Splitting::kicked(ExactFlow, scheme).unwrap_err().to_string(),
         "scheme \"mine\" lists 2 shares of the flow that is first and 0 of the other; of the first there are as many or one more"
     );
 }
@@ -1054,7 +1056,7 @@ fn the_monitor_of_a_heavy_body_measures_energy_and_vertical_momentum() {
     let start = case.body.state(Default::default(), [0.4, 1.0, -0.3].into()).unwrap();
     let mut run = Run::new(&method("rk4").unwrap(), &case.body, &start, 0.1).unwrap();
     let sample = run.advance_to(100).unwrap();
-    assert_eq!((sample.worst.momentum, sample.worst.momentum_vector), (None, None));
+    assert_eq!((sample.worst.momentum_norm, sample.worst.momentum_vector), (None, None));
     assert!(sample.worst.momentum_z.unwrap() > 1e-9 && sample.worst.energy.unwrap() > 1e-9);
     // T(0) + |c| is 0.5 (0.08 + 0.85 + 0.09) + 1, times the size
     let kinetic = 0.5 * (0.5 * 0.16 + 0.85 + 0.09);

@@ -11,7 +11,7 @@ const ORDER: [&str; 8] = ["num", "rotation", "inertia", "body", "flow", "observe
 fn allowed(layer: &str) -> Vec<&'static str> {
     match layer {
         "fit" => vec!["fit", "num", "rotation", "inertia", "body", "flow", "observe"],
-        "catalog" => vec!["catalog", "num", "rotation", "inertia", "body"],
+        "catalogue" => vec!["catalogue", "num", "rotation", "inertia", "body"],
         _ => {
             let rank = ORDER.iter().position(|name| *name == layer);
             let rank = rank.unwrap_or_else(|| panic!("src/{layer} has no place in the order of the layers"));

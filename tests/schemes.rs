@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use std::fs;
 
 use polhode::method::schemes::{
-    ALL, BLANES_MOAN_S6, Class, Part, SRKN_6B, SRKN_11B, SUZUKI_4, Scheme, Stages, scheme,
+    ALL, BLANES_MOAN_S6, Pairs, Part, SRKN_6B, SRKN_11B, SUZUKI_4, Scheme, Stages, scheme,
 };
 use polhode::num::{Dd, Real};
 
@@ -173,9 +173,9 @@ fn floor(scheme: &Scheme) -> f64 {
 
 /// What contradicts the order of a scheme, if anything does.
 fn contradiction(scheme: &Scheme) -> Option<String> {
-    let class = match scheme.stages {
-        Stages::Composition(_) => Class::Any,
-        Stages::Alternating { class, .. } => class,
+    let pairs = match scheme.stages {
+        Stages::Composition(_) => Pairs::Any,
+        Stages::Alternating { pairs, .. } => pairs,
     };
     let order = scheme.order as usize;
     let below = |size: f64, what: &str, d: usize| {
@@ -184,14 +184,14 @@ fn contradiction(scheme: &Scheme) -> Option<String> {
     let above = |size: f64, what: &str, d: usize| {
         (size < VISIBLE).then(|| format!("{}: {what} of degree {d} is only {size:e}", scheme.name))
     };
-    match class {
-        Class::Any => {
+    match pairs {
+        Pairs::Any => {
             let series = product(&scheme.flows(), order + 1);
             (1..=order)
                 .find_map(|d| below(largest(&defect(&series, d)), "the defect", d))
                 .or_else(|| above(largest(&defect(&series, order + 1)), "the defect", order + 1))
         }
-        Class::Nystrom => {
+        Pairs::Nystrom => {
             let series = product(&scheme.flows(), order + 1);
             let log = logarithm(&series);
             let left = |d: usize| largest(&residual(&log[d], &vanishing(d)));
@@ -199,9 +199,9 @@ fn contradiction(scheme: &Scheme) -> Option<String> {
             below(largest(&defect(&series, 1)), "the defect", 1)
                 .or_else(|| (2..=order).find_map(|d| below(left(d), "the part that does not vanish", d)))
                 .or_else(|| above(left(order + 1), "the part that does not vanish", order + 1))
-                .or_else(|| above(needed, "the part that vanishes for this class alone, up to that", order))
+                .or_else(|| above(needed, "the part that vanishes for these pairs alone, up to that", order))
         }
-        Class::NearIntegrable(powers) => {
+        Pairs::NearIntegrable(powers) => {
             let highest = powers[0] as usize;
             if powers.last() != Some(&scheme.order) || !powers.is_sorted_by(|p, q| p > q) {
                 return Some(format!("{}: order {order} of {powers:?}", scheme.name));
@@ -249,21 +249,21 @@ fn every_scheme_has_its_order_and_no_higher_one() {
 }
 
 #[test]
-fn a_wrong_order_or_class_is_noticed() {
+fn a_wrong_order_or_pair_of_flows_is_noticed() {
     for wrong in [2, 6] {
         assert!(contradiction(&Scheme { order: wrong, ..SUZUKI_4 }).is_some());
     }
-    let with = |scheme: Scheme, class| match scheme.stages {
+    let with = |scheme: Scheme, pairs| match scheme.stages {
         Stages::Alternating { first, a, b, .. } => {
-            Scheme { stages: Stages::Alternating { first, a, b, class }, ..scheme }
+            Scheme { stages: Stages::Alternating { first, a, b, pairs }, ..scheme }
         }
-        Stages::Composition(_) => panic!("{} has no class", scheme.name),
+        Stages::Composition(_) => panic!("{} is a composition", scheme.name),
     };
     let wrong = [
-        with(SRKN_11B, Class::Any),
-        with(SRKN_6B, Class::Nystrom),
-        with(BLANES_MOAN_S6, Class::Nystrom),
-        with(BLANES_MOAN_S6, Class::NearIntegrable(&[6, 4])),
+        with(SRKN_11B, Pairs::Any),
+        with(SRKN_6B, Pairs::Nystrom),
+        with(BLANES_MOAN_S6, Pairs::Nystrom),
+        with(BLANES_MOAN_S6, Pairs::NearIntegrable(&[6, 4])),
     ];
     for scheme in wrong {
         assert!(contradiction(&scheme).is_some(), "{scheme:?} passed");
@@ -289,8 +289,8 @@ fn spoiled(scheme: &Scheme, list: &str, n: usize, by: f64) -> Scheme {
     };
     let stages = match scheme.stages {
         Stages::Composition(gamma) => Stages::Composition(changed("gamma", gamma)),
-        Stages::Alternating { first, a, b, class } => {
-            Stages::Alternating { first, a: changed("a", a), b: changed("b", b), class }
+        Stages::Alternating { first, a, b, pairs } => {
+            Stages::Alternating { first, a: changed("a", a), b: changed("b", b), pairs }
         }
     };
     Scheme { stages, ..*scheme }

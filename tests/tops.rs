@@ -436,7 +436,7 @@ fn kovalevskayas_and_goryachev_chaplygins_constants_stand() {
 
 #[test]
 fn every_top_of_the_catalogue_is_a_lagrange_top_that_nutates() {
-    for named in polhode::catalog::tops() {
+    for named in polhode::catalogue::tops() {
         let [w, x, y, z] = named.attitude;
         let attitude = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
         let body = named.body().unwrap();

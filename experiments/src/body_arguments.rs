@@ -3,7 +3,7 @@
 use clap::Args;
 use nalgebra::Matrix3;
 use polhode::body::{Body, Point};
-use polhode::catalog;
+use polhode::catalogue;
 use polhode::inertia::Inertia;
 use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
@@ -64,9 +64,9 @@ impl BodyArguments {
         } else {
             let name = self.body.as_deref().unwrap_or_default();
             let known: Vec<&str> =
-                catalog::bodies().iter().chain(&catalog::tops()).map(|body| body.name).collect();
-            let found = catalog::body(name)
-                .or_else(|| catalog::top(name))
+                catalogue::bodies().iter().chain(&catalogue::tops()).map(|body| body.name).collect();
+            let found = catalogue::body(name)
+                .or_else(|| catalogue::top(name))
                 .ok_or_else(|| Error::unknown_name("--body", "body", name, known.iter().copied()))?;
             Ok((found.inertia, found.weight_moment))
         }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use polhode::body::Problem;
-use polhode::method::schemes::{self, Class, Part, Stages};
+use polhode::method::schemes::{self, Pairs, Part, Stages};
 use polhode::method::{Claimed, catalogue};
 
 use crate::error::Error;
@@ -73,7 +73,7 @@ pub(crate) fn table() -> Table {
             method.name(),
             order.map(u64::from),
             kept.energy.to_string(),
-            yes(kept.momentum),
+            yes(kept.momentum_norm),
             yes(kept.momentum_space),
             yes(kept.norm),
             yes(claims.symmetric),
@@ -95,7 +95,7 @@ fn schemes() -> Table {
             Column::new("name", "", "name behind the @"),
             Column::new("order", "", "order of the whole"),
             Column::new("kind", "", "composition, or what the two flows have to be"),
-            Column::new("maps", "", "maps of a composition, or drifts, in a step"),
+            Column::new("maps", "", "maps of a composition, or free flows, in a step"),
             Column::new("kicks", "", "kicks in a step"),
             Column::new("source", "", "where the coefficients come from"),
         ],
@@ -105,9 +105,9 @@ fn schemes() -> Table {
         let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u64;
         let kind = match scheme.stages {
             Stages::Composition(_) => "composition".to_owned(),
-            Stages::Alternating { class: Class::Any, .. } => "any two flows".to_owned(),
-            Stages::Alternating { class: Class::Nystrom, .. } => "kinetic and potential".to_owned(),
-            Stages::Alternating { class: Class::NearIntegrable(orders), .. } => {
+            Stages::Alternating { pairs: Pairs::Any, .. } => "any two flows".to_owned(),
+            Stages::Alternating { pairs: Pairs::Nystrom, .. } => "kinetic and potential".to_owned(),
+            Stages::Alternating { pairs: Pairs::NearIntegrable(orders), .. } => {
                 let orders: Vec<String> = orders.iter().map(u32::to_string).collect();
                 format!("weak potential ({})", orders.join(","))
             }

@@ -184,7 +184,7 @@ impl Propagate {
         let lost = if (norm - 1.0).abs() > 0.5 {
             format!("the quaternion of the attitude has the norm {norm:.1e}, not 1")
         } else {
-            let errors = [("energy", sample.worst.energy), ("|m|", sample.worst.momentum)];
+            let errors = [("energy", sample.worst.energy), ("|m|", sample.worst.momentum_norm)];
             match errors.into_iter().find(|(_, error)| error.is_some_and(|error| error > 1.0)) {
                 Some((what, Some(error))) => format!("the relative error of {what} is {error:.1e}"),
                 _ => return Ok(()),
@@ -254,9 +254,9 @@ fn row<S: Precise>(
         omega.y,
         omega.z,
         body.energy_of(at, x).hi(),
-        invariants.momentum().hi() * body.scale(),
+        invariants.momentum_norm().hi() * body.scale(),
         worst.energy,
-        worst.momentum,
+        worst.momentum_norm,
         worst.momentum_vector,
         worst.momentum_z,
         attitude_error,

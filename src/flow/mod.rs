@@ -14,8 +14,7 @@ pub use free::{AtRest, Character, FreeBody, FreeFlow, FreeMotion, Mode, Symmetri
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop};
 pub use reach::TimeError;
-pub use turn::AxisTurn;
-pub(crate) use turn::{turn, turn_about};
+pub(crate) use turn::{AxisTurn, turn_about, turn_about_axis};
 
 use crate::body::{Point, Time};
 use crate::num::Real;

@@ -11,14 +11,14 @@ use crate::rotation::{Quat, Vec3};
 /// Φ_t: with θ = t m_i / I_i, turn (m_j, m_k) by −θ about axis i and the attitude by θ on the right;
 /// (i, j, k) cyclic. Keeps m_i, |m| and the momentum in space.
 #[derive(Clone, Copy, Debug)]
-pub struct AxisTurn<S> {
+pub(crate) struct AxisTurn<S> {
     axis: usize,
     half_rate: S,
 }
 
 impl<S: Real> AxisTurn<S> {
     /// The flow of `rate · m_axis²/2`, `half_rate` being half of that rate; `axis` is 0, 1 or, for all else, 2.
-    pub fn new(axis: usize, half_rate: S) -> Self {
+    pub(crate) fn new(axis: usize, half_rate: S) -> Self {
         AxisTurn { axis, half_rate }
     }
 }
@@ -26,17 +26,17 @@ impl<S: Real> AxisTurn<S> {
 impl<S: Real> Flow<S> for AxisTurn<S> {
     #[inline]
     fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
-        turn_about(self.axis, x, t * self.half_rate);
+        turn_about_axis(self.axis, x, t * self.half_rate);
     }
 }
 
-/// As [`turn`], about an axis that is known at run time only.
+/// As [`turn_about`], about an axis that is known at run time only.
 #[inline]
-pub(crate) fn turn_about<S: Real>(axis: usize, x: &mut Point<S>, half_rate_time: S) {
+pub(crate) fn turn_about_axis<S: Real>(axis: usize, x: &mut Point<S>, half_rate_time: S) {
     match axis {
-        0 => turn::<0, S>(x, half_rate_time),
-        1 => turn::<1, S>(x, half_rate_time),
-        _ => turn::<2, S>(x, half_rate_time),
+        0 => turn_about::<0, S>(x, half_rate_time),
+        1 => turn_about::<1, S>(x, half_rate_time),
+        _ => turn_about::<2, S>(x, half_rate_time),
     }
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn turn_about<S: Real>(axis: usize, x: &mut Point<S>, half_rate_time:
 /// takes the same sine and cosine, so that `q m q*` keeps its direction. The axis is a constant so that the state
 /// stays in registers.
 #[inline]
-pub(crate) fn turn<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
+pub(crate) fn turn_about<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
     let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
     let m = x.momentum_body;
     let (s, c) = (m[AXIS] * half_rate_time).sin_cos();

@@ -1,13 +1,13 @@
 //! The variational Lie–Poisson splitting: three turns about the principal axes.
 
-use super::{AxisOrder, Cost, Drift, Energy, Map, Method, Symmetric};
+use super::{AxisOrder, Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
-use crate::flow::{turn, turn_about};
+use crate::flow::{turn_about, turn_about_axis};
 use crate::num::{Dd, Precise, Real};
 
 /// Strang splitting of the kinetic energy by axes.
 ///
-/// Φ_h = R_a(h/2) R_b(h/2) R_c(h) R_b(h/2) R_a(h/2), R_i the exact [turn](crate::flow::AxisTurn) of `m_i²/(2 I_i)`.
+/// Φ_h = R_a(h/2) R_b(h/2) R_c(h) R_b(h/2) R_a(h/2), R_i the exact turn of `m_i²/(2 I_i)`.
 /// A product of exact flows: keeps |m|, L and the Lie–Poisson bracket, and the energy within O(h²) for
 /// exponentially long times. The order of the axes changes the size of that oscillation up to a hundredfold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub struct AxisSplit {
 
 impl Symmetric for AxisSplit {}
 
-impl Drift for AxisSplit {
+impl FreePart for AxisSplit {
     fn name(&self) -> String {
         match self.axes {
             Some(order) => format!("lie-poisson:{order}"),
@@ -81,7 +81,7 @@ impl<S: Precise> Map<S> for AxisSplitMap<S> {
             let m = x.momentum_body.map(S::to_f64);
             self.choose(AxisOrder::best_for_orbit(m, self.rotor.moments()));
         }
-        turn_about(self.axes[0], x, self.half_rates[0]);
+        turn_about_axis(self.axes[0], x, self.half_rates[0]);
     }
 
     #[inline]
@@ -92,7 +92,7 @@ impl<S: Precise> Map<S> for AxisSplitMap<S> {
 
     #[inline]
     fn close(&mut self, _: Time, x: &mut Point<S>) {
-        turn_about(self.axes[0], x, -self.half_rates[0]);
+        turn_about_axis(self.axes[0], x, -self.half_rates[0]);
     }
 }
 
@@ -128,9 +128,9 @@ fn turns_about<const OUTER: usize, const MIDDLE: usize, const INNER: usize, cons
 ) {
     for (which, half_rate) in turns {
         match which {
-            0 => turn::<OUTER, S>(x, half_rate),
-            1 => turn::<MIDDLE, S>(x, half_rate),
-            _ => turn::<INNER, S>(x, half_rate),
+            0 => turn_about::<OUTER, S>(x, half_rate),
+            1 => turn_about::<MIDDLE, S>(x, half_rate),
+            _ => turn_about::<INNER, S>(x, half_rate),
         }
     }
 }

@@ -5,8 +5,8 @@ use thiserror::Error;
 use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
-    AxisOrder, AxisSplit, Claimed, Composed, Dmv, Drift, ExactDrift, ExplicitEuler, ImplicitMidpoint, Kicks,
-    Method, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step, TwoAxes, TwoTurn,
+    AxisOrder, AxisSplit, Claimed, Composed, Dmv, ExactFlow, ExplicitEuler, FreePart, ImplicitMidpoint,
+    Kicks, Method, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -130,8 +130,8 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(Splitting::strang(Dmv, Kicks)),
         Box::new(Splitting::strang(AxisSplit { axes: None }, Kicks)),
         Box::new(Splitting::strang(TwoTurn { axes: None }, Kicks)),
-        Box::new(Splitting::strang(ExactDrift, Kicks)),
-        Box::new(Splitting::with_scheme(ExactDrift, Kicks, SUZUKI_4)),
+        Box::new(Splitting::strang(ExactFlow, Kicks)),
+        Box::new(Splitting::with_scheme(ExactFlow, Kicks, SUZUKI_4)),
     ]
 }
 
@@ -188,9 +188,9 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
             Err(_) => no(name, "two different ones of 123, the outer axis first, such as two-turn:31"),
         },
         "kick-drift" => match (argument, chosen) {
-            (None, _) => kicked(ExactDrift, chosen),
-            (Some("2"), None) => kicked(ExactDrift, None),
-            (Some("4"), None) => kicked(ExactDrift, Some(SUZUKI_4)),
+            (None, _) => kicked(ExactFlow, chosen),
+            (Some("2"), None) => kicked(ExactFlow, None),
+            (Some("4"), None) => kicked(ExactFlow, Some(SUZUKI_4)),
             (Some(_), None) => no(name, "2 or 4, its order"),
             (Some(_), Some(_)) => no(name, "none beside a scheme"),
         },
@@ -208,11 +208,11 @@ fn plain(
     }
 }
 
-fn kicked<A>(drift: A, chosen: Option<Scheme>) -> Result<Box<dyn AnyMethod>, UnknownMethod>
+fn kicked<A>(free: A, chosen: Option<Scheme>) -> Result<Box<dyn AnyMethod>, UnknownMethod>
 where
-    A: Drift + Method<f64> + Method<Dd> + 'static,
+    A: FreePart + Method<f64> + Method<Dd> + 'static,
 {
-    Ok(Box::new(Splitting::kicked(drift, chosen.unwrap_or(STRANG))?))
+    Ok(Box::new(Splitting::kicked(free, chosen.unwrap_or(STRANG))?))
 }
 
 /// Why a method could not be found.

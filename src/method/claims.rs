@@ -44,7 +44,7 @@ pub struct Kept {
     /// The energy.
     pub energy: Energy,
     /// |m|.
-    pub momentum: bool,
+    pub momentum_norm: bool,
     /// L in space, as a vector.
     pub momentum_space: bool,
     /// The vertical component of L in space, p_φ of a top.
@@ -57,7 +57,7 @@ impl Kept {
     /// Nothing is constant, and the energy drifts.
     pub const NOTHING: Kept = Kept {
         energy: Energy::Drifts,
-        momentum: false,
+        momentum_norm: false,
         momentum_space: false,
         momentum_z: false,
         norm: false,
@@ -65,7 +65,7 @@ impl Kept {
 
     /// Everything that free motion conserves, the energy as `energy` says.
     pub const fn all_of_free_motion(energy: Energy) -> Kept {
-        Kept { energy, momentum: true, momentum_space: true, momentum_z: true, norm: true }
+        Kept { energy, momentum_norm: true, momentum_space: true, momentum_z: true, norm: true }
     }
 }
 
@@ -87,8 +87,8 @@ pub struct Cost {
     pub right_sides: u32,
     /// Turns about an axis, one sine and cosine each.
     pub turns: u32,
-    /// Exact motions of the free body.
-    pub drifts: u32,
+    /// Exact flows of the free body.
+    pub free_flows: u32,
     /// Solutions of three nonlinear equations by iteration.
     pub solves: u32,
     /// Kicks, one evaluation of the torque each.
@@ -106,9 +106,9 @@ impl Cost {
         Cost { turns: n, ..Cost::NOTHING }
     }
 
-    /// `n` exact motions of the free body.
-    pub const fn drifts(n: u32) -> Cost {
-        Cost { drifts: n, ..Cost::NOTHING }
+    /// `n` exact flows of the free body.
+    pub const fn free_flows(n: u32) -> Cost {
+        Cost { free_flows: n, ..Cost::NOTHING }
     }
 
     /// `n` solutions of three equations.
@@ -121,7 +121,7 @@ impl Cost {
         Cost { kicks: n, ..Cost::NOTHING }
     }
 
-    const NOTHING: Cost = Cost { right_sides: 0, turns: 0, drifts: 0, solves: 0, kicks: 0 };
+    const NOTHING: Cost = Cost { right_sides: 0, turns: 0, free_flows: 0, solves: 0, kicks: 0 };
 }
 
 impl Add for Cost {
@@ -130,7 +130,7 @@ impl Add for Cost {
         Cost {
             right_sides: self.right_sides + b.right_sides,
             turns: self.turns + b.turns,
-            drifts: self.drifts + b.drifts,
+            free_flows: self.free_flows + b.free_flows,
             solves: self.solves + b.solves,
             kicks: self.kicks + b.kicks,
         }
@@ -143,7 +143,7 @@ impl Mul<u32> for Cost {
         Cost {
             right_sides: self.right_sides * n,
             turns: self.turns * n,
-            drifts: self.drifts * n,
+            free_flows: self.free_flows * n,
             solves: self.solves * n,
             kicks: self.kicks * n,
         }
@@ -167,7 +167,7 @@ impl fmt::Display for Cost {
         for (n, one) in [
             (self.right_sides, "right side"),
             (self.turns, "turn"),
-            (self.drifts, "exact drift"),
+            (self.free_flows, "free flow"),
             (self.kicks, "kick"),
         ] {
             if n > 0 {

@@ -8,7 +8,7 @@
 
 use super::implicit_midpoint::cayley_turn;
 use super::stagnation::iterate;
-use super::{Cost, Drift, Energy, Map, Method, Symmetric};
+use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Gyroscopic, Point, Rotor, Time};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
@@ -28,7 +28,7 @@ pub struct Dmv;
 
 impl Symmetric for Dmv {}
 
-impl Drift for Dmv {
+impl FreePart for Dmv {
     fn name(&self) -> String {
         "rattle".into()
     }

@@ -7,7 +7,7 @@ mod catalogue;
 mod claims;
 mod composed;
 mod dmv;
-mod exact_drift;
+mod exact_flow;
 mod implicit_midpoint;
 mod map;
 mod modified_energy;
@@ -23,11 +23,11 @@ pub use catalogue::{AnyMethod, StepError, UnknownMethod, catalogue, method};
 pub use claims::{Claimed, Claims, Cost, Energy, Kept};
 pub use composed::{Composed, Symmetric};
 pub use dmv::Dmv;
-pub use exact_drift::ExactDrift;
+pub use exact_flow::ExactFlow;
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use map::{Map, Method, Step};
 pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
-pub use splitting::{Drift, Kicks, SchemeError, Splitting};
+pub use splitting::{FreePart, Kicks, SchemeError, Splitting};
 pub use two_turn::{TwoAxes, TwoAxesError, TwoTurn};
 
 /// Turns about the principal axes, with [kicks](Kicks) around them.
@@ -36,5 +36,6 @@ pub type LiePoisson = Splitting<AxisSplit, Kicks>;
 /// The discrete Moser–Veselov map with [kicks](Kicks) around it.
 pub type Rattle = Splitting<Dmv, Kicks>;
 
-/// The exact free motion with [kicks](Kicks) around it.
-pub type KickDrift = Splitting<ExactDrift, Kicks>;
+/// The exact free flow with [kicks](Kicks) around it. The name is the field's: *drift* is the free motion between two kicks,
+/// elsewhere in this crate the [secular growth of an error](crate::observe::Drift).
+pub type KickDrift = Splitting<ExactFlow, Kicks>;

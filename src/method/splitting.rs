@@ -19,8 +19,8 @@ pub struct Splitting<A, B> {
     scheme: Scheme,
 }
 
-/// The map of the kinetic energy in a splitting of kinetic and potential energy: that of the free body, exact or not.
-pub trait Drift: Symmetric {
+/// The part A of a splitting of kinetic and potential energy: a map of the free body, exact or not.
+pub trait FreePart: Symmetric {
     /// Name of the method that alternates it with kicks by Strang's scheme.
     fn name(&self) -> String;
     /// Order of the free motion; `None` where it is exact.
@@ -45,17 +45,17 @@ pub struct Kicks;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SchemeError {
-    /// The scheme alternates two exact flows, and the drift of the base is not exact.
+    /// The scheme alternates two exact flows, and the free part of the base is not exact.
     #[error(
-        "scheme {scheme:?} alternates two exact flows, and the drift of {base} has order {order}; take a composition, \
+        "scheme {scheme:?} alternates two exact flows, and the free part of {base} has order {order}; take a composition, \
          such as suzuki-4, or kick-drift@{scheme}"
     )]
-    Drift {
+    Inexact {
         /// Name of the scheme.
         scheme: &'static str,
         /// Name of the base.
         base: String,
-        /// Order of its drift.
+        /// Order of its free part.
         order: u32,
     },
     /// The scheme alternates two flows, and the base is one map.
@@ -112,40 +112,40 @@ impl<A, B> Splitting<A, B> {
     }
 }
 
-impl<A: Drift> Splitting<A, Kicks> {
-    /// `drift` and the kicks of the potential by `scheme`.
+impl<A: FreePart> Splitting<A, Kicks> {
+    /// `free` and the kicks of the potential by `scheme`.
     ///
     /// # Errors
-    /// A scheme for two exact flows with a drift that is not exact.
+    /// A scheme for two exact flows with a free part that is not exact.
     ///
     /// ```
     /// use polhode::body::Problem;
     /// use polhode::method::schemes::{SRKN_6B, SUZUKI_4};
-    /// use polhode::method::{Claimed, Dmv, ExactDrift, Splitting};
-    /// let method = Splitting::kicked(ExactDrift, SUZUKI_4)?;
+    /// use polhode::method::{Claimed, Dmv, ExactFlow, Splitting};
+    /// let method = Splitting::kicked(ExactFlow, SUZUKI_4)?;
     /// assert_eq!(method.name(), "kick-drift@suzuki-4");
     /// let claims = method.claims(Problem::Gravity).unwrap();
-    /// assert_eq!((claims.order, claims.cost.to_string()), (Some(4), "5 exact drifts, 5 kicks".into()));
+    /// assert_eq!((claims.order, claims.cost.to_string()), (Some(4), "5 free flows, 5 kicks".into()));
     /// assert!(Splitting::kicked(Dmv, SRKN_6B).is_err());
     /// # Ok::<(), polhode::method::SchemeError>(())
     /// ```
-    pub fn kicked(drift: A, scheme: Scheme) -> Result<Self, SchemeError> {
+    pub fn kicked(free: A, scheme: Scheme) -> Result<Self, SchemeError> {
         if let Stages::Alternating { first, a, b, .. } = scheme.stages {
             let (outer, inner) = if first == Part::A { (a.len(), b.len()) } else { (b.len(), a.len()) };
             if outer != inner && outer != inner + 1 {
                 return Err(SchemeError::Lengths { scheme: scheme.name, outer, inner });
             }
         }
-        match (drift.order(), scheme.stages) {
+        match (free.order(), scheme.stages) {
             (Some(order), Stages::Alternating { .. }) => {
-                Err(SchemeError::Drift { scheme: scheme.name, base: drift.name(), order })
+                Err(SchemeError::Inexact { scheme: scheme.name, base: free.name(), order })
             }
-            _ => Ok(Splitting { a: drift, b: Kicks, scheme }),
+            _ => Ok(Splitting { a: free, b: Kicks, scheme }),
         }
     }
 }
 
-impl<A: Drift> Claimed for Splitting<A, Kicks> {
+impl<A: FreePart> Claimed for Splitting<A, Kicks> {
     fn name(&self) -> String {
         if self.scheme == STRANG { self.a.name() } else { format!("{}@{}", self.a.name(), self.scheme.name) }
     }
@@ -156,7 +156,7 @@ impl<A: Drift> Claimed for Splitting<A, Kicks> {
         let merged =
             |part| u32::from(problem != Problem::Free && flows.first().is_some_and(|flow| flow.0 == part));
         let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u32 - merged(part);
-        let drifts = match problem {
+        let free = match problem {
             Problem::Free if count(Part::A) == 1 => self.a.cost_in_sequence(),
             _ => self.a.cost() * count(Part::A),
         };
@@ -165,11 +165,11 @@ impl<A: Drift> Claimed for Splitting<A, Kicks> {
         match problem {
             Problem::Free => {
                 let order = self.a.order().map(|_| self.scheme.order);
-                Some(claims(order, Kept::all_of_free_motion(self.a.energy()), drifts))
+                Some(claims(order, Kept::all_of_free_motion(self.a.energy()), free))
             }
             Problem::Gravity | Problem::Potential => {
                 let kept = Kept { energy: Energy::Bounded, momentum_z: true, norm: true, ..Kept::NOTHING };
-                Some(claims(Some(self.scheme.order), kept, drifts + Cost::kicks(count(Part::B))))
+                Some(claims(Some(self.scheme.order), kept, free + Cost::kicks(count(Part::B))))
             }
             Problem::Torque => None,
         }
@@ -186,7 +186,7 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
             lengths::<S>(h, &shares).into_iter()
         };
         let (mut a_lengths, mut b_lengths) = (lengths(Part::A), lengths(Part::B));
-        let (mut opening, mut pairs, mut drift) = (None, Vec::new(), None);
+        let (mut opening, mut pairs, mut free) = (None, Vec::new(), None);
         let (mut begun, mut first) = (Dd::ZERO, None);
         for (part, _) in &flows {
             match part {
@@ -194,22 +194,22 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
                 Part::A => {
                     let length = a_lengths.next().unwrap_or(Dd::ZERO);
                     first = first.or(Some(length));
-                    drift = Some(Timed { begun, map: self.a.map(length, rotor, field) });
+                    free = Some(Timed { begun, map: self.a.map(length, rotor, field) });
                     begun = begun + length;
                 }
                 Part::B => {
                     let length = b_lengths.next().unwrap_or(Dd::ZERO);
                     first = first.or(Some(length));
                     let kick = Timed { begun, map: self.b.map(length, rotor, field) };
-                    match drift.take() {
-                        Some(drift) => pairs.push((drift, kick)),
+                    match free.take() {
+                        Some(free) => pairs.push((free, kick)),
                         None => opening = Some(kick),
                     }
                 }
             }
         }
         let first = first.unwrap_or(Dd::ZERO);
-        let ends = match &drift {
+        let ends = match &free {
             // without forces B does nothing
             _ if !F::ACTS => Ends::OfA,
             None => Ends::B {
@@ -221,7 +221,7 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
                 back: self.a.map(-first, rotor, field),
             },
         };
-        SplittingMap { opening, pairs, closing: drift, ends }
+        SplittingMap { opening, pairs, closing: free, ends }
     }
 }
 

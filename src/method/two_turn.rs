@@ -6,9 +6,9 @@ use core::str::FromStr;
 use thiserror::Error;
 
 use super::modified_energy::{ModifiedEnergy, Orbit};
-use super::{Cost, Drift, Energy, Map, Method, Symmetric};
+use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
-use crate::flow::{Casimir, Flow, turn, turn_about};
+use crate::flow::{Casimir, Flow, turn_about, turn_about_axis};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -130,7 +130,7 @@ impl FromStr for TwoAxes {
 
 impl Symmetric for TwoTurn {}
 
-impl Drift for TwoTurn {
+impl FreePart for TwoTurn {
     fn name(&self) -> String {
         match self.axes {
             Some(axes) => format!("two-turn:{axes}"),
@@ -216,7 +216,7 @@ fn turns_about<const OUTER: usize, const INNER: usize, const N: usize, S: Real>(
     turns: [(bool, S); N],
 ) {
     for (outer, half_rate) in turns {
-        if outer { turn::<OUTER, S>(x, half_rate) } else { turn::<INNER, S>(x, half_rate) }
+        if outer { turn_about::<OUTER, S>(x, half_rate) } else { turn_about::<INNER, S>(x, half_rate) }
     }
 }
 
@@ -234,7 +234,7 @@ impl<S: Precise> Map<S> for TwoTurnMap<S> {
             self.choose(TwoAxes::best(m, self.rotor.moments()));
         }
         self.momentum_space = x.attitude.map(S::to_dd).rotate(x.momentum_body.map(S::to_dd));
-        turn_about(self.axes.0[0], x, self.half_rates[0]);
+        turn_about_axis(self.axes.0[0], x, self.half_rates[0]);
     }
 
     #[inline]
@@ -245,7 +245,7 @@ impl<S: Precise> Map<S> for TwoTurnMap<S> {
 
     #[inline]
     fn close(&mut self, _: Time, x: &mut Point<S>) {
-        turn_about(self.axes.0[0], x, -self.half_rates[0]);
+        turn_about_axis(self.axes.0[0], x, -self.half_rates[0]);
     }
 
     fn synchronize(&self, elapsed: Dd, x: &mut Point<S>) {

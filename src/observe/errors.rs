@@ -13,7 +13,7 @@ pub struct Errors {
     /// |E − E₀| / |E₀|; with forces |E − E₀| / W.
     pub energy: Option<f64>,
     /// ||m| − |m₀|| / |m₀|.
-    pub momentum: Option<f64>,
+    pub momentum_norm: Option<f64>,
     /// |L − L₀| / |L₀|, L in space.
     pub momentum_vector: Option<f64>,
     /// |L_z − L_z0| / √(2 I W), z of space, I the largest moment; where L as a whole is not conserved.
@@ -25,7 +25,7 @@ pub struct Errors {
 impl Errors {
     /// No quantity is looked at.
     pub(crate) const NONE: Errors =
-        Errors { energy: None, momentum: None, momentum_vector: None, momentum_z: None, jacobi: None };
+        Errors { energy: None, momentum_norm: None, momentum_vector: None, momentum_z: None, jacobi: None };
 
     /// The error of `quantity`; `None` where the motion does not conserve it.
     ///
@@ -44,7 +44,7 @@ impl Errors {
     pub fn of(&self, quantity: Conserved) -> Option<f64> {
         match quantity {
             Conserved::Energy => self.energy,
-            Conserved::MomentumNorm => self.momentum,
+            Conserved::MomentumNorm => self.momentum_norm,
             Conserved::Momentum => self.momentum_vector,
             Conserved::MomentumZ => self.momentum_z.or(self.momentum_vector),
             Conserved::Jacobi { .. } => self.jacobi,
@@ -52,12 +52,12 @@ impl Errors {
     }
 
     pub(crate) fn parts(&self) -> [Option<f64>; 5] {
-        [self.energy, self.momentum, self.momentum_vector, self.momentum_z, self.jacobi]
+        [self.energy, self.momentum_norm, self.momentum_vector, self.momentum_z, self.jacobi]
     }
 
     pub(crate) fn from_parts(parts: [Option<f64>; 5]) -> Self {
-        let [energy, momentum, momentum_vector, momentum_z, jacobi] = parts;
-        Errors { energy, momentum, momentum_vector, momentum_z, jacobi }
+        let [energy, momentum_norm, momentum_vector, momentum_z, jacobi] = parts;
+        Errors { energy, momentum_norm, momentum_vector, momentum_z, jacobi }
     }
 
     pub(super) fn max(self, other: Self) -> Self {

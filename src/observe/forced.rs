@@ -7,7 +7,7 @@ use crate::num::{Dd, Real};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Forced {
     pub(super) energy: bool,
-    pub(super) momentum: bool,
+    pub(super) momentum_norm: bool,
     pub(super) momentum_vector: bool,
     pub(super) momentum_z: bool,
     /// Rate n of Jacobi's constant.
@@ -41,7 +41,7 @@ impl Forced {
         let turning = (start.momentum_body.norm_of_any_size() * jacobi.unwrap_or(0.0)).magnitude();
         Some(Forced {
             energy: has(Conserved::Energy),
-            momentum: has(Conserved::MomentumNorm),
+            momentum_norm: has(Conserved::MomentumNorm),
             momentum_vector: has(Conserved::Momentum),
             momentum_z: has(Conserved::MomentumZ) && !has(Conserved::Momentum),
             jacobi,

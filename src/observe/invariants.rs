@@ -28,7 +28,7 @@ impl Invariants {
     }
 
     /// |m|.
-    pub fn momentum(&self) -> Dd {
+    pub fn momentum_norm(&self) -> Dd {
         self.momentum_squared.sqrt()
     }
 }

@@ -139,8 +139,8 @@ impl Monitor {
         let size = || self.start.momentum_squared.sqrt();
         Errors {
             energy: forced.energy.then(|| relative(energy().magnitude(), forced.energy_scale, &kinetic)),
-            momentum: forced
-                .momentum
+            momentum_norm: forced
+                .momentum_norm
                 .then(|| relative((point.momentum_body.norm() - size()).magnitude(), size().hi(), &norm)),
             momentum_vector: forced
                 .momentum_vector
@@ -200,14 +200,14 @@ impl Monitor {
         let squared = self.start.momentum_squared.hi();
         if squared == 0.0 {
             let zero = Some(0.0); // at rest nothing moves
-            return Errors { energy: zero, momentum: zero, momentum_vector: zero, ..Errors::NONE };
+            return Errors { energy: zero, momentum_norm: zero, momentum_vector: zero, ..Errors::NONE };
         }
         // ||m| − |m₀|| = ||m|² − |m₀|²| / (|m| + |m₀|); the sign of the difference is not known here, and to first
         // order does not matter: the smaller root gives the larger error
         let relative = m2 / squared;
         Errors {
             energy: Some(e / self.start.energy.hi()),
-            momentum: Some(relative / (1.0 + (1.0 - relative.min(1.0)).sqrt())),
+            momentum_norm: Some(relative / (1.0 + (1.0 - relative.min(1.0)).sqrt())),
             momentum_vector: Some(l / squared.sqrt()),
             ..Errors::NONE
         }

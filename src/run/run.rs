@@ -320,7 +320,7 @@ impl Run {
             point,
             omega_body: self.body.omega_of(&point),
             energy: invariants.energy.hi() * scale,
-            momentum: invariants.momentum().hi() * scale,
+            momentum_norm: invariants.momentum_norm().hi() * scale,
             energy_change: self.monitor.energy_change(&point),
             errors: self.monitor.errors(&point),
             worst: if self.watch == Watch::Never { Errors::NONE } else { self.monitor.worst() },

@@ -49,7 +49,7 @@ pub struct Sample {
     /// Kinetic and potential energy, J.
     pub energy: f64,
     /// |m|, kg m²/s.
-    pub momentum: f64,
+    pub momentum_norm: f64,
     /// (E − E₀) / E₀ of this state, with its sign; with forces relative to the scale of [`Errors`].
     pub energy_change: f64,
     /// Errors of this state.
@@ -68,7 +68,7 @@ impl Sample {
         self.state.is_finite()
             && self.time.hi().is_finite()
             && self.energy.is_finite()
-            && self.momentum.is_finite()
+            && self.momentum_norm.is_finite()
             && self.energy_change.is_finite()
             && self.errors.is_finite()
             && self.omega_body.iter().all(|w| w.is_finite())

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use polhode::body::{Body, Clock, Problem};
-use polhode::catalog::{self, NamedBody};
+use polhode::catalogue::{self, NamedBody};
 use polhode::flow::FreeMotion;
 use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, catalogue};
 use polhode::observe::secular_drift;
@@ -21,7 +21,7 @@ const BODIES: [&str; 7] = ["textbook", "toutatis", "racket", "t-handle", "phone"
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let steps = context.scale.pick(2_000, 100_000, 1_000_000);
     let mut parts = Vec::new();
-    for body in BODIES.iter().filter_map(|name| catalog::body(name)) {
+    for body in BODIES.iter().filter_map(|name| catalogue::body(name)) {
         for h in step_sizes(&body) {
             for method in methods(&body) {
                 parts.push((body.clone(), h, method));
@@ -43,12 +43,12 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         drift.push(row?);
     }
     let hidden = ["body", "status"];
-    for named in BODIES.iter().filter_map(|name| catalog::body(name)) {
+    for named in BODIES.iter().filter_map(|name| catalogue::body(name)) {
         let caption = format!("{}: {}.", named.name, named.summary);
         let name = format!("drift-{}", named.name);
         report.views.push(drift.view(name, caption, &hidden, ("body", named.name)));
     }
-    if let Some(textbook) = catalog::body("textbook") {
+    if let Some(textbook) = catalogue::body("textbook") {
         for method in methods(&textbook) {
             timing.push(row![method.name(), step_time(&textbook, method.as_ref())?]);
         }
@@ -158,7 +158,7 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
         h * speed,
         last.steps,
         last.worst.energy,
-        last.worst.momentum,
+        last.worst.momentum_norm,
         last.worst.momentum_vector,
         attitude,
         slope.map(|d| d.slope),

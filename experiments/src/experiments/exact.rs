@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use polhode::body::{Body, Point, State, Time};
-use polhode::catalog;
+use polhode::catalogue;
 use polhode::flow::{Flow, FreeBody, FreeMotion};
 use polhode::inertia::Inertia;
 use polhode::num::{Dd, Precise};
@@ -288,7 +288,7 @@ fn random(context: &Context, report: &mut Report) {
 /// States of a catalogue body near and far, every digit right.
 fn golden(name: &'static str) -> Result<Table, Error> {
     let failed = |error: &dyn std::fmt::Display| Error::Failed(format!("{name}: {error}"));
-    let named = catalog::body(name).ok_or_else(|| failed(&"not in the catalogue"))?;
+    let named = catalogue::body(name).ok_or_else(|| failed(&"not in the catalogue"))?;
     let motion = FreeMotion::from_omega(&named.inertia, Default::default(), named.omega_body.into())
         .map_err(|error| failed(&error))?;
     let mut table = Table::new(
@@ -340,7 +340,7 @@ fn timing() -> Result<Table, Error> {
     );
     for name in ["spacecraft", "textbook", "racket", "oblate", "sphere"] {
         let failed = |error: &dyn std::fmt::Display| Error::Failed(format!("{name}: {error}"));
-        let named = catalog::body(name).ok_or_else(|| failed(&"not in the catalogue"))?;
+        let named = catalogue::body(name).ok_or_else(|| failed(&"not in the catalogue"))?;
         let set_up = || FreeMotion::from_omega(&named.inertia, Default::default(), named.omega_body.into());
         let motion = set_up().map_err(|error| failed(&error))?;
         let complement = motion.character().map_err(|error| failed(&error))?.complement;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use polhode::body::{Point, Problem};
-use polhode::catalog::{self, NamedBody};
+use polhode::catalogue::{self, NamedBody};
 use polhode::flow::{LagrangeError, LagrangeTop};
 use polhode::method::{AnyMethod, catalogue};
 use polhode::num::Dd;
@@ -19,7 +19,7 @@ use crate::table::{Cell, Column, Table, row};
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let steps = context.scale.pick(2_000, 100_000, 1_000_000);
     let mut parts = Vec::new();
-    for top in catalog::tops() {
+    for top in catalogue::tops() {
         for angle in [0.1, 0.025] {
             for method in catalogue().into_iter().filter(|method| method.claims(Problem::Gravity).is_some()) {
                 parts.push((top.clone(), step_size(&top, angle)?, method));
@@ -34,7 +34,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         errors.push(row?);
     }
     let mut report = Report::default();
-    for top in catalog::tops() {
+    for top in catalogue::tops() {
         let caption = format!("{}: {}.", top.name, top.summary);
         let name = format!("heavy-top-{}", top.name);
         report.views.push(errors.view(name, caption, &["top"], ("top", top.name)));

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use polhode::body::Body;
-use polhode::catalog;
+use polhode::catalogue;
 use polhode::flow::FreeMotion;
 use polhode::method::method;
 use polhode::rotation::rotation_angle;
@@ -101,7 +101,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
 /// The rows of one method, and the seconds they took.
 fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
     let failed = |error: &dyn std::fmt::Display| Error::Failed(format!("{name}: {error}"));
-    let dyadic = catalog::body("dyadic").ok_or_else(|| failed(&"no dyadic body in the catalogue"))?;
+    let dyadic = catalogue::body("dyadic").ok_or_else(|| failed(&"no dyadic body in the catalogue"))?;
     let body = Body::free(dyadic.inertia);
     let start = body.state(Default::default(), dyadic.omega_body.into()).map_err(|e| failed(&e))?;
     let method = method(name).map_err(|e| failed(&e))?;
@@ -120,7 +120,7 @@ fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
                 sample.steps,
                 sample.elapsed.hi(),
                 worst.energy,
-                worst.momentum,
+                worst.momentum_norm,
                 worst.momentum_vector,
                 attitude
             ]

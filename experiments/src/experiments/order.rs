@@ -1,7 +1,7 @@
 //! Convergence orders, measured in double-double against the exact motion.
 
 use polhode::body::{Body, Problem};
-use polhode::catalog;
+use polhode::catalogue;
 use polhode::method::{AnyMethod, catalogue};
 use polhode::run::{Halving, halvings};
 
@@ -16,7 +16,7 @@ const SPAN: f64 = 2.0;
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let finest = context.scale.pick(8, 12, 14);
     let failed = |error: &dyn std::fmt::Display| Error::Failed(error.to_string());
-    let dyadic = catalog::body("dyadic").ok_or_else(|| failed(&"no dyadic body in the catalogue"))?;
+    let dyadic = catalogue::body("dyadic").ok_or_else(|| failed(&"no dyadic body in the catalogue"))?;
     let body = Body::free(dyadic.inertia);
     let start = body
         .enter_omega(nalgebra::UnitQuaternion::identity().into(), polhode::rotation::Vec3(dyadic.omega_body))

@@ -1,7 +1,7 @@
 //! The flow of the free rigid body, by elliptic functions.
 
 use super::circulation::Circulation;
-use super::phase::{steady, turn};
+use super::phase::{rotation, steady};
 use super::polhode::{Polhode, rounded_separation};
 use crate::body::{Phase, Point, Rotor, Time};
 use crate::flow::Flow;
@@ -10,7 +10,7 @@ use crate::rotation::Vec3;
 
 /// The exact flow of the free body, set up anew from the state at each call, in the state's own scalar.
 ///
-/// The drift between the kicks of a splitting. Only products and differences of `S` go into it: in `f64` a turn of
+/// Only products and differences of `S` go into it: in `f64` a turn of
 /// one radian is good to 4e-14 rad; next to the unstable axis, where the phase is as long as the logarithm of the distance,
 /// to 2e-13 rad.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,7 @@ impl<S: Precise> Flow<S> for FreeBody<S> {
             }
             None => {
                 let (axis, rate) = steady(i, m, norm);
-                (turn(axis, rate * t), m)
+                (rotation(axis, rate * t), m)
             }
         };
         x.set_phase(Phase { attitude: x.attitude * turn, momentum_body });

@@ -69,12 +69,12 @@ impl Spin {
 
     /// The turn since the start, in double-double.
     pub(super) fn precise(&self, t: Dd) -> Quat<Dd> {
-        turn(self.axis, self.rate * t)
+        rotation(self.axis, self.rate * t)
     }
 }
 
-/// The turn by `angle` about the unit vector `axis`.
-pub(super) fn turn<S: Precise>(axis: Vec3<S>, angle: S) -> Quat<S> {
+/// The rotation by `angle` about the unit vector `axis`.
+pub(super) fn rotation<S: Precise>(axis: Vec3<S>, angle: S) -> Quat<S> {
     let (sin, cos) = (reduce(angle, S::from_dd(Dd::TAU * 2.0)) * S::of(0.5)).sin_cos();
     Quat::new(cos, axis * sin)
 }

@@ -1,6 +1,6 @@
 //! Splittings of two flows that alternate.
 
-use super::{Class, Part, Scheme, Stages};
+use super::{Pairs, Part, Scheme, Stages};
 use crate::num::Dd;
 
 /// Five stages: five flows of A, six of B.
@@ -15,7 +15,7 @@ pub const MCLACHLAN_S5: Scheme = Scheme {
             Dd::sum(0.08926945422647524, 5.46441640400309e-18),
             Dd::sum(-0.0973360426368955, -1.8404721723312994e-18),
         ],
-        class: Class::Any,
+        pairs: Pairs::Any,
     },
 };
 
@@ -35,7 +35,7 @@ pub const BLANES_MOAN_S6: Scheme = Scheme {
             Dd::sum(0.353172906049774, -2.6904231050139063e-17),
             Dd::sum(-0.0420650803577195, -2.3942714797158475e-18),
         ],
-        class: Class::Any,
+        pairs: Pairs::Any,
     },
 };
 
@@ -59,11 +59,11 @@ pub const BLANES_MOAN_S10: Scheme = Scheme {
             Dd::sum(-0.188054853819569, -9.952371823601433e-18),
             Dd::sum(0.54196067845078, 2.083302460960135e-18),
         ],
-        class: Class::Any,
+        pairs: Pairs::Any,
     },
 };
 
-/// Six stages. It has order 4 for any two flows, but is made for [`Class::Nystrom`]: its error is smaller than that
+/// Six stages. It has order 4 for any two flows, but is made for [`Pairs::Nystrom`]: its error is smaller than that
 /// of [`BLANES_MOAN_S6`] there, and larger elsewhere.
 pub const SRKN_6B: Scheme = Scheme {
     name: "srkn-6b",
@@ -80,7 +80,7 @@ pub const SRKN_6B: Scheme = Scheme {
             Dd::sum(0.396309801498368, 2.48966792405554e-17),
             Dd::sum(-0.0390563049223486, 2.947680617580864e-19),
         ],
-        class: Class::Any,
+        pairs: Pairs::Any,
     },
 };
 
@@ -105,7 +105,7 @@ pub const SRKN_11B: Scheme = Scheme {
             Dd::sum(0.0752539843015807, -8.441697689704664e-19),
             Dd::sum(-0.0115113874206879, 8.427195643093938e-19),
         ],
-        class: Class::Nystrom,
+        pairs: Pairs::Nystrom,
     },
 };
 
@@ -133,7 +133,7 @@ pub const SRKN_14A: Scheme = Scheme {
             Dd::sum(0.143761127168358, -1.0530724300224381e-17),
             Dd::sum(0.328567693746804, -1.5311032675526835e-18),
         ],
-        class: Class::Nystrom,
+        pairs: Pairs::Nystrom,
     },
 };
 
@@ -166,7 +166,7 @@ pub const BCE_22: Scheme = Scheme {
             Dd::sum(0.1348545173566841, -9.381893419627736e-18),
             Dd::sum(0.02879738210737793, 1.3289144676212062e-18),
         ],
-        class: Class::Nystrom,
+        pairs: Pairs::Nystrom,
     },
 };
 
@@ -179,7 +179,7 @@ pub const SABA_2: Scheme = Scheme {
         first: Part::A,
         a: &[Dd::sum(0.2113248654051871, 1.1030435245950732e-17)],
         b: &[],
-        class: Class::NearIntegrable(&[4, 2]),
+        pairs: Pairs::NearIntegrable(&[4, 2]),
     },
 };
 
@@ -192,7 +192,7 @@ pub const SABA_3: Scheme = Scheme {
         first: Part::A,
         a: &[Dd::sum(0.11270166537925831, -2.5675694035078595e-19)],
         b: &[Dd::sum(0.2777777777777778, -1.2335811384723967e-17)],
-        class: Class::NearIntegrable(&[6, 2]),
+        pairs: Pairs::NearIntegrable(&[6, 2]),
     },
 };
 
@@ -208,7 +208,7 @@ pub const SABA_4: Scheme = Scheme {
             Dd::sum(0.26057763400459816, -2.4025902041459873e-18),
         ],
         b: &[Dd::sum(0.17392742256872692, 3.83016819437472e-18)],
-        class: Class::NearIntegrable(&[8, 2]),
+        pairs: Pairs::NearIntegrable(&[8, 2]),
     },
 };
 
@@ -228,7 +228,7 @@ pub const ABA_8_4: Scheme = Scheme {
             Dd::sum(0.19022593937367663, -8.72954331547291e-18),
             Dd::sum(0.8465240704435263, -3.156563642393361e-17),
         ],
-        class: Class::NearIntegrable(&[8, 4]),
+        pairs: Pairs::NearIntegrable(&[8, 4]),
     },
 };
 
@@ -249,7 +249,7 @@ pub const ABA_8_6_4: Scheme = Scheme {
             Dd::sum(0.31078285989857485, 2.1450981759438636e-17),
             Dd::sum(-0.0265646185119588, -7.792741145892916e-19),
         ],
-        class: Class::NearIntegrable(&[8, 6, 4]),
+        pairs: Pairs::NearIntegrable(&[8, 6, 4]),
     },
 };
 
@@ -271,6 +271,6 @@ pub const ABA_10_6_4: Scheme = Scheme {
             Dd::sum(0.20444615314299877, 9.612101811843045e-18),
             Dd::sum(0.2170703479789911, -5.515179727878949e-18),
         ],
-        class: Class::NearIntegrable(&[10, 6, 4]),
+        pairs: Pairs::NearIntegrable(&[10, 6, 4]),
     },
 };

@@ -65,7 +65,7 @@ pub enum Stages {
         /// Shares of B.
         b: &'static [Dd],
         /// The flows for which the scheme has its order.
-        class: Class,
+        pairs: Pairs,
     },
 }
 
@@ -80,7 +80,7 @@ pub enum Part {
 
 /// The pairs of flows for which a splitting has its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
+pub enum Pairs {
     /// Any two flows.
     Any,
     /// Runge-Kutta-Nyström: A quadratic in the momenta, B a function of the attitude, so that `[B,[B,[B,A]]] = 0`.

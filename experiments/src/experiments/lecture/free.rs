@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use polhode::body::Time;
-use polhode::catalog;
+use polhode::catalogue;
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::elliptic::Modulus;
@@ -33,7 +33,7 @@ fn motion(moments: [f64; 3], omega: V) -> Result<FreeMotion, Error> {
 /// The largest relative error of energy and of L in space, over a thousand radians of every body of the catalogue.
 fn conserved(s: &mut Statements) -> Result<(), Error> {
     let (mut energy_error, mut momentum_error) = (0.0_f64, 0.0_f64);
-    for named in catalog::bodies() {
+    for named in catalogue::bodies() {
         let omega = V::from(named.omega_body);
         let free = FreeMotion::from_omega(&named.inertia, Default::default(), omega).map_err(unexpected)?;
         let body = free.body();

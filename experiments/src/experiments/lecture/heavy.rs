@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use polhode::body::{Body, Clock, State};
-use polhode::catalog;
+use polhode::catalogue;
 use polhode::flow::LagrangeTop;
 use polhode::inertia::Inertia;
 use polhode::method::method;
@@ -194,7 +194,7 @@ fn cycle(top: &LagrangeTop) -> Result<(f64, f64), Error> {
 /// The wheel of the catalogue, hung by one end of its axle, at its own spin and faster.
 fn bicycle_wheel(s: &mut Statements) -> Result<(), Error> {
     let wheel =
-        catalog::top("bicycle-wheel").ok_or_else(|| unexpected("no bicycle wheel in the catalogue"))?;
+        catalogue::top("bicycle-wheel").ok_or_else(|| unexpected("no bicycle wheel in the catalogue"))?;
     let body = wheel.body().map_err(unexpected)?;
     let [w, x, y, z] = wheel.attitude;
     let attitude = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z));

@@ -60,7 +60,7 @@ const RATIO: &str = "ratio";
 /// All free bodies, real ones first.
 ///
 /// ```
-/// let names: Vec<_> = polhode::catalog::bodies().iter().map(|body| body.name).collect();
+/// let names: Vec<_> = polhode::catalogue::bodies().iter().map(|body| body.name).collect();
 /// assert_eq!(names[0], "toutatis");
 /// ```
 pub fn bodies() -> Vec<NamedBody> {
@@ -76,7 +76,7 @@ pub fn tops() -> Vec<NamedBody> {
 ///
 /// ```
 /// use polhode::flow::LagrangeTop;
-/// let wheel = polhode::catalog::top("bicycle-wheel").ok_or("not in the catalogue")?;
+/// let wheel = polhode::catalogue::top("bicycle-wheel").ok_or("not in the catalogue")?;
 /// let motion = LagrangeTop::from_omega(&wheel.body()?, Default::default(), wheel.omega_body.into())?;
 /// assert!(motion.nutation_period().is_none()); // upright, it sleeps
 /// # Ok::<(), Box<dyn std::error::Error>>(())

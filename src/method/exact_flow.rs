@@ -1,6 +1,6 @@
-//! The exact motion of the free body as the drift of a splitting.
+//! The exact flow of the free body as a part of a splitting.
 
-use super::{Cost, Drift, Energy, Map, Method, Symmetric};
+use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
 use crate::flow::{Flow, FreeFlow};
 use crate::num::{Dd, Precise};
@@ -11,11 +11,11 @@ use crate::num::{Dd, Precise};
 /// within O(h^order) for exponentially long times. The error is proportional to the torque; without torque the motion is
 /// exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ExactDrift;
+pub struct ExactFlow;
 
-impl Symmetric for ExactDrift {}
+impl Symmetric for ExactFlow {}
 
-impl Drift for ExactDrift {
+impl FreePart for ExactFlow {
     fn name(&self) -> String {
         "kick-drift".into()
     }
@@ -26,28 +26,28 @@ impl Drift for ExactDrift {
         Energy::Exact
     }
     fn cost(&self) -> Cost {
-        Cost::drifts(1)
+        Cost::free_flows(1)
     }
     fn source(&self) -> &'static str {
         "Strang, SIAM J. Numer. Anal. 5 (1968) 506; Celledoni, Fasso, Safstrom and Zanna, SIAM J. Sci. Comput. 30 (2008) 2084"
     }
 }
 
-impl<S: Precise> Method<S> for ExactDrift {
-    type Map<F: Field<S>> = ExactDriftMap<S>;
-    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> ExactDriftMap<S> {
-        ExactDriftMap { flow: FreeFlow::new(rotor), h: S::from_dd(h) }
+impl<S: Precise> Method<S> for ExactFlow {
+    type Map<F: Field<S>> = ExactFlowMap<S>;
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> ExactFlowMap<S> {
+        ExactFlowMap { flow: FreeFlow::new(rotor), h: S::from_dd(h) }
     }
 }
 
-/// A prepared [`ExactDrift`].
+/// A prepared [`ExactFlow`].
 #[derive(Clone, Copy, Debug)]
-pub struct ExactDriftMap<S> {
+pub struct ExactFlowMap<S> {
     flow: FreeFlow<S>,
     h: S,
 }
 
-impl<S: Precise> Map<S> for ExactDriftMap<S> {
+impl<S: Precise> Map<S> for ExactFlowMap<S> {
     #[inline]
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
         self.flow.flow(at, self.h, x);
