@@ -1,49 +1,16 @@
-//! Principal axes of a symmetric tensor, by Jacobi's rotations.
+//! Principal axes of a symmetric tensor: eigenvectors with deterministic signs, right-handed.
 
 use crate::num::Precise;
+use crate::num::eigen::eigen;
 use crate::rotation::{Quat, Vec3};
 
 /// Eigenvalues, ascending, and eigenvectors, right-handed, of the symmetric matrix `a`.
 ///
-/// Cyclic Jacobi (Golub and Van Loan, §8.5): each rotation annihilates one pair of off-diagonal entries, to full
-/// relative accuracy of the small ones where the matrix allows it. Of the first two vectors the component of
-/// largest size is positive; the third closes the right-handed frame.
-pub(super) fn principal_axes<S: Precise>(mut a: [[S; 3]; 3]) -> ([S; 3], [Vec3<S>; 3]) {
-    let zero = S::of(0.0);
-    let mut v = [Vec3::unit(0), Vec3::unit(1), Vec3::unit(2)]; // v[k] is the k-th column of the rotation
-    // quadratic convergence: 106 bits take at most 6 sweeps, the rest is margin
-    for _ in 0..12 {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            let negligible = S::of(S::ROUNDOFF * 0.25) * (a[p][p].abs() * a[q][q].abs()).sqrt();
-            if a[p][q].abs() <= negligible {
-                continue;
-            }
-            let theta = (a[q][q] - a[p][p]) / (S::of(2.0) * a[p][q]);
-            let root = theta.abs() + (theta * theta + S::of(1.0)).sqrt();
-            let t = if theta < zero { -S::of(1.0) / root } else { S::of(1.0) / root };
-            let c = S::of(1.0) / (t * t + S::of(1.0)).sqrt();
-            let s = t * c;
-            let apq = a[p][q];
-            a[p][p] = a[p][p] - t * apq;
-            a[q][q] = a[q][q] + t * apq;
-            a[p][q] = zero;
-            a[q][p] = zero;
-            let r = 3 - p - q;
-            let (arp, arq) = (a[r][p], a[r][q]);
-            a[r][p] = c * arp - s * arq;
-            a[r][q] = s * arp + c * arq;
-            a[p][r] = a[r][p];
-            a[q][r] = a[r][q];
-            let (vp, vq) = (v[p], v[q]);
-            v[p] = vp * c - vq * s;
-            v[q] = vp * s + vq * c;
-        }
-    }
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| a[i][i].partial_cmp(&a[j][j]).unwrap_or(core::cmp::Ordering::Equal));
-    let [l, u, _] = order;
-    let (first, second) = (positive(v[l]), positive(v[u]));
-    (order.map(|k| a[k][k]), [first, second, first.cross(second)])
+/// Of the first two vectors the component of largest size is positive; the third closes the right-handed frame.
+pub(super) fn principal_axes<S: Precise>(a: [[S; 3]; 3]) -> ([S; 3], [Vec3<S>; 3]) {
+    let (moments, [first, second, _]) = eigen(a);
+    let (first, second) = (positive(Vec3(first)), positive(Vec3(second)));
+    (moments, [first, second, first.cross(second)])
 }
 
 /// `v` or `−v`, whichever has its largest component positive.

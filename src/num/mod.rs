@@ -15,6 +15,7 @@
 pub(crate) mod banded;
 pub(crate) mod complex;
 pub mod dd;
+pub(crate) mod eigen;
 pub mod elliptic;
 pub mod error_free;
 pub mod expansion;

@@ -1,9 +1,11 @@
-//! Coordinates of a tensor of trace 1, and the eigenvectors of small symmetric matrices.
+//! Coordinates of a tensor of trace 1, and its eigenvectors.
 //!
 //! J = 1/3 + Σ x_k B_k with B_1 … B_5 an orthonormal basis (Frobenius) of the symmetric matrices of trace 0:
 //! the scale is eliminated, and a rotation of the sensor is an orthogonal map of x.
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+use crate::num;
 
 /// The five numbers that free motion can tell.
 pub(crate) type Coordinates = SVector<f64, 5>;
@@ -51,39 +53,10 @@ pub(crate) fn pair(v: &Vector3<f64>, w: &Vector3<f64>) -> Coordinates {
     Coordinates::from_fn(|k, _| v.dot(&(basis(k) * w)))
 }
 
-/// Eigenvalues, ascending, and eigenvectors (columns) of a symmetric matrix, by Jacobi's rotations.
-pub(crate) fn eigen<const N: usize>(mut a: SMatrix<f64, N, N>) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
-    let mut v = SMatrix::<f64, N, N>::identity();
-    // quadratic convergence: 53 bits take at most 6 or 7 sweeps, the rest is margin
-    for _ in 0..16 {
-        for p in 0..N {
-            for q in p + 1..N {
-                if a[(p, q)].abs() <= 1e-17 * (a[(p, p)].abs() * a[(q, q)].abs()).sqrt() {
-                    continue;
-                }
-                let theta = (a[(q, q)] - a[(p, p)]) / (2.0 * a[(p, q)]);
-                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-                let c = 1.0 / (t * t + 1.0).sqrt();
-                let s = t * c;
-                for k in 0..N {
-                    let (x, y) = (a[(k, p)], a[(k, q)]);
-                    a[(k, p)] = c * x - s * y;
-                    a[(k, q)] = s * x + c * y;
-                }
-                for k in 0..N {
-                    let (x, y) = (a[(p, k)], a[(q, k)]);
-                    a[(p, k)] = c * x - s * y;
-                    a[(q, k)] = s * x + c * y;
-                    let (x, y) = (v[(k, p)], v[(k, q)]);
-                    v[(k, p)] = c * x - s * y;
-                    v[(k, q)] = s * x + c * y;
-                }
-            }
-        }
-    }
-    let mut order: [usize; N] = core::array::from_fn(|k| k);
-    order.sort_by(|&i, &j| a[(i, i)].total_cmp(&a[(j, j)]));
-    (SVector::from_fn(|k, _| a[(order[k], order[k])]), SMatrix::from_fn(|i, k| v[(i, order[k])]))
+/// Eigenvalues, ascending, and eigenvectors (columns) of a symmetric matrix.
+pub(crate) fn eigen<const N: usize>(a: SMatrix<f64, N, N>) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+    let (values, vectors) = num::eigen::eigen::<f64, N>(a.transpose().into());
+    (values.into(), SMatrix::from(vectors))
 }
 
 /// The matrix that takes coordinates to the entries xx, yy, zz, xy, xz, yz.
