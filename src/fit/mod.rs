@@ -30,7 +30,6 @@
 //! The tensor comes from rounds of linear least squares and one quadratic program at their end; a refinement by
 //! maximum likelihood would start where this ends.
 
-mod baselines;
 mod cramer_rao;
 mod error;
 mod estimator;
@@ -41,7 +40,6 @@ mod report;
 mod settings;
 mod weak;
 
-pub use baselines::{Baseline, baseline};
 pub use cramer_rao::foreseen_bound;
 pub use error::{Clash, FitError};
 pub use estimator::fit;

@@ -9,4 +9,3 @@ mod sensitivity;
 
 pub(crate) use bound::Motions;
 pub use bound::foreseen_bound;
-pub(crate) use nearest_motion::local_cubic;

@@ -117,7 +117,7 @@ pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Optio
     let slack = 5.0 * variance * (2.0 * components).sqrt();
     STARTS.iter().find_map(|&(share, first)| {
         let at = (share * s.times.len() as f64) as usize;
-        let mut start = Start { time: s.times[at], rate: local_cubic(s, at, first)?.0 };
+        let mut start = Start { time: s.times[at], rate: local_cubic(s, at, first)? };
         let mut radius = first;
         loop {
             let range = coarse.around(start.time, radius);
@@ -134,8 +134,8 @@ pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Optio
     })
 }
 
-/// Value and slope at sample `at` of the cubic through all samples within `radius`, or the nearest few.
-pub(crate) fn local_cubic(s: &Stretch, at: usize, radius: f64) -> Option<(Vector3<f64>, Vector3<f64>)> {
+/// Value at sample `at` of the cubic through all samples within `radius`, or the nearest few.
+fn local_cubic(s: &Stretch, at: usize, radius: f64) -> Option<Vector3<f64>> {
     let t = s.times[at];
     let low = s.times.partition_point(|&u| u < t - radius).min(at.saturating_sub(3));
     let high = s.times.partition_point(|&u| u <= t + radius).max((at + 4).min(s.times.len()));
@@ -149,5 +149,5 @@ pub(crate) fn local_cubic(s: &Stretch, at: usize, radius: f64) -> Option<(Vector
         right += powers * s.rates[i].transpose();
     }
     let solution = normal.cholesky()?.solve(&right);
-    Some((solution.row(0).transpose(), solution.row(1).transpose() / unit))
+    Some(solution.row(0).transpose())
 }

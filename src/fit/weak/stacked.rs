@@ -25,11 +25,6 @@ impl Stacked {
         Stacked::triangle(&rows, stretches.first().map_or(Coordinates::zeros(), |s| s.origin))
     }
 
-    /// The same of unweighted rows.
-    pub(crate) fn of_rows(rows: &[[f64; 6]]) -> Stacked {
-        Stacked::triangle(rows, Coordinates::zeros())
-    }
-
     pub(crate) fn triangle(rows: &[[f64; 6]], origin: Coordinates) -> Stacked {
         let stack = Mat::from_fn(rows.len().max(6), 6, |i, k| rows.get(i).map_or(0.0, |row| row[k]));
         let qr = stack.qr();

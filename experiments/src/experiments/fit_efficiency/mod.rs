@@ -1,9 +1,10 @@
 //! How far each estimator of inertia stays from the Cramér–Rao bound, and whether its own errors are honest.
 
+mod baselines;
+
+use baselines::Baseline;
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
-use polhode::fit::{
-    Baseline, Estimate, FitError, Random, Record, Settings, baseline, fit, foreseen_bound, rehearse,
-};
+use polhode::fit::{Estimate, FitError, Random, Record, Settings, fit, foreseen_bound, rehearse};
 use polhode::inertia::Inertia;
 
 use crate::error::Error;
@@ -199,10 +200,7 @@ fn trial(moments: [f64; 3], noise: f64, seconds: usize, seed: u64) -> Result<Tri
     let bound = foreseen_bound(&body, omega, &times, noise).ok_or_else(|| failed(&"no Cramér–Rao bound"))?;
     let own = error(estimate.shape.tensor());
     let covered = square(&own, &estimate.free_covariance).is_some_and(|s| s < ELLIPSOID);
-    let baselines = BASELINES.map(|form| {
-        let shape = baseline(&record, form).ok()?;
-        square(&error(shape.tensor()), &bound)
-    });
+    let baselines = BASELINES.map(|form| square(&error(form.shape(&record)?), &bound));
     let physical = estimate.principal[2] <= 0.5 && estimate.principal[0] > 0.0;
     Ok(Trial { own: square(&own, &bound), covered, physical, broken: false, baselines })
 }
