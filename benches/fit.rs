@@ -2,13 +2,14 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use nalgebra::Vector3;
-use polhode::fit::{Random, Record, Settings, fit, rehearse};
+use polhode::fit::{Record, Settings, fit, simulate};
 use polhode::inertia::Inertia;
+use polhode::num::Random;
 
 fn record(samples: u32) -> Option<Record> {
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).ok()?;
     let times: Vec<f64> = (0..samples).map(|i| f64::from(i) / 100.0).collect();
-    let rates = rehearse(&body, Vector3::new(0.3, 0.8, 0.5), &times, 1e-2, &mut Random::new(1)).ok()?;
+    let rates = simulate(&body, Vector3::new(0.3, 0.8, 0.5), &times, 1e-2, &mut Random::new(1)).ok()?;
     Record::from_samples(&times, &rates).ok()
 }
 

@@ -2,14 +2,15 @@
 //! cargo run --release --features fit --example fit_from_vectors
 
 use polhode::Inertia;
-use polhode::fit::{Known, Random, Record, Settings, fit, rehearse};
+use polhode::fit::{Known, Record, Settings, fit, simulate};
 use polhode::nalgebra::Vector3;
+use polhode::num::Random;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // in place of a gyroscope: one minute at 100 Hz, rad/s along the axes of the sensor, with noise
     let truth = Inertia::from_moments([1.0, 2.0, 2.6])?;
     let times: Vec<f64> = (0..6000).map(|k| f64::from(k) / 100.0).collect();
-    let rates = rehearse(&truth, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
+    let rates = simulate(&truth, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
 
     let record = Record::from_samples(&times, &rates)?;
     // free motion gives the tensor up to a factor; one known number gives it in kg m²

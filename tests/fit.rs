@@ -4,10 +4,11 @@
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
 use polhode::fit::{
-    Bound, Estimate, FitError, Known, Random, Reading, Record, RecordError, Segment, Settings, fit,
-    foreseen_bound, rehearse,
+    Bound, Estimate, FitError, Known, Reading, Record, RecordError, Segment, Settings, fit, foreseen_bound,
+    simulate,
 };
 use polhode::inertia::Inertia;
+use polhode::num::Random;
 
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
@@ -31,7 +32,7 @@ fn times(seconds: usize) -> Vec<f64> {
 }
 
 fn record(j: &Matrix3<f64>, omega: Vector3<f64>, times: &[f64], sigma: f64, random: &mut Random) -> Record {
-    let rates = rehearse(&Inertia::from_tensor(*j).unwrap(), omega, times, sigma, random).unwrap();
+    let rates = simulate(&Inertia::from_tensor(*j).unwrap(), omega, times, sigma, random).unwrap();
     Record::from_samples(times, &rates).unwrap()
 }
 
@@ -102,7 +103,7 @@ fn example(sigma: f64) -> (Matrix3<f64>, Vec<f64>, Vec<Vector3<f64>>) {
     let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &random_rotation(&mut random));
     let times: Vec<f64> = (0..1500).map(|i| 0.02 * f64::from(i)).collect();
     let body = Inertia::from_tensor(j).unwrap();
-    let rates = rehearse(&body, Vector3::new(0.3, -0.8, 0.6), &times, sigma, &mut random).unwrap();
+    let rates = simulate(&body, Vector3::new(0.3, -0.8, 0.6), &times, sigma, &mut random).unwrap();
     (j, times, rates)
 }
 
@@ -144,7 +145,7 @@ fn the_bound_is_that_of_the_exact_motion() {
     let times: Vec<f64> = (0..600).map(|i| 0.03 * f64::from(i)).collect();
     let omega = Vector3::new(0.3, -0.8, 0.6);
     let motion = |j: Matrix3<f64>, omega| {
-        rehearse(&Inertia::from_tensor(j).unwrap(), omega, &times, 0.0, &mut Random::new(0)).unwrap()
+        simulate(&Inertia::from_tensor(j).unwrap(), omega, &times, 0.0, &mut Random::new(0)).unwrap()
     };
     // any five independent changes of trace 0, then the three of the start
     let change = |k: usize| {
@@ -235,7 +236,7 @@ fn where_no_free_motion_explains_the_samples_there_is_no_bound() {
     let times: Vec<f64> = (0..8000).map(|i| 0.02 * f64::from(i)).collect();
     // t + t²/4T runs through the same motion ever faster
     let clock: Vec<f64> = times.iter().map(|t| t + t * t / 640.0).collect();
-    let free = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &clock, 0.0, &mut random).unwrap();
+    let free = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &clock, 0.0, &mut random).unwrap();
     let speed = times.iter().map(|t| 1.0 + t / 320.0);
     let rates: Vec<_> = free.iter().zip(speed).map(|(w, s)| w * s + random.normal_vector() * 1e-3).collect();
     let known = Some(Known::TwiceEnergy(3.0));
@@ -587,7 +588,7 @@ fn mistaken_units_are_named_where_no_tensor_settles() {
     let times = times(10);
     let thrown = |moments: [f64; 3], omega: [f64; 3], noise: f64, random: &mut Random| {
         let body = Inertia::from_moments(moments).unwrap();
-        rehearse(&body, Vector3::from(omega), &times, noise, random).unwrap()
+        simulate(&body, Vector3::from(omega), &times, noise, random).unwrap()
     };
     let read = |rates: &[Vector3<f64>], of_times: f64, of_rates: f64| {
         let t: Vec<f64> = times.iter().map(|t| t * of_times).collect();
@@ -629,7 +630,7 @@ fn flat_tops_are_left_out_with_a_warning() {
     let j = turned([0.2, 0.35, 0.45], &random_rotation(&mut random));
     let times = times(30);
     let body = Inertia::from_tensor(j).unwrap();
-    let mut rates = rehearse(&body, Vector3::new(2.0, 4.0, -1.0), &times, 2e-3, &mut random).unwrap();
+    let mut rates = simulate(&body, Vector3::new(2.0, 4.0, -1.0), &times, 2e-3, &mut random).unwrap();
     let top = rates.iter().map(|w| w.amax()).fold(0.0, f64::max) * 0.95;
     rates.iter_mut().for_each(|w| *w = w.map(|c| c.clamp(-top, top)));
     let record = Record::from_samples(&times, &rates).unwrap();
@@ -733,7 +734,7 @@ fn the_trivial_tensor_of_a_short_record_is_no_answer() {
     let times: Vec<f64> = (0..=120).map(|i| 0.0009 * f64::from(i)).collect();
     for seed in 1..=12 {
         let mut random = Random::new(seed);
-        let rates = rehearse(&body, Vector3::new(0.26, 26.3, 0.26), &times, 2.7e-4, &mut random).unwrap();
+        let rates = simulate(&body, Vector3::new(0.26, 26.3, 0.26), &times, 2.7e-4, &mut random).unwrap();
         let error = refusal(&Record::from_samples(&times, &rates).unwrap());
         let named = matches!(error, FitError::Unidentifiable(_) | FitError::Unsettled { .. });
         assert!(named, "seed {seed}: {error}");
@@ -748,7 +749,7 @@ fn a_pencil_is_fitted_where_its_wobble_is_plain() {
     let mut fitted = 0;
     for seed in 1..=8 {
         let rates =
-            rehearse(&body, Vector3::new(1.0, 0.3, 0.3), &times, 1e-2, &mut Random::new(seed)).unwrap();
+            simulate(&body, Vector3::new(1.0, 0.3, 0.3), &times, 1e-2, &mut Random::new(seed)).unwrap();
         let Ok(estimate) = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()) else {
             continue;
         };
@@ -767,7 +768,7 @@ fn irregular_times_are_no_mistake_of_units() {
         let mut random = Random::new(seed);
         let times: Vec<f64> =
             (0..600).map(|i| 0.2 * (f64::from(i) + 0.95 * (random.uniform() - 0.5))).collect();
-        let rates = rehearse(&body, Vector3::new(0.4, 1.0, 0.5), &times, 1e-5, &mut random).unwrap();
+        let rates = simulate(&body, Vector3::new(0.4, 1.0, 0.5), &times, 1e-5, &mut random).unwrap();
         let estimate = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
         for (share, truth) in estimate.principal.iter().zip([1.0, 1.9, 2.6]) {
             assert!((share - truth / 5.5).abs() < 1e-4, "seed {seed}: {:?}", estimate.principal);
@@ -780,7 +781,7 @@ fn bounds_that_contradict_the_record_are_seen_in_the_misfit() {
     let mut random = Random::new(12);
     let times = times(30);
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
-    let rates = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-2, &mut random).unwrap();
+    let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-2, &mut random).unwrap();
     let record = Record::from_samples(&times, &rates).unwrap();
     let bounded = |at_least, at_most| {
         let bounds = vec![Bound { axis: Vector3::x(), at_least, at_most }];
@@ -804,7 +805,7 @@ fn settings_out_of_range_are_refused_with_their_rule() {
     let mut random = Random::new(13);
     let times = times(10);
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
-    let rates = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-2, &mut random).unwrap();
+    let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-2, &mut random).unwrap();
     let record = Record::from_samples(&times, &rates).unwrap();
     let with = |settings| fit(&record, &settings).expect_err("must be refused").to_string();
     for noise in [1e-200, 1e-160, 1e200] {

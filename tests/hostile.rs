@@ -15,31 +15,23 @@ use polhode::inertia::{
 };
 use polhode::method::{Claimed, method};
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
-use polhode::num::{Dd, Expansion, Precise, Real, trig};
+use polhode::num::{Dd, Expansion, Precise, Random, Real, trig};
 use polhode::run::{Checkpoint, Run, Watch};
 
-/// Random numbers by xorshift (Marsaglia 2003).
-struct Draw(u64);
+struct Draw(Random);
 
 impl Draw {
-    fn bits(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
     fn below(&mut self, count: u64) -> u64 {
-        (self.bits() >> 11) % count
+        self.0.below(count)
     }
 
     fn one_in(&mut self, count: u64) -> bool {
         self.below(count) == 0
     }
 
-    /// In [0, 1).
+    /// In (0, 1).
     fn share(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.uniform()
     }
 
     fn sign(&mut self) -> f64 {
@@ -132,19 +124,16 @@ impl Draw {
     }
 }
 
-/// Runs `call` often with random numbers; it returns what is wrong.
+/// Runs `call` often, each time with another stream of random numbers; it returns what is wrong.
 fn hostile(seed: u64, share: f64, mut call: impl FnMut(&mut Draw) -> Result<(), String>) {
     let count = std::env::var("POLHODE_HOSTILE").map_or(3000.0, |count| count.parse().unwrap());
-    let mut draw = Draw(seed);
-    for _ in 0..32 {
-        draw.bits();
-    }
+    let random = Random::new(seed);
     let mut slowest = Duration::ZERO;
-    for _ in 0..(count * share) as u64 {
-        let state = draw.0;
+    for number in 0..(count * share) as u64 {
+        let mut draw = Draw(random.stream(number));
         let start = Instant::now();
         if let Err(what) = call(&mut draw) {
-            panic!("state {state:#x}: {what}");
+            panic!("seed {seed}, stream {number}: {what}");
         }
         slowest = slowest.max(start.elapsed());
     }

@@ -2,11 +2,14 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod cases;
+
 use std::fmt::Write;
 use std::io::Read;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::{Amount, MassProperties, Mesh, Solid};
+use proptest::prelude::*;
 
 type Triangle = [Vector3<f64>; 3];
 
@@ -376,17 +379,15 @@ fn a_file_cut_anywhere_is_refused() {
     for length in 0..end {
         assert!(Mesh::from_stl(&text.as_bytes()[..length]).is_err(), "{length}");
     }
-    // bytes of any kind are refused or read, never a panic
-    let mut state = 1_u32;
-    for length in 0..2000 {
-        let noise: Vec<u8> = (0..length)
-            .map(|_| {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                (state >> 24) as u8
-            })
-            .collect();
-        assert!(Mesh::from_stl(noise.as_slice()).is_err());
-        assert!(Mesh::from_obj(noise.as_slice()).is_err());
+}
+
+proptest! {
+    #![proptest_config(cases::usual(500))]
+
+    #[test]
+    fn bytes_of_no_format_are_refused(noise in prop::collection::vec(any::<u8>(), 0..2000)) {
+        prop_assert!(Mesh::from_stl(noise.as_slice()).is_err());
+        prop_assert!(Mesh::from_obj(noise.as_slice()).is_err());
     }
 }
 

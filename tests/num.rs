@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // what clippy.toml allows inside #[test], for the helpers too
 
+mod cases;
+
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
 use polhode::num::{Compensated, Dd, Expansion, Precise, Real, sum, trig};
+use proptest::prelude::*;
 
 // ---------------------------------------------------------------------------------------- fixtures
 
@@ -148,16 +151,12 @@ fn function_errors() -> Worst {
     worst
 }
 
-/// Uniform random numbers in [0, 1), Knuth's MMIX generator.
-fn uniform(seed: &mut u64) -> f64 {
-    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-    (*seed >> 11) as f64 * libm::ldexp(1.0, -53)
-}
-
 fn ulps(x: f64, value: Dd) -> f64 {
     let size = value.hi().abs();
     ((value - x).hi() / (size.next_up() - size)).abs()
 }
+
+const GOLDEN_RATIO: f64 = 1.618_033_988_749_895;
 
 const ANGLES: [(&str, f64, f64); 6] = [
     ("0 to 0.1", 0.0, 0.1),
@@ -170,10 +169,10 @@ const ANGLES: [(&str, f64, f64); 6] = [
 
 fn trig_errors() -> Worst {
     let mut worst = Worst::default();
-    let mut seed = 1;
     for (range, low, high) in ANGLES {
-        for _ in 0..50_000 {
-            let x = low + (high - low) * uniform(&mut seed);
+        for k in 1..=50_000 {
+            // multiples of the golden ratio modulo 1 fill an interval evenly
+            let x = low + (high - low) * (f64::from(k) * GOLDEN_RATIO).fract();
             let ((sin, cos), (sin_dd, cos_dd)) = (trig::sin_cos(x), Dd::from(x).sin_cos());
             worst.record(range.to_owned(), &[ulps(sin, sin_dd), ulps(cos, cos_dd)]);
         }
@@ -194,7 +193,7 @@ fn accuracy_tables() -> [(&'static str, String); 3] {
         "Against mpmath with 150 digits, at the arguments of tests/data/num/dd.csv; 0.00 means the nearest number\n\
          everywhere. {again}\n\n{dd}"
     );
-    let trig = format!("Against `Dd`, at 50 000 random arguments in each range. {again}\n\n{trig}");
+    let trig = format!("Against `Dd`, at 50 000 arguments spread evenly over each range. {again}\n\n{trig}");
     let elliptic = format!(
         "Largest relative errors against mpmath with 150 digits, at the arguments of\n\
          tests/data/num/elliptic.csv. {again}\n\n{integrals}\n\
@@ -342,12 +341,16 @@ fn decimal_text_is_correctly_rounded() {
     for text in ["", "-", "1.2.3", "0x1", "1e", "e5", "1,5"] {
         assert!(text.parse::<Dd>().is_err(), "{text}");
     }
-    let mut seed = 2;
-    for _ in 0..500 {
-        let x = Dd::sum(uniform(&mut seed), 1e-17 * uniform(&mut seed))
-            * libm::ldexp(1.0, (400.0 * uniform(&mut seed)) as i32 - 200);
-        assert_eq!(format!("{x:.40e}").parse(), Ok(x));
-        assert!(relative_error(x.to_string().parse().unwrap(), x) < 1e-31);
+}
+
+proptest! {
+    #![proptest_config(cases::usual(500))]
+
+    #[test]
+    fn numbers_are_read_as_they_are_written(hi in 0.0..1.0, lo in 0.0..1e-17, exponent in -200..200) {
+        let x = Dd::sum(hi, lo) * libm::ldexp(1.0, exponent);
+        prop_assert_eq!(format!("{x:.40e}").parse(), Ok(x));
+        prop_assert!(relative_error(x.to_string().parse().unwrap(), x) < 1e-31);
     }
 }
 
@@ -549,22 +552,22 @@ fn compensated_sums_lose_nothing() {
     assert!(rest.hi() != 0.0 && rest.hi().abs() < 1e-32, "{rest}");
 }
 
-#[test]
-fn expansions_are_exact() {
-    let mut seed = 3;
-    let mut integer = |bits: i32| ((uniform(&mut seed) - 0.5) * libm::ldexp(1.0, bits)).round();
-    for _ in 0..2000 {
-        let [a, b, c] = [0; 3].map(|_| integer(40));
-        let d = if integer(2) > 0.0 { integer(40) } else { a };
+proptest! {
+    #![proptest_config(cases::usual(2000))]
+
+    #[test]
+    fn expansions_are_exact(numbers in prop::array::uniform4(-(1_i64 << 39)..1 << 39), shares_a in any::<bool>()) {
+        let [a, b, c, d] = numbers;
+        let d = if shares_a { a } else { d };
         // (a b − c d)(a + c) fits 128 bits.
-        let [ea, eb, ec, ed] = [a, b, c, d].map(Expansion::from);
+        let [ea, eb, ec, ed] = [a, b, c, d].map(|x| Expansion::from(x as f64));
         let exact = &(&(&ea * &eb) - &(&ec * &ed)) * &(&ea + &ec);
-        let [a, b, c, d] = [a, b, c, d].map(|x| x as i128);
+        let [a, b, c, d] = [a, b, c, d].map(i128::from);
         let expected = (a * b - c * d) * (a + c);
         let hi = expected as f64;
         let lo = (expected - hi as i128) as f64;
-        assert_eq!(exact.sign(), expected.cmp(&0));
-        assert!(relative_error(exact.to_dd(), Dd::sum(hi, lo)) <= libm::ldexp(1.0, -105));
+        prop_assert_eq!(exact.sign(), expected.cmp(&0));
+        prop_assert!(relative_error(exact.to_dd(), Dd::sum(hi, lo)) <= libm::ldexp(1.0, -105));
     }
 }
 

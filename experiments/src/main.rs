@@ -16,7 +16,6 @@ mod motion;
 mod propagate;
 mod provenance;
 mod publish;
-mod random;
 mod simulate;
 mod sphere;
 mod table;

@@ -1,10 +1,11 @@
-//! `polhode simulate`: a noisy record of a known body, to rehearse a measurement.
+//! `polhode simulate`: a noisy record of a known body, to simulate a measurement.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use nalgebra::Vector3;
-use polhode::fit::{Random, rehearse};
+use polhode::fit::simulate;
+use polhode::num::Random;
 
 use crate::arguments::{number, numbers, positive, regular};
 use crate::body_arguments::BodyArguments;
@@ -69,7 +70,7 @@ impl Simulate {
         let regular = regular(0.0, self.until, self.every).map_err(Error::Input)?;
         let times: Vec<f64> =
             regular.map(|t| t + self.jitter * self.every * (random.uniform() - 0.5)).collect();
-        let rates = rehearse(body.inertia(), Vector3::from(self.omega), &times, self.noise, &mut random)
+        let rates = simulate(body.inertia(), Vector3::from(self.omega), &times, self.noise, &mut random)
             .map_err(|error| Error::Input(format!("--omega: {error}")))?;
         let rate = |name, axis| Column::new(name, "rad/s", axis);
         let table = Table::new(

@@ -8,11 +8,12 @@
 //! ```
 //! use nalgebra::Vector3;
 //! use polhode::inertia::Inertia;
-//! use polhode::fit::{Known, Random, Record, Settings, fit, rehearse};
+//! use polhode::fit::{Known, Record, Settings, fit, simulate};
+//! use polhode::num::Random;
 //!
 //! let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 //! let times: Vec<f64> = (0..3000).map(|i| f64::from(i) / 100.0).collect();
-//! let rates = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
+//! let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
 //!
 //! let record = Record::from_samples(&times, &rates)?;
 //! let settings = Settings { known: Some(Known::Trace(5.6)), ..Settings::default() };
@@ -35,9 +36,9 @@ mod error;
 mod estimator;
 mod physical;
 mod record;
-mod rehearsal;
 mod report;
 mod settings;
+mod simulate;
 mod weak;
 
 pub use cramer_rao::foreseen_bound;
@@ -46,10 +47,10 @@ pub use estimator::fit;
 pub use physical::certificate::{ActiveConstraint, Certificate};
 pub use physical::limits::Bound;
 pub use record::{RateUnit, Reading, Record, RecordError, Segment, TimeUnit};
-pub use rehearsal::{Random, rehearse};
 pub use report::averages::AverageAxis;
 pub use report::estimate::{Estimate, Residuals};
 pub use report::identifiability::Identifiability;
 pub use report::scale::Known;
 pub use report::torque_free::{Drift, Whiteness};
 pub use settings::Settings;
+pub use simulate::simulate;

@@ -6,7 +6,8 @@
 //! * [`error_free`]: sums and products with the error of their rounding;
 //! * [`sum`]: compensated sums;
 //! * [`expansion`]: exact sums and products of a few numbers;
-//! * [`elliptic`]: elliptic integrals and functions.
+//! * [`elliptic`]: elliptic integrals and functions;
+//! * `random`: seeded random numbers (feature `fit`).
 //!
 //! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
 //! same input gives the same bits on every CPU and at every optimisation level.
@@ -21,6 +22,8 @@ pub mod error_free;
 pub mod expansion;
 #[cfg(feature = "fit")]
 pub(crate) mod quadrature;
+#[cfg(any(test, feature = "fit"))]
+pub mod random;
 pub mod real;
 mod shown;
 pub mod sum;
@@ -28,6 +31,8 @@ pub mod trig;
 
 pub use dd::Dd;
 pub use expansion::Expansion;
+#[cfg(any(test, feature = "fit"))]
+pub use random::Random;
 pub use real::{Precise, Real};
 pub(crate) use shown::Shown;
 pub use sum::Compensated;

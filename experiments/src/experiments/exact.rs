@@ -8,13 +8,12 @@ use polhode::body::{Body, Point, State, Time};
 use polhode::catalogue;
 use polhode::flow::{Flow, FreeBody, FreeMotion};
 use polhode::inertia::Inertia;
-use polhode::num::{Dd, Precise};
+use polhode::num::{Dd, Precise, Random};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series};
-use crate::random::Random;
 use crate::table::{Column, Table, row};
 
 const FIXTURES: &str = include_str!("../../../tests/data/free_body/fixtures.csv");
@@ -223,7 +222,7 @@ fn random(context: &Context, report: &mut Report) {
     let bodies = context.scale.pick(2_000, 100_000, 1_000_000_u64);
     const BATCH: u64 = 1_000;
     let batch = |number: u64| {
-        let mut random = Random::new(SEED + number);
+        let mut random = Random::new(SEED).stream(number);
         let mut worst = (Worst::default(), None, None);
         while worst.0.cases < BATCH {
             let (moments, omega, t) = random_case(&mut random);

@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::{Amount, MassProperties, Mesh, MeshError, Solid, integrate_mass};
+use polhode::num::Random;
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};
@@ -22,8 +23,9 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let solids = solids(&mut failures)?;
     let (spheres, figure) = spheres(context.scale.pick(32, 64, 256), &mut failures)?;
     let boxes = boxes(context.scale.pick(4, 16, 64), &mut failures)?;
-    let statements = lecture::statements(SEED, &mut failures)?;
-    let doctor = doctor::rates(context, SEED, &mut failures)?;
+    let random = Random::new(SEED);
+    let statements = lecture::statements(random.stream(0), &mut failures)?;
+    let doctor = doctor::rates(context, &random.stream(1), &mut failures)?;
     let timing = timing(context.scale.pick(32, 128, 289))?;
     Ok(Report {
         tables: vec![solids, spheres, boxes, statements, doctor],

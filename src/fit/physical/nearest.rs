@@ -43,14 +43,13 @@ pub(crate) fn nearest(centre: Coordinates, root: Form, bounds: &[Bound]) -> Resu
 mod tests {
     use super::*;
     use crate::fit::physical::coordinates::{basis, coordinates, eigen, tensor};
+    use crate::num::Random;
     use nalgebra::{Matrix3, Vector3};
 
-    /// Uniform on (−1, 1), from a linear congruence.
-    fn numbers(mut state: u64) -> impl FnMut() -> f64 {
-        move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
+    /// Uniform on (−1, 1).
+    fn numbers(seed: u64) -> impl FnMut() -> f64 {
+        let mut random = Random::new(seed);
+        move || random.between(-1.0, 1.0)
     }
 
     #[test]

@@ -84,6 +84,7 @@ fn build(boxes: &mut [Bounds], around: &mut Vec<Bounds>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::Random;
 
     fn cube(at: [f64; 3], edge: f64) -> Bounds {
         Bounds { low: at, high: at.map(|x| x + edge) }
@@ -91,11 +92,8 @@ mod tests {
 
     #[test]
     fn the_tree_says_what_a_look_at_every_box_says() {
-        let mut seed = 1_u64;
-        let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut numbers = Random::new(1);
+        let mut random = || numbers.uniform();
         for count in [0, 1, 2, 3, 7, 64, 321] {
             let boxes: Vec<Bounds> =
                 (0..count).map(|_| cube([random(), random(), random()], 0.3 * random())).collect();

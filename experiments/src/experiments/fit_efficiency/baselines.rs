@@ -214,8 +214,9 @@ fn turn(angle: Vector3<f64>) -> Matrix3<f64> {
 
 #[cfg(test)]
 mod tests {
-    use polhode::fit::{Random, Settings, fit, rehearse};
+    use polhode::fit::{Settings, fit, simulate};
     use polhode::inertia::Inertia;
+    use polhode::num::Random;
 
     use super::*;
 
@@ -224,7 +225,7 @@ mod tests {
         let times: Vec<f64> = (0..1500).map(|i| 0.02 * f64::from(i)).collect();
         let body = Inertia::from_tensor(j).unwrap();
         let omega = Vector3::new(0.3, -0.8, 0.6);
-        let rates = rehearse(&body, omega, &times, sigma, &mut Random::new(99)).unwrap();
+        let rates = simulate(&body, omega, &times, sigma, &mut Random::new(99)).unwrap();
         (j, Record::from_samples(&times, &rates).unwrap())
     }
 

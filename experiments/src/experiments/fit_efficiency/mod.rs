@@ -4,8 +4,9 @@ mod baselines;
 
 use baselines::Baseline;
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
-use polhode::fit::{Estimate, FitError, Random, Record, Settings, fit, foreseen_bound, rehearse};
+use polhode::fit::{Estimate, FitError, Record, Settings, fit, foreseen_bound, simulate};
 use polhode::inertia::Inertia;
+use polhode::num::Random;
 
 use crate::error::Error;
 use crate::experiment::{Context, Report};
@@ -49,8 +50,9 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let parts = cells.iter().flat_map(|&(body, noise)| (0..trials).map(move |k| (body, noise, k))).collect();
     let results = context.in_parallel(parts, |(body, noise, k): (usize, usize, u64)| {
         // the same motions at each noise, so that columns compare
-        let seed = SEED + 1_000_003 * body as u64 + k;
-        trial(BODIES[body].1, NOISES[noise], seconds, seed)
+        // at every noise the same bodies, starts and deviates
+        let stream = ((body as u64) << 32) + k;
+        trial(BODIES[body].1, NOISES[noise], seconds, stream)
     });
     let results = results.into_iter().collect::<Result<Vec<Trial>, Error>>()?;
 
@@ -177,17 +179,17 @@ fn square(e: &SMatrix<f64, 6, 1>, c: &SMatrix<f64, 6, 6>) -> Option<f64> {
     Some(e.dot(&regular.cholesky()?.solve(e)))
 }
 
-fn trial(moments: [f64; 3], noise: f64, seconds: usize, seed: u64) -> Result<Trial, Error> {
-    let mut random = Random::new(seed);
+fn trial(moments: [f64; 3], noise: f64, seconds: usize, stream: u64) -> Result<Trial, Error> {
+    let mut random = Random::new(SEED).stream(stream);
     let (w, v) = (random.normal(), random.normal_vector());
     let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
     let j = turn.matrix() * Matrix3::from_diagonal(&Vector3::from(moments)) * turn.matrix().transpose();
     let j = (j + j.transpose()) / (2.0 * j.trace());
     let omega = random.normal_vector().normalize();
-    let failed = |error: &dyn std::fmt::Display| Error::Failed(format!("seed {seed}: {error}"));
+    let failed = |error: &dyn std::fmt::Display| Error::Failed(format!("random stream {stream}: {error}"));
     let body = Inertia::from_tensor(j).map_err(|error| failed(&error))?;
     let times: Vec<f64> = (0..=100 * seconds).map(|i| i as f64 / 100.0).collect();
-    let rates = rehearse(&body, omega, &times, noise, &mut random).map_err(|error| failed(&error))?;
+    let rates = simulate(&body, omega, &times, noise, &mut random).map_err(|error| failed(&error))?;
     let record = Record::from_samples(&times, &rates).map_err(|error| failed(&error))?;
 
     let nothing = Trial { own: None, covered: false, physical: false, broken: false, baselines: [None; 4] };

@@ -2,11 +2,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, Evidence, MassProperties, Solid, Verdict, diagnose};
+use polhode::num::Random;
 
 use super::failed;
 use crate::error::Error;
 use crate::experiment::Context;
-use crate::random::Random;
 use crate::table::{Column, Table, row};
 
 /// A random body, and what may be known of it.
@@ -80,7 +80,7 @@ fn patient(random: &mut Random) -> Result<Patient, Error> {
     Ok(Patient { body, about_origin, evidence })
 }
 
-pub(super) fn rates(context: &Context, seed: u64, failures: &mut Vec<String>) -> Result<Table, Error> {
+pub(super) fn rates(context: &Context, random: &Random, failures: &mut Vec<String>) -> Result<Table, Error> {
     let bodies = context.scale.pick(50, 500, 5000);
     let mut table = Table::new(
         "doctor",
@@ -97,7 +97,8 @@ pub(super) fn rates(context: &Context, seed: u64, failures: &mut Vec<String>) ->
     );
     let cells = MISTAKES.iter().flat_map(|mistake| (0..3).map(move |known| (*mistake, known))).collect();
     let counted = context.in_parallel(cells, |((name, word, spoil), known)| {
-        let mut random = Random::new(seed);
+        // every cell sees the same bodies
+        let mut random = random.clone();
         let (mut noticed, mut first, mut condemned) = (0, 0, 0);
         for _ in 0..bodies {
             let patient = patient(&mut random)?;

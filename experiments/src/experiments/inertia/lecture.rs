@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, MassProperties, Solid};
+use polhode::num::Random;
 
 use super::failed;
 use crate::error::Error;
-use crate::random::Random;
 use crate::table::{Column, Table, row};
 
 /// A point: mass and place.
@@ -14,7 +14,7 @@ type Point = (f64, Vector3<f64>);
 /// Relative discrepancy of sums of a thousand rounded terms.
 const ROUNDING: f64 = 1e-13;
 
-pub(super) fn statements(seed: u64, failures: &mut Vec<String>) -> Result<Table, Error> {
+pub(super) fn statements(mut random: Random, failures: &mut Vec<String>) -> Result<Table, Error> {
     let mut table = Table::new(
         "statements",
         "Statements of the lecture on a thousand random points: relative discrepancy of both sides.",
@@ -25,7 +25,6 @@ pub(super) fn statements(seed: u64, failures: &mut Vec<String>) -> Result<Table,
                 .digits(2),
         ],
     );
-    let mut random = Random::new(seed);
     let mut vector = |size: f64| Vector3::from([(); 3].map(|()| random.between(-size, size)));
     let places: Vec<Vector3<f64>> = (0..1000).map(|_| vector(1.0) + Vector3::new(0.3, -0.2, 0.5)).collect();
     let points: Vec<Point> = places.iter().map(|&at| (1.0 + 0.5 * at.x, at)).collect();

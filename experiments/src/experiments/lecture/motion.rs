@@ -5,12 +5,11 @@ use polhode::body::Body;
 use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::inertia::Inertia;
 use polhode::num::elliptic::Modulus;
-use polhode::num::{Dd, Real};
+use polhode::num::{Dd, Random, Real};
 use polhode::rotation::{EulerSequence, Quat, Vec3};
 
 use super::{Point, Statements, derivative, larger, unexpected};
 use crate::error::Error;
-use crate::random::Random;
 
 const ROTATION: &str = "17.2";
 const EQUATIONS: &str = "17.3";
