@@ -9,6 +9,7 @@ use crate::inertia::Inertia;
 
 /// A body that everyone can ask for by name.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct NamedBody {
     /// Its name on the command line.
     pub name: &'static str,

@@ -226,7 +226,7 @@ fn the_nearest_tensor_is_accepted_and_no_valid_one_is_nearer() {
         let scale = spoiled.amax();
         let from_nearest = (found.nearest - spoiled).norm();
         assert!((from_nearest - found.distance).abs() < 1e-14 * scale, "{name}");
-        MassProperties::new(1.0, Vector3::zeros(), found.nearest).unwrap();
+        assert!(MassProperties::new(1.0, Vector3::zeros(), found.nearest).is_ok(), "{name}");
         // optimality of a projection onto a convex cone: ⟨spoiled − nearest, v⟩ ≤ 0 for every valid v, = 0 for nearest
         let gap = spoiled - found.nearest;
         assert!(gap.dot(&found.nearest).abs() < 1e-13 * scale * scale, "{name}");

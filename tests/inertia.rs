@@ -267,18 +267,14 @@ fn thin_bodies_are_not_rejected_for_rounding() {
             let again =
                 MassProperties::from_tensor_about(Vector3::zeros(), 0.3, turned.center_of_mass(), about);
             // far from its centre a nanometre hoop drowns in the rounding of the larger tensor: not a thin body's fault
-            if body.tensor().amax() > 1e-3 * about.amax() {
-                again.unwrap();
-            }
-            MassProperties::new(0.3, turned.center_of_mass(), turned.tensor()).unwrap();
+            assert!(again.is_ok() || body.tensor().amax() <= 1e-3 * about.amax(), "{solid:?} {k}");
+            assert!(MassProperties::new(0.3, turned.center_of_mass(), turned.tensor()).is_ok());
             match solid {
                 Solid::Rod { .. } => {
                     let message = turned.inertia().unwrap_err().to_string();
                     assert!(message.starts_with("principal moments 0, "), "{message}");
                 }
-                _ => {
-                    turned.inertia().unwrap();
-                }
+                _ => assert!(turned.inertia().is_ok(), "{solid:?} {k}"),
             }
         }
     }

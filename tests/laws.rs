@@ -1063,3 +1063,21 @@ fn the_monitor_of_a_heavy_body_measures_energy_and_vertical_momentum() {
     let change = (sample.energy / SIZE - (kinetic + 1.0)) / (kinetic + 1.0);
     approx::assert_relative_eq!(sample.energy_change, change, epsilon = 1e-15);
 }
+
+#[test]
+fn a_name_that_is_no_method_is_refused_with_its_reason() {
+    let error = |name: &str| method(name).err().unwrap().to_string();
+    for name in ["rk5", "rk5:3", "rk5@suzuki-4", "kickdrift", "", ":2"] {
+        assert_eq!(error(name), format!("there is no method {name:?}"));
+    }
+    for name in ["rk4:4", "rattle:1", "implicit-midpoint:2"] {
+        assert!(error(name).ends_with("allowed: none: this method takes no argument"), "{}", error(name));
+    }
+    assert!(error("lie-poisson:322").ends_with("allowed: a permutation of 123, such as lie-poisson:321"));
+    assert!(error("kick-drift:6").ends_with("allowed: 2 or 4, its order"));
+    assert!(error("kick-drift:4@srkn-6b").ends_with("allowed: none beside a scheme"));
+    assert!(error("rattle@suzuki").contains("there is no scheme"));
+    for known in catalogue() {
+        assert_eq!(method(&known.name()).unwrap().name(), known.name());
+    }
+}

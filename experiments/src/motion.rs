@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::flow::{FreeMotion, Mode};
+use polhode::flow::FreeMotion;
 
 use crate::body_arguments::{BodyArguments, StartArguments};
 use crate::error::Error;
@@ -34,12 +34,7 @@ impl Motion {
         let body = self.body.free()?;
         let motion = FreeMotion::from_point(body.inertia(), self.start.inside(&body)?);
         let character = motion.character().map_err(|error| Error::Input(format!("--omega: {error}")))?;
-        let mode = match character.mode {
-            Mode::LongAxis => "long-axis",
-            Mode::ShortAxis => "short-axis",
-            Mode::Separatrix => "separatrix",
-            Mode::Steady => "steady",
-        };
+        let mode = character.mode.name();
         let column = Column::new;
         let mut table = Table::new(
             "motion",

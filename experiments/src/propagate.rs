@@ -112,7 +112,7 @@ impl Propagate {
             let elapsed = t - self.start_time;
             // an overflow of the difference is out of reach too
             motion
-                .at(elapsed)
+                .check_time(elapsed)
                 .map_err(|error| Error::Input(format!("{}: {t:?}: {error}", self.times_flag())))?;
         }
         let mut monitor = Monitor::new(body, Clock::new(1.0), &start.to_f64());

@@ -85,6 +85,7 @@ pub enum Conserved {
 
 /// A potential or a torque with its name, which acts on a [`Body`](super::Body).
 #[derive(Clone)]
+#[must_use]
 pub struct Force {
     name: String,
     pub(crate) law: Law,
@@ -195,11 +196,13 @@ impl Force {
     }
 
     /// Its name.
+    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// What it conserves, acting alone; nothing for a torque that has no potential.
+    #[must_use]
     pub fn conserved(&self) -> Vec<Conserved> {
         match &self.law {
             Law::Potential(potential) => Potential::<f64>::conserved(&**potential),
@@ -208,6 +211,7 @@ impl Force {
     }
 
     /// Whether it has a potential.
+    #[must_use]
     pub fn has_potential(&self) -> bool {
         matches!(self.law, Law::Potential(_))
     }

@@ -11,6 +11,7 @@ use crate::rotation::{Quat, Vec3};
 
 /// Why a start is not usable.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum StateError {
     /// A component is not a finite number.
     #[error("{quantity} has the component {value}; every component must be a finite number")]
@@ -51,6 +52,7 @@ pub enum StateError {
 
 /// What kind of motion a method is asked for; its claims differ between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Problem {
     /// Nothing acts.
     Free,
@@ -69,6 +71,7 @@ pub enum Problem {
 /// underflow and a change of the unit of mass by a power of two changes no bit. [`enter`](Body::enter) and
 /// [`leave`](Body::leave) convert between the two.
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct Body {
     inertia: Inertia,
     /// In the solver frame.
@@ -116,7 +119,6 @@ impl Body {
     }
 
     /// The same body with one more force; all add up.
-    #[must_use]
     pub fn with(mut self, force: Force) -> Self {
         self.forces.push(force);
         self
@@ -160,6 +162,7 @@ impl Body {
     }
 
     /// Uniform gravity with the weight moment in the solver frame, divided by the [scale](Self::scale); `None` without it.
+    #[must_use]
     pub fn gravity<S: Real>(&self) -> Option<Gravity<S>> {
         self.gravity.map(|g| Gravity { weight_moment: g.weight_moment.map(S::from_dd) })
     }
@@ -181,11 +184,13 @@ impl Body {
     }
 
     /// Kinetic and potential energy, J, at the time 0, where a potential depends on the time.
+    #[must_use]
     pub fn energy(&self, x: &State) -> f64 {
         self.energy_at(0.0, x)
     }
 
     /// Kinetic and potential energy, J, at the time `t`, s.
+    #[must_use]
     pub fn energy_at(&self, t: f64, x: &State) -> f64 {
         self.energy_of(Time::from_seconds(t), &self.inside(x)).hi()
     }
@@ -302,6 +307,7 @@ impl Body {
     }
 
     /// Angular velocity ω = I⁻¹ m in body axes, rad/s.
+    #[must_use]
     pub fn omega_body(&self, x: &State) -> Vector3<f64> {
         self.omega_of(&self.inside(x))
     }
@@ -316,6 +322,7 @@ impl Body {
     }
 
     /// Moments, momenta and energies of the solver frame times this power of two are those in the user's units.
+    #[must_use]
     pub fn scale(&self) -> f64 {
         self.inertia.scale()
     }

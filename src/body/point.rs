@@ -17,6 +17,7 @@ use crate::rotation::{Quat, Vec3};
 /// thousands of times lower. The number of steps is part of the point too, so that a run can be written down at any step
 /// and taken up again.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Point<S> {
     /// Unit quaternion, scalar first, active, principal axes → space.
     pub attitude: Quat<S>,
@@ -28,6 +29,7 @@ pub struct Point<S> {
 
 /// Attitude and momentum as seven numbers, or a change of them, in the solver frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Phase<S> {
     /// Quaternion, or a change of it.
     pub attitude: Quat<S>,

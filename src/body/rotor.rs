@@ -6,6 +6,7 @@ use crate::rotation::Vec3;
 /// Principal moments in the solver frame, divided by [`Body::scale`](super::Body::scale), in double-double; what a
 /// kernel needs of them is worked out from here, each constant rounded once.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Rotor {
     moments: Vec3<Dd>,
 }

@@ -20,6 +20,7 @@ use crate::rotation::{Quat, Vec3};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct State {
     /// Unit quaternion, scalar first, active, body → space.
     pub attitude: Quat<f64>,
@@ -29,16 +30,19 @@ pub struct State {
 
 impl State {
     /// The attitude as a nalgebra rotation, normalised.
+    #[must_use]
     pub fn rotation(&self) -> UnitQuaternion<f64> {
         self.attitude.into()
     }
 
     /// Angular momentum in body axes as a nalgebra vector, kg m²/s.
+    #[must_use]
     pub fn momentum(&self) -> Vector3<f64> {
         self.momentum_body.into()
     }
 
     /// Angular momentum in space, `L = q m q*` with q of norm 1, kg m²/s.
+    #[must_use]
     pub fn momentum_space(&self) -> Vector3<f64> {
         self.rotation() * self.momentum()
     }

@@ -4,6 +4,7 @@ use crate::num::{Dd, Precise, Real};
 
 /// When a run starts and how long its steps are: step n begins at `start + n · step`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Clock {
     /// Time of the start, s.
     pub start: f64,
@@ -32,6 +33,7 @@ impl Clock {
 
 /// A point in time, `start + n · step + offset`, worked out only when a force asks for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Time {
     clock: Clock,
     steps: u64,
@@ -51,7 +53,6 @@ impl Time {
 
     /// The time `duration` (s) after this one.
     #[inline]
-    #[must_use]
     pub fn later(&self, duration: Dd) -> Self {
         Time { offset: self.offset + duration, ..*self }
     }
@@ -62,6 +63,7 @@ impl Time {
     }
 
     /// In seconds, rounded once.
+    #[must_use]
     pub fn seconds<S: Real>(&self) -> S {
         S::from_dd(self.dd())
     }

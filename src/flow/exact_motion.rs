@@ -20,6 +20,8 @@ use crate::num::Dd;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[must_use]
+#[non_exhaustive]
 pub enum ExactMotion {
     /// Nothing acts on the body.
     Free(Box<FreeMotion>),
@@ -56,7 +58,7 @@ impl ExactMotion {
         Self::from_point(body, body.enter(start)?)
     }
 
-    /// From a point of the solver frame at t = 0.
+    /// From a point of the solver frame at t = 0, whose attitude has norm 1.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -77,6 +79,35 @@ impl ExactMotion {
             Self::Free(motion) => motion.at(t),
             Self::Lagrange(top) => top.at(t),
         }
+    }
+
+    /// The largest |t| at which the phases still have digits, s; infinite for a body at rest.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        match self {
+            Self::Free(motion) => motion.reach(),
+            Self::Lagrange(top) => top.reach(),
+        }
+    }
+
+    /// Whether there is a state at the time `t`, s: what [`at`](Self::at) checks, without the state.
+    ///
+    /// # Errors
+    /// As [`at`](Self::at).
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::body::Body;
+    /// use polhode::flow::ExactMotion;
+    /// use polhode::inertia::Inertia;
+    /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+    /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+    /// let motion = ExactMotion::new(&body, &start)?;
+    /// assert!(motion.check_time(-1e20).is_ok() && motion.check_time(2.0 * motion.reach()).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn check_time(&self, t: f64) -> Result<(), TimeError> {
+        TimeError::check(t, self.reach())
     }
 
     /// The point of the solver frame at the time `t`, s, in double-double; `t` finite and within reach.

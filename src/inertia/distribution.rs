@@ -15,6 +15,7 @@ use crate::num::{Compensated, Real, Shown};
 
 /// Why a distribution has no mass properties.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum DistributionError {
     /// The density is negative or not a number somewhere.
     #[error(
@@ -47,6 +48,7 @@ pub enum DistributionError {
 
 /// Where a density is given, centred at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Region {
     /// A box with these edges, m.
     Box([f64; 3]),

@@ -6,6 +6,7 @@ use crate::num::Shown;
 
 /// Why a tensor is not the inertia of a body.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum InertiaError {
     /// An entry is not a finite number.
     #[error("inertia has the entry {value}; every entry must be a finite number")]
@@ -81,6 +82,7 @@ pub enum InertiaError {
 
 /// Why something is no body, or has no mass properties.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum MassError {
     /// A mass, length or density is zero, negative or not finite.
     #[error("{quantity} is {}; it must be a finite number above zero", Shown(*value))]

@@ -61,6 +61,7 @@ impl Amount {
 /// # Ok::<(), polhode::inertia::MassError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct MassProperties {
     mass: f64,
     center_of_mass: Vector3<f64>,
@@ -181,16 +182,19 @@ impl MassProperties {
     }
 
     /// Mass, kg.
+    #[must_use]
     pub fn mass(&self) -> f64 {
         self.mass
     }
 
     /// Centre of mass, m.
+    #[must_use]
     pub fn center_of_mass(&self) -> Vector3<f64> {
         self.center_of_mass
     }
 
     /// Tensor about the centre of mass, kg m², entries `I_xy = −∫ x y dm`.
+    #[must_use]
     pub fn tensor(&self) -> Matrix3<f64> {
         self.tensor
     }
@@ -224,6 +228,7 @@ impl MassProperties {
     }
 
     /// Principal moments about the centre of mass, ascending, kg m²; never negative.
+    #[must_use]
     pub fn principal_moments(&self) -> [f64; 3] {
         let spectrum = self.spectrum();
         spectrum.moments.map(|i| i.hi().max(0.0) * spectrum.scale)
@@ -237,11 +242,13 @@ impl MassProperties {
     }
 
     /// By how much the sum of the other two principal moments exceeds the k-th, kg m²: 0 for a plate's third.
+    #[must_use]
     pub fn triangle_margins(&self) -> [f64; 3] {
         triangle_margins(self.principal_moments())
     }
 
     /// What the principal moments say about the shape.
+    #[must_use]
     pub fn class(&self) -> Class {
         let [low, middle, high] = self.principal_moments();
         let rounding = ROUNDING * (low + middle + high);

@@ -141,11 +141,13 @@ impl Solid {
     }
 
     /// Its name, as [`named`](Self::named) takes it.
+    #[must_use]
     pub fn name(&self) -> &'static str {
         SHAPES[self.place()].0
     }
 
     /// Its sizes, as [`named`](Self::named) takes them.
+    #[must_use]
     pub fn sizes(&self) -> Vec<f64> {
         match *self {
             Solid::Box(sizes) | Solid::Ellipsoid(sizes) => sizes.into(),
@@ -179,6 +181,7 @@ impl Solid {
     }
 
     /// Volume (m³) of a solid, area (m²) of a surface, length (m) of a line.
+    #[must_use]
     pub fn measure(&self) -> f64 {
         match *self {
             Solid::Box([x, y, z]) => x * y * z,

@@ -28,6 +28,7 @@ impl Symmetry {
     }
 
     /// In one lowercase word.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Symmetry::Asymmetric => "asymmetric",
@@ -53,6 +54,7 @@ pub enum Class {
 
 impl Class {
     /// In one lowercase word.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Class::Point => "point",

@@ -37,6 +37,7 @@ const SLENDER: f64 = 6.223_015_277_861_142e-61;
 /// # Ok::<(), polhode::inertia::InertiaError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Inertia {
     tensor: Matrix3<f64>,
     /// A power of two, the exponent of the largest moment: what follows is divided by it.
@@ -125,6 +126,7 @@ impl Inertia {
     }
 
     /// The tensor in body axes.
+    #[must_use]
     pub fn tensor(&self) -> Matrix3<f64> {
         self.tensor
     }
@@ -160,6 +162,7 @@ impl Inertia {
     }
 
     /// Angular momentum `I ω` of the angular velocity `omega_body`, both in body axes.
+    #[must_use]
     pub fn momentum(&self, omega_body: Vector3<f64>) -> Vector3<f64> {
         self.tensor * omega_body
     }
@@ -196,6 +199,7 @@ impl Inertia {
 /// Motion without a torque determines a tensor only up to its scale, so a fit from it returns this type and
 /// nothing that could be mistaken for kg m².
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct InertiaShape {
     tensor: Matrix3<f64>,
 }
@@ -210,6 +214,7 @@ impl InertiaShape {
     }
 
     /// The tensor with trace 1, in body axes.
+    #[must_use]
     pub fn tensor(&self) -> Matrix3<f64> {
         self.tensor
     }

@@ -24,11 +24,13 @@ impl AxisOrder {
     ];
 
     /// The axes from 0, outermost first.
+    #[must_use]
     pub fn axes(self) -> [usize; 3] {
         self.0
     }
 
     /// The order with the smallest [energy oscillation](Self::energy_oscillation) for these moments.
+    #[must_use]
     pub fn best(moments: Vec3<f64>) -> Self {
         let mut best = (f64::INFINITY, AxisOrder([2, 1, 0]));
         for order in Self::ALL {
@@ -47,6 +49,7 @@ impl AxisOrder {
     /// symmetric Baker–Campbell–Hausdorff series,
     /// `24 H₃ = (−2a²b + 2a²c + ab² − 4abc + 2b²c) m₁²m₂² + (2a²b − 2a²c + 2abc + ac² − bc²) m₁²m₃²
     /// + (−ab² + 2abc − ac² − 2b²c + bc²) m₂²m₃²`; the part in the span of H², HC and C² is constant and drops out.
+    #[must_use]
     pub fn energy_oscillation(self, moments: Vec3<f64>) -> f64 {
         let [outer, middle, inner] = self.0;
         let (a, b, c) = (1.0 / moments[inner], 1.0 / moments[middle], 1.0 / moments[outer]);
@@ -165,6 +168,7 @@ impl fmt::Display for AxisOrder {
 /// The text is no order of three axes.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("axis order {text:?} is not a permutation of 123, such as 321 (outermost first)")]
+#[non_exhaustive]
 pub struct AxisOrderError {
     /// What was given.
     pub text: String,

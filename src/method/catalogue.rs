@@ -120,6 +120,7 @@ fn remedy(problem: Problem) -> &'static str {
 }
 
 /// Every method, in the order in which tables show them.
+#[must_use]
 pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
     vec![
         Box::new(ExplicitEuler),
@@ -153,48 +154,70 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
 /// # Ok::<(), polhode::method::UnknownMethod>(())
 /// ```
 pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
-    let (head, scheme_name) = match name.split_once('@') {
-        Some((head, scheme)) => (head, Some(scheme)),
-        None => (name, None),
-    };
-    let (base, argument) = match head.split_once(':') {
-        Some((base, argument)) => (base, Some(argument)),
-        None => (head, None),
-    };
-    fn no<T>(name: &str, rule: &'static str) -> Result<T, UnknownMethod> {
-        Err(UnknownMethod::Argument { name: name.into(), rule })
-    }
-    let chosen = scheme_name.map(scheme).transpose()?.copied();
-    let none = |argument: Option<&str>| match argument {
-        Some(_) => no(name, "none: this method takes no argument"),
-        None => Ok(()),
-    };
+    let (head, scheme) = split(name, '@');
+    let (base, argument) = split(head, ':');
+    let asked = Asked { name, argument, scheme };
     match base {
-        "explicit-euler" => none(argument).and(plain(ExplicitEuler, chosen)),
-        "semi-implicit-euler" => none(argument).and(plain(SemiImplicitEuler, chosen)),
-        "rk4" => none(argument).and(plain(Rk4 { normalized: false }, chosen)),
-        "rk4-normalized" => none(argument).and(plain(Rk4 { normalized: true }, chosen)),
-        "implicit-midpoint" => none(argument).and(Ok(match chosen {
+        "explicit-euler" => plain(ExplicitEuler, asked.scheme_alone()?),
+        "semi-implicit-euler" => plain(SemiImplicitEuler, asked.scheme_alone()?),
+        "rk4" => plain(Rk4 { normalized: false }, asked.scheme_alone()?),
+        "rk4-normalized" => plain(Rk4 { normalized: true }, asked.scheme_alone()?),
+        "implicit-midpoint" => Ok(match asked.scheme_alone()? {
             Some(scheme) if scheme != STRANG => Box::new(Composed::new(ImplicitMidpoint, scheme)?),
             _ => Box::new(ImplicitMidpoint),
-        })),
-        "rattle" => none(argument).and(kicked(Dmv, chosen)),
-        "lie-poisson" => match argument.map(str::parse::<AxisOrder>).transpose() {
-            Ok(axes) => kicked(AxisSplit { axes }, chosen),
-            Err(_) => no(name, "a permutation of 123, such as lie-poisson:321"),
-        },
-        "two-turn" => match argument.map(str::parse::<TwoAxes>).transpose() {
-            Ok(axes) => kicked(TwoTurn { axes }, chosen),
-            Err(_) => no(name, "two different ones of 123, the outer axis first, such as two-turn:31"),
-        },
-        "kick-drift" => match (argument, chosen) {
-            (None, _) => kicked(ExactFlow, chosen),
+        }),
+        "rattle" => kicked(Dmv, asked.scheme_alone()?),
+        "lie-poisson" => {
+            let chosen = asked.scheme()?;
+            let axes = argument.map(str::parse::<AxisOrder>).transpose();
+            let axes = axes.map_err(|_| asked.refused("a permutation of 123, such as lie-poisson:321"))?;
+            kicked(AxisSplit { axes }, chosen)
+        }
+        "two-turn" => {
+            let chosen = asked.scheme()?;
+            let axes = argument.map(str::parse::<TwoAxes>).transpose();
+            let rule = "two different ones of 123, the outer axis first, such as two-turn:31";
+            kicked(TwoTurn { axes: axes.map_err(|_| asked.refused(rule))? }, chosen)
+        }
+        "kick-drift" => match (argument, asked.scheme()?) {
+            (None, chosen) => kicked(ExactFlow, chosen),
             (Some("2"), None) => kicked(ExactFlow, None),
             (Some("4"), None) => kicked(ExactFlow, Some(SUZUKI_4)),
-            (Some(_), None) => no(name, "2 or 4, its order"),
-            (Some(_), Some(_)) => no(name, "none beside a scheme"),
+            (Some(_), None) => Err(asked.refused("2 or 4, its order")),
+            (Some(_), Some(_)) => Err(asked.refused("none beside a scheme")),
         },
         _ => Err(UnknownMethod::Name { name: name.into() }),
+    }
+}
+
+/// What stands before and behind the first `mark`.
+fn split(text: &str, mark: char) -> (&str, Option<&str>) {
+    text.split_once(mark).map_or((text, None), |(before, behind)| (before, Some(behind)))
+}
+
+/// A name and its parts behind the base.
+struct Asked<'a> {
+    name: &'a str,
+    argument: Option<&'a str>,
+    scheme: Option<&'a str>,
+}
+
+impl Asked<'_> {
+    fn scheme(&self) -> Result<Option<Scheme>, UnknownScheme> {
+        Ok(self.scheme.map(scheme).transpose()?.copied())
+    }
+
+    /// The scheme, where the base takes no argument.
+    fn scheme_alone(&self) -> Result<Option<Scheme>, UnknownMethod> {
+        let chosen = self.scheme()?;
+        match self.argument {
+            Some(_) => Err(self.refused("none: this method takes no argument")),
+            None => Ok(chosen),
+        }
+    }
+
+    fn refused(&self, rule: &'static str) -> UnknownMethod {
+        UnknownMethod::Argument { name: self.name.into(), rule }
     }
 }
 

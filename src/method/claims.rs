@@ -16,6 +16,8 @@ pub trait Claimed {
 
 /// The claims of a method for one kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[non_exhaustive]
 pub struct Claims {
     /// Order of convergence of attitude and momentum; `None` where there is no error of discretisation.
     pub order: Option<u32>,
@@ -40,6 +42,8 @@ impl Claims {
 
 /// What is constant along the numerical solution, in exact arithmetic, where the motion conserves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+#[non_exhaustive]
 pub struct Kept {
     /// The energy.
     pub energy: Energy,
@@ -71,6 +75,7 @@ impl Kept {
 
 /// Long-time behaviour of the energy error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Energy {
     /// Zero.
     Exact,
@@ -82,6 +87,8 @@ pub enum Energy {
 
 /// Work per step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[must_use]
+#[non_exhaustive]
 pub struct Cost {
     /// Evaluations of the right-hand side.
     pub right_sides: u32,

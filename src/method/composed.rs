@@ -27,6 +27,7 @@ pub trait Symmetric: Clone + Send + Sync {}
 /// let method = Composed::new(ExplicitEuler, SUZUKI_4);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Composed<M: Symmetric> {
     base: M,
     scheme: Scheme,

@@ -13,6 +13,7 @@ use crate::num::{Dd, Real};
 /// Strang's is Φ_h = B(h/2) A(h) B(h/2) (SIAM J. Numer. Anal. 5 (1968) 506). All schemes are palindromes, so that the
 /// splitting is symmetric where its parts are. Where two steps of a composition meet, their maps of B are merged.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Splitting<A, B> {
     a: A,
     b: B,

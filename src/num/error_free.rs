@@ -2,6 +2,7 @@
 
 /// `a + b` as a rounded sum and its exact error (Knuth).
 #[inline]
+#[must_use]
 pub const fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     let v = s - a;
@@ -10,6 +11,7 @@ pub const fn two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// `a + b` as a rounded sum and its exact error, for |a| ≥ |b| (Dekker).
 #[inline]
+#[must_use]
 pub const fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     (s, b - (s - a))
@@ -25,6 +27,7 @@ const fn split(a: f64) -> (f64, f64) {
 
 /// `a · b` as a rounded product and its exact error (Dekker's product: the same bits with and without FMA).
 #[inline]
+#[must_use]
 pub const fn two_prod(a: f64, b: f64) -> (f64, f64) {
     let p = a * b;
     let (ah, al) = split(a);

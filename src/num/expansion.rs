@@ -27,6 +27,7 @@ use super::error_free::{quick_two_sum, two_prod, two_sum};
 
 /// An exact sum of floating-point numbers.
 #[derive(Clone, Debug, Default)]
+#[must_use]
 pub struct Expansion {
     /// Without overlap and without zeros, smallest first; zero is the empty sum.
     parts: Vec<f64>,
@@ -43,6 +44,7 @@ impl Expansion {
     }
 
     /// Order of the value relative to zero.
+    #[must_use]
     pub fn sign(&self) -> Ordering {
         match self.parts.last() {
             Some(&largest) if largest > 0.0 => Ordering::Greater,

@@ -27,6 +27,7 @@ pub trait Real:
     fn of(x: f64) -> Self;
     /// The scalar nearest to `x`, rounded once where it has fewer digits.
     #[inline]
+    #[must_use]
     fn from_dd(x: Dd) -> Self {
         Self::of(x.hi()) + Self::of(x.lo())
     }

@@ -37,6 +37,7 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
 
 /// Sine and cosine of `x` radians; NaN unless `x` is finite. The sine of −0 is +0.
 #[inline]
+#[must_use]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() <= FRAC_PI_4 { kernel::<false>(x, 0.0) } else { reduced(x) }
 }
@@ -85,6 +86,7 @@ fn polynomial(z: f64, z2: f64, c: [f64; 6]) -> f64 {
 ///
 /// Quarter turns are taken off exactly, so a phase counted in turns meets no rounded π before it is small.
 #[inline]
+#[must_use]
 pub fn sin_cos_turns(x: f64, low: f64) -> (f64, f64) {
     let shifted = 4.0 * x + ROUNDER;
     let rest = (x - 0.25 * (shifted - ROUNDER)) + low;
@@ -99,6 +101,7 @@ pub fn sin_cos_turns(x: f64, low: f64) -> (f64, f64) {
 
 /// The integer nearest to `x`, |x| < 2⁵¹; ties to even.
 #[inline]
+#[must_use]
 pub fn nearest(x: f64) -> f64 {
     (x + ROUNDER) - ROUNDER
 }

@@ -2,6 +2,7 @@
 
 /// A straight line through a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Drift {
     /// Slope per unit of the abscissa.
     pub slope: f64,
@@ -11,6 +12,7 @@ pub struct Drift {
 
 impl Drift {
     /// Whether the interval excludes zero.
+    #[must_use]
     pub fn is_secular(&self) -> bool {
         self.slope.abs() > self.half_width
     }
@@ -28,6 +30,7 @@ impl Drift {
 /// let drift = secular_drift(&times, &values).unwrap();
 /// assert!((drift.slope - 3e-9).abs() < 1e-12 && drift.is_secular());
 /// ```
+#[must_use]
 pub fn secular_drift(times: &[f64], values: &[f64]) -> Option<Drift> {
     const BLOCKS: usize = 16;
     const STUDENT_95_14: f64 = 2.144_786_687_917_804;

@@ -8,6 +8,7 @@ use crate::body::Conserved;
 /// With forces, energy errors are divided by W = T₀ + |c| + Σ (|U₀| + |τ₀|): the kinetic energy at the start, the weight
 /// moment, and potential and torque of every other force at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 #[non_exhaustive]
 pub struct Errors {
     /// |E − E₀| / |E₀|; with forces |E − E₀| / W.
@@ -41,6 +42,7 @@ impl Errors {
     /// assert!(end.worst.of(Conserved::MomentumNorm).is_some_and(|error| error < 1e-14));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
+    #[must_use]
     pub fn of(&self, quantity: Conserved) -> Option<f64> {
         match quantity {
             Conserved::Energy => self.energy,

@@ -7,6 +7,8 @@ use crate::rotation::Vec3;
 /// Energy and momentum of a point in double-double, in the solver frame and divided by [`Body::scale`].
 /// [`Body::conserved`] tells which of them are constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[non_exhaustive]
 pub struct Invariants {
     /// Energy ½ m·I⁻¹m + U.
     pub energy: Dd,

@@ -44,6 +44,7 @@ const LOUD: u32 = 16;
 
 impl Monitor {
     /// Begins at the point `x`, whose time is that of its step by `clock`.
+    #[must_use]
     pub fn new(body: &Body, clock: Clock, x: &Point<f64>) -> Self {
         let rotor = body.rotor();
         let at = clock.at(x.steps());
@@ -155,6 +156,7 @@ impl Monitor {
     }
 
     /// (E − E₀) / E₀ of the point `x`, with its sign; 0 at rest. With forces relative to the scale of [`Errors`].
+    #[must_use]
     pub fn energy_change(&self, x: &Point<f64>) -> f64 {
         let scale = self.forced.map_or(self.start.energy, |forced| Dd::of(forced.energy_scale));
         if scale.hi() == 0.0 {
@@ -178,6 +180,7 @@ impl Monitor {
     }
 
     /// How often the momentum along the axis of the middle moment has changed sign.
+    #[must_use]
     pub fn flips(&self) -> u64 {
         self.flips.count
     }

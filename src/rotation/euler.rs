@@ -31,6 +31,7 @@ pub struct EulerSequence([usize; 3]);
 
 /// Three angles, rad, in the order of the sequence.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct EulerAngles {
     /// The outer two in (−π, π], the middle one in [0, π] if the outer axes agree, else in [−π/2, π/2].
     pub angles: [f64; 3],
@@ -57,6 +58,7 @@ impl EulerSequence {
     ];
 
     /// The axes, from 0, in the order of the turns.
+    #[must_use]
     pub fn axes(self) -> [usize; 3] {
         self.0
     }
@@ -152,6 +154,7 @@ impl fmt::Display for EulerSequence {
 /// The text names no sequence.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("there is no Euler sequence {text:?}; name three axes, no axis twice in a row, such as zxz or zyx")]
+#[non_exhaustive]
 pub struct EulerSequenceError {
     /// What was given.
     pub text: String,

@@ -9,6 +9,7 @@ use crate::num::Real;
 
 /// A quaternion `w + v`. As an attitude it takes body vectors to space: `v_space = q v_body q*`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Quat<S> {
     /// Scalar part.
     pub w: S,

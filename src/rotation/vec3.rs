@@ -12,6 +12,7 @@ pub(crate) const AXES: [char; 3] = ['x', 'y', 'z'];
 
 /// A vector of three components.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Vec3<S>(pub [S; 3]);
 
 impl<S: Real> Vec3<S> {

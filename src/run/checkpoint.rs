@@ -16,6 +16,7 @@ use crate::rotation::Vec3;
 /// Its text (`Display`, `FromStr`) holds every double exactly and is the same on every machine. The body is not part of it,
 /// as forces are code; what identifies it is, and [`Run::resume`](super::Run::resume) compares.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Checkpoint {
     pub(super) method: String,
     pub(super) body: Vec<String>,
@@ -83,6 +84,7 @@ pub(super) fn identity(body: &Body, clock: Clock, start: &Point<f64>) -> Vec<Str
 
 impl Checkpoint {
     /// Steps that the run has taken.
+    #[must_use]
     pub fn steps(&self) -> u64 {
         self.point.steps()
     }

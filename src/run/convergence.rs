@@ -10,6 +10,7 @@ use crate::rotation::rotation_angle;
 
 /// Global errors at one step size.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Halving {
     /// Step, s.
     pub h: f64,
@@ -54,7 +55,7 @@ pub fn halvings(
     exponents: core::ops::Range<u32>,
 ) -> Result<Vec<Halving>, HalvingError> {
     let motion = ExactMotion::from_point(body, *start)?;
-    motion.at(span)?;
+    motion.check_time(span)?;
     let exact = motion.point_at_dd(Dd::from(span));
     halvings_against(&exact, method, body, start, span, exponents)
 }
@@ -92,6 +93,7 @@ pub fn halvings_against(
 }
 
 /// The slope of log error against log h over the last two halvings.
+#[must_use]
 pub fn observed_order(errors: &[(f64, f64)]) -> Option<f64> {
     let [.., (h0, e0), (h1, e1)] = errors else { return None };
     (*e0 > 0.0 && *e1 > 0.0).then(|| libm::log(e0 / e1) / libm::log(h0 / h1))

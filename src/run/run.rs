@@ -30,6 +30,7 @@ const CHUNK: u64 = 4096;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[must_use]
 pub struct Run {
     body: Body,
     method: String,
@@ -116,7 +117,6 @@ impl Run {
     }
 
     /// The same run, watched as `watch` says from here on.
-    #[must_use]
     pub fn watching(mut self, watch: Watch) -> Self {
         self.watch = watch;
         self
@@ -306,6 +306,7 @@ impl Run {
     }
 
     /// The run as it stands.
+    #[must_use]
     pub fn sample(&self) -> Sample {
         let point = self.reading;
         let at = self.clock.at(point.steps());

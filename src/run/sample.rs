@@ -10,6 +10,7 @@ use crate::observe::Errors;
 
 /// How often the largest errors of a run are looked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Watch {
     /// At every step.
     #[default]

@@ -8,6 +8,7 @@ use crate::num::{Dd, Precise, Shown};
 /// Ascending numbers of steps. [`every`](Self::every) and [`logarithmic`](Self::logarithmic) begin at step 0, the start;
 /// [`at`](Self::at) and [`at_times`](Self::at_times) hold only what is given.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use]
 pub struct Schedule {
     /// Multiples of an interval, below the end.
     interval: u64,

@@ -55,11 +55,7 @@ impl Examined {
     }
 
     pub(super) fn verdict_name(&self) -> &'static str {
-        match self.verdict() {
-            Verdict::Valid => "valid",
-            Verdict::Suspicious => "suspicious",
-            Verdict::Invalid => "invalid",
-        }
+        self.verdict().name()
     }
 
     /// Which law is broken and by how much, in one sentence.

@@ -8,6 +8,7 @@ use crate::num::{Dd, Precise};
 
 /// About which axis the angular momentum circulates in the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Mode {
     /// The axis of the smallest moment: the body rolls about its long axis while that precesses.
     LongAxis,
@@ -19,8 +20,22 @@ pub enum Mode {
     Steady,
 }
 
+impl Mode {
+    /// In one lowercase word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Mode::LongAxis => "long-axis",
+            Mode::ShortAxis => "short-axis",
+            Mode::Separatrix => "separatrix",
+            Mode::Steady => "steady",
+        }
+    }
+}
+
 /// Readings of a free motion. Times in s, rates in rad/s; what a mode does not have is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Character {
     /// About which axis the momentum circulates.
     pub mode: Mode,

@@ -20,6 +20,7 @@ pub struct FreeBody<S> {
 
 impl<S: Precise> FreeBody<S> {
     /// The free flow of a body with the constants `rotor`.
+    #[must_use]
     pub fn new(rotor: &Rotor) -> Self {
         FreeBody { moments: rotor.moments() }
     }

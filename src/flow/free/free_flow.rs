@@ -24,6 +24,7 @@ enum Kind<S> {
 
 impl<S: Precise> FreeFlow<S> {
     /// The free flow of a body with the constants `rotor`.
+    #[must_use]
     pub fn new(rotor: &Rotor) -> Self {
         FreeFlow(match SymmetricTop::new(rotor) {
             Some(flow) => Kind::Symmetric(flow),

@@ -30,6 +30,7 @@ use crate::rotation::{Quat, Vec3};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct FreeMotion {
     body: Body,
     start: Point<Dd>,
@@ -86,7 +87,8 @@ impl FreeMotion {
         Ok(Self::from_point(inertia, start))
     }
 
-    /// From a point of the solver frame at t = 0.
+    /// From a point of the solver frame at t = 0, whose attitude has norm 1, as those of [`Body::enter`] have. Any other norm
+    /// is that of the attitudes at all times.
     pub fn from_point(inertia: &Inertia, start: Point<Dd>) -> Self {
         let body = Body::free(inertia.clone());
         let (moments, momentum) = (body.rotor().moments(), start.momentum_body);
@@ -117,23 +119,14 @@ impl FreeMotion {
     /// # Errors
     /// A time that is not finite, or beyond [`reach`](Self::reach).
     pub fn at(&self, t: f64) -> Result<State, TimeError> {
-        self.check(t)?;
+        TimeError::check(t, self.reach)?;
         Ok(self.body.leave(&self.point_at(t)))
     }
 
     /// The largest |t| at which the phase still has digits, s: some 2⁹⁶ rad; infinite at rest.
+    #[must_use]
     pub fn reach(&self) -> f64 {
         self.reach
-    }
-
-    fn check(&self, t: f64) -> Result<(), TimeError> {
-        if !t.is_finite() {
-            Err(TimeError::NotFinite { t })
-        } else if t.abs() > self.reach {
-            Err(TimeError::OutOfReach { t, reach: self.reach })
-        } else {
-            Ok(())
-        }
     }
 
     /// The states at many `times`, body axes.
@@ -149,7 +142,7 @@ impl FreeMotion {
     /// # Errors
     /// As [`at`](Self::at).
     pub fn omega_at(&self, t: f64) -> Result<Vector3<f64>, TimeError> {
-        self.check(t)?;
+        TimeError::check(t, self.reach)?;
         Ok(self.body.omega_of(&self.point_at(t)))
     }
 
@@ -170,6 +163,7 @@ impl FreeMotion {
     }
 
     /// How often the momentum along the axis of the middle moment changes sign between the start and time `t` (s).
+    #[must_use]
     pub fn flips(&self, t: Dd) -> u64 {
         match &self.kind {
             Kind::Circulating(orbit) => orbit.precise().flips(t),

@@ -25,6 +25,7 @@ impl<S: Real> SymmetricTop<S> {
     /// assert!(SymmetricTop::<f64>::new(&plate.rotor()).is_some());
     /// # Ok::<(), polhode::inertia::InertiaError>(())
     /// ```
+    #[must_use]
     pub fn new(rotor: &Rotor) -> Option<Self> {
         let moments = rotor.moments::<Dd>();
         let axis = (0..3).find(|axis| moments[(axis + 1) % 3] == moments[(axis + 2) % 3])?;

@@ -21,6 +21,7 @@ const UPRIGHT: f64 = 1e-70;
 
 /// Why a body is not a Lagrange top, or has no motion in doubles.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum LagrangeError {
     /// There is no weight moment.
     #[error("the body is free: it has no weight moment; its exact motion is that of the free body")]
@@ -96,6 +97,7 @@ pub enum LagrangeError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct LagrangeTop {
     body: Body,
     /// Takes coordinates with e₃ along the weight moment to the solver frame.
@@ -191,16 +193,12 @@ impl LagrangeTop {
     /// # Errors
     /// A time that is not finite, or beyond [`reach`](Self::reach).
     pub fn at(&self, t: f64) -> Result<State, TimeError> {
-        if !t.is_finite() {
-            return Err(TimeError::NotFinite { t });
-        }
-        if t.abs() > self.reach() {
-            return Err(TimeError::OutOfReach { t, reach: self.reach() });
-        }
+        TimeError::check(t, self.reach())?;
         Ok(self.body.leave(&self.point_at(t)))
     }
 
     /// The largest |t| at which the phases still have digits, s: some 2⁹⁶ rad.
+    #[must_use]
     pub fn reach(&self) -> f64 {
         let smaller = if self.axial < self.transverse { self.axial } else { self.transverse };
         let [m1, m2, m3] = self.start.momentum_body.0;
@@ -246,6 +244,7 @@ impl LagrangeTop {
     }
 
     /// Smallest and largest tilt of the weight moment from the vertical, rad.
+    #[must_use]
     pub fn turning_points(&self) -> [f64; 2] {
         let tilt = |(x, y): (Dd, Dd)| (positive_root(y).atan2(positive_root(x)) * 2.0).hi();
         match &self.motion {
@@ -262,6 +261,7 @@ impl LagrangeTop {
 
     /// Time from one largest tilt to the next, s; `None` where the axis does not come back: on the vertical and on
     /// the separatrix of the sleeping top.
+    #[must_use]
     pub fn nutation_period(&self) -> Option<f64> {
         match &self.motion {
             Motion::Vertical => None,
@@ -281,6 +281,7 @@ impl LagrangeTop {
     /// Potential energy, J, of the motion in the tilt θ (rad) alone: with ½ A θ'² it sums to the energy.
     ///
     /// `(p_φ − p_ψ cos θ)²/(2 A sin²θ) + p_ψ²/(2 C) + |c| cos θ`; infinite at the poles that cannot be reached.
+    #[must_use]
     pub fn effective_potential(&self, tilt: f64) -> f64 {
         let m = self.start.momentum_body;
         let up = self.start.attitude.rotate_back(Vec3::unit(2));

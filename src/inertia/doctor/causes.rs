@@ -28,6 +28,7 @@ const ENTRIES: [Entry; 6] = [XX, YY, ZZ, XY, XZ, YZ];
 
 /// A mistake that spoils a tensor.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Cause {
     /// Products +∫ x y dm stand where the entries −∫ x y dm belong.
     ProductSigns,
@@ -77,6 +78,7 @@ pub enum Cause {
 
 impl Cause {
     /// A word for programs.
+    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Cause::ProductSigns => "product-signs",

@@ -29,6 +29,7 @@ pub struct Evidence {
 
 /// The outcome of an examination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Verdict {
     /// Nothing speaks against it.
     Valid,
@@ -38,8 +39,21 @@ pub enum Verdict {
     Invalid,
 }
 
+impl Verdict {
+    /// In one lowercase word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Valid => "valid",
+            Verdict::Suspicious => "suspicious",
+            Verdict::Invalid => "invalid",
+        }
+    }
+}
+
 /// A cause that would explain the tensor.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Explanation {
     /// What happened.
     pub cause: Cause,
@@ -51,6 +65,7 @@ pub struct Explanation {
 
 /// A second moment that is too large for the extents of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Misfit {
     /// Name of the axis.
     pub axis: char,
@@ -77,6 +92,8 @@ pub struct Misfit {
 /// # Ok::<(), polhode::inertia::MassError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
+#[non_exhaustive]
 pub struct Diagnosis {
     /// The outcome.
     pub verdict: Verdict,

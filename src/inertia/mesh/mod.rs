@@ -19,6 +19,7 @@ use closed::Welded;
 
 /// Why a mesh bounds no body. Triangles, lines and bytes are counted from 1, the byte of an end of file is its size.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]
@@ -169,6 +170,7 @@ pub enum MeshError {
 
 /// An edge of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Edge {
     /// One end.
     pub from: Vector3<f64>,
@@ -219,6 +221,7 @@ impl core::fmt::Display for Edge {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Mesh {
     triangles: usize,
     vertices: usize,
@@ -267,16 +270,19 @@ impl Mesh {
     }
 
     /// Number of triangles, without those whose corners coincide.
+    #[must_use]
     pub fn triangles(&self) -> usize {
         self.triangles
     }
 
     /// Number of distinct vertices.
+    #[must_use]
     pub fn vertices(&self) -> usize {
         self.vertices
     }
 
     /// Enclosed volume, m³.
+    #[must_use]
     pub fn volume(&self) -> f64 {
         self.unit.volume
     }

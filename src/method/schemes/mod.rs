@@ -92,6 +92,7 @@ pub enum Pairs {
 
 impl Scheme {
     /// Lengths of the steps of one symmetric map, all of them, palindromic; none for two flows in turn.
+    #[must_use]
     pub fn lengths(&self) -> Option<Vec<Dd>> {
         match self.stages {
             Stages::Composition(gamma) => Some(closed(gamma, true)),
@@ -102,6 +103,7 @@ impl Scheme {
     /// The flows of one step in order, each with its share of the step.
     ///
     /// A composition stands for that of Strang's map B(½) A(1) B(½), neighbouring flows of B merged into one.
+    #[must_use]
     pub fn flows(&self) -> Vec<(Part, Dd)> {
         match self.stages {
             Stages::Composition(gamma) => {
@@ -164,6 +166,7 @@ pub fn scheme(name: &str) -> Result<&'static Scheme, UnknownScheme> {
 /// A name that no scheme has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("there is no scheme {name:?}{}; there are {}", suggestion(*nearest), names())]
+#[non_exhaustive]
 pub struct UnknownScheme {
     /// What was asked for.
     pub name: String,

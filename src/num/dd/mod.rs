@@ -39,6 +39,7 @@ pub use text::ParseDdError;
 /// assert_eq!(Dd::from(2.0).sqrt().to_string(), "1.4142135623730950488016887242097");
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[must_use]
 pub struct Dd {
     hi: f64,
     lo: f64,
@@ -95,12 +96,14 @@ impl Dd {
 
     /// The leading part, which is the nearest `f64`.
     #[inline]
+    #[must_use]
     pub const fn hi(self) -> f64 {
         self.hi
     }
 
     /// The trailing part.
     #[inline]
+    #[must_use]
     pub const fn lo(self) -> f64 {
         self.lo
     }
@@ -112,6 +115,7 @@ impl Dd {
     }
 
     /// The remainder in [0, `modulus`) of an integer divided by a positive integer below 2⁵³, exactly.
+    #[must_use]
     pub fn rem_euclid(self, modulus: f64) -> f64 {
         (self.hi.rem_euclid(modulus) + self.lo.rem_euclid(modulus)) % modulus
     }
