@@ -7,7 +7,7 @@
 use crate::body::{Body, StateError};
 use crate::inertia::Inertia;
 
-/// A body that everyone can ask for by name.
+/// A catalogued body.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct NamedBody {

@@ -92,7 +92,7 @@ impl Body {
     /// axes. The potential is U = c·Γ and the torque Γ × c, Γ = Qᵀ e_z. Without weight moment the body is free.
     ///
     /// # Errors
-    /// Components that are not finite, or a size that no double has beside the inertia.
+    /// Components that are not finite, or a size that is out of range beside the inertia.
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};

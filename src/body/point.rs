@@ -16,6 +16,18 @@ use crate::rotation::{Quat, Vec3};
 /// component): the rounding of `m += δ` is then one unit of δ instead of one of m, a random walk that starts
 /// thousands of times lower. The number of steps is part of the point too, so that a run can be written down at any step
 /// and taken up again.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::Body;
+/// use polhode::inertia::Inertia;
+/// let body = Body::free(Inertia::from_moments([10.0, 20.0, 30.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.5, 1.0, -0.25))?;
+/// let point = body.enter(&start)?;
+/// assert_eq!(point.momentum_body[1].hi() * body.scale(), start.momentum()[1]);
+/// assert_eq!(body.leave(&point), start);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Point<S> {

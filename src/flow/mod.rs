@@ -20,6 +20,23 @@ use crate::body::{Point, Time};
 use crate::num::Real;
 
 /// The exact solution of a vector field: `flow(s)` then `flow(t)` is `flow(s + t)`.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Time};
+/// use polhode::flow::{Flow, FreeFlow};
+/// use polhode::inertia::Inertia;
+/// use polhode::num::{Dd, Real};
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let (flow, now) = (FreeFlow::<Dd>::new(&body.rotor()), Time::from_seconds(0.0));
+/// let (mut once, mut twice) = (body.enter(&start)?, body.enter(&start)?);
+/// flow.flow(now, Dd::of(2.0), &mut once);
+/// flow.flow(now, Dd::of(0.5), &mut twice);
+/// flow.flow(now.later(Dd::of(0.5)), Dd::of(1.5), &mut twice);
+/// assert!((once.momentum_body - twice.momentum_body).magnitude() < 1e-29);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Flow<S: Real> {
     /// Moves `x` by the time `t` (s) from the time `at` on; negative times go back. What rounding takes is carried in `x`.
     fn flow(&self, at: Time, t: S, x: &mut Point<S>);

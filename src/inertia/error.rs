@@ -55,7 +55,7 @@ pub enum InertiaError {
         /// The principal moments.
         moments: [f64; 3],
     },
-    /// A moment is no double, or has lost digits as one.
+    /// A moment is outside the range of a double, or so small that it has lost digits.
     #[error("inertia of the size {} puts a moment outside the range of a double; change the units", Shown(*value))]
     OutOfRange {
         /// The largest entry, or the trace that was asked for.
@@ -80,7 +80,7 @@ pub enum InertiaError {
     },
 }
 
-/// Why something is no body, or has no mass properties.
+/// Why mass properties are invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MassError {
@@ -140,7 +140,7 @@ pub enum MassError {
     /// The masses and lengths put a moment outside the range of a double.
     #[error("masses and lengths put a moment of inertia outside the range of a double; change the units")]
     OutOfRange,
-    /// The tensor about the centre of mass belongs to no body.
+    /// The tensor about the centre of mass is not physically valid.
     #[error("about the centre of mass: {0}")]
     Inertia(#[from] InertiaError),
 }

@@ -84,7 +84,7 @@ impl MassProperties {
     /// From the tensor about any `point`: the parallel-axis theorem from there to the centre of mass.
     ///
     /// # Errors
-    /// As [`new`](Self::new); a tensor that is too small for the distance belongs to no body.
+    /// As [`new`](Self::new); a tensor that is too small for the distance is not physically valid.
     pub fn from_tensor_about(
         point: Vector3<f64>,
         mass: f64,

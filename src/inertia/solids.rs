@@ -203,7 +203,7 @@ impl Solid {
     ///
     /// # Errors
     /// Sizes, a mass or a density that are not finite or not above zero; a tube whose radii are not ascending, a
-    /// torus whose tube is wider than its ring; sizes and masses whose moments no double holds.
+    /// torus whose tube is wider than its ring; sizes and masses whose moments are outside the range of a double.
     pub fn with(&self, amount: Amount) -> Result<MassProperties, MassError> {
         for (&name, size) in SHAPES[self.place()].1.iter().zip(self.sizes()) {
             length(name, size)?;

@@ -87,7 +87,7 @@ impl Inertia {
     /// Differences across the diagonal below 1e-12 of the trace are taken for rounding and averaged.
     ///
     /// # Errors
-    /// Entries that are not finite, a tensor that is not symmetric, a moment that no double holds, moments that are not
+    /// Entries that are not finite, a tensor that is not symmetric, a moment outside the range of a double, moments that are not
     /// positive, break a triangle inequality, or are less than 2⁻²⁰⁰ of the largest.
     pub fn from_tensor(tensor: Matrix3<f64>) -> Result<Self, InertiaError> {
         check_symmetric(&tensor)?;
@@ -217,6 +217,22 @@ impl InertiaShape {
     #[must_use]
     pub fn tensor(&self) -> Matrix3<f64> {
         self.tensor
+    }
+
+    /// Principal moments over their sum, ascending.
+    ///
+    /// ```
+    /// use polhode::inertia::{Inertia, Solid, Amount};
+    /// let brick = Solid::Box([1.0, 2.0, 3.0]).with(Amount::Mass(12.0))?.inertia()?;
+    /// let [low, middle, high] = brick.shape().principal_moments(); // (4 + 1) : (9 + 1) : (9 + 4)
+    /// assert!((middle / low - 2.0).abs() < 1e-14 && (high / low - 2.6).abs() < 1e-14);
+    /// assert!((low + middle + high - 1.0).abs() < 1e-15);
+    /// # Ok::<(), polhode::inertia::MassError>(())
+    /// ```
+    #[must_use]
+    pub fn principal_moments(&self) -> [f64; 3] {
+        let spectrum = Spectrum::of_finite(&self.tensor);
+        spectrum.moments.map(|moment| moment.hi() * spectrum.scale)
     }
 
     /// The inertia of this shape whose trace is `trace`, kg m².

@@ -10,6 +10,13 @@ use crate::num::{Dd, Precise, Real};
 /// Φ_h = R_a(h/2) R_b(h/2) R_c(h) R_b(h/2) R_a(h/2), R_i the exact turn of `m_i²/(2 I_i)`.
 /// A product of exact flows: keeps |m|, L and the Lie–Poisson bracket, and the energy within O(h²) for
 /// exponentially long times. The order of the axes changes the size of that oscillation up to a hundredfold.
+///
+/// ```
+/// use polhode::method::{AxisSplit, Claimed, Kicks, LiePoisson};
+/// let outermost_z = AxisSplit { axes: Some("321".parse()?) };
+/// assert_eq!(LiePoisson::strang(outermost_z, Kicks).name(), "lie-poisson:321");
+/// # Ok::<(), polhode::method::AxisOrderError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AxisSplit {
     /// Outermost axis first; `None` takes that with the smallest leading error of the attitude on the

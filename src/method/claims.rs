@@ -34,9 +34,9 @@ pub struct Claims {
 }
 
 impl Claims {
-    /// Of an explicit method of the order `order`, neither symmetric nor Poisson.
-    pub const fn explicit(order: u32, kept: Kept, cost: Cost, source: &'static str) -> Claims {
-        Claims { order: Some(order), symmetric: false, poisson: false, kept, cost, source }
+    /// Of a method that is neither symmetric nor Poisson; where it is, set the field.
+    pub const fn new(order: Option<u32>, kept: Kept, cost: Cost, source: &'static str) -> Claims {
+        Claims { order, symmetric: false, poisson: false, kept, cost, source }
     }
 }
 

@@ -23,6 +23,19 @@ use crate::rotation::Vec3;
 ///
 /// `u × c` has the same rounded constants in the equation and in the step, so that the map as computed is symmetric
 /// still and has two invariants close to E and |m|: what rounding adds is a random walk.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Conserved};
+/// use polhode::inertia::Inertia;
+/// use polhode::method::{Dmv, Kicks, Rattle};
+/// use polhode::run::Run;
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let end = Run::new(&Rattle::strang(Dmv, Kicks), &body, &start, 0.1)?.advance_to(1000)?;
+/// assert!(end.worst.of(Conserved::Energy).is_some_and(|error| error < 1e-13));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dmv;
 

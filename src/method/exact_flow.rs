@@ -10,6 +10,14 @@ use crate::num::{Dd, Precise};
 /// The bracket is kept, L_z where the potential conserves it, and the energy of a potential that does not depend on time stays
 /// within O(h^order) for exponentially long times. The error is proportional to the torque; without torque the motion is
 /// exact.
+///
+/// ```
+/// use polhode::body::Problem;
+/// use polhode::method::{Claimed, ExactFlow, KickDrift, Kicks};
+/// let method = KickDrift::strang(ExactFlow, Kicks);
+/// assert_eq!(method.claims(Problem::Free).and_then(|claims| claims.order), None); // exact at any step
+/// assert_eq!(method.claims(Problem::Gravity).and_then(|claims| claims.order), Some(2));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExactFlow;
 

@@ -15,6 +15,19 @@ use crate::rotation::{Quat, Vec3};
 /// Under gravity `Γ̄ × c` joins the right side, `Γ̄ = ½(Γ + Γ')`. The Cayley map moves Γ by the midpoint rule too, so
 /// that energy and L_z = m·Γ, quadratic in (m, Γ), are kept. Any other torque is taken in the middle of the step: at the
 /// middle time, at q and half of the turn, and at I⁻¹m̄. Then the energy of a potential is not kept: the map is not symplectic.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Conserved};
+/// use polhode::inertia::Inertia;
+/// use polhode::method::ImplicitMidpoint;
+/// use polhode::run::Run;
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let end = Run::new(&ImplicitMidpoint, &body, &start, 0.1)?.advance_to(1000)?;
+/// assert!(end.worst.of(Conserved::Momentum).is_some_and(|error| error < 1e-13));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImplicitMidpoint;
 

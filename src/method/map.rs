@@ -6,6 +6,58 @@ use crate::num::{Dd, Real};
 /// A family of maps Φ_h, one for each duration, body and field of forces.
 ///
 /// A method of one's own implements this for every scalar and field, and [`Claimed`](super::Claimed).
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Conserved, Field, Point, Problem, Rotor, Time};
+/// use polhode::flow::{Flow, FreeFlow, Kick};
+/// use polhode::inertia::Inertia;
+/// use polhode::method::{Claimed, Claims, Cost, Energy, Kept, Map, Method};
+/// use polhode::num::{Dd, Precise};
+/// use polhode::run::Run;
+///
+/// /// A kick, then the free flow, Φ_h = A(h) B(h): of order 1, and not symmetric.
+/// struct KickFirst;
+/// struct KickFirstMap<S, F> {
+///     h: S,
+///     kick: Kick<S, F>,
+///     free: FreeFlow<S>,
+/// }
+///
+/// impl<S: Precise> Method<S> for KickFirst {
+///     type Map<F: Field<S>> = KickFirstMap<S, F>;
+///     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> KickFirstMap<S, F> {
+///         KickFirstMap { h: S::from_dd(h), kick: Kick::new(field.clone()), free: FreeFlow::new(rotor) }
+///     }
+/// }
+///
+/// impl<S: Precise, F: Field<S>> Map<S> for KickFirstMap<S, F> {
+///     fn apply(&mut self, at: Time, x: &mut Point<S>) {
+///         self.kick.flow(at, self.h, x);
+///         self.free.flow(at, self.h, x);
+///         x.renormalize_at_times();
+///     }
+/// }
+///
+/// impl Claimed for KickFirst {
+///     fn name(&self) -> String {
+///         "kick-first".into()
+///     }
+///     fn claims(&self, problem: Problem) -> Option<Claims> {
+///         let mut kept = Kept::NOTHING;
+///         (kept.energy, kept.momentum_z, kept.norm) = (Energy::Bounded, true, true);
+///         let cost = Cost::kicks(1) + Cost::free_flows(1);
+///         (problem == Problem::Gravity).then(|| Claims::new(Some(1), kept, cost, "symplectic Euler"))
+///     }
+/// }
+///
+/// let top = Body::heavy(Inertia::from_moments([1.0, 1.0, 0.25])?, Vector3::new(0.0, 0.0, 2.0))?;
+/// let tilted = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5);
+/// let start = top.state(tilted, Vector3::new(0.0, 0.0, 20.0))?;
+/// let end = Run::new(&KickFirst, &top, &start, 0.001)?.advance_to(1000)?;
+/// assert!(end.worst.of(Conserved::MomentumZ).is_some_and(|error| error < 1e-13));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Method<S: Real> {
     /// The map for one duration, with everything that does not change from step to step worked out.
     type Map<F: Field<S>>: Map<S>;
@@ -19,6 +71,19 @@ pub trait Method<S: Real> {
 /// Where a symmetric map begins and ends with the same flow, Φ_h = P(h/2) M P(h/2), the last P of a step and the first of
 /// the next are one: [`open`](Self::open) takes P(h/2), each [`advance`](Self::advance) M and then P(h), and
 /// [`close`](Self::close) takes P(−h/2) back.
+///
+/// ```
+/// use polhode::body::{Body, Free, Time};
+/// use polhode::inertia::Inertia;
+/// use polhode::method::{Dmv, Map, Method};
+/// use polhode::num::{Dd, Precise, Real};
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(Default::default(), [0.4, 1.0, -0.3].into())?;
+/// let mut x = body.enter(&start)?.to_f64();
+/// Dmv.map(Dd::of(0.1), &body.rotor(), &Free).apply(Time::from_seconds(0.0), &mut x);
+/// assert!((body.leave(&x).momentum_space() - start.momentum_space()).norm() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Map<S: Real>: Send + 'static {
     /// x ← Φ_h(x), from the time `at` on. Cannot fail; an implicit map keeps its worst residual instead.
     fn apply(&mut self, at: Time, x: &mut Point<S>);

@@ -17,7 +17,7 @@ mod splitting;
 mod stagnation;
 mod two_turn;
 
-pub use axis_order::AxisOrder;
+pub use axis_order::{AxisOrder, AxisOrderError};
 pub use axis_split::AxisSplit;
 pub use catalogue::{AnyMethod, StepError, UnknownMethod, catalogue, method};
 pub use claims::{Claimed, Claims, Cost, Energy, Kept};

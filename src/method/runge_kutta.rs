@@ -9,7 +9,7 @@ use crate::rotation::Vec3;
 
 /// What an explicit method on (q, m) claims of every motion: nothing kept but, with `norm`, |q|.
 fn claims(order: u32, norm: bool, right_sides: u32, source: &'static str) -> Option<Claims> {
-    Some(Claims::explicit(order, Kept { norm, ..Kept::NOTHING }, Cost::right_sides(right_sides), source))
+    Some(Claims::new(Some(order), Kept { norm, ..Kept::NOTHING }, Cost::right_sides(right_sides), source))
 }
 
 /// The right-hand side.
@@ -42,6 +42,14 @@ impl<S: Real, F: Field<S>> Equations<S, F> {
 /// The classical Runge–Kutta method of order 4.
 ///
 /// Φ_h: `x + h/6 (k₁ + 2k₂ + 2k₃ + k₄)`. Keeps nothing: energy falls ∝ h⁵ t, |q| too unless `normalized`.
+///
+/// ```
+/// use polhode::body::Problem;
+/// use polhode::method::{Claimed, Energy, Rk4};
+/// let claims = Rk4 { normalized: true }.claims(Problem::Torque).unwrap();
+/// assert_eq!((claims.order, claims.kept.norm), (Some(4), true));
+/// assert_eq!(claims.kept.energy, Energy::Drifts);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rk4 {
     /// Divide q by its norm after every step.
@@ -97,6 +105,19 @@ impl<S: Real, F: Field<S>> Map<S> for Rk4Map<S, F> {
 }
 
 /// Explicit Euler: `x + h k₁`. Spirals outwards at every step.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Conserved};
+/// use polhode::inertia::Inertia;
+/// use polhode::method::ExplicitEuler;
+/// use polhode::run::Run;
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let end = Run::new(&ExplicitEuler, &body, &start, 0.1)?.advance_to(100)?;
+/// assert!(end.worst.of(Conserved::Energy).is_some_and(|error| error > 0.1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExplicitEuler;
 
@@ -132,6 +153,13 @@ impl<S: Real, F: Field<S>> Map<S> for ExplicitEulerMap<S, F> {
 }
 
 /// Semi-implicit Euler as game engines write it: `m' = m + h (m × ω + τ)`, then `q' = norm(q + h/2 q ω')`.
+///
+/// ```
+/// use polhode::body::Problem;
+/// use polhode::method::{Claimed, SemiImplicitEuler};
+/// let claims = SemiImplicitEuler.claims(Problem::Free).unwrap();
+/// assert_eq!((claims.order, claims.symmetric, claims.kept.momentum_norm), (Some(1), false, false));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SemiImplicitEuler;
 

@@ -23,7 +23,7 @@ pub struct Monitor {
     start: Invariants,
     worst: Errors,
     flips: Flips,
-    /// Blocks evaluated without error since a plain look last ruled nothing out; 0: look plainly.
+    /// Blocks since the plain evaluation last did not suffice; at [`LOUD`] it is tried again. 0 while it suffices.
     loud: u32,
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct Memory {
 /// How many steps a run takes between two looks at them.
 pub const BLOCK: usize = 32;
 
-/// After a plain look that ruled nothing out, the next is taken this many blocks later.
+/// Blocks until the plain evaluation is tried again after it did not suffice.
 const LOUD: u32 = 16;
 
 impl Monitor {

@@ -8,6 +8,14 @@ use super::Vec3;
 use crate::num::Real;
 
 /// A quaternion `w + v`. As an attitude it takes body vectors to space: `v_space = q v_body q*`.
+///
+/// ```
+/// use polhode::rotation::{Quat, Vec3};
+/// let half = 0.5_f64.sqrt();
+/// let quarter_turn = Quat::new(half, Vec3([0.0, 0.0, half])); // about z: x to y
+/// assert!((quarter_turn.rotate(Vec3::unit(0)) - Vec3::unit(1)).norm() < 1e-15);
+/// assert!(((quarter_turn * quarter_turn).v[2] - 1.0).abs() < 1e-15);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Quat<S> {

@@ -11,6 +11,14 @@ use crate::num::{Dd, Precise, Real};
 pub(crate) const AXES: [char; 3] = ['x', 'y', 'z'];
 
 /// A vector of three components.
+///
+/// ```
+/// use polhode::num::Dd;
+/// use polhode::rotation::Vec3;
+/// let (x, y) = (Vec3::<f64>::unit(0), Vec3::unit(1));
+/// assert_eq!(x.cross(y), Vec3::unit(2));
+/// assert_eq!(Vec3::<Dd>::of(x).dot(Vec3::of(y)), Dd::ZERO);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Vec3<S>(pub [S; 3]);

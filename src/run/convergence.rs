@@ -43,10 +43,24 @@ pub enum HalvingError {
 
 /// Errors of exact motion after the time `span` for steps `span / 2^k`, k in `exponents`, integrated in double-double.
 ///
-/// `span` should be a power of two, so that every step is exact.
+/// `span`, s, should be a power of two, so that every step is exact.
 ///
 /// # Errors
 /// A span that is no usable step, a body that the method is not for, or one whose motion has no closed form.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::Body;
+/// use polhode::inertia::Inertia;
+/// use polhode::method::method;
+/// use polhode::run::{halvings, observed_order};
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let errors = halvings(&method("rk4")?, &body, &body.enter(&start)?, 1.0, 5..8)?;
+/// let attitude: Vec<_> = errors.iter().map(|error| (error.h, error.attitude_error)).collect();
+/// assert!(observed_order(&attitude).is_some_and(|order| (order - 4.0).abs() < 0.1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn halvings(
     method: &dyn AnyMethod,
     body: &Body,
@@ -60,7 +74,7 @@ pub fn halvings(
     halvings_against(&exact, method, body, start, span, exponents)
 }
 
-/// As [`halvings`], for any body, against the point `exact` at the time `span`.
+/// As [`halvings`], for any body, against the point `exact` at the time `span`, s.
 ///
 /// # Errors
 /// As [`halvings`].
@@ -92,7 +106,7 @@ pub fn halvings_against(
         .collect()
 }
 
-/// The slope of log error against log h over the last two halvings.
+/// The slope of log error against log h over the last two of the pairs (h, error); `None` with fewer, or with an error of 0.
 #[must_use]
 pub fn observed_order(errors: &[(f64, f64)]) -> Option<f64> {
     let [.., (h0, e0), (h1, e1)] = errors else { return None };

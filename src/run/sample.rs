@@ -32,6 +32,21 @@ impl fmt::Display for Watch {
 }
 
 /// A run as it stands after a number of steps.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Conserved};
+/// use polhode::inertia::Inertia;
+/// use polhode::method::method;
+/// use polhode::run::Run;
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let sample = Run::new(&method("lie-poisson")?, &body, &start, 0.25)?.advance_to(40)?;
+/// assert_eq!((sample.steps, sample.time.hi()), (40, 10.0));
+/// assert!((sample.omega_body.norm() - 1.0).abs() < 0.5); // rad/s
+/// assert!(sample.errors.of(Conserved::Energy) <= sample.worst.of(Conserved::Energy));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Sample {

@@ -19,7 +19,7 @@ const WEAKEST: f64 = 1e-80;
 /// Deviation from rest on the vertical, below which its fourth powers have no digits.
 const UPRIGHT: f64 = 1e-70;
 
-/// Why a body is not a Lagrange top, or has no motion in doubles.
+/// Why a body is not a Lagrange top, or its motion is out of range.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LagrangeError {
@@ -46,10 +46,10 @@ pub enum LagrangeError {
         /// Angle between weight moment and symmetry axis, rad.
         angle: f64,
     },
-    /// The weight is too weak beside the spin.
+    /// The weight is negligible beside the spin: terms of the solution leave the range of a double.
     #[error(
         "the weight moment is {ratio:.1e} of moment of inertia times squared angular velocity (at least {WEAKEST:e}): too little \
-         to be told from none; leave it out"
+         to be computed with; leave it out"
     )]
     Weak {
         /// |c|/(A ω²), ω the fastest part of m/A.

@@ -13,7 +13,7 @@ use crate::num::{Dd, Real};
 use crate::rotation::{AXES, Vec3};
 pub use causes::{Cause, Entry};
 
-/// Densities within e^±14 of water's, from a thousandth of a kg/m³ to that of no known matter, accuse nobody.
+/// A density within e^±14 of water's, 1e-3 to 1e9 kg/m³, is no evidence against a tensor.
 const ORDINARY: f64 = 14.0;
 
 /// What is known of the body besides its tensor; everything is optional, and every item tells more causes apart.
@@ -31,11 +31,11 @@ pub struct Evidence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Verdict {
-    /// Nothing speaks against it.
+    /// No law is broken, and no likelier tensor is near.
     Valid,
-    /// A body can have this tensor, but hardly the one that is described.
+    /// The tensor is physically valid, but a common mistake explains it better than the body described.
     Suspicious,
-    /// No body has this tensor, or none of this mass fits into these extents with it.
+    /// The tensor is not physically valid, or no body of this mass and tensor fits into the extents.
     Invalid,
 }
 
@@ -59,7 +59,7 @@ pub struct Explanation {
     pub cause: Cause,
     /// The tensor if it did.
     pub corrected: Matrix3<f64>,
-    /// How far-fetched: rareness of the mistake plus oddness of the corrected body. Only the order has a meaning.
+    /// How unlikely: rareness of the mistake plus oddness of the corrected body. Only the order of costs has a meaning.
     pub cost: f64,
 }
 
@@ -107,7 +107,7 @@ pub struct Diagnosis {
     pub triangle_margins: [f64; 3],
     /// Causes that would explain it, the likeliest first; none if the tensor is valid.
     pub causes: Vec<Explanation>,
-    /// The nearest tensor that a body can have, in Frobenius norm; a moment of it may be zero.
+    /// The nearest physically valid tensor in Frobenius norm; a moment of it may be zero.
     pub nearest: Matrix3<f64>,
     /// Frobenius distance to it.
     pub distance: f64,
@@ -118,13 +118,27 @@ pub struct Diagnosis {
 
 /// Examines a tensor (entries `I_xy = −∫ x y dm`, supposed to be about the centre of mass).
 ///
-/// The law is ½ tr(I)·1 − I ⪰ 0 up to 1e-12 of the trace; rods and plates obey it. A tensor of zeros belongs to no
-/// body with an extent, and is invalid. A cause is tested by undoing it: it explains the tensor if the corrected one obeys the law and fits into the extents. Explanations
-/// are ranked by how rare the mistake is, how well the corrected body fills the extents (or how ordinary its
+/// The law is ½ tr(I)·1 − I ⪰ 0 up to 1e-12 of the trace; rods and plates obey it. A tensor of zeros is invalid.
+///
+/// A cause is tested by undoing it: it explains the tensor if the corrected one obeys the law and fits into the extents.
+/// Explanations are ranked by how rare the mistake is, how well the corrected body fills the extents (or how ordinary its
 /// density is, if only the mass is known, in kg and m), how large its products are, and how flat it is.
 ///
 /// # Errors
 /// Entries or evidence that are not finite, a mass or extents that are not positive, sizes outside the range of a double.
+///
+/// ```
+/// use nalgebra::{Matrix3, Vector3};
+/// use polhode::inertia::{Cause, Evidence, Verdict, diagnose};
+/// // a cube of 12 kg and 1 m, its tensor taken about a point 1 m below its centre
+/// let tensor = Matrix3::from_diagonal(&Vector3::new(14.0, 14.0, 2.0));
+/// let center_of_mass = Some(Vector3::new(0.0, 0.0, 1.0));
+/// let evidence = Evidence { mass: Some(12.0), center_of_mass, extents: Some([1.0; 3]) };
+/// let found = diagnose(tensor, &evidence)?;
+/// assert_eq!(found.verdict, Verdict::Invalid); // no such mass distribution fits into the cube
+/// assert_eq!((&found.causes[0].cause, found.causes[0].corrected[(0, 0)]), (&Cause::AboutOrigin, 2.0));
+/// # Ok::<(), polhode::inertia::MassError>(())
+/// ```
 pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, MassError> {
     let spectrum = Spectrum::of(&tensor)?;
     let is_zero = tensor.amax() == 0.0;

@@ -1,4 +1,4 @@
-//! The nearest tensor that a body can have.
+//! The nearest physically valid tensor.
 
 use nalgebra::Matrix3;
 

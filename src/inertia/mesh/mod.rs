@@ -290,7 +290,7 @@ impl Mesh {
     /// Mass properties with so much matter in it, in the frame of the vertices.
     ///
     /// # Errors
-    /// A mass or density that is not finite or not above zero, or with which no double holds the moments.
+    /// A mass or density that is not finite or not above zero, or moments outside the range of a double.
     pub fn with(&self, amount: Amount) -> Result<MassProperties, MassError> {
         let mass = amount.mass(self.unit.volume)?;
         let density = match amount {
