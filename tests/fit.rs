@@ -4,8 +4,8 @@
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
 use polhode::fit::{
-    Bound, Estimate, FitError, Known, Reading, Record, RecordError, Segment, Settings, fit, foreseen_bound,
-    simulate,
+    Bound, Constraint, Estimate, FitError, Known, Reading, Record, RecordError, Segment, Settings,
+    Undetermined, fit, foreseen_bound, simulate,
 };
 use polhode::inertia::Inertia;
 use polhode::num::Random;
@@ -308,9 +308,9 @@ fn a_flat_body_comes_out_physical_and_says_what_holds_it() {
         assert!(is_physical(&estimate));
         if let Some(constraint) = estimate.active_constraints.first() {
             held += 1;
-            assert_eq!(constraint.name, "I1 + I2 >= I3");
+            assert_eq!(constraint.constraint, Constraint::Triangle);
             assert!(constraint.multiplier > 0.0 && estimate.triangle_slack < 1e-12);
-            assert!(estimate.warnings.iter().any(|w| w.contains("I1 + I2 >= I3")));
+            assert!(estimate.warnings.iter().any(|w| w.to_string().contains("I1 + I2 >= I3")));
             // on the face I₃ is ½, without error
             assert!(estimate.sigma_principal[2] < 1e-3 * estimate.sigma_principal[0]);
         }
@@ -419,11 +419,8 @@ fn pure_spin_tells_an_axis_and_no_ratio() {
             panic!("noise {sigma}: {}", refusal(&record))
         };
         assert_eq!(what.rank, 2, "noise {sigma}: {:?}", what.deviations);
-        assert!(
-            what.null_directions[0]
-                .contains("the ratio I2/I3 is undetermined: the record is a pure spin about axis 1")
-        );
-        assert!(what.known[0].contains("is a principal axis"), "{:?}", what.known);
+        assert_eq!(what.null_directions[0], Undetermined::TransverseRatio);
+        assert!(what.known[0].axis.cross(&axis).norm() < 1e-2, "noise {sigma}: {:?}", what.known);
     }
 }
 
@@ -469,7 +466,7 @@ fn two_pure_spins_tell_all_axes_and_no_ratio() {
             let both = spin(0, &mut random).join(spin(2, &mut random));
             let FitError::Unidentifiable(what) = refusal(&both) else { panic!("{seconds} s, trial {trial}") };
             assert_eq!(what.rank, 3, "{seconds} s, trial {trial}: {what:?}");
-            assert!(what.null_directions.iter().all(|d| d.contains("ratio")), "{:?}", what.null_directions);
+            assert!(what.null_directions.iter().all(|d| d.to_string().contains("ratio")), "{what:?}");
             assert_eq!(what.known.len(), 3, "{:?}", what.known);
         }
     }
@@ -502,7 +499,7 @@ fn a_sphere_looks_like_a_pure_spin_until_it_is_thrown_three_ways() {
         assert!((estimate.principal[k] - 1.0 / 3.0).abs() < 5.0 * estimate.sigma_principal[k]);
     }
     assert!(
-        estimate.warnings.iter().any(|w| w.contains("agree within their errors")),
+        estimate.warnings.iter().any(|w| w.to_string().contains("agree within their errors")),
         "{:?}",
         estimate.warnings
     );
@@ -561,8 +558,8 @@ fn units_mistaken_by_57_are_named() {
         ("", 30.0 / std::f64::consts::PI, "revolutions per minute taken for radians per second"),
     ] {
         let record = Record::read(&text(unit, factor), "toss.csv", Reading::default()).unwrap();
-        let FitError::Units { hint: named, .. } = refusal(&record) else { panic!("{hint}") };
-        assert_eq!(named, hint);
+        let FitError::Units { mistakes, .. } = refusal(&record) else { panic!("{hint}") };
+        assert_eq!(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>(), [hint]);
         let unchecked = Settings { check_units: false, ..Settings::default() };
         if let Ok(estimate) = fit(&record, &unchecked) {
             assert!(!estimate.warnings.is_empty());
@@ -604,7 +601,10 @@ fn mistaken_units_are_named_where_no_tensor_settles() {
         assert!(read(&rates, 1.0, 1.0).is_ok(), "{moments:?}");
         for (of_times, of_rates, hint) in mistakes {
             match read(&rates, of_times, of_rates) {
-                Err(FitError::Units { hint: named, .. }) => assert_eq!(named, hint, "{moments:?}"),
+                Err(FitError::Units { mistakes, .. }) => {
+                    let named: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
+                    assert_eq!(named, [hint], "{moments:?}");
+                }
                 other => panic!("{moments:?}, {hint}: {other:?}"),
             }
         }
@@ -636,7 +636,7 @@ fn flat_tops_are_left_out_with_a_warning() {
     let record = Record::from_samples(&times, &rates).unwrap();
     assert!(record.saturated() > 50);
     let estimate = fit(&record, &Settings::default()).unwrap();
-    assert!(estimate.warnings.iter().any(|w| w.contains("flat tops")), "{:?}", estimate.warnings);
+    assert!(estimate.warnings.iter().any(|w| w.to_string().contains("flat tops")), "{:?}", estimate.warnings);
     let e = entries(&(estimate.shape.tensor() - j));
     assert!(distance(&e, &estimate.free_covariance) < 40.0, "{}", distance(&e, &estimate.free_covariance));
 }
@@ -671,7 +671,7 @@ fn contradictory_bounds_are_named() {
     let low = free.shape.tensor()[(0, 0)] - 0.01;
     let held = with(vec![bound(Vector3::x(), None, Some(low))]).unwrap();
     assert!((held.shape.tensor()[(0, 0)] - low).abs() < 1e-12);
-    assert!(held.active_constraints[0].name.starts_with("bound 1"));
+    assert!(matches!(held.active_constraints[0].constraint, Constraint::AtMost { limit: 1, .. }));
 }
 
 #[test]
@@ -689,11 +689,7 @@ fn duplicate_times_are_merged_and_counted() {
     let w: Vec<_> = rates.iter().flat_map(|w| [*w, *w]).collect();
     let estimate = fit(&Record::from_samples(&t, &w).unwrap(), &Settings::default()).unwrap();
     assert!((estimate.shape.tensor() - j).amax() < 1e-3);
-    assert!(
-        estimate.warnings[0].starts_with("1500 samples were merged with the sample of the same time"),
-        "{:?}",
-        estimate.warnings
-    );
+    assert_eq!(estimate.warnings[0].to_string(), "1500 samples were merged with the sample of the same time");
 }
 
 #[test]
@@ -706,7 +702,11 @@ fn torque_is_seen_in_the_drifts() {
     let drift = estimate.momentum_drift;
     assert!((drift.rate + 1e-3).abs() < 5e-5, "{drift:?}");
     assert!((estimate.energy_drift.rate + 2e-3).abs() < 1e-4, "{:?}", estimate.energy_drift);
-    assert!(estimate.warnings.iter().any(|w| w.contains("not free of torques")), "{:?}", estimate.warnings);
+    assert!(
+        estimate.warnings.iter().any(|w| w.to_string().contains("not free of torques")),
+        "{:?}",
+        estimate.warnings
+    );
 }
 
 /// Two degrees off the major axis with a noise of a tenth of the rate: the wobble drowns.
@@ -719,7 +719,11 @@ fn a_drowned_wobble_is_refused_or_flagged() {
     for sigma in [1e-2, 1e-1] {
         match fit(&record(&j, omega, &times(60), sigma, &mut random), &Settings::default()) {
             Ok(estimate) => {
-                assert!(estimate.warnings.iter().any(|w| w.contains("known to")), "{:?}", estimate.warnings);
+                assert!(
+                    estimate.warnings.iter().any(|w| w.to_string().contains("known to")),
+                    "{:?}",
+                    estimate.warnings
+                );
             }
             Err(FitError::Unidentifiable(_)) => {}
             Err(error) => panic!("{error}"),
@@ -794,7 +798,11 @@ fn bounds_that_contradict_the_record_are_seen_in_the_misfit() {
         assert!(held.pull > 100.0 && held.chi2_per_dof > 10.0, "{} {}", held.pull, held.chi2_per_dof);
         let mean = held.residuals[0].misfit;
         assert!((mean / held.chi2_per_dof - 1.0).abs() < 0.1, "{mean} {}", held.chi2_per_dof);
-        assert!(held.warnings.iter().any(|w| w.contains("it contradicts them")), "{:?}", held.warnings);
+        assert!(
+            held.warnings.iter().any(|w| w.to_string().contains("it contradicts them")),
+            "{:?}",
+            held.warnings
+        );
         let variances = held.covariance.diagonal();
         assert!(variances.iter().all(|v| *v >= 0.0), "{variances}");
     }

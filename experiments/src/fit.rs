@@ -149,7 +149,7 @@ impl Fit {
                 let facts = match &error {
                     FitError::Unidentifiable(what) => Some(Facts::unidentified(what)),
                     FitError::Unsettled { axes, .. } => Some(Facts::unsettled(axes)),
-                    FitError::NoRotation { .. } | FitError::Solver { .. } => None,
+                    FitError::NoRotation { .. } | FitError::Solver(_) => None,
                     _ => return Err(Error::Input(format!("{}: {error}", self.names()))),
                 };
                 if let Some(facts) = facts {
@@ -161,7 +161,7 @@ impl Fit {
         let drawing = residuals.map(|file| plot::residuals(&estimate).map(|svg| (file, svg))).transpose()?;
         output.write_whole(&report::identified(&estimate, format))?;
         // the JSON holds them too; a file of rows does not
-        estimate.warnings.iter().for_each(|warning| warn(warning));
+        estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
         match drawing {
             Some((file, svg)) => file.write_whole(&svg),
             None => Ok(()),

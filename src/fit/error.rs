@@ -2,17 +2,20 @@
 
 use thiserror::Error;
 
+use super::physical::constraint::Constraint;
+use super::physical::failure::SolverFailure;
 use super::report::averages::AverageAxis;
 use super::report::identifiability::Identifiability;
+use super::weak::mistaken_units::{MistakenUnit, alternatives};
 use super::weak::test_functions::TESTS_PER_RADIUS;
 
 /// Two demands that no tensor meets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clash {
     /// The one.
-    pub first: String,
+    pub first: Constraint,
     /// The other.
-    pub second: String,
+    pub second: Constraint,
     /// By how much each would have to give way, as a share of the trace; negative where they meet.
     pub gap: f64,
 }
@@ -69,24 +72,25 @@ pub enum FitError {
     },
     /// Another unit of the rates or times explains the record far better.
     #[error(
-        "the units look mistaken: with rate x time {factor:.4e} times as large ({hint}) the misfit per equation falls from \
-         {misfit:.3e} to {better:.3e}; name the units, or switch this check off"
+        "the units look mistaken: with rate x time {factor:.4e} times as large ({}) the misfit per equation falls from \
+         {misfit:.3e} to {better:.3e}; name the units, or switch this check off",
+        alternatives(mistakes)
     )]
     Units {
         /// Factor on rate × time.
         factor: f64,
         /// What may have happened, the smallest factor first.
-        hint: String,
+        mistakes: Vec<MistakenUnit>,
         /// χ² per degree of freedom as given.
         misfit: f64,
         /// The same with the factor.
         better: f64,
     },
     /// Bounds that exclude each other.
-    #[error("{} and {} exclude each other: each would have to give way by {:.3e} of the trace", .0.first, .0.second, .0.gap)]
+    #[error("{} and {} exclude each other: each would have to give way by {:.3e} of the trace", demand(&.0.first), demand(&.0.second), .0.gap)]
     Contradiction(Box<Clash>),
     /// Bounds that hardly a tensor meets.
-    #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", .0.first, .0.second)]
+    #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", demand(&.0.first), demand(&.0.second))]
     NoRoom(Box<Clash>),
     /// The axis of a bound has no direction.
     #[error("bound {bound} has the axis {axis:?}; it must be a finite vector that is not zero")]
@@ -135,11 +139,16 @@ pub enum FitError {
         radius: f64,
     },
     /// The solver's answer did not pass the check of optimality.
-    #[error("the quadratic program has no certified answer: {status}")]
-    Solver {
-        /// What happened.
-        status: String,
-    },
+    #[error("the quadratic program has no certified answer: {0}")]
+    Solver(SolverFailure),
+}
+
+/// The law said in full, where it stands against a limit.
+fn demand(constraint: &Constraint) -> String {
+    match constraint {
+        Constraint::Triangle => "the law I1 + I2 >= I3, by which a moment is at most half the trace".into(),
+        limit => limit.to_string(),
+    }
 }
 
 fn smaller(factor: Option<f64>) -> String {

@@ -4,6 +4,7 @@ use nalgebra::Matrix3;
 
 use super::error::FitError;
 use super::physical::coordinates::tensor;
+use super::physical::failure::SolverFailure;
 use super::physical::nearest::nearest;
 use super::record::Record;
 use super::report::averages;
@@ -42,7 +43,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     if 3.0 * variance > 0.25 {
         return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
     }
-    let singular = || FitError::Solver { status: "the residuals have no positive covariance".into() };
+    let singular = || FitError::Solver(SolverFailure::Covariance);
     let weak =
         radius::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| {
             match failure {
@@ -60,7 +61,12 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         b.credible && if weak.settled() { b.misfit < 0.1 * misfit } else { b.misfit < 2.0 && !b.vague }
     };
     if let Some(b) = better.as_ref().filter(convincing) {
-        return Err(FitError::Units { factor: b.factor, hint: b.hint.clone(), misfit, better: b.misfit });
+        return Err(FitError::Units {
+            factor: b.factor,
+            mistakes: b.mistakes.clone(),
+            misfit,
+            better: b.misfit,
+        });
     }
     // what the noise does not explain enlarges the deviations
     let identifiability = identify(&weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
@@ -75,9 +81,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     }
     let root = weak.root / (variance * misfit.max(1.0)).sqrt();
     // R⁻¹, a factor of the covariance
-    let free = root
-        .try_inverse()
-        .ok_or_else(|| FitError::Solver { status: "the information is not positive".into() })?;
+    let free = root.try_inverse().ok_or(FitError::Solver(SolverFailure::Information))?;
     let answer = nearest(weak.x, root, &settings.bounds)?;
     let facts = Facts { record, settings, stretches: &stretches, rms, variance, weak: &weak, misfit };
     facts.report(answer, free, identifiability, better.as_ref().filter(|b| b.credible))

@@ -29,7 +29,11 @@ pub(super) struct Facts {
 
 impl Facts {
     pub(super) fn unidentified(what: &Identifiability) -> Self {
-        Facts { rank: Some(what.rank), known: what.known.clone(), open: what.null_directions.clone() }
+        Facts {
+            rank: Some(what.rank),
+            known: what.known.iter().map(ToString::to_string).collect(),
+            open: what.null_directions.iter().map(ToString::to_string).collect(),
+        }
     }
 
     pub(super) fn unsettled(axes: &[AverageAxis]) -> Self {
@@ -111,7 +115,7 @@ fn object(e: &Estimate) -> Value {
         "bound_ratio": e.bound_ratio,
         "triangle_slack": e.triangle_slack,
         "active_constraints": e.active_constraints.iter()
-            .map(|c| json!({ "name": c.name, "multiplier": c.multiplier })).collect::<Vec<_>>(),
+            .map(|c| json!({ "name": c.constraint.to_string(), "multiplier": c.multiplier })).collect::<Vec<_>>(),
         "certificate": {
             "stationarity": e.certificate.stationarity, "violation": e.certificate.violation,
             "dual_violation": e.certificate.dual_violation, "rounds": e.certificate.rounds,
@@ -122,7 +126,7 @@ fn object(e: &Estimate) -> Value {
         "momentum_drift": { "rate": e.momentum_drift.rate, "sigma": e.momentum_drift.sigma },
         "energy_drift": { "rate": e.energy_drift.rate, "sigma": e.energy_drift.sigma },
         "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
-        "warnings": e.warnings,
+        "warnings": e.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
 }
 

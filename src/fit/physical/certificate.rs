@@ -1,4 +1,4 @@
-//! What was checked of an answer, and what holds it.
+//! What was checked of an answer.
 
 /// Largest violation, complementarity and negative multiplier of a certified answer.
 pub(crate) const CERTIFIED: f64 = 1e-9;
@@ -16,13 +16,4 @@ pub struct Certificate {
     pub dual_violation: f64,
     /// Rounds of cuts until the physical law held.
     pub rounds: usize,
-}
-
-/// A constraint that holds the answer, with its multiplier: the decrease of χ²/2 per unit of its relaxation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ActiveConstraint {
-    /// The constraint in words.
-    pub name: String,
-    /// Its multiplier, ≥ 0.
-    pub multiplier: f64,
 }

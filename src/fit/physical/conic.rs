@@ -2,12 +2,12 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
+    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverError, SolverStatus,
     SupportedConeT,
 };
 
 use super::coordinates::Coordinates;
-use crate::fit::error::FitError;
+use super::failure::SolverFailure;
 
 /// Conditions a·x ≤ b and second-order cones, gathered for the solver.
 pub(crate) struct Conditions {
@@ -30,7 +30,7 @@ impl Conditions {
         self.second_order.extend(cone.map(|(g, base)| ((-g).as_slice().to_vec(), base)));
     }
 
-    pub(crate) fn solve(&self, diagonal: &[f64], linear: &[f64]) -> Result<Vec<f64>, FitError> {
+    pub(crate) fn solve(&self, diagonal: &[f64], linear: &[f64]) -> Result<Vec<f64>, SolverFailure> {
         self.solve_with_duals(diagonal, linear).map(|(x, _)| x)
     }
 
@@ -40,7 +40,7 @@ impl Conditions {
         &self,
         diagonal: &[f64],
         linear: &[f64],
-    ) -> Result<(Vec<f64>, Vec<f64>), FitError> {
+    ) -> Result<(Vec<f64>, Vec<f64>), SolverFailure> {
         let rows: Vec<&(Vec<f64>, f64)> = self.nonnegative.iter().chain(&self.second_order).collect();
         let (m, n) = (rows.len(), self.variables);
         let colptr = (0..=n).map(|k| k * m).collect();
@@ -50,7 +50,7 @@ impl Conditions {
         let p = CscMatrix::new(n, n, (0..=n).collect(), (0..n).collect(), diagonal.to_vec());
         let b: Vec<f64> = rows.iter().map(|(_, b)| *b).collect();
         if b.iter().chain(&a.nzval).any(|value| !value.is_finite()) {
-            return Err(FitError::Solver { status: "a coefficient of the program is not finite".into() });
+            return Err(SolverFailure::Coefficient);
         }
         let mut cones: Vec<SupportedConeT<f64>> = vec![NonnegativeConeT(self.nonnegative.len())];
         cones.extend((0..self.second_order.len() / 3).map(|_| SecondOrderConeT(3)));
@@ -61,8 +61,11 @@ impl Conditions {
             tol_feas: 1e-11,
             ..DefaultSettings::default()
         };
-        let mut solver = DefaultSolver::new(&p, linear, &a, &b, &cones, settings)
-            .map_err(|error| FitError::Solver { status: error.to_string() })?;
+        let mut solver =
+            DefaultSolver::new(&p, linear, &a, &b, &cones, settings).map_err(|error| match error {
+                SolverError::BadInputData(what) => SolverFailure::Refused(what),
+                _ => SolverFailure::Refused("settings"),
+            })?;
         solver.solve();
         let solution = &solver.solution;
         match solution.status {
@@ -74,7 +77,14 @@ impl Conditions {
             {
                 Ok((solution.x.clone(), solution.z.clone()))
             }
-            status => Err(FitError::Solver { status: format!("{status:?}") }),
+            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+                Err(SolverFailure::Infeasible)
+            }
+            SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
+                Err(SolverFailure::Unbounded)
+            }
+            SolverStatus::NumericalError => Err(SolverFailure::Numerical),
+            _ => Err(SolverFailure::Unsolved),
         }
     }
 }

@@ -2,12 +2,13 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use super::certificate::{ActiveConstraint, CERTIFIED, Certificate, STATIONARY};
+use super::certificate::{CERTIFIED, Certificate, STATIONARY};
+use super::constraint::{ActiveConstraint, Constraint};
 use super::coordinates::{Coordinates, Form, coordinates, eigen};
+use super::failure::SolverFailure;
 use super::law::LIMIT;
-use super::limits::{Bound, describe};
+use super::limits::{Bound, side};
 use super::program::Program;
-use crate::fit::error::FitError;
 
 /// The answer of the program.
 pub(crate) struct Nearest {
@@ -25,7 +26,7 @@ impl Program {
         start: Coordinates,
         rounds: usize,
         bounds: &[Bound],
-    ) -> Result<Nearest, FitError> {
+    ) -> Result<Nearest, SolverFailure> {
         let near = 1e-4 * (1.0 + start.norm());
         let (moments, axes) = eigen(self.tensor(&start));
         let distance = |k: usize| {
@@ -93,20 +94,17 @@ impl Program {
         solved.map_or(vec![0.0; sizes.len()], |m| m.iter().zip(&sizes).map(|(m, s)| m / s).collect())
     }
 
-    fn newton(&self, start: Coordinates, face: usize, held: &[usize]) -> Result<Newton, FitError> {
+    fn newton(&self, start: Coordinates, face: usize, held: &[usize]) -> Result<Newton, SolverFailure> {
         let equations = face * (face + 1) / 2 + held.len();
+        let none =
+            Newton { y: Coordinates::zeros(), z: Matrix3::zeros(), held: Vec::new(), gradients: Vec::new() };
         if equations == 0 {
-            return Ok(Newton {
-                y: Coordinates::zeros(),
-                z: Matrix3::zeros(),
-                held: Vec::new(),
-                gradients: Vec::new(),
-            });
+            return Ok(none);
         }
         let mut y = start;
         // Z is kept in sensor axes: where two moments agree, their axes differ from step to step
         let mut z = multiplier(&self.frame(&start).0, face, &self.least_multipliers(&start, face, held));
-        let mut newton = None;
+        let mut newton = none;
         for _ in 0..12 {
             let (v, moments) = self.frame(&y);
             let gradients = self.gradients(&v, face, held);
@@ -140,19 +138,17 @@ impl Program {
                 }
                 right[5 + e] = -values[e] / sizes[e];
             }
-            let step = matrix.full_piv_lu().solve(&right).ok_or_else(|| FitError::Solver {
-                status: "the active constraints depend on each other".into(),
-            })?;
+            let step = matrix.full_piv_lu().solve(&right).ok_or(SolverFailure::Dependent)?;
             let move_ = Coordinates::from_column_slice(&step.as_slice()[..5]);
             y += move_;
             let multipliers: Vec<f64> = (0..equations).map(|e| step[5 + e] / sizes[e]).collect();
             z = multiplier(&v, face, &multipliers);
-            newton = Some(Newton { y, z, held: multipliers[face * (face + 1) / 2..].to_vec(), gradients });
+            newton = Newton { y, z, held: multipliers[face * (face + 1) / 2..].to_vec(), gradients };
             if move_.norm() <= 1e-15 * (1.0 + y.norm()) {
                 break;
             }
         }
-        newton.ok_or_else(|| FitError::Solver { status: "no Newton step was taken".into() })
+        Ok(newton)
     }
 
     fn certify(
@@ -162,7 +158,7 @@ impl Program {
         held: &[usize],
         rounds: usize,
         bounds: &[Bound],
-    ) -> Result<Nearest, FitError> {
+    ) -> Result<Nearest, SolverFailure> {
         let y = newton.y;
         let (_, moments) = self.frame(&y);
         let mut gradient = y + self.gradient(&coordinates(&newton.z));
@@ -188,21 +184,16 @@ impl Program {
             && certificate.violation <= CERTIFIED
             && certificate.dual_violation <= CERTIFIED;
         if !passed {
-            return Err(FitError::Solver {
-                status: format!(
-                    "the answer is not optimal: stationarity {:.1e}, violation {:.1e}, multiplier {:.1e}",
-                    certificate.stationarity, certificate.violation, certificate.dual_violation
-                ),
-            });
+            return Err(SolverFailure::NotOptimal(certificate));
         }
         let mut active = Vec::new();
         if face > 0 {
-            let name = if face == 1 { "I1 + I2 >= I3" } else { "I1 + I2 >= I3 and I1 + I3 >= I2 (a rod)" };
-            active.push(ActiveConstraint { name: name.into(), multiplier: newton.z.trace() });
+            let constraint = if face == 1 { Constraint::Triangle } else { Constraint::Rod };
+            active.push(ActiveConstraint { constraint, multiplier: newton.z.trace() });
         }
         for (&k, &multiplier) in held.iter().zip(&newton.held) {
             let (_, bound, upper) = self.rows[k];
-            active.push(ActiveConstraint { name: describe(bound, &bounds[bound], upper), multiplier });
+            active.push(ActiveConstraint { constraint: side(bound, &bounds[bound], upper), multiplier });
         }
         let mut x = self.centre + self.root.solve_upper_triangular(&y).unwrap_or(Coordinates::zeros());
         if face > 0 {

@@ -3,7 +3,9 @@
 use nalgebra::Vector3;
 
 use super::conic::Conditions;
+use super::constraint::Constraint;
 use super::coordinates::{Coordinates, eigen, pair, tensor};
+use super::failure::SolverFailure;
 use super::law::{CUTS, LIMIT};
 use crate::fit::error::{Clash, FitError};
 
@@ -21,12 +23,14 @@ pub struct Bound {
 /// Room that limits must leave, as a share of the trace: on an edge where they meet, multipliers are not unique.
 const ROOM: f64 = 1e-6;
 
-/// A limit in words.
-pub(crate) fn describe(index: usize, bound: &Bound, upper: bool) -> String {
-    let n = bound.axis;
-    let (relation, value) = if upper { ("<=", bound.at_most) } else { (">=", bound.at_least) };
-    let value = value.unwrap_or(f64::INFINITY);
-    format!("bound {}: moment about ({}, {}, {}) {relation} {value} of the trace", index + 1, n.x, n.y, n.z)
+/// One side of a limit as a constraint.
+pub(crate) fn side(index: usize, bound: &Bound, upper: bool) -> Constraint {
+    let (limit, axis) = (index + 1, bound.axis);
+    if upper {
+        Constraint::AtMost { limit, axis, share: bound.at_most.unwrap_or(f64::INFINITY) }
+    } else {
+        Constraint::AtLeast { limit, axis, share: bound.at_least.unwrap_or(f64::INFINITY) }
+    }
 }
 
 pub(crate) fn check_bounds(bounds: &[Bound]) -> Result<(), FitError> {
@@ -48,15 +52,15 @@ pub(crate) fn check_bounds(bounds: &[Bound]) -> Result<(), FitError> {
 ///
 /// Where t > 0 the bounds with the largest multipliers are those that clash.
 pub(crate) fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
-    let mut sides: Vec<(Coordinates, f64, String)> = Vec::new();
+    let mut sides: Vec<(Coordinates, f64, Constraint)> = Vec::new();
     for (k, bound) in bounds.iter().enumerate() {
         let n = bound.axis.normalize();
         let g = pair(&n, &n);
         if let Some(low) = bound.at_least {
-            sides.push((-g, 1.0 / 3.0 - low, describe(k, bound, false)));
+            sides.push((-g, 1.0 / 3.0 - low, side(k, bound, false)));
         }
         if let Some(high) = bound.at_most {
-            sides.push((g, high - 1.0 / 3.0, describe(k, bound, true)));
+            sides.push((g, high - 1.0 / 3.0, side(k, bound, true)));
         }
     }
     let mut cuts: Vec<Vector3<f64>> = (0..3).map(|k| Vector3::ith(k, 1.0)).collect();
@@ -76,7 +80,9 @@ pub(crate) fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
                 conditions.nonnegative(&unit, if k == 5 && sign > 0.0 { 1e3 } else { 1.0 });
             }
         }
-        let (answer, duals) = conditions.solve_with_duals(&[0.0; 6], &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0])?;
+        let (answer, duals) = conditions
+            .solve_with_duals(&[0.0; 6], &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+            .map_err(FitError::Solver)?;
         let x = Coordinates::from_column_slice(&answer[..5]);
         let (moments, axes) = eigen(tensor(&x));
         if moments[2] - LIMIT > 0.1 * ROOM {
@@ -88,13 +94,12 @@ pub(crate) fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
         }
         let mut order: Vec<usize> = (0..sides.len()).collect();
         order.sort_by(|&a, &b| duals[b].total_cmp(&duals[a]));
-        let first = sides[order[0]].2.clone();
-        let with = order.get(1).filter(|&&k| duals[k] > 1e-3).map(|&k| sides[k].2.clone());
-        let second = with
-            .unwrap_or_else(|| "the law I1 + I2 >= I3, by which a moment is at most half the trace".into());
+        let first = sides[order[0]].2;
+        let with = order.get(1).filter(|&&k| duals[k] > 1e-3).map(|&k| sides[k].2);
+        let second = with.unwrap_or(Constraint::Triangle);
         let clash = Box::new(Clash { first, second, gap: answer[5] });
         let error = if answer[5] > ROOM { FitError::Contradiction(clash) } else { FitError::NoRoom(clash) };
         return Err(error);
     }
-    Err(FitError::Solver { status: "the bounds could not be checked against the physical law".into() })
+    Err(FitError::Solver(SolverFailure::Limits))
 }

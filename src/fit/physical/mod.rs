@@ -16,8 +16,10 @@
 
 pub(crate) mod certificate;
 mod conic;
+pub(crate) mod constraint;
 pub(crate) mod coordinates;
 pub(crate) mod face;
+pub(crate) mod failure;
 pub(crate) mod law;
 pub(crate) mod limits;
 pub(crate) mod nearest;

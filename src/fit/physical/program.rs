@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::conic::Conditions;
 use super::coordinates::{Coordinates, Form, eigen, pair, tensor};
+use super::failure::SolverFailure;
 use super::law::{CUTS, LIMIT};
-use crate::fit::error::FitError;
 
 /// Violation of the law that ends the cuts.
 const VIOLATION: f64 = 1e-9;
@@ -45,7 +45,7 @@ impl Program {
     ///
     /// A wall enters when an answer lies beyond it, so that none is further away than the answer: walls at 1e5 standard
     /// deviations would end the solver's progress at answers of one.
-    pub(super) fn cut(&self) -> Result<(Coordinates, usize), FitError> {
+    pub(super) fn cut(&self) -> Result<(Coordinates, usize), SolverFailure> {
         let mut y = Coordinates::zeros();
         let mut rows: Vec<Row> = Vec::new();
         let mut cones: Vec<[Row; 3]> = Vec::new();
@@ -93,7 +93,7 @@ impl Program {
             let answer = conditions.solve(&[1.0; 5], &[0.0; 5])?;
             y = Coordinates::from_column_slice(&answer) * scale;
         }
-        Err(FitError::Solver { status: format!("the physical law is not met after {CUTS} rounds of cuts") })
+        Err(SolverFailure::Cuts { rounds: CUTS })
     }
 
     /// The minor [½ − a, −c; −c, ½ − b] ⪰ 0 of the largest and the k-th axis as a cone: p + q ≥ |(q − p, 2c)| with

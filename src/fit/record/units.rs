@@ -57,6 +57,16 @@ impl TimeUnit {
         }
     }
 
+    /// Its name in the plural.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Seconds => "seconds",
+            Self::Milliseconds => "milliseconds",
+            Self::Microseconds => "microseconds",
+            Self::Nanoseconds => "nanoseconds",
+        }
+    }
+
     /// In seconds, by a division where the factor is not a binary number.
     pub(super) fn seconds(self, value: f64) -> f64 {
         match self {
@@ -76,6 +86,15 @@ impl RateUnit {
             "deg/s" | "°/s" | "dps" | "degs" | "deg/sec" | "degrees/s" => Some(Self::DegreesPerSecond),
             "rpm" | "1/min" | "rev/min" => Some(Self::RevolutionsPerMinute),
             _ => None,
+        }
+    }
+
+    /// Its name in the plural.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::RadiansPerSecond => "radians per second",
+            Self::DegreesPerSecond => "degrees per second",
+            Self::RevolutionsPerMinute => "revolutions per minute",
         }
     }
 

@@ -4,7 +4,9 @@ use nalgebra::{SMatrix, UnitQuaternion};
 
 use super::identifiability::Identifiability;
 use super::torque_free::{Drift, Whiteness};
-use crate::fit::physical::certificate::{ActiveConstraint, Certificate};
+use super::warning::Warning;
+use crate::fit::physical::certificate::Certificate;
+use crate::fit::physical::constraint::ActiveConstraint;
 use crate::inertia::{Inertia, InertiaShape};
 
 /// Whitened residuals of one segment: standard normal where model and noise are right.
@@ -81,5 +83,5 @@ pub struct Estimate {
     /// Residuals by segment.
     pub residuals: Vec<Residuals>,
     /// What a reader of the figures must know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }

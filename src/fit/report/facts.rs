@@ -10,6 +10,7 @@ use crate::fit::cramer_rao::Motions;
 use crate::fit::error::FitError;
 use crate::fit::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, pair, tensor};
 use crate::fit::physical::face::Nearest;
+use crate::fit::physical::failure::SolverFailure;
 use crate::fit::physical::law::LIMIT;
 use crate::fit::record::Record;
 use crate::fit::settings::Settings;
@@ -116,8 +117,8 @@ impl Facts<'_> {
         if !(trace * trace).is_normal() {
             return Err(FitError::Setting { name: "the known quantity", value: known.value() });
         }
-        let inertia = Inertia::from_tensor(j * trace)
-            .map_err(|error| FitError::Solver { status: format!("no absolute tensor: {error}") })?;
+        let inertia =
+            Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
         let excess = self.misfit.max(1.0);
         Ok((Some(inertia), Some(scale.covariance(j, covariance, excess, motions))))
     }
@@ -158,5 +159,5 @@ fn face_factor(free: &Form, face: &[Coordinates]) -> Form {
 
 /// A tensor as a checked shape.
 pub(crate) fn shape_of(j: &Matrix3<f64>) -> Result<InertiaShape, FitError> {
-    InertiaShape::from_tensor(*j).map_err(|error| FitError::Solver { status: error.to_string() })
+    InertiaShape::from_tensor(*j).map_err(|error| FitError::Solver(SolverFailure::Shape(error)))
 }

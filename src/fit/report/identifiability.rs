@@ -1,4 +1,6 @@
-//! What a record tells of the tensor, and what it leaves open, in words.
+//! What a record tells of the tensor, and what it leaves open.
+
+use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,6 +10,73 @@ use crate::fit::physical::coordinates::{Coordinates, Form, eigen, trace_free};
 /// tensors differ by 0.4 at most from the sphere, so such a figure tells nothing.
 pub(crate) const VAGUE: f64 = 0.1;
 
+/// A principal axis that a record determines, though not the tensor. Its `Display` is a sentence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipalAxis {
+    /// Unit vector in sensor axes, of either sign.
+    pub axis: Vector3<f64>,
+    /// Its number among the axes that [`Undetermined`] speaks of, from 1.
+    pub number: usize,
+}
+
+impl fmt::Display for PrincipalAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} is a principal axis, numbered {} here", direction(&self.axis), self.number)
+    }
+}
+
+/// A combination of entries that a record leaves undetermined. Its `Display` is a sentence.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Undetermined {
+    /// All ratios and axes: the motion does not stand out of its noise.
+    Everything,
+    /// I₂/I₃ of a pure spin about axis 1.
+    TransverseRatio,
+    /// I₁/I₂ of a pure spin about axis 1.
+    SpinRatio,
+    /// The directions of axes 2 and 3 of a pure spin about axis 1.
+    TransverseAxes,
+    /// Both ratios of a record of pure spins about several principal axes.
+    Ratios,
+    /// The ratio of two moments.
+    Ratio {
+        /// The axis of the one, from 1.
+        low: usize,
+        /// The axis of the other.
+        high: usize,
+    },
+    /// The directions of two axes about the third.
+    Axes {
+        /// The one, from 1.
+        low: usize,
+        /// The other.
+        high: usize,
+        /// The third.
+        about: usize,
+    },
+}
+
+impl fmt::Display for Undetermined {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Everything => "no ratio and no axis is determined: the motion does not stand out of its noise",
+            Self::TransverseRatio => "the ratio I2/I3 is undetermined: the record is a pure spin about axis 1",
+            Self::SpinRatio => {
+                "the ratio I1/I2 is undetermined: nothing compares the spin axis with the other two"
+            }
+            Self::TransverseAxes => "the directions of axes 2 and 3 are undetermined",
+            Self::Ratios => {
+                "the ratios I1/I2 and I2/I3 are undetermined: the record holds only pure spins about principal axes"
+            }
+            Self::Ratio { low, high } => return write!(f, "the ratio I{low}/I{high} is undetermined"),
+            Self::Axes { low, high, about } => {
+                return write!(f, "the directions of axes {low} and {high} about axis {about} are undetermined");
+            }
+        })
+    }
+}
+
 /// The spectrum of information about the five numbers of a tensor of trace 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
@@ -16,12 +85,12 @@ pub struct Identifiability {
     pub deviations: [f64; 5],
     /// How many of them are determined.
     pub rank: usize,
-    /// The undetermined combinations in words.
-    pub null_directions: Vec<String>,
+    /// The undetermined combinations.
+    pub null_directions: Vec<Undetermined>,
     /// The same as trace-free tensors of Frobenius norm 1, in sensor axes.
     pub null_tensors: Vec<Matrix3<f64>>,
-    /// What is known all the same, in words.
-    pub known: Vec<String>,
+    /// The principal axes that are known all the same.
+    pub known: Vec<PrincipalAxis>,
 }
 
 impl Identifiability {
@@ -39,7 +108,7 @@ impl Identifiability {
             .map(|k| trace_free(&directions.column(k).into_owned()))
             .collect();
         let rank = 5 - null_tensors.len();
-        let (null_directions, known) = words(&null_tensors, rank, scatter, estimate);
+        let (null_directions, known) = unknowns(&null_tensors, rank, scatter, estimate);
         Identifiability { deviations, rank, null_directions, null_tensors, known }
     }
 
@@ -50,10 +119,13 @@ impl Identifiability {
 
     /// Both lists in one sentence.
     pub fn verdict(&self) -> String {
-        let known =
-            if self.known.is_empty() { "nothing is known".to_string() } else { self.known.join("; ") };
-        format!("{} of 5 numbers are known. {}. Known: {known}", self.rank, self.null_directions.join("; "))
+        let known = if self.known.is_empty() { "nothing is known".into() } else { joined(&self.known) };
+        format!("{} of 5 numbers are known. {}. Known: {known}", self.rank, joined(&self.null_directions))
     }
+}
+
+fn joined<T: fmt::Display>(facts: &[T]) -> String {
+    facts.iter().map(T::to_string).collect::<Vec<_>>().join("; ")
 }
 
 /// A unit vector of either sign, the largest component positive.
@@ -62,44 +134,36 @@ pub(crate) fn direction(v: &Vector3<f64>) -> String {
     format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z)
 }
 
-fn words(
+fn unknowns(
     null: &[Matrix3<f64>],
     rank: usize,
     scatter: &Matrix3<f64>,
     estimate: &Matrix3<f64>,
-) -> (Vec<String>, Vec<String>) {
+) -> (Vec<Undetermined>, Vec<PrincipalAxis>) {
     if rank == 5 {
         return (Vec::new(), Vec::new());
     }
     let (spread, directions) = eigen(*scatter);
     let main: Vector3<f64> = directions.column(2).into_owned();
     if rank == 0 {
-        return (
-            vec!["no ratio and no axis is determined: the motion does not stand out of its noise".into()],
-            Vec::new(),
-        );
+        return (vec![Undetermined::Everything], Vec::new());
     }
     let common = common_frame(null);
     let frame = common.unwrap_or_else(|| eigen(*estimate).1);
     if rank <= 2 && spread[1] <= 0.05 * spread[2] {
         return (
-            vec![
-                "the ratio I2/I3 is undetermined: the record is a pure spin about axis 1".into(),
-                "the ratio I1/I2 is undetermined: nothing compares the spin axis with the other two".into(),
-                "the directions of axes 2 and 3 are undetermined".into(),
-            ],
-            vec![format!("{} is a principal axis, numbered 1 here", direction(&main))],
+            vec![Undetermined::TransverseRatio, Undetermined::SpinRatio, Undetermined::TransverseAxes],
+            vec![PrincipalAxis { axis: main, number: 1 }],
         );
     }
     let known = (0..3)
         .map(|k| frame.column(k).into_owned())
         .enumerate()
         .filter(|(_, v)| null.iter().all(|t| (t * v - v * v.dot(&(t * v))).norm() < 0.1))
-        .map(|(k, v)| format!("{} is a principal axis, numbered {} here", direction(&v), k + 1))
+        .map(|(k, axis)| PrincipalAxis { axis, number: k + 1 })
         .collect();
     if common.is_some() && rank == 3 {
-        let open = "the ratios I1/I2 and I2/I3 are undetermined: the record holds only pure spins about principal axes";
-        return (vec![open.into()], known);
+        return (vec![Undetermined::Ratios], known);
     }
     let mut open = Vec::new();
     for tensor in null {
@@ -109,19 +173,11 @@ fn words(
         let turn = off.iter().copied().fold((0.0, 0, 0), |a, b| if b.0 > a.0 { b } else { a });
         if diagonal >= turn.0 {
             let d = n.diagonal();
-            open.push(format!(
-                "the ratio I{}/I{} is undetermined",
-                d.imin().min(d.imax()) + 1,
-                d.imin().max(d.imax()) + 1
-            ));
+            let (low, high) = (d.imin().min(d.imax()) + 1, d.imin().max(d.imax()) + 1);
+            open.push(Undetermined::Ratio { low, high });
         } else {
             let third = 3 - turn.1 - turn.2;
-            open.push(format!(
-                "the directions of axes {} and {} about axis {} are undetermined",
-                turn.1 + 1,
-                turn.2 + 1,
-                third + 1
-            ));
+            open.push(Undetermined::Axes { low: turn.1 + 1, high: turn.2 + 1, about: third + 1 });
         }
     }
     (open, known)

@@ -6,4 +6,5 @@ pub(crate) mod facts;
 pub(crate) mod identifiability;
 pub(crate) mod scale;
 pub(crate) mod torque_free;
+pub(crate) mod warning;
 mod warnings;

@@ -1,23 +1,69 @@
 //! Mistaken units of a record, which Euler's equation tells: rates enter it squared, their derivatives do not.
 
+use core::f64::consts::PI;
+use core::fmt;
+
 use super::radius;
 use super::rounds::WeakEstimate;
 use super::test_functions::Stretch;
+use crate::fit::record::RateUnit::{self, DegreesPerSecond, RadiansPerSecond, RevolutionsPerMinute};
+use crate::fit::record::TimeUnit::{self, Microseconds, Milliseconds, Nanoseconds, Seconds};
 
-/// Other units, as factors on rate × time, and what would have happened.
-const UNITS: [(f64, &str); 12] = [
-    (core::f64::consts::PI / 180.0, "degrees per second taken for radians per second"),
-    (180.0 / core::f64::consts::PI, "radians per second taken for degrees per second"),
-    (core::f64::consts::PI / 30.0, "revolutions per minute taken for radians per second"),
-    (30.0 / core::f64::consts::PI, "radians per second taken for revolutions per minute"),
-    (6.0, "revolutions per minute taken for degrees per second"),
-    (1.0 / 6.0, "degrees per second taken for revolutions per minute"),
-    (1e-3, "milliseconds taken for seconds"),
-    (1e3, "seconds taken for milliseconds"),
-    (1e-6, "microseconds taken for seconds"),
-    (1e6, "seconds taken for microseconds"),
-    (1e-9, "nanoseconds taken for seconds"),
-    (1e9, "seconds taken for nanoseconds"),
+/// A unit of the record that may have been taken for another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MistakenUnit {
+    /// Of the rates.
+    Rate {
+        /// The unit in which the rates seem to be.
+        meant: RateUnit,
+        /// The unit in which they were read.
+        read: RateUnit,
+    },
+    /// Of the times.
+    Time {
+        /// The unit in which the times seem to be.
+        meant: TimeUnit,
+        /// The unit in which they were read.
+        read: TimeUnit,
+    },
+}
+
+impl fmt::Display for MistakenUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rate { meant, read } => write!(f, "{} taken for {}", meant.words(), read.words()),
+            Self::Time { meant, read } => write!(f, "{} taken for {}", meant.words(), read.words()),
+        }
+    }
+}
+
+/// Several in one sentence.
+pub(crate) fn alternatives(mistakes: &[MistakenUnit]) -> String {
+    mistakes.iter().map(MistakenUnit::to_string).collect::<Vec<_>>().join(", or ")
+}
+
+const fn rate(meant: RateUnit, read: RateUnit) -> MistakenUnit {
+    MistakenUnit::Rate { meant, read }
+}
+
+const fn time(meant: TimeUnit, read: TimeUnit) -> MistakenUnit {
+    MistakenUnit::Time { meant, read }
+}
+
+/// Mistakes, with their factors on rate × time.
+const MISTAKES: [(f64, MistakenUnit); 12] = [
+    (PI / 180.0, rate(DegreesPerSecond, RadiansPerSecond)),
+    (180.0 / PI, rate(RadiansPerSecond, DegreesPerSecond)),
+    (PI / 30.0, rate(RevolutionsPerMinute, RadiansPerSecond)),
+    (30.0 / PI, rate(RadiansPerSecond, RevolutionsPerMinute)),
+    (6.0, rate(RevolutionsPerMinute, DegreesPerSecond)),
+    (1.0 / 6.0, rate(DegreesPerSecond, RevolutionsPerMinute)),
+    (1e-3, time(Milliseconds, Seconds)),
+    (1e3, time(Seconds, Milliseconds)),
+    (1e-6, time(Microseconds, Seconds)),
+    (1e6, time(Seconds, Microseconds)),
+    (1e-9, time(Nanoseconds, Seconds)),
+    (1e9, time(Seconds, Nanoseconds)),
 ];
 
 /// Units that explain the record better than the one it was read in.
@@ -25,7 +71,7 @@ pub(crate) struct Better {
     /// The smallest factor on rate × time.
     pub(crate) factor: f64,
     /// What would have happened, of the smallest factors first.
-    pub(crate) hint: String,
+    pub(crate) mistakes: Vec<MistakenUnit>,
     /// Mean square of the residuals over the noise in that unit.
     pub(crate) misfit: f64,
     /// Whether the record determines the tensor in the best of them.
@@ -47,7 +93,8 @@ const LISTED: usize = 3;
 pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<Better> {
     let pilot = radius::pilot(stretches);
     let mut found = Vec::new();
-    for (factor, hint) in UNITS.into_iter().chain([(ANY, "")]) {
+    let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
+    for (factor, mistake) in candidates.chain([(ANY, None)]) {
         let scaled: Vec<Stretch> = pilot
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
@@ -55,7 +102,7 @@ pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
         let settled = radius::estimate(&scaled, None, variance).ok().filter(WeakEstimate::settled);
         found.extend(settled.map(|weak| Found {
             factor,
-            hint,
+            mistake,
             misfit: weak.misfit_per_dof(variance),
             dof: weak.dof() as f64,
             credible: credible(&weak, variance),
@@ -66,11 +113,10 @@ pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
     let equal = |f: &Found| (f.misfit - best.misfit) * best.dof <= EQUAL * best.misfit.max(1.0);
     let mut units: Vec<&Found> = found.iter().filter(|f| equal(f)).collect();
     units.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    let vague = units.pop_if(|f| f.factor == ANY).is_some() || units.len() > LISTED;
-    let hints: Vec<&str> = units.iter().take(LISTED).map(|f| f.hint).collect();
+    let vague = units.pop_if(|f| f.mistake.is_none()).is_some() || units.len() > LISTED;
     units.first().map(|first| Better {
         factor: first.factor,
-        hint: hints.join(", or "),
+        mistakes: units.iter().take(LISTED).filter_map(|f| f.mistake).collect(),
         misfit: first.misfit,
         credible: best.credible,
         vague,
@@ -80,7 +126,8 @@ pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
 /// A unit at which a tensor settled.
 struct Found {
     factor: f64,
-    hint: &'static str,
+    /// `None` at a factor beyond all units.
+    mistake: Option<MistakenUnit>,
     misfit: f64,
     dof: f64,
     credible: bool,

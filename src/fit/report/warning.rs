@@ -1,0 +1,177 @@
+//! What limits the use of an estimate.
+
+use core::fmt;
+
+use super::torque_free::{Drift, Whiteness};
+use crate::fit::physical::constraint::ActiveConstraint;
+use crate::fit::weak::mistaken_units::{MistakenUnit, alternatives};
+
+/// What limits the use of an estimate. Its `Display` is a sentence.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warning {
+    /// Samples of the same time were averaged.
+    Merged {
+        /// Samples that were merged into another.
+        samples: usize,
+    },
+    /// Samples at the end of the sensor's range were left out.
+    Saturated {
+        /// Samples that were left out.
+        samples: usize,
+    },
+    /// Segments were left out, as too short for the test functions.
+    ShortSegments {
+        /// Segments that were left out.
+        short: usize,
+        /// Segments of the record.
+        segments: usize,
+    },
+    /// The residuals exceed the noise.
+    Residuals {
+        /// Root mean square of the residuals over the noise.
+        times: f64,
+        /// Noise of one component, rad/s.
+        noise: f64,
+    },
+    /// The iteration had not converged where it ended.
+    NotConverged {
+        /// Standard deviations by which a further round would move the tensor.
+        moved: f64,
+    },
+    /// Other units explain the record better.
+    Units {
+        /// Factor on rate × time.
+        factor: f64,
+        /// What may have happened, the smallest factor first.
+        mistakes: Vec<MistakenUnit>,
+        /// χ² per degree of freedom as given.
+        misfit: f64,
+        /// The same with the factor.
+        better: f64,
+    },
+    /// The residuals are not white.
+    Correlated(Whiteness),
+    /// The angular momentum |J ω| changes.
+    MomentumTrend(Drift),
+    /// The energy ω·J ω changes.
+    EnergyTrend(Drift),
+    /// The residuals of one segment exceed those of the median segment.
+    NoisySegment {
+        /// Which segment of the record, from 0.
+        segment: usize,
+        /// Its first time, s.
+        start: f64,
+        /// Root mean square of its residuals over that of the median segment.
+        times: f64,
+    },
+    /// The physical law or a limit holds the answer.
+    Held(ActiveConstraint),
+    /// The record contradicts the physical law or the limits.
+    Contradiction {
+        /// Distance, in standard deviations, from the unconstrained estimate.
+        pull: f64,
+    },
+    /// The tensor is so uncertain that the linear covariance is only a guide.
+    Uncertain {
+        /// Standard deviation of the tensor, as a share of its trace.
+        deviation: f64,
+    },
+    /// Two moments agree within their errors, so that their axes are arbitrary.
+    EqualMoments {
+        /// The lower of the two, from 1.
+        low: usize,
+        /// The higher, from 1.
+        high: usize,
+    },
+    /// Few equations beyond the unknowns.
+    FewEquations {
+        /// Degrees of freedom.
+        dof: usize,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Merged { samples } => {
+                write!(f, "{} merged with the sample of the same time", counted(*samples, "was", "were"))
+            }
+            Self::Saturated { samples } => {
+                let samples = counted(*samples, "stands", "stand");
+                write!(f, "{samples} at the end of the sensor's range (flat tops), left out")
+            }
+            Self::ShortSegments { short, segments } => {
+                write!(f, "{short} of {segments} segments are too short for the test functions")
+            }
+            Self::Residuals { times, noise } => {
+                let times = if *times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
+                write!(
+                    f,
+                    "the residuals are {times} times what the noise of {noise:.2e} rad/s explains: torques, outliers or \
+                     a sensor that filters; deviations are enlarged by that factor"
+                )
+            }
+            Self::NotConverged { moved } => write!(
+                f,
+                "the reweighting did not come to rest: a further round would move the tensor by {moved:.2} standard \
+                 deviations"
+            ),
+            Self::Units { factor, mistakes, misfit, better } => write!(
+                f,
+                "with rate x time {factor:.4e} times as large the misfit falls from {misfit:.2e} to {better:.2e}: {}?",
+                alternatives(mistakes)
+            ),
+            Self::Correlated(Whiteness { correlation, sigma }) => write!(
+                f,
+                "neighbouring residuals are correlated by {correlation:.2} +- {sigma:.2}: the noise is not white or the \
+                 model is wrong"
+            ),
+            Self::MomentumTrend(trend) => torque(f, "momentum |J w|", trend),
+            Self::EnergyTrend(trend) => torque(f, "energy w J w", trend),
+            Self::NoisySegment { segment, start, times } => write!(
+                f,
+                "segment {} (from {start} s) has {times:.1} times the residuals of the median segment: check it",
+                segment + 1
+            ),
+            Self::Held(ActiveConstraint { constraint, multiplier }) => {
+                write!(f, "{constraint} holds the answer (multiplier {multiplier:.3e})")
+            }
+            Self::Contradiction { pull } => write!(
+                f,
+                "law and bounds hold the answer {pull:.1} standard deviations off what the record says: it contradicts \
+                 them"
+            ),
+            Self::Uncertain { deviation } => write!(
+                f,
+                "the tensor is known to {:.1} per cent of its trace only: beyond half a per cent the linear covariance \
+                 is a guide",
+                100.0 * deviation
+            ),
+            Self::EqualMoments { low, high } => write!(
+                f,
+                "moments {low} and {high} agree within their errors: the directions of their axes are arbitrary"
+            ),
+            Self::FewEquations { dof } => {
+                write!(f, "only {dof} equations beyond the unknowns: the misfit says little")
+            }
+        }
+    }
+}
+
+fn torque(f: &mut fmt::Formatter<'_>, name: &str, trend: &Drift) -> fmt::Result {
+    let change = with_sigma(100.0 * trend.rate, 100.0 * trend.sigma);
+    write!(f, "not free of torques: the {name} changes by {change} per cent per second")
+}
+
+/// Both to two digits of the deviation.
+fn with_sigma(value: f64, sigma: f64) -> String {
+    let digits = if sigma > 0.0 { 1.0 - libm::floor(libm::log10(sigma)) } else { 2.0 };
+    let digits = digits.clamp(0.0, 15.0) as usize;
+    format!("{value:.digits$} +- {sigma:.digits$}")
+}
+
+/// "1 sample was", "2 samples were".
+fn counted(count: usize, one: &str, more: &str) -> String {
+    if count == 1 { format!("1 sample {one}") } else { format!("{count} samples {more}") }
+}
