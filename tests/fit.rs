@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
 use polhode::fit::{
-    Bound, Constraint, Estimate, FitError, Known, Reading, Record, RecordError, Segment, Settings,
+    Constraint, Estimate, FitError, Known, Limit, Reading, Record, RecordError, Segment, Settings,
     Undetermined, fit, foreseen_bound, simulate,
 };
 use polhode::inertia::Inertia;
@@ -642,34 +642,34 @@ fn flat_tops_are_left_out_with_a_warning() {
 }
 
 #[test]
-fn contradictory_bounds_are_named() {
+fn contradictory_limits_are_named() {
     let (_, times, rates) = example(1e-2);
     let record = Record::from_samples(&times, &rates).unwrap();
-    let bound = |axis, at_least, at_most| Bound { axis, at_least, at_most };
-    let with = |bounds| fit(&record, &Settings { bounds, ..Settings::default() });
+    let limit = |axis, at_least, at_most| Limit { axis, at_least, at_most };
+    let with = |limits| fit(&record, &Settings { limits, ..Settings::default() });
     let clash = with(vec![
-        bound(Vector3::x(), None, Some(0.3)),
-        bound(Vector3::y(), Some(0.1), None),
-        bound(Vector3::x() * 2.0, Some(0.35), None),
+        limit(Vector3::x(), None, Some(0.3)),
+        limit(Vector3::y(), Some(0.1), None),
+        limit(Vector3::x() * 2.0, Some(0.35), None),
     ]);
     let message = clash.unwrap_err().to_string();
     assert!(
-        message.contains("bound 1") && message.contains("bound 3") && !message.contains("bound 2"),
+        message.contains("limit 1") && message.contains("limit 3") && !message.contains("limit 2"),
         "{message}"
     );
-    let law = with(vec![bound(Vector3::z(), Some(0.51), None)]).unwrap_err().to_string();
+    let law = with(vec![limit(Vector3::z(), Some(0.51), None)]).unwrap_err().to_string();
     assert!(law.contains("at most half the trace"), "{law}");
     assert!(matches!(
-        with(vec![bound(Vector3::zeros(), None, None)]),
-        Err(FitError::BoundAxis { bound: 1, .. })
+        with(vec![limit(Vector3::zeros(), None, None)]),
+        Err(FitError::LimitAxis { limit: 1, .. })
     ));
     assert!(matches!(
-        with(vec![bound(Vector3::x(), Some(f64::NAN), None)]),
-        Err(FitError::BoundValue { bound: 1, .. })
+        with(vec![limit(Vector3::x(), Some(f64::NAN), None)]),
+        Err(FitError::LimitValue { limit: 1, .. })
     ));
     let free = with(Vec::new()).unwrap();
     let low = free.shape.tensor()[(0, 0)] - 0.01;
-    let held = with(vec![bound(Vector3::x(), None, Some(low))]).unwrap();
+    let held = with(vec![limit(Vector3::x(), None, Some(low))]).unwrap();
     assert!((held.shape.tensor()[(0, 0)] - low).abs() < 1e-12);
     assert!(matches!(held.active_constraints[0].constraint, Constraint::AtMost { limit: 1, .. }));
 }
@@ -699,9 +699,9 @@ fn torque_is_seen_in_the_drifts() {
         *w *= 1.0 - 1e-3 * t;
     }
     let estimate = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
-    let drift = estimate.momentum_drift;
+    let drift = estimate.momentum_trend;
     assert!((drift.rate + 1e-3).abs() < 5e-5, "{drift:?}");
-    assert!((estimate.energy_drift.rate + 2e-3).abs() < 1e-4, "{:?}", estimate.energy_drift);
+    assert!((estimate.energy_trend.rate + 2e-3).abs() < 1e-4, "{:?}", estimate.energy_trend);
     assert!(
         estimate.warnings.iter().any(|w| w.to_string().contains("not free of torques")),
         "{:?}",
@@ -781,22 +781,22 @@ fn irregular_times_are_no_mistake_of_units() {
 }
 
 #[test]
-fn bounds_that_contradict_the_record_are_seen_in_the_misfit() {
+fn limits_that_contradict_the_record_are_seen_in_the_misfit() {
     let mut random = Random::new(12);
     let times = times(30);
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
     let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-2, &mut random).unwrap();
     let record = Record::from_samples(&times, &rates).unwrap();
-    let bounded = |at_least, at_most| {
-        let bounds = vec![Bound { axis: Vector3::x(), at_least, at_most }];
-        fit(&record, &Settings { bounds, ..Settings::default() }).unwrap()
+    let limited = |at_least, at_most| {
+        let limits = vec![Limit { axis: Vector3::x(), at_least, at_most }];
+        fit(&record, &Settings { limits, ..Settings::default() }).unwrap()
     };
-    let free = bounded(Some(0.1), None);
+    let free = limited(Some(0.1), None);
     assert_eq!(free.pull, 0.0);
     assert!(free.chi2_per_dof < 1.2);
-    for held in [bounded(Some(0.4), None), bounded(Some(0.3), Some(0.300_01))] {
+    for held in [limited(Some(0.4), None), limited(Some(0.3), Some(0.300_01))] {
         assert!(held.pull > 100.0 && held.chi2_per_dof > 10.0, "{} {}", held.pull, held.chi2_per_dof);
-        let mean = held.residuals[0].misfit;
+        let mean = held.residuals[0].mean_square;
         assert!((mean / held.chi2_per_dof - 1.0).abs() < 0.1, "{mean} {}", held.chi2_per_dof);
         assert!(
             held.warnings.iter().any(|w| w.to_string().contains("it contradicts them")),

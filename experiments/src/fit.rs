@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use nalgebra::Vector3;
-use polhode::fit::{Bound, FitError, Known, RateUnit, Reading, Record, Settings, TimeUnit, fit};
+use polhode::fit::{FitError, Known, Limit, RateUnit, Reading, Record, Settings, TimeUnit, fit};
 use report::Facts;
 
 use crate::arguments::{number, numbers, positive};
@@ -128,17 +128,17 @@ impl Fit {
         let residuals = self.residuals.as_deref().map(|path| Output::to_file("--residuals", path));
         let residuals = residuals.transpose()?;
         let record = self.record()?;
-        let bound = |axis: &[f64; 4]| Bound {
+        let limit = |axis: &[f64; 4]| Limit {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
             at_least: None,
             at_most: None,
         };
-        let least = self.at_least.iter().map(|b| Bound { at_least: Some(b[3]), ..bound(b) });
-        let most = self.at_most.iter().map(|b| Bound { at_most: Some(b[3]), ..bound(b) });
+        let least = self.at_least.iter().map(|b| Limit { at_least: Some(b[3]), ..limit(b) });
+        let most = self.at_most.iter().map(|b| Limit { at_most: Some(b[3]), ..limit(b) });
         let settings = Settings {
             radius: self.radius,
             noise: self.noise,
-            bounds: least.chain(most).collect(),
+            limits: least.chain(most).collect(),
             known: self.known.known(),
             check_units: !self.trust_units,
         };

@@ -86,25 +86,25 @@ pub enum FitError {
         /// The same with the factor.
         better: f64,
     },
-    /// Bounds that exclude each other.
+    /// Limits that exclude each other.
     #[error("{} and {} exclude each other: each would have to give way by {:.3e} of the trace", demand(&.0.first), demand(&.0.second), .0.gap)]
     Contradiction(Box<Clash>),
-    /// Bounds that hardly a tensor meets.
+    /// Limits that leave less than a millionth of the trace between them.
     #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", demand(&.0.first), demand(&.0.second))]
     NoRoom(Box<Clash>),
-    /// The axis of a bound has no direction.
-    #[error("bound {bound} has the axis {axis:?}; it must be a finite vector that is not zero")]
-    BoundAxis {
-        /// Which bound, from 1.
-        bound: usize,
+    /// The axis of a limit has no direction.
+    #[error("limit {limit} has the axis {axis:?}; it must be a finite vector that is not zero")]
+    LimitAxis {
+        /// Which limit, from 1.
+        limit: usize,
         /// Its axis.
         axis: [f64; 3],
     },
-    /// The value of a bound is no share.
-    #[error("bound {bound} is {value}; it must be a share of the trace, from 0 to 1")]
-    BoundValue {
-        /// Which bound, from 1.
-        bound: usize,
+    /// The value of a limit is not a share of the trace.
+    #[error("limit {limit} is {value}; it must be a share of the trace, from 0 to 1")]
+    LimitValue {
+        /// Which limit, from 1.
+        limit: usize,
         /// Its value.
         value: f64,
     },

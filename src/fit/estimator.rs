@@ -27,7 +27,7 @@ use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
 ///
 /// # Errors
 /// Too few samples; no rotation; a record that does not determine the tensor, with what it does determine; units that
-/// look mistaken; bounds that contradict each other or the physical law; a program without a certified answer.
+/// look mistaken; limits that contradict each other or the physical law; a program without a certified answer.
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
     let Normalised { stretches, rms } = normalised(record)?;
@@ -52,7 +52,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
                 Failure::Singular => singular(),
             }
         })?;
-    let misfit = weak.misfit_per_dof(variance);
+    let misfit = weak.misfit(variance);
     let better =
         if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
     // without a settled tensor to compare with, a unit must explain the record by itself, and one of any size must not:
@@ -82,7 +82,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let root = weak.root / (variance * misfit.max(1.0)).sqrt();
     // R⁻¹, a factor of the covariance
     let free = root.try_inverse().ok_or(FitError::Solver(SolverFailure::Information))?;
-    let answer = nearest(weak.x, root, &settings.bounds)?;
+    let answer = nearest(weak.x, root, &settings.limits)?;
     let facts = Facts { record, settings, stretches: &stretches, rms, variance, weak: &weak, misfit };
     facts.report(answer, free, identifiability, better.as_ref().filter(|b| b.credible))
 }

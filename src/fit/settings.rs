@@ -1,7 +1,7 @@
 //! What the user may fix.
 
 use super::error::FitError;
-use super::physical::limits::Bound;
+use super::physical::limits::Limit;
 use super::report::scale::Known;
 
 /// What the user may fix; the default leaves everything to the record.
@@ -13,7 +13,7 @@ pub struct Settings {
     /// without it.
     pub noise: Option<f64>,
     /// What is known of the moments beforehand.
-    pub bounds: Vec<Bound>,
+    pub limits: Vec<Limit>,
     /// What gives the absolute size.
     pub known: Option<Known>,
     /// Whether a unit that explains the record ten times better is an error.
@@ -22,7 +22,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { radius: None, noise: None, bounds: Vec::new(), known: None, check_units: true }
+        Settings { radius: None, noise: None, limits: Vec::new(), known: None, check_units: true }
     }
 }
 

@@ -123,8 +123,8 @@ fn object(e: &Estimate) -> Value {
         "chi2_per_dof": e.chi2_per_dof,
         "pull": e.pull,
         "dof": e.dof,
-        "momentum_drift": { "rate": e.momentum_drift.rate, "sigma": e.momentum_drift.sigma },
-        "energy_drift": { "rate": e.energy_drift.rate, "sigma": e.energy_drift.sigma },
+        "momentum_drift": { "rate": e.momentum_trend.rate, "sigma": e.momentum_trend.sigma },
+        "energy_drift": { "rate": e.energy_trend.rate, "sigma": e.energy_trend.sigma },
         "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
         "warnings": e.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
@@ -158,8 +158,8 @@ fn rows(e: &Estimate) -> Table {
     table.push(row!["noise_sigma", e.noise_sigma, None::<f64>]);
     table.push(row!["chi2_per_dof", e.chi2_per_dof, (2.0 / e.dof.max(1) as f64).sqrt()]);
     table.push(row!["bound_ratio", e.bound_ratio, None::<f64>]);
-    table.push(row!["momentum_drift", e.momentum_drift.rate, e.momentum_drift.sigma]);
-    table.push(row!["energy_drift", e.energy_drift.rate, e.energy_drift.sigma]);
+    table.push(row!["momentum_drift", e.momentum_trend.rate, e.momentum_trend.sigma]);
+    table.push(row!["energy_drift", e.energy_trend.rate, e.energy_trend.sigma]);
     table.push(row!["whiteness", e.whiteness.correlation, e.whiteness.sigma]);
     table
 }
@@ -204,7 +204,7 @@ fn text(e: &Estimate) -> String {
     if let Some(inertia) = &e.inertia {
         lines.push(tensor("inertia (kg m^2)", &inertia.tensor()));
     }
-    let percent = |drift: polhode::fit::Drift| with_error(100.0 * drift.rate, 100.0 * drift.sigma);
+    let percent = |drift: polhode::fit::InvariantTrend| with_error(100.0 * drift.rate, 100.0 * drift.sigma);
     lines.extend([
         String::new(),
         format!("known to (standard deviations of the five numbers): {}", spectrum(e)),
@@ -216,8 +216,8 @@ fn text(e: &Estimate) -> String {
             "correlation of neighbouring residuals: {:.3} +- {:.3}",
             e.whiteness.correlation, e.whiteness.sigma
         ),
-        format!("drift of |J w|: {} per cent per second", percent(e.momentum_drift)),
-        format!("drift of w J w: {} per cent per second", percent(e.energy_drift)),
+        format!("drift of |J w|: {} per cent per second", percent(e.momentum_trend)),
+        format!("drift of w J w: {} per cent per second", percent(e.energy_trend)),
         format!("I1 + I2 - I3: {}", with_error(e.triangle_slack, 2.0 * e.sigma_principal[2])),
         format!(
             "optimality: stationarity {:.1e}, violation {:.1e}, after {} rounds of cuts",

@@ -40,29 +40,29 @@ impl Means {
 }
 
 /// How far a motion is from samples, and which way leads nearer.
-struct Misfit {
+struct Distance {
     information: Matrix3<f64>,
     gradient: Vector3<f64>,
     sum: f64,
 }
 
-impl Misfit {
-    fn new(euler: &Euler, means: &Means, range: Range<usize>, start: &Start) -> Misfit {
-        let mut misfit = Misfit { information: Matrix3::zeros(), gradient: Vector3::zeros(), sum: 0.0 };
+impl Distance {
+    fn new(euler: &Euler, means: &Means, range: Range<usize>, start: &Start) -> Distance {
+        let mut distance = Distance { information: Matrix3::zeros(), gradient: Vector3::zeros(), sum: 0.0 };
         let low = range.start;
         euler.sweep(&means.times[range], start, |i, w, s: &Sensitivity<3>| {
             let (count, residual) = (means.counts[low + i], means.rates[low + i] - w);
-            misfit.information += s.transpose() * s * count;
-            misfit.gradient += s.transpose() * residual * count;
-            misfit.sum += residual.norm_squared() * count;
+            distance.information += s.transpose() * s * count;
+            distance.gradient += s.transpose() * residual * count;
+            distance.sum += residual.norm_squared() * count;
         });
-        misfit
+        distance
     }
 }
 
 /// Steps towards the motion nearest to one window of samples.
 const STEPS: usize = 12;
-/// A fall of the misfit, in units of the variance, that no longer matters: a tenth of a standard deviation.
+/// A fall of the sum of squares, in units of the variance, that no longer matters: a tenth of a standard deviation.
 const STILL: f64 = 0.01;
 
 /// The start of the motion nearest to the samples of a window by Levenberg's damped steps, the tensor held.
@@ -74,7 +74,7 @@ fn descend(
     variance: f64,
 ) -> Option<(Start, f64)> {
     let equations = 3.0 * range.len() as f64;
-    let mut now = Misfit::new(euler, means, range.clone(), &start);
+    let mut now = Distance::new(euler, means, range.clone(), &start);
     let mut damping = 0.0;
     for _ in 0..STEPS {
         let ridge = Matrix3::identity() * (damping * now.information.trace());
@@ -83,7 +83,7 @@ fn descend(
             break;
         }
         let there = Start { rate: start.rate + step, ..start };
-        let next = Misfit::new(euler, means, range.clone(), &there);
+        let next = Distance::new(euler, means, range.clone(), &there);
         if next.sum < now.sum {
             (start, now) = (there, next);
             damping *= 0.1;
@@ -103,7 +103,7 @@ const LEFT: f64 = 0.05;
 
 /// The motion of a given tensor that explains the samples of a stretch; `None` if none was found.
 ///
-/// The misfit of a whole stretch has many minima, one for each number of turns that the motion may be ahead or behind.
+/// The sum of squares over a whole stretch has many minima, one for each number of turns that the motion may be ahead or behind.
 /// A window within which the motion turns by little has one, and what it leaves uncertain of the motion in a window
 /// twice as long is small against a turn: each window starts where the one before has ended.
 pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Option<Start> {

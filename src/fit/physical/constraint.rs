@@ -40,7 +40,7 @@ impl fmt::Display for Constraint {
             Self::AtLeast { limit, axis, share } => (limit, axis, ">=", share),
             Self::AtMost { limit, axis, share } => (limit, axis, "<=", share),
         };
-        write!(f, "bound {limit}: moment about ({}, {}, {}) {relation} {share} of the trace", n.x, n.y, n.z)
+        write!(f, "limit {limit}: moment about ({}, {}, {}) {relation} {share} of the trace", n.x, n.y, n.z)
     }
 }
 

@@ -6,8 +6,8 @@ use super::certificate::{CERTIFIED, Certificate, STATIONARY};
 use super::constraint::{ActiveConstraint, Constraint};
 use super::coordinates::{Coordinates, Form, coordinates, eigen};
 use super::failure::SolverFailure;
-use super::law::LIMIT;
-use super::limits::{Bound, side};
+use super::law::LARGEST_SHARE;
+use super::limits::{Limit, side};
 use super::program::Program;
 
 /// The answer of the program.
@@ -25,13 +25,13 @@ impl Program {
         &self,
         start: Coordinates,
         rounds: usize,
-        bounds: &[Bound],
+        limits: &[Limit],
     ) -> Result<Nearest, SolverFailure> {
         let near = 1e-4 * (1.0 + start.norm());
         let (moments, axes) = eigen(self.tensor(&start));
         let distance = |k: usize| {
             let v = axes.column(k).into_owned();
-            (LIMIT - moments[k]) / self.reading(&v, &v).g.norm()
+            (LARGEST_SHARE - moments[k]) / self.reading(&v, &v).g.norm()
         };
         let mut face = (0..3).filter(|&k| distance(k) <= near).count().min(2);
         let mut held: Vec<usize> = (0..self.rows.len())
@@ -43,7 +43,7 @@ impl Program {
         // a constraint that is near but does not push is let go, the one that pulls most first
         loop {
             let newton = match self.newton(start, face, &held) {
-                // of constraints that depend on each other, as the sides of a narrow bound, the furthest is not reached
+                // of constraints that depend on each other, as the sides of a narrow limit, the furthest is not reached
                 Err(_) if !held.is_empty() => {
                     let reach = |k: usize| {
                         let row = &self.rows[k].0;
@@ -64,7 +64,7 @@ impl Program {
                     held.remove(k);
                 }
                 _ if slack_of_face < -tolerance => face -= 1,
-                _ => return self.certify(newton, face, &held, rounds, bounds),
+                _ => return self.certify(newton, face, &held, rounds, limits),
             }
         }
     }
@@ -75,7 +75,7 @@ impl Program {
         (core::array::from_fn(|k| axes.column(2 - k).into_owned()), [moments[2], moments[1], moments[0]])
     }
 
-    /// Gradients of the entries of J on the face, then of the bounds that are held.
+    /// Gradients of the entries of J on the face, then of the limits that are held.
     fn gradients(&self, v: &[Vector3<f64>; 3], face: usize, held: &[usize]) -> Vec<Coordinates> {
         let pairs = (0..face).flat_map(|a| (0..=a).map(move |b| (a, b)));
         pairs
@@ -110,7 +110,7 @@ impl Program {
             let gradients = self.gradients(&v, face, held);
             let mut values = Vec::with_capacity(equations);
             for (a, moment) in moments.iter().take(face).enumerate() {
-                values.extend((0..=a).map(|b| if a == b { moment - LIMIT } else { 0.0 }));
+                values.extend((0..=a).map(|b| if a == b { moment - LARGEST_SHARE } else { 0.0 }));
             }
             values.extend(held.iter().map(|&k| self.rows[k].0.base + self.rows[k].0.g.dot(&y)));
             // curvature of the eigenvalues: they repel those off the face
@@ -121,8 +121,8 @@ impl Program {
                 (0..face).flat_map(|a| (0..face).flat_map(move |b| (face..3).map(move |j| (a, b, j))))
             {
                 let (ga, gb) = (self.reading(&v[a], &v[j]).g, self.reading(&v[b], &v[j]).g);
-                hessian +=
-                    (ga * gb.transpose() + gb * ga.transpose()) * (inner[(a, b)] / (LIMIT - moments[j]));
+                hessian += (ga * gb.transpose() + gb * ga.transpose())
+                    * (inner[(a, b)] / (LARGEST_SHARE - moments[j]));
             }
             let n = 5 + equations;
             let mut matrix = DMatrix::zeros(n, n);
@@ -157,12 +157,12 @@ impl Program {
         face: usize,
         held: &[usize],
         rounds: usize,
-        bounds: &[Bound],
+        limits: &[Limit],
     ) -> Result<Nearest, SolverFailure> {
         let y = newton.y;
         let (_, moments) = self.frame(&y);
         let mut gradient = y + self.gradient(&coordinates(&newton.z));
-        let mut violation = (moments[0] - LIMIT).max(0.0);
+        let mut violation = (moments[0] - LARGEST_SHARE).max(0.0);
         for (k, (row, ..)) in self.rows.iter().enumerate() {
             violation = violation.max(row.base + row.g.dot(&y));
             if let Some(at) = held.iter().position(|&h| h == k) {
@@ -171,7 +171,8 @@ impl Program {
         }
         let (z, _) = eigen(newton.z);
         violation = violation.max(
-            (newton.z * (Matrix3::identity() * LIMIT - self.tensor(&y))).norm() / (1.0 + newton.largest()),
+            (newton.z * (Matrix3::identity() * LARGEST_SHARE - self.tensor(&y))).norm()
+                / (1.0 + newton.largest()),
         );
         let lowest = newton.held.iter().copied().fold(z[0].min(0.0), f64::min);
         let certificate = Certificate {
@@ -192,13 +193,13 @@ impl Program {
             active.push(ActiveConstraint { constraint, multiplier: newton.z.trace() });
         }
         for (&k, &multiplier) in held.iter().zip(&newton.held) {
-            let (_, bound, upper) = self.rows[k];
-            active.push(ActiveConstraint { constraint: side(bound, &bounds[bound], upper), multiplier });
+            let (_, limit, upper) = self.rows[k];
+            active.push(ActiveConstraint { constraint: side(limit, &limits[limit], upper), multiplier });
         }
         let mut x = self.centre + self.root.solve_upper_triangular(&y).unwrap_or(Coordinates::zeros());
         if face > 0 {
             // the last rounding goes towards the sphere: the tensor handed out is physical, not nearly so
-            x *= ((LIMIT - 1.0 / 3.0) / (moments[0] - 1.0 / 3.0)).min(1.0) * (1.0 - 1e-14);
+            x *= ((LARGEST_SHARE - 1.0 / 3.0) / (moments[0] - 1.0 / 3.0)).min(1.0) * (1.0 - 1e-14);
         }
         Ok(Nearest { x, active, face: newton.gradients, certificate })
     }
@@ -216,7 +217,7 @@ struct Newton {
     y: Coordinates,
     /// Multiplier of the physical law, in sensor axes.
     z: Matrix3<f64>,
-    /// Multipliers of the bounds that are held.
+    /// Multipliers of the limits that are held.
     held: Vec<f64>,
     gradients: Vec<Coordinates>,
 }

@@ -34,7 +34,7 @@ pub enum SolverFailure {
     #[error("the solver ended without an answer")]
     Unsolved,
     /// The limits could not be checked against the physical law.
-    #[error("the bounds could not be checked against the physical law")]
+    #[error("the limits could not be checked against the physical law")]
     Limits,
     /// The physical law is not met after all rounds of cuts.
     #[error("the physical law is not met after {rounds} rounds of cuts")]

@@ -6,12 +6,12 @@ use super::conic::Conditions;
 use super::constraint::Constraint;
 use super::coordinates::{Coordinates, eigen, pair, tensor};
 use super::failure::SolverFailure;
-use super::law::{CUTS, LIMIT};
+use super::law::{CUTS, LARGEST_SHARE};
 use crate::fit::error::{Clash, FitError};
 
 /// A limit that is known beforehand: the moment of inertia about `axis` as a share of the trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound {
+pub struct Limit {
     /// Any non-zero vector along the axis, in sensor axes.
     pub axis: Vector3<f64>,
     /// Smallest share; physically not below 0.
@@ -24,43 +24,43 @@ pub struct Bound {
 const ROOM: f64 = 1e-6;
 
 /// One side of a limit as a constraint.
-pub(crate) fn side(index: usize, bound: &Bound, upper: bool) -> Constraint {
-    let (limit, axis) = (index + 1, bound.axis);
+pub(crate) fn side(index: usize, given: &Limit, upper: bool) -> Constraint {
+    let (limit, axis) = (index + 1, given.axis);
     if upper {
-        Constraint::AtMost { limit, axis, share: bound.at_most.unwrap_or(f64::INFINITY) }
+        Constraint::AtMost { limit, axis, share: given.at_most.unwrap_or(f64::INFINITY) }
     } else {
-        Constraint::AtLeast { limit, axis, share: bound.at_least.unwrap_or(f64::INFINITY) }
+        Constraint::AtLeast { limit, axis, share: given.at_least.unwrap_or(f64::INFINITY) }
     }
 }
 
-pub(crate) fn check_bounds(bounds: &[Bound]) -> Result<(), FitError> {
-    for (k, bound) in bounds.iter().enumerate() {
-        let size = bound.axis.norm();
+pub(crate) fn check_limits(limits: &[Limit]) -> Result<(), FitError> {
+    for (k, limit) in limits.iter().enumerate() {
+        let size = limit.axis.norm();
         if !(size > 0.0 && size.is_finite()) {
-            return Err(FitError::BoundAxis { bound: k + 1, axis: bound.axis.into() });
+            return Err(FitError::LimitAxis { limit: k + 1, axis: limit.axis.into() });
         }
-        for value in [bound.at_least, bound.at_most].into_iter().flatten() {
+        for value in [limit.at_least, limit.at_most].into_iter().flatten() {
             if !(0.0..=1.0).contains(&value) {
-                return Err(FitError::BoundValue { bound: k + 1, value });
+                return Err(FitError::LimitValue { limit: k + 1, value });
             }
         }
     }
     Ok(())
 }
 
-/// Phase 1: the least common relaxation t of all bounds over the physical tensors.
+/// Phase 1: the least common relaxation t of all limits over the physical tensors.
 ///
-/// Where t > 0 the bounds with the largest multipliers are those that clash.
-pub(crate) fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
+/// Where t > 0 the limits with the largest multipliers are those that clash.
+pub(crate) fn feasible(limits: &[Limit]) -> Result<(), FitError> {
     let mut sides: Vec<(Coordinates, f64, Constraint)> = Vec::new();
-    for (k, bound) in bounds.iter().enumerate() {
-        let n = bound.axis.normalize();
+    for (k, limit) in limits.iter().enumerate() {
+        let n = limit.axis.normalize();
         let g = pair(&n, &n);
-        if let Some(low) = bound.at_least {
-            sides.push((-g, 1.0 / 3.0 - low, side(k, bound, false)));
+        if let Some(low) = limit.at_least {
+            sides.push((-g, 1.0 / 3.0 - low, side(k, limit, false)));
         }
-        if let Some(high) = bound.at_most {
-            sides.push((g, high - 1.0 / 3.0, side(k, bound, true)));
+        if let Some(high) = limit.at_most {
+            sides.push((g, high - 1.0 / 3.0, side(k, limit, true)));
         }
     }
     let mut cuts: Vec<Vector3<f64>> = (0..3).map(|k| Vector3::ith(k, 1.0)).collect();
@@ -71,7 +71,7 @@ pub(crate) fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
             conditions.nonnegative(&six(g, -1.0), *right);
         }
         for v in &cuts {
-            conditions.nonnegative(&six(&pair(v, v), 0.0), LIMIT - v.norm_squared() / 3.0);
+            conditions.nonnegative(&six(&pair(v, v), 0.0), LARGEST_SHARE - v.norm_squared() / 3.0);
         }
         for k in 0..6 {
             // any physical tensor lies well inside; t below 0 only means room to spare
@@ -85,7 +85,7 @@ pub(crate) fn feasible(bounds: &[Bound]) -> Result<(), FitError> {
             .map_err(FitError::Solver)?;
         let x = Coordinates::from_column_slice(&answer[..5]);
         let (moments, axes) = eigen(tensor(&x));
-        if moments[2] - LIMIT > 0.1 * ROOM {
+        if moments[2] - LARGEST_SHARE > 0.1 * ROOM {
             cuts.extend((0..3).map(|k| axes.column(k).into_owned()));
             continue;
         }

@@ -2,24 +2,24 @@
 
 use super::coordinates::{Coordinates, Form};
 use super::face::Nearest;
-use super::law::LIMIT;
-use super::limits::{Bound, check_bounds, feasible};
+use super::law::LARGEST_SHARE;
+use super::limits::{Limit, check_limits, feasible};
 use super::program::{Program, Row};
 use crate::fit::error::FitError;
 
-/// The physical tensor within `bounds` that is nearest to `centre` in the metric of `root`ᵀ `root`.
-pub(crate) fn nearest(centre: Coordinates, root: Form, bounds: &[Bound]) -> Result<Nearest, FitError> {
-    check_bounds(bounds)?;
+/// The physical tensor within `limits` that is nearest to `centre` in the metric of `root`ᵀ `root`.
+pub(crate) fn nearest(centre: Coordinates, root: Form, limits: &[Limit]) -> Result<Nearest, FitError> {
+    check_limits(limits)?;
     let mut program = Program { centre, root, rows: Vec::new() };
-    for (k, bound) in bounds.iter().enumerate() {
-        let n = bound.axis.normalize();
+    for (k, limit) in limits.iter().enumerate() {
+        let n = limit.axis.normalize();
         let share = program.reading(&n, &n);
-        // of bounds about one axis the tighter one, since two of them could not be told apart
+        // of limits about one axis the tighter one, since two of them could not be told apart
         let twins =
-            || bounds.iter().enumerate().filter(|(_, b)| b.axis.normalize().dot(&n).abs() > 1.0 - 1e-12);
-        let tighter = |of: fn(&Bound) -> Option<f64>, sign: f64| {
-            let value = of(bound)?;
-            let outdoes = |(i, b): (usize, &Bound)| {
+            || limits.iter().enumerate().filter(|(_, b)| b.axis.normalize().dot(&n).abs() > 1.0 - 1e-12);
+        let tighter = |of: fn(&Limit) -> Option<f64>, sign: f64| {
+            let value = of(limit)?;
+            let outdoes = |(i, b): (usize, &Limit)| {
                 of(b).is_some_and(|other| sign * other > sign * value || (other == value && i < k))
             };
             (!twins().any(outdoes)).then_some(value)
@@ -28,15 +28,15 @@ pub(crate) fn nearest(centre: Coordinates, root: Form, bounds: &[Bound]) -> Resu
         if let Some(low) = tighter(|b| b.at_least, 1.0).filter(|low| *low > 0.0) {
             program.rows.push((Row { base: low - share.base, g: -share.g }, k, false));
         }
-        if let Some(high) = tighter(|b| b.at_most, -1.0).filter(|high| *high < LIMIT) {
+        if let Some(high) = tighter(|b| b.at_most, -1.0).filter(|high| *high < LARGEST_SHARE) {
             program.rows.push((Row { base: share.base - high, g: share.g }, k, true));
         }
     }
-    if !bounds.is_empty() {
-        feasible(bounds)?;
+    if !limits.is_empty() {
+        feasible(limits)?;
     }
     let (y, rounds) = program.cut().map_err(FitError::Solver)?;
-    program.polish(y, rounds, bounds).map_err(FitError::Solver)
+    program.polish(y, rounds, limits).map_err(FitError::Solver)
 }
 
 #[cfg(test)]
@@ -90,7 +90,7 @@ mod tests {
             let centre = Coordinates::from_fn(|_, _| 0.5 * next());
             let answer = nearest(centre, root, &[]).unwrap_or_else(|error| panic!("{trial}: {error}"));
             let (moments, _) = eigen(tensor(&answer.x));
-            assert!(moments[2] <= LIMIT + 1e-12 && moments[0] >= -1e-12, "{trial}: {moments}");
+            assert!(moments[2] <= LARGEST_SHARE + 1e-12 && moments[0] >= -1e-12, "{trial}: {moments}");
             held += answer.active.len();
             let cost = (root * (answer.x - centre)).norm();
             for _ in 0..20 {
@@ -116,7 +116,7 @@ mod tests {
             let flat = Matrix3::from_diagonal(&Vector3::new(a, 0.5 - a - b, 0.5 + b));
             let centre = coordinates(&flat) + Coordinates::from_fn(|_, _| 1e-6 * next());
             let answer = nearest(centre, root, &[]).unwrap_or_else(|error| panic!("{trial}: {error}"));
-            assert!(eigen(tensor(&answer.x)).0[2] <= LIMIT, "{trial}");
+            assert!(eigen(tensor(&answer.x)).0[2] <= LARGEST_SHARE, "{trial}");
         }
     }
 
@@ -145,10 +145,10 @@ mod tests {
     }
 
     #[test]
-    fn bounds_hold_and_contradictions_are_named() {
+    fn limits_hold_and_contradictions_are_named() {
         let centre = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)));
         let root = Form::identity() * 100.0;
-        let x = |at_least, at_most| Bound { axis: Vector3::x(), at_least, at_most };
+        let x = |at_least, at_most| Limit { axis: Vector3::x(), at_least, at_most };
         let answer = nearest(centre, root, &[x(Some(0.25), None)]).unwrap();
         assert!((tensor(&answer.x)[(0, 0)] - 0.25).abs() < 1e-15);
         assert!(
@@ -160,11 +160,11 @@ mod tests {
 
         let clash =
             nearest(centre, root, &[x(Some(0.4), None), x(None, Some(0.3))]).err().unwrap().to_string();
-        assert!(clash.contains("bound 1") && clash.contains("bound 2"), "{clash}");
+        assert!(clash.contains("limit 1") && clash.contains("limit 2"), "{clash}");
         let law = nearest(centre, root, &[x(Some(0.6), None)]).err().unwrap().to_string();
         assert!(law.contains("half the trace"), "{law}");
 
-        // the same bound twice, once looser, and one that the law implies
+        // the same limit twice, once looser, and one that the law implies
         let twice = [x(Some(0.25), None), x(Some(0.25), None), x(Some(0.22), Some(0.5))];
         let answer = nearest(centre, root, &twice).unwrap();
         assert!((tensor(&answer.x)[(0, 0)] - 0.25).abs() < 1e-15);
@@ -180,6 +180,6 @@ mod tests {
             assert!(matches!(error, FitError::NoRoom(_)), "{error}");
         }
         let outside = nearest(centre, root, &[x(Some(5000.0), None)]).err().unwrap().to_string();
-        assert!(outside.contains("bound 1 is 5000"), "{outside}");
+        assert!(outside.contains("limit 1 is 5000"), "{outside}");
     }
 }

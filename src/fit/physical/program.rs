@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::conic::Conditions;
 use super::coordinates::{Coordinates, Form, eigen, pair, tensor};
 use super::failure::SolverFailure;
-use super::law::{CUTS, LIMIT};
+use super::law::{CUTS, LARGEST_SHARE};
 
 /// Violation of the law that ends the cuts.
 const VIOLATION: f64 = 1e-9;
@@ -17,7 +17,7 @@ pub(super) struct Row {
     pub(super) g: Coordinates,
 }
 
-/// min ½|y|² over the physical tensors x̂ + R⁻¹ y that obey the bounds.
+/// min ½|y|² over the physical tensors x̂ + R⁻¹ y that obey the limits.
 pub(super) struct Program {
     pub(super) centre: Coordinates,
     pub(super) root: Form,
@@ -41,7 +41,7 @@ impl Program {
         tensor(&(self.centre + step))
     }
 
-    /// Clarabel, with cuts until law and bounds hold.
+    /// Clarabel, with cuts until law and limits hold.
     ///
     /// A wall enters when an answer lies beyond it, so that none is further away than the answer: walls at 1e5 standard
     /// deviations would end the solver's progress at answers of one.
@@ -55,7 +55,7 @@ impl Program {
             let beyond = |row: &Row| row.base + row.g.dot(&y);
             let violated: Vec<Row> =
                 self.rows.iter().map(|(row, ..)| *row).filter(|r| beyond(r) > VIOLATION).collect();
-            let violation = violated.iter().map(beyond).fold(moments[2] - LIMIT, f64::max);
+            let violation = violated.iter().map(beyond).fold(moments[2] - LARGEST_SHARE, f64::max);
             // where the solver's own accuracy ends the descent, Newton's method and the certificate take over
             if violation <= VIOLATION || (round > 0 && violation <= 1e-5 && violation > 0.5 * last) {
                 return Ok((y, round));
@@ -63,10 +63,10 @@ impl Program {
             last = violation;
             rows.extend(violated);
             let walls: Vec<Row> = (0..3)
-                .filter(|&k| moments[k] > LIMIT + VIOLATION)
+                .filter(|&k| moments[k] > LARGEST_SHARE + VIOLATION)
                 .map(|k| v.column(k).into_owned())
                 .map(|v| self.reading(&v, &v))
-                .map(|r| Row { base: r.base - LIMIT, g: r.g })
+                .map(|r| Row { base: r.base - LARGEST_SHARE, g: r.g })
                 .collect();
             let new_cones = !walls.is_empty() && round > 0;
             rows.extend(walls);
@@ -102,10 +102,10 @@ impl Program {
         let (top, other) = (v.column(2).into_owned(), v.column(k).into_owned());
         let (a, b, c) = (self.reading(&top, &top), self.reading(&other, &other), self.reading(&top, &other));
         let small = a.g.norm() * scale;
-        let large = (LIMIT - moments[k]).max(b.g.norm() * scale);
+        let large = (LARGEST_SHARE - moments[k]).max(b.g.norm() * scale);
         let w = (small / large).sqrt();
-        let p = Row { base: (LIMIT - a.base) / w, g: -a.g / w };
-        let q = Row { base: (LIMIT - b.base) * w, g: -b.g * w };
+        let p = Row { base: (LARGEST_SHARE - a.base) / w, g: -a.g / w };
+        let q = Row { base: (LARGEST_SHARE - b.base) * w, g: -b.g * w };
         [
             Row { base: p.base + q.base, g: p.g + q.g },
             Row { base: q.base - p.base, g: q.g - p.g },

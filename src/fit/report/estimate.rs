@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, UnitQuaternion};
 
 use super::identifiability::Identifiability;
-use super::torque_free::{Drift, Whiteness};
+use super::torque_free::{InvariantTrend, Whiteness};
 use super::warning::Warning;
 use crate::fit::physical::certificate::Certificate;
 use crate::fit::physical::constraint::ActiveConstraint;
@@ -19,7 +19,7 @@ pub struct Residuals {
     /// The residuals of each.
     pub values: Vec<[f64; 3]>,
     /// Their mean square.
-    pub misfit: f64,
+    pub mean_square: f64,
 }
 
 /// A fitted tensor and how far to trust it.
@@ -74,10 +74,10 @@ pub struct Estimate {
     pub active_constraints: Vec<ActiveConstraint>,
     /// Check of the answer's optimality.
     pub certificate: Certificate,
-    /// Drift of |J ω|.
-    pub momentum_drift: Drift,
-    /// Drift of 2T = ω·J ω.
-    pub energy_drift: Drift,
+    /// InvariantTrend of |J ω|.
+    pub momentum_trend: InvariantTrend,
+    /// InvariantTrend of 2T = ω·J ω.
+    pub energy_trend: InvariantTrend,
     /// Correlation of neighbouring residuals.
     pub whiteness: Whiteness,
     /// Residuals by segment.

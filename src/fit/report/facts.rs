@@ -4,14 +4,14 @@ use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::estimate::{Estimate, Residuals};
 use super::identifiability::Identifiability;
-use super::torque_free::{Drift, Whiteness, drifts};
+use super::torque_free::{InvariantTrend, Whiteness, drifts};
 use super::warnings::{Grounds, warnings};
 use crate::fit::cramer_rao::Motions;
 use crate::fit::error::FitError;
 use crate::fit::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, pair, tensor};
 use crate::fit::physical::face::Nearest;
 use crate::fit::physical::failure::SolverFailure;
-use crate::fit::physical::law::LIMIT;
+use crate::fit::physical::law::LARGEST_SHARE;
 use crate::fit::record::Record;
 use crate::fit::settings::Settings;
 use crate::fit::weak::mistaken_units::Better;
@@ -65,7 +65,8 @@ impl Facts<'_> {
         let covariance = on_face * on_face.transpose();
         let (inertia, inertia_covariance) = self.absolute(&j, &covariance, motions.as_ref())?;
         let (momentum, energy) = drifts(self.stretches, &j, self.variance);
-        let per_second = |d: Drift| Drift { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
+        let per_second =
+            |d: InvariantTrend| InvariantTrend { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
         let residuals = self.residuals(&nearest.x);
         let pull = (root * (nearest.x - self.weak.x)).norm();
         let mut estimate = Estimate {
@@ -89,11 +90,11 @@ impl Facts<'_> {
             segments: residuals.len(),
             radius: self.weak.radius / self.rms,
             identifiability,
-            triangle_slack: (2.0 * (LIMIT - moments[2])).max(0.0),
+            triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
             active_constraints: nearest.active,
             certificate: nearest.certificate,
-            momentum_drift: per_second(momentum),
-            energy_drift: per_second(energy),
+            momentum_trend: per_second(momentum),
+            energy_trend: per_second(energy),
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
             residuals,
             warnings: Vec::new(),
@@ -134,7 +135,7 @@ impl Facts<'_> {
             Residuals {
                 segment: part.stretch,
                 times: part.centres.iter().map(|c| start + c / self.rms).collect(),
-                misfit: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
+                mean_square: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
                 values,
             }
         })

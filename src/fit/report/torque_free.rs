@@ -6,14 +6,14 @@ use crate::fit::weak::test_functions::Stretch;
 
 /// Relative change per second of a quantity that a free body keeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drift {
+pub struct InvariantTrend {
     /// Relative rate, 1/s; negative where it is lost.
     pub rate: f64,
     /// Its standard deviation from the noise of the rates.
     pub sigma: f64,
 }
 
-impl Drift {
+impl InvariantTrend {
     /// Whether it stands out of the noise.
     pub fn significant(self) -> bool {
         self.rate.abs() > 5.0 * self.sigma
@@ -52,15 +52,19 @@ impl Whiteness {
 ///
 /// Each sample of |J ω|² has the variance 4 σ² |J² ω|², of ω·J ω the variance 4 σ² |J ω|²; the noise adds a constant to
 /// both means, which no slope sees.
-pub(crate) fn drifts(stretches: &[Stretch], j: &Matrix3<f64>, variance: f64) -> (Drift, Drift) {
+pub(crate) fn drifts(
+    stretches: &[Stretch],
+    j: &Matrix3<f64>,
+    variance: f64,
+) -> (InvariantTrend, InvariantTrend) {
     let jj = j * j;
     let momentum = slope(stretches, |w| (w.dot(&(jj * w)), 4.0 * variance * (jj * w).norm_squared()));
     let energy = slope(stretches, |w| (w.dot(&(j * w)), 4.0 * variance * (j * w).norm_squared()));
     // |Jω| changes half as fast as its square
-    (Drift { rate: 0.5 * momentum.rate, sigma: 0.5 * momentum.sigma }, energy)
+    (InvariantTrend { rate: 0.5 * momentum.rate, sigma: 0.5 * momentum.sigma }, energy)
 }
 
-fn slope(stretches: &[Stretch], reading: impl Fn(&nalgebra::Vector3<f64>) -> (f64, f64)) -> Drift {
+fn slope(stretches: &[Stretch], reading: impl Fn(&nalgebra::Vector3<f64>) -> (f64, f64)) -> InvariantTrend {
     let (mut numerator, mut denominator, mut noise) = (0.0, 0.0, 0.0);
     for s in stretches.iter().filter(|s| s.times.len() > 2) {
         let n = s.times.len() as f64;
@@ -80,8 +84,8 @@ fn slope(stretches: &[Stretch], reading: impl Fn(&nalgebra::Vector3<f64>) -> (f6
         }
     }
     if denominator > 0.0 {
-        Drift { rate: numerator / denominator, sigma: noise.sqrt() / denominator }
+        InvariantTrend { rate: numerator / denominator, sigma: noise.sqrt() / denominator }
     } else {
-        Drift { rate: 0.0, sigma: f64::MAX }
+        InvariantTrend { rate: 0.0, sigma: f64::MAX }
     }
 }

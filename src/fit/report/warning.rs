@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::torque_free::{Drift, Whiteness};
+use super::torque_free::{InvariantTrend, Whiteness};
 use crate::fit::physical::constraint::ActiveConstraint;
 use crate::fit::weak::mistaken_units::{MistakenUnit, alternatives};
 
@@ -53,9 +53,9 @@ pub enum Warning {
     /// The residuals are not white.
     Correlated(Whiteness),
     /// The angular momentum |J ω| changes.
-    MomentumTrend(Drift),
+    MomentumTrend(InvariantTrend),
     /// The energy ω·J ω changes.
-    EnergyTrend(Drift),
+    EnergyTrend(InvariantTrend),
     /// The residuals of one segment exceed those of the median segment.
     NoisySegment {
         /// Which segment of the record, from 0.
@@ -139,7 +139,7 @@ impl fmt::Display for Warning {
             }
             Self::Contradiction { pull } => write!(
                 f,
-                "law and bounds hold the answer {pull:.1} standard deviations off what the record says: it contradicts \
+                "law and limits hold the answer {pull:.1} standard deviations off what the record says: it contradicts \
                  them"
             ),
             Self::Uncertain { deviation } => write!(
@@ -159,7 +159,7 @@ impl fmt::Display for Warning {
     }
 }
 
-fn torque(f: &mut fmt::Formatter<'_>, name: &str, trend: &Drift) -> fmt::Result {
+fn torque(f: &mut fmt::Formatter<'_>, name: &str, trend: &InvariantTrend) -> fmt::Result {
     let change = with_sigma(100.0 * trend.rate, 100.0 * trend.sigma);
     write!(f, "not free of torques: the {name} changes by {change} per cent per second")
 }

@@ -45,19 +45,21 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if e.whiteness.significant() {
         list.push(Warning::Correlated(e.whiteness));
     }
-    if e.momentum_drift.significant() {
-        list.push(Warning::MomentumTrend(e.momentum_drift));
+    if e.momentum_trend.significant() {
+        list.push(Warning::MomentumTrend(e.momentum_trend));
     }
-    if e.energy_drift.significant() {
-        list.push(Warning::EnergyTrend(e.energy_drift));
+    if e.energy_trend.significant() {
+        list.push(Warning::EnergyTrend(e.energy_trend));
     }
-    let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.misfit).collect();
+    let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);
     if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {
-        list.extend(e.residuals.iter().filter(|r| r.misfit > 4.0 * median).map(|r| Warning::NoisySegment {
-            segment: r.segment,
-            start: record.segments[r.segment].times().first().copied().unwrap_or(0.0),
-            times: (r.misfit / median).sqrt(),
+        list.extend(e.residuals.iter().filter(|r| r.mean_square > 4.0 * median).map(|r| {
+            Warning::NoisySegment {
+                segment: r.segment,
+                start: record.segments[r.segment].times().first().copied().unwrap_or(0.0),
+                times: (r.mean_square / median).sqrt(),
+            }
         }));
     }
     list.extend(e.active_constraints.iter().cloned().map(Warning::Held));

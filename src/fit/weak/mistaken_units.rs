@@ -103,7 +103,7 @@ pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
         found.extend(settled.map(|weak| Found {
             factor,
             mistake,
-            misfit: weak.misfit_per_dof(variance),
+            misfit: weak.misfit(variance),
             dof: weak.dof() as f64,
             credible: credible(&weak, variance),
         }));
@@ -139,6 +139,6 @@ const TOLD: f64 = 0.2;
 /// Whether the record determines the estimate: with rates too large a tensor next to the sphere explains most motions.
 fn credible(weak: &WeakEstimate, variance: f64) -> bool {
     let Some((singular, _)) = weak.spectrum() else { return false };
-    let deviation = (variance * weak.misfit_per_dof(variance).max(1.0)).sqrt() / singular[4];
+    let deviation = (variance * weak.misfit(variance).max(1.0)).sqrt() / singular[4];
     deviation <= TOLD * weak.x.norm()
 }

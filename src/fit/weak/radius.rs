@@ -106,7 +106,7 @@ pub(crate) fn estimate(
                 return Ok(weak);
             }
             // mere noise comes to rest on a motion, if there is one; torques may not let it
-            let torques = weak.misfit_per_dof(variance) > TORQUES;
+            let torques = weak.misfit(variance) > TORQUES;
             if torques && best.as_ref().is_none_or(|b| weak.moved < b.moved) {
                 best = Some(weak);
             }

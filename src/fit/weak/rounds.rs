@@ -8,7 +8,7 @@ use super::noise::SURE;
 use super::stacked::Stacked;
 use super::test_functions::{Stretch, TestFunctions};
 use crate::fit::physical::coordinates::{Coordinates, Form, eigen, pair, tensor};
-use crate::fit::physical::law::LIMIT;
+use crate::fit::physical::law::LARGEST_SHARE;
 
 /// Most rounds at one radius; at low noise two or three do.
 pub(crate) const ROUNDS: usize = 12;
@@ -20,7 +20,7 @@ const SHARES: usize = 30;
 const STILL: f64 = 0.01;
 /// The same beyond which there is no answer.
 pub(crate) const RESTLESS: f64 = 0.5;
-/// Misfit per equation that noise does not explain.
+/// Misfit that noise does not explain.
 pub(crate) const TORQUES: f64 = 4.0;
 /// Fall of χ² that no wobble of pure noise brings about: its chance is e⁻²⁵ for each frequency that is tried.
 const SIGNIFICANT_GAIN: f64 = 50.0;
@@ -41,7 +41,7 @@ pub(crate) struct WeakEstimate {
     /// D of the mean rates; zero where R is taken at a motion that stands out of the noise.
     doubt: Form,
     /// Sum of squares of the whitened residuals.
-    pub(crate) misfit: f64,
+    pub(crate) squares: f64,
     /// Equations.
     pub(crate) rows: usize,
     /// Each stretch that is long enough.
@@ -79,9 +79,9 @@ impl WeakEstimate {
         let (moments, axes) = eigen(tensor(&self.x));
         let top = axes.column(2).into_owned();
         let share = self.root.transpose().solve_lower_triangular(&pair(&top, &top));
-        let excess = variance * self.misfit_per_dof(variance).max(1.0);
+        let excess = variance * self.misfit(variance).max(1.0);
         let deviation = share.map_or(f64::INFINITY, |g| g.norm() * excess.sqrt());
-        moments[2] - LIMIT <= (SURE * deviation).max(BEYOND)
+        moments[2] - LARGEST_SHARE <= (SURE * deviation).max(BEYOND)
     }
 
     /// Equations beyond the unknowns.
@@ -90,8 +90,8 @@ impl WeakEstimate {
     }
 
     /// Mean square of the residuals over the noise.
-    pub(crate) fn misfit_per_dof(&self, variance: f64) -> f64 {
-        self.misfit / variance / self.dof().max(1) as f64
+    pub(crate) fn misfit(&self, variance: f64) -> f64 {
+        self.squares / variance / self.dof().max(1) as f64
     }
 
     /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
@@ -190,7 +190,7 @@ impl<'a> Rounds<'a> {
         let x = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite())).unwrap_or(self.x);
         // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
         // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
-        let gain = (self.misfit_of_sphere()? - stacked.misfit) / (variance * stacked.excess(variance));
+        let gain = (self.squares_of_sphere()? - stacked.squares) / (variance * stacked.excess(variance));
         let (root, doubt) = if gain > SIGNIFICANT_GAIN {
             (stacked.root, Form::zeros())
         } else {
@@ -202,7 +202,7 @@ impl<'a> Rounds<'a> {
             moved,
             root,
             doubt,
-            misfit: stacked.misfit,
+            squares: stacked.squares,
             rows: stacked.rows,
             parts: self
                 .used
@@ -216,7 +216,7 @@ impl<'a> Rounds<'a> {
     /// What can be said without any tensor to go by: the information of constant rates, weighted as for a sphere.
     pub(crate) fn at_sphere(mut self, variance: f64) -> Option<WeakEstimate> {
         self.x = Coordinates::zeros();
-        let ((root, doubt), misfit) = (self.constant_rates(variance)?, self.misfit_of_sphere()?);
+        let ((root, doubt), squares) = (self.constant_rates(variance)?, self.squares_of_sphere()?);
         let rows = self.used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
         Some(WeakEstimate {
             radius: self.used.first()?.2.radius,
@@ -224,14 +224,14 @@ impl<'a> Rounds<'a> {
             moved: f64::INFINITY,
             root,
             doubt,
-            misfit,
+            squares,
             rows,
             parts: Vec::new(),
         })
     }
 
     /// What the weak equations of the sphere leave, whose rates are constant.
-    fn misfit_of_sphere(&self) -> Option<f64> {
+    fn squares_of_sphere(&self) -> Option<f64> {
         let mut sum = 0.0;
         for (_, s, tests) in &self.used {
             let raw = vec![Vector3::zeros(); s.times.len()];

@@ -13,7 +13,7 @@ pub(crate) struct Stacked {
     pub(crate) root: Form,
     z: Coordinates,
     /// Sum of squares of the whitened residuals that no x removes.
-    pub(crate) misfit: f64,
+    pub(crate) squares: f64,
     /// Equations.
     pub(crate) rows: usize,
 }
@@ -33,14 +33,14 @@ impl Stacked {
             origin,
             root: Form::from_fn(|i, k| if i <= k { r[(i, k)] } else { 0.0 }),
             z: Coordinates::from_fn(|i, _| r[(i, 5)]),
-            misfit: r[(5, 5)] * r[(5, 5)],
+            squares: r[(5, 5)] * r[(5, 5)],
             rows: rows.len(),
         }
     }
 
     /// Mean square of what is left over that of the noise, where it is more than 1.
     pub(crate) fn excess(&self, variance: f64) -> f64 {
-        (self.misfit / variance / self.rows.saturating_sub(5).max(1) as f64).max(1.0)
+        (self.squares / variance / self.rows.saturating_sub(5).max(1) as f64).max(1.0)
     }
 
     pub(crate) fn information(&self) -> Form {
