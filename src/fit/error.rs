@@ -1,4 +1,4 @@
-//! Why a record has no answer.
+//! Why a fit is refused.
 
 use thiserror::Error;
 
@@ -9,18 +9,20 @@ use super::report::identifiability::Identifiability;
 use super::weak::mistaken_units::{MistakenUnit, alternatives};
 use super::weak::test_functions::TESTS_PER_RADIUS;
 
-/// Two demands that no tensor meets.
+/// Two constraints that no physically valid tensor meets together.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clash {
-    /// The one.
+    /// The first of the two.
     pub first: Constraint,
-    /// The other.
+    /// The second of the two.
     pub second: Constraint,
-    /// By how much each would have to give way, as a share of the trace; negative where they meet.
+    /// By how much each would have to be relaxed, as a share of the trace; negative where both can be met.
     pub gap: f64,
 }
 
 /// Why a fit was refused.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum FitError {
     /// Too few samples for even one test function.
@@ -42,8 +44,8 @@ pub enum FitError {
     },
     /// The angular velocity is zero, or a quarter and more of its mean square is noise.
     #[error(
-        "the rates have a root mean square of {rms:.3e} rad/s and a noise of {noise:.3e} rad/s: no rotation stands out \
-         enough to be fitted; spin the body faster"
+        "the rates have a root mean square of {rms:.3e} rad/s and a noise of {noise:.3e} rad/s: the rotation is too \
+         slow for this noise; spin the body faster"
     )]
     NoRotation {
         /// Root mean square rate, rad/s.
@@ -54,10 +56,11 @@ pub enum FitError {
     /// The record determines fewer than five numbers of the tensor.
     #[error("the record does not determine the tensor: {}", .0.verdict())]
     Unidentifiable(Box<Identifiability>),
-    /// The rates change, but no tensor explains how.
+    /// The iteration did not converge at any radius of the test functions, although the rates change.
     #[error(
-        "the rates change, but in {rounds} rounds at any radius no tensor settled: the noise of {noise:.3e} rad/s hides \
-         the motion, torques make it, or the body is slender; record longer, with a larger wobble, or name a radius{}{}",
+        "the rates change, but the iteration did not converge in {rounds} rounds at any radius of the test functions: the \
+         noise of {noise:.3e} rad/s may hide the motion, torques may act, or the body may be slender; record longer, \
+         with a larger wobble, or set the radius{}{}",
         smaller(*factor), known(axes)
     )]
     Unsettled {
@@ -87,7 +90,7 @@ pub enum FitError {
         better: f64,
     },
     /// Limits that exclude each other.
-    #[error("{} and {} exclude each other: each would have to give way by {:.3e} of the trace", demand(&.0.first), demand(&.0.second), .0.gap)]
+    #[error("{} and {} exclude each other: each would have to be relaxed by {:.3e} of the trace", demand(&.0.first), demand(&.0.second), .0.gap)]
     Contradiction(Box<Clash>),
     /// Limits that leave less than a millionth of the trace between them.
     #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", demand(&.0.first), demand(&.0.second))]
@@ -109,7 +112,7 @@ pub enum FitError {
         value: f64,
     },
     /// A setting that must be positive and finite is not.
-    #[error("{name} is {value:?}; it must be a positive number, and its square neither vanish nor overflow")]
+    #[error("{name} is {value:?}; it must be a positive number whose square neither underflows nor overflows")]
     Setting {
         /// Which one.
         name: &'static str,
@@ -131,14 +134,14 @@ pub enum FitError {
     },
     /// Test functions so short that their equations are nearly as many as the samples.
     #[error(
-        "a radius of {radius} s makes nearly as many equations as there are samples, whose noise has then no inverse \
-         covariance; name a larger one"
+        "a radius of {radius} s gives nearly as many equations as there are samples, so that the covariance of \
+         their noise is singular; set a larger radius"
     )]
     Dense {
         /// The radius, s.
         radius: f64,
     },
-    /// The solver's answer did not pass the check of optimality.
+    /// The quadratic program has no certified answer.
     #[error("the quadratic program has no certified answer: {0}")]
     Solver(SolverFailure),
 }
@@ -154,7 +157,7 @@ fn demand(constraint: &Constraint) -> String {
 fn smaller(factor: Option<f64>) -> String {
     factor.map_or(String::new(), |factor| {
         format!(
-            ". With rate x time {factor:.4} times as large, or more, a body next to a sphere would move like that: are the \
+            ". With rate x time {factor:.4} times as large or larger, a nearly spherical body would move like this: are the \
              units right?"
         )
     })

@@ -21,9 +21,28 @@ use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
 
 /// Fits one tensor to all segments of a record.
 ///
-/// The estimator is the weak form of Euler's equation, weighted by the covariance of its noise at samples that are
-/// moved onto the equations from round to round; the physical law enters by a quadratic program in whitened increments.
-/// No unit of rate or time and no rotation of the sensor changes the result beyond rounding.
+/// The estimator solves the weak form of Euler's equation by least squares, weighted with the covariance of its noise.
+/// Each round corrects the samples by the noise that the round before estimated, and linearises again. A quadratic
+/// program then finds the nearest physically valid tensor within the limits, in the metric of the information.
+/// Neither the units of rate and time nor a rotation of the sensor change the result beyond rounding.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::fit::{FitError, Random, Record, Settings, fit, rehearse};
+/// use polhode::inertia::Inertia;
+///
+/// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+/// let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
+/// let mut random = Random::new(7);
+/// let tumbling = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut random)?;
+/// let estimate = fit(&Record::from_samples(&times, &tumbling)?, &Settings::default())?;
+/// assert!((estimate.ratios[0] - 1.0 / 2.6).abs() < 5.0 * estimate.sigma_ratios[0]);
+///
+/// let spinning = rehearse(&body, Vector3::new(0.0, 0.0, 1.0), &times, 1e-3, &mut random)?;
+/// let refused = fit(&Record::from_samples(&times, &spinning)?, &Settings::default());
+/// assert!(matches!(refused, Err(FitError::Unidentifiable(what)) if what.rank == 2)); // an axis, and no ratio
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// Too few samples; no rotation; a record that does not determine the tensor, with what it does determine; units that

@@ -1,9 +1,9 @@
 //! Inertia from measured angular velocity.
 //!
-//! A body that turns freely tells its inertia tensor up to a factor: five numbers. [`fit`] reads them from a
-//! [`Record`] of rates: the weak form of Euler's equation (nothing is differentiated) weighted by the covariance of
-//! its own noise, then the nearest tensor that a body can have. [`Estimate`] says how well each number is known,
-//! how that compares with the Cramér–Rao bound, and what in the record contradicts a free body.
+//! The angular velocity of a torque-free body determines its inertia tensor up to scale: five numbers. [`fit`]
+//! estimates them from a [`Record`] of rates: the weak form of Euler's equation (nothing is differentiated), weighted
+//! by the covariance of its own noise, then the nearest physically valid tensor. [`Estimate`] holds the tensor, the
+//! standard deviation of each number, the Cramér–Rao bound, and what in the record contradicts a free body.
 //!
 //! ```
 //! use nalgebra::Vector3;
@@ -28,8 +28,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The tensor comes from rounds of linear least squares and one quadratic program at their end; a refinement by
-//! maximum likelihood would start where this ends.
+//! The tensor comes from rounds of linear least squares with one quadratic program at their end; it is not refined by
+//! maximum likelihood.
 
 mod cramer_rao;
 mod error;

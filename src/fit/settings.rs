@@ -1,10 +1,24 @@
-//! What the user may fix.
+//! What the user may set.
 
 use super::error::FitError;
 use super::physical::limits::Limit;
 use super::report::scale::Known;
 
-/// What the user may fix; the default leaves everything to the record.
+/// What the user may set; the default leaves everything to the record.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::fit::{Known, Limit, Settings};
+/// // test functions of half width 0.5 s, at least 0.4 of the trace about z, and a trace of 5.6 kg m²
+/// let limit = Limit { axis: Vector3::z(), at_least: Some(0.4), at_most: None };
+/// let settings = Settings {
+///     radius: Some(0.5),
+///     limits: vec![limit],
+///     known: Some(Known::Trace(5.6)),
+///     ..Settings::default()
+/// };
+/// assert!(settings.noise.is_none() && settings.check_units);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Half width of the test functions, s; chosen by least predicted covariance without it.

@@ -37,7 +37,7 @@ impl Facts {
     }
 
     pub(super) fn unsettled(axes: &[AverageAxis]) -> Self {
-        let open = "the ratios of the moments, and all else of the axes: no tensor settled";
+        let open = "the ratios of the moments, and the axes otherwise: the iteration did not converge";
         Facts {
             rank: None,
             known: axes.iter().map(AverageAxis::to_string).collect(),

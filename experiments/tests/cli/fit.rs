@@ -112,7 +112,7 @@ fn a_motion_that_noise_hides_is_a_refusal_and_no_bad_input() {
     let record = scratch.0.join("hidden.csv").display().to_string();
     let spin = "simulate --moments 1,2,3 --omega -0.066,-0.079,-0.995 --until 60 --every 0.01 --noise 0.1";
     output(&format!("{spin} --out {record}"));
-    refused(1, &format!("fit {record}"), &["hidden.csv", "no tensor settled", "Known: ("]);
+    refused(1, &format!("fit {record}"), &["hidden.csv", "did not converge", "Known: ("]);
     let answer: Value = serde_json::from_str(&run(&format!("fit {record} --format json")).out).unwrap();
     assert!(
         answer["known"][0].as_str().unwrap().contains("is a principal axis if no torque acted"),

@@ -1,4 +1,4 @@
-//! The bound of measured motions, and of one that is only planned.
+//! The Cramér–Rao bound of measured motions, and of a planned one.
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
@@ -70,6 +70,7 @@ impl<'a> Motions<'a> {
 /// ```
 ///
 /// `None` where the motion does not determine the tensor, or an argument is not finite.
+#[must_use]
 pub fn foreseen_bound(
     inertia: &Inertia,
     omega_body: Vector3<f64>,

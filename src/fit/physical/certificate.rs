@@ -6,6 +6,7 @@ pub(crate) const CERTIFIED: f64 = 1e-9;
 pub(crate) const STATIONARY: f64 = 1e-6;
 
 /// What the solver's answer was checked against: largest residuals of the optimality conditions, in whitened units.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// |y + Σ multiplier · gradient| over 1 + |y|.

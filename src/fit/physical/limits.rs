@@ -9,7 +9,25 @@ use super::failure::SolverFailure;
 use super::law::{CUTS, LARGEST_SHARE};
 use crate::fit::error::{Clash, FitError};
 
-/// A limit that is known beforehand: the moment of inertia about `axis` as a share of the trace.
+/// Limits on the moment of inertia about an axis, as shares of the trace, that are known beforehand.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::fit::{FitError, Limit, Random, Record, Settings, fit, rehearse};
+/// use polhode::inertia::Inertia;
+/// # let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+/// # let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
+/// # let rates = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
+/// let record = Record::from_samples(&times, &rates)?;
+/// let with = |limit| fit(&record, &Settings { limits: vec![limit], ..Settings::default() });
+/// let held = with(Limit { axis: Vector3::x(), at_least: Some(0.2), at_most: None })?;
+/// assert!((held.shape.tensor()[(0, 0)] - 0.2).abs() < 1e-12 && held.pull > 10.0);
+///
+/// // no moment exceeds half the trace
+/// let refused = with(Limit { axis: Vector3::x(), at_least: Some(0.6), at_most: None });
+/// assert!(matches!(refused, Err(FitError::Contradiction(_))));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// Any non-zero vector along the axis, in sensor axes.

@@ -41,10 +41,10 @@ impl Program {
         tensor(&(self.centre + step))
     }
 
-    /// Clarabel, with cuts until law and limits hold.
+    /// The answer of Clarabel, with cuts added until the law and the limits are met.
     ///
-    /// A wall enters when an answer lies beyond it, so that none is further away than the answer: walls at 1e5 standard
-    /// deviations would end the solver's progress at answers of one.
+    /// A cut is added only when violated, so that no cut is farther away than the current iterate: next to cuts at 1e5
+    /// standard deviations the solver would not resolve answers at one.
     pub(super) fn cut(&self) -> Result<(Coordinates, usize), SolverFailure> {
         let mut y = Coordinates::zeros();
         let mut rows: Vec<Row> = Vec::new();

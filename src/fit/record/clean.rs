@@ -90,8 +90,8 @@ pub(super) fn cleaned(file: &str, rows: Rows) -> Result<Cleaned, RecordError> {
 
 /// Samples where a component stays at its largest or smallest value, and longer than a rounded peak would.
 ///
-/// In rounded readings a peak is flat too: as long as it takes to fall by a few steps of the rounding. A clipped one is
-/// flat for longer than that.
+/// Rounded readings are flat at a peak too, for as long as they take to fall by a few steps of the rounding; a clipped
+/// peak is flat for longer.
 fn flat_tops(samples: &[[f64; 4]]) -> Vec<bool> {
     let mut flat = vec![false; samples.len()];
     for k in 1..4 {
@@ -110,7 +110,7 @@ fn flat_tops(samples: &[[f64; 4]]) -> Vec<bool> {
             while i < samples.len() {
                 let run = samples[i..].iter().take_while(|row| row[k] == end).count();
                 if run >= FLAT_TOP {
-                    // how long the fall lasts is asked no further than the answer matters; an edge tells nothing
+                    // look at most a third of the run aside; beyond the ends of the record there is no evidence
                     let most = run / 3;
                     let before = samples[..i].iter().rev().take(most).position(away);
                     let after = samples[i + run..].iter().take(most).position(away);

@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::num::Shown;
 
 /// Why a record cannot be used. Lines and columns count from 1, the header included.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RecordError {
     /// No header names the columns that are needed.
@@ -40,7 +41,7 @@ pub enum RecordError {
     },
     /// A comma that would make a number of either size.
     #[error(
-        "{file}, line {line}, column {column} ({name}): {} has a comma that may part thousands or decimals; write a \
+        "{file}, line {line}, column {column} ({name}): {} has a comma that may separate thousands or decimals; write a \
          decimal point and no other mark",
         shown(value)
     )]
@@ -59,7 +60,7 @@ pub enum RecordError {
     /// A row that ends before the last column that is needed, or has more cells than its header.
     #[error(
         "{file}, line {line}: {cells} cells where the header has {columns}; every row must have as many, with decimal \
-         points where commas part the cells"
+         points where commas separate the cells"
     )]
     Cells {
         /// Name of the file.

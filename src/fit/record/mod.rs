@@ -41,6 +41,16 @@ pub struct Record {
 impl Record {
     /// From times (s) and angular velocities (rad/s, sensor axes).
     ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::fit::Record;
+    /// // a gap of more than eight intervals parts two segments
+    /// let times = [0.0, 0.01, 0.02, 0.5, 0.51];
+    /// let record = Record::from_samples(&times, &[Vector3::new(0.1, 2.0, 0.3); 5])?;
+    /// assert_eq!((record.segments.len(), record.gaps(), record.samples()), (2, 1, 5));
+    /// # Ok::<(), polhode::fit::RecordError>(())
+    /// ```
+    ///
     /// # Errors
     /// Lists of different lengths, values that are not finite, times that decrease, no samples.
     pub fn from_samples(times: &[f64], rates: &[Vector3<f64>]) -> Result<Record, RecordError> {
@@ -128,6 +138,7 @@ impl Record {
     }
 
     /// This record and another of the same body.
+    #[must_use]
     pub fn join(mut self, other: Record) -> Record {
         self.segments.extend(other.segments);
         self.findings.extend(other.findings);

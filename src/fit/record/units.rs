@@ -1,6 +1,7 @@
 //! Units of times and rates, by the names that files use.
 
 /// Unit of a time column.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeUnit {
     /// s
@@ -14,6 +15,7 @@ pub enum TimeUnit {
 }
 
 /// Unit of a column of rates.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RateUnit {
     /// rad/s

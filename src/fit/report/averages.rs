@@ -1,4 +1,4 @@
-//! What averages over a record tell of the axes, with no tensor to go by.
+//! Bounds on the principal axes from averages over a record, where no tensor was found.
 //!
 //! One test function over a whole segment turns Euler's equation into [M, J]_ij = ε_ijk (J v)_k with M = ∫ φ ω ωᵀ dt and
 //! v = ∫ φ' ω dt. Noise adds a multiple of 1 to M, which commutes with J. In the eigenframe of M, with eigenvalues λ,
@@ -13,12 +13,13 @@ use crate::fit::physical::coordinates::eigen;
 use crate::fit::weak::noise::SURE;
 use crate::fit::weak::test_functions::{Seen, Stretch, TestFunctions};
 
-/// An axis that is principal within a bound, for every body on which no torque acted.
+/// An axis that is principal to within a bound, if no torque acted on the body.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AverageAxis {
     /// Unit vector in sensor axes.
     pub axis: Vector3<f64>,
-    /// Greatest product of inertia of this axis with another, as a share of the trace.
+    /// Upper bound on the products of inertia of this axis with the others, as a share of the trace.
     pub product: f64,
 }
 
@@ -27,13 +28,13 @@ impl fmt::Display for AverageAxis {
         let axis = direction(&self.axis);
         write!(
             f,
-            "{axis} is a principal axis if no torque acted, but for products of inertia below {:.4} of the trace",
+            "{axis} is a principal axis if no torque acted, to within products of inertia of {:.4} of the trace",
             self.product
         )
     }
 }
 
-/// The axes whose products are bounded by a figure that tells something.
+/// The axes whose products of inertia have a useful bound.
 pub(crate) fn axes(stretches: &[Stretch], variance: f64) -> Vec<AverageAxis> {
     let (mut m, mut v) = (Matrix3::zeros(), Vector3::zeros());
     let (mut squares, mut slopes) = (0.0, 0.0);

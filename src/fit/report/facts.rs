@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::estimate::{Estimate, Residuals};
 use super::identifiability::Identifiability;
-use super::torque_free::{InvariantTrend, Whiteness, drifts};
+use super::torque_free::{InvariantTrend, Whiteness, trends};
 use super::warnings::{Grounds, warnings};
 use crate::fit::cramer_rao::Motions;
 use crate::fit::error::FitError;
@@ -64,7 +64,7 @@ impl Facts<'_> {
         let bound_ratio = bound.map(|b| free.norm() / b.trace().sqrt());
         let covariance = on_face * on_face.transpose();
         let (inertia, inertia_covariance) = self.absolute(&j, &covariance, motions.as_ref())?;
-        let (momentum, energy) = drifts(self.stretches, &j, self.variance);
+        let (momentum, energy) = trends(self.stretches, &j, self.variance);
         let per_second =
             |d: InvariantTrend| InvariantTrend { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
         let residuals = self.residuals(&nearest.x);

@@ -1,4 +1,4 @@
-//! What a record tells of the tensor, and what it leaves open.
+//! Which combinations of the five numbers a record determines, and which it does not.
 
 use core::fmt;
 
@@ -6,11 +6,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::fit::physical::coordinates::{Coordinates, Form, eigen, trace_free};
 
-/// A combination of entries with a larger standard deviation (share of the trace) counts as undetermined: physical
-/// tensors differ by 0.4 at most from the sphere, so such a figure tells nothing.
+/// A combination of entries with a larger standard deviation (share of the trace) counts as undetermined: physically
+/// valid tensors differ by at most 0.4 from the sphere.
 pub(crate) const VAGUE: f64 = 0.1;
 
 /// A principal axis that a record determines, though not the tensor. Its `Display` is a sentence.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalAxis {
     /// Unit vector in sensor axes, of either sign.
@@ -29,7 +30,7 @@ impl fmt::Display for PrincipalAxis {
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Undetermined {
-    /// All ratios and axes: the motion does not stand out of its noise.
+    /// All ratios and axes: the motion cannot be told from its noise.
     Everything,
     /// I₂/I₃ of a pure spin about axis 1.
     TransverseRatio,
@@ -60,7 +61,7 @@ pub enum Undetermined {
 impl fmt::Display for Undetermined {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Everything => "no ratio and no axis is determined: the motion does not stand out of its noise",
+            Self::Everything => "no ratio and no axis is determined: the motion cannot be told from its noise",
             Self::TransverseRatio => "the ratio I2/I3 is undetermined: the record is a pure spin about axis 1",
             Self::SpinRatio => {
                 "the ratio I1/I2 is undetermined: nothing compares the spin axis with the other two"
@@ -78,18 +79,19 @@ impl fmt::Display for Undetermined {
 }
 
 /// The spectrum of information about the five numbers of a tensor of trace 1.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
     /// Standard deviations (share of the trace) along the principal directions of the information, ascending; infinite
-    /// where the motion tells nothing.
+    /// where the motion carries no information.
     pub deviations: [f64; 5],
-    /// How many of them are determined.
+    /// How many of the five are determined.
     pub rank: usize,
     /// The undetermined combinations.
     pub null_directions: Vec<Undetermined>,
-    /// The same as trace-free tensors of Frobenius norm 1, in sensor axes.
+    /// The same as trace-free tensors of Frobenius norm 1, dimensionless, in sensor axes.
     pub null_tensors: Vec<Matrix3<f64>>,
-    /// The principal axes that are known all the same.
+    /// The principal axes that are determined nevertheless.
     pub known: Vec<PrincipalAxis>,
 }
 

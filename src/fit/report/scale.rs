@@ -6,7 +6,17 @@ use crate::fit::cramer_rao::Motions;
 use crate::fit::physical::coordinates::{Coordinates, ENTRIES, Form, basis, entries_of_coordinates, pair};
 use crate::fit::weak::test_functions::Stretch;
 
-/// A quantity that is known besides the motion, in SI units.
+/// A quantity that is known besides the motion, in SI units: it gives the tensor its scale.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::fit::{Known, Settings};
+/// // from a pendulum: the moment about the z axis, kg m²
+/// let known = Known::Moment { axis: Vector3::z(), value: 2.4e-3 };
+/// let settings = Settings { known: Some(known), ..Settings::default() };
+/// assert_eq!(settings.known, Some(known));
+/// ```
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Known {
     /// The magnitude |L| of the angular momentum of every segment, kg m²/s.
@@ -15,7 +25,7 @@ pub enum Known {
     TwiceEnergy(f64),
     /// The moment about an axis (any non-zero vector in sensor axes), kg m².
     Moment {
-        /// The axis.
+        /// Any non-zero vector along the axis, sensor axes.
         axis: Vector3<f64>,
         /// The moment, kg m².
         value: f64,

@@ -1,26 +1,28 @@
-//! Is it torque-free, and is its noise white?
+//! Whether the motion is torque-free, and the noise white.
 
 use nalgebra::Matrix3;
 
 use crate::fit::weak::test_functions::Stretch;
 
 /// Relative change per second of a quantity that a free body keeps.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InvariantTrend {
-    /// Relative rate, 1/s; negative where it is lost.
+    /// Relative rate, 1/s; negative where the quantity decreases.
     pub rate: f64,
-    /// Its standard deviation from the noise of the rates.
+    /// Its standard deviation from the noise of the rates, 1/s.
     pub sigma: f64,
 }
 
 impl InvariantTrend {
-    /// Whether it stands out of the noise.
+    /// Whether it exceeds five standard deviations.
     pub fn significant(self) -> bool {
         self.rate.abs() > 5.0 * self.sigma
     }
 }
 
 /// Correlation between neighbouring whitened residuals; zero on average where the noise is white and the model right.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Whiteness {
     /// Correlation at lag 1, between −1 and 1.
@@ -42,17 +44,17 @@ impl Whiteness {
         Whiteness { correlation, sigma: 1.0 / f64::max(pairs, 1.0).sqrt() }
     }
 
-    /// Whether it stands out of what white noise gives.
+    /// Whether it exceeds five standard deviations of white noise.
     pub fn significant(self) -> bool {
         self.correlation.abs() > 5.0 * self.sigma
     }
 }
 
-/// Drifts of |J ω| and of ω·J ω: slopes of their squares against time about each stretch's own mean.
+/// Trends of |J ω| and of ω·J ω: slopes of their squares against time about each stretch's own mean.
 ///
 /// Each sample of |J ω|² has the variance 4 σ² |J² ω|², of ω·J ω the variance 4 σ² |J ω|²; the noise adds a constant to
 /// both means, which no slope sees.
-pub(crate) fn drifts(
+pub(crate) fn trends(
     stretches: &[Stretch],
     j: &Matrix3<f64>,
     variance: f64,

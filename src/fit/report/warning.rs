@@ -65,7 +65,7 @@ pub enum Warning {
         /// Root mean square of its residuals over that of the median segment.
         times: f64,
     },
-    /// The physical law or a limit holds the answer.
+    /// The physical law or a limit is active.
     Held(ActiveConstraint),
     /// The record contradicts the physical law or the limits.
     Contradiction {
@@ -98,8 +98,8 @@ impl fmt::Display for Warning {
                 write!(f, "{} merged with the sample of the same time", counted(*samples, "was", "were"))
             }
             Self::Saturated { samples } => {
-                let samples = counted(*samples, "stands", "stand");
-                write!(f, "{samples} at the end of the sensor's range (flat tops), left out")
+                let (subject, verb) = if *samples == 1 { ("sample", "was") } else { ("samples", "were") };
+                write!(f, "{samples} {subject} at the end of the sensor's range (flat tops) {verb} left out")
             }
             Self::ShortSegments { short, segments } => {
                 write!(f, "{short} of {segments} segments are too short for the test functions")
@@ -114,7 +114,7 @@ impl fmt::Display for Warning {
             }
             Self::NotConverged { moved } => write!(
                 f,
-                "the reweighting did not come to rest: a further round would move the tensor by {moved:.2} standard \
+                "the iteration did not converge: a further round would move the tensor by {moved:.2} standard \
                  deviations"
             ),
             Self::Units { factor, mistakes, misfit, better } => write!(
@@ -135,17 +135,17 @@ impl fmt::Display for Warning {
                 segment + 1
             ),
             Self::Held(ActiveConstraint { constraint, multiplier }) => {
-                write!(f, "{constraint} holds the answer (multiplier {multiplier:.3e})")
+                write!(f, "the constraint {constraint} is active (multiplier {multiplier:.3e})")
             }
             Self::Contradiction { pull } => write!(
                 f,
-                "law and limits hold the answer {pull:.1} standard deviations off what the record says: it contradicts \
-                 them"
+                "the physical law and the limits move the tensor {pull:.1} standard deviations from the unconstrained \
+                 estimate: the record contradicts them"
             ),
             Self::Uncertain { deviation } => write!(
                 f,
-                "the tensor is known to {:.1} per cent of its trace only: beyond half a per cent the linear covariance \
-                 is a guide",
+                "the tensor has a standard deviation of {:.1} per cent of its trace: above half a per cent the linear \
+                 covariance is only approximate",
                 100.0 * deviation
             ),
             Self::EqualMoments { low, high } => write!(
@@ -153,7 +153,7 @@ impl fmt::Display for Warning {
                 "moments {low} and {high} agree within their errors: the directions of their axes are arbitrary"
             ),
             Self::FewEquations { dof } => {
-                write!(f, "only {dof} equations beyond the unknowns: the misfit says little")
+                write!(f, "only {dof} degrees of freedom: chi squared is no reliable check")
             }
         }
     }

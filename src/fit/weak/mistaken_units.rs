@@ -1,4 +1,4 @@
-//! Mistaken units of a record, which Euler's equation tells: rates enter it squared, their derivatives do not.
+//! Mistaken units of a record, found by Euler's equation: rates enter it squared, their derivatives linearly.
 
 use core::f64::consts::PI;
 use core::fmt;
@@ -10,6 +10,7 @@ use crate::fit::record::RateUnit::{self, DegreesPerSecond, RadiansPerSecond, Rev
 use crate::fit::record::TimeUnit::{self, Microseconds, Milliseconds, Nanoseconds, Seconds};
 
 /// A unit of the record that may have been taken for another.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MistakenUnit {
     /// Of the rates.
@@ -133,12 +134,12 @@ struct Found {
     credible: bool,
 }
 
-/// Largest deviation, as a share of the distance from the sphere, at which a tensor tells one unit from another.
-const TOLD: f64 = 0.2;
+/// Largest standard deviation, relative to the distance from the sphere, of an estimate that supports its unit.
+const MAX_RELATIVE_SIGMA: f64 = 0.2;
 
-/// Whether the record determines the estimate: with rates too large a tensor next to the sphere explains most motions.
+/// Whether the record determines the estimate: if rates are read too large, a nearly spherical tensor explains most motions.
 fn credible(weak: &WeakEstimate, variance: f64) -> bool {
     let Some((singular, _)) = weak.spectrum() else { return false };
     let deviation = (variance * weak.misfit(variance).max(1.0)).sqrt() / singular[4];
-    deviation <= TOLD * weak.x.norm()
+    deviation <= MAX_RELATIVE_SIGMA * weak.x.norm()
 }
