@@ -28,17 +28,18 @@ use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::fit::{FitError, Random, Record, Settings, fit, rehearse};
+/// use polhode::fit::{FitError, Record, Settings, fit, simulate};
+/// use polhode::num::Random;
 /// use polhode::inertia::Inertia;
 ///
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
 /// let mut random = Random::new(7);
-/// let tumbling = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut random)?;
+/// let tumbling = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut random)?;
 /// let estimate = fit(&Record::from_samples(&times, &tumbling)?, &Settings::default())?;
 /// assert!((estimate.ratios[0] - 1.0 / 2.6).abs() < 5.0 * estimate.sigma_ratios[0]);
 ///
-/// let spinning = rehearse(&body, Vector3::new(0.0, 0.0, 1.0), &times, 1e-3, &mut random)?;
+/// let spinning = simulate(&body, Vector3::new(0.0, 0.0, 1.0), &times, 1e-3, &mut random)?;
 /// let refused = fit(&Record::from_samples(&times, &spinning)?, &Settings::default());
 /// assert!(matches!(refused, Err(FitError::Unidentifiable(what)) if what.rank == 2)); // an axis, and no ratio
 /// # Ok::<(), Box<dyn std::error::Error>>(())

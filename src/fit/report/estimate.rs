@@ -27,11 +27,12 @@ pub struct Residuals {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::fit::{Random, Record, Settings, Warning, fit, rehearse};
+/// use polhode::fit::{Record, Settings, Warning, fit, simulate};
+/// use polhode::num::Random;
 /// use polhode::inertia::Inertia;
 /// # let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// # let times: Vec<f64> = (0..2000).map(|i| f64::from(i) / 100.0).collect();
-/// # let rates = rehearse(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
+/// # let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
 /// let estimate = fit(&Record::from_samples(&times, &rates)?, &Settings::default())?;
 /// for k in 0..3 {
 ///     println!("I{} = {:.5} +- {:.5} of the trace", k + 1, estimate.principal[k], estimate.sigma_principal[k]);
