@@ -238,7 +238,7 @@ fn assert_order(case: &Case, method: &dyn AnyMethod, claimed: u32, exponents: co
             (order - claimed).abs() < 0.02 * claimed.max(2.0),
             "{name}: {what} converges with order {order:.3}, claimed {claimed}, {series:?}"
         );
-        assert!(series[0].1 > 1e-16, "{name}: {what} error absurdly small");
+        assert!(series[0].1 > 1e4 * EXACT, "{name}: {what} error absurdly small");
     }
 }
 
@@ -257,6 +257,7 @@ fn each_method_converges_with_its_order_and_no_better() {
                 (Problem::Gravity, 1) => 8..11,
                 (Problem::Gravity, _) => 6..8,
                 (_, 1) => 8..11,
+                (_, 8..) => 6..8,
                 (Problem::Torque, _) => 9..11,
                 _ => 7..9,
             };
@@ -276,7 +277,7 @@ fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
         match scheme.stages {
             Stages::Composition(_) => assert_scheme_order(&free, &split.unwrap(), scheme),
             Stages::Alternating { .. } => {
-                assert!(split.is_err(), "{} fits no free map of order 2", scheme.name)
+                assert_eq!(split.is_err(), scheme.order > 2, "{} over a free map of order 2", scheme.name)
             }
         }
     }

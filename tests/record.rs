@@ -181,7 +181,8 @@ fn quoted_cells_stay_whole() {
     assert_eq!(only("t,wx,tube,wy,wz\n0,1,5\",2,3\n"), (vec![0.0], vec![[1.0, 2.0, 3.0]]));
     for value in ["1,000", "-12,345", "123,456", "1,234.5", "1,000,000", "1,000e1"] {
         let message = refusal(&format!("t,wx,wy,wz\n0.5,\"{value}\",0,0\n"));
-        let start = format!("a.csv, line 2, column 2 (wx): \"{value}\" has a comma that may separate thousands");
+        let start =
+            format!("a.csv, line 2, column 2 (wx): \"{value}\" has a comma that may separate thousands");
         assert!(message.starts_with(&start), "{message}");
     }
     let half = refusal("t,wx,wy,wz\n0,\"1,2,3\n");

@@ -6,6 +6,7 @@ use polhode::body::{Body, Clock, State};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::method::{AxisOrder, TwoAxes, method};
+use polhode::num::Real;
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 
 /// Root mean square over 200 times of the attitude error over the time, rad/s: the rate at which it grows. Golden
@@ -77,12 +78,12 @@ fn two_turns_are_far_more_accurate_than_three_and_their_axes_well_chosen() {
         let [d1, d2, d3, z, turn, size] = spread(n);
         // any body: I_k is the sum of two of three positive numbers
         let moments = [d2 + d3, d1 + d3, d1 + d2];
-        let (sin, cos) = (core::f64::consts::TAU * turn).sin_cos();
+        let (sin, cos) = Real::sin_cos(core::f64::consts::TAU * turn);
         let (z, norm) = (2.0 * z - 1.0, 0.5 + size);
         let across = (1.0 - z * z).sqrt();
         let m = [norm * across * cos, norm * across * sin, norm * z];
         // two degrees a step
-        let omega = (0..3).map(|k| (m[k] / moments[k]).powi(2)).sum::<f64>().sqrt();
+        let omega = (0..3).map(|k: usize| m[k] / moments[k]).map(|omega| omega * omega).sum::<f64>().sqrt();
         let (h, steps) = (0.035 / omega, 4000);
         let rate = |name: &str| measured(name, moments, m, h, steps);
         let two = rate("two-turn");

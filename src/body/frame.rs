@@ -169,7 +169,7 @@ impl Body {
 
     /// The constants that kernels read.
     pub fn rotor(&self) -> Rotor {
-        Rotor::new(Vec3(self.inertia.scaled_moments()))
+        Rotor::of_moments(Vec3(self.inertia.scaled_moments()))
     }
 
     /// The same body, a force of which that is not finite is told to `witness`.

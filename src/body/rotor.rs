@@ -12,7 +12,7 @@ pub struct Rotor {
 }
 
 impl Rotor {
-    pub(super) fn new(moments: Vec3<Dd>) -> Self {
+    pub(crate) fn of_moments(moments: Vec3<Dd>) -> Self {
         Rotor { moments }
     }
 
@@ -57,6 +57,12 @@ impl<S: Real> Gyroscopic<S> {
         Gyroscopic(Vec3(
             [(1, 2), (2, 0), (0, 1)].map(|(j, k)| S::from_dd(factor * (i[j] - i[k]) / (i[j] * i[k]))),
         ))
+    }
+
+    /// With `scale` times the factor.
+    #[inline]
+    pub(crate) fn scaled(&self, scale: S) -> Self {
+        Gyroscopic(self.0 * scale)
     }
 
     /// The term at `u`.

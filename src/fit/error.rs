@@ -112,7 +112,9 @@ pub enum FitError {
         value: f64,
     },
     /// A setting that must be positive and finite is not.
-    #[error("{name} is {value:?}; it must be a positive number whose square neither underflows nor overflows")]
+    #[error(
+        "{name} is {value:?}; it must be a positive number whose square neither underflows nor overflows"
+    )]
     Setting {
         /// Which one.
         name: &'static str,

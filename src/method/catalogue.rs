@@ -6,7 +6,7 @@ use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
     AxisOrder, AxisSplit, Claimed, Composed, Dmv, ExactFlow, ExplicitEuler, FreePart, ImplicitMidpoint,
-    Kicks, Method, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step, TwoAxes, TwoTurn,
+    Kicks, Method, PreprocessedDmv, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -129,6 +129,7 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(Rk4 { normalized: true }),
         Box::new(ImplicitMidpoint),
         Box::new(Splitting::strang(Dmv, Kicks)),
+        Box::new(Splitting::strang(PreprocessedDmv::ORDER_10, Kicks)),
         Box::new(Splitting::strang(AxisSplit { axes: None }, Kicks)),
         Box::new(Splitting::strang(TwoTurn { axes: None }, Kicks)),
         Box::new(Splitting::strang(ExactFlow, Kicks)),
@@ -167,6 +168,13 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
             _ => Box::new(ImplicitMidpoint),
         }),
         "rattle" => kicked(Dmv, asked.scheme_alone()?),
+        "dmv" => {
+            let chosen = asked.scheme()?;
+            let rule = "an even order from 4 to 20, such as dmv:10";
+            let order = argument.and_then(|order| order.parse().ok());
+            let order = order.and_then(|order| PreprocessedDmv::of_order(order).ok());
+            kicked(order.ok_or_else(|| asked.refused(rule))?, chosen)
+        }
         "lie-poisson" => {
             let chosen = asked.scheme()?;
             let axes = argument.map(str::parse::<AxisOrder>).transpose();

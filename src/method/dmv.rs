@@ -79,6 +79,22 @@ pub struct DmvMap<S> {
     worst_residual: f64,
 }
 
+impl<S: Real> DmvMap<S> {
+    /// The map for the reciprocal moments `s/I + d`, `half` being h/2.
+    pub(super) fn set(&mut self, rotor: &Rotor, half: Dd, s: Dd, d: Dd) {
+        let inverse = rotor.inverse_moments::<Dd>();
+        self.half = inverse.map(|inverse| S::from_dd((inverse * s + d) * half));
+        self.gyroscopic = Gyroscopic::new(rotor, half * s);
+    }
+
+    /// The same from the map for the moments themselves and d h/2.
+    #[inline]
+    pub(super) fn modify(&mut self, plain: &DmvMap<S>, s: S, half_d: S) {
+        self.half = plain.half.map(|half| half * s + half_d);
+        self.gyroscopic = plain.gyroscopic.scaled(s);
+    }
+}
+
 impl<S: Real> Map<S> for DmvMap<S> {
     #[inline]
     fn apply(&mut self, _: Time, x: &mut Point<S>) {

@@ -25,6 +25,8 @@
 //! about L. ⟨H₃⟩ is homogeneous of degree 4 in m, which gives its derivative in G. Derived here by first-order averaging;
 //! tests/two_turns.rs compares it with runs.
 
+use core::cmp::Ordering;
+
 use crate::num::elliptic::Modulus;
 use crate::rotation::Vec3;
 
@@ -122,7 +124,7 @@ impl Orbit {
         let spins = moments.0.map(|i| 0.5 * norm * norm / i);
         let room = spins.iter().map(|spin| (energy - spin).abs()).fold(f64::INFINITY, f64::min);
         let step = SHARE * room;
-        if !(step > f64::EPSILON * energy) {
+        if step.partial_cmp(&(f64::EPSILON * energy)) != Some(Ordering::Greater) {
             return None;
         }
         let at = |energy| Orbit::of(m, energy, norm, moments);

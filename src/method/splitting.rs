@@ -138,7 +138,7 @@ impl<A: FreePart> Splitting<A, Kicks> {
             }
         }
         match (free.order(), scheme.stages) {
-            (Some(order), Stages::Alternating { .. }) => {
+            (Some(order), Stages::Alternating { .. }) if order < scheme.order => {
                 Err(SchemeError::Inexact { scheme: scheme.name, base: free.name(), order })
             }
             _ => Ok(Splitting { a: free, b: Kicks, scheme }),
@@ -165,7 +165,8 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
         let claims = |order, kept, cost| Claims { order, symmetric: true, poisson: true, kept, cost, source };
         match problem {
             Problem::Free => {
-                let order = self.a.order().map(|_| self.scheme.order);
+                // a composition keeps the order of its base where that is higher
+                let order = self.a.order().map(|order| order.max(self.scheme.order));
                 Some(claims(order, Kept::all_of_free_motion(self.a.energy()), free))
             }
             Problem::Gravity | Problem::Potential => {
