@@ -50,7 +50,7 @@ pub enum StateError {
     },
 }
 
-/// What kind of motion a method is asked for; its claims differ between them.
+/// Kinds of motion, by what acts on the body; the claims of a method differ between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Problem {
@@ -172,7 +172,7 @@ impl Body {
         Rotor::of_moments(Vec3(self.inertia.scaled_moments()))
     }
 
-    /// The same body, a force of which that is not finite is told to `witness`.
+    /// The same body; a force that is not finite is reported to `witness`.
     pub(crate) fn witnessed(&self, witness: Witness) -> Body {
         Body { witness: Some(witness), ..self.clone() }
     }

@@ -14,8 +14,8 @@ use crate::rotation::{Quat, Vec3};
 ///
 /// What rounding takes from an increment is carried to the next one (Kahan's compensated sum, component by
 /// component): the rounding of `m += δ` is then one unit of δ instead of one of m, a random walk that starts
-/// thousands of times lower. The number of steps is part of the point too, so that a run can be written down at any step
-/// and taken up again.
+/// thousands of times lower. The number of steps is part of the point too, so that a run can be stored at any step
+/// and resumed.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -119,7 +119,7 @@ impl<S: Real> Point<S> {
         Phase { attitude: self.attitude, momentum_body: self.momentum_body }
     }
 
-    /// Puts the point elsewhere, whatever is carried.
+    /// Sets attitude and momentum; what rounding carries stays.
     #[inline]
     pub fn set_phase(&mut self, phase: Phase<S>) {
         (self.attitude, self.momentum_body) = (phase.attitude, phase.momentum_body);
@@ -161,7 +161,7 @@ impl<S: Precise> Point<S> {
     }
 }
 
-/// The parts of a `Point<f64>`, for writing it down and reading it back.
+/// The parts of a `Point<f64>`, for checkpoints.
 impl Point<f64> {
     /// Attitude, momentum, and what is carried of each, fourteen doubles.
     pub(crate) fn parts(&self) -> [f64; 14] {

@@ -98,7 +98,7 @@ pub enum StepError {
         /// The time asked for, s.
         t: f64,
     },
-    /// The method is not for what acts on the body.
+    /// The method does not support the forces on the body.
     #[error("method {method:?} cannot take {force}, {}", remedy(*.problem))]
     Refused {
         /// Name of the method.
@@ -198,12 +198,12 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
     }
 }
 
-/// What stands before and behind the first `mark`.
+/// The parts before and after the first `mark`.
 fn split(text: &str, mark: char) -> (&str, Option<&str>) {
     text.split_once(mark).map_or((text, None), |(before, behind)| (before, Some(behind)))
 }
 
-/// A name and its parts behind the base.
+/// The name of a method with its argument and scheme.
 struct Asked<'a> {
     name: &'a str,
     argument: Option<&'a str>,

@@ -5,7 +5,7 @@ use core::ops::{Add, Mul};
 
 use crate::body::Problem;
 
-/// What a method says of itself.
+/// Name and claims of a method.
 pub trait Claimed {
     /// Name in the catalogue, with argument and scheme.
     fn name(&self) -> String;

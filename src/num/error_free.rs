@@ -2,8 +2,7 @@
 
 /// `a + b` as a rounded sum and its exact error (Knuth).
 #[inline]
-#[must_use]
-pub const fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) const fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     let v = s - a;
     (s, (a - (s - v)) + (b - v))
@@ -11,8 +10,7 @@ pub const fn two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// `a + b` as a rounded sum and its exact error, for |a| ≥ |b| (Dekker).
 #[inline]
-#[must_use]
-pub const fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) const fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     (s, b - (s - a))
 }
@@ -27,8 +25,7 @@ const fn split(a: f64) -> (f64, f64) {
 
 /// `a · b` as a rounded product and its exact error (Dekker's product: the same bits with and without FMA).
 #[inline]
-#[must_use]
-pub const fn two_prod(a: f64, b: f64) -> (f64, f64) {
+pub(crate) const fn two_prod(a: f64, b: f64) -> (f64, f64) {
     let p = a * b;
     let (ah, al) = split(a);
     let (bh, bl) = split(b);

@@ -3,7 +3,6 @@
 //! * [`real`]: the two traits, [`Real`] for explicit kernels and [`Precise`] for what must compare or round;
 //! * [`dd`]: double-double numbers [`Dd`], 106 bits, for constants, references and invariants;
 //! * [`trig`]: sine and cosine in `f64`, the same bits on every CPU;
-//! * [`error_free`]: sums and products with the error of their rounding;
 //! * [`sum`]: compensated sums;
 //! * [`expansion`]: exact sums and products of a few numbers;
 //! * [`elliptic`]: elliptic integrals and functions;
@@ -18,7 +17,7 @@ pub(crate) mod complex;
 pub mod dd;
 pub(crate) mod eigen;
 pub mod elliptic;
-pub mod error_free;
+pub(crate) mod error_free;
 pub mod expansion;
 #[cfg(feature = "fit")]
 pub(crate) mod quadrature;

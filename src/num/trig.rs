@@ -101,7 +101,6 @@ pub fn sin_cos_turns(x: f64, low: f64) -> (f64, f64) {
 
 /// The integer nearest to `x`, |x| < 2⁵¹; ties to even.
 #[inline]
-#[must_use]
-pub fn nearest(x: f64) -> f64 {
+pub(crate) fn nearest(x: f64) -> f64 {
     (x + ROUNDER) - ROUNDER
 }

@@ -24,7 +24,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// No quantity is looked at.
+    /// No error is evaluated.
     pub(crate) const NONE: Errors =
         Errors { energy: None, momentum_norm: None, momentum_vector: None, momentum_z: None, jacobi: None };
 

@@ -1,4 +1,4 @@
-//! Errors of free motion over blocks of steps, quick enough to look at every step.
+//! Errors of free motion over blocks of steps, fast enough to be evaluated at every step.
 
 use super::Invariants;
 use crate::body::{Point, kinetic_energy};

@@ -1,5 +1,5 @@
-//! What a run keeps and what it loses: invariants in double-double, their largest errors over every step, and
-//! the statistics of drift. Takes states and series only.
+//! Invariants in double-double, their largest errors over every step, and the statistics of secular drift. Takes states and
+//! series only.
 
 mod drift;
 mod errors;
@@ -12,5 +12,5 @@ mod monitor;
 pub use drift::{Drift, secular_drift};
 pub use errors::Errors;
 pub use invariants::Invariants;
-pub(crate) use monitor::Memory;
-pub use monitor::{BLOCK, Monitor};
+pub use monitor::Monitor;
+pub(crate) use monitor::{BLOCK, Memory};

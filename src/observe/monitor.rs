@@ -10,7 +10,7 @@ use crate::rotation::Vec3;
 
 /// Watches the steps of a run: the largest error of each invariant, and how often the body flipped.
 ///
-/// Steps come in blocks. A block of free motion is first looked at in plain `f64`, with a bound on what rounding may have
+/// Steps come in blocks. A block of free motion is first evaluated in plain `f64`, with a bound on what rounding may have
 /// hidden; only where that cannot rule out a new maximum are the errors evaluated with error-free transformations, to
 /// about 1e-30. Both loops are branch-free over the block, so that the compiler can vectorise them. With forces
 /// every step is evaluated in double-double.
@@ -23,24 +23,24 @@ pub struct Monitor {
     start: Invariants,
     worst: Errors,
     flips: Flips,
-    /// Blocks since the plain evaluation last did not suffice; at [`LOUD`] it is tried again. 0 while it suffices.
-    loud: u32,
+    /// Blocks since the plain evaluation last did not suffice; at [`RETRY`] it is tried again. 0 while it suffices.
+    since_failure: u32,
 }
 
-/// What a monitor has seen so far.
+/// The state of a monitor, for a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Memory {
     pub(crate) worst: Errors,
     pub(crate) flips: u64,
     pub(crate) positive: Option<bool>,
-    pub(crate) loud: u32,
+    pub(crate) since_failure: u32,
 }
 
 /// How many steps a run takes between two looks at them.
-pub const BLOCK: usize = 32;
+pub(crate) const BLOCK: usize = 32;
 
 /// Blocks until the plain evaluation is tried again after it did not suffice.
-const LOUD: u32 = 16;
+const RETRY: u32 = 16;
 
 impl Monitor {
     /// Begins at the point `x`, whose time is that of its step by `clock`.
@@ -60,23 +60,23 @@ impl Monitor {
             start: Invariants::of(body, at, x),
             worst: Errors::NONE,
             flips,
-            loud: 0,
+            since_failure: 0,
         };
         monitor.worst = monitor.errors(x);
         monitor
     }
 
-    /// Takes note of consecutive steps, at most [`BLOCK`]; returns how many come before the first point that is
+    /// Evaluates a block of consecutive steps; returns how many come before the first point that is
     /// not finite, and counts only those.
     pub fn observe(&mut self, points: &[Point<f64>]) -> usize {
         if self.forced.is_some() {
             return self.observe_forced(points);
         }
         let reference = Reference::new(self.inverse_moments, &self.start);
-        if self.loud == 0 && self.is_quiet(&reference, points) {
+        if self.since_failure == 0 && self.is_ruled_out(&reference, points) {
             return self.count(points);
         }
-        self.loud = (self.loud + 1) % LOUD;
+        self.since_failure = (self.since_failure + 1) % RETRY;
         let mut points = points;
         let mut found = largest(points, |x| reference.compensated(x));
         if !found.iter().all(|d| d.is_finite()) {
@@ -104,7 +104,7 @@ impl Monitor {
     }
 
     /// Whether plain evaluation rules out a new maximum; never with a NaN.
-    fn is_quiet(&self, reference: &Reference, points: &[Point<f64>]) -> bool {
+    fn is_ruled_out(&self, reference: &Reference, points: &[Point<f64>]) -> bool {
         let (plain, slack) = (largest(points, |x| reference.plain(x)), reference.slack());
         self.errors_of([0, 1, 2].map(|k| plain[k] + slack[k])).within(self.worst)
     }
@@ -185,18 +185,18 @@ impl Monitor {
         self.flips.count
     }
 
-    /// What is written down of a monitor: the largest errors, flips, the sign along the middle axis, loudness.
+    /// What a checkpoint holds of a monitor.
     pub(crate) fn memory(&self) -> Memory {
         let Flips { positive, count, .. } = self.flips;
-        Memory { worst: self.worst, flips: count, positive, loud: self.loud }
+        Memory { worst: self.worst, flips: count, positive, since_failure: self.since_failure }
     }
 
-    /// Goes on from what was written down.
+    /// Continues from a checkpoint.
     pub(crate) fn remember(&mut self, memory: Memory) {
         self.worst = memory.worst;
         self.flips.count = memory.flips;
         self.flips.positive = memory.positive;
-        self.loud = memory.loud;
+        self.since_failure = memory.since_failure;
     }
 
     fn errors_of(&self, [e, m2, l]: Differences) -> Errors {

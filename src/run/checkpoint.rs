@@ -1,4 +1,4 @@
-//! A run written down, to be taken up again.
+//! Checkpoints: the complete state of a run as text.
 
 use core::fmt;
 use core::str::FromStr;
@@ -11,7 +11,7 @@ use crate::num::Dd;
 use crate::observe::{Errors, Memory};
 use crate::rotation::Vec3;
 
-/// A run as it stands, complete: taken up again it goes on as if it had not been interrupted, bit for bit.
+/// The complete state of a run: when resumed, it continues as if it had not been interrupted, bit for bit.
 ///
 /// Its text (`Display`, `FromStr`) holds every double exactly and is the same on every machine. The body is not part of it,
 /// as forces are code; what identifies it is, and [`Run::resume`](super::Run::resume) compares.
@@ -30,7 +30,7 @@ pub struct Checkpoint {
     pub(super) missed: bool,
 }
 
-/// Why a run cannot be taken up.
+/// Why a run cannot be resumed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
@@ -124,7 +124,7 @@ impl fmt::Display for Checkpoint {
         writeln!(f, "steps {}", self.point.steps())?;
         writeln!(f, "point {}", list(&self.point.parts()))?;
         writeln!(f, "worst {worst}")?;
-        writeln!(f, "flips {} {sign} {}", self.memory.flips, self.memory.loud)?;
+        writeln!(f, "flips {} {sign} {}", self.memory.flips, self.memory.since_failure)?;
         writeln!(f, "residual {:?}", self.residual)
     }
 }
@@ -185,14 +185,14 @@ fn errors(text: &str) -> Option<[Option<f64>; 5]> {
 }
 
 fn flips(text: &str) -> Option<(u64, Option<bool>, u32)> {
-    let [flips, sign, loud] = text.split(' ').collect::<Vec<&str>>().try_into().ok()?;
+    let [flips, sign, since_failure] = text.split(' ').collect::<Vec<&str>>().try_into().ok()?;
     let positive = match sign {
         "0" => None,
         "+" => Some(true),
         "-" => Some(false),
         _ => return None,
     };
-    Some((flips.parse().ok()?, positive, loud.parse().ok()?))
+    Some((flips.parse().ok()?, positive, since_failure.parse().ok()?))
 }
 
 impl FromStr for Checkpoint {
@@ -220,7 +220,7 @@ impl FromStr for Checkpoint {
         let steps = lines.parsed("steps", "it must hold the number of steps", |text| text.parse().ok())?;
         let point = lines.parsed("point", "it must hold 14 numbers", doubles)?;
         let worst = lines.parsed("worst", "it must hold 5 errors, - where there is none", errors)?;
-        let (flips, positive, loud) =
+        let (flips, positive, since_failure) =
             lines.parsed("flips", "it must hold a count, a sign and a count", flips)?;
         let residual = lines.parsed("residual", "it must hold a number", |text| text.parse().ok())?;
         if let Some(line) = lines.lines.next() {
@@ -234,7 +234,7 @@ impl FromStr for Checkpoint {
             watch,
             start: Point::from_parts(first, 0),
             point: Point::from_parts(point, steps),
-            memory: Memory { worst: Errors::from_parts(worst), flips, positive, loud },
+            memory: Memory { worst: Errors::from_parts(worst), flips, positive, since_failure },
             residual,
             missed,
         })

@@ -1,5 +1,5 @@
-//! Long propagation: steps counted in `u64`, samples at scheduled steps or times, runs that can be written down and taken
-//! up again, runs that diverge reported as data.
+//! Long propagation: steps counted in `u64`, samples at scheduled steps or times, checkpoints, and typed errors for runs
+//! that diverge.
 
 mod checkpoint;
 mod convergence;

@@ -8,7 +8,7 @@ use crate::body::{Body, Clock, Point, State, StateError, Witness};
 use crate::method::{AnyMethod, Step};
 use crate::observe::{BLOCK, Errors, Invariants, Monitor};
 
-/// Steps between looks at the residual of implicit methods.
+/// Steps between checks of the residual of implicit methods.
 const CHUNK: u64 = 4096;
 
 /// One propagation of one body by one method.
@@ -35,7 +35,7 @@ pub struct Run {
     body: Body,
     method: String,
     step: Box<dyn Step<f64>>,
-    /// The same step, whose forces are looked at one by one, and what was seen; with forces only.
+    /// The same step with forces that report a value that is not finite, and that report; with forces only.
     probe: Option<(Box<dyn Step<f64>>, Witness)>,
     clock: Clock,
     watch: Watch,
@@ -122,7 +122,7 @@ impl Run {
         self
     }
 
-    /// The run as it stands, to be written down.
+    /// The complete state of the run, to be stored as text.
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
@@ -154,7 +154,7 @@ impl Run {
         }
     }
 
-    /// Takes up the run of `checkpoint`: it goes on as if it had not been interrupted, bit for bit.
+    /// Resumes the run of `checkpoint`: it continues as if it had not been interrupted, bit for bit.
     ///
     /// # Errors
     /// A method or a body that is not that of the run.
@@ -175,7 +175,7 @@ impl Run {
         self.start
     }
 
-    /// Goes on to `steps` steps from the start and looks at the state there.
+    /// Advances to `steps` steps from the start and samples the run there.
     ///
     /// # Errors
     /// [`RunError::Diverged`] and [`RunError::Force`] with the last finite sample; [`RunError::Unsolved`] with the sample at
@@ -217,7 +217,7 @@ impl Run {
         self.reading = self.step.reading(&self.point);
     }
 
-    /// The run as it stands, if that is finite in the units of the body.
+    /// The sample at the current step, if it is finite in the units of the body.
     fn finite_sample(&mut self) -> Result<Box<Sample>, RunError> {
         self.read();
         let sample = self.sample();
@@ -228,7 +228,7 @@ impl Run {
         }
     }
 
-    /// Takes `wanted` steps and looks at each; false, and the run at the last finite point, if one is not finite.
+    /// Takes `wanted` steps and evaluates the errors at each; false, and the run at the last finite point, if one is not finite.
     fn watched(&mut self, mut wanted: u64) -> bool {
         let mut block = [self.point; BLOCK];
         while wanted > 0 {
@@ -305,7 +305,7 @@ impl Run {
         })
     }
 
-    /// The run as it stands.
+    /// The sample at the current step.
     #[must_use]
     pub fn sample(&self) -> Sample {
         let point = self.reading;

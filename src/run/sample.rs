@@ -1,4 +1,4 @@
-//! What a run shows of itself: how often it is looked at, and what is seen.
+//! Samples of a run, and how often its errors are evaluated.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use crate::body::{Point, State};
 use crate::num::Dd;
 use crate::observe::Errors;
 
-/// How often the largest errors of a run are looked for.
+/// How often the errors of a run are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Watch {
@@ -31,7 +31,7 @@ impl fmt::Display for Watch {
     }
 }
 
-/// A run as it stands after a number of steps.
+/// State, readings and errors of a run after a number of steps.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -72,7 +72,7 @@ pub struct Sample {
     pub errors: Errors,
     /// The largest errors of what was watched so far; `None` each while nothing is watched.
     pub worst: Errors,
-    /// How often the errors were looked for.
+    /// How often the errors were evaluated.
     pub watch: Watch,
     /// How often the momentum along the axis of the middle moment has changed sign so far, where every step was watched.
     pub flips: Option<u64>,

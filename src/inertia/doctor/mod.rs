@@ -16,7 +16,7 @@ pub use causes::{Cause, Entry};
 /// A density within e^±14 of water's, 1e-3 to 1e9 kg/m³, is no evidence against a tensor.
 const ORDINARY: f64 = 14.0;
 
-/// What is known of the body besides its tensor; everything is optional, and every item tells more causes apart.
+/// Known properties of the body besides its tensor. All are optional; each narrows the causes down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Evidence {
     /// Mass, kg.
@@ -57,7 +57,7 @@ impl Verdict {
 pub struct Explanation {
     /// What happened.
     pub cause: Cause,
-    /// The tensor if it did.
+    /// The tensor with the mistake undone.
     pub corrected: Matrix3<f64>,
     /// How unlikely: rareness of the mistake plus oddness of the corrected body. Only the order of costs has a meaning.
     pub cost: f64,
@@ -101,15 +101,15 @@ pub struct Diagnosis {
     pub violation: Option<InertiaError>,
     /// The worst second moment that the extents leave no room for.
     pub misfit: Option<Misfit>,
-    /// Principal moments of the symmetric part, ascending.
+    /// Principal moments of the symmetric part, ascending, in the unit of the tensor.
     pub principal_moments: [f64; 3],
-    /// By how much the sum of the other two moments exceeds the k-th.
+    /// By how much the sum of the other two moments exceeds the k-th, in the unit of the tensor.
     pub triangle_margins: [f64; 3],
     /// Causes that would explain it, the likeliest first; none if the tensor is valid.
     pub causes: Vec<Explanation>,
     /// The nearest physically valid tensor in Frobenius norm; a moment of it may be zero.
     pub nearest: Matrix3<f64>,
-    /// Frobenius distance to it.
+    /// Frobenius distance to it, in the unit of the tensor.
     pub distance: f64,
     /// Edges of the homogeneous box of the nearest tensor, along its principal axes (ascending moments, so the longest
     /// edge first): in m with a known mass, else relative to the longest.
@@ -238,7 +238,7 @@ impl Evidence {
 
     /// How odd a body of this tensor is: 0 for a compact body of ordinary size whose axes are principal.
     ///
-    /// Without extents the density of the equivalent box tells the size; up to e^`tolerance` from water's it is ordinary.
+    /// Without extents the density of the equivalent box is judged; within e^±`tolerance` of water's it is ordinary.
     fn oddness(&self, tensor: &Matrix3<f64>, tolerance: f64) -> f64 {
         let spectrum = Spectrum::of_finite(tensor);
         let second = second_moments(&spectrum);
