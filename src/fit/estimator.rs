@@ -29,8 +29,8 @@ use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
 /// ```
 /// use nalgebra::Vector3;
 /// use polhode::fit::{FitError, Record, Settings, fit, simulate};
-/// use polhode::num::Random;
 /// use polhode::inertia::Inertia;
+/// use polhode::num::Random;
 ///
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();

@@ -28,8 +28,8 @@ pub struct Residuals {
 /// ```
 /// use nalgebra::Vector3;
 /// use polhode::fit::{Record, Settings, Warning, fit, simulate};
-/// use polhode::num::Random;
 /// use polhode::inertia::Inertia;
+/// use polhode::num::Random;
 /// # let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// # let times: Vec<f64> = (0..2000).map(|i| f64::from(i) / 100.0).collect();
 /// # let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;

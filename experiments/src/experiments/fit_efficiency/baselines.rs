@@ -214,6 +214,7 @@ fn turn(angle: Vector3<f64>) -> Matrix3<f64> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{Quaternion, UnitQuaternion};
     use polhode::fit::{Settings, fit, simulate};
     use polhode::inertia::Inertia;
     use polhode::num::Random;
@@ -221,11 +222,16 @@ mod tests {
     use super::*;
 
     fn example(sigma: f64) -> (Matrix3<f64>, Record) {
-        let j = Matrix3::new(0.25, -0.03, 0.02, -0.03, 0.35, 0.05, 0.02, 0.05, 0.4);
+        let mut random = Random::new(99);
+        let (w, v) = (random.normal(), random.normal_vector());
+        let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
+        let moments = Vector3::new(1.0, 2.0, 2.6) / 5.6;
+        let j = turn.matrix() * Matrix3::from_diagonal(&moments) * turn.matrix().transpose();
+        let j = (j + j.transpose()) * 0.5;
         let times: Vec<f64> = (0..1500).map(|i| 0.02 * f64::from(i)).collect();
         let body = Inertia::from_tensor(j).unwrap();
         let omega = Vector3::new(0.3, -0.8, 0.6);
-        let rates = simulate(&body, omega, &times, sigma, &mut Random::new(99)).unwrap();
+        let rates = simulate(&body, omega, &times, sigma, &mut random).unwrap();
         (j, Record::from_samples(&times, &rates).unwrap())
     }
 
