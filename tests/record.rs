@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use nalgebra::Vector3;
-use polhode::fit::{RateUnit, Reading, Record, RecordError, TimeUnit};
+use polhode::fit::{RateUnit, Reading, Record, RecordError, Segment, TimeUnit};
 
 fn read(text: &str) -> Result<Record, RecordError> {
     Record::read(text, "a.csv", Reading::default())
@@ -264,4 +264,60 @@ fn any_line_end_is_one_and_messages_stay_short() {
         let message = refusal(&text);
         assert!(message.chars().count() < 300 && message.contains('…'), "{message}");
     }
+}
+
+#[test]
+fn values_that_are_not_finite_make_no_record() {
+    let times = [0.0, 0.1, 0.2];
+    let mut rates = [Vector3::new(0.1, 0.2, 0.3); 3];
+    rates[1].y = f64::NAN;
+    let message = Record::from_samples(&times, &rates).unwrap_err().to_string();
+    assert!(message.contains("line 2") && message.contains("(wy)"), "{message}");
+}
+
+#[test]
+fn a_segment_is_consistent_or_refused() {
+    let rates = |n: usize| vec![Vector3::new(0.5, 1.0, -2.0); n];
+    let good = Segment::new("a", vec![-1.0, 0.0, 5e-324], rates(3)).unwrap();
+    assert_eq!((good.source(), good.times(), good.rates()), ("a", &[-1.0, 0.0, 5e-324][..], &rates(3)[..]));
+    let refused = |times: Vec<f64>, rates: Vec<Vector3<f64>>| Segment::new("a", times, rates).unwrap_err();
+    let times: Vec<f64> = (0..40).map(f64::from).collect();
+    assert_eq!(refused(times, rates(3)), RecordError::Lengths { times: 40, rates: 3 });
+    let file = String::from("a");
+    assert_eq!(
+        refused(vec![0.0, 2.0, 1.0], rates(3)),
+        RecordError::Order { file: file.clone(), line: 3, time: 1.0, before: 2.0 }
+    );
+    assert!(matches!(refused(vec![0.0, 0.0], rates(2)), RecordError::Order { line: 2, .. }));
+    assert_eq!(refused(vec![], vec![]), RecordError::Empty { file, window: None, span: (0.0, 0.0) });
+    let mut broken = rates(3);
+    broken[1].y = f64::NAN;
+    assert_eq!(
+        refused(vec![0.0, 1.0, 2.0], broken).to_string(),
+        "a, line 2, column 3 (wy): \"NaN\" is not a finite number; remove the row, or leave a gap"
+    );
+    assert!(matches!(
+        refused(vec![0.0, f64::INFINITY], rates(2)),
+        RecordError::Value { line: 2, column: 1, .. }
+    ));
+}
+
+/// A run of twelve equal readings is clipped where the four beside it on each side leave it by more than the rounding, or
+/// where the record ends within four.
+#[test]
+fn a_flat_top_next_to_an_end_of_the_record_needs_no_fall_there() {
+    let saturated = |before: &[f64], after: &[f64]| {
+        let column: Vec<f64> = [before, &[20.0; 12], after].concat();
+        let times: Vec<f64> = (0..column.len()).map(|i| 0.01 * i as f64).collect();
+        let rates: Vec<_> = column.iter().map(|&x| Vector3::new(x, 7.0, -3.0)).collect();
+        Record::from_samples(&times, &rates).unwrap().saturated()
+    };
+    let (near, falls) = ([19.0; 4], [10.0, 0.0, 5.0, 6.0, 3.0]);
+    assert_eq!(saturated(&falls, &falls), 12);
+    for count in 0..4 {
+        assert_eq!(saturated(&near[..count], &falls), 12, "{count} before");
+        assert_eq!(saturated(&falls, &near[..count]), 12, "{count} after");
+    }
+    assert_eq!(saturated(&near, &falls), 0);
+    assert_eq!(saturated(&falls, &near), 0);
 }

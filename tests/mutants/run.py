@@ -30,7 +30,7 @@ MODULES = {
     "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], 40, ["--lib", "--test", "exact", "--test", "properties", "--test", "tops"]),
     "method": (["src/method/**"], 20, ["--lib", "--test", "laws"]),
     "observe": (["src/observe/**"], 10, ["--lib", "--test", "laws", "--test", "properties"]),
-    "fit": (["src/fit/**"], 60, ["--features", "fit", "--lib", "--test", "fit", "--test", "record"]),
+    "fit": (["src/fit/**"], 60, ["--features", "fit", "--lib", "--test", "fit", "--test", "fit_failures", "--test", "record"]),
 }
 OUTCOMES = {"CaughtMutant": "caught", "Timeout": "timeout", "MissedMutant": "missed", "Unviable": "unviable"}
 

@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn hard_random_programs_end_certified_and_no_feasible_tensor_is_nearer() {
         let mut next = numbers(4);
-        let mut held = 0;
+        let (mut held, mut negative) = (0, 0);
         for trial in 0..300 {
             let mut root = Form::from_fn(|i, k| if i < k { next() } else { 0.0 });
             for k in 0..5 {
@@ -92,6 +92,10 @@ mod tests {
             let (moments, _) = eigen(tensor(&answer.x));
             assert!(moments[2] <= LARGEST_SHARE + 1e-12 && moments[0] >= -1e-12, "{trial}: {moments}");
             held += answer.active.len();
+            // rounding leaves some multipliers a little below zero, which counts as their violation
+            let dual = answer.certificate.dual_violation;
+            assert!((0.0..1e-9).contains(&dual), "{trial}: {dual:e}");
+            negative += usize::from(dual > 0.0);
             let cost = (root * (answer.x - centre)).norm();
             for _ in 0..20 {
                 // a step towards any physical tensor stays physical, and must not help
@@ -100,7 +104,7 @@ mod tests {
                 assert!((root * (step - centre)).norm() >= cost * (1.0 - 1e-13), "{trial}");
             }
         }
-        assert!(held > 100);
+        assert!(held > 100 && negative > 10, "{held}, {negative}");
     }
 
     /// A flat body well measured: the law is a hair's breadth away, the other walls 1e5 standard deviations.
@@ -181,5 +185,36 @@ mod tests {
         }
         let outside = nearest(centre, root, &[x(Some(5000.0), None)]).err().unwrap().to_string();
         assert!(outside.contains("limit 1 is 5000"), "{outside}");
+    }
+
+    /// Every answer is certified inside; law and limits hold it together, and the face that the solver's answer is near is
+    /// not always the one that it lies on.
+    #[test]
+    fn random_programs_with_limits_end_certified() {
+        let mut next = numbers(7);
+        let (mut of_law, mut of_limits) = (0, 0);
+        for trial in 0..300 {
+            let mut root = Form::from_fn(|i, k| if i < k { 50.0 * next() } else { 0.0 });
+            for k in 0..5 {
+                root[(k, k)] = libm::pow(10.0, 2.0 + next());
+            }
+            let centre = Coordinates::from_fn(|_, _| 0.3 * next());
+            let axis = Vector3::new(next(), next(), next());
+            let limit = if trial % 2 == 0 {
+                Limit { axis, at_least: Some(0.4 + 0.05 * next()), at_most: None }
+            } else {
+                Limit { axis, at_least: None, at_most: Some(0.2 + 0.05 * next()) }
+            };
+            let answer = nearest(centre, root, &[limit]).unwrap_or_else(|error| panic!("{trial}: {error}"));
+            let j = tensor(&answer.x);
+            let share = axis.normalize().dot(&(j * axis.normalize()));
+            assert!(eigen(j).0[2] <= LARGEST_SHARE + 1e-12, "{trial}");
+            assert!(limit.at_least.is_none_or(|low| share >= low - 1e-9), "{trial}: {share}");
+            assert!(limit.at_most.is_none_or(|high| share <= high + 1e-9), "{trial}: {share}");
+            let is_law = |c: Constraint| matches!(c, Constraint::Triangle | Constraint::Rod);
+            of_law += usize::from(answer.active.iter().any(|a| is_law(a.constraint)));
+            of_limits += usize::from(answer.active.iter().any(|a| !is_law(a.constraint)));
+        }
+        assert!(of_law > 50 && of_limits > 50, "{of_law}, {of_limits}");
     }
 }

@@ -153,3 +153,32 @@ impl Scale {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without motions the covariance holds for errors of shape and mean that are correlated as badly as they can be, in
+    /// every direction, with the least trace of such bounds.
+    #[test]
+    fn without_motions_shape_and_mean_may_err_together() {
+        let times: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i)).collect();
+        let rates = times.iter().map(|t| Vector3::new(0.3, 1.0 - 0.1 * t, 0.2 * t)).collect();
+        let j = Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45));
+        let scale = Known::TwiceEnergy(3.0).scale(&[Stretch::new(times, rates)], 1.0, &j, 1e-4);
+        let factor = Form::from_fn(|i, k| 1e-3 / (1.0 + ((3 * i + 2 * k) % 7) as f64));
+        let shape = factor * factor.transpose();
+        let of_shape = scale.covariance(&j, &shape, 0.0, None);
+        let of_mean = scale.covariance(&j, &Form::zeros(), 2.0, None);
+        let both = scale.covariance(&j, &shape, 2.0, None);
+        let root = |c: &SMatrix<f64, 6, 6>, v: &SVector<f64, 6>| v.dot(&(c * v)).max(0.0).sqrt();
+        for k in 0..36 {
+            let v = SVector::<f64, 6>::from_fn(|i, _| f64::from((k * (i as u32 + 3) * 7) % 11) - 5.0);
+            let together = root(&of_shape, &v) + root(&of_mean, &v);
+            assert!(root(&both, &v) >= together * (1.0 - 1e-12), "{k}");
+        }
+        let least = of_shape.trace().sqrt() + of_mean.trace().sqrt();
+        assert!((both.trace() / (least * least) - 1.0).abs() < 1e-12);
+        assert!(of_mean.trace() > 0.0 && of_shape.trace() > 0.0);
+    }
+}
