@@ -135,7 +135,7 @@ impl fmt::Display for Warning {
                 segment + 1
             ),
             Self::Held(ActiveConstraint { constraint, multiplier }) => {
-                write!(f, "the constraint {constraint} is active (multiplier {multiplier:.3e})")
+                write!(f, "{constraint} is an active constraint (multiplier {multiplier:.3e})")
             }
             Self::Contradiction { pull } => write!(
                 f,
