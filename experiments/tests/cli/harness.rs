@@ -98,3 +98,30 @@ pub(crate) fn golden(name: &str, found: &str) {
     let expected = fs::read_to_string(&path).unwrap();
     assert_eq!(found, expected, "{name} differs from the committed file");
 }
+
+/// The refusal of `line`: exit code 2, nothing on standard output, one `error:` that holds every part of `says`.
+pub(crate) fn refused(line: &str, says: &[&str]) {
+    refused_with(&words(line), says);
+}
+
+/// [`refused`] for arguments that may hold blanks or nothing.
+pub(crate) fn refused_with(arguments: &[&str], says: &[&str]) {
+    let answer = polhode(arguments, Path::new("."));
+    let Answer { code, out, err } = &answer;
+    assert_eq!((*code, out.as_str()), (2, ""), "{arguments:?}: {err}");
+    assert!(err.starts_with("error: "), "{arguments:?}: {err}");
+    assert_eq!(err.matches("error:").count(), 1, "{arguments:?}: {err}");
+    for part in says {
+        assert!(err.contains(part), "{arguments:?}: '{part}' is not in: {err}");
+    }
+    let written_out = |word: &str| word.len() > 60 && !word.contains(['/', '<']);
+    assert!(!err.split_whitespace().any(written_out), "{arguments:?}: a value written out in full: {err}");
+}
+
+/// The first words of many command lines: a body whose moments and start are exact in binary.
+pub(crate) const DYADIC: &str = "propagate --body dyadic --omega 1,0.5,-0.25";
+
+/// [`DYADIC`] with further flags.
+pub(crate) fn with(flags: &str) -> String {
+    format!("{DYADIC} {flags}")
+}

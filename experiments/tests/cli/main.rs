@@ -4,10 +4,12 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod commands;
+mod experiment;
 mod fit;
 mod forces;
+mod general;
 mod harness;
 mod inertia;
 #[cfg(unix)]
 mod interrupted;
+mod propagate;

@@ -3,6 +3,7 @@
 //! Exact statements hold to rounding. Those that hold in a limit come as a sequence of differences that must fall
 //! at the predicted rate.
 
+mod drawings;
 mod free;
 mod heavy;
 mod motion;
@@ -14,7 +15,6 @@ use polhode::rotation::Vec3;
 
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::sphere;
 use crate::table::{Column, Table, row};
 
 /// A measured rate may differ by this share from the predicted one.
@@ -43,7 +43,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     }
     report.views.push(lecture.clone());
     report.tables.extend([lecture, sequences]);
-    report.drawings = vec![sphere::polhodes()?, sphere::cones()?, sphere::axis_paths()?];
+    report.drawings = vec![drawings::polhodes()?, drawings::cones()?, drawings::axis_paths()?];
     Ok(report)
 }
 

@@ -12,12 +12,12 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use super::RESULTS;
 use crate::error::Error;
 use crate::files::{MARK, Staging, emit, read};
 use crate::methods;
 use crate::table::{Part, Shown, Table};
 
-pub(crate) const RESULTS: &str = "experiments/results";
 const GENERATED: &str = "generated/";
 const METHODS: &str = "methods";
 const ORIGIN: &str = "origin";
@@ -91,7 +91,7 @@ impl Results {
 }
 
 /// Fills README.md and paper/generated below `root`, after taking over the results of the folder `from`, if given.
-pub(crate) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
+pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
     if let Some(from) = from {
         take_over(root, from)?;
     }

@@ -254,7 +254,7 @@ fn drawing(name: &'static str, panels: Vec<Panel>, foot: &[&str]) -> Drawing {
 }
 
 /// The paths of the angular momentum in the body, on the sphere of its length.
-pub(crate) fn polhodes() -> Result<Drawing, Error> {
+pub(super) fn polhodes() -> Result<Drawing, Error> {
     let moments = V::new(1.0, 2.0, 3.0);
     let inertia = Inertia::from_moments(moments.into()).map_err(unexpected)?;
     let mut panel = Panel::new(0, 0.62, 0.42, "Polhodes of a body with moments 1 : 2 : 3");
@@ -302,7 +302,7 @@ pub(crate) fn polhodes() -> Result<Drawing, Error> {
 }
 
 /// Body cone and space cone of free symmetric bodies.
-pub(crate) fn cones() -> Result<Drawing, Error> {
+pub(super) fn cones() -> Result<Drawing, Error> {
     let mut panels = Vec::new();
     for (column, (title, ratio, theta)) in [
         ("prolate: the body cone rolls outside", 0.4, 0.75),
@@ -335,7 +335,7 @@ pub(crate) fn cones() -> Result<Drawing, Error> {
 }
 
 /// The path of a heavy top's axis: three ways of nodding.
-pub(crate) fn axis_paths() -> Result<Drawing, Error> {
+pub(super) fn axis_paths() -> Result<Drawing, Error> {
     let (weight, tilt, nutations) = (1.0, 0.95, 7.0);
     let inertia = Inertia::from_moments([1.0; 3]).map_err(unexpected)?;
     let body = Body::heavy(inertia, V::new(0.0, 0.0, weight)).map_err(unexpected)?;

@@ -37,7 +37,7 @@ struct Columns<'a> {
 }
 
 /// The contents of `run.toml`.
-pub(crate) fn describe<'a>(experiment: &'a str, scale: Scale, report: &'a Report) -> String {
+pub(super) fn describe<'a>(experiment: &'a str, scale: Scale, report: &'a Report) -> String {
     let meaning = |unit: &str, meaning: &str| {
         if unit.is_empty() { meaning.into() } else { format!("{meaning} [{unit}]") }
     };

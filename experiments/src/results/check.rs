@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use super::{RESULTS, chosen};
 use crate::error::Error;
-use crate::experiment::{Experiment, Report, Scale, chosen};
+use crate::experiment::{Experiment, Report, Scale};
 use crate::files::{emit, read};
-use crate::publish::RESULTS;
 use crate::table::Table;
 
 /// The CSVs of smoke scale.
@@ -15,7 +15,7 @@ const TOLD: usize = 8;
 const REMEDY: &str = "if that is intended, `polhode experiment check --accept` writes it";
 
 /// Runs the experiments called `names` (or `all`) at smoke scale and compares them with the files below `root`.
-pub(crate) fn run(names: &[String], root: &Path, accept: bool) -> Result<(), Error> {
+pub(super) fn run(names: &[String], root: &Path, accept: bool) -> Result<(), Error> {
     if !root.join(GOLDEN).is_dir() {
         let value = root.display().to_string();
         return Err(Error::input("--root", &value, &format!("holds no {GOLDEN}"), "name the project's root"));

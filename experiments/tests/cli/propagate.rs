@@ -1,62 +1,6 @@
-//! `polhode` and its commands, but for `inertia`, `fit` and `simulate`.
+//! `polhode propagate` and `polhode motion`.
 
-use std::fs;
-use std::path::Path;
-
-use crate::harness::{Answer, Scratch, golden, names, output, polhode, run, words};
-
-/// The refusal of `line`: exit code 2, nothing on standard output, one `error:` that holds every part of `says`.
-fn refused(line: &str, says: &[&str]) {
-    refused_with(&words(line), says);
-}
-
-fn refused_with(arguments: &[&str], says: &[&str]) {
-    let answer = polhode(arguments, Path::new("."));
-    let Answer { code, out, err } = &answer;
-    assert_eq!((*code, out.as_str()), (2, ""), "{arguments:?}: {err}");
-    assert!(err.starts_with("error: "), "{arguments:?}: {err}");
-    assert_eq!(err.matches("error:").count(), 1, "{arguments:?}: {err}");
-    for part in says {
-        assert!(err.contains(part), "{arguments:?}: '{part}' is not in: {err}");
-    }
-    let written_out = |word: &str| word.len() > 60 && !word.contains(['/', '<']);
-    assert!(!err.split_whitespace().any(written_out), "{arguments:?}: a value written out in full: {err}");
-}
-
-/// The first words of most lines here: a body whose moments and start are exact in binary.
-const DYADIC: &str = "propagate --body dyadic --omega 1,0.5,-0.25";
-
-fn with(flags: &str) -> String {
-    format!("{DYADIC} {flags}")
-}
-
-#[test]
-fn help_is_everywhere_and_fits_into_80_columns() {
-    let commands = [
-        "",
-        "propagate",
-        "motion",
-        "simulate",
-        "fit",
-        "methods",
-        "inertia",
-        "experiment",
-        "experiment list",
-        "experiment run",
-        "experiment check",
-        "experiment publish",
-    ];
-    for command in commands {
-        for flag in ["--help", "-h"] {
-            let text = output(&format!("{command} {flag}"));
-            assert!(text.contains("Usage: polhode"), "{command}: {text}");
-            for line in text.lines() {
-                assert!(line.chars().count() <= 80, "{command} {flag}: {line}");
-            }
-        }
-    }
-    assert!(output("--version").starts_with("polhode "));
-}
+use crate::harness::{DYADIC, golden, output, refused, refused_with, run, with, words};
 
 #[test]
 fn every_flag_is_in_the_help() {
@@ -134,17 +78,6 @@ fn stepping_methods_are_the_golden_ones() {
     golden("lie-poisson.csv", &output(&with("--method lie-poisson --step 0.125 --until 2 --every 0.5")));
     golden("lie-poisson-321.csv", &output(&with("--method lie-poisson:321 --step 0.125 --times 1,2")));
     golden("rattle.csv", &output(&with("--method rattle --step 0.125 --times 1,2")));
-}
-
-#[test]
-fn json_and_table_hold_the_rows_of_the_csv() {
-    let flags = "--until 1 --every 0.5 --attitude 0,0,3,4";
-    golden("exact.json", &output(&with(&format!("{flags} --format json"))));
-    golden("exact.txt", &output(&with(&format!("{flags} --format table"))));
-    golden("methods.csv", &output("methods"));
-    golden("experiments.csv", &output("experiment list"));
-    let text = output("methods --format table");
-    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
 }
 
 #[test]
@@ -303,23 +236,6 @@ fn steps_that_do_not_fit_are_refused() {
 }
 
 #[test]
-fn unknown_names_are_answered_with_the_nearest() {
-    refused(&with("--times 1 --method exakt"), &["--method: 'exakt': no such method", "'exact'"]);
-    refused(&with("--times 1 --step 1 --method ratle"), &["did you mean 'rattle'?"]);
-    refused(&with("--times 1 --step 1 --method verlet"), &["'verlet'", "known: exact, explicit-euler, "]);
-    refused(&with("--times 1 --step 1 --method lie-poisson:322"), &["'lie-poisson:322'", "lie-poisson:321"]);
-    refused(&with("--times 1 --step 1 --method rk4:2"), &["--method: 'rk4:2'", "takes no argument"]);
-    refused("propagate --body dyadik --omega 1,0,0 --times 1", &["--body: 'dyadik'", "'dyadic'"]);
-    refused("propagate --body moon --omega 1,0,0 --times 1", &["--body: 'moon'", "known: toutatis"]);
-    refused("experiment run all drfit", &["'drfit'"]);
-    refused("experiment run drfit", &["'drfit': no such experiment", "'drift'"]);
-    refused("experiment run drift --scale smok", &["--scale", "'smok'", "'smoke'"]);
-    refused("methods --format yaml", &["--format", "'yaml'", "table, csv, json"]);
-    refused("propagat", &["'propagat'", "'propagate'"]);
-    refused(&with("--unti 1"), &["'--unti'", "'--until'"]);
-}
-
-#[test]
 fn flags_that_exclude_or_need_each_other_say_so() {
     refused("propagate --body dyadic --moments 1,2,3 --omega 1,0,0 --times 1", &["'--body", "'--moments"]);
     refused("propagate --omega 1,0,0 --times 1", &["--moments", "--inertia", "--body", "not provided"]);
@@ -331,87 +247,6 @@ fn flags_that_exclude_or_need_each_other_say_so() {
     refused(DYADIC, &["--times: missing", "--until T --every DT"]);
     refused(&with("--times 1 --times 2"), &["--times", "multiple times"]);
     refused("experiment run", &["<NAMES>", "not provided"]);
-}
-
-#[test]
-fn a_place_that_cannot_be_written_is_refused_and_left_as_it_was() {
-    let scratch = Scratch::new("out");
-    let file = scratch.0.join("file");
-    fs::write(&file, "kept").unwrap();
-    let below = file.join("rows.csv").display().to_string();
-    let folder = scratch.0.display().to_string();
-    let absent = scratch.0.join("absent/rows.csv").display().to_string();
-    for out in [&below, &folder, &absent] {
-        refused(&with(&format!("--times 1 --out {out}")), &["--out: '", "cannot be written"]);
-        refused(&format!("methods --out {out}"), &["--out: '", "cannot be written"]);
-    }
-    let run_out = file.display().to_string();
-    refused(
-        &format!("experiment run order --scale smoke --out {run_out}"),
-        &["--out: '", "cannot be written"],
-    );
-    assert_eq!(scratch.names(), ["file"]);
-    assert_eq!(fs::read_to_string(&file).unwrap(), "kept");
-    // a refusal of anything else does not touch the file either
-    refused(&with(&format!("--method rk4 --step 0.3 --times 1 --out {run_out}")), &["--step"]);
-    assert_eq!(fs::read_to_string(&file).unwrap(), "kept");
-}
-
-#[test]
-fn a_folder_of_something_else_is_not_replaced_by_results() {
-    let scratch = Scratch::new("foreign");
-    let folder = scratch.0.join("smoke/order");
-    fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join("thesis.tex"), "kept").unwrap();
-    let line = format!("experiment run order --scale smoke --out {}", scratch.0.display());
-    refused(&line, &["--out", "no run.toml", "move it away"]);
-    assert_eq!(names(&folder), ["thesis.tex"]);
-}
-
-#[test]
-fn rows_go_whole_into_the_file_and_replace_the_old_ones() {
-    let scratch = Scratch::new("file");
-    let path = scratch.0.join("rows.csv");
-    let to_file = with(&format!("--until 1 --every 0.5 --out {}", path.display()));
-    assert_eq!(output(&to_file), "");
-    let first = fs::read_to_string(&path).unwrap();
-    assert_eq!(first, output(&with("--until 1 --every 0.5")));
-    assert_eq!(output(&to_file.replace("--every 0.5", "--every 1")), "");
-    assert_eq!(fs::read_to_string(&path).unwrap().lines().count(), 3);
-    assert_eq!(scratch.names(), ["rows.csv"]);
-}
-
-/// Two hundred thousand rows took 190 MB when they were collected first.
-#[cfg(target_os = "linux")]
-#[test]
-fn long_runs_need_no_memory_for_their_rows() {
-    let scratch = Scratch::new("memory");
-    for format in ["csv", "json"] {
-        let out = scratch.0.join(format).display().to_string();
-        let line = with(&format!("--until 2e5 --every 1 --format {format} --out {out}"));
-        let mut child =
-            std::process::Command::new(env!("CARGO_BIN_EXE_polhode")).args(words(&line)).spawn().unwrap();
-        let mut most = 0;
-        while child.try_wait().unwrap().is_none() {
-            let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
-            let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.strip_suffix("kB"));
-            most = most.max(peak.map_or(0, |peak| peak.trim().parse().unwrap()));
-            std::thread::sleep(std::time::Duration::from_millis(10));
-        }
-        assert!(most > 0 && most < 30_000, "{format}: {most} kB");
-        assert!(fs::read_to_string(out).unwrap().lines().count() > 200_000);
-    }
-}
-
-#[test]
-fn a_table_that_nobody_reads_is_refused() {
-    let line = with("--until 10000 --every 1 --format table");
-    refused(&line, &["--format: 'table'", "10001 rows", "at most 10000", "give --format csv"]);
-    assert!(run(&line.replace("--until 10000", "--until 100")).out.contains("omega_body_x"));
-    refused(
-        "simulate --body phone --omega 1,1,1 --until 20 --every 0.001 --format table",
-        &["--format: 'table'", "20001 rows"],
-    );
 }
 
 #[test]
@@ -443,139 +278,6 @@ fn an_implicit_step_without_solution_is_told_and_fails() {
     assert_eq!(answer.out.lines().count(), 2, "{}", answer.out);
     assert!(answer.err.contains("error: --method rattle: "), "{}", answer.err);
     assert!(answer.err.contains("smaller"), "{}", answer.err);
-}
-
-/// Every file below `folder` with its bytes, by path.
-fn tree(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut files = Vec::new();
-    for name in names(folder) {
-        let path = folder.join(&name);
-        if path.is_dir() {
-            files.extend(tree(&path).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
-        } else {
-            files.push((name, fs::read(path).unwrap()));
-        }
-    }
-    files
-}
-
-/// The root of this project.
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()
-}
-
-#[test]
-fn experiments_repeat_bit_for_bit_and_can_be_published() {
-    let scratch = Scratch::new("experiments");
-    let text = output(&format!("experiment run all --scale smoke --out {}", scratch.0.display()));
-    assert!(text.contains("Written to"), "{text}");
-    let files = tree(&scratch.0.join("smoke"));
-    for experiment in ["drift", "order", "long-run"] {
-        for ending in [".csv", ".md", ".tex", ".svg", "run.toml"] {
-            let of_it = |(name, bytes): &&(String, Vec<u8>)| {
-                name.starts_with(&format!("{experiment}/")) && name.ends_with(ending) && !bytes.is_empty()
-            };
-            assert!(files.iter().any(|file| of_it(&file)), "{experiment} has no {ending}");
-        }
-    }
-    for (name, bytes) in &files {
-        let text = String::from_utf8(bytes.clone()).unwrap();
-        assert!(!text.contains("NaN") && !text.contains(",inf"), "{name}");
-    }
-    // the committed ones come from another profile and, it may be, another processor
-    assert_eq!(output(&format!("experiment check --root {}", root().display())), "");
-
-    // a project whose committed results are these
-    let project = scratch.0.join("project");
-    fs::create_dir_all(project.join("experiments")).unwrap();
-    fs::create_dir_all(project.join("paper")).unwrap();
-    let results = project.join("experiments/results");
-    fs::rename(scratch.0.join("smoke"), &results).unwrap();
-    let rounded = files.iter().filter_map(|(name, bytes)| Some((name.strip_suffix(".tex")?, bytes)));
-    // the last rows of the long run are no part that can be cut from its table by a column
-    let rounded: Vec<_> = rounded.filter(|(name, _)| *name != "long-run/summary").collect();
-    assert!(rounded.len() > 20, "{}", rounded.len());
-    let readme = |text: fn(&Path, &str) -> String| {
-        let block = |name: &str| {
-            format!("<!-- begin generated: {name} -->\n{}<!-- end generated -->\n", text(&results, name))
-        };
-        rounded.iter().map(|(name, _)| block(name)).collect::<String>()
-    };
-    fs::write(project.join("README.md"), readme(|_, _| String::new())).unwrap();
-    let input = |(name, _): &(&str, _)| format!("\\input{{generated/{}}}\n", name.replacen('/', "-", 1));
-    let article: String = rounded.iter().map(input).collect();
-    fs::write(project.join("paper/main.tex"), article + "{generated/long-run-series.csv}").unwrap();
-    assert_eq!(output(&format!("experiment publish --root {}", project.display())), "");
-    // what is made from the CSVs is what the run made of its tables
-    let written = readme(|results, name| fs::read_to_string(results.join(format!("{name}.md"))).unwrap());
-    assert_eq!(fs::read_to_string(project.join("README.md")).unwrap(), written);
-    for (name, bytes) in &rounded {
-        let file = format!("paper/generated/{}.tex", name.replacen('/', "-", 1));
-        let text = fs::read_to_string(project.join(&file)).unwrap();
-        let (head, table) = text.split_once('\n').unwrap();
-        assert!(
-            head.starts_with(&format!("% {}, commit ", name.split_once('/').unwrap().0)),
-            "{file}: {head}"
-        );
-        assert_eq!(table.as_bytes(), *bytes, "{file}");
-    }
-    let series = fs::read(project.join("paper/generated/long-run-series.csv")).unwrap();
-    assert_eq!(series, fs::read(results.join("long-run/series.csv")).unwrap());
-}
-
-#[test]
-fn a_number_that_changed_is_told_with_its_place() {
-    let scratch = Scratch::new("check");
-    let golden_folder = "experiments/tests/golden/smoke/order";
-    let folder = scratch.0.join(golden_folder);
-    let line = format!("experiment check order --root {}", scratch.0.display());
-    refused(&line, &["--root", "holds no experiments/tests/golden/smoke", "name the project's root"]);
-    fs::create_dir_all(&folder).unwrap();
-    refused(
-        &line.replace("check order", "check ordre"),
-        &["experiment check: 'ordre'", "did you mean 'order'?"],
-    );
-    assert_eq!(output(&format!("{line} --accept")), "");
-    assert_eq!(output(&line), "");
-    assert_eq!(names(&folder), names(&root().join(golden_folder)));
-    let errors = folder.join("errors.csv");
-    let text = fs::read_to_string(&errors).unwrap();
-    let mut rows: Vec<String> = text.lines().map(String::from).collect();
-    let (head, last) = rows[2].rsplit_once(',').unwrap();
-    let next = f64::from_bits(last.parse::<f64>().unwrap().to_bits() + 1);
-    let expected = format!("row 2, column momentum_order: committed {next:?}, found {last}");
-    rows[2] = format!("{head},{next:?}");
-    fs::write(&errors, rows.join("\n") + "\n").unwrap();
-    fs::remove_file(folder.join("orders.csv")).unwrap();
-    fs::write(folder.join("order.csv"), "").unwrap();
-    let answer = run(&line);
-    assert_eq!((answer.code, answer.out.as_str()), (1, ""));
-    let place = |name: &str| format!("{golden_folder}/{name}");
-    for part in [
-        format!("{}: {expected}", place("errors.csv")),
-        format!("{}: is not there", place("orders.csv")),
-        format!("{}: no table is called so", place("order.csv")),
-        "experiment check --accept".to_string(),
-    ] {
-        assert!(answer.err.contains(&part), "'{part}' is not in: {}", answer.err);
-    }
-}
-
-#[test]
-fn publishing_without_results_is_refused() {
-    let scratch = Scratch::new("unpublished");
-    let line = format!("experiment publish --root {}", scratch.0.display());
-    refused(&line, &["README.md", "cannot be read"]);
-    fs::write(scratch.0.join("README.md"), "text\n").unwrap();
-    refused(&line, &["experiments/results", "--scale paper", "--from results/paper"]);
-    assert_eq!(scratch.names(), ["README.md"]);
-    let smoke = scratch.0.join("results/smoke/drift");
-    fs::create_dir_all(&smoke).unwrap();
-    let origin = "experiment = \"drift\"\nscale = \"smoke\"\ncommit = \"0\"\nchanged = \"false\"\n";
-    fs::write(smoke.join("run.toml"), origin).unwrap();
-    let from = format!("{line} --from {}", smoke.parent().unwrap().display());
-    refused(&from, &["--from", "'smoke'", "paper scale"]);
-    assert_eq!(scratch.names(), ["README.md", "results"]);
 }
 
 #[test]

@@ -1,0 +1,57 @@
+//! `polhode experiment run`: experiments, and the folders their results go to.
+
+use std::path::Path;
+
+use super::{chosen, provenance};
+use crate::error::Error;
+use crate::experiment::{Experiment, Report, Scale};
+use crate::files::{MARK, Staging, emit};
+
+/// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`.
+pub(super) fn run(names: &[String], scale: Scale, out: &Path) -> Result<(), Error> {
+    let with_folder =
+        |experiment: &'static Experiment| (experiment, out.join(scale.to_string()).join(experiment.name));
+    let chosen: Vec<_> = chosen("experiment run", names)?.into_iter().map(with_folder).collect();
+    // a place that cannot be written is found out before the work, not after it
+    for (_, folder) in &chosen {
+        drop(Staging::new(folder)?);
+    }
+    let mut failures = Vec::new();
+    for (experiment, folder) in chosen {
+        let report = experiment.report(scale)?;
+        write(experiment, scale, &report, &folder)?;
+        show(experiment, &report, &folder)?;
+        failures.extend(report.failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));
+    }
+    if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.join("\n"))) }
+}
+
+fn write(experiment: &Experiment, scale: Scale, report: &Report, folder: &Path) -> Result<(), Error> {
+    let staging = Staging::new(folder)?;
+    for table in report.tables.iter().chain(&report.data).chain(&report.timing) {
+        staging.write(&format!("{}.csv", table.name), table.csv().as_bytes())?;
+    }
+    // a view may be one of the tables, shown alone
+    let also = report.views.iter().filter(|view| report.tables.iter().all(|table| table.name != view.name));
+    for table in report.tables.iter().chain(also) {
+        staging.write(&format!("{}.md", table.name), table.markdown().as_bytes())?;
+        staging.write(&format!("{}.tex", table.name), table.latex().as_bytes())?;
+    }
+    for figure in &report.figures {
+        staging.write(&format!("{}.svg", figure.name), figure.svg()?.as_bytes())?;
+    }
+    for drawing in &report.drawings {
+        staging.write(&format!("{}.svg", drawing.name), drawing.svg.as_bytes())?;
+    }
+    staging.write(MARK, provenance::describe(experiment.name, scale, report).as_bytes())?;
+    staging.commit()
+}
+
+fn show(experiment: &Experiment, report: &Report, folder: &Path) -> Result<(), Error> {
+    let shown = if report.views.is_empty() { &report.tables } else { &report.views };
+    let mut text = String::new();
+    for table in shown.iter().chain(&report.timing) {
+        text += &format!("\n{}: {}\n\n{}", experiment.name, table.caption, table.terminal());
+    }
+    emit(&format!("{text}\nWritten to {}\n", folder.display()), None)
+}
