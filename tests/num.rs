@@ -590,3 +590,20 @@ fn an_expansion_tells_the_separatrix_from_its_neighbours() {
     let next = delta(short, short * short * 2.0 + libm::ldexp(1.0, -100)).to_dd();
     assert!(relative_error(next, seventh * seventh * 2.0 * libm::ldexp(1.0, -100)) < 1e-31);
 }
+
+#[test]
+fn sine_and_cosine_of_small_angles_are_right_to_rounding() {
+    use polhode::num::trig::{SMALL, sin_cos_small};
+    for n in 0..=20_000 {
+        // a grid that meets both ends, and angles down to the smallest
+        for x in [SMALL * f64::from(n) / 20_000.0, SMALL * libm::exp2(-f64::from(n) / 19.0)] {
+            for x in [x, -x] {
+                let (s, c) = sin_cos_small(x);
+                let (sin, cos) = Dd::of(x).sin_cos();
+                let error = |value: f64, exact: Dd| ((Dd::of(value) - exact) / exact).hi().abs();
+                assert!(x == 0.0 && s == 0.0 || error(s, sin) < 0.52 * f64::EPSILON, "sin {x:e}: {s:e}");
+                assert!(error(c, cos) < 0.52 * f64::EPSILON, "cos {x:e}: {c:e}");
+            }
+        }
+    }
+}

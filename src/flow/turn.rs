@@ -48,9 +48,20 @@ pub(crate) fn turn_about_axis<S: Real>(axis: usize, x: &mut Point<S>, half_rate_
 /// stays in registers.
 #[inline]
 pub(crate) fn turn_about<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
+    turn_by::<AXIS, S>(x, (x.momentum_body[AXIS] * half_rate_time).sin_cos());
+}
+
+/// The same by an angle of which half is at most [`SMALL`](crate::num::trig::SMALL).
+#[inline(always)]
+pub(crate) fn turn_a_little_about<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
+    turn_by::<AXIS, S>(x, (x.momentum_body[AXIS] * half_rate_time).sin_cos_small());
+}
+
+/// By sine and cosine of half the angle.
+#[inline(always)]
+fn turn_by<const AXIS: usize, S: Real>(x: &mut Point<S>, (s, c): (S, S)) {
     let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
     let m = x.momentum_body;
-    let (s, c) = (m[AXIS] * half_rate_time).sin_cos();
     let twice = s + s;
     let (v, w) = (twice * s, twice * c);
     x.add_component(j, w * m[k] - v * m[j]);

@@ -2,7 +2,8 @@
 
 use super::{AxisOrder, Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
-use crate::flow::{turn_about, turn_about_axis};
+use crate::flow::{turn_a_little_about, turn_about, turn_about_axis};
+use crate::num::trig::SMALL;
 use crate::num::{Dd, Precise, Real};
 
 /// Strang splitting of the kinetic energy by axes.
@@ -59,6 +60,7 @@ impl<S: Precise> Method<S> for AxisSplit {
             free_to_choose: false,
             axes: [0, 1, 2],
             half_rates: [S::of(0.0); 3],
+            small: false,
         };
         map.choose(self.axes.unwrap_or_else(|| AxisOrder::best(rotor.moments())));
         map.free_to_choose = self.axes.is_none();
@@ -74,13 +76,15 @@ pub struct AxisSplitMap<S> {
     free_to_choose: bool,
     axes: [usize; 3],
     half_rates: [S; 3], // time of the turn over 2 I
+    /// Whether half of each angle of an opened motion is at most [`SMALL`].
+    small: bool,
 }
 
 impl<S: Precise> Map<S> for AxisSplitMap<S> {
     #[inline]
     fn apply(&mut self, _: Time, x: &mut Point<S>) {
         let [outer, middle, inner] = self.half_rates;
-        self.turns(x, [(0, outer), (1, middle), (2, inner), (1, middle), (0, outer)]);
+        self.turns::<5, false>(x, [(0, outer), (1, middle), (2, inner), (1, middle), (0, outer)]);
     }
 
     fn open(&mut self, _: Time, x: &mut Point<S>) {
@@ -88,13 +92,17 @@ impl<S: Precise> Map<S> for AxisSplitMap<S> {
             let m = x.momentum_body.map(S::to_f64);
             self.choose(AxisOrder::best_for_orbit(m, self.rotor.moments()));
         }
+        let largest = self.half_rates.map(S::magnitude).into_iter().fold(0.0, f64::max);
+        // twice the half rate of the outer axis, and |m| walks by rounding
+        self.small = 2.01 * largest * x.momentum_body.norm().magnitude() <= SMALL;
         turn_about_axis(self.axes[0], x, self.half_rates[0]);
     }
 
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
         let [outer, middle, inner] = self.half_rates;
-        self.turns(x, [(1, middle), (2, inner), (1, middle), (0, outer + outer)]);
+        let turns = [(1, middle), (2, inner), (1, middle), (0, outer + outer)];
+        if self.small { self.turns::<4, true>(x, turns) } else { self.turns::<4, false>(x, turns) }
     }
 
     #[inline]
@@ -115,29 +123,41 @@ impl<S: Precise> AxisSplitMap<S> {
 
     /// Turns about outer (0), middle (1) and inner axis (2).
     #[inline]
-    fn turns<const N: usize>(&self, x: &mut Point<S>, turns: [(usize, S); N]) {
+    fn turns<const N: usize, const SMALL: bool>(&self, x: &mut Point<S>, turns: [(usize, S); N]) {
         match self.axes {
-            [0, 1, _] => turns_about::<0, 1, 2, N, S>(x, turns),
-            [0, ..] => turns_about::<0, 2, 1, N, S>(x, turns),
-            [1, 0, _] => turns_about::<1, 0, 2, N, S>(x, turns),
-            [1, ..] => turns_about::<1, 2, 0, N, S>(x, turns),
-            [_, 0, _] => turns_about::<2, 0, 1, N, S>(x, turns),
-            _ => turns_about::<2, 1, 0, N, S>(x, turns),
+            [0, 1, _] => turns_about::<0, 1, 2, N, SMALL, S>(x, turns),
+            [0, ..] => turns_about::<0, 2, 1, N, SMALL, S>(x, turns),
+            [1, 0, _] => turns_about::<1, 0, 2, N, SMALL, S>(x, turns),
+            [1, ..] => turns_about::<1, 2, 0, N, SMALL, S>(x, turns),
+            [_, 0, _] => turns_about::<2, 0, 1, N, SMALL, S>(x, turns),
+            _ => turns_about::<2, 1, 0, N, SMALL, S>(x, turns),
         }
         x.renormalize_at_times();
     }
 }
 
 #[inline(always)]
-fn turns_about<const OUTER: usize, const MIDDLE: usize, const INNER: usize, const N: usize, S: Real>(
+fn turns_about<
+    const OUTER: usize,
+    const MIDDLE: usize,
+    const INNER: usize,
+    const N: usize,
+    const SMALL: bool,
+    S: Real,
+>(
     x: &mut Point<S>,
     turns: [(usize, S); N],
 ) {
     for (which, half_rate) in turns {
         match which {
-            0 => turn_about::<OUTER, S>(x, half_rate),
-            1 => turn_about::<MIDDLE, S>(x, half_rate),
-            _ => turn_about::<INNER, S>(x, half_rate),
+            0 => turn_one::<OUTER, SMALL, S>(x, half_rate),
+            1 => turn_one::<MIDDLE, SMALL, S>(x, half_rate),
+            _ => turn_one::<INNER, SMALL, S>(x, half_rate),
         }
     }
+}
+
+#[inline(always)]
+pub(super) fn turn_one<const AXIS: usize, const SMALL: bool, S: Real>(x: &mut Point<S>, half_rate: S) {
+    if SMALL { turn_a_little_about::<AXIS, S>(x, half_rate) } else { turn_about::<AXIS, S>(x, half_rate) }
 }

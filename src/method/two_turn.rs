@@ -5,10 +5,12 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
+use super::axis_split::turn_one;
 use super::modified_energy::{ModifiedEnergy, Orbit};
 use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
-use crate::flow::{Casimir, Flow, turn_about, turn_about_axis};
+use crate::flow::{Casimir, Flow, turn_about_axis};
+use crate::num::trig::SMALL;
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -165,6 +167,7 @@ impl<S: Precise> Method<S> for TwoTurn {
             half_rates: [S::of(0.0); 2],
             ball: Casimir::new(S::of(0.0)),
             momentum_space: Vec3::zero(),
+            small: false,
         };
         map.choose(self.axes.unwrap_or_else(|| TwoAxes::usual(rotor.moments())));
         map.free_to_choose = self.axes.is_none();
@@ -182,6 +185,8 @@ pub struct TwoTurnMap<S> {
     half_rates: [S; 2], // half of a step about the outer axis and a step about the inner one, over 2
     ball: Casimir<S>,
     momentum_space: Vec3<Dd>, // when opened
+    /// Whether half of each angle of an opened motion is at most [`SMALL`].
+    small: bool,
 }
 
 impl<S: Precise> TwoTurnMap<S> {
@@ -197,26 +202,30 @@ impl<S: Precise> TwoTurnMap<S> {
 
     /// Turns about the outer (true) or the inner axis.
     #[inline]
-    fn turns<const N: usize>(&self, x: &mut Point<S>, turns: [(bool, S); N]) {
+    fn turns<const N: usize, const SMALL: bool>(&self, x: &mut Point<S>, turns: [(bool, S); N]) {
         match self.axes.0 {
-            [0, 1] => turns_about::<0, 1, N, S>(x, turns),
-            [0, _] => turns_about::<0, 2, N, S>(x, turns),
-            [1, 0] => turns_about::<1, 0, N, S>(x, turns),
-            [1, _] => turns_about::<1, 2, N, S>(x, turns),
-            [_, 0] => turns_about::<2, 0, N, S>(x, turns),
-            _ => turns_about::<2, 1, N, S>(x, turns),
+            [0, 1] => turns_about::<0, 1, N, SMALL, S>(x, turns),
+            [0, _] => turns_about::<0, 2, N, SMALL, S>(x, turns),
+            [1, 0] => turns_about::<1, 0, N, SMALL, S>(x, turns),
+            [1, _] => turns_about::<1, 2, N, SMALL, S>(x, turns),
+            [_, 0] => turns_about::<2, 0, N, SMALL, S>(x, turns),
+            _ => turns_about::<2, 1, N, SMALL, S>(x, turns),
         }
         x.renormalize_at_times();
     }
 }
 
 #[inline(always)]
-fn turns_about<const OUTER: usize, const INNER: usize, const N: usize, S: Real>(
+fn turns_about<const OUTER: usize, const INNER: usize, const N: usize, const SMALL: bool, S: Real>(
     x: &mut Point<S>,
     turns: [(bool, S); N],
 ) {
     for (outer, half_rate) in turns {
-        if outer { turn_about::<OUTER, S>(x, half_rate) } else { turn_about::<INNER, S>(x, half_rate) }
+        if outer {
+            turn_one::<OUTER, SMALL, S>(x, half_rate)
+        } else {
+            turn_one::<INNER, SMALL, S>(x, half_rate)
+        }
     }
 }
 
@@ -225,7 +234,7 @@ impl<S: Precise> Map<S> for TwoTurnMap<S> {
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
         let [outer, inner] = self.half_rates;
         self.ball.flow(at, S::from_dd(self.h), x);
-        self.turns(x, [(true, outer), (false, inner), (true, outer)]);
+        self.turns::<3, false>(x, [(true, outer), (false, inner), (true, outer)]);
     }
 
     fn open(&mut self, _: Time, x: &mut Point<S>) {
@@ -234,13 +243,17 @@ impl<S: Precise> Map<S> for TwoTurnMap<S> {
             self.choose(TwoAxes::best(m, self.rotor.moments()));
         }
         self.momentum_space = x.attitude.map(S::to_dd).rotate(x.momentum_body.map(S::to_dd));
+        let largest = (self.half_rates[0].magnitude() * 2.0).max(self.half_rates[1].magnitude());
+        // |m| walks by rounding
+        self.small = 1.01 * largest * x.momentum_body.norm().magnitude() <= SMALL;
         turn_about_axis(self.axes.0[0], x, self.half_rates[0]);
     }
 
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
         let [outer, inner] = self.half_rates;
-        self.turns(x, [(false, inner), (true, outer + outer)]);
+        let turns = [(false, inner), (true, outer + outer)];
+        if self.small { self.turns::<2, true>(x, turns) } else { self.turns::<2, false>(x, turns) }
     }
 
     #[inline]

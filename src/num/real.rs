@@ -40,6 +40,11 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians, the same bits on every CPU.
     fn sin_cos(self) -> (Self, Self);
+    /// The same of an angle of at most [`SMALL`](trig::SMALL), where `f64` needs fewer operations.
+    #[inline]
+    fn sin_cos_small(self) -> (Self, Self) {
+        self.sin_cos()
+    }
     /// |x| as `f64`; of several lanes the largest, NaN if one is NaN.
     fn magnitude(self) -> f64;
     /// `self + b` and the error of its rounding (Knuth): exact for `f64`, in any other scalar as good as its own rounding.
@@ -99,6 +104,10 @@ impl Real for f64 {
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         trig::sin_cos(self)
+    }
+    #[inline]
+    fn sin_cos_small(self) -> (Self, Self) {
+        trig::sin_cos_small(self)
     }
     #[inline]
     fn magnitude(self) -> f64 {

@@ -42,6 +42,20 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() <= FRAC_PI_4 { kernel::<false>(x, 0.0) } else { reduced(x) }
 }
 
+/// The largest angle of [`sin_cos_small`], rad.
+pub const SMALL: f64 = 0.03125;
+
+/// Sine and cosine of `x` radians, |x| ≤ [`SMALL`]: Taylor polynomials, whose errors in sin x / x and cos x are below 2⁻⁵⁸.
+#[inline]
+pub fn sin_cos_small(x: f64) -> (f64, f64) {
+    let z = x * x;
+    let s = x * z * (-1.0 / 6.0 + z * (1.0 / 120.0 - z * (1.0 / 5040.0)));
+    let half = 0.5 * z;
+    let c = 1.0 - half;
+    let rest = (1.0 - c) - half + z * z * ((1.0 / 24.0 - z * (1.0 / 720.0)) + z * z * (1.0 / 40320.0));
+    (x + s, c + rest)
+}
+
 #[inline(never)]
 fn reduced(x: f64) -> (f64, f64) {
     if x.is_nan() || x.abs() >= 1_048_576.0 {
