@@ -25,12 +25,21 @@ MARKERS = ("<!-- begin generated: mutants -->", "<!-- end generated: mutants -->
 
 # files, every n-th mutant, arguments of cargo test
 MODULES = {
+<<<<<<< HEAD
     "num": (["src/num/**"], 20, ["--lib", "--test", "num"]),
     "rotation": (["src/rotation/**"], 8, ["--lib", "--test", "rotation", "--test", "euler", "--test", "properties", "--test", "laws"]),
     "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], 40, ["--lib", "--test", "exact", "--test", "properties", "--test", "tops"]),
     "method": (["src/method/**"], 20, ["--lib", "--test", "laws"]),
     "observe": (["src/observe/**"], 10, ["--lib", "--test", "laws", "--test", "properties"]),
     "fit": (["src/fit/**"], 60, ["--features", "fit", "--lib", "--test", "fit", "--test", "fit_failures", "--test", "record"]),
+=======
+    "num": (["src/num/**"], 8, ["--lib", "--test", "num"]),
+    "rotation": (["src/rotation/**"], 4, ["--lib", "--test", "rotation", "--test", "euler", "--test", "properties", "--test", "laws"]),
+    "flow": ([f"src/flow/{name}.rs" for name in ("theta", "circulation", "polhode", "phase", "nutation")], 40, ["--lib", "--test", "exact", "--test", "properties", "--test", "tops"]),
+    "method": (["src/method/**"], 14, ["--lib", "--test", "laws"]),
+    "observe": (["src/observe/**"], 5, ["--lib", "--test", "laws", "--test", "properties"]),
+    "fit": (["src/fit/**"], 40, ["--features", "fit", "--lib", "--test", "fit"]),
+>>>>>>> e3d674e (Draw larger samples of mutants)
 }
 OUTCOMES = {"CaughtMutant": "caught", "Timeout": "timeout", "MissedMutant": "missed", "Unviable": "unviable"}
 
