@@ -25,21 +25,12 @@ MARKERS = ("<!-- begin generated: mutants -->", "<!-- end generated: mutants -->
 
 # files, every n-th mutant, arguments of cargo test
 MODULES = {
-<<<<<<< HEAD
-    "num": (["src/num/**"], 20, ["--lib", "--test", "num"]),
-    "rotation": (["src/rotation/**"], 8, ["--lib", "--test", "rotation", "--test", "euler", "--test", "properties", "--test", "laws"]),
-    "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], 40, ["--lib", "--test", "exact", "--test", "properties", "--test", "tops"]),
-    "method": (["src/method/**"], 20, ["--lib", "--test", "laws"]),
-    "observe": (["src/observe/**"], 10, ["--lib", "--test", "laws", "--test", "properties"]),
-    "fit": (["src/fit/**"], 60, ["--features", "fit", "--lib", "--test", "fit", "--test", "fit_failures", "--test", "record"]),
-=======
-    "num": (["src/num/**"], 8, ["--lib", "--test", "num"]),
-    "rotation": (["src/rotation/**"], 4, ["--lib", "--test", "rotation", "--test", "euler", "--test", "properties", "--test", "laws"]),
-    "flow": ([f"src/flow/{name}.rs" for name in ("theta", "circulation", "polhode", "phase", "nutation")], 40, ["--lib", "--test", "exact", "--test", "properties", "--test", "tops"]),
-    "method": (["src/method/**"], 14, ["--lib", "--test", "laws"]),
-    "observe": (["src/observe/**"], 5, ["--lib", "--test", "laws", "--test", "properties"]),
-    "fit": (["src/fit/**"], 40, ["--features", "fit", "--lib", "--test", "fit"]),
->>>>>>> e3d674e (Draw larger samples of mutants)
+    "num": (["src/num/**"], 8, ["--lib", "--test=num"]),
+    "rotation": (["src/rotation/**"], 4, ["--lib", "--test=rotation", "--test=euler", "--test=properties", "--test=laws"]),
+    "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], 40, ["--lib", "--test=exact", "--test=properties", "--test=tops"]),
+    "method": (["src/method/**"], 40, ["--lib", "--test=laws", "--test=dmv", "--test=two_turns"]),
+    "observe": (["src/observe/**"], 5, ["--lib", "--test=observe", "--test=properties"]),
+    "fit": (["src/fit/**"], 120, ["--features=fit", "--lib", "--test=fit", "--test=fit_failures", "--test=record"]),
 }
 OUTCOMES = {"CaughtMutant": "caught", "Timeout": "timeout", "MissedMutant": "missed", "Unviable": "unviable"}
 
@@ -58,7 +49,7 @@ def sample(module, every):
     with tempfile.TemporaryDirectory() as folder:
         command = ["cargo", "mutants", *chosen, "-j", "1", "--shard", f"0/{every}", "--sharding", "round-robin"]
         # ends with 2 or 3 where mutants are missed or do not end
-        done = subprocess.run([*command, "--output", folder, "--", *tests], cwd=ROOT)
+        done = subprocess.run([*command, "--output", folder, *(f"--cargo-arg={test}" for test in tests)], cwd=ROOT)
         if done.returncode not in (0, 2, 3):
             raise SystemExit(f"cargo mutants ended with {done.returncode}")
         outcomes = json.loads((Path(folder) / "mutants.out" / "outcomes.json").read_text())["outcomes"]
