@@ -4,8 +4,10 @@
 //! not tell the difference. Each comes with the start that the experiments give it. Tops have a fixed point, which
 //! their moments are about, and a weight.
 
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
 use crate::body::{Body, StateError};
-use crate::inertia::Inertia;
+use crate::inertia::{Amount, Inertia, MassError, MassProperties, Solid};
 
 /// A catalogued body.
 #[derive(Clone, Debug)]
@@ -44,7 +46,7 @@ struct Entry {
     summary: &'static str,
     source: &'static str,
     unit: &'static str,
-    moments: [f64; 3],
+    moments: Result<[f64; 3], MassError>,
     omega_body: [f64; 3],
 }
 
@@ -94,7 +96,7 @@ pub fn body(name: &str) -> Option<NamedBody> {
 impl Entry {
     fn build(self) -> Option<NamedBody> {
         let Entry { name, summary, source, unit, moments, omega_body } = self;
-        let inertia = Inertia::from_moments(moments).ok()?;
+        let inertia = Inertia::from_moments(moments.ok()?).ok()?;
         let (weight_moment, attitude) = ([0.0; 3], [1.0, 0.0, 0.0, 0.0]);
         Some(NamedBody { name, summary, source, unit, inertia, weight_moment, attitude, omega_body })
     }
@@ -116,7 +118,7 @@ fn entries() -> [Entry; 11] {
             summary: "asteroid 4179 Toutatis, tumbling about its long axis; ratios of moments",
             source: "Takahashi, Busch and Scheeres, Astron. J. 146 (2013) 95; spin of 1992-11-09",
             unit: RATIO,
-            moments: [1.0, 3.0836, 3.235],
+            moments: Ok([1.0, 3.0836, 3.235]),
             omega_body: [-98.5 * DEGREE_PER_DAY, 14.5 * DEGREE_PER_DAY, 33.7 * DEGREE_PER_DAY],
         },
         Entry {
@@ -124,7 +126,7 @@ fn entries() -> [Entry; 11] {
             summary: "tennis racket, thrown to turn about its middle axis; ratios of moments",
             source: "fit to tosses of a racket with a gyroscope (data: doi 10.14288/1.0448943); axes handle, face, normal",
             unit: RATIO,
-            moments: [0.0389, 0.4619, 0.4993],
+            moments: Ok([0.0389, 0.4619, 0.4993]),
             omega_body: [0.3, 15.0, 0.2],
         },
         Entry {
@@ -140,7 +142,7 @@ fn entries() -> [Entry; 11] {
             summary: "telephone as a uniform box, 146.7 x 71.5 x 7.7 mm, 164 g, tossed about its middle axis",
             source: "closed form of a solid box; axes along length, width, thickness",
             unit: SI,
-            moments: solid_box(0.164, [0.1467, 0.0715, 0.0077]),
+            moments: phone(),
             omega_body: [0.2, 10.0, 0.3],
         },
         Entry {
@@ -156,7 +158,7 @@ fn entries() -> [Entry; 11] {
             summary: "SPHERES satellite of the space station, nearly symmetric",
             source: "CAD values of the SPHERES satellites as quoted by Setterfield, MIT thesis (2018)",
             unit: SI,
-            moments: [2.41e-2, 2.34e-2, 2.01e-2],
+            moments: Ok([2.41e-2, 2.34e-2, 2.01e-2]),
             omega_body: [0.3, 1.0, 0.4],
         },
         Entry {
@@ -164,7 +166,7 @@ fn entries() -> [Entry; 11] {
             summary: "moments 1, 2, 3: planar, and the body of most published comparisons",
             source: "by definition",
             unit: RATIO,
-            moments: [1.0, 2.0, 3.0],
+            moments: Ok([1.0, 2.0, 3.0]),
             omega_body: [0.4, 1.0, -0.3],
         },
         Entry {
@@ -172,7 +174,7 @@ fn entries() -> [Entry; 11] {
             summary: "moments 5/8, 3/4, 1, exact in binary, so that input rounding masks nothing",
             source: "dyadic twin of the driver of Hairer and Vilmart, J. Phys. A 39 (2006) 13225",
             unit: RATIO,
-            moments: [0.625, 0.75, 1.0],
+            moments: Ok([0.625, 0.75, 1.0]),
             omega_body: [2.8, 0.5, -0.875],
         },
         Entry {
@@ -180,7 +182,7 @@ fn entries() -> [Entry; 11] {
             summary: "symmetric and elongated",
             source: "by definition",
             unit: RATIO,
-            moments: [1.0, 1.0, 0.25],
+            moments: Ok([1.0, 1.0, 0.25]),
             omega_body: [0.3, 0.0, 1.0],
         },
         Entry {
@@ -188,7 +190,7 @@ fn entries() -> [Entry; 11] {
             summary: "symmetric and flat: a disk",
             source: "by definition",
             unit: RATIO,
-            moments: [1.0, 1.0, 2.0],
+            moments: Ok([1.0, 1.0, 2.0]),
             omega_body: [0.3, 0.0, 1.0],
         },
         Entry {
@@ -196,7 +198,7 @@ fn entries() -> [Entry; 11] {
             summary: "all moments equal: turns about a fixed axis whatever the spin",
             source: "by definition",
             unit: RATIO,
-            moments: [1.0, 1.0, 1.0],
+            moments: Ok([1.0, 1.0, 1.0]),
             omega_body: [0.3, 0.5, 1.0],
         },
     ]
@@ -219,7 +221,7 @@ fn top_entries() -> [Top; 4] {
                 summary: "toy gyroscope: brass disk of 100 g, 30 mm radius, 40 mm above the tip, tilted by 30 degrees",
                 source: "closed form of a solid disk, 8 mm thick, about the tip; frame neglected; axes across, across, axle",
                 unit: SI,
-                moments: disk_on_axle(0.1, [0.030, 0.008], 0.040),
+                moments: gyroscope(),
                 omega_body: [0.0, 0.0, 400.0],
             },
             weight_moment: [0.0, 0.0, 0.1 * GRAVITY * 0.040],
@@ -231,7 +233,7 @@ fn top_entries() -> [Top; 4] {
                 summary: "bicycle wheel of 1.5 kg hung by one end of its level axle, 120 mm from the hub",
                 source: "closed form of a hoop of 310 mm radius about the end of the axle; axes across, across, axle",
                 unit: SI,
-                moments: hoop_on_axle(1.5, 0.310, 0.120),
+                moments: bicycle_wheel(),
                 omega_body: [0.0, 0.0, 25.0],
             },
             weight_moment: [0.0, 0.0, 1.5 * GRAVITY * 0.120],
@@ -243,7 +245,7 @@ fn top_entries() -> [Top; 4] {
                 summary: "fast top next to upright, a test problem of structural dynamics",
                 source: "Simo and Wong, Int. J. Numer. Meth. Engng. 31 (1991) 19",
                 unit: SI,
-                moments: [5.0, 5.0, 1.0],
+                moments: Ok([5.0, 5.0, 1.0]),
                 omega_body: [0.0, 0.0, 50.0],
             },
             weight_moment: [0.0, 0.0, 20.0],
@@ -255,7 +257,7 @@ fn top_entries() -> [Top; 4] {
                 summary: "top that starts with its axis level, a test problem of multibody dynamics",
                 source: "Bruls and Cardona, J. Comput. Nonlinear Dyn. 5 (2010) 031002; moments about the fixed point",
                 unit: SI,
-                moments: [15.234_375, 0.468_75, 15.234_375],
+                moments: Ok([15.234_375, 0.468_75, 15.234_375]),
                 omega_body: [0.0, 150.0, -4.615_38],
             },
             weight_moment: [0.0, 15.0 * 9.81, 0.0],
@@ -264,46 +266,46 @@ fn top_entries() -> [Top; 4] {
     ]
 }
 
-/// Moments of a solid disk of a radius and a thickness about a point on its axis at a distance.
-fn disk_on_axle(mass: f64, [radius, thickness]: [f64; 2], distance: f64) -> [f64; 3] {
-    let across = mass * ((3.0 * radius * radius + thickness * thickness) / 12.0 + distance * distance);
-    [across, across, mass * radius * radius / 2.0]
+/// Moments about the body axes of parts that lie symmetrically to them.
+fn on_axes(tensor: Matrix3<f64>) -> [f64; 3] {
+    tensor.diagonal().into()
 }
 
-/// Moments of a thin hoop about a point on its axis at a distance.
-fn hoop_on_axle(mass: f64, radius: f64, distance: f64) -> [f64; 3] {
-    let across = mass * (radius * radius / 2.0 + distance * distance);
-    [across, across, mass * radius * radius]
+fn phone() -> Result<[f64; 3], MassError> {
+    Ok(on_axes(Solid::Box([0.1467, 0.0715, 0.0077]).with(Amount::Mass(0.164))?.tensor()))
 }
 
-/// Moments of a uniform box about its centre, m (b² + c²)/12 and cyclic.
-fn solid_box(mass: f64, [a, b, c]: [f64; 3]) -> [f64; 3] {
-    [b * b + c * c, a * a + c * c, a * a + b * b].map(|sum| mass * sum / 12.0)
+/// About the tip of the axle.
+fn gyroscope() -> Result<[f64; 3], MassError> {
+    let disk = Solid::Cylinder { radius: 0.030, height: 0.008 }.with(Amount::Mass(0.1))?;
+    disk.tensor_about(Vector3::new(0.0, 0.0, -0.040)).map(on_axes)
 }
 
-/// A bar along y and a stem along x that ends on its middle, both solid cylinders of radius 5 mm.
-fn t_handle() -> [f64; 3] {
-    let (density, radius) = (2700.0, 0.005);
+/// About the end of the axle.
+fn bicycle_wheel() -> Result<[f64; 3], MassError> {
+    let hoop = Solid::Hoop { radius: 0.310 }.with(Amount::Mass(1.5))?;
+    hoop.tensor_about(Vector3::new(0.0, 0.0, -0.120)).map(on_axes)
+}
+
+/// A bar along y and a stem along x that ends on its middle.
+fn t_handle() -> Result<[f64; 3], MassError> {
+    let radius = 0.005;
+    let cylinder = |height| Solid::Cylinder { radius, height }.with(Amount::Density(2700.0));
     let (bar, stem) = (0.08, 0.04);
-    let mass = |length: f64| density * core::f64::consts::PI * radius * radius * length;
-    let along = |length: f64| mass(length) * radius * radius / 2.0;
-    let across = |length: f64| mass(length) * (3.0 * radius * radius + length * length) / 12.0;
-    // both turn with the reduced mass about the common centre; their centres are half a stem and a radius apart
-    let distance = radius + stem / 2.0;
-    let apart = mass(bar) * mass(stem) / (mass(bar) + mass(stem)) * distance * distance;
-    [across(bar) + along(stem), along(bar) + across(stem) + apart, across(bar) + across(stem) + apart]
+    // x to y, y to z, z to x
+    let cyclic = UnitQuaternion::new_unchecked(Quaternion::new(0.5, 0.5, 0.5, 0.5));
+    let bar = cylinder(bar)?.turned(cyclic.inverse());
+    let stem = cylinder(stem)?.turned(cyclic).moved(Vector3::new(radius + stem / 2.0, 0.0, 0.0))?;
+    Ok(on_axes(MassProperties::sum([bar, stem])?.tensor()))
 }
 
-/// Two hydrogen atoms and an oxygen atom: planar, so the third moment is the sum of the others.
-fn water() -> [f64; 3] {
+/// Two hydrogen atoms and an oxygen atom: axis a joins the hydrogen atoms, b is the symmetry axis.
+fn water() -> Result<[f64; 3], MassError> {
     const UNIT: f64 = 1.660_539_068_92e-27; // kg, CODATA 2022
     let (hydrogen, oxygen, bond) = (1.007_825_031_9 * UNIT, 15.994_914_619_6 * UNIT, 95.72e-12);
     let (sin, cos) = libm::sincos(104.52 / 2.0 * core::f64::consts::PI / 180.0);
-    let (half_width, height) = (bond * sin, bond * cos);
-    let across = 2.0 * hydrogen * half_width * half_width;
-    let along = 2.0 * hydrogen * oxygen / (2.0 * hydrogen + oxygen) * height * height;
-    // axis a joins the hydrogen atoms, b is the symmetry axis
-    [along, across, along + across]
+    let [left, right] = [-1.0, 1.0].map(|side| (hydrogen, Vector3::new(side * sin, cos, 0.0) * bond));
+    Ok(on_axes(MassProperties::of_points([(oxygen, Vector3::zeros()), left, right])?.tensor()))
 }
 
 #[cfg(test)]
