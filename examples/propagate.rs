@@ -1,4 +1,4 @@
-//! A tumbling wing nut by a splitting method, watched at every step: cargo run --release --example propagate
+//! A tumbling wing nut by two turns a step, watched at every step: cargo run --release --example propagate
 
 use polhode::body::Conserved;
 use polhode::{Body, Inertia, Run, Schedule, method};
@@ -7,7 +7,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // moments in kg m², angular velocity in rad/s along the body axes: a spin about the unstable axis
     let body = Body::free(Inertia::from_moments([0.4e-4, 1.1e-4, 1.3e-4])?);
     let start = body.state(Default::default(), [1e-3, 20.0, 1e-3].into())?;
-    let mut run = Run::new(&method("lie-poisson")?, &body, &start, 1e-3)?;
+    let mut run = Run::new(&method("two-turn")?, &body, &start, 1e-3)?;
     println!("t [s]  flips  |dE/E|  |dL/L|");
     for sample in run.samples(Schedule::every(2_000, 20_000)) {
         let sample = sample?;
