@@ -18,7 +18,7 @@ use crate::rotation::{Quat, Vec3};
 ///
 /// With a reference axis j, `T = |m|²/(2I_j) + ½(1/I_o − 1/I_j) m_o² + ½(1/I_i − 1/I_j) m_i²`. |m|² commutes with every
 /// function of m and turns the body about L only, so two turns remain:
-/// Φ_h = C(h) R_o(h/2) R_i(h) R_o(h/2), R the [turns](crate::flow::AxisTurn), C the [turn about L](Casimir).
+/// Φ_h = C(h) R_o(h/2) R_i(h) R_o(h/2), R the exact turns about an axis, C the [turn about L](Casimir).
 /// In free motion neighbouring turns about o are one, and C is taken at output alone, in double-double. Keeps |m|, L and
 /// the Lie–Poisson bracket, the energy within O(h²) for exponentially long times.
 ///
