@@ -7,13 +7,11 @@ use polhode::catalogue::{self, NamedBody};
 use polhode::flow::FreeMotion;
 use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, catalogue};
 use polhode::observe::secular_drift;
-use polhode::rotation::rotation_angle;
 use polhode::run::Run;
 
-use super::followed::{Followed, follow};
+use super::followed::{Followed, attitude_error, follow, scatter};
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series};
 use crate::table::{Cell, Column, Table, row};
 
 const BODIES: [&str; 7] = ["textbook", "toutatis", "racket", "t-handle", "phone", "water", "spacecraft"];
@@ -53,33 +51,11 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             timing.push(row![method.name(), step_time(&textbook, method.as_ref())?]);
         }
     }
-    report.figures.push(figure(&drift));
+    let title = "Every body at two steps; runs that diverged are left out";
+    report.figures.push(scatter("drift", &drift, title, Problem::Free));
     report.tables.push(drift);
     report.timing = Some(timing);
     Ok(report)
-}
-
-/// What a method keeps against how right it is: every body and step is a point.
-fn figure(drift: &Table) -> Figure {
-    let mut figure = Figure::log_log(
-        "drift",
-        "Every body at two steps; runs that diverged are left out",
-        "attitude error at the end (rad)",
-        "largest relative energy error",
-    )
-    .scatter();
-    for method in catalogue() {
-        let point = |row: &Vec<Cell>| match (&row[1], &row[5], &row[8], &row[14]) {
-            (Cell::Text(name), Cell::Number(energy), Cell::Number(attitude), Cell::Text(status))
-                if *name == method.name() && status == "ok" =>
-            {
-                Some((*attitude, *energy))
-            }
-            _ => None,
-        };
-        figure.series.push(Series::new(method.name(), drift.rows().iter().filter_map(point).collect()));
-    }
-    figure
 }
 
 fn caption(steps: u64) -> String {
@@ -146,8 +122,7 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
     let exact = FreeMotion::from_point(body.inertia(), run.start().to_dd());
     let speed = nalgebra::Vector3::from(named.omega_body).norm();
     let Followed { last, status, times, energy_changes } = follow(&mut run, steps)?;
-    let there = exact.point_at_dd(last.elapsed);
-    let attitude = rotation_angle(last.point.to_dd().attitude, there.attitude).hi();
+    let attitude = attitude_error(&last, &exact.point_at_dd(last.elapsed));
     let angles: Vec<f64> = times.iter().map(|t| t * speed).collect();
     let slope = secular_drift(&angles, &energy_changes).filter(|_| status == "ok");
     let flips = exact.flips(last.elapsed);

@@ -1,8 +1,14 @@
-//! A run followed to its end, wherever that is.
+//! What experiments that follow runs share: a run to its end, wherever that is, its attitude error, and the figure.
 
+use polhode::body::{Point, Problem};
+use polhode::method::catalogue;
+use polhode::num::Dd;
+use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Sample, Schedule};
 
 use crate::error::{Error, unexpected};
+use crate::figure::{Figure, Series};
+use crate::table::{Cell, Table};
 
 /// Looks at the energy for its secular slope.
 const LOOKS: u64 = 512;
@@ -34,4 +40,35 @@ pub(super) fn follow(run: &mut Run, steps: u64) -> Result<Followed, Error> {
         seen.energy_changes.push(seen.last.energy_change);
     }
     Ok(seen)
+}
+
+/// Angle between the attitude of a sample and that of the exact motion at its time, rad.
+pub(super) fn attitude_error(sample: &Sample, exact: &Point<Dd>) -> f64 {
+    rotation_angle(sample.point.to_dd().attitude, exact.attitude).hi()
+}
+
+/// Energy error against attitude error, of each method of the catalogue that claims something for `problem`: a point for each
+/// row of `table` that has both and whose run came to its end.
+pub(super) fn scatter(name: &'static str, table: &Table, title: &str, problem: Problem) -> Figure {
+    let mut figure =
+        Figure::log_log(name, title, "attitude error at the end (rad)", "largest relative energy error")
+            .scatter();
+    let columns = ["method", "status", "attitude_error", "energy_error"];
+    let [Some(method), Some(status), Some(attitude), Some(energy)] = columns.map(|name| table.place(name))
+    else {
+        return figure;
+    };
+    for method_name in catalogue().iter().filter(|method| method.claims(problem).is_some()).map(|m| m.name())
+    {
+        let of_it = |row: &&Vec<Cell>| row[method].exact() == method_name && row[status].exact() == "ok";
+        let point = |row: &Vec<Cell>| match (&row[attitude], &row[energy]) {
+            (Cell::Number(attitude), Cell::Number(energy)) => Some((*attitude, *energy)),
+            _ => None,
+        };
+        let points: Vec<_> = table.rows().iter().filter(of_it).filter_map(point).collect();
+        if !points.is_empty() {
+            figure.series.push(Series::new(method_name, points));
+        }
+    }
+    figure
 }

@@ -1,19 +1,16 @@
 //! What each method keeps of heavy tops, and how far its attitude is from the closed form.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use polhode::body::{Point, Problem};
+use polhode::body::Problem;
 use polhode::catalogue::{self, NamedBody};
 use polhode::flow::{LagrangeError, LagrangeTop};
 use polhode::method::{AnyMethod, catalogue};
-use polhode::num::Dd;
 use polhode::observe::secular_drift;
-use polhode::rotation::rotation_angle;
 use polhode::run::Run;
 
-use super::followed::{Followed, follow};
+use super::followed::{Followed, attitude_error, follow, scatter};
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series};
 use crate::table::{Cell, Column, Table, row};
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
@@ -39,7 +36,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let name = format!("heavy-top-{}", top.name);
         report.views.push(errors.view(name, caption, &["top"], ("top", top.name)));
     }
-    report.figures.push(figure(&errors));
+    let title = "Every top that has a closed form, at two steps; runs that diverged are left out";
+    report.figures.push(scatter("heavy-top", &errors, title, Problem::Gravity));
     report.tables.push(errors);
     Ok(report)
 }
@@ -90,10 +88,7 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
         Err(error) => return Err(unexpected(error)),
     };
     let Followed { last, status, times, energy_changes } = follow(&mut run, steps)?;
-    let attitude_error = exact.map(|exact| {
-        let there: Point<Dd> = exact.point_at_dd(last.elapsed);
-        rotation_angle(there.attitude, last.point.to_dd().attitude).hi()
-    });
+    let attitude = exact.map(|exact| attitude_error(&last, &exact.point_at_dd(last.elapsed)));
     let slope = secular_drift(&times, &energy_changes);
     Ok(row![
         top.name,
@@ -102,34 +97,11 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
         last.steps,
         last.worst.energy,
         last.worst.momentum_z,
-        attitude_error,
+        attitude,
         slope.map(|d| d.slope),
         slope.map(|d| d.half_width),
         status,
         last.elapsed.hi(),
     ]
     .to_vec())
-}
-
-/// What a method keeps against how right it is: every symmetric top and step is a point.
-fn figure(errors: &Table) -> Figure {
-    let mut figure = Figure::log_log(
-        "heavy-top",
-        "Every top that has a closed form, at two steps; runs that diverged are left out",
-        "attitude error at the end (rad)",
-        "largest relative energy error",
-    )
-    .scatter();
-    for method in catalogue().into_iter().filter(|method| method.claims(Problem::Gravity).is_some()) {
-        let point = |row: &Vec<Cell>| match (&row[1], &row[4], &row[6], &row[9]) {
-            (Cell::Text(name), Cell::Number(energy), Cell::Number(attitude), Cell::Text(status))
-                if *name == method.name() && status == "ok" =>
-            {
-                Some((*attitude, *energy))
-            }
-            _ => None,
-        };
-        figure.series.push(Series::new(method.name(), errors.rows().iter().filter_map(point).collect()));
-    }
-    figure
 }

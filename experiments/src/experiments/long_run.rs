@@ -6,9 +6,9 @@ use polhode::body::Body;
 use polhode::catalogue;
 use polhode::flow::FreeMotion;
 use polhode::method::method;
-use polhode::rotation::rotation_angle;
 use polhode::run::{Run, Schedule};
 
+use super::followed::attitude_error;
 use crate::error::Error;
 use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series, ten_to};
@@ -112,8 +112,7 @@ fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
     let mut rows = Vec::new();
     for sample in run.samples(Schedule::logarithmic(steps, 4)).skip(1) {
         let sample = sample.map_err(|e| failed(&e))?;
-        let there = exact.point_at_dd(sample.elapsed);
-        let attitude = rotation_angle(sample.point.to_dd().attitude, there.attitude).hi();
+        let attitude = attitude_error(&sample, &exact.point_at_dd(sample.elapsed));
         let worst = sample.worst;
         rows.push(
             row![

@@ -60,7 +60,7 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
 
 impl Cell {
     /// Every digit that is needed to read the same double back.
-    fn exact(&self) -> String {
+    pub(crate) fn exact(&self) -> String {
         match self {
             Self::Number(x) => format!("{x:?}"),
             Self::Integer(n) => n.to_string(),
@@ -168,7 +168,7 @@ impl Table {
             shown: column.shown && !hide.contains(&&*column.name),
             ..column.clone()
         };
-        let place = self.columns.iter().position(|other| other.name == column);
+        let place = self.place(column);
         let keep = |row: &&Vec<Cell>| place.is_some_and(|place| row[place].exact() == value);
         Self {
             name: name.into(),
@@ -190,6 +190,11 @@ impl Table {
         debug_assert_eq!(row.len(), self.columns.len(), "cells of a row of {}", self.name);
         row.resize(self.columns.len(), Cell::Empty);
         row
+    }
+
+    /// Place of the column called `name`.
+    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.name == name)
     }
 
     pub(crate) fn rows(&self) -> &[Vec<Cell>] {
@@ -246,9 +251,9 @@ fn quoted(field: &str) -> String {
 /// How rows are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Format {
-    /// Rounded, for eyes; the default on a terminal
+    /// Rounded, for reading; the default on a terminal
     Table,
-    /// Every digit, for programs; the default elsewhere
+    /// All digits, for programs; the default elsewhere
     Csv,
     /// An array of objects
     Json,
