@@ -33,9 +33,9 @@ pub(crate) fn list(text: &str) -> Result<Vec<f64>, String> {
 
 /// Exactly `N` finite numbers separated by commas.
 pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
-    list(text)?.try_into().map_err(|found: Vec<f64>| {
-        format!("{} given, {N} needed; separate them by commas, without spaces", found.len())
-    })
+    list(text)?
+        .try_into()
+        .map_err(|found: Vec<f64>| format!("{} given, {N} needed; separate them by commas", found.len()))
 }
 
 /// A quaternion w,x,y,z of any non-zero norm, as typed.
@@ -83,7 +83,7 @@ pub(crate) fn regular(
 ) -> Result<impl ExactSizeIterator<Item = f64>, String> {
     let span = until - start;
     if every == 0.0 {
-        return Err("--every: '0': rows need a distance; give --every DT with DT not zero".into());
+        return Err("--every: '0': rows need time between them; give a DT that is not zero".into());
     }
     if span != 0.0 && span.signum() != every.signum() {
         return Err(format!(
@@ -93,7 +93,7 @@ pub(crate) fn regular(
     let rows = span / every;
     if rows.is_nan() || rows > MOST_ROWS {
         return Err(format!(
-            "--every: '{every:?}': {rows:.0e} rows up to --until {until:?}, and at most {MOST_ROWS:e} are written; give a larger distance"
+            "--every: '{every:?}': {rows:.0e} rows up to --until {until:?}, and at most {MOST_ROWS:e} are written; give a larger DT"
         ));
     }
     let ulp = f64::EPSILON * until.abs().max(start.abs()).max(every.abs());
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn messages_say_what_is_wrong() {
         let message = |text| numbers::<3>(text).unwrap_err();
-        assert_eq!(message("1,2"), "2 given, 3 needed; separate them by commas, without spaces");
+        assert_eq!(message("1,2"), "2 given, 3 needed; separate them by commas");
         assert_eq!(message("1,,3"), "item 2: a number is missing");
         assert_eq!(message("1,x,3"), "item 2: 'x' is not a number; write it like 0.5 or 1e-3");
         assert!(message("1,2,nan").starts_with("item 3: 'nan' is not a finite number"));
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn regular_times_refuse_what_never_arrives() {
         let message = |a, b, c| regular(a, b, c).err().unwrap();
-        assert!(message(0.0, 1.0, 0.0).contains("rows need a distance"));
+        assert!(message(0.0, 1.0, 0.0).contains("rows need time between them"));
         assert!(message(0.0, 1.0, -0.1).contains("change its sign"));
         assert!(message(0.0, 1e-200, -1e-200).contains("change its sign"));
         assert!(message(0.0, 1.0, 1e-300).contains("1e300 rows"));

@@ -15,13 +15,13 @@ use crate::error::Error;
 #[derive(Args, Clone, Debug)]
 #[group(required = true, multiple = false)]
 pub(crate) struct BodyArguments {
-    /// Principal moments, the k-th about the k-th body axis, in any consistent unit
+    /// Principal moments in the order of the body axes, in any consistent unit
     #[arg(long, value_name = "I1,I2,I3", value_parser = numbers::<3>, allow_hyphen_values = true)]
     moments: Option<[f64; 3]>,
     /// Tensor entries in body axes, I_xy = -sum m x y
     #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = numbers::<6>, allow_hyphen_values = true)]
     inertia: Option<[f64; 6]>,
-    /// Inertia, and weight moment if any, of a body of the catalogue: toutatis, racket, t-handle, phone, water, spacecraft, textbook, dyadic, prolate, oblate, sphere, and the tops gyroscope, bicycle-wheel, simo-wong, bruls-cardona
+    /// Body of the catalogue: toutatis, racket, t-handle, phone, water, spacecraft, textbook, dyadic, prolate, oblate, sphere; or a top with its weight moment: gyroscope, bicycle-wheel, simo-wong, bruls-cardona
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
 }
@@ -45,8 +45,8 @@ impl BodyArguments {
             return Err(Error::input(
                 "--body",
                 name,
-                "is a top under gravity, and only free bodies have a polhode",
-                "name a free body, or give its --moments to see what it would do without weight",
+                "is a top under gravity, and this command is for free bodies",
+                "name a free body, or give its --moments to leave the weight out",
             ));
         }
         Ok(Body::free(inertia))
@@ -79,7 +79,7 @@ pub(crate) struct StartArguments {
     /// Angular velocity at the start, body axes, rad/s
     #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     omega: [f64; 3],
-    /// Attitude at the start, a quaternion body to space, scalar first; any norm but zero
+    /// Attitude at the start: quaternion from body to space axes, scalar first, of any norm but zero
     #[arg(long, value_name = "w,x,y,z", value_parser = quaternion, allow_hyphen_values = true, default_value = "1,0,0,0")]
     attitude: [f64; 4],
 }

@@ -14,11 +14,11 @@ use crate::table::Table;
 /// How large an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Scale {
-    /// Seconds in all: does it run
+    /// A few seconds in all, for tests
     Smoke,
-    /// Minutes in all
+    /// A few minutes in all
     Standard,
-    /// The full size, for the figures of the paper
+    /// Full size, as in the article
     Paper,
 }
 

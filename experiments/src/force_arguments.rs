@@ -10,7 +10,7 @@ use crate::error::Error;
 /// What acts on the body; several forces add.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ForceArguments {
-    /// Weight moment M g x centre of mass, body axes, N m: the body has a fixed point under gravity along -Z of space
+    /// Weight M g times the centre of mass, body axes, N m: the body then has a fixed point, and gravity acts along -Z of space
     #[arg(long, value_name = "cx,cy,cz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     pub(crate) weight_moment: Option<[f64; 3]>,
     /// Gravity gradient on an orbit in the space x-y plane: mean motion, rad/s, and eccentricity (default 0); perigee on +x at t = 0
@@ -35,9 +35,7 @@ fn one_or_two(text: &str) -> Result<OneOrTwo, String> {
     match list(text)?[..] {
         [one] => Ok(OneOrTwo([one, 0.0])),
         [one, two] => Ok(OneOrTwo([one, two])),
-        ref found => {
-            Err(format!("{} given, 1 or 2 needed; separate them by commas, without spaces", found.len()))
-        }
+        ref found => Err(format!("{} given, 1 or 2 needed; separate them by commas", found.len())),
     }
 }
 

@@ -27,7 +27,7 @@ use error::Error;
 
 /// Accurate long-time rotation of rigid bodies
 ///
-/// Exit code 0: success; 1: a claim, fit or check failed; 2: input that cannot be used.
+/// Exit code 0: success; 1: a claim, fit or check failed; 2: unusable input.
 #[derive(Parser)]
 #[command(name = "polhode", version, max_term_width = 80)]
 struct CommandLine {
@@ -37,7 +37,7 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum Command {
-    /// The experiments: what they ask, running them, publishing their results
+    /// List, run, check and publish the experiments
     #[command(subcommand)]
     Experiment(results::ExperimentCommand),
     Propagate(Box<propagate::Propagate>),

@@ -11,10 +11,10 @@ use crate::error::Error;
 use crate::files::emit;
 use crate::table::{Column, Format, Table, row};
 
-/// The methods: order, what each keeps of free motion, cost per step, source
+/// List the methods: order, what each conserves, cost per step, source
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Methods {
-    /// List the schemes of composition and splitting instead, as in kick-drift@srkn-6b
+    /// List the schemes instead: what may stand behind @, as in kick-drift@srkn-6b
     #[arg(long)]
     schemes: bool,
     /// How rows are printed: table on a terminal, csv otherwise

@@ -13,9 +13,18 @@ use crate::table::{Column, Format, Table, row};
 const USAGE: &str = "polhode motion <BODY> --omega <wx,wy,wz> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
 
-/// Mode, periods and distance to the separatrix of a free motion
+const EXAMPLES: &str = "Examples:
+  polhode motion --moments 1,2,3 --omega 0.4,1,-0.3
+  polhode motion --body racket --omega 0.3,15,0.2 --format json";
+
+/// Mode, periods and distance to the separatrix of torque-free motion
+///
+/// The angular momentum circulates in the body about the axis of the smallest moment (long-axis mode) or of the largest
+/// (short-axis mode). polhode_period: once round the polhode. nutation_period: that axis nods towards the angular momentum L and
+/// back. precession_period: mean time in which it goes once round L. spin: 2E/|L|. separatrix_distance: 0 on the separatrix,
+/// negative in long-axis mode.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = USAGE)]
+#[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Motion {
     #[command(flatten)]
     body: BodyArguments,

@@ -21,9 +21,16 @@ const USAGE: &str = "polhode propagate <BODY> --omega <wx,wy,wz> <TIMES> [OPTION
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
   TIMES: --times <t1,t2,...> | --until <T> --every <DT>";
 
-/// One body to given times: attitude, angular velocity and errors at each
+const EXAMPLES: &str = "Examples:
+  polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --times 0,10,1e6
+  polhode propagate --body t-handle --omega 20,0.02,0.01 --until 60 --every 0.1
+  polhode propagate --body gyroscope --omega 0,0,400 --until 1 --every 0.1
+  polhode propagate --body phone --omega 0,10,1 --until 5 --every 1 \\
+    --drag 1e-5 --method rk4 --step 0.01";
+
+/// Rotation of one body: attitude, angular velocity and errors at given times
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = USAGE)]
+#[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Propagate {
     #[command(flatten)]
     body: BodyArguments,
@@ -31,14 +38,14 @@ pub(crate) struct Propagate {
     start: StartArguments,
     #[command(flatten)]
     forces: ForceArguments,
-    /// Output times, s
+    /// Output times, s, separated by commas
     #[arg(long, value_name = "t1,t2,...", value_parser = times, allow_hyphen_values = true,
           conflicts_with_all = ["until", "every"])]
     times: Option<Times>,
     /// Last output time, s, with --every
     #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true)]
     until: Option<f64>,
-    /// Distance of output times, s, with --until
+    /// Time between output rows, s, with --until
     #[arg(long, value_name = "DT", value_parser = number, allow_hyphen_values = true)]
     every: Option<f64>,
     /// Time of the start, s
@@ -47,7 +54,7 @@ pub(crate) struct Propagate {
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
     #[arg(long, value_name = "NAME", default_value = "exact")]
     method: String,
-    /// Step of a stepping method, s
+    /// Step, s; every method but exact needs one
     #[arg(long, value_name = "h", value_parser = positive, allow_hyphen_values = true)]
     step: Option<f64>,
     /// How rows are printed: table on a terminal, csv otherwise
@@ -83,7 +90,7 @@ impl Propagate {
                 Ok(regular(self.start_time, until, every).map_err(Error::Input)?.collect())
             }
             (None, Some(until), None) => Err(Error::Input(format!(
-                "--until: '{until:?}': needs the distance of the rows; give --every DT too"
+                "--until: '{until:?}': needs the time between rows; give --every DT too"
             ))),
             (None, None, Some(every)) => Err(Error::Input(format!(
                 "--every: '{every:?}': needs the last output time; give --until T too"
@@ -101,12 +108,12 @@ impl Propagate {
     fn exact(&self, body: &Body, start: Point<Dd>, times: &[f64], rows: &mut Rows) -> Result<(), Error> {
         if self.step.is_some() {
             return Err(Error::Input(
-                "--step: has no meaning with --method exact, which needs none; leave it out, or name a method".into(),
+                "--step: --method exact takes no step; leave it out, or name a stepping method".into(),
             ));
         }
         let motion = ExactMotion::from_point(body, start).map_err(|error| {
             let method = if body.problem() == Problem::Torque { "rk4" } else { "kick-drift@srkn-6b" };
-            Error::Input(format!("--method exact: {error}; take {method} and a --step"))
+            Error::Input(format!("--method exact: {error}; use --method {method} with a --step"))
         })?;
         for &t in times {
             let elapsed = t - self.start_time;
@@ -122,7 +129,7 @@ impl Propagate {
             let x = exact.to_f64();
             if monitor.observe(&[x]) == 0 {
                 return Err(Error::Failed(format!(
-                    "--method exact: at {t:?} s the state is not finite; take kick-drift@srkn-6b and a --step"
+                    "--method exact: at {t:?} s the state is not finite; use --method kick-drift@srkn-6b with a --step"
                 )));
             }
             let error = rotation_angle(x.to_dd().attitude, exact.attitude).hi();
@@ -148,7 +155,7 @@ impl Propagate {
         let speed = body.omega_of(&start).norm();
         if h * speed > 1.0 {
             warn(&format!(
-                "--step: '{h:?}': turns the body by {:?} rad a step; above 1 rad expect little of any stepping method, take a smaller one",
+                "--step: '{h:?}': turns the body by {:?} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
                 h * speed
             ));
         }
@@ -191,7 +198,7 @@ impl Propagate {
             }
         };
         Err(Error::Failed(format!(
-            "--method {}: at {:?} s {lost}: nothing of the motion is left; take a smaller step or another method",
+            "--method {}: at {:?} s {lost}: the numbers no longer describe the motion; take a smaller step or another method",
             self.method,
             sample.time.hi()
         )))
@@ -219,14 +226,14 @@ impl Propagate {
         let step = self.step.unwrap_or_default();
         Error::Input(match *error {
             ScheduleError::NotAscending { t, before } => format!(
-                "{}: {t:?} comes after {before:?}; a stepping method wants ascending times from --start-time on, use --method exact or sort them",
+                "{}: {t:?} comes after {before:?}; a stepping method needs ascending times, none before --start-time; sort them, or use --method exact",
                 self.times_flag()
             ),
             ScheduleError::TooMany { t, steps, .. } => format!(
                 "--step: '{step:?}': takes {steps:e} steps to t = {t:?}, and at most 2^53 can be counted; take a larger step"
             ),
             ScheduleError::NotReached { t, nearest, .. } => format!(
-                "--step: '{step:?}': does not reach the output time {t:?} in whole steps; the nearest time that it reaches is {nearest:?}"
+                "--step: '{step:?}': no whole number of steps leads to the output time {t:?}; the nearest time reached is {nearest:?}"
             ),
             error => format!("--step: {error}"),
         })

@@ -15,11 +15,15 @@ use crate::table::{Column, Format, Rows, Table, row};
 const USAGE: &str = "polhode simulate <BODY> --omega <wx,wy,wz> --until <T> --every <DT>
   BODY: --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
 
-/// A noisy record of angular velocity, as a gyroscope on a free body gives it
+const EXAMPLES: &str = "Examples:
+  polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
+    --noise 0.01 --out record.csv";
+
+/// Noisy record of the angular velocity of a torque-free body
 ///
-/// `polhode fit` reads what this writes. The same seed gives the same record on every machine.
+/// A simulated gyroscope; `polhode fit` reads its CSV. The same seed gives the same record on every machine.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = USAGE)]
+#[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Simulate {
     #[command(flatten)]
     body: BodyArguments,
@@ -35,7 +39,7 @@ pub(crate) struct Simulate {
     /// Standard deviation of the noise of each component, rad/s
     #[arg(long, value_name = "SIGMA", value_parser = number, allow_hyphen_values = true, default_value = "0")]
     noise: f64,
-    /// Times scattered evenly by this share of the time between samples, below 1
+    /// Width of the random scatter of sample times, as a share of the time between samples; below 1
     #[arg(long, value_name = "SHARE", value_parser = number, allow_hyphen_values = true, default_value = "0")]
     jitter: f64,
     /// Seed of the random numbers

@@ -16,7 +16,7 @@ use crate::experiment::Experiment;
 pub(crate) const ALL: &[Experiment] = &[
     Experiment {
         name: "drift",
-        question: "what each method keeps and loses on real bodies, and how wrong its attitude is",
+        question: "what each method conserves on real bodies, and its attitude error",
         run: drift::run,
     },
     Experiment {
@@ -26,17 +26,17 @@ pub(crate) const ALL: &[Experiment] = &[
     },
     Experiment {
         name: "exact",
-        question: "how exact the exact motion is, in every regime and at any time",
+        question: "how accurate the exact motion is, in every regime and at any time",
         run: exact::run,
     },
     Experiment {
         name: "long-run",
-        question: "what grows over very many steps, and how fast",
+        question: "which errors grow over very many steps, and how fast",
         run: long_run::run,
     },
     Experiment {
         name: "inertia",
-        question: "whether inertia tensors are right: closed forms, meshes, the lecture's statements, the doctor",
+        question: "whether inertia tensors are right: closed forms, meshes, statements of the lecture, diagnosis of mistakes",
         run: inertia::run,
     },
     Experiment {
@@ -51,7 +51,7 @@ pub(crate) const ALL: &[Experiment] = &[
     },
     Experiment {
         name: "heavy-top",
-        question: "what each method keeps of tops under gravity, and how wrong its attitude is",
+        question: "what each method conserves of tops under gravity, and its attitude error",
         run: heavy_top::run,
     },
 ];

@@ -15,11 +15,17 @@ use crate::error::{Error, warn};
 use crate::files::{Output, read};
 use crate::table::Format;
 
-/// Inertia tensor of a freely turning body from its measured angular velocity
+const EXAMPLES: &str = "Examples:
+  polhode fit record.csv
+  polhode fit record.csv --window 0,2.5 --trace 0.0007
+  polhode fit record.csv --residuals residuals.svg --format json";
+
+/// Inertia tensor of a torque-free body from its measured angular velocity
 ///
 /// Without one of --trace, --momentum, --twice-energy or --moment the tensor is known up to a factor, and its trace is
 /// set to 1. Exit code 1: the record does not determine the tensor; what it does determine is printed.
 #[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub(crate) struct Fit {
     /// Records with a header: t, wx, wy, wz, or the names of phone apps
     #[arg(required = true, value_name = "DATA.csv")]
@@ -30,27 +36,27 @@ pub(crate) struct Fit {
     /// Unit of the rates where the header names none: rad/s, deg/s, rpm [default: rad/s]
     #[arg(long, value_name = "UNIT", value_parser = rate_unit)]
     rate_unit: Option<RateUnit>,
-    /// Use only this time, s; repeatable. With N: only of the N-th file
+    /// Use only samples from t0 to t1, s; repeatable. With N: of the N-th file only
     #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true)]
     window: Vec<Window>,
-    /// Half width of the test functions, s [default: least covariance]
+    /// Half width of the test functions, s [default: that of the smallest covariance]
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     radius: Option<f64>,
     /// Standard deviation of the noise, rad/s [default: from the samples]
     #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
     noise: Option<f64>,
-    /// The moment about an axis is at least this share of the trace; repeatable
+    /// Lower limit on the moment about an axis, a share of the trace; repeatable
     #[arg(long, value_name = "nx,ny,nz,SHARE", value_parser = numbers::<4>, allow_hyphen_values = true)]
     at_least: Vec<[f64; 4]>,
-    /// The moment about an axis is at most this share of the trace; repeatable
+    /// Upper limit on the moment about an axis, a share of the trace; repeatable
     #[arg(long, value_name = "nx,ny,nz,SHARE", value_parser = numbers::<4>, allow_hyphen_values = true)]
     at_most: Vec<[f64; 4]>,
     #[command(flatten)]
     known: KnownArguments,
-    /// Go on even where another unit explains the record far better
+    /// Fit even if the record agrees far better with other units than those named
     #[arg(long)]
     trust_units: bool,
-    /// Draw the residuals into this file
+    /// Write a plot of the residuals to this file
     #[arg(long, value_name = "FILE.svg")]
     residuals: Option<PathBuf>,
     /// How the result is printed: table on a terminal, csv otherwise

@@ -1,4 +1,4 @@
-//! A fit for eyes, for spreadsheets and for programs.
+//! A fit as text, as rows and as JSON.
 
 use nalgebra::{Matrix3, SMatrix};
 use polhode::fit::{AverageAxis, Estimate, Identifiability, Record};
@@ -207,9 +207,9 @@ fn text(e: &Estimate) -> String {
     let percent = |drift: polhode::fit::InvariantTrend| with_error(100.0 * drift.rate, 100.0 * drift.sigma);
     lines.extend([
         String::new(),
-        format!("known to (standard deviations of the five numbers): {}", spectrum(e)),
+        format!("standard deviations of the five determined combinations: {}", spectrum(e)),
         e.bound_ratio.map_or("no Cramer-Rao bound for this tensor".into(), |r| {
-            format!("deviation over the Cramer-Rao bound: {r:.3}")
+            format!("standard deviation over the Cramer-Rao bound: {r:.3}")
         }),
         format!("chi^2 per degree of freedom: {:.3} ({} degrees)", e.chi2_per_dof, e.dof),
         format!(
@@ -220,7 +220,7 @@ fn text(e: &Estimate) -> String {
         format!("drift of w J w: {} per cent per second", percent(e.energy_trend)),
         format!("I1 + I2 - I3: {}", with_error(e.triangle_slack, 2.0 * e.sigma_principal[2])),
         format!(
-            "optimality: stationarity {:.1e}, violation {:.1e}, after {} rounds of cuts",
+            "optimality: stationarity {:.1e}, violation {:.1e}, after {} rounds of cutting planes",
             e.certificate.stationarity, e.certificate.violation, e.certificate.rounds
         ),
     ]);

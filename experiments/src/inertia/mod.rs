@@ -19,6 +19,11 @@ use crate::text::{short, visible};
 use examined::Examined;
 use given::Given;
 
+const EXAMPLES: &str = "Examples:
+  polhode inertia box 0.3,0.2,0.1 --mass 2
+  polhode inertia tensor 1,2,2.5,0.1,0,0 --mass 3 --format urdf
+  polhode inertia cylinder 0.05,0.2 --density 2700 --about 0,0,-0.1";
+
 /// Build, check and convert inertia tensors
 ///
 /// SHAPE and its ARGUMENT, lengths in m, symmetry axis z:
@@ -29,13 +34,13 @@ use given::Given;
 ///   parts FILE.toml    json FILE    urdf FILE    mjcf FILE
 ///
 /// Tensor entries carry the minus sign, I_xy = -int x y dm, and are about the
-/// centre of mass. A cone stands on z = 0. A tensor that no body can have is
-/// examined: the law it breaks and by how much, what probably happened, the
-/// nearest tensor that a body can have. The exit code is then 1.
+/// centre of mass. The base of a cone is at z = 0. Of a tensor that is not
+/// physically valid, the output states the violated law and by how much, the
+/// probable cause and the nearest valid tensor; the exit code is then 1.
 #[derive(Args, Clone, Debug)]
-#[command(verbatim_doc_comment)]
+#[command(verbatim_doc_comment, after_help = EXAMPLES)]
 pub(crate) struct Inertia {
-    /// What the argument describes
+    /// Shape or kind of file, from the list above
     shape: String,
     /// Sizes, entries or a file
     #[arg(value_name = "ARGUMENT", allow_hyphen_values = true)]
@@ -46,19 +51,19 @@ pub(crate) struct Inertia {
     /// Density, kg/m^3 (of a surface kg/m^2, of a line kg/m)
     #[arg(long, value_name = "D", value_parser = positive, allow_hyphen_values = true, conflicts_with = "mass")]
     density: Option<f64>,
-    /// How many metres the unit of length of a mesh is, 0.001 for millimetres
+    /// Unit of length of a mesh, in metres: 0.001 for millimetres
     #[arg(long, value_name = "METRES", value_parser = positive, allow_hyphen_values = true)]
     length_unit: Option<f64>,
     /// Centre of mass of a typed tensor, m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     center_of_mass: Option<[f64; 3]>,
-    /// The point that a typed tensor is about, if not the centre of mass, m
+    /// Reference point of a typed tensor, m [default: its centre of mass]
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     given_about: Option<[f64; 3]>,
-    /// Edges of the box around the body of a typed tensor, which help to tell what went wrong, m
+    /// Edges of the bounding box of the body, m; with them more mistakes in a typed tensor are found
     #[arg(long, value_name = "LX,LY,LZ", value_parser = numbers::<3>, allow_hyphen_values = true)]
     extents: Option<[f64; 3]>,
-    /// Also the tensor about this point, m
+    /// Print the tensor about this point too, m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     about: Option<[f64; 3]>,
     /// What is written: table on a terminal, csv otherwise
@@ -72,11 +77,11 @@ pub(crate) struct Inertia {
 /// How bodies are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
-    /// For eyes
+    /// Rounded, for reading
     Table,
-    /// One row a body
+    /// One row per body
     Csv,
-    /// An object, of several bodies an array
+    /// An object, or an array of several bodies
     Json,
     /// <inertial> of a URDF link
     Urdf,
@@ -89,7 +94,7 @@ enum Form {
 }
 
 impl Form {
-    /// Whether it says what is known of a tensor, also of one that no body has; the others are models to be used.
+    /// Whether it says what is known of a tensor, also of an invalid one; the others are models to be used.
     fn is_report(self) -> bool {
         matches!(self, Self::Table | Self::Csv | Self::Json)
     }
@@ -126,7 +131,7 @@ impl Inertia {
         for body in bodies.iter().filter(|body| body.verdict() == Verdict::Suspicious) {
             warn(&body.report());
         }
-        // a model must not take over a tensor that no body has; a report shows it
+        // a model must not contain an invalid tensor; a report shows it
         if invalid.is_empty() || form.is_report() {
             file.write_whole(&output::write(&bodies, form))?;
         }

@@ -96,7 +96,7 @@ fn rows(bodies: &[Examined]) -> Table {
     table
 }
 
-/// A line a quantity, for eyes.
+/// One line per quantity.
 fn sheet(examined: &Examined) -> String {
     let columns = vec![
         Column::new("quantity", "", ""),

@@ -18,20 +18,25 @@ use crate::table::{Column, Format, Table, row};
 /// Results of paper scale, as they are committed.
 const RESULTS: &str = "experiments/results";
 
+const EXAMPLES: &str = "Examples:
+  polhode experiment run order drift --scale smoke
+  polhode experiment run all --scale paper --out results";
+
 #[derive(Subcommand)]
 pub(crate) enum ExperimentCommand {
-    /// The experiments and what each asks
+    /// List the experiments and the question of each
     List {
         /// How rows are printed: table on a terminal, csv otherwise
         #[arg(long, value_enum)]
         format: Option<Format>,
     },
-    /// Run experiments and write OUT/<scale>/<experiment>/
+    /// Run experiments and write their results to OUT/<scale>/<experiment>/
+    #[command(after_help = EXAMPLES)]
     Run {
         /// Names of experiments, or all
         #[arg(required = true)]
         names: Vec<String>,
-        /// How large
+        /// Size of the runs
         #[arg(long, value_enum, default_value = "standard")]
         scale: Scale,
         /// Folder for results
@@ -41,26 +46,26 @@ pub(crate) enum ExperimentCommand {
     /// Run experiments at smoke scale and compare every number with the
     /// committed ones
     ///
-    /// Times are left out. Exit code 1 where a cell differs or a claim fails; the first differences are named by file, row,
+    /// Timings are not compared. Exit code 1 if a cell differs or a claim fails; the first differences are listed with file, row,
     /// column and both values.
     Check {
         /// Names of experiments, or all
         #[arg(default_value = "all")]
         names: Vec<String>,
-        /// Root of the project
+        /// Root of the repository
         #[arg(long, default_value = ".")]
         root: PathBuf,
-        /// Put what was found in the place of what is committed
+        /// Replace the committed numbers by the new ones
         #[arg(long)]
         accept: bool,
     },
-    /// Put committed results of paper scale into README.md and the files that
-    /// the article names in paper/generated
+    /// Write tables of the committed results of paper scale into README.md and
+    /// paper/generated
     Publish {
-        /// Root of the project
+        /// Root of the repository
         #[arg(long, default_value = ".")]
         root: PathBuf,
-        /// Folder of new results to be taken over first, such as results/paper
+        /// Folder of new results that replace the committed ones first, such as results/paper
         #[arg(long, value_name = "DIR")]
         from: Option<PathBuf>,
     },
@@ -79,7 +84,7 @@ impl ExperimentCommand {
 
 fn list(format: Option<Format>) -> Result<(), Error> {
     let columns =
-        vec![Column::new("name", "", "on the command line"), Column::new("question", "", "what it asks")];
+        vec![Column::new("name", "", "on the command line"), Column::new("question", "", "what it answers")];
     let mut table = Table::new("experiments", "The experiments.", columns);
     for experiment in experiments::ALL {
         table.push(row![experiment.name, experiment.question]);

@@ -34,7 +34,7 @@ impl Rows {
             return Err(Error::input(
                 "--format",
                 "table",
-                &format!("{count} rows, and a table for eyes has at most {READABLE}"),
+                &format!("{count} rows, and a table has at most {READABLE}"),
                 "give --format csv, or ask for fewer rows",
             ));
         }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::harness::{Scratch, golden, output, refused, run, with, words};
+use crate::harness::{Scratch, golden, output, polhode, refused, run, with, words};
 
 #[test]
 fn help_is_everywhere_and_fits_into_80_columns() {
@@ -30,6 +30,26 @@ fn help_is_everywhere_and_fits_into_80_columns() {
         }
     }
     assert!(output("--version").starts_with("polhode "));
+}
+
+#[test]
+fn the_examples_of_the_help_run() {
+    let scratch = Scratch::new("examples");
+    let mut count = 0;
+    // the record that is simulated is the one that is fitted
+    for command in ["simulate", "fit", "propagate", "motion", "inertia", "experiment run"] {
+        let help = output(&format!("{command} --help"));
+        let (_, examples) = help.split_once("Examples:\n").unwrap();
+        for line in examples.replace("\\\n", " ").lines() {
+            // the experiments of paper scale take hours
+            if let Some(line) = line.trim().strip_prefix("polhode ").filter(|line| !line.contains("paper")) {
+                let answer = polhode(&words(line), &scratch.0);
+                assert_eq!(answer.code, 0, "{line}: {}", answer.err);
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 10, "{count} examples");
 }
 
 #[test]

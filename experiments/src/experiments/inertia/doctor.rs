@@ -1,4 +1,4 @@
-//! How often the doctor notices a mistake, and how often it then names it first.
+//! How often a mistake in a tensor is noticed, and how often its true cause is named first.
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, Evidence, MassProperties, Solid, Verdict, diagnose};
@@ -17,7 +17,7 @@ struct Patient {
     evidence: Evidence,
 }
 
-/// A mistake: what the table calls it, the doctor's word, and what it does to a tensor.
+/// A mistake: what the table calls it, the name of the cause that should be found, and what it does to a tensor.
 type Mistake = (&'static str, &'static str, fn(&Patient, &mut Random) -> Matrix3<f64>);
 
 const MISTAKES: [Mistake; 12] = [
@@ -89,7 +89,7 @@ pub(super) fn rates(context: &Context, random: &Random, failures: &mut Vec<Strin
         ),
         vec![
             Column::new("mistake", "", "what was done to the tensor"),
-            Column::new("known", "", "what the doctor was told besides the tensor"),
+            Column::new("known", "", "what was known besides the tensor"),
             Column::new("bodies", "", "number of bodies").hidden(),
             Column::new("noticed", "%", "tensors that were not called valid"),
             Column::new("first", "%", "of those, the true cause first and the tensor restored to 1e-9"),
