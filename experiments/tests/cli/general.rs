@@ -117,14 +117,14 @@ fn rows_go_whole_into_the_file_and_replace_the_old_ones() {
     assert_eq!(scratch.names(), ["rows.csv"]);
 }
 
-/// Two hundred thousand rows took 190 MB when they were collected first.
+/// A hundred thousand rows took 95 MB when they were collected first.
 #[cfg(target_os = "linux")]
 #[test]
 fn long_runs_need_no_memory_for_their_rows() {
     let scratch = Scratch::new("memory");
     for format in ["csv", "json"] {
         let out = scratch.0.join(format).display().to_string();
-        let line = with(&format!("--until 2e5 --every 1 --format {format} --out {out}"));
+        let line = with(&format!("--until 1e5 --every 1 --format {format} --out {out}"));
         let mut child =
             std::process::Command::new(env!("CARGO_BIN_EXE_polhode")).args(words(&line)).spawn().unwrap();
         let mut most = 0;
@@ -135,7 +135,7 @@ fn long_runs_need_no_memory_for_their_rows() {
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
         assert!(most > 0 && most < 30_000, "{format}: {most} kB");
-        assert!(fs::read_to_string(out).unwrap().lines().count() > 200_000);
+        assert!(fs::read_to_string(out).unwrap().lines().count() > 100_000);
     }
 }
 
