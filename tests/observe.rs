@@ -101,6 +101,19 @@ fn errors_of_free_motion_are_the_largest_over_every_step() {
 }
 
 #[test]
+fn a_momentum_that_has_grown_many_times_is_measured_as_such() {
+    let body = Body::free(Inertia::from_moments(MOMENTS).unwrap());
+    let mut run = Run::new(&method("explicit-euler").unwrap(), &body, &start_of(&body), 0.5).unwrap();
+    let start = exact(&run.sample().state).1.norm();
+    let (mut steps, mut grown) = (0, 0.0);
+    while grown < 10.0 {
+        steps += 1;
+        grown = ((exact(&run.advance_to(steps).unwrap().state).1.norm() - start) / start).hi();
+    }
+    assert_close(run.sample().worst.of(Conserved::MomentumNorm), grown, 1e-12 * grown, "explicit-euler");
+}
+
+#[test]
 fn errors_under_gravity_are_measured_by_kinetic_energy_and_weight_moment() {
     let weight = Vector3::new(0.0, 0.5, 2.0);
     let body = Body::heavy(Inertia::from_moments(MOMENTS).unwrap(), weight).unwrap();

@@ -46,10 +46,10 @@ pub struct Kicks;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SchemeError {
-    /// The scheme alternates two exact flows, and the free part of the base is not exact.
+    /// The scheme alternates two flows, and the free part of the base has a lower order than the scheme.
     #[error(
-        "scheme {scheme:?} alternates two exact flows, and the free part of {base} has order {order}; take a composition, \
-         such as suzuki-4, or kick-drift@{scheme}"
+        "scheme {scheme:?} alternates kicks with free motion that is exact or at least of its own order, and that of {base} has \
+         order {order}; take a composition, such as suzuki-4, or kick-drift@{scheme}"
     )]
     Inexact {
         /// Name of the scheme.

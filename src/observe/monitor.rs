@@ -206,11 +206,12 @@ impl Monitor {
             return Errors { energy: zero, momentum_norm: zero, momentum_vector: zero, ..Errors::NONE };
         }
         // ||m| − |m₀|| = ||m|² − |m₀|²| / (|m| + |m₀|); the sign of the difference is not known here, and to first
-        // order does not matter: the smaller root gives the larger error
+        // order does not matter: the smaller root gives the larger error; a change beyond |m₀|² is growth
         let relative = m2 / squared;
+        let root = if relative > 1.0 { (1.0 + relative).sqrt() } else { (1.0 - relative).sqrt() };
         Errors {
             energy: Some(e / self.start.energy.hi()),
-            momentum_norm: Some(relative / (1.0 + (1.0 - relative.min(1.0)).sqrt())),
+            momentum_norm: Some(relative / (1.0 + root)),
             momentum_vector: Some(l / squared.sqrt()),
             ..Errors::NONE
         }
