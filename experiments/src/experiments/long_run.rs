@@ -73,15 +73,18 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     );
     for (name, found) in METHODS.into_iter().zip(found) {
         let (rows, seconds) = found?;
-        let curve = |column: usize| {
-            let point = |row: &Vec<Cell>| match (&row[1], &row[column]) {
-                (Cell::Integer(n), Cell::Number(x)) => Some((*n as f64, *x)),
+        let curve = |column: &str| {
+            let places = series.place("steps").zip(series.place(column));
+            let cells =
+                |row: &Vec<Cell>| places.map(|(steps, error)| (row[steps].clone(), row[error].clone()));
+            let point = |row: &Vec<Cell>| match cells(row) {
+                Some((Cell::Integer(n), Cell::Number(x))) => Some((n as f64, x)),
                 _ => None,
             };
             Series::new(name, rows.iter().filter_map(point).collect())
         };
-        energy.series.push(curve(3));
-        attitude.series.push(curve(6));
+        energy.series.push(curve("energy_error"));
+        attitude.series.push(curve("attitude_error"));
         if let Some(last) = rows.last() {
             summary.push(last.clone());
         }

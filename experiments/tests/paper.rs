@@ -6,10 +6,10 @@ use std::fs;
 use std::path::PathBuf;
 
 fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
-/// The sources of the article, with comments taken out. None where the package came without its paper.
+/// The sources of the article, with comments taken out.
 fn sources() -> Vec<(String, String)> {
     let paper = root().join("paper");
     let mut found = Vec::new();
