@@ -74,7 +74,7 @@ fn high_orders_reach_rounding_at_large_steps() {
         (rotation_angle(end.state.attitude, exact.attitude), worst)
     };
     for (name, attitude, energy) in
-        [("dmv:6", 2e-2, 1e-13), ("dmv:10", 5e-8, 1e-13), ("dmv:16", 1e-10, 1e-13)]
+        [("dmv:6", 2e-2, 1e-14), ("dmv:10", 5e-8, 1e-14), ("dmv:16", 5e-12, 1e-14)]
     {
         let (error, worst) = error(name);
         println!("{name}: attitude {error:.1e}, energy {worst:.1e}");

@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-use super::modified_energy::{ModifiedEnergy, Orbit};
+use super::modified_energy::{ModifiedEnergy, Orbit, of_least_error};
 use crate::rotation::Vec3;
 
 /// An order of the three axes, outermost turn first: `321` is Φ = R3(h/2) R2(h/2) R1(h) R2(h/2) R3(h/2).
@@ -77,15 +77,8 @@ impl AxisOrder {
     /// The order whose leading error of the attitude is smallest on the orbit through the momentum `m`, as a root mean square
     /// over all starts on it; where there is none, the [best](Self::best) for the energy.
     pub fn best_for_orbit(m: Vec3<f64>, moments: Vec3<f64>) -> Self {
-        let Some(orbit) = Orbit::through(m, moments) else { return Self::best(moments) };
-        let mut best = (f64::INFINITY, Self::best(moments));
-        for order in Self::ALL {
-            let rate = order.leading_term(moments).mean_attitude_error_rate(&orbit);
-            if rate < best.0 {
-                best = (rate, order);
-            }
-        }
-        best.1
+        let candidates = Self::ALL.map(|order| (order, order.leading_term(moments)));
+        of_least_error(candidates, m, moments).unwrap_or_else(|| Self::best(moments))
     }
 
     fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {

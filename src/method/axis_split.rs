@@ -21,7 +21,8 @@ use crate::num::{Dd, Precise, Real};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AxisSplit {
     /// Outermost axis first; `None` takes that with the smallest leading error of the attitude on the
-    /// [orbit](AxisOrder::best_for_orbit) of the start.
+    /// [orbit](AxisOrder::best_for_orbit) of the start, and under forces and in compositions the [best](AxisOrder::best) for the
+    /// energy.
     pub axes: Option<AxisOrder>,
 }
 

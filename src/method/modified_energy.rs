@@ -80,7 +80,7 @@ impl ModifiedEnergy {
     }
 
     /// The same as a root mean square over all starts on the orbit.
-    pub(super) fn mean_attitude_error_rate(self, orbit: &Orbit) -> f64 {
+    fn mean_attitude_error_rate(self, orbit: &Orbit) -> f64 {
         let [k1, k2, k3] = self.0;
         let [s11, s22, s33, s23, s13, s12] = orbit.squares;
         let square = k1 * k1 * s11 + k2 * k2 * s22 + k3 * k3 * s33;
@@ -112,6 +112,19 @@ impl ModifiedEnergy {
             + product(about, about);
         square.max(0.0).sqrt()
     }
+}
+
+/// Of the splittings `candidates`, each with its leading term, that with the smallest leading error of the attitude on the
+/// orbit through the momentum `m`; `None` where there is no such orbit.
+pub(super) fn of_least_error<C>(
+    candidates: impl IntoIterator<Item = (C, ModifiedEnergy)>,
+    m: Vec3<f64>,
+    moments: Vec3<f64>,
+) -> Option<C> {
+    let orbit = Orbit::through(m, moments)?;
+    let rated =
+        candidates.into_iter().map(|(candidate, term)| (term.mean_attitude_error_rate(&orbit), candidate));
+    rated.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
 }
 
 impl Orbit {

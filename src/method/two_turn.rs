@@ -6,7 +6,7 @@ use core::str::FromStr;
 use thiserror::Error;
 
 use super::axis_split::turn_one;
-use super::modified_energy::{ModifiedEnergy, Orbit};
+use super::modified_energy::{ModifiedEnergy, Orbit, of_least_error};
 use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
 use crate::flow::{Casimir, Flow, turn_about_axis};
@@ -25,7 +25,8 @@ use crate::rotation::{Quat, Vec3};
 /// Reference: Fassò, J. Comput. Phys. 189 (2003) 527, compares the energy errors of such splittings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TwoTurn {
-    /// Outer and inner axis; `None` takes those with the smallest leading error of the attitude on the orbit of the start.
+    /// Outer and inner axis; `None` takes those with the smallest leading error of the attitude on the orbit of the start, and
+    /// under forces and in compositions, where the orbit is not that of these turns, those that are usual for the moments.
     pub axes: Option<TwoAxes>,
 }
 
@@ -57,15 +58,8 @@ impl TwoAxes {
     /// Those whose leading error of the attitude is smallest on the orbit of free motion through the momentum `m`, as a root
     /// mean square over all starts on it: so they are the same wherever on the orbit a run begins.
     pub fn best(m: Vec3<f64>, moments: Vec3<f64>) -> Self {
-        let Some(orbit) = Orbit::through(m, moments) else { return Self::usual(moments) };
-        let mut best = (f64::INFINITY, Self::usual(moments));
-        for axes in Self::ALL {
-            let rate = axes.leading_term(moments).mean_attitude_error_rate(&orbit);
-            if rate < best.0 {
-                best = (rate, axes);
-            }
-        }
-        best.1
+        let candidates = Self::ALL.map(|axes| (axes, axes.leading_term(moments)));
+        of_least_error(candidates, m, moments).unwrap_or_else(|| Self::usual(moments))
     }
 
     /// H₃ at the momentum `m`: the splitting keeps H + h² H₃ up to O(h⁴), for the same unit of moments and momentum.
