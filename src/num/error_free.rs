@@ -1,7 +1,7 @@
 //! Sums and products of two `f64` with the exact error of their rounding.
 
 /// `a + b` as a rounded sum and its exact error (Knuth).
-#[inline]
+#[inline(always)]
 pub(crate) const fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     let v = s - a;
@@ -9,7 +9,7 @@ pub(crate) const fn two_sum(a: f64, b: f64) -> (f64, f64) {
 }
 
 /// `a + b` as a rounded sum and its exact error, for |a| ≥ |b| (Dekker).
-#[inline]
+#[inline(always)]
 pub(crate) const fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     (s, b - (s - a))
@@ -17,14 +17,14 @@ pub(crate) const fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// `a` as a sum of two numbers of at most 26 bits. Rounding the bit pattern does what Dekker's
 /// multiplication by 2²⁷ + 1 does, and cannot overflow below 2¹⁰²³.
-#[inline]
+#[inline(always)]
 const fn split(a: f64) -> (f64, f64) {
     let hi = f64::from_bits(a.to_bits().wrapping_add(1 << 26) & !((1 << 27) - 1));
     (hi, a - hi)
 }
 
 /// `a · b` as a rounded product and its exact error (Dekker's product: the same bits with and without FMA).
-#[inline]
+#[inline(always)]
 pub(crate) const fn two_prod(a: f64, b: f64) -> (f64, f64) {
     let p = a * b;
     let (ah, al) = split(a);

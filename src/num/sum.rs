@@ -24,47 +24,39 @@ pub struct Compensated<S> {
 
 impl<S: Real> Compensated<S> {
     /// A sum that starts at `start`.
-    #[inline]
+    #[inline(always)]
     pub fn new(start: S) -> Self {
         Compensated { sum: start, carry: S::of(0.0) }
     }
 
     /// A sum that starts at minus the number `high + low`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn minus([high, low]: [S; 2]) -> Self {
         Compensated { sum: -high, carry: -low }
     }
 
     /// Adds one term.
-    #[inline]
+    #[inline(always)]
     pub fn add(&mut self, term: S) {
         let (sum, error) = self.sum.two_sum(term);
         (self.sum, self.carry) = (sum, self.carry + error);
     }
 
     /// Adds a term in two parts, the second of the size of a rounding error of the first.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn add_parts(&mut self, term: S, rest: S) {
         let (sum, error) = self.sum.two_sum(term);
         (self.sum, self.carry) = (sum, self.carry + (error + rest));
     }
 
-    /// Adds `a · b` with the error of its rounding.
-    #[inline]
-    pub(crate) fn add_product(&mut self, a: S, b: S) {
-        let (product, rest) = a.two_prod(b);
-        self.add_parts(product, rest);
-    }
-
-    /// Adds another sum times `factor`.
-    #[inline]
-    pub(crate) fn add_scaled(&mut self, other: Self, factor: S) {
-        let (product, rest) = other.sum.two_prod(factor);
-        self.add_parts(product, rest + other.carry * factor);
+    /// The rounded sum, and what it lacks.
+    #[inline(always)]
+    pub(crate) fn parts(self) -> [S; 2] {
+        [self.sum, self.carry]
     }
 
     /// The sum, rounded once.
-    #[inline]
+    #[inline(always)]
     pub fn value(&self) -> S {
         self.sum + self.carry
     }

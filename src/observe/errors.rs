@@ -73,9 +73,4 @@ impl Errors {
     pub(crate) fn is_finite(self) -> bool {
         self.parts().iter().all(|error| error.is_none_or(f64::is_finite))
     }
-
-    /// Whether no error of `self` exceeds that of `other`; not with a NaN.
-    pub(super) fn within(self, other: Self) -> bool {
-        self.parts().into_iter().zip(other.parts()).all(|(a, b)| a.zip(b).is_none_or(|(a, b)| a <= b))
-    }
 }

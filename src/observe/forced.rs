@@ -6,6 +6,8 @@ use crate::num::{Dd, Real};
 /// What a motion with forces conserves, and what its errors are measured by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Forced {
+    /// Whether uniform gravity is all that acts, and energy and L_z all that is conserved.
+    pub(super) gravity_alone: bool,
     pub(super) energy: bool,
     pub(super) momentum_norm: bool,
     pub(super) momentum_vector: bool,
@@ -39,7 +41,11 @@ impl Forced {
             _ => None,
         });
         let turning = (start.momentum_body.norm_of_any_size() * jacobi.unwrap_or(0.0)).magnitude();
+        let alone = body.forces().is_empty() && jacobi.is_none();
         Some(Forced {
+            gravity_alone: alone
+                && conserved == [Conserved::Energy, Conserved::MomentumZ]
+                && energy_scale > 0.0,
             energy: has(Conserved::Energy),
             momentum_norm: has(Conserved::MomentumNorm),
             momentum_vector: has(Conserved::Momentum),

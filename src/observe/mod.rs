@@ -5,8 +5,8 @@ mod drift;
 mod errors;
 mod flips;
 mod forced;
-mod free_errors;
 mod invariants;
+mod lanes;
 mod monitor;
 
 pub use drift::{Drift, secular_drift};

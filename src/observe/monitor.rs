@@ -2,7 +2,7 @@
 
 use super::flips::Flips;
 use super::forced::Forced;
-use super::free_errors::{Differences, Reference, largest};
+use super::lanes::{Lane, Reference};
 use super::{Errors, Invariants};
 use crate::body::{Body, Clock, Forces, Point, kinetic_energy};
 use crate::num::{Dd, Real};
@@ -10,10 +10,8 @@ use crate::rotation::Vec3;
 
 /// Watches the steps of a run: the largest error of each invariant, and how often the body flipped.
 ///
-/// Steps come in blocks. A block of free motion is first evaluated in plain `f64`, with a bound on what rounding may have
-/// hidden; only where that cannot rule out a new maximum are the errors evaluated with error-free transformations, to
-/// about 1e-30. Both loops are branch-free over the block, so that the compiler can vectorise them. With forces
-/// every step is evaluated in double-double.
+/// Steps come in blocks. Blocks of free motion and of motion under uniform gravity are evaluated with error-free
+/// transformations, to about 1e-30 and in vectorised loops; with other forces every step is evaluated in double-double.
 #[derive(Clone, Debug)]
 pub struct Monitor {
     field: Forces<Dd>,
@@ -21,10 +19,9 @@ pub struct Monitor {
     inverse_moments: Vec3<Dd>,
     forced: Option<Forced>,
     start: Invariants,
+    reference: Reference,
     worst: Errors,
     flips: Flips,
-    /// Blocks since the plain evaluation last did not suffice; at [`RETRY`] it is tried again. 0 while it suffices.
-    since_failure: u32,
 }
 
 /// The state of a monitor, for a checkpoint.
@@ -33,14 +30,10 @@ pub(crate) struct Memory {
     pub(crate) worst: Errors,
     pub(crate) flips: u64,
     pub(crate) positive: Option<bool>,
-    pub(crate) since_failure: u32,
 }
 
 /// How many steps a run takes between two looks at them.
 pub(crate) const BLOCK: usize = 32;
-
-/// Blocks until the plain evaluation is tried again after it did not suffice.
-const RETRY: u32 = 16;
 
 impl Monitor {
     /// Begins at the point `x`, whose time is that of its step by `clock`.
@@ -52,15 +45,16 @@ impl Monitor {
         let forced = Forced::of(body, at, &start, rotor.kinetic_energy(start.momentum_body));
         let mut flips = Flips::new(rotor.middle_axis());
         flips.observe(x.momentum_body);
+        let start = Invariants::of(body, at, x);
         let mut monitor = Monitor {
             field: body.field(),
             clock,
             inverse_moments: rotor.inverse_moments(),
             forced,
-            start: Invariants::of(body, at, x),
+            reference: Reference::new(rotor.inverse_moments(), &start, body.gravity()),
+            start,
             worst: Errors::NONE,
             flips,
-            since_failure: 0,
         };
         monitor.worst = monitor.errors(x);
         monitor
@@ -69,23 +63,36 @@ impl Monitor {
     /// Evaluates a block of consecutive steps; returns how many come before the first point that is
     /// not finite, and counts only those.
     pub fn observe(&mut self, points: &[Point<f64>]) -> usize {
-        if self.forced.is_some() {
-            return self.observe_forced(points);
+        points
+            .chunks(BLOCK)
+            .scan(true, |goes_on, block| {
+                let finite = if *goes_on { self.observe_block(block) } else { 0 };
+                *goes_on = finite == block.len();
+                Some(finite)
+            })
+            .sum()
+    }
+
+    fn observe_block(&mut self, points: &[Point<f64>]) -> usize {
+        let finite = match &self.forced {
+            None => {
+                let (found, finite) = largest(self.reference.free(points), points.len());
+                self.worst = self.worst.max(self.errors_of(found));
+                finite
+            }
+            Some(forced) if forced.gravity_alone => {
+                let ([energy, momentum_z], finite) = largest(self.reference.heavy(points), points.len());
+                let (energy, momentum_z) = (energy / forced.energy_scale, momentum_z / forced.momentum_scale);
+                let found = Errors { energy: Some(energy), momentum_z: Some(momentum_z), ..Errors::NONE };
+                self.worst = self.worst.max(found);
+                finite
+            }
+            Some(_) => return self.observe_forced(points),
+        };
+        for x in &points[..finite] {
+            self.flips.observe(x.momentum_body);
         }
-        let reference = Reference::new(self.inverse_moments, &self.start);
-        if self.since_failure == 0 && self.is_ruled_out(&reference, points) {
-            return self.count(points);
-        }
-        self.since_failure = (self.since_failure + 1) % RETRY;
-        let mut points = points;
-        let mut found = largest(points, |x| reference.compensated(x));
-        if !found.iter().all(|d| d.is_finite()) {
-            let holds = |x: &&Point<f64>| reference.compensated(x).iter().all(|d| d.is_finite());
-            points = &points[..points.iter().take_while(holds).count()];
-            found = largest(points, |x| reference.compensated(x));
-        }
-        self.worst = self.worst.max(self.errors_of(found));
-        self.count(points)
+        finite
     }
 
     fn observe_forced(&mut self, points: &[Point<f64>]) -> usize {
@@ -98,19 +105,6 @@ impl Monitor {
                 return n;
             }
             self.worst = self.worst.max(now);
-            self.flips.observe(x.momentum_body);
-        }
-        points.len()
-    }
-
-    /// Whether plain evaluation rules out a new maximum; never with a NaN.
-    fn is_ruled_out(&self, reference: &Reference, points: &[Point<f64>]) -> bool {
-        let (plain, slack) = (largest(points, |x| reference.plain(x)), reference.slack());
-        self.errors_of([0, 1, 2].map(|k| plain[k] + slack[k])).within(self.worst)
-    }
-
-    fn count(&mut self, points: &[Point<f64>]) -> usize {
-        for x in points {
             self.flips.observe(x.momentum_body);
         }
         points.len()
@@ -188,7 +182,7 @@ impl Monitor {
     /// What a checkpoint holds of a monitor.
     pub(crate) fn memory(&self) -> Memory {
         let Flips { positive, count, .. } = self.flips;
-        Memory { worst: self.worst, flips: count, positive, since_failure: self.since_failure }
+        Memory { worst: self.worst, flips: count, positive }
     }
 
     /// Continues from a checkpoint.
@@ -196,10 +190,9 @@ impl Monitor {
         self.worst = memory.worst;
         self.flips.count = memory.flips;
         self.flips.positive = memory.positive;
-        self.since_failure = memory.since_failure;
     }
 
-    fn errors_of(&self, [e, m2, l]: Differences) -> Errors {
+    fn errors_of(&self, [e, m2, l]: [f64; 3]) -> Errors {
         let squared = self.start.momentum_squared.hi();
         if squared == 0.0 {
             let zero = Some(0.0); // at rest nothing moves
@@ -216,4 +209,11 @@ impl Monitor {
             ..Errors::NONE
         }
     }
+}
+
+/// The largest of each difference over those of the first `n` points that come before one that is not finite, and their
+/// number.
+fn largest<const N: usize>(differences: [Lane; N], n: usize) -> ([f64; N], usize) {
+    let finite = (0..n).take_while(|&n| differences.iter().all(|lane| lane[n].is_finite())).count();
+    (differences.map(|lane| lane[..finite].iter().fold(0.0, |worst: f64, &d| worst.max(d))), finite)
 }

@@ -63,7 +63,7 @@ pub enum CheckpointError {
 }
 
 /// First line of the text; the number is that of the format.
-const HEAD: &str = "polhode checkpoint 1";
+const HEAD: &str = "polhode checkpoint 2";
 
 /// What a body is identified by: moments, scale and principal axes, weight moment, the names of its forces, and energy and
 /// torque at the start, which tell forces of one name from each other.
@@ -124,7 +124,7 @@ impl fmt::Display for Checkpoint {
         writeln!(f, "steps {}", self.point.steps())?;
         writeln!(f, "point {}", list(&self.point.parts()))?;
         writeln!(f, "worst {worst}")?;
-        writeln!(f, "flips {} {sign} {}", self.memory.flips, self.memory.since_failure)?;
+        writeln!(f, "flips {} {sign}", self.memory.flips)?;
         writeln!(f, "residual {:?}", self.residual)
     }
 }
@@ -184,15 +184,15 @@ fn errors(text: &str) -> Option<[Option<f64>; 5]> {
     errors.collect::<Option<Vec<Option<f64>>>>()?.try_into().ok()
 }
 
-fn flips(text: &str) -> Option<(u64, Option<bool>, u32)> {
-    let [flips, sign, since_failure] = text.split(' ').collect::<Vec<&str>>().try_into().ok()?;
+fn flips(text: &str) -> Option<(u64, Option<bool>)> {
+    let (flips, sign) = text.split_once(' ')?;
     let positive = match sign {
         "0" => None,
         "+" => Some(true),
         "-" => Some(false),
         _ => return None,
     };
-    Some((flips.parse().ok()?, positive, since_failure.parse().ok()?))
+    Some((flips.parse().ok()?, positive))
 }
 
 impl FromStr for Checkpoint {
@@ -202,7 +202,7 @@ impl FromStr for Checkpoint {
         let mut lines = Lines { lines: text.lines().peekable(), taken: 1 };
         let head = lines.lines.next().unwrap_or("");
         if head != HEAD {
-            return Err(lines.refused(head, "it must be 'polhode checkpoint 1'"));
+            return Err(lines.refused(head, "it must be 'polhode checkpoint 2'"));
         }
         let quoted = |text: &str| Some(text.strip_prefix('"')?.strip_suffix('"')?.to_owned());
         let method = lines.parsed("method", "it must name the method in quotes", quoted)?;
@@ -220,8 +220,7 @@ impl FromStr for Checkpoint {
         let steps = lines.parsed("steps", "it must hold the number of steps", |text| text.parse().ok())?;
         let point = lines.parsed("point", "it must hold 14 numbers", doubles)?;
         let worst = lines.parsed("worst", "it must hold 5 errors, - where there is none", errors)?;
-        let (flips, positive, since_failure) =
-            lines.parsed("flips", "it must hold a count, a sign and a count", flips)?;
+        let (flips, positive) = lines.parsed("flips", "it must hold a count and a sign", flips)?;
         let residual = lines.parsed("residual", "it must hold a number", |text| text.parse().ok())?;
         if let Some(line) = lines.lines.next() {
             lines.taken += 1;
@@ -234,7 +233,7 @@ impl FromStr for Checkpoint {
             watch,
             start: Point::from_parts(first, 0),
             point: Point::from_parts(point, steps),
-            memory: Memory { worst: Errors::from_parts(worst), flips, positive, since_failure },
+            memory: Memory { worst: Errors::from_parts(worst), flips, positive },
             residual,
             missed,
         })

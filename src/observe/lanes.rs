@@ -1,0 +1,300 @@
+//! Errors of a block of steps at once, with error-free transformations: one lane for each point, so that loops over a block
+//! are vectorised by the widest instructions the processor has, with the same bits on each.
+
+use multiversion::multiversion;
+use multiversion::target::target_cfg_f;
+
+use super::Invariants;
+use super::monitor::BLOCK;
+use crate::body::{Gravity, Point};
+use crate::num::error_free::two_prod;
+use crate::num::{Compensated, Dd};
+use crate::rotation::{Quat, Vec3};
+
+/// One number for each point of a block.
+pub(super) type Lane = [f64; BLOCK];
+
+/// Points side by side, one array for each component.
+#[derive(Clone, Debug)]
+pub(super) struct Lanes {
+    attitude: [Lane; 4],
+    momentum: [Lane; 3],
+}
+
+impl Lanes {
+    /// Of at most [`BLOCK`] points; the places that are left hold zeros.
+    pub(super) fn of(points: &[Point<f64>]) -> Self {
+        let mut lanes = Lanes { attitude: [[0.0; BLOCK]; 4], momentum: [[0.0; BLOCK]; 3] };
+        for (n, x) in points.iter().enumerate().take(BLOCK) {
+            for (lane, component) in lanes.attitude.iter_mut().zip(x.attitude.components()) {
+                lane[n] = component;
+            }
+            for (lane, component) in lanes.momentum.iter_mut().zip(x.momentum_body.0) {
+                lane[n] = component;
+            }
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    fn attitude(&self, n: usize) -> Quat<f64> {
+        let [w, x, y, z] = &self.attitude;
+        Quat::new(w[n], Vec3([x[n], y[n], z[n]]))
+    }
+
+    #[inline(always)]
+    fn momentum(&self, n: usize) -> Vec3<f64> {
+        let [x, y, z] = &self.momentum;
+        Vec3([x[n], y[n], z[n]])
+    }
+}
+
+/// What the points are compared with, leading and trailing parts side by side.
+#[derive(Clone, Debug)]
+pub(super) struct Reference {
+    inverse_moments: [Vec3<f64>; 2],
+    energy: [f64; 2],
+    momentum_squared: [f64; 2],
+    momentum_space: [Vec3<f64>; 2],
+    weight_moment: [Vec3<f64>; 2],
+    /// No product that matters is near the smallest numbers: then the error of a product is the same number by Dekker's
+    /// way and by a fused multiply-add.
+    ordinary: bool,
+}
+
+/// Below this a difference is as good as zero where the reference is ordinary: what underflow leaves is smaller.
+const NOTHING: f64 = 1e-280;
+
+impl Reference {
+    pub(super) fn new(inverse_moments: Vec3<Dd>, start: &Invariants, gravity: Option<Gravity<Dd>>) -> Self {
+        let parts = |x: Dd| [x.hi(), x.lo()];
+        let vector = |v: Vec3<Dd>| [v.map(Dd::hi), v.map(Dd::lo)];
+        let weight_moment = gravity.map_or(Vec3::zero(), |gravity| gravity.weight_moment);
+        let ordinary = |x: f64| (1e-100..1e100).contains(&x);
+        Reference {
+            inverse_moments: vector(inverse_moments),
+            energy: parts(start.energy),
+            momentum_squared: parts(start.momentum_squared),
+            momentum_space: vector(start.momentum_space),
+            weight_moment: vector(weight_moment),
+            ordinary: inverse_moments.0.iter().all(|x| ordinary(x.hi()))
+                && ordinary(start.momentum_squared.hi())
+                && (gravity.is_none() || ordinary(weight_moment.norm_squared().hi())),
+        }
+    }
+
+    /// |E − E₀|, ||m|² − |m₀|²| and |L − L₀| of each point, without forces.
+    pub(super) fn free(&self, points: &[Point<f64>]) -> [Lane; 3] {
+        self.settled(free(self, &Lanes::of(points)))
+    }
+
+    /// |E − E₀| and |L_z − L_z₀| of each point, under uniform gravity.
+    pub(super) fn heavy(&self, points: &[Point<f64>]) -> [Lane; 2] {
+        self.settled(heavy(self, &Lanes::of(points)))
+    }
+
+    fn settled<const N: usize>(&self, differences: [Lane; N]) -> [Lane; N] {
+        // a NaN stays
+        let settled = |d: f64| if self.ordinary && d < NOTHING { 0.0 } else { d };
+        differences.map(|lane| lane.map(settled))
+    }
+
+    // No loops over components below: only the innermost loop, that over the points, is vectorised.
+
+    #[inline(always)]
+    fn free_differences<const FUSED: bool>(&self, q: Quat<f64>, m: Vec3<f64>) -> [f64; 3] {
+        let mut squared = Compensated::minus(self.momentum_squared);
+        squared.add_square::<FUSED>(m[0]);
+        squared.add_square::<FUSED>(m[1]);
+        squared.add_square::<FUSED>(m[2]);
+        let rotated = Rotated::new::<FUSED>(q, m);
+        let difference = Vec3([
+            self.momentum_difference::<FUSED, 0>(&rotated),
+            self.momentum_difference::<FUSED, 1>(&rotated),
+            self.momentum_difference::<FUSED, 2>(&rotated),
+        ]);
+        let mut twice_energy = Compensated::minus([2.0 * self.energy[0], 2.0 * self.energy[1]]);
+        self.add_kinetic::<FUSED>(&mut twice_energy, m);
+        [0.5 * twice_energy.value().abs(), squared.value().abs(), difference.norm()]
+    }
+
+    #[inline(always)]
+    fn heavy_differences<const FUSED: bool>(&self, q: Quat<f64>, m: Vec3<f64>) -> [f64; 2] {
+        let mut twice_energy = Compensated::minus([2.0 * self.energy[0], 2.0 * self.energy[1]]);
+        self.add_kinetic::<FUSED>(&mut twice_energy, m);
+        let (w, Vec3([x, y, z])) = (q.w, q.v);
+        // 2 U = c · 2Γ, with ½Γ₁ = xz − wy, ½Γ₂ = yz + wx and Γ₃ = w² + z² − x² − y²
+        let [high, low] = self.weight_moment;
+        let mut vertical = Compensated::new(0.0);
+        vertical.add_product_by::<FUSED>(x, z);
+        vertical.add_product_by::<FUSED>(-w, y);
+        twice_energy.add_scaled_by::<FUSED>(vertical, [4.0 * high[0], 4.0 * low[0]]);
+        let mut vertical = Compensated::new(0.0);
+        vertical.add_product_by::<FUSED>(y, z);
+        vertical.add_product_by::<FUSED>(w, x);
+        twice_energy.add_scaled_by::<FUSED>(vertical, [4.0 * high[1], 4.0 * low[1]]);
+        let mut vertical = Compensated::new(0.0);
+        vertical.add_square::<FUSED>(w);
+        vertical.add_square::<FUSED>(z);
+        vertical.add_product_by::<FUSED>(-x, x);
+        vertical.add_product_by::<FUSED>(-y, y);
+        twice_energy.add_scaled_by::<FUSED>(vertical, [2.0 * high[2], 2.0 * low[2]]);
+        let difference = self.momentum_difference::<FUSED, 2>(&Rotated::new::<FUSED>(q, m));
+        [0.5 * twice_energy.value().abs(), difference.abs()]
+    }
+
+    /// Adds m · I⁻¹ m.
+    #[inline(always)]
+    fn add_kinetic<const FUSED: bool>(&self, sum: &mut Compensated<f64>, m: Vec3<f64>) {
+        self.add_kinetic_of::<FUSED, 0>(sum, m);
+        self.add_kinetic_of::<FUSED, 1>(sum, m);
+        self.add_kinetic_of::<FUSED, 2>(sum, m);
+    }
+
+    #[inline(always)]
+    fn add_kinetic_of<const FUSED: bool, const K: usize>(&self, sum: &mut Compensated<f64>, m: Vec3<f64>) {
+        let [high, low] = self.inverse_moments;
+        let (square, rest) = product::<FUSED>(m[K], m[K]);
+        let (term, error) = product::<FUSED>(square, high[K]);
+        sum.add_parts(term, error + (rest * high[K] + square * low[K]));
+    }
+
+    /// The component K of L − L₀.
+    #[inline(always)]
+    fn momentum_difference<const FUSED: bool, const K: usize>(&self, x: &Rotated) -> f64 {
+        let (i, j) = ((K + 1) % 3, (K + 2) % 3);
+        let mut cross = Compensated::new(0.0);
+        cross.add_product_by::<FUSED>(x.v[i], x.m[j]);
+        cross.add_product_by::<FUSED>(-x.v[j], x.m[i]);
+        let mut l = Compensated::minus([self.momentum_space[0][K], self.momentum_space[1][K]]);
+        l.add_scaled_by::<FUSED>(x.diagonal, [x.m[K], 0.0]);
+        l.add_scaled_by::<FUSED>(x.along, [2.0 * x.v[K], 0.0]);
+        l.add_scaled_by::<FUSED>(cross, [2.0 * x.w, 0.0]);
+        l.value()
+    }
+}
+
+/// The parts of `L = (w² − |v|²) m + 2 (v·m) v + 2 w (v × m)`, which is not divided by |q|².
+struct Rotated {
+    w: f64,
+    v: Vec3<f64>,
+    m: Vec3<f64>,
+    diagonal: Compensated<f64>,
+    along: Compensated<f64>,
+}
+
+impl Rotated {
+    #[inline(always)]
+    fn new<const FUSED: bool>(q: Quat<f64>, m: Vec3<f64>) -> Self {
+        let (w, v) = (q.w, q.v);
+        let (mut diagonal, mut along) = (Compensated::new(0.0), Compensated::new(0.0));
+        diagonal.add_square::<FUSED>(w);
+        diagonal.add_product_by::<FUSED>(-v[0], v[0]);
+        diagonal.add_product_by::<FUSED>(-v[1], v[1]);
+        diagonal.add_product_by::<FUSED>(-v[2], v[2]);
+        along.add_product_by::<FUSED>(v[0], m[0]);
+        along.add_product_by::<FUSED>(v[1], m[1]);
+        along.add_product_by::<FUSED>(v[2], m[2]);
+        Rotated { w, v, m, diagonal, along }
+    }
+}
+
+impl Compensated<f64> {
+    #[inline(always)]
+    fn add_product_by<const FUSED: bool>(&mut self, a: f64, b: f64) {
+        let (term, rest) = product::<FUSED>(a, b);
+        self.add_parts(term, rest);
+    }
+
+    #[inline(always)]
+    fn add_square<const FUSED: bool>(&mut self, a: f64) {
+        self.add_product_by::<FUSED>(a, a);
+    }
+
+    /// Adds another sum times the number `high + low`.
+    #[inline(always)]
+    fn add_scaled_by<const FUSED: bool>(&mut self, other: Self, [high, low]: [f64; 2]) {
+        let [sum, carry] = other.parts();
+        let (term, rest) = product::<FUSED>(sum, high);
+        self.add_parts(term, rest + (carry * high + sum * low));
+    }
+}
+
+/// `a · b` and the exact error of its rounding.
+#[inline(always)]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "exact, and taken only where the processor has the instruction"
+)]
+fn product<const FUSED: bool>(a: f64, b: f64) -> (f64, f64) {
+    if FUSED {
+        let p = a * b;
+        (p, a.mul_add(b, -p))
+    } else {
+        two_prod(a, b)
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn free(reference: &Reference, lanes: &Lanes) -> [Lane; 3] {
+    if target_cfg_f!(target_feature = "fma") && reference.ordinary {
+        all(|n| reference.free_differences::<true>(lanes.attitude(n), lanes.momentum(n)))
+    } else {
+        all(|n| reference.free_differences::<false>(lanes.attitude(n), lanes.momentum(n)))
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn heavy(reference: &Reference, lanes: &Lanes) -> [Lane; 2] {
+    if target_cfg_f!(target_feature = "fma") && reference.ordinary {
+        all(|n| reference.heavy_differences::<true>(lanes.attitude(n), lanes.momentum(n)))
+    } else {
+        all(|n| reference.heavy_differences::<false>(lanes.attitude(n), lanes.momentum(n)))
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::needless_range_loop, reason = "each lane has the same index")]
+fn all<const N: usize>(differences: impl Fn(usize) -> [f64; N]) -> [Lane; N] {
+    let mut lanes = [[0.0; BLOCK]; N];
+    for n in 0..BLOCK {
+        let of_point = differences(n);
+        for k in 0..N {
+            lanes[k][n] = of_point[k];
+        }
+    }
+    lanes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Body, Time};
+    use crate::inertia::Inertia;
+
+    #[test]
+    fn products_are_the_same_fused_and_not() {
+        let inertia = Inertia::from_moments([1.0, 2.3, 2.9]).unwrap();
+        let body = Body::heavy(inertia, [0.3, -0.2, 0.7].into()).unwrap();
+        // multiples of the golden section modulo 1, of every length of mantissa
+        let mut n = 0.0;
+        let mut number = || {
+            n += 1.0;
+            2.0 * (n * 0.618_033_988_749_894_8_f64).fract() - 1.0
+        };
+        let points: Vec<_> = (0..BLOCK)
+            .map(|_| {
+                let q = Quat::from_components([number(), number(), number(), number()]).normalized();
+                Point::new(q, Vec3([number(), number(), number()]))
+            })
+            .collect();
+        let start = Invariants::of(&body, Time::from_seconds(0.0), &points[0]);
+        let reference = Reference::new(body.rotor().inverse_moments(), &start, body.gravity());
+        assert!(reference.ordinary);
+        for x in &points {
+            let (q, m) = (x.attitude, x.momentum_body);
+            assert_eq!(reference.free_differences::<true>(q, m), reference.free_differences::<false>(q, m));
+            assert_eq!(reference.heavy_differences::<true>(q, m), reference.heavy_differences::<false>(q, m));
+        }
+    }
+}
