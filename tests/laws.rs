@@ -167,12 +167,21 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
     for order in AxisOrder::ALL {
         methods.push(Box::new(Splitting::strang(AxisSplit { axes: Some(order) }, Kicks)));
     }
-    for name in
-        ["lie-poisson@suzuki-4", "rattle@yoshida-4", "implicit-midpoint@mclachlan-4", "kick-drift@srkn-6b"]
-    {
+    for name in [
+        "lie-poisson@suzuki-4",
+        "rattle@yoshida-4",
+        "implicit-midpoint@mclachlan-4",
+        "kick-drift@srkn-6b",
+        "two-turn@blanes-moan-s6",
+        "two-turn@kahan-li-6",
+    ] {
         methods.push(method(name).unwrap());
     }
     methods
+}
+
+fn takes_gravity(method: &dyn AnyMethod) -> bool {
+    method.claims(Problem::Gravity).is_some()
 }
 
 fn name(method: &dyn AnyMethod, problem: Problem) -> String {
@@ -311,7 +320,7 @@ fn assert_kept(name: &str, what: &str, claimed: bool, error: f64) {
     if claimed {
         assert!(error < EXACT, "{name} claims to keep {what} and loses {error:.1e}");
     } else {
-        assert!(error > 1e-9, "{name} does not claim to keep {what}, yet its error is {error:.1e}");
+        assert!(error > 1e14 * EXACT, "{name} does not claim to keep {what}, yet its error is {error:.1e}");
     }
 }
 
@@ -766,7 +775,8 @@ fn scaling_the_mass_by_a_power_of_two_changes_no_bit() {
         )
     };
     for method in methods().iter().filter(|method| free_claims(*method).order != Some(1)) {
-        for weight in [0.0, 1.0] {
+        let weights = if takes_gravity(method) { vec![0.0, 1.0] } else { vec![0.0] };
+        for weight in weights {
             assert_eq!(
                 trajectory(1.0, weight, method),
                 trajectory(tiny, weight, method),
@@ -972,7 +982,8 @@ fn every_method_is_equivariant_under_relabelled_axes() {
     let third = Quat::from_components([0.5, -0.5, -0.5, -0.5].map(Dd::of));
     let fixed = |name: &str| name.contains("lie-poisson:");
     for weight in [[0.0; 3], weight] {
-        for method in methods().iter().filter(|method| !fixed(&method.name())) {
+        let fits = |method: &dyn AnyMethod| weight == [0.0; 3] || takes_gravity(method);
+        for method in methods().iter().filter(|method| fits(*method) && !fixed(&method.name())) {
             let end = |moments: [f64; 3], weight: [f64; 3], m: [f64; 3], turn: Quat<Dd>| {
                 let body = Body::heavy(Inertia::from_moments(moments).unwrap(), weight.into()).unwrap();
                 let state = State { attitude: Quat::from_components(q), momentum_body: Vec3(m) };

@@ -1,10 +1,10 @@
 //! The variational Lie–Poisson splitting: three turns about the principal axes.
 
+use super::schemes::{STRANG, Scheme};
+use super::turns::Turns;
 use super::{AxisOrder, Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
-use crate::flow::{turn_a_little_about, turn_about, turn_about_axis};
-use crate::num::trig::SMALL;
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Precise};
 
 /// Strang splitting of the kinetic energy by axes.
 ///
@@ -44,8 +44,8 @@ impl FreePart for AxisSplit {
     fn cost(&self) -> Cost {
         Cost::turns(5)
     }
-    fn cost_in_sequence(&self) -> Cost {
-        Cost::turns(4)
+    fn free_cost(&self, scheme: &Scheme) -> Option<Cost> {
+        Some(Cost::turns(4) * scheme.lengths()?.len() as u32)
     }
     fn source(&self) -> &'static str {
         "McLachlan, Phys. Rev. Lett. 71 (1993) 3043; Touma and Wisdom, Astron. J. 107 (1994) 1189"
@@ -54,111 +54,65 @@ impl FreePart for AxisSplit {
 
 impl<S: Precise> Method<S> for AxisSplit {
     type Map<F: Field<S>> = AxisSplitMap<S>;
+
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> AxisSplitMap<S> {
-        let mut map = AxisSplitMap {
-            rotor: *rotor,
-            h,
-            free_to_choose: false,
-            axes: [0, 1, 2],
-            half_rates: [S::of(0.0); 3],
-            small: false,
-        };
-        map.choose(self.axes.unwrap_or_else(|| AxisOrder::best(rotor.moments())));
-        map.free_to_choose = self.axes.is_none();
-        map
+        AxisSplitMap::new(self.axes, vec![Dd::ONE], h, rotor)
+    }
+
+    fn free_map<F: Field<S>>(&self, scheme: &Scheme, h: Dd, rotor: &Rotor, _: &F) -> Option<AxisSplitMap<S>> {
+        let mut map = AxisSplitMap::new(self.axes, scheme.lengths()?, h, rotor);
+        map.free_to_choose = self.axes.is_none() && *scheme == STRANG;
+        Some(map)
     }
 }
 
 /// A prepared [`AxisSplit`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct AxisSplitMap<S> {
     rotor: Rotor,
+    /// Of the steps that make up one, in shares of it.
+    shares: Vec<Dd>,
     h: Dd,
+    /// Whether the axes may be chosen by the orbit when the motion is opened.
     free_to_choose: bool,
-    axes: [usize; 3],
-    half_rates: [S; 3], // time of the turn over 2 I
-    /// Whether half of each angle of an opened motion is at most [`SMALL`].
-    small: bool,
+    turns: Turns<S>,
+}
+
+impl<S: Precise> AxisSplitMap<S> {
+    fn new(axes: Option<AxisOrder>, shares: Vec<Dd>, h: Dd, rotor: &Rotor) -> Self {
+        let order = axes.unwrap_or_else(|| AxisOrder::best(rotor.moments()));
+        let turns = turns(order, rotor, h, &shares);
+        AxisSplitMap { rotor: *rotor, shares, h, free_to_choose: false, turns }
+    }
+}
+
+fn turns<S: Precise>(order: AxisOrder, rotor: &Rotor, h: Dd, shares: &[Dd]) -> Turns<S> {
+    let inverse = rotor.inverse_moments::<Dd>();
+    Turns::three(order.axes(), order.axes().map(|axis| inverse[axis] * h), shares)
 }
 
 impl<S: Precise> Map<S> for AxisSplitMap<S> {
     #[inline]
     fn apply(&mut self, _: Time, x: &mut Point<S>) {
-        let [outer, middle, inner] = self.half_rates;
-        self.turns::<5, false>(x, [(0, outer), (1, middle), (2, inner), (1, middle), (0, outer)]);
+        self.turns.apply(x);
     }
 
     fn open(&mut self, _: Time, x: &mut Point<S>) {
         if self.free_to_choose {
             let m = x.momentum_body.map(S::to_f64);
-            self.choose(AxisOrder::best_for_orbit(m, self.rotor.moments()));
+            let order = AxisOrder::best_for_orbit(m, self.rotor.moments());
+            self.turns = turns(order, &self.rotor, self.h, &self.shares);
         }
-        let largest = self.half_rates.map(S::magnitude).into_iter().fold(0.0, f64::max);
-        // twice the half rate of the outer axis, and |m| walks by rounding
-        self.small = 2.01 * largest * x.momentum_body.norm().magnitude() <= SMALL;
-        turn_about_axis(self.axes[0], x, self.half_rates[0]);
+        self.turns.open(x);
     }
 
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
-        let [outer, middle, inner] = self.half_rates;
-        let turns = [(1, middle), (2, inner), (1, middle), (0, outer + outer)];
-        if self.small { self.turns::<4, true>(x, turns) } else { self.turns::<4, false>(x, turns) }
+        self.turns.advance(x);
     }
 
     #[inline]
     fn close(&mut self, _: Time, x: &mut Point<S>) {
-        turn_about_axis(self.axes[0], x, -self.half_rates[0]);
+        self.turns.close(x);
     }
-}
-
-impl<S: Precise> AxisSplitMap<S> {
-    fn choose(&mut self, order: AxisOrder) {
-        let inverse = self.rotor.inverse_moments::<Dd>();
-        let rate = |axis: usize, time: Dd| S::from_dd(inverse[axis] * (time * 0.5));
-        let axes = order.axes();
-        let [outer, middle, inner] = axes;
-        self.axes = axes;
-        self.half_rates = [rate(outer, self.h * 0.5), rate(middle, self.h * 0.5), rate(inner, self.h)];
-    }
-
-    /// Turns about outer (0), middle (1) and inner axis (2).
-    #[inline]
-    fn turns<const N: usize, const SMALL: bool>(&self, x: &mut Point<S>, turns: [(usize, S); N]) {
-        match self.axes {
-            [0, 1, _] => turns_about::<0, 1, 2, N, SMALL, S>(x, turns),
-            [0, ..] => turns_about::<0, 2, 1, N, SMALL, S>(x, turns),
-            [1, 0, _] => turns_about::<1, 0, 2, N, SMALL, S>(x, turns),
-            [1, ..] => turns_about::<1, 2, 0, N, SMALL, S>(x, turns),
-            [_, 0, _] => turns_about::<2, 0, 1, N, SMALL, S>(x, turns),
-            _ => turns_about::<2, 1, 0, N, SMALL, S>(x, turns),
-        }
-        x.renormalize_at_times();
-    }
-}
-
-#[inline(always)]
-fn turns_about<
-    const OUTER: usize,
-    const MIDDLE: usize,
-    const INNER: usize,
-    const N: usize,
-    const SMALL: bool,
-    S: Real,
->(
-    x: &mut Point<S>,
-    turns: [(usize, S); N],
-) {
-    for (which, half_rate) in turns {
-        match which {
-            0 => turn_one::<OUTER, SMALL, S>(x, half_rate),
-            1 => turn_one::<MIDDLE, SMALL, S>(x, half_rate),
-            _ => turn_one::<INNER, SMALL, S>(x, half_rate),
-        }
-    }
-}
-
-#[inline(always)]
-pub(super) fn turn_one<const AXIS: usize, const SMALL: bool, S: Real>(x: &mut Point<S>, half_rate: S) {
-    if SMALL { turn_a_little_about::<AXIS, S>(x, half_rate) } else { turn_about::<AXIS, S>(x, half_rate) }
 }

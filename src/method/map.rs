@@ -1,5 +1,6 @@
 //! One step of size h as a map: prepared once for a body and a step, then applied many times.
 
+use super::schemes::Scheme;
 use crate::body::{Clock, Field, Point, Rotor, Time};
 use crate::num::{Dd, Real};
 
@@ -64,6 +65,11 @@ pub trait Method<S: Real> {
 
     /// The map for the duration `h` (s, may be negative), a body with the constants `rotor` and the field `field`.
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F>;
+
+    /// The same for free motion by `scheme`, where that takes fewer flows than the maps of the scheme one after another.
+    fn free_map<F: Field<S>>(&self, _: &Scheme, _: Dd, _: &Rotor, _: &F) -> Option<Self::Map<F>> {
+        None
+    }
 }
 
 /// One map Φ_h.

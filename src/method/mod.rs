@@ -17,6 +17,7 @@ mod runge_kutta;
 pub mod schemes;
 mod splitting;
 mod stagnation;
+mod turns;
 mod two_turn;
 
 pub use axis_order::{AxisOrder, AxisOrderError};

@@ -30,9 +30,10 @@ pub trait FreePart: Symmetric {
     fn energy(&self) -> Energy;
     /// Work of one map.
     fn cost(&self) -> Cost;
-    /// Work of one map in a sequence of the same.
-    fn cost_in_sequence(&self) -> Cost {
-        self.cost()
+    /// Work of one step of free motion by `scheme` in a sequence of the same, where neighbouring flows merge: as
+    /// [`Method::free_map`]. A scheme for two flows then has its order in free motion.
+    fn free_cost(&self, _: &Scheme) -> Option<Cost> {
+        None
     }
     /// Where it comes from.
     fn source(&self) -> &'static str;
@@ -138,11 +139,19 @@ impl<A: FreePart> Splitting<A, Kicks> {
             }
         }
         match (free.order(), scheme.stages) {
-            (Some(order), Stages::Alternating { .. }) if order < scheme.order => {
+            (Some(order), Stages::Alternating { .. })
+                if order < scheme.order && free.free_cost(&scheme).is_none() =>
+            {
                 Err(SchemeError::Inexact { scheme: scheme.name, base: free.name(), order })
             }
             _ => Ok(Splitting { a: free, b: Kicks, scheme }),
         }
+    }
+
+    /// Whether the scheme is for two flows and the free part no flow of its order.
+    fn is_for_free_motion(&self) -> bool {
+        let two_flows = matches!(self.scheme.stages, Stages::Alternating { .. });
+        two_flows && self.a.order().is_some_and(|order| order < self.scheme.order)
     }
 }
 
@@ -157,8 +166,8 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
         let merged =
             |part| u32::from(problem != Problem::Free && flows.first().is_some_and(|flow| flow.0 == part));
         let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u32 - merged(part);
-        let free = match problem {
-            Problem::Free if count(Part::A) == 1 => self.a.cost_in_sequence(),
+        let free = match self.a.free_cost(&self.scheme) {
+            Some(cost) if problem == Problem::Free => cost,
             _ => self.a.cost() * count(Part::A),
         };
         let source = if self.scheme == STRANG { self.a.source() } else { self.scheme.source };
@@ -169,6 +178,8 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
                 let order = self.a.order().map(|order| order.max(self.scheme.order));
                 Some(claims(order, Kept::all_of_free_motion(self.a.energy()), free))
             }
+            // the kicks would alternate with free motion of a lower order
+            Problem::Gravity | Problem::Potential if self.is_for_free_motion() => None,
             Problem::Gravity | Problem::Potential => {
                 let kept = Kept { energy: Energy::Bounded, momentum_z: true, norm: true, ..Kept::NOTHING };
                 Some(claims(Some(self.scheme.order), kept, free + Cost::kicks(count(Part::B))))
@@ -182,6 +193,13 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
     type Map<F: Field<S>> = SplittingMap<A::Map<F>, B::Map<F>>;
 
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F> {
+        if !F::ACTS
+            && let Some(map) = self.a.free_map(&self.scheme, h, rotor, field)
+        {
+            let nothing = Timed { begun: Dd::ZERO, map: self.b.map(Dd::ZERO, rotor, field) };
+            let pairs = vec![(Timed { begun: Dd::ZERO, map }, nothing)];
+            return SplittingMap { opening: None, pairs, closing: None, ends: Ends::OfA };
+        }
         let flows = self.scheme.flows();
         let lengths = |part| {
             let shares: Vec<Dd> = flows.iter().filter(|flow| flow.0 == part).map(|flow| flow.1).collect();

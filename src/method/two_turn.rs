@@ -5,12 +5,12 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-use super::axis_split::turn_one;
 use super::modified_energy::{ModifiedEnergy, Orbit, of_least_error};
+use super::schemes::{Pairs, STRANG, Scheme, Stages};
+use super::turns::Turns;
 use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
-use crate::flow::{Casimir, Flow, turn_about_axis};
-use crate::num::trig::SMALL;
+use crate::flow::{Casimir, Flow};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -21,6 +21,9 @@ use crate::rotation::{Quat, Vec3};
 /// Φ_h = C(h) R_o(h/2) R_i(h) R_o(h/2), R the exact turns about an axis, C the [turn about L](Casimir).
 /// In free motion neighbouring turns about o are one, and C is taken at output alone, in double-double. Keeps |m|, L and
 /// the Lie–Poisson bracket, the energy within O(h²) for exponentially long times.
+///
+/// The two turns are two flows: a scheme for any two flows makes of them a splitting of free motion of its order, such as
+/// `two-turn@blanes-moan-s10`. With forces there are compositions only.
 ///
 /// Reference: Fassò, J. Comput. Phys. 189 (2003) 527, compares the energy errors of such splittings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,6 +89,14 @@ impl TwoAxes {
         }
     }
 
+    /// The turns of a step of `h`, two flows in turn as `scheme` says, the turn about the outer axis first.
+    fn turns<S: Precise>(self, rotor: &Rotor, h: Dd, scheme: &Scheme) -> Turns<S> {
+        let (i, j) = (rotor.moments::<Dd>(), self.reference());
+        // not as a difference of reciprocals, which has fewer digits than the moments
+        let rate = |k: usize| (i[j] - i[k]) / (i[j] * i[k]) * h;
+        Turns::two(self.0, self.0.map(rate), scheme)
+    }
+
     /// With α, β, γ the reciprocal moments of outer, reference and inner axis,
     /// `24 H₃ = (α−β)²(β−γ) s_o s_j − (α−β)(β−γ)(α+β−2γ) s_o s_i + 2(α−β)(β−γ)² s_j s_i`
     /// (symmetric Baker–Campbell–Hausdorff series).
@@ -142,8 +153,10 @@ impl FreePart for TwoTurn {
     fn cost(&self) -> Cost {
         Cost::turns(4)
     }
-    fn cost_in_sequence(&self) -> Cost {
-        Cost::turns(2)
+    fn free_cost(&self, scheme: &Scheme) -> Option<Cost> {
+        let two_flows = !matches!(scheme.stages, Stages::Alternating { pairs: Pairs::Nystrom, .. });
+        // the last turn of a step and the first of the next are one
+        two_flows.then(|| Cost::turns(scheme.flows().len() as u32 - 1))
     }
     fn source(&self) -> &'static str {
         "Fasso, J. Comput. Phys. 189 (2003) 527; Hairer, Lubich and Wanner, Geometric Numerical Integration, (VII.5.33)"
@@ -152,73 +165,45 @@ impl FreePart for TwoTurn {
 
 impl<S: Precise> Method<S> for TwoTurn {
     type Map<F: Field<S>> = TwoTurnMap<S>;
+
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> TwoTurnMap<S> {
-        let mut map = TwoTurnMap {
-            rotor: *rotor,
-            h,
-            free_to_choose: false,
-            axes: TwoAxes([0, 1]),
-            half_rates: [S::of(0.0); 2],
-            ball: Casimir::new(S::of(0.0)),
-            momentum_space: Vec3::zero(),
-            small: false,
-        };
-        map.choose(self.axes.unwrap_or_else(|| TwoAxes::usual(rotor.moments())));
-        map.free_to_choose = self.axes.is_none();
-        map
+        TwoTurnMap::new(self.axes, STRANG, h, rotor)
+    }
+
+    fn free_map<F: Field<S>>(&self, scheme: &Scheme, h: Dd, rotor: &Rotor, _: &F) -> Option<TwoTurnMap<S>> {
+        let _ = self.free_cost(scheme)?;
+        let mut map = TwoTurnMap::new(self.axes, *scheme, h, rotor);
+        map.free_to_choose = self.axes.is_none() && *scheme == STRANG;
+        Some(map)
     }
 }
 
 /// A prepared [`TwoTurn`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct TwoTurnMap<S> {
     rotor: Rotor,
+    scheme: Scheme,
     h: Dd,
+    /// Whether the axes may be chosen by the orbit when the motion is opened.
     free_to_choose: bool,
     axes: TwoAxes,
-    half_rates: [S; 2], // half of a step about the outer axis and a step about the inner one, over 2
+    turns: Turns<S>,
     ball: Casimir<S>,
     momentum_space: Vec3<Dd>, // when opened
-    /// Whether half of each angle of an opened motion is at most [`SMALL`].
-    small: bool,
 }
 
 impl<S: Precise> TwoTurnMap<S> {
-    fn choose(&mut self, axes: TwoAxes) {
-        let i = self.rotor.moments::<Dd>();
-        let ([o, n], j) = (axes.axes(), axes.reference());
-        // not as a difference of reciprocals, which has fewer digits than the moments
-        let rate = |k: usize| (i[j] - i[k]) / (i[j] * i[k]);
-        self.axes = axes;
-        self.half_rates = [S::from_dd(rate(o) * (self.h * 0.25)), S::from_dd(rate(n) * (self.h * 0.5))];
-        self.ball = Casimir::new(S::from_dd(Dd::ONE / i[j]));
-    }
-
-    /// Turns about the outer (true) or the inner axis.
-    #[inline]
-    fn turns<const N: usize, const SMALL: bool>(&self, x: &mut Point<S>, turns: [(bool, S); N]) {
-        match self.axes.0 {
-            [0, 1] => turns_about::<0, 1, N, SMALL, S>(x, turns),
-            [0, _] => turns_about::<0, 2, N, SMALL, S>(x, turns),
-            [1, 0] => turns_about::<1, 0, N, SMALL, S>(x, turns),
-            [1, _] => turns_about::<1, 2, N, SMALL, S>(x, turns),
-            [_, 0] => turns_about::<2, 0, N, SMALL, S>(x, turns),
-            _ => turns_about::<2, 1, N, SMALL, S>(x, turns),
-        }
-        x.renormalize_at_times();
-    }
-}
-
-#[inline(always)]
-fn turns_about<const OUTER: usize, const INNER: usize, const N: usize, const SMALL: bool, S: Real>(
-    x: &mut Point<S>,
-    turns: [(bool, S); N],
-) {
-    for (outer, half_rate) in turns {
-        if outer {
-            turn_one::<OUTER, SMALL, S>(x, half_rate)
-        } else {
-            turn_one::<INNER, SMALL, S>(x, half_rate)
+    fn new(axes: Option<TwoAxes>, scheme: Scheme, h: Dd, rotor: &Rotor) -> Self {
+        let axes = axes.unwrap_or_else(|| TwoAxes::usual(rotor.moments()));
+        TwoTurnMap {
+            rotor: *rotor,
+            scheme,
+            h,
+            free_to_choose: false,
+            axes,
+            turns: axes.turns(rotor, h, &scheme),
+            ball: Casimir::new(S::from_dd(Dd::ONE / rotor.moments::<Dd>()[axes.reference()])),
+            momentum_space: Vec3::zero(),
         }
     }
 }
@@ -226,33 +211,28 @@ fn turns_about<const OUTER: usize, const INNER: usize, const N: usize, const SMA
 impl<S: Precise> Map<S> for TwoTurnMap<S> {
     #[inline]
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
-        let [outer, inner] = self.half_rates;
         self.ball.flow(at, S::from_dd(self.h), x);
-        self.turns::<3, false>(x, [(true, outer), (false, inner), (true, outer)]);
+        self.turns.apply(x);
     }
 
     fn open(&mut self, _: Time, x: &mut Point<S>) {
         if self.free_to_choose {
             let m = x.momentum_body.map(S::to_f64);
-            self.choose(TwoAxes::best(m, self.rotor.moments()));
+            self.axes = TwoAxes::best(m, self.rotor.moments());
+            self.turns = self.axes.turns(&self.rotor, self.h, &self.scheme);
         }
         self.momentum_space = x.attitude.map(S::to_dd).rotate(x.momentum_body.map(S::to_dd));
-        let largest = (self.half_rates[0].magnitude() * 2.0).max(self.half_rates[1].magnitude());
-        // |m| walks by rounding
-        self.small = 1.01 * largest * x.momentum_body.norm().magnitude() <= SMALL;
-        turn_about_axis(self.axes.0[0], x, self.half_rates[0]);
+        self.turns.open(x);
     }
 
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
-        let [outer, inner] = self.half_rates;
-        let turns = [(false, inner), (true, outer + outer)];
-        if self.small { self.turns::<2, true>(x, turns) } else { self.turns::<2, false>(x, turns) }
+        self.turns.advance(x);
     }
 
     #[inline]
     fn close(&mut self, _: Time, x: &mut Point<S>) {
-        turn_about_axis(self.axes.0[0], x, -self.half_rates[0]);
+        self.turns.close(x);
     }
 
     fn synchronize(&self, elapsed: Dd, x: &mut Point<S>) {
