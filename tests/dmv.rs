@@ -65,20 +65,30 @@ fn invariants_of_free_motion_are_kept_at_every_order() {
 
 #[test]
 fn high_orders_reach_rounding_at_large_steps() {
-    // 21 degrees a step, 80 000 steps
-    let (body, start) = dyadic();
-    let exact = FreeMotion::from_state(body.inertia(), &start).unwrap().at(1e4).unwrap();
-    let error = |name: &str| {
-        let end = Run::new(&method(name).unwrap(), &body, &start, 0.125).unwrap().advance_to(80_000).unwrap();
-        let worst = end.worst.of(Conserved::Energy).unwrap();
-        (rotation_angle(end.state.attitude, exact.attitude), worst)
-    };
+    // 21 degrees a step, 80 000 steps; rounding walks, so that one start says little
+    let (body, middle) = dyadic();
+    let starts: Vec<State> = (0..16)
+        .map(|k| {
+            let shift = |j: i32| 0.25 * (f64::from(3 * k + j + 1) * 0.618_033_988_749_894_9).fract() - 0.125;
+            let momentum_body = middle.momentum_body + Vec3([shift(0), shift(1), shift(2)]);
+            State { attitude: middle.attitude, momentum_body }
+        })
+        .collect();
     for (name, attitude, energy) in
-        [("dmv:6", 2e-2, 1e-14), ("dmv:10", 5e-8, 1e-14), ("dmv:16", 5e-12, 1e-14)]
+        [("dmv:6", 2e-2, 1e-14), ("dmv:10", 5e-8, 1e-14), ("dmv:16", 1e-11, 1e-14)]
     {
-        let (error, worst) = error(name);
-        println!("{name}: attitude {error:.1e}, energy {worst:.1e}");
-        assert!(error < attitude && worst < energy, "{name}: {error:e}, {worst:e}");
+        let mut squares = 0.0;
+        for start in &starts {
+            let exact = FreeMotion::from_state(body.inertia(), start).unwrap().at(1e4).unwrap();
+            let end =
+                Run::new(&method(name).unwrap(), &body, start, 0.125).unwrap().advance_to(80_000).unwrap();
+            let error = rotation_angle(end.state.attitude, exact.attitude);
+            squares += error * error;
+            let worst = end.worst.of(Conserved::Energy).unwrap();
+            assert!(worst < energy, "{name}: {worst:e}");
+        }
+        let error = (squares / starts.len() as f64).sqrt();
+        assert!(error < attitude, "{name}: {error:e}");
     }
 }
 

@@ -7,7 +7,7 @@
 //! | u | (2/h) I c, a momentum |
 
 use super::implicit_midpoint::cayley_turn;
-use super::stagnation::iterate;
+use super::quadratic::Quadratic;
 use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Gyroscopic, Point, Rotor, Time};
 use crate::num::{Dd, Real};
@@ -98,16 +98,9 @@ impl<S: Real> DmvMap<S> {
 impl<S: Real> Map<S> for DmvMap<S> {
     #[inline]
     fn apply(&mut self, _: Time, x: &mut Point<S>) {
-        let (m, term) = (x.momentum_body, |i, u_j, u_k| self.gyroscopic.component(i, u_j, u_k));
-        let sweep = |u: Vec3<S>| {
-            let alpha = S::of(1.0) + u.times(self.half).norm_squared();
-            // Gauss–Seidel: each new component serves the next
-            let u0 = alpha * m[0] + term(0, u[1], u[2]);
-            let u1 = alpha * m[1] + term(1, u[2], u0);
-            let u2 = alpha * m[2] + term(2, u0, u1);
-            Vec3([u0, u1, u2])
-        };
-        let (u, residual) = iterate(m.magnitude(), m, sweep);
+        let m = x.momentum_body;
+        let equation = Quadratic::<S, true> { m, half: self.half, gyroscopic: &self.gyroscopic };
+        let (u, residual) = equation.solution();
         self.worst_residual = self.worst_residual.max(residual);
         let c = u.times(self.half);
         let alpha = S::of(1.0) + c.norm_squared();

@@ -1,5 +1,6 @@
 //! The implicit midpoint rule on m, with the Cayley map on the attitude.
 
+use super::quadratic::Quadratic;
 use super::stagnation::iterate;
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method, Symmetric};
 use crate::body::{Field, Gyroscopic, Point, Problem, Rotor, Time, vertical};
@@ -38,7 +39,8 @@ pub struct ImplicitMidpointMap<S, F> {
     half: S,
     half_duration: Dd,
     inverse_moments: Vec3<S>,
-    gyroscopic: Gyroscopic<S>, // h u × I⁻¹u
+    gyroscopic: Gyroscopic<S>,      // h u × I⁻¹u
+    half_gyroscopic: Gyroscopic<S>, // half of it
     field: F,
     worst_residual: f64,
 }
@@ -75,6 +77,7 @@ impl<S: Real> Method<S> for ImplicitMidpoint {
             half_duration: h * 0.5,
             inverse_moments: rotor.inverse_moments(),
             gyroscopic: Gyroscopic::new(rotor, h),
+            half_gyroscopic: Gyroscopic::new(rotor, h * 0.5),
             field: field.clone(),
             worst_residual: 0.0,
         }
@@ -88,7 +91,10 @@ impl<S: Real, F: Field<S>> Map<S> for ImplicitMidpointMap<S, F> {
         let (delta, residual) = if F::ACTS {
             self.forced(at, x)
         } else {
-            iterate(m.magnitude(), self.gyroscopic.at(m), |delta| self.gyroscopic.at(m + delta * self.half))
+            let equation =
+                Quadratic::<S, false> { m, half: self.inverse_moments, gyroscopic: &self.half_gyroscopic };
+            let (middle, residual) = equation.solution();
+            (self.gyroscopic.at(middle), residual)
         };
         self.worst_residual = self.worst_residual.max(residual);
         let c = (m + delta * self.half).times(self.inverse_moments) * (self.h * self.half);
