@@ -18,9 +18,9 @@ use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::method::schemes::{self, Pairs, Scheme, Stages};
 use polhode::method::{
-    AnyMethod, AxisOrder, AxisSplit, Claimed, Claims, Composed, Cost, Dmv, Energy, ExactFlow, ExplicitEuler,
-    ImplicitMidpoint, Kicks, Map, Method, Rk4, SemiImplicitEuler, Splitting, StepError, TwoTurn, catalogue,
-    method,
+    AnyMethod, AxisOrder, AxisSplit, Claimed, Claims, Composed, Cost, Dmv, Energy, ExactFlow, ExactStep,
+    ExplicitEuler, ImplicitMidpoint, Kicks, Map, Method, Rk4, SemiImplicitEuler, Splitting, StepError,
+    TwoTurn, catalogue, method,
 };
 use polhode::num::{Dd, Precise, Real};
 use polhode::observe::{Drift, Invariants, secular_drift};
@@ -734,6 +734,8 @@ fn each_method_costs_what_it_claims() {
             format!("{} ({problem:?})", method.name())
         }
     }
+    let ([sines, roots, _], cost) = counted(&ExactStep, Problem::Free, ASYMMETRIC);
+    assert_eq!((sines, roots, cost), (0, 2, Cost::additions(1)), "an addition takes two roots");
     assert_cost(&ExplicitEuler, false);
     assert_cost(&SemiImplicitEuler, false);
     assert_cost(&Rk4 { normalized: false }, false);
@@ -934,6 +936,9 @@ fn a_method_refuses_by_name_what_it_cannot_do() {
         error.to_string(),
         "method \"free-only\" cannot take gravity, a potential: it is for free motion; take kick-drift, for one"
     );
+    for (problem, case) in cases() {
+        assert_eq!(ExactStep.prepare_dd(Clock::new(0.1), &case.body).is_ok(), problem == Problem::Free);
+    }
     let error = refused(&method("lie-poisson").unwrap(), &pushed().body);
     assert_eq!(
         error.to_string(),
@@ -1088,6 +1093,7 @@ fn a_name_that_is_no_method_is_refused_with_its_reason() {
     assert!(error("lie-poisson:322").ends_with("allowed: a permutation of 123, such as lie-poisson:321"));
     assert!(error("kick-drift:6").ends_with("allowed: 2 or 4, its order"));
     assert!(error("kick-drift:4@srkn-6b").ends_with("allowed: none beside a scheme"));
+    assert!(error("exact-step@suzuki-4").ends_with("allowed: none, and no scheme: its steps are exact"));
     assert!(error("rattle@suzuki").contains("there is no scheme"));
     for known in catalogue() {
         assert_eq!(method(&known.name()).unwrap().name(), known.name());

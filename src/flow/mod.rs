@@ -10,6 +10,7 @@ mod turn;
 
 pub use casimir::Casimir;
 pub use exact_motion::{ExactMotion, NoClosedForm};
+pub(crate) use free::{Addition, Curve, FreeOrbit};
 pub use free::{AtRest, Character, FreeBody, FreeFlow, FreeMotion, Mode, SymmetricTop};
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop};

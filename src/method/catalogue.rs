@@ -5,8 +5,9 @@ use thiserror::Error;
 use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
-    AxisOrder, AxisSplit, Claimed, Composed, Dmv, ExactFlow, ExplicitEuler, FreePart, ImplicitMidpoint,
-    Kicks, Method, PreprocessedDmv, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step, TwoAxes, TwoTurn,
+    AxisOrder, AxisSplit, Claimed, Composed, Dmv, ExactFlow, ExactStep, ExplicitEuler, FreePart,
+    ImplicitMidpoint, Kicks, Method, PreprocessedDmv, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step,
+    TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -132,6 +133,7 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(Splitting::strang(PreprocessedDmv::ORDER_10, Kicks)),
         Box::new(Splitting::strang(AxisSplit { axes: None }, Kicks)),
         Box::new(Splitting::strang(TwoTurn { axes: None }, Kicks)),
+        Box::new(ExactStep),
         Box::new(Splitting::strang(ExactFlow, Kicks)),
         Box::new(Splitting::with_scheme(ExactFlow, Kicks, SUZUKI_4)),
     ]
@@ -187,6 +189,10 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
             let rule = "two different ones of 123, the outer axis first, such as two-turn:31";
             kicked(TwoTurn { axes: axes.map_err(|_| asked.refused(rule))? }, chosen)
         }
+        "exact-step" => match asked.scheme_alone()? {
+            None => Ok(Box::new(ExactStep)),
+            Some(_) => Err(asked.refused("none, and no scheme: its steps are exact")),
+        },
         "kick-drift" => match (argument, asked.scheme()?) {
             (None, chosen) => kicked(ExactFlow, chosen),
             (Some("2"), None) => kicked(ExactFlow, None),

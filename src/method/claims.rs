@@ -94,6 +94,8 @@ pub struct Cost {
     pub right_sides: u32,
     /// Turns about an axis, one sine and cosine each.
     pub turns: u32,
+    /// Additions of Jacobi's functions by their theorem.
+    pub additions: u32,
     /// Exact flows of the free body.
     pub free_flows: u32,
     /// Solutions of three nonlinear equations by iteration.
@@ -113,6 +115,11 @@ impl Cost {
         Cost { turns: n, ..Cost::NOTHING }
     }
 
+    /// `n` additions of Jacobi's functions.
+    pub const fn additions(n: u32) -> Cost {
+        Cost { additions: n, ..Cost::NOTHING }
+    }
+
     /// `n` exact flows of the free body.
     pub const fn free_flows(n: u32) -> Cost {
         Cost { free_flows: n, ..Cost::NOTHING }
@@ -128,7 +135,7 @@ impl Cost {
         Cost { kicks: n, ..Cost::NOTHING }
     }
 
-    const NOTHING: Cost = Cost { right_sides: 0, turns: 0, free_flows: 0, solves: 0, kicks: 0 };
+    const NOTHING: Cost = Cost { right_sides: 0, turns: 0, additions: 0, free_flows: 0, solves: 0, kicks: 0 };
 }
 
 impl Add for Cost {
@@ -137,6 +144,7 @@ impl Add for Cost {
         Cost {
             right_sides: self.right_sides + b.right_sides,
             turns: self.turns + b.turns,
+            additions: self.additions + b.additions,
             free_flows: self.free_flows + b.free_flows,
             solves: self.solves + b.solves,
             kicks: self.kicks + b.kicks,
@@ -150,6 +158,7 @@ impl Mul<u32> for Cost {
         Cost {
             right_sides: self.right_sides * n,
             turns: self.turns * n,
+            additions: self.additions * n,
             free_flows: self.free_flows * n,
             solves: self.solves * n,
             kicks: self.kicks * n,
@@ -174,6 +183,7 @@ impl fmt::Display for Cost {
         for (n, one) in [
             (self.right_sides, "right side"),
             (self.turns, "turn"),
+            (self.additions, "elliptic addition"),
             (self.free_flows, "free flow"),
             (self.kicks, "kick"),
         ] {

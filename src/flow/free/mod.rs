@@ -1,19 +1,23 @@
 //! The free body: its motion at any time, and its flow for splittings.
 
+mod addition;
 mod character;
 mod circulation;
 mod free_body;
 mod free_flow;
 mod motion;
+mod orbit;
 mod phase;
 mod polhode;
 mod short_flow;
 mod symmetric_top;
 mod theta;
 
+pub(crate) use addition::{Addition, Curve};
 pub use character::{AtRest, Character, Mode};
 pub use free_body::FreeBody;
 pub use free_flow::FreeFlow;
 pub use motion::FreeMotion;
+pub(crate) use orbit::FreeOrbit;
 pub(super) use phase::reduce;
 pub use symmetric_top::SymmetricTop;

@@ -28,12 +28,12 @@ impl Phase {
         Phase { rate: pair(rate), start: pair(start) }
     }
 
-    /// The value at `t`, as a sum of two numbers.
+    /// The value at the time `t`, as a sum of two numbers.
     #[inline]
-    pub(super) fn at(&self, t: f64) -> (f64, f64) {
+    pub(super) fn at(&self, [t, low]: Pair) -> (f64, f64) {
         let (product, rest) = two_prod(self.rate[0], t);
         let (sum, error) = two_sum(product, self.start[0]);
-        (sum, (rest + self.rate[1] * t) + (error + self.start[1]))
+        (sum, (rest + (self.rate[1] * t + self.rate[0] * low)) + (error + self.start[1]))
     }
 }
 
@@ -58,7 +58,7 @@ impl Spin {
 
     /// The turn since the start; `None` after too many turns for `f64` pairs.
     #[inline]
-    pub(super) fn quick(&self, t: f64) -> Option<Quat<f64>> {
+    pub(super) fn quick(&self, t: Pair) -> Option<Quat<f64>> {
         let (turns, low) = self.half_angle.at(t);
         if turns.is_nan() || turns.abs() >= TOO_FAR {
             return None;

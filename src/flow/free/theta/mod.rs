@@ -80,7 +80,7 @@ impl Theta {
 
     /// Attitude and momentum at `t`; `None` where so many turns have passed that `f64` pairs cannot reduce them.
     #[inline]
-    pub(super) fn at(&self, t: f64) -> Option<(Quat<f64>, Vec3<f64>)> {
+    pub(super) fn at(&self, t: Pair) -> Option<(Quat<f64>, Vec3<f64>)> {
         let (phase, phase_low) = self.phase.at(t);
         let (mut psi, mut psi_low) = self.twist.at(t);
         if !(phase.abs() < TOO_FAR && psi.abs() < TOO_FAR) {
