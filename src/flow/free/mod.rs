@@ -19,5 +19,6 @@ pub use free_body::FreeBody;
 pub use free_flow::FreeFlow;
 pub use motion::FreeMotion;
 pub(crate) use orbit::FreeOrbit;
-pub(super) use phase::reduce;
+pub(super) use phase::{Phase, TOO_FAR, reduce};
 pub use symmetric_top::SymmetricTop;
+pub(super) use theta::{LEAST_TERMS, V_MINUS, V_PLUS, least_value, polynomial, power};

@@ -6,31 +6,31 @@ use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};
 
 /// A double-double as two plain numbers.
-pub(super) type Pair = [f64; 2];
+pub(in crate::flow) type Pair = [f64; 2];
 
-pub(super) fn pair(x: Dd) -> Pair {
+pub(in crate::flow) fn pair(x: Dd) -> Pair {
     [x.hi(), x.lo()]
 }
 
 /// Turns from which a `f64` product pair serves no longer: up to here its low part stays below 2⁻¹¹, so that the
 /// rest after whole quarter turns hardly leaves the range of the kernels, which do not reduce the low part.
-pub(super) const TOO_FAR: f64 = 8_796_093_022_208.0; // 2^43
+pub(in crate::flow) const TOO_FAR: f64 = 8_796_093_022_208.0; // 2^43
 
 /// `rate · t + start`, both in double-double.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Phase {
+pub(in crate::flow) struct Phase {
     rate: Pair,
     start: Pair,
 }
 
 impl Phase {
-    pub(super) fn new(rate: Dd, start: Dd) -> Self {
+    pub(in crate::flow) fn new(rate: Dd, start: Dd) -> Self {
         Phase { rate: pair(rate), start: pair(start) }
     }
 
     /// The value at the time `t`, as a sum of two numbers.
     #[inline]
-    pub(super) fn at(&self, [t, low]: Pair) -> (f64, f64) {
+    pub(in crate::flow) fn at(&self, [t, low]: Pair) -> (f64, f64) {
         let (product, rest) = two_prod(self.rate[0], t);
         let (sum, error) = two_sum(product, self.start[0]);
         (sum, (rest + (self.rate[1] * t + self.rate[0] * low)) + (error + self.start[1]))
@@ -39,7 +39,7 @@ impl Phase {
 
 /// A turn at a constant rate about an axis fixed in the body and in space.
 #[derive(Clone, Debug)]
-pub(super) struct Spin {
+pub(in crate::flow) struct Spin {
     axis: Vec3<Dd>,
     rate: Dd,
     half_angle: Phase, // in turns
@@ -47,18 +47,18 @@ pub(super) struct Spin {
 
 impl Spin {
     /// About the unit vector `axis` at `rate` rad/s.
-    pub(super) fn new(axis: Vec3<Dd>, rate: Dd) -> Self {
+    pub(in crate::flow) fn new(axis: Vec3<Dd>, rate: Dd) -> Self {
         Spin { axis, rate, half_angle: Phase::new(rate / (Dd::TAU * 2.0), Dd::ZERO) }
     }
 
     /// rad/s.
-    pub(super) fn rate(&self) -> Dd {
+    pub(in crate::flow) fn rate(&self) -> Dd {
         self.rate
     }
 
     /// The turn since the start; `None` after too many turns for `f64` pairs.
     #[inline]
-    pub(super) fn quick(&self, t: Pair) -> Option<Quat<f64>> {
+    pub(in crate::flow) fn quick(&self, t: Pair) -> Option<Quat<f64>> {
         let (turns, low) = self.half_angle.at(t);
         if turns.is_nan() || turns.abs() >= TOO_FAR {
             return None;
@@ -74,13 +74,13 @@ impl Spin {
 }
 
 /// The rotation by `angle` about the unit vector `axis`.
-pub(super) fn rotation<S: Precise>(axis: Vec3<S>, angle: S) -> Quat<S> {
+pub(in crate::flow) fn rotation<S: Precise>(axis: Vec3<S>, angle: S) -> Quat<S> {
     let (sin, cos) = (reduce(angle, S::from_dd(Dd::TAU * 2.0)) * S::of(0.5)).sin_cos();
     Quat::new(cos, axis * sin)
 }
 
 /// Axis and rate of a turn about a momentum that stays fixed in the body: ω is parallel to m.
-pub(super) fn steady<S: Precise>(moments: Vec3<S>, m: Vec3<S>, norm: S) -> (Vec3<S>, S) {
+pub(in crate::flow) fn steady<S: Precise>(moments: Vec3<S>, m: Vec3<S>, norm: S) -> (Vec3<S>, S) {
     let omega = Vec3([m[0] / moments[0], m[1] / moments[1], m[2] / moments[2]]);
     (m * (S::of(1.0) / norm), m.dot(omega) / norm)
 }

@@ -2,6 +2,7 @@
 
 mod cubic;
 mod nutation;
+mod theta;
 mod top;
 
 pub use top::{LagrangeError, LagrangeTop};

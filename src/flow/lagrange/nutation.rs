@@ -31,17 +31,19 @@ const LONG: f64 = 8.0;
 /// The nutation of one heavy ball.
 #[derive(Clone, Debug)]
 pub(super) struct Nutation {
-    rate: Dd,         // Ω
-    parameter: Dd,    // k²
-    complement: Dd,   // k'²
-    half: Option<Dd>, // K, unless infinite
-    phase: Dd,        // τ at t = 0
-    span: Dd,         // u₂ − u₁
-    x: [Dd; 3],
-    y: [Dd; 2],
-    w3: Dd,
-    e: Dd,
-    d: Dd,
+    pub(super) rate: Dd,         // Ω
+    pub(super) parameter: Dd,    // k²
+    pub(super) complement: Dd,   // k'²
+    pub(super) half: Option<Dd>, // K, unless infinite
+    pub(super) phase: Dd,        // τ at t = 0
+    span: Dd,                    // u₂ − u₁
+    pub(super) x: [Dd; 3],
+    pub(super) y: [Dd; 2],
+    pub(super) w3: Dd,
+    pub(super) e: Dd,
+    pub(super) d: Dd,
+    /// 1 + u and 1 − u where the transverse angular velocity would vanish.
+    pub(super) apex: [Dd; 2],
     alpha_advance: Dd, // of the smooth phase over 2K
     beta_advance: Dd,
     alpha_start: Complex<Dd>, // what the phases at t = 0 lack
@@ -100,6 +102,7 @@ impl Nutation {
             w3,
             e: start.e,
             d: start.d,
+            apex: [start.x + start.transverse / b, start.y - start.transverse / b],
             alpha_advance: Dd::ZERO,
             beta_advance: Dd::ZERO,
             alpha_start: Complex::new(Dd::ONE, Dd::ZERO),
@@ -138,10 +141,17 @@ impl Nutation {
 
     /// Advance of the azimuth over one period.
     pub(super) fn precession(&self) -> Option<Dd> {
-        let jump = |jumps: bool| if jumps { Dd::PI } else { Dd::ZERO };
-        let alpha = (self.alpha_advance + jump(self.alpha_jumps())) * sign_of(self.e);
-        let beta = (self.beta_advance + jump(self.beta_jumps())) * sign_of(self.d);
+        let [alpha, beta] = self.advances();
         self.half.map(|_| alpha + beta)
+    }
+
+    /// Of arg α and arg β over one period.
+    pub(super) fn advances(&self) -> [Dd; 2] {
+        let jump = |jumps: bool| if jumps { Dd::PI } else { Dd::ZERO };
+        [
+            (self.alpha_advance + jump(self.alpha_jumps())) * sign_of(self.e),
+            (self.beta_advance + jump(self.beta_jumps())) * sign_of(self.d),
+        ]
     }
 
     /// q and q' at time `t`.
@@ -365,6 +375,6 @@ impl Nutation {
     }
 }
 
-fn sign_of(x: Dd) -> Dd {
+pub(super) fn sign_of(x: Dd) -> Dd {
     if x < Dd::ZERO { -Dd::ONE } else { Dd::ONE }
 }

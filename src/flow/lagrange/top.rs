@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::nutation::Nutation;
+use super::theta::Theta;
 use crate::body::{Body, Point, State, StateError};
 use crate::flow::free::reduce;
 use crate::flow::reach::{MOST_RADIANS, TimeError};
@@ -107,14 +108,16 @@ pub struct LagrangeTop {
     weight: Dd,     // |c|
     start: Point<Dd>,
     motion: Motion,
+    reach: f64,
 }
 
 #[derive(Clone, Debug)]
 enum Motion {
     /// The axis rests on the vertical: upright, asleep or about to fall, or hanging.
     Vertical,
-    /// In units of time of 2ᵏ s, in which the fastest rate is near 1.
-    Nutating { nutation: Box<Nutation>, unit: i32 },
+    /// In units of time of 2^`unit` s, in which the fastest rate is near 1; the quick form away from the separatrix of the
+    /// sleeping top.
+    Nutating { nutation: Box<Nutation>, unit: i32, quick: Option<Box<Theta>> },
 }
 
 impl LagrangeTop {
@@ -178,9 +181,15 @@ impl LagrangeTop {
             let unit = -libm::ilogb(fastest);
             let omega = omega.map(|rate| rate.scaled(unit));
             let nutation = Box::new(Nutation::new(b.scaled(2 * unit), attitude, omega));
-            Motion::Nutating { nutation, unit }
+            let spin = momentum_body[2] / axial - momentum_body[2] / transverse;
+            let quick = Theta::new(&nutation, transverse, spin, unit).map(Box::new);
+            Motion::Nutating { nutation, unit, quick }
         };
-        Ok(LagrangeTop { body: body.clone(), frame, transverse, axial, weight, start, motion })
+        let smaller = if axial < transverse { axial } else { transverse };
+        let omega = Vec3([m1 / transverse, m2 / transverse, momentum_body[2] / smaller]);
+        let fastest = omega.norm_of_any_size().hi() + (weight / transverse).sqrt().hi();
+        let reach = MOST_RADIANS / fastest;
+        Ok(LagrangeTop { body: body.clone(), frame, transverse, axial, weight, start, motion, reach })
     }
 
     /// The body that moves.
@@ -200,22 +209,34 @@ impl LagrangeTop {
     /// The largest |t| at which the phases still have digits, s: some 2⁹⁶ rad.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        let smaller = if self.axial < self.transverse { self.axial } else { self.transverse };
-        let [m1, m2, m3] = self.start.momentum_body.0;
-        let omega = Vec3([m1 / self.transverse, m2 / self.transverse, m3 / smaller]);
-        let fastest = omega.norm_of_any_size().hi() + (self.weight / self.transverse).sqrt().hi();
-        MOST_RADIANS / fastest
+        self.reach
+    }
+
+    /// The states at many `times`, body axes.
+    ///
+    /// # Errors
+    /// As [`at`](Self::at), of the first time that has no state.
+    pub fn at_many(&self, times: &[f64]) -> Result<Vec<State>, TimeError> {
+        times.iter().map(|&t| self.at(t)).collect()
     }
 
     /// The point of the solver frame at time `t` (s), finite and within [`reach`](Self::reach).
     ///
-    /// Phases are reduced in double-double; next to the separatrix of the sleeping top, where the axis makes many turns
-    /// before it nods, they are evaluated in it as well. The quaternion is the continuous lift from the start.
+    /// By theta functions, with phases reduced in double-double. Next to the separatrix of the sleeping top, where the axis
+    /// makes many turns before it nods, by Carlson's integrals, there in double-double as well. The quaternion is the continuous
+    /// lift from the start.
+    #[inline]
     pub fn point_at(&self, t: f64) -> Point<f64> {
-        self.evaluate(Dd::from(t))
+        let quick = match &self.motion {
+            Motion::Nutating { quick: Some(quick), .. } => quick.at(t),
+            _ => None,
+        };
+        let Some((attitude, [m1, m2])) = quick else { return self.evaluate(Dd::from(t)) };
+        let (frame, m3) = (self.frame.map(Dd::hi), self.start.momentum_body[2].hi());
+        Point::new(attitude * frame.conjugate(), frame.rotate(Vec3([m1, m2, m3])))
     }
 
-    /// The same in double-double.
+    /// The same in double-double, by Carlson's integrals.
     pub fn point_at_dd(&self, t: Dd) -> Point<Dd> {
         self.evaluate(t)
     }
@@ -231,7 +252,7 @@ impl LagrangeTop {
                 let q = self.start.attitude.map(S::from_dd);
                 (q * turn(m3 / self.axial), self.start.momentum_body.map(S::from_dd))
             }
-            Motion::Nutating { nutation, unit } => {
+            Motion::Nutating { nutation, unit, .. } => {
                 let spin = turn(m3 / self.axial - m3 / self.transverse);
                 let (q, q_rate) = nutation.at::<S>(t.scaled(-unit));
                 let mut m = (q.conjugate() * q_rate).v * S::from_dd((self.transverse * 2.0).scaled(-unit));
@@ -265,7 +286,9 @@ impl LagrangeTop {
     pub fn nutation_period(&self) -> Option<f64> {
         match &self.motion {
             Motion::Vertical => None,
-            Motion::Nutating { nutation, unit } => nutation.period().map(|period| period.scaled(*unit).hi()),
+            Motion::Nutating { nutation, unit, .. } => {
+                nutation.period().map(|period| period.scaled(*unit).hi())
+            }
         }
     }
 

@@ -23,7 +23,8 @@ mod direct;
 mod dual;
 mod series;
 
-use self::series::{Form, LEAST_TERMS, TERMS, least_value, value};
+use self::series::{Form, TERMS, value};
+pub(in crate::flow) use self::series::{LEAST_TERMS, V_MINUS, V_PLUS, least_value, polynomial, power};
 use super::phase::{Pair, Phase, TOO_FAR};
 use super::polhode::Polhode;
 use crate::num::error_free::{two_prod, two_sum};

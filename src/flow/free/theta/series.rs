@@ -8,7 +8,7 @@ use crate::num::Dd;
 pub(super) const TERMS: usize = 4;
 
 /// Terms of the theta quotient along the smallest moment: below 7e-18.
-pub(super) const LEAST_TERMS: usize = 5;
+pub(in crate::flow) const LEAST_TERMS: usize = 5;
 
 /// Terms where sums are taken in double-double.
 pub(super) const DD_TERMS: usize = 6;
@@ -56,18 +56,18 @@ pub(super) fn flip(polhode: &Polhode<Dd>) -> Dd {
 }
 
 /// First two members F₀ = c, F₁ = a + bX of a family with F_{n+1} = 2X F_n − F_{n−1}, as [c, a, b].
-pub(super) type Family = [f64; 3];
+pub(in crate::flow) type Family = [f64; 3];
 /// cos 2nx of X = cos 2x.
 pub(super) const T: Family = [1.0, 0.0, 1.0];
 /// sin 2nx / sin 2x.
 pub(super) const U: Family = [0.0, 1.0, 0.0];
 /// sin (2n+1)x / sin x.
-pub(super) const V_PLUS: Family = [1.0, 1.0, 2.0];
+pub(in crate::flow) const V_PLUS: Family = [1.0, 1.0, 2.0];
 /// cos (2n+1)x / cos x.
-pub(super) const V_MINUS: Family = [1.0, -1.0, 2.0];
+pub(in crate::flow) const V_MINUS: Family = [1.0, -1.0, 2.0];
 
 /// Coefficients of powers of X in Σ v_n F_n(X), rounded once.
-pub(super) fn polynomial<const N: usize>(v: [Dd; N], [c, a, b]: Family) -> [f64; N] {
+pub(in crate::flow) fn polynomial<const N: usize>(v: [Dd; N], [c, a, b]: Family) -> [f64; N] {
     let mut sum = [Dd::ZERO; N];
     let (mut before, mut now) = ([0.0; N], [0.0; N]);
     before[0] = c;
@@ -94,7 +94,7 @@ pub(super) fn value(p: &[f64; TERMS], x: f64) -> f64 {
 
 /// The quartic at `x`.
 #[inline]
-pub(super) fn least_value(p: &[f64; LEAST_TERMS], x: f64) -> f64 {
+pub(in crate::flow) fn least_value(p: &[f64; LEAST_TERMS], x: f64) -> f64 {
     let x2 = x * x;
     (p[0] + p[1] * x) + x2 * ((p[2] + p[3] * x) + x2 * p[4])
 }
@@ -107,7 +107,7 @@ pub(super) fn total(v: &[Dd; DD_TERMS]) -> Dd {
     v.iter().rev().fold(Dd::ZERO, |sum, &x| sum + x)
 }
 
-pub(super) fn power(x: Dd, n: u32) -> Dd {
+pub(in crate::flow) fn power(x: Dd, n: u32) -> Dd {
     let (mut result, mut base, mut n) = (Dd::ONE, x, n);
     while n > 0 {
         if n % 2 == 1 {
