@@ -1,14 +1,14 @@
 //! The quick form in `f64`: three theta functions, with constants and phases in double-double.
 //!
-//! The Cayley–Klein parameters α, β of the ball and its transverse angular velocity Ω = ω₁ + iω₂ = 2 (ᾱβ' − βᾱ') have
+//! The Cayley–Klein parameters α, β of the ball and its transverse angular velocity ζ = ω₁ + iω₂ = 2 (ᾱβ' − βᾱ') have
 //! one zero and one pole each in a period of τ. With x = πτ/2K and the nome q of k therefore
 //!
-//! `α = e^{iφ_α} Z/√n₂`, `β = e^{iφ_β} W/√n₂`, `Ω = e^{iφ_Ω} V/√n₂`, `n₂ = |Z|² + |W|²`,
-//! `Z ∝ θ₁(x ∓ iy_α)`, `W ∝ θ₂(x ∓ iy_β)`, `V ∝ θ₂(x ∓ iy_Ω)`, the three φ linear in t.
+//! `α = e^{iφ_α} Z/√n₂`, `β = e^{iφ_β} W/√n₂`, `ζ = e^{iφ_ζ} V/√n₂`, `n₂ = |Z|² + |W|²`,
+//! `Z ∝ θ₁(x ∓ iy_α)`, `W ∝ θ₂(x ∓ iy_β)`, `V ∝ θ₂(x ∓ iy_ζ)`, the three φ linear in t.
 //!
 //! The poles are those of 1/θ₄(x), and n₂ ∝ θ₄(x)². The zeros y = πη/2K are those of the squares, which are linear in u:
-//! `2|α|² = 1 + u`, `2|β|² = 1 − u` and `|Ω|² = b (u_Ω − u)` with u₂ ≤ u_Ω ≤ u₃. The sign of y is that of the numerator of
-//! the phase's rate, e, d and `a u_Ω − m·Γ/A`. Other letters as in [`nutation`](super::nutation).
+//! `2|α|² = 1 + u`, `2|β|² = 1 − u` and `|ζ|² = b (u_ζ − u)` with u₂ ≤ u_ζ ≤ u₃. The sign of y is that of the numerator of
+//! the phase's rate, e, d and `a u_ζ − m·Γ/A`. Other letters as in [`nutation`](super::nutation).
 //!
 //! Reference: F. Klein and A. Sommerfeld, Über die Theorie des Kreisels, chapter VI.
 
@@ -78,7 +78,7 @@ impl Theta {
         // where none of the functions vanishes
         let near = (quarter * 0.5 - nutation.phase) / nutation.rate;
         let exact = functions::<Dd>(nutation, near);
-        // half a period on, e^{iφ_Ω} tells the two possible rates apart
+        // half a period on, e^{iφ_ζ} tells the two possible rates apart
         let far = near + half_period;
         let later = functions::<f64>(nutation, far)[2];
         let turned = factor(&sums[2], exact[2], near).conjugate() * factor(&sums[2], later, far);
@@ -175,7 +175,7 @@ impl Sums {
     }
 }
 
-/// α, β and Ω at the time `t` of the nutation, with the digits of `S`.
+/// α, β and ζ at the time `t` of the nutation, with the digits of `S`.
 fn functions<S: Precise>(nutation: &Nutation, t: Dd) -> [Complex<Dd>; 3] {
     let (q, rate) = nutation.at::<S>(t);
     let Vec3([o1, o2, _]) = (q.conjugate() * rate).v * S::of(2.0);
@@ -183,13 +183,13 @@ fn functions<S: Precise>(nutation: &Nutation, t: Dd) -> [Complex<Dd>; 3] {
     [exactly(q.w, q.v[2]), exactly(q.v[0], q.v[1]), exactly(o1, o2)]
 }
 
-/// Z, W and V. Of φ_Ω' only its value up to a frequency of the nutation is told here.
+/// Z, W and V. Of φ_ζ' only its value up to a frequency of the nutation is told here.
 fn sums(nutation: &Nutation, nome: Dd, quarter: Dd) -> [Sums; 3] {
     let ([x1, x2, x3], [y1, y2], w3) = (nutation.x, nutation.y, nutation.w3);
     let between = x3 - x1;
     let [x, y] = nutation.apex;
-    let off = (nutation.e * y + nutation.d * x) * 0.5; // m·Γ/A − a u_Ω
-    // (u_Ω − u₂)(u₃ − u_Ω): of the two only the larger is a difference
+    let off = (nutation.e * y + nutation.d * x) * 0.5; // m·Γ/A − a u_ζ
+    // (u_ζ − u₂)(u₃ − u_ζ): of the two only the larger is a difference
     let product = off * off * between / (nutation.rate * nutation.rate * 4.0 * (x - x1));
     let above = if x < Dd::ONE { x3 - x } else { w3 + y };
     let below = if x < Dd::ONE { x - x2 } else { y2 - y };
@@ -202,7 +202,7 @@ fn sums(nutation: &Nutation, nome: Dd, quarter: Dd) -> [Sums; 3] {
     let mut w = Sums::new(true, nome, decay(w3 / top, y2 / top, y1 / between), sign_d);
     let side = above + below;
     let mut v = Sums::new(true, nome, decay(above / side, below / side, (x - x1) / between), -sign_of(off));
-    // over half a period the theta functions themselves advance by ∓π/2
+    // over a period of u the theta functions themselves turn by ±π
     let [alpha, beta] = nutation.advances();
     let per_time = nutation.rate / (quarter * 2.0);
     z.rate = (alpha - sign_e * Dd::PI) * per_time;
