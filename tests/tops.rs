@@ -309,6 +309,36 @@ fn the_quick_form_agrees_with_double_double_at_any_time() {
     println!("{worst:.1e}");
 }
 
+/// Tops that fall from ever nearer to the vertical: from both forms of the theta functions to the separatrix, where neither is
+/// taken.
+#[test]
+fn a_top_that_falls_from_next_to_the_vertical_keeps_its_digits() {
+    let mut worst = 0.0_f64;
+    for (moments, weight) in [([1.0, 1.0, 0.5], 1.0), ([1.0, 1.0, 1.5], 1.0), ([1.0, 1.0, 0.5], -1.0)] {
+        let body = Body::heavy(Inertia::from_moments(moments).unwrap(), [0.0, 0.0, weight].into()).unwrap();
+        for half_decades in 0..138 {
+            let tilt = libm::exp10(-0.5 * f64::from(half_decades));
+            let (sin, cos) = libm::sincos(tilt / 2.0);
+            let attitude = if weight > 0.0 { [cos, sin, 0.0, 0.0] } else { [sin, cos, 0.0, 0.0] };
+            for (spin, across) in [(0.0, 0.0), (0.7, 0.0), (-0.4, 0.3 * tilt), (0.2, -1.7 * tilt)] {
+                let start = body.enter_omega(Quat::from_components(attitude), Vec3([across, 0.0, spin]));
+                let top = LagrangeTop::from_point(&body, start.unwrap()).unwrap();
+                for t in [0.4, -3.0, 11.0, 40.0, 130.0, 1e5, 1e9] {
+                    let (rough, exact) = (top.point_at(t).to_dd(), top.point_at_dd(Dd::from(t)));
+                    let attitude = (rough.attitude - exact.attitude).magnitude();
+                    let momentum = (rough.momentum_body - exact.momentum_body).magnitude();
+                    assert!(
+                        attitude < 5e-15 && momentum < 5e-15,
+                        "{moments:?}, c {weight}, tilt {tilt:e}, spin {spin}, t {t}: {attitude:.1e}, {momentum:.1e}"
+                    );
+                    worst = worst.max(attitude).max(momentum);
+                }
+            }
+        }
+    }
+    println!("falling: {worst:.1e}");
+}
+
 fn top(name: &str) -> LagrangeTop {
     let case = tops("reference.csv").into_iter().find(|case| case.free.scenario == name).unwrap();
     let (body, start) = problem(&case);

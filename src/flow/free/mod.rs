@@ -19,6 +19,6 @@ pub use free_body::FreeBody;
 pub use free_flow::FreeFlow;
 pub use motion::FreeMotion;
 pub(crate) use orbit::FreeOrbit;
-pub(super) use phase::{Phase, TOO_FAR, reduce};
+pub(super) use phase::{Pair, Phase, TOO_FAR, pair, reduce};
 pub use symmetric_top::SymmetricTop;
-pub(super) use theta::{LEAST_TERMS, V_MINUS, V_PLUS, least_value, polynomial, power};
+pub(super) use theta::{Family, LEAST_TERMS, T, U, V_MINUS, V_PLUS, least_value, polynomial, power};

@@ -36,7 +36,7 @@ pub(super) struct Nutation {
     pub(super) complement: Dd,   // k'²
     pub(super) half: Option<Dd>, // K, unless infinite
     pub(super) phase: Dd,        // τ at t = 0
-    span: Dd,                    // u₂ − u₁
+    pub(super) span: Dd,         // u₂ − u₁
     pub(super) x: [Dd; 3],
     pub(super) y: [Dd; 2],
     pub(super) w3: Dd,

@@ -10,25 +10,35 @@
 //! `2|α|² = 1 + u`, `2|β|² = 1 − u` and `|ζ|² = b (u_ζ − u)` with u₂ ≤ u_ζ ≤ u₃. The sign of y is that of the numerator of
 //! the phase's rate, e, d and `a u_ζ − m·Γ/A`. Other letters as in [`nutation`](super::nutation).
 //!
+//! Next to the separatrix of the sleeping top, where the nome is large, Jacobi's imaginary transformation gives the same in
+//! hyperbolic functions of β = πτ/2K' with the complementary nome q' (*dual* form): `Z ∝ θ₁(iβ ± α)`, `W, V ∝ θ₄(iβ ± α)`,
+//! α = πη/2K'. Each period of τ, 2K, then adds a constant to φ.
+//!
 //! Reference: F. Klein and A. Sommerfeld, Über die Theorie des Kreisels, chapter VI.
 
 use super::nutation::{Nutation, sign_of};
 use crate::flow::free::{
-    LEAST_TERMS as TERMS, Phase, TOO_FAR, V_MINUS, V_PLUS, least_value, polynomial, power, reduce,
+    Family, LEAST_TERMS as TERMS, Pair, Phase, T, TOO_FAR, U, V_MINUS, V_PLUS, least_value, pair, polynomial,
+    power, reduce,
 };
 use crate::num::complex::Complex;
 use crate::num::elliptic::{Modulus, r_f};
+use crate::num::error_free::{two_prod, two_sum};
 use crate::num::trig::{nearest, sin_cos_turns};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
-/// The k'² of the nome 0.2, up to which the first term of a sum that is left out is below 4e-18 of it.
+/// Below this k'² (nome 0.2) the dual form is used; there both leave out less than 4e-18 of a sum.
 const SWITCH: f64 = 0.034_147_806_404_921;
+
+/// Below this k'² the powers in the dual form leave the range of a double.
+const LEAST_COMPLEMENT: f64 = 1e-140;
 
 /// The quick form of one motion.
 #[derive(Clone, Debug)]
 pub(super) struct Theta {
-    /// x in turns.
+    form: Form,
+    /// x in turns; τ/2K in the dual form.
     place: Phase,
     z: Function,
     w: Function,
@@ -36,71 +46,118 @@ pub(super) struct Theta {
     v: Function,
 }
 
-/// A theta function along real x, times e^{iφ}.
+#[derive(Clone, Copy, Debug)]
+enum Form {
+    Direct,
+    /// β is `width` times what is left of τ/2K after whole periods.
+    Dual {
+        width: f64,
+    },
+}
+
+/// A theta function along the motion, times e^{iφ}.
 #[derive(Clone, Debug)]
 struct Function {
-    /// Polynomials in cos 2x: of the real part over sin x, of the imaginary part over cos x.
+    /// Real and imaginary part, as polynomials in cos 2x or cosh 2β which [`Place`] multiplies.
     parts: [[f64; TERMS]; 2],
     /// φ in turns.
     angle: Phase,
+    /// What each whole period adds to it.
+    jump: Pair,
 }
 
-/// The same with its sums, before it is fitted to a motion: coefficients of sin (2n+1)x and of i cos (2n+1)x.
+/// The same with its sums, before it is fitted to a motion.
 struct Sums {
-    sines: [Dd; TERMS],
-    cosines: [Dd; TERMS],
+    parts: [[Dd; TERMS]; 2],
+    families: [Family; 2],
     /// φ', in the unit of time of the nutation.
     rate: Dd,
+    /// Of φ, rad a period.
+    jump: Dd,
+}
+
+/// Where the functions are evaluated: cos 2x or cosh 2β, and what multiplies the real and the imaginary part of Z, and of W and V.
+struct Place<S> {
+    double: S,
+    z: [S; 2],
+    w: [S; 2],
+    periods: S,
+}
+
+impl<S: Real> Place<S> {
+    fn direct((sin, cos): (S, S), periods: S) -> Self {
+        Place { double: (cos - sin) * (cos + sin), z: [sin, cos], w: [sin, cos], periods }
+    }
+
+    fn dual(sinh: S, cosh: S, periods: S) -> Self {
+        let double = cosh * cosh + sinh * sinh;
+        Place { double, z: [cosh, sinh], w: [S::of(1.0), S::of(2.0) * sinh * cosh], periods }
+    }
 }
 
 impl Theta {
     /// Of a `nutation` in units of time of 2^`unit` s, of the top with the moment `transverse` that turns on its axis by `spin`
-    /// rad/s more than the ball. `None` where the nome is too large.
+    /// rad/s more than the ball. `None` on the separatrix and all but on it.
     pub(super) fn new(nutation: &Nutation, transverse: Dd, spin: Dd, unit: i32) -> Option<Self> {
         let quarter = nutation.half?;
-        if nutation.complement.hi() < SWITCH {
+        if nutation.complement.hi() < LEAST_COMPLEMENT {
             return None;
         }
-        let nome = if nutation.parameter == Dd::ZERO {
-            Dd::ZERO
-        } else {
-            (-(Dd::PI * Modulus::new(nutation.parameter).quarter_period() / quarter)).exp()
+        let period = quarter * 2.0 / nutation.rate;
+        let is_direct = nutation.complement.hi() >= SWITCH;
+        let dual_quarter = Modulus::new(nutation.parameter).quarter_period(); // K'
+        let width = Dd::PI * quarter / dual_quarter;
+        let place = |t: Dd| {
+            let tau = (nutation.phase + nutation.rate * t) / (quarter * 2.0);
+            let periods = tau.round();
+            if is_direct {
+                return Place::direct((tau * Dd::PI).sin_cos(), periods);
+            }
+            let beta = (tau - periods) * width;
+            let (grown, shrunk) = (beta.exp(), (-beta).exp());
+            Place::dual((grown - shrunk) * 0.5, (grown + shrunk) * 0.5, periods)
         };
-        let half_period = quarter / nutation.rate;
-        let per_phase = Dd::FRAC_PI_2 / quarter; // x/τ
-        let place = |t: Dd| (nutation.phase + nutation.rate * t) * per_phase;
 
-        let mut sums = sums(nutation, nome, quarter);
-        let factor = |sums: &Sums, exact: Complex<Dd>, t: Dd| {
-            let found = sums.value(place(t)) * Complex::phase(reduce(sums.rate * t, Dd::TAU));
+        let mut sums = sums(nutation, quarter, (!is_direct).then_some(dual_quarter));
+        let factor = |k: usize, sums: &Sums, exact: Complex<Dd>, t: Dd| {
+            let place = place(t);
+            let angle = reduce(sums.rate * t, Dd::TAU) + reduce(sums.jump * place.periods, Dd::TAU);
+            let found =
+                sums.value(if k == 0 { place.z } else { place.w }, place.double) * Complex::phase(angle);
             exact * found.inverse_conjugate().conjugate()
         };
         // where none of the functions vanishes
         let near = (quarter * 0.5 - nutation.phase) / nutation.rate;
         let exact = functions::<Dd>(nutation, near);
         // half a period on, e^{iφ_ζ} tells the two possible rates apart
-        let far = near + half_period;
+        let far = near + period * 0.5;
         let later = functions::<f64>(nutation, far)[2];
-        let turned = factor(&sums[2], exact[2], near).conjugate() * factor(&sums[2], later, far);
+        let turned = factor(2, &sums[2], exact[2], near).conjugate() * factor(2, &sums[2], later, far);
         if turned.re < Dd::ZERO {
-            sums[2].rate = sums[2].rate - Dd::PI / half_period;
+            sums[2].rate = sums[2].rate - Dd::TAU / period;
         }
-        let per_second = |rate: Dd| rate.scaled(-unit) / Dd::TAU;
+        let per_second = |rate: Dd| rate.scaled(-unit);
         let half_spin = spin * 0.5 / Dd::TAU;
         let fitted = |k: usize, scale: Dd, spins: f64| {
-            let (sums, factor) = (&sums[k], factor(&sums[k], exact[k], near));
+            let (sums, factor) = (&sums[k], factor(k, &sums[k], exact[k], near));
             let size = factor.norm_squared().sqrt() * scale;
-            let angle = factor.im.atan2(factor.re) / Dd::TAU;
+            let part = |part: usize| polynomial(sums.parts[part].map(|x| x * size), sums.families[part]);
+            let rate = per_second(sums.rate / Dd::TAU) + half_spin * spins;
             Function {
-                parts: [
-                    polynomial(sums.sines.map(|x| x * size), V_PLUS),
-                    polynomial(sums.cosines.map(|x| x * size), V_MINUS),
-                ],
-                angle: Phase::new(per_second(sums.rate) + half_spin * spins, angle),
+                parts: [part(0), part(1)],
+                angle: Phase::new(rate, factor.im.atan2(factor.re) / Dd::TAU),
+                jump: pair(sums.jump / Dd::TAU),
             }
         };
+        let (form, unit_of_place) = if is_direct {
+            (Form::Direct, quarter * 4.0)
+        } else {
+            (Form::Dual { width: width.hi() }, quarter * 2.0)
+        };
+        let place = Phase::new(per_second(nutation.rate / unit_of_place), nutation.phase / unit_of_place);
         Some(Theta {
-            place: Phase::new(per_second(nutation.rate * per_phase), nutation.phase * per_phase / Dd::TAU),
+            form,
+            place,
             z: fitted(0, Dd::ONE, 1.0),
             w: fitted(1, Dd::ONE, -1.0),
             v: fitted(2, transverse.scaled(-unit), -2.0),
@@ -111,34 +168,56 @@ impl Theta {
     /// turns have passed that `f64` pairs cannot reduce them.
     #[inline]
     pub(super) fn at(&self, t: f64) -> Option<(Quat<f64>, [f64; 2])> {
-        let (x, low) = self.place.at([t, 0.0]);
-        if x.is_nan() || x.abs() >= TOO_FAR {
+        let (phase, low) = self.place.at([t, 0.0]);
+        if phase.is_nan() || phase.abs() >= TOO_FAR {
             return None;
         }
-        let (sin, cos) = sin_cos_turns(x - nearest(x), low);
-        let double = (cos - sin) * (cos + sin); // cos 2x
-        let part = |f: &Function| {
-            let [sines, cosines] = &f.parts;
-            Complex::new(sin * least_value(sines, double), cos * least_value(cosines, double))
+        let whole = nearest(phase);
+        let place = match self.form {
+            Form::Direct => Place::direct(sin_cos_turns(phase - whole, low), 0.0),
+            Form::Dual { width } => {
+                let beta = ((phase - whole) + low) * width;
+                let grown = libm::exp(beta.abs());
+                let shrunk = 1.0 / grown;
+                let sinh = 0.5 * (grown - shrunk);
+                Place::dual(if beta < 0.0 { -sinh } else { sinh }, 0.5 * (grown + shrunk), whole)
+            }
         };
-        let (z, w, v) = (part(&self.z), part(&self.w), part(&self.v));
+        let (z, w, v) = (
+            self.z.at(place.z, place.double),
+            self.w.at(place.w, place.double),
+            self.v.at(place.w, place.double),
+        );
         let size = 1.0 / (z.norm_squared() + w.norm_squared()).sqrt();
-        let alpha = z * self.z.turned(t, size)?;
-        let beta = w * self.w.turned(t, size)?;
-        let m = v * self.v.turned(t, size)?;
+        let alpha = z * self.z.turned(t, place.periods, size)?;
+        let beta = w * self.w.turned(t, place.periods, size)?;
+        let m = v * self.v.turned(t, place.periods, size)?;
         Some((Quat::new(alpha.re, Vec3([beta.re, beta.im, alpha.im])), [m.re, m.im]))
     }
 }
 
 impl Function {
-    /// `size` e^{iφ}.
     #[inline]
-    fn turned(&self, t: f64, size: f64) -> Option<Complex<f64>> {
-        let (turns, low) = self.angle.at([t, 0.0]);
+    fn at(&self, factors: [f64; 2], double: f64) -> Complex<f64> {
+        let [real, imaginary] = &self.parts;
+        Complex::new(factors[0] * least_value(real, double), factors[1] * least_value(imaginary, double))
+    }
+
+    /// `size` e^{iφ} after `periods`.
+    #[inline]
+    fn turned(&self, t: f64, periods: f64, size: f64) -> Option<Complex<f64>> {
+        let (mut turns, mut low) = self.angle.at([t, 0.0]);
         if turns.is_nan() || turns.abs() >= TOO_FAR {
             return None;
         }
-        let (sin, cos) = sin_cos_turns(turns - nearest(turns), low);
+        turns -= nearest(turns);
+        if periods != 0.0 {
+            let (jumps, rest) = two_prod(self.jump[0], periods);
+            let (sum, error) = two_sum(turns, jumps - nearest(jumps));
+            turns = sum - nearest(sum);
+            low += error + (rest + self.jump[1] * periods);
+        }
+        let (sin, cos) = sin_cos_turns(turns, low);
         Some(Complex::new(cos * size, sin * size))
     }
 }
@@ -146,33 +225,53 @@ impl Function {
 impl Sums {
     /// Of θ₁ or, times i, θ₂ at x ∓ iy, the upper sign for `sign` = 1, over a constant: e^{y} ∝ 1/√g with h g = q,
     /// `h = e^{−π(K'−η)/K}`.
-    fn new(second: bool, nome: Dd, h: Dd, sign: Dd) -> Self {
+    fn direct(second: bool, nome: Dd, h: Dd, sign: Dd) -> Self {
         let g = nome / h;
-        let mut sums = Sums { sines: [Dd::ZERO; TERMS], cosines: [Dd::ZERO; TERMS], rate: Dd::ZERO };
-        for n in 0..TERMS as u32 {
-            let weight = power(nome, n * n) * power(h, n);
+        let term = |n: u32| {
+            let weight = power(nome, n * n) * power(h, n) * if second { 1.0 } else { alternating(n) };
             let (even, odd) = (Dd::ONE + power(g, 2 * n + 1), Dd::ONE - power(g, 2 * n + 1));
-            let k = n as usize;
-            if second {
-                (sums.sines[k], sums.cosines[k]) = (-(sign * weight * odd), weight * even);
-            } else {
-                let weight = if n.is_multiple_of(2) { weight } else { -weight };
-                (sums.sines[k], sums.cosines[k]) = (weight * even, -(sign * weight * odd));
-            }
-        }
-        sums
+            let odd = -(sign * weight * odd);
+            if second { [odd, weight * even] } else { [weight * even, odd] }
+        };
+        Sums::of(term, [V_PLUS, V_MINUS])
     }
 
-    fn value(&self, x: Dd) -> Complex<Dd> {
-        let (mut s, mut c) = x.sin_cos();
-        let (s2, c2) = (s * c * 2.0, (c - s) * (c + s));
-        let mut sum = Complex::new(Dd::ZERO, Dd::ZERO);
-        for (sine, cosine) in self.sines.iter().zip(self.cosines) {
-            sum = sum + Complex::new(*sine * s, cosine * c);
-            (s, c) = (s * c2 + c * s2, c * c2 - s * s2);
-        }
-        sum
+    /// Of the dual form: θ₁ or, times i, θ₄ at iβ ± α, over a constant.
+    fn dual(second: bool, nome: Dd, alpha: Dd, sign: Dd) -> Self {
+        let term = |n: u32| {
+            let multiple = if second { 2 * n } else { 2 * n + 1 };
+            let (sin, cos) = (alpha * f64::from(multiple)).sin_cos();
+            let weight = power(nome, if second { n * n } else { n * n + n }) * alternating(n);
+            let weight = weight * if second && n > 0 { 2.0 } else { 1.0 };
+            if second { [weight * cos, -(sign * weight * sin)] } else { [sign * weight * sin, weight * cos] }
+        };
+        Sums::of(term, if second { [T, U] } else { [V_MINUS, V_PLUS] })
     }
+
+    fn of(term: impl Fn(u32) -> [Dd; 2], families: [Family; 2]) -> Self {
+        let terms: [[Dd; 2]; TERMS] = core::array::from_fn(|n| term(n as u32));
+        let parts = [0, 1].map(|part: usize| terms.map(|term| term[part]));
+        Sums { parts, families, rate: Dd::ZERO, jump: Dd::ZERO }
+    }
+
+    fn value(&self, factors: [Dd; 2], double: Dd) -> Complex<Dd> {
+        let part = |k: usize| {
+            let [first, a, b] = self.families[k].map(Dd::of);
+            let (mut now, mut next) = (first, a + b * double);
+            let mut sum = Dd::ZERO;
+            for term in self.parts[k] {
+                sum = sum + term * now;
+                (now, next) = (next, next * double * 2.0 - now);
+            }
+            sum * factors[k]
+        };
+        Complex::new(part(0), part(1))
+    }
+}
+
+/// (−1)ⁿ.
+fn alternating(n: u32) -> f64 {
+    if n.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 /// α, β and ζ at the time `t` of the nutation, with the digits of `S`.
@@ -183,10 +282,10 @@ fn functions<S: Precise>(nutation: &Nutation, t: Dd) -> [Complex<Dd>; 3] {
     [exactly(q.w, q.v[2]), exactly(q.v[0], q.v[1]), exactly(o1, o2)]
 }
 
-/// Z, W and V. Of φ_ζ' only its value up to a frequency of the nutation is told here.
-fn sums(nutation: &Nutation, nome: Dd, quarter: Dd) -> [Sums; 3] {
+/// Z, W and V, in the dual form where K' is given. Of φ_ζ' only its value up to a frequency of the nutation is told here.
+fn sums(nutation: &Nutation, quarter: Dd, dual: Option<Dd>) -> [Sums; 3] {
     let ([x1, x2, x3], [y1, y2], w3) = (nutation.x, nutation.y, nutation.w3);
-    let between = x3 - x1;
+    let (between, span) = (x3 - x1, nutation.span);
     let [x, y] = nutation.apex;
     let off = (nutation.e * y + nutation.d * x) * 0.5; // m·Γ/A − a u_ζ
     // (u_ζ − u₂)(u₃ − u_ζ): of the two only the larger is a difference
@@ -194,19 +293,46 @@ fn sums(nutation: &Nutation, nome: Dd, quarter: Dd) -> [Sums; 3] {
     let above = if x < Dd::ONE { x3 - x } else { w3 + y };
     let below = if x < Dd::ONE { x - x2 } else { y2 - y };
     let (above, below) = if above > below { (above, product / above) } else { (product / below, below) };
-    // e^{−π(K' − η)/K}, where K' − η has the functions √s, √(1 − s), √d
-    let decay = |s: Dd, rest: Dd, d: Dd| (-(Dd::PI * s.sqrt() * r_f(rest, d, Dd::ONE) / quarter)).exp();
-    let top = w3 + y2;
-    let (sign_e, sign_d) = (sign_of(nutation.e), sign_of(nutation.d));
-    let mut z = Sums::new(false, nome, decay(between / x3, x1 / x3, x2 / x3), sign_e);
-    let mut w = Sums::new(true, nome, decay(w3 / top, y2 / top, y1 / between), sign_d);
-    let side = above + below;
-    let mut v = Sums::new(true, nome, decay(above / side, below / side, (x - x1) / between), -sign_of(off));
-    // over a period of u the theta functions themselves turn by ±π
-    let [alpha, beta] = nutation.advances();
+    // of each zero: sn², cn², dn² of η, and the same of K' − η, which for k = 0 is the one that is finite
+    let second = |y1: Dd, y2: Dd, w3: Dd| {
+        let top = y2 + w3;
+        [[y2 * between / (y1 * top), span * w3 / (y1 * top), span / y1], [w3 / top, y2 / top, y1 / between]]
+    };
+    let zeros = [
+        [[x1 / x2, span / x2, x3 * span / (x2 * between)], [between / x3, x1 / x3, x2 / x3]],
+        second(y1, y2, w3),
+        second(x - x1, below, above),
+    ];
+    let signs = [sign_of(nutation.e), sign_of(nutation.d), -sign_of(off)];
+    let argument = |[s, c, d]: [Dd; 3]| s.sqrt() * r_f(c, d, Dd::ONE);
+    let nome = |of: Dd, by: Dd| (-(Dd::PI * of / by)).exp();
     let per_time = nutation.rate / (quarter * 2.0);
-    z.rate = (alpha - sign_e * Dd::PI) * per_time;
-    w.rate = (beta - sign_d * Dd::PI) * per_time;
-    v.rate = w.rate - z.rate + Dd::PI * per_time;
+    let [mut z, mut w, mut v] = [0, 1, 2].map(|k| {
+        let ([eta, rest], sign) = (zeros[k], signs[k]);
+        match dual {
+            None => {
+                let q = if nutation.parameter == Dd::ZERO {
+                    Dd::ZERO
+                } else {
+                    nome(Modulus::new(nutation.parameter).quarter_period(), quarter)
+                };
+                Sums::direct(k > 0, q, nome(argument(rest), quarter), sign)
+            }
+            Some(dual_quarter) => {
+                let alpha = Dd::FRAC_PI_2 * argument(eta) / dual_quarter;
+                let mut sums = Sums::dual(k > 0, nome(quarter, dual_quarter), alpha, sign);
+                sums.rate = sign * alpha * per_time * 2.0;
+                sums.jump = sign * (Dd::PI - alpha * 2.0);
+                sums
+            }
+        }
+    });
+    // over a period of u the theta functions of x themselves turn by ±π
+    let [alpha, beta] = nutation.advances();
+    let z_rate = (alpha - signs[0] * Dd::PI) * per_time;
+    let w_rate = (beta - signs[1] * Dd::PI) * per_time;
+    z.rate = z.rate + z_rate;
+    w.rate = w.rate + w_rate;
+    v.rate = v.rate + (w_rate - z_rate + Dd::PI * per_time);
     [z, w, v]
 }

@@ -115,7 +115,7 @@ pub struct LagrangeTop {
 enum Motion {
     /// The axis rests on the vertical: upright, asleep or about to fall, or hanging.
     Vertical,
-    /// In units of time of 2^`unit` s, in which the fastest rate is near 1; the quick form away from the separatrix of the
+    /// In units of time of 2^`unit` s, in which the fastest rate is near 1; the quick form but on the separatrix of the
     /// sleeping top.
     Nutating { nutation: Box<Nutation>, unit: i32, quick: Option<Box<Theta>> },
 }
@@ -222,9 +222,8 @@ impl LagrangeTop {
 
     /// The point of the solver frame at time `t` (s), finite and within [`reach`](Self::reach).
     ///
-    /// By theta functions, with phases reduced in double-double. Next to the separatrix of the sleeping top, where the axis
-    /// makes many turns before it nods, by Carlson's integrals, there in double-double as well. The quaternion is the continuous
-    /// lift from the start.
+    /// By theta functions, with phases reduced in double-double; on the separatrix of the sleeping top and after 2⁴³ turns by
+    /// Carlson's integrals. The quaternion is the continuous lift from the start.
     #[inline]
     pub fn point_at(&self, t: f64) -> Point<f64> {
         let quick = match &self.motion {

@@ -23,8 +23,10 @@ mod direct;
 mod dual;
 mod series;
 
+pub(in crate::flow) use self::series::{
+    Family, LEAST_TERMS, T, U, V_MINUS, V_PLUS, least_value, polynomial, power,
+};
 use self::series::{Form, TERMS, value};
-pub(in crate::flow) use self::series::{LEAST_TERMS, V_MINUS, V_PLUS, least_value, polynomial, power};
 use super::phase::{Pair, Phase, TOO_FAR};
 use super::polhode::Polhode;
 use crate::num::error_free::{two_prod, two_sum};

@@ -58,9 +58,9 @@ pub(super) fn flip(polhode: &Polhode<Dd>) -> Dd {
 /// First two members F₀ = c, F₁ = a + bX of a family with F_{n+1} = 2X F_n − F_{n−1}, as [c, a, b].
 pub(in crate::flow) type Family = [f64; 3];
 /// cos 2nx of X = cos 2x.
-pub(super) const T: Family = [1.0, 0.0, 1.0];
+pub(in crate::flow) const T: Family = [1.0, 0.0, 1.0];
 /// sin 2nx / sin 2x.
-pub(super) const U: Family = [0.0, 1.0, 0.0];
+pub(in crate::flow) const U: Family = [0.0, 1.0, 0.0];
 /// sin (2n+1)x / sin x.
 pub(in crate::flow) const V_PLUS: Family = [1.0, 1.0, 2.0];
 /// cos (2n+1)x / cos x.
