@@ -112,6 +112,15 @@ pub trait Map<S: Real>: Send + 'static {
     /// Takes that turn, of the time `elapsed` (s) since [`open`](Self::open).
     fn synchronize(&self, _elapsed: Dd, _x: &mut Point<S>) {}
 
+    /// What [`advance`](Self::advance) needs to know besides the point, for a map whose form is not of the time of its step:
+    /// the time that it is of, s since the start.
+    fn memory(&self) -> Option<Dd> {
+        None
+    }
+
+    /// Takes the map back, or on, to where its [`memory`](Self::memory) was `memory`; the point has to be the one of then.
+    fn remember(&mut self, _memory: Option<Dd>) {}
+
     /// The worst relative residual at which an implicit solve ended; 0 for explicit maps.
     fn worst_residual(&self) -> f64 {
         0.0
@@ -135,6 +144,12 @@ pub trait Step<S: Real>: Send {
     /// Takes as many steps in that form as `block` has places. Leaves in each a point with the energy and the momenta of
     /// the state after its step, whose attitude may differ by a turn about the momentum.
     fn fill(&mut self, x: &mut Point<S>, block: &mut [Point<S>]);
+
+    /// As [`Map::memory`]: to come back to a point, its memory has to be kept beside it.
+    fn memory(&self) -> Option<Dd>;
+
+    /// As [`Map::remember`].
+    fn remember(&mut self, memory: Option<Dd>);
 
     /// As [`Map::worst_residual`].
     fn worst_residual(&self) -> f64;
@@ -189,6 +204,14 @@ impl<S: Real, M: Map<S>> Step<S> for Stepper<M> {
             *place = *x;
             self.map.close(self.clock.at(x.steps()), place);
         }
+    }
+
+    fn memory(&self) -> Option<Dd> {
+        self.map.memory()
+    }
+
+    fn remember(&mut self, memory: Option<Dd>) {
+        self.map.remember(memory);
     }
 
     fn worst_residual(&self) -> f64 {

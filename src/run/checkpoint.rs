@@ -24,6 +24,8 @@ pub struct Checkpoint {
     pub(super) watch: Watch,
     pub(super) start: Point<f64>,
     pub(super) point: Point<f64>,
+    /// The time that the point is of, where that is not the time of its step.
+    pub(super) base: Option<Dd>,
     pub(super) memory: Memory,
     pub(super) residual: f64,
     /// Whether steps have been taken that were not watched.
@@ -123,6 +125,10 @@ impl fmt::Display for Checkpoint {
         writeln!(f, "start {}", list(&self.start.parts()))?;
         writeln!(f, "steps {}", self.point.steps())?;
         writeln!(f, "point {}", list(&self.point.parts()))?;
+        match self.base {
+            None => writeln!(f, "base -")?,
+            Some(base) => writeln!(f, "base {}", list(&[base.hi(), base.lo()]))?,
+        }
         writeln!(f, "worst {worst}")?;
         writeln!(f, "flips {} {sign}", self.memory.flips)?;
         writeln!(f, "residual {:?}", self.residual)
@@ -166,6 +172,14 @@ fn finite(text: &str) -> Option<f64> {
 
 fn doubles<const N: usize>(text: &str) -> Option<[f64; N]> {
     text.split(' ').map(finite).collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
+fn base(text: &str) -> Option<Option<Dd>> {
+    if text == "-" {
+        return Some(None);
+    }
+    let [high, low] = doubles(text)?;
+    Some(Some(Dd::sum(high, low)))
 }
 
 fn watched(text: &str) -> Option<(Watch, bool)> {
@@ -219,6 +233,7 @@ impl FromStr for Checkpoint {
         let first = lines.parsed("start", "it must hold 14 numbers", doubles)?;
         let steps = lines.parsed("steps", "it must hold the number of steps", |text| text.parse().ok())?;
         let point = lines.parsed("point", "it must hold 14 numbers", doubles)?;
+        let base = lines.parsed("base", "it must hold two numbers, or - where there are none", base)?;
         let worst = lines.parsed("worst", "it must hold 5 errors, - where there is none", errors)?;
         let (flips, positive) = lines.parsed("flips", "it must hold a count and a sign", flips)?;
         let residual = lines.parsed("residual", "it must hold a number", |text| text.parse().ok())?;
@@ -233,6 +248,7 @@ impl FromStr for Checkpoint {
             watch,
             start: Point::from_parts(first, 0),
             point: Point::from_parts(point, steps),
+            base,
             memory: Memory { worst: Errors::from_parts(worst), flips, positive },
             residual,
             missed,

@@ -148,6 +148,7 @@ impl Run {
             watch: self.watch,
             start: self.start,
             point: self.point,
+            base: self.step.memory(),
             memory: self.monitor.memory(),
             residual: self.worst_residual(),
             missed: self.missed,
@@ -163,6 +164,7 @@ impl Run {
         let mut run = Run::from_point(method, body, checkpoint.start, checkpoint.clock)?;
         run.watch = checkpoint.watch;
         run.point = checkpoint.point;
+        run.step.remember(checkpoint.base);
         run.read();
         run.monitor.remember(checkpoint.memory);
         run.residual = checkpoint.residual;
@@ -232,12 +234,13 @@ impl Run {
     fn watched(&mut self, mut wanted: u64) -> bool {
         let mut block = [self.point; BLOCK];
         while wanted > 0 {
-            let before = self.point;
+            let (before, memory) = (self.point, self.step.memory());
             let block = &mut block[..wanted.min(BLOCK as u64) as usize];
             self.step.fill(&mut self.point, block);
             let finite = self.monitor.observe(block);
             if finite < block.len() {
                 self.point = before;
+                self.step.remember(memory);
                 self.step.advance(&mut self.point, finite as u64);
                 return false;
             }
@@ -248,20 +251,22 @@ impl Run {
 
     /// Takes `wanted` steps; false, and the run at the last finite point, if one is not finite.
     fn unwatched(&mut self, wanted: u64) -> bool {
-        let before = self.point;
+        let (before, mut memory) = (self.point, self.step.memory());
         self.missed = true;
         self.step.advance(&mut self.point, wanted);
         if self.point.is_finite() {
             return true;
         }
         self.point = before;
+        self.step.remember(memory);
         for _ in 0..wanted {
             let mut next = self.point;
             self.step.advance(&mut next, 1);
             if !next.is_finite() {
+                self.step.remember(memory);
                 break;
             }
-            self.point = next;
+            (self.point, memory) = (next, self.step.memory());
         }
         false
     }
@@ -274,6 +279,7 @@ impl Run {
         };
         if let Some((step, witness)) = &mut self.probe {
             let mut next = self.point;
+            step.remember(self.step.memory());
             step.advance(&mut next, 1);
             let next = step.reading(&next);
             if let Some(failure) = witness.get() {
