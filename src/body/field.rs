@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::force::Law;
+use super::force::{Law, SeriesLaw};
 use super::{Force, Gravity, Potential, Time, Torque};
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Precise, Real, Series};
 use crate::rotation::{Quat, Vec3};
 
 /// The torque of everything that acts on a body, along its principal axes, in N m divided by
@@ -22,6 +22,17 @@ pub trait Field<S: Real>: Clone + Send + Sync + 'static {
 
     /// The torque of all the rest.
     fn torque_besides_gravity(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S>;
+
+    /// The same on power series; `None` where a force cannot be evaluated on them.
+    #[inline]
+    fn series_besides_gravity(
+        &self,
+        _: Time,
+        _: Quat<Series<S>>,
+        _: Vec3<Series<S>>,
+    ) -> Option<Vec3<Series<S>>> {
+        None
+    }
 
     /// The whole torque, divided by the scale.
     #[inline]
@@ -92,6 +103,12 @@ pub(crate) type Witness = Arc<OnceLock<Failure>>;
 pub(crate) trait Evaluated: Precise {
     fn torque(law: &Law, at: Time, attitude: Quat<Self>, omega_body: Vec3<Self>) -> Vec3<Self>;
     fn energy(law: &Law, at: Time, attitude: Quat<Self>) -> Self;
+    fn series(
+        law: &SeriesLaw,
+        at: Time,
+        attitude: Quat<Series<Self>>,
+        omega_body: Vec3<Series<Self>>,
+    ) -> Vec3<Series<Self>>;
 }
 
 macro_rules! evaluated {
@@ -107,6 +124,21 @@ macro_rules! evaluated {
                 match law {
                     Law::Potential(potential) => Potential::<Self>::energy(&**potential, at, attitude),
                     Law::Torque(_) => Self::of(0.0),
+                }
+            }
+            fn series(
+                law: &SeriesLaw,
+                at: Time,
+                attitude: Quat<Series<Self>>,
+                omega_body: Vec3<Series<Self>>,
+            ) -> Vec3<Series<Self>> {
+                match law {
+                    SeriesLaw::Potential(potential) => {
+                        Potential::<Series<Self>>::torque(&**potential, at, attitude)
+                    }
+                    SeriesLaw::Torque(torque) => {
+                        Torque::<Series<Self>>::torque(&**torque, at, attitude, omega_body)
+                    }
                 }
             }
         }
@@ -142,6 +174,36 @@ impl<S: Evaluated> Forces<S> {
         }
         energy * S::of(1.0 / self.scale)
     }
+
+    /// The sum of what `evaluate` gives of each force, in SI units and body axes.
+    #[inline]
+    fn sum<T: Real>(
+        &self,
+        at: Time,
+        frame: Option<Quat<T>>,
+        attitude: Quat<T>,
+        omega_body: Vec3<T>,
+        evaluate: impl Fn(&Force, Quat<T>, Vec3<T>) -> Option<Vec3<T>>,
+    ) -> Option<Vec3<T>> {
+        let (attitude, omega_body) = match frame {
+            Some(frame) => (attitude * frame.conjugate(), frame.rotate(omega_body)),
+            None => (attitude, omega_body),
+        };
+        let mut torque = Vec3::zero();
+        for force in self.forces.iter() {
+            let one = evaluate(force, attitude, omega_body)?;
+            if let Some(witness) = &self.witness
+                && !one.magnitude().is_finite()
+                && attitude.magnitude().is_finite()
+                && omega_body.magnitude().is_finite()
+            {
+                witness.get_or_init(|| Failure { force: force.name().into(), time: at.seconds() });
+            }
+            torque = torque + one;
+        }
+        let torque = frame.map_or(torque, |frame| frame.rotate_back(torque));
+        Some(torque * T::of(1.0 / self.scale))
+    }
 }
 
 impl<S: Evaluated> Field<S> for Forces<S> {
@@ -152,23 +214,20 @@ impl<S: Evaluated> Field<S> for Forces<S> {
 
     #[inline(never)]
     fn torque_besides_gravity(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
-        let (attitude, omega_body) = match self.frame {
-            Some(frame) => (attitude * frame.conjugate(), frame.rotate(omega_body)),
-            None => (attitude, omega_body),
+        let evaluate = |force: &Force, attitude, omega| Some(S::torque(&force.law, at, attitude, omega));
+        self.sum(at, self.frame, attitude, omega_body, evaluate).unwrap_or(Vec3::zero())
+    }
+
+    fn series_besides_gravity(
+        &self,
+        at: Time,
+        attitude: Quat<Series<S>>,
+        omega_body: Vec3<Series<S>>,
+    ) -> Option<Vec3<Series<S>>> {
+        let frame = self.frame.map(|frame| frame.map(Series::number));
+        let evaluate = |force: &Force, attitude, omega| {
+            force.series.as_ref().map(|law| S::series(law, at, attitude, omega))
         };
-        let mut torque = Vec3::zero();
-        for force in self.forces.iter() {
-            let one = S::torque(&force.law, at, attitude, omega_body);
-            if let Some(witness) = &self.witness
-                && !one.magnitude().is_finite()
-                && attitude.magnitude().is_finite()
-                && omega_body.magnitude().is_finite()
-            {
-                witness.get_or_init(|| Failure { force: force.name().into(), time: at.seconds() });
-            }
-            torque = torque + one;
-        }
-        let torque = self.frame.map_or(torque, |frame| frame.rotate_back(torque));
-        torque * S::of(1.0 / self.scale)
+        self.sum(at, frame, attitude, omega_body, evaluate)
     }
 }

@@ -10,13 +10,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::Time;
-use crate::num::{Dd, Precise, Real, Shown};
+use crate::num::{Dd, Precise, Real, Series, Shown};
 use crate::rotation::{Quat, Vec3};
 
 /// A torque that comes from a potential energy U(t, q).
 ///
-/// An implementation for every `S: Real` serves steps in `f64` and references in double-double alike; a closure in `f64`
-/// becomes one by [`Force::potential_fn`].
+/// An implementation for every `S: Real` serves steps in `f64`, references in double-double and the
+/// [power series](crate::num::Series) of Taylor's method alike; a closure in `f64` becomes one by
+/// [`Force::potential_fn`], without the series.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -89,6 +90,8 @@ pub enum Conserved {
 pub struct Force {
     name: String,
     pub(crate) law: Law,
+    /// The same law on power series; none of a closure.
+    pub(crate) series: Option<SeriesLaw>,
 }
 
 #[derive(Clone)]
@@ -104,6 +107,19 @@ impl<P: Potential<f64> + Potential<Dd>> PrecisePotential for P {}
 /// A torque in both precisions.
 pub(crate) trait PreciseTorque: Torque<f64> + Torque<Dd> {}
 impl<T: Torque<f64> + Torque<Dd>> PreciseTorque for T {}
+
+/// A law on power series in both precisions.
+#[derive(Clone)]
+pub(crate) enum SeriesLaw {
+    Potential(Arc<dyn SeriesPotential>),
+    Torque(Arc<dyn SeriesTorque>),
+}
+
+pub(crate) trait SeriesPotential: Potential<Series<f64>> + Potential<Series<Dd>> {}
+impl<P: Potential<Series<f64>> + Potential<Series<Dd>>> SeriesPotential for P {}
+
+pub(crate) trait SeriesTorque: Torque<Series<f64>> + Torque<Series<Dd>> {}
+impl<T: Torque<Series<f64>> + Torque<Series<Dd>>> SeriesTorque for T {}
 
 /// Why a force cannot act.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -146,17 +162,21 @@ impl Force {
     /// The potential `potential`, called `name` in messages.
     pub fn potential<P>(name: impl Into<String>, potential: P) -> Self
     where
-        P: Potential<f64> + Potential<Dd> + 'static,
+        P: Potential<f64> + Potential<Dd> + Potential<Series<f64>> + Potential<Series<Dd>> + 'static,
     {
-        Force { name: name.into(), law: Law::Potential(Arc::new(potential)) }
+        let law = Arc::new(potential);
+        let series = Some(SeriesLaw::Potential(law.clone()));
+        Force { name: name.into(), law: Law::Potential(law), series }
     }
 
     /// The torque `torque`, called `name` in messages.
     pub fn torque<T>(name: impl Into<String>, torque: T) -> Self
     where
-        T: Torque<f64> + Torque<Dd> + 'static,
+        T: Torque<f64> + Torque<Dd> + Torque<Series<f64>> + Torque<Series<Dd>> + 'static,
     {
-        Force { name: name.into(), law: Law::Torque(Arc::new(torque)) }
+        let law = Arc::new(torque);
+        let series = Some(SeriesLaw::Torque(law.clone()));
+        Force { name: name.into(), law: Law::Torque(law), series }
     }
 
     /// A potential by two closures of the attitude, body → space: energy in J, and torque in N m, body axes.
@@ -168,7 +188,8 @@ impl Force {
         U: Fn(UnitQuaternion<f64>) -> f64 + Send + Sync + 'static,
         T: Fn(UnitQuaternion<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
-        Force::potential(name, PotentialFn { energy, torque })
+        let law = Law::Potential(Arc::new(PotentialFn { energy, torque }));
+        Force { name: name.into(), law, series: None }
     }
 
     /// A torque, N m, body axes, by a closure of the time (s), the attitude (body → space) and the angular velocity
@@ -192,7 +213,7 @@ impl Force {
     where
         T: Fn(f64, UnitQuaternion<f64>, Vector3<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
-        Force::torque(name, TorqueFn(torque))
+        Force { name: name.into(), law: Law::Torque(Arc::new(TorqueFn(torque))), series: None }
     }
 
     /// Its name.

@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 use super::force::finite;
 use super::{Conserved, Force, ForceError, Potential, Time};
 use crate::inertia::Inertia;
-use crate::num::{Dd, Precise, Real};
+use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 
 /// Torque and potential of the gravity gradient to first order in the size of the body over the distance.
@@ -62,13 +62,12 @@ impl GravityGradient {
     /// 3 n² (a/r)³ and r̂ in body axes.
     fn position<S: Real>(&self, at: Time, attitude: Quat<S>) -> (S, Vec3<S>) {
         let one = S::of(1.0);
-        let mean = at.angle(self.mean_motion);
         let (cos, sin, near) = if self.eccentricity == 0.0 {
-            let (sin, cos) = S::from_dd(mean).sin_cos();
+            let (sin, cos) = at.angle::<S>(self.mean_motion).sin_cos();
             (cos, sin, one)
         } else {
             let e = S::of(self.eccentricity);
-            let (sin, cos) = self.eccentric_anomaly::<S>(mean).sin_cos();
+            let (sin, cos) = self.eccentric_anomaly::<S>(at).sin_cos();
             let near = one / (one - e * cos); // a/r
             ((cos - e) * near, (one - e * e).sqrt() * sin * near, near)
         };
@@ -78,8 +77,9 @@ impl GravityGradient {
     }
 
     /// The solution of Kepler's equation `E − e sin E = M`, M in [−π, π].
-    fn eccentric_anomaly<S: Real>(&self, mean: Dd) -> S {
-        let (e, m) = (self.eccentricity, mean.to_f64().abs());
+    fn eccentric_anomaly<S: Real>(&self, at: Time) -> S {
+        let mean: f64 = at.angle(self.mean_motion);
+        let (e, m) = (self.eccentricity, mean.abs());
         // M + e and π are upper bounds, and from above Newton's iteration descends to the root, as E − e sin E is convex
         // up to π
         let mut x = (m + e).min(core::f64::consts::PI);
@@ -91,10 +91,10 @@ impl GravityGradient {
             }
             x = next;
         }
-        let (e, m) = (S::of(e), S::from_dd(mean));
-        let mut x = S::of(if mean.to_f64() < 0.0 { -x } else { x });
+        let (e, m) = (S::of(e), at.angle::<S>(self.mean_motion));
+        let mut x = S::of(if mean < 0.0 { -x } else { x });
         // each step doubles the digits: one polishes doubles, two give double-double
-        for _ in 0..2 {
+        for _ in 0..S::NEWTON_STEPS {
             let (sin, cos) = x.sin_cos();
             x = x - (x - e * sin - m) / (S::of(1.0) - e * cos);
         }

@@ -21,7 +21,7 @@ impl Clock {
     /// The beginning of step `steps`.
     #[inline]
     pub fn at(&self, steps: u64) -> Time {
-        Time { clock: *self, steps, offset: Dd::ZERO }
+        Time { clock: *self, steps, offset: Dd::ZERO, unit: 1.0 }
     }
 
     /// Time since the start after `steps` steps, s, exact: a sum `t += h` would lose a second in a long enough run.
@@ -38,6 +38,8 @@ pub struct Time {
     clock: Clock,
     steps: u64,
     offset: Dd,
+    /// What the variable of a power series counts, s.
+    unit: f64,
 }
 
 impl Time {
@@ -57,21 +59,29 @@ impl Time {
         Time { offset: self.offset + duration, ..*self }
     }
 
-    /// In seconds, exact to the digits of double-double.
-    pub fn dd(&self) -> Dd {
-        Dd::of(self.clock.start) + (self.clock.elapsed(self.steps) + self.offset)
+    /// Time since the start, s.
+    #[inline]
+    pub(crate) fn elapsed(&self) -> Dd {
+        self.clock.elapsed(self.steps) + self.offset
     }
 
-    /// In seconds, rounded once.
+    /// In seconds, exact to the digits of double-double.
+    pub fn dd(&self) -> Dd {
+        Dd::of(self.clock.start) + self.elapsed()
+    }
+
+    /// In seconds, rounded once; as a [series](crate::num::Series) it grows with its variable, as every function of it then
+    /// does. A law has to ask for the time in the scalar that it is evaluated in.
     #[must_use]
     pub fn seconds<S: Real>(&self) -> S {
-        S::from_dd(self.dd())
+        S::linear(self.dd(), self.unit)
     }
 
     /// The angle `rate · t` (rate in rad/s), reduced to [−π, π] in double-double, so that many turns cost no digits of a
-    /// double.
-    pub fn angle(&self, rate: f64) -> Dd {
+    /// double; as a series it goes on from there.
+    #[must_use]
+    pub fn angle<S: Real>(&self, rate: f64) -> S {
         let angle = self.dd() * rate;
-        angle - Dd::TAU * (angle / Dd::TAU).round()
+        S::linear(angle - Dd::TAU * (angle / Dd::TAU).round(), rate * self.unit)
     }
 }

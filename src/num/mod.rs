@@ -3,6 +3,7 @@
 //! * [`real`]: the two traits, [`Real`] for explicit kernels and [`Precise`] for what must compare or round;
 //! * [`dd`]: double-double numbers [`Dd`], 106 bits, for constants, references and invariants;
 //! * [`trig`]: sine and cosine in `f64`, the same bits on every CPU;
+//! * [`series`]: truncated power series;
 //! * [`sum`]: compensated sums;
 //! * [`expansion`]: exact sums and products of a few numbers;
 //! * [`elliptic`]: elliptic integrals and functions;
@@ -24,6 +25,7 @@ pub(crate) mod quadrature;
 #[cfg(any(test, feature = "fit"))]
 pub mod random;
 pub mod real;
+pub mod series;
 mod shown;
 pub mod sum;
 pub mod trig;
@@ -33,5 +35,6 @@ pub use expansion::Expansion;
 #[cfg(any(test, feature = "fit"))]
 pub use random::Random;
 pub use real::{Precise, Real};
+pub use series::Series;
 pub(crate) use shown::Shown;
 pub use sum::Compensated;

@@ -7,8 +7,8 @@ use super::{Dd, error_free, trig};
 
 /// A scalar that explicit kernels are written over.
 ///
-/// There is no ordering: a kernel cannot branch on a value, so one text serves `f64`, [`Dd`] and, later,
-/// several bodies side by side. An iteration ends on [`magnitude`](Real::magnitude), the worst lane as `f64`.
+/// There is no ordering: a kernel cannot branch on a value, so one text serves `f64`, [`Dd`], power [series](super::Series)
+/// and, later, several bodies side by side. An iteration ends on [`magnitude`](Real::magnitude), the worst lane as `f64`.
 pub trait Real:
     Copy
     + Debug
@@ -23,6 +23,9 @@ pub trait Real:
 {
     /// Unit roundoff of one operation.
     const ROUNDOFF: f64;
+    /// How often Newton's iteration has to be taken from a root that is known as a double: each time doubles the digits that
+    /// are right, and of a [series](super::Series) the coefficients.
+    const NEWTON_STEPS: u32 = 2;
     /// The scalar nearest to `x`.
     fn of(x: f64) -> Self;
     /// The scalar nearest to `x`, rounded once where it has fewer digits.
@@ -30,6 +33,12 @@ pub trait Real:
     #[must_use]
     fn from_dd(x: Dd) -> Self {
         Self::of(x.hi()) + Self::of(x.lo())
+    }
+    /// `value + slope · s` as a [series](super::Series) in s; of any other scalar `value`.
+    #[inline]
+    #[must_use]
+    fn linear(value: Dd, _slope: f64) -> Self {
+        Self::from_dd(value)
     }
     /// `x` rounded to the digits of this scalar: a length of time that every kernel then shares.
     #[inline]
