@@ -16,7 +16,7 @@ use crate::rotation::{Quat, Vec3};
 /// A torque that comes from a potential energy U(t, q).
 ///
 /// An implementation for every `S: Real` serves steps in `f64`, references in double-double and the
-/// [power series](crate::num::Series) of Taylor's method alike; a closure in `f64` becomes one by
+/// [power series](crate::num::Series) of [Taylor's method](crate::method::Taylor) alike; a closure in `f64` becomes one by
 /// [`Force::potential_fn`], without the series.
 ///
 /// ```

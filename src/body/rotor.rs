@@ -77,6 +77,12 @@ impl<S: Real> Gyroscopic<S> {
         Vec3([self.component(0, u[1], v[2]), self.component(1, u[2], v[0]), self.component(2, u[0], v[1])])
     }
 
+    /// The same of the three products `u_j v_k`, or of sums of such.
+    #[inline]
+    pub(crate) fn times(&self, products: Vec3<S>) -> Vec3<S> {
+        self.0.times(products)
+    }
+
     /// Its component i, of u_j and u_k.
     #[inline]
     pub(crate) fn component(&self, i: usize, u_j: S, u_k: S) -> S {

@@ -59,6 +59,11 @@ impl Time {
         Time { offset: self.offset + duration, ..*self }
     }
 
+    /// The time `elapsed` (s) after the start, whose series count `unit` seconds.
+    pub(crate) fn at_elapsed(&self, elapsed: Dd, unit: f64) -> Self {
+        Time { steps: 0, offset: elapsed, unit, ..*self }
+    }
+
     /// Time since the start, s.
     #[inline]
     pub(crate) fn elapsed(&self) -> Dd {

@@ -5,9 +5,9 @@ use thiserror::Error;
 use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
-    AxisOrder, AxisSplit, Claimed, Composed, Dmv, ExactFlow, ExactStep, ExplicitEuler, FreePart,
-    ImplicitMidpoint, Kicks, Method, PreprocessedDmv, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step,
-    TwoAxes, TwoTurn,
+    AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, ExactFlow, ExactStep, ExplicitEuler,
+    FreePart, ImplicitMidpoint, Kicks, Method, PreprocessedDmv, Rk4, SchemeError, SemiImplicitEuler,
+    Splitting, Step, Taylor, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -43,6 +43,9 @@ impl Claimed for Box<dyn AnyMethod> {
     fn claims(&self, problem: Problem) -> Option<super::Claims> {
         (**self).claims(problem)
     }
+    fn needs_series(&self) -> bool {
+        (**self).needs_series()
+    }
 }
 
 impl AnyMethod for Box<dyn AnyMethod> {
@@ -74,6 +77,11 @@ where
                 None => "gravity".into(),
             };
         return Err(StepError::Refused { method: method.name(), force: what, problem });
+    }
+    if method.needs_series()
+        && let Some(force) = body.forces().iter().find(|force| force.series.is_none())
+    {
+        return Err(StepError::Closure { method: method.name(), force: force.name().into() });
     }
     let (h, rotor) = (Dd::from(clock.step), body.rotor());
     Ok(match (problem, body.gravity::<S>()) {
@@ -109,6 +117,16 @@ pub enum StepError {
         /// The kind of motion that it makes.
         problem: Problem,
     },
+    /// The method evaluates forces on power series, and one is a closure in `f64`.
+    #[error(
+        "method {method:?} cannot take {force}, a closure in f64: it evaluates laws on power series; write the law for every          Real, or take rk4 or, for a potential, kick-drift"
+    )]
+    Closure {
+        /// Name of the method.
+        method: String,
+        /// Name of the force.
+        force: String,
+    },
 }
 
 fn remedy(problem: Problem) -> &'static str {
@@ -142,7 +160,7 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
 /// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in `lie-poisson:321@kahan-li-8`.
 ///
 /// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
-/// order of axes as its argument, `two-turn` its two axes; `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and
+/// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance; `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and
 /// `kick-drift@suzuki-4`.
 ///
 /// # Errors
@@ -200,9 +218,28 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
             (Some(_), None) => Err(asked.refused("2 or 4, its order")),
             (Some(_), Some(_)) => Err(asked.refused("none beside a scheme")),
         },
+        "taylor" => {
+            let chosen = asked.scheme()?;
+            match argument {
+                None => plain(AdaptiveTaylor::to_rounding(), chosen),
+                Some(text) => {
+                    let refused = |_| asked.refused(TAYLOR_RULE);
+                    match (text.parse(), text.parse()) {
+                        (Ok(order), _) => plain(Taylor::of_order(order).map_err(refused)?, chosen),
+                        (_, Ok(tolerance)) => {
+                            plain(AdaptiveTaylor::of_tolerance(tolerance).map_err(refused)?, chosen)
+                        }
+                        _ => Err(asked.refused(TAYLOR_RULE)),
+                    }
+                }
+            }
+        }
         _ => Err(UnknownMethod::Name { name: name.into() }),
     }
 }
+
+const TAYLOR_RULE: &str = "an order from 8 to 40, such as taylor:20, or a tolerance from 1.2e-16, as the rounding of a double is \
+                           1.1e-16, to 1e-3, such as taylor:1e-12";
 
 /// The parts before and after the first `mark`.
 fn split(text: &str, mark: char) -> (&str, Option<&str>) {

@@ -12,6 +12,11 @@ pub trait Claimed {
 
     /// What it keeps, its order, its cost and its source, for one kind of motion; `None` where it refuses it.
     fn claims(&self, problem: Problem) -> Option<Claims>;
+
+    /// Whether it evaluates forces on power series, as closures in `f64` cannot be.
+    fn needs_series(&self) -> bool {
+        false
+    }
 }
 
 /// The claims of a method for one kind of motion.
@@ -19,8 +24,12 @@ pub trait Claimed {
 #[must_use]
 #[non_exhaustive]
 pub struct Claims {
-    /// Order of convergence of attitude and momentum; `None` where there is no error of discretisation.
+    /// Order of convergence of attitude and momentum; `None` where there is no error of discretisation but below the
+    /// tolerance.
     pub order: Option<u32>,
+    /// What the error of discretisation stays below in each step that the method chooses, relative to the state; `None` where
+    /// the step is that of the run, or the tolerance the rounding of the scalar.
+    pub tolerance: Option<f64>,
     /// Φ_{−h} ∘ Φ_h = 1.
     pub symmetric: bool,
     /// Without torque the map of momenta keeps the Lie–Poisson bracket.
@@ -34,9 +43,9 @@ pub struct Claims {
 }
 
 impl Claims {
-    /// Of a method that is neither symmetric nor Poisson; where it is, set the field.
+    /// Of a method that is neither symmetric nor Poisson and has no tolerance; where it is or has, set the field.
     pub const fn new(order: Option<u32>, kept: Kept, cost: Cost, source: &'static str) -> Claims {
-        Claims { order, symmetric: false, poisson: false, kept, cost, source }
+        Claims { order, tolerance: None, symmetric: false, poisson: false, kept, cost, source }
     }
 }
 

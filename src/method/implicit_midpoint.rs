@@ -59,6 +59,7 @@ impl Claimed for ImplicitMidpoint {
         };
         Some(Claims {
             order: Some(2),
+            tolerance: None,
             symmetric: true,
             poisson: false,
             kept,

@@ -19,6 +19,7 @@ mod runge_kutta;
 pub mod schemes;
 mod splitting;
 mod stagnation;
+mod taylor;
 mod turns;
 mod two_turn;
 
@@ -35,6 +36,7 @@ pub use map::{Map, Method, Step};
 pub use preprocessed_dmv::{DmvOrderError, PreprocessedDmv};
 pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
 pub use splitting::{FreePart, Kicks, SchemeError, Splitting};
+pub use taylor::{AdaptiveTaylor, AdaptiveTaylorMap, Taylor, TaylorError, TaylorMap};
 pub use two_turn::{TwoAxes, TwoAxesError, TwoTurn};
 
 /// Turns about the principal axes, with [kicks](Kicks) around them.

@@ -171,7 +171,11 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
             _ => self.a.cost() * count(Part::A),
         };
         let source = if self.scheme == STRANG { self.a.source() } else { self.scheme.source };
-        let claims = |order, kept, cost| Claims { order, symmetric: true, poisson: true, kept, cost, source };
+        let claims = |order, kept, cost| Claims {
+            symmetric: true,
+            poisson: true,
+            ..Claims::new(order, kept, cost, source)
+        };
         match problem {
             Problem::Free => {
                 // a composition keeps the order of its base where that is higher

@@ -67,6 +67,14 @@ impl<S: Real> Series<S> {
         self.known
     }
 
+    /// Adds the next coefficient; the 42nd is dropped.
+    pub(crate) fn push(&mut self, c: S) {
+        if self.known < TERMS {
+            self.coefficients[self.known] = c;
+            (self.degree, self.known) = (self.known, self.known + 1);
+        }
+    }
+
     /// A series of zeros to the power `degree`, `known` of which are to be known.
     fn zeros(degree: usize, known: usize) -> Self {
         Series { degree: degree.min(known - 1), known, ..Series::number(S::of(0.0)) }

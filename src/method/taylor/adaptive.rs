@@ -1,0 +1,177 @@
+//! Taylor's method with steps of its own.
+
+use super::motion_series::MotionSeries;
+use super::{LOOSEST, SOURCE, TaylorError, add_change, unit};
+use crate::body::{Field, Point, Problem, Rotor, Time};
+use crate::method::{Claimed, Claims, Cost, Energy, Kept, Map, Method};
+use crate::num::{Dd, Real};
+use crate::rotation::Vec3;
+
+/// Taylor's method with order and steps by a tolerance, in a step relative to the state: by default the rounding of the scalar.
+///
+/// The order is `K = ⌈1 − ln(tolerance)/2⌉`, at least 8. A step ends where the terms of the two highest orders have grown to the
+/// tolerance over e² (§3.2 of Jorba and Zou, Experimental Math. 14 (2005) 99); so its length is near the radius of
+/// convergence over e², about as long as a third of a radian of the motion takes, and its error of discretisation below the tolerance.
+/// The step h of a run is only the interval of output: states there are values of the series that the time falls into, and the
+/// steps do not depend on h. The cost that is claimed is that of a step of its own, not of h.
+///
+/// A force has to be analytic along the motion, as with [`Taylor`](super::Taylor). A thruster that is switched is not, as no
+/// series shows the switch.
+///
+/// With the default tolerance errors are those of rounding, which walk: nothing is kept by construction, everything to rounding.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::method::AdaptiveTaylor;
+/// use polhode::{Body, FreeMotion, Inertia, Run};
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let end = Run::new(&AdaptiveTaylor::to_rounding(), &body, &start, 100.0)?.advance_to(1)?;
+/// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(100.0)?;
+/// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-13);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AdaptiveTaylor {
+    tolerance: Option<f64>,
+}
+
+impl AdaptiveTaylor {
+    /// With the rounding of the scalar as tolerance.
+    #[must_use]
+    pub const fn to_rounding() -> Self {
+        AdaptiveTaylor { tolerance: None }
+    }
+
+    /// With the tolerance `tolerance`, relative to the state.
+    ///
+    /// # Errors
+    /// A tolerance below the rounding of a double, 1.1e-16, or above 1e-3.
+    pub fn of_tolerance(tolerance: f64) -> Result<Self, TaylorError> {
+        if (f64::ROUNDOFF..=LOOSEST).contains(&tolerance) {
+            Ok(AdaptiveTaylor { tolerance: Some(tolerance) })
+        } else {
+            Err(TaylorError::Tolerance { tolerance })
+        }
+    }
+
+    /// The order that a tolerance asks for.
+    fn order(tolerance: f64) -> u32 {
+        libm::ceil(1.0 - 0.5 * libm::log(tolerance)).clamp(8.0, 40.0) as u32
+    }
+}
+
+impl Claimed for AdaptiveTaylor {
+    fn name(&self) -> String {
+        self.tolerance.map_or("taylor".into(), |tolerance| format!("taylor:{tolerance:e}"))
+    }
+    fn claims(&self, _: Problem) -> Option<Claims> {
+        let cost = Cost::right_sides(AdaptiveTaylor::order(self.tolerance.unwrap_or(f64::ROUNDOFF)));
+        Some(match self.tolerance {
+            None => Claims {
+                symmetric: true,
+                poisson: true,
+                ..Claims::new(None, Kept::all_of_free_motion(Energy::Exact), cost, SOURCE)
+            },
+            tolerance => Claims { tolerance, ..Claims::new(None, Kept::NOTHING, cost, SOURCE) },
+        })
+    }
+    fn needs_series(&self) -> bool {
+        true
+    }
+}
+
+impl<S: Real> Method<S> for AdaptiveTaylor {
+    type Map<F: Field<S>> = AdaptiveTaylorMap<S, F>;
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> AdaptiveTaylorMap<S, F> {
+        let tolerance = self.tolerance.unwrap_or(S::ROUNDOFF);
+        AdaptiveTaylorMap {
+            h,
+            tolerance: tolerance * libm::exp(-2.0),
+            series: MotionSeries::new(AdaptiveTaylor::order(tolerance), rotor, field),
+            base: Dd::ZERO,
+            current: None,
+        }
+    }
+}
+
+/// A prepared [`AdaptiveTaylor`]. Between outputs the point is that about which the current series is.
+#[derive(Clone, Debug)]
+pub struct AdaptiveTaylorMap<S, F> {
+    h: Dd,
+    /// What the last terms may grow to.
+    tolerance: f64,
+    series: MotionSeries<S, F>,
+    /// The time of the point, s since the start.
+    base: Dd,
+    /// The series, once it is worked out.
+    current: Option<Current>,
+}
+
+/// The unit that the current series counts, s, with the sign of h, and for how many units it is used.
+#[derive(Clone, Copy, Debug)]
+struct Current {
+    unit: f64,
+    reach: f64,
+}
+
+impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
+    /// The series about the point `x` at the time of the base.
+    fn expanded(&mut self, at: Time, x: &Point<S>) -> Current {
+        if let Some(current) = self.current {
+            return current;
+        }
+        // from the base alone, so that a run taken up again has the same bits
+        let others = self.series.others(at.at_elapsed(self.base, 1.0), x);
+        let rate = self.series.rate(x, others);
+        let unit = unit(if self.h.hi() < 0.0 { -1.0 / rate } else { 1.0 / rate });
+        self.series.expand(at.at_elapsed(self.base, unit), unit, x, others);
+        let current = Current { unit, reach: self.series.reach(self.tolerance) };
+        self.current = Some(current);
+        current
+    }
+}
+
+impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.open(at, x);
+        self.advance(at, x);
+        self.close(at.later(self.h), x);
+    }
+
+    fn open(&mut self, at: Time, _: &mut Point<S>) {
+        self.remember(Some(at.elapsed()));
+    }
+
+    fn advance(&mut self, at: Time, x: &mut Point<S>) {
+        let end = at.elapsed() + self.h;
+        loop {
+            let Current { unit, reach } = self.expanded(at, x);
+            let next = self.base + Dd::product(reach, unit);
+            if reach.is_infinite() || (end - next).hi() * unit < 0.0 {
+                return;
+            }
+            if !(next != self.base && next.hi().is_finite()) {
+                // a series that is not finite has no state behind it
+                x.add_momentum(Vec3([S::of(f64::NAN); 3]));
+                return;
+            }
+            add_change(&self.series, S::of(reach), x);
+            x.renormalize();
+            self.remember(Some(next));
+        }
+    }
+
+    fn close(&mut self, at: Time, x: &mut Point<S>) {
+        let unit = self.expanded(at, x).unit;
+        add_change(&self.series, S::from_dd((at.elapsed() - self.base) * (1.0 / unit)), x);
+    }
+
+    fn memory(&self) -> Option<Dd> {
+        Some(self.base)
+    }
+
+    fn remember(&mut self, memory: Option<Dd>) {
+        (self.base, self.current) = (memory.unwrap_or(Dd::ZERO), None);
+    }
+}

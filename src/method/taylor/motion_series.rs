@@ -1,0 +1,269 @@
+//! The Taylor series of a motion about one of its points.
+
+use core::array::from_fn;
+
+use crate::body::{Field, Gyroscopic, Phase, Point, Rotor, Time, vertical};
+use crate::num::{Dd, Real, Series};
+use crate::rotation::{Quat, Vec3};
+
+/// Coefficients of attitude and momentum up to an order K, the time counted in a unit.
+///
+/// With `m = Σ m_n`, `q = Σ q_n` and the unit u: `(n + 1) m_{n+1} = u (Σ m_k × I⁻¹m_{n−k} + τ_n)` and
+/// `2 (n + 1) q_{n+1} = u Σ q_k ∘ I⁻¹m_{n−k}`, k ≤ n. The first sum is taken as `D_i Σ (m_k)_j (m_{n−k})_l`, `D_i = 1/I_l − 1/I_j`,
+/// as its products cancel along the axis of a rod. Of uniform gravity τ_n is `Γ_n × c`, with
+/// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; of all other forces it is the coefficient n of their law, evaluated on the
+/// series so far, anew for each n. The unit is a power of two, so that it costs no rounding.
+#[derive(Clone, Debug)]
+pub(super) struct MotionSeries<S, F> {
+    order: usize,
+    field: F,
+    inverse_moments: Vec3<S>,
+    gyroscopic: Gyroscopic<S>,
+    /// 1/(n + 1).
+    shares: Vec<S>,
+    momentum: Vec<Turned<S>>,
+    attitude: Vec<Spun<S>>,
+    /// ω and Γ; empty without gravity.
+    fall: Vec<[Turned<S>; 2]>,
+}
+
+/// A vector by its next components and those after them: `a × b` is `a.next · b.after − a.after · b.next`.
+#[derive(Clone, Copy, Debug)]
+struct Turned<S> {
+    next: [S; 4],
+    after: [S; 4],
+}
+
+impl<S: Real> Turned<S> {
+    fn new(Vec3([x, y, z]): Vec3<S>) -> Self {
+        let zero = S::of(0.0);
+        Turned { next: [y, z, x, zero], after: [z, x, y, zero] }
+    }
+
+    #[inline]
+    fn components(&self) -> [S; 3] {
+        let [y, z, x, _] = self.next;
+        [x, y, z]
+    }
+}
+
+/// A quaternion q, and the three `½ q ∘ e_a/I_a` that ω turns it by.
+#[derive(Clone, Copy, Debug)]
+struct Spun<S> {
+    components: [S; 4],
+    by: [[S; 4]; 3],
+}
+
+impl<S: Real> Spun<S> {
+    fn new(components: [S; 4], inverse_moments: Vec3<S>) -> Self {
+        let [w, x, y, z] = components;
+        let half = inverse_moments * S::of(0.5);
+        let by = [[-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]];
+        Spun { components, by: [0, 1, 2].map(|axis| by[axis].map(|c| c * half[axis])) }
+    }
+}
+
+impl<S: Real, F: Field<S>> MotionSeries<S, F> {
+    pub(super) fn new(order: u32, rotor: &Rotor, field: &F) -> Self {
+        let order = order as usize;
+        MotionSeries {
+            order,
+            field: field.clone(),
+            inverse_moments: rotor.inverse_moments(),
+            gyroscopic: Gyroscopic::new(rotor, Dd::ONE),
+            shares: (1..=order).map(|n| S::from_dd(Dd::ONE / Dd::of(n as f64))).collect(),
+            momentum: Vec::with_capacity(order + 1),
+            attitude: Vec::with_capacity(order + 1),
+            fall: Vec::with_capacity(if field.gravity().is_some() { order + 1 } else { 0 }),
+        }
+    }
+
+    /// The rate, 1/s, at which the motion through `x` changes: of its spin, of a fall, and of what the torque `others` makes
+    /// of a body at rest.
+    pub(super) fn rate(&self, x: &Point<S>, others: Vec3<S>) -> f64 {
+        let inverse = self.inverse_moments;
+        let mut acceleration = others.times(inverse).magnitude();
+        if let Some(gravity) = self.field.gravity() {
+            let (c, inverse) = (gravity.weight_moment.map(S::magnitude), inverse.map(S::magnitude));
+            for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+                acceleration = acceleration.max(c[j].max(c[k]) * inverse[i]);
+            }
+        }
+        x.momentum_body.times(inverse).magnitude().max(acceleration.sqrt())
+    }
+
+    /// The torque of all but gravity at `x`.
+    pub(super) fn others(&self, at: Time, x: &Point<S>) -> Vec3<S> {
+        if !F::ACTS_BESIDES_GRAVITY {
+            return Vec3::zero();
+        }
+        let omega = x.momentum_body.times(self.inverse_moments);
+        self.torque(at, x.attitude.map(Series::number), omega.map(Series::number), 0)
+    }
+
+    /// The coefficient n of the torque of all but gravity.
+    fn torque(&self, at: Time, q: Quat<Series<S>>, omega: Vec3<Series<S>>, n: usize) -> Vec3<S> {
+        let torque = self.field.series_besides_gravity(at, q, omega);
+        torque.map_or(Vec3([S::of(f64::NAN); 3]), |torque| torque.map(|series| series.coefficient(n)))
+    }
+
+    /// Works out the series about `x`. Series that `at` makes of the time count in `unit`, s; `others` is the torque of all but
+    /// gravity at `x`.
+    pub(super) fn expand(&mut self, at: Time, unit: f64, x: &Point<S>, others: Vec3<S>) {
+        let (m, q, inverse) = (x.momentum_body, x.attitude, self.inverse_moments);
+        let gravity = self.field.gravity().copied();
+        self.momentum.clear();
+        self.attitude.clear();
+        self.fall.clear();
+        self.momentum.push(Turned::new(m));
+        self.attitude.push(Spun::new(q.components(), inverse));
+        if gravity.is_some() {
+            self.fall.push([Turned::new(m.times(inverse)), Turned::new(vertical(q))]);
+        }
+        let mut known = F::ACTS_BESIDES_GRAVITY.then(|| Known::new(q, m.times(inverse)));
+        for n in 0..self.order {
+            let mut rate = self.gyroscopic_term();
+            if let Some(gravity) = &gravity {
+                let up = Vec3(self.fall[n][1].components());
+                rate = rate + up.cross(gravity.weight_moment);
+            }
+            if let Some(known) = &known {
+                rate = rate
+                    + match n {
+                        0 => others,
+                        _ => self.torque(at, known.attitude, known.omega, n),
+                    };
+            }
+            let share = self.shares[n] * S::of(unit);
+            let q = self.spin().map(|c| c * share);
+            let up = gravity.map(|_| self.fall_term() * share);
+            let m = rate * share;
+            self.momentum.push(Turned::new(m));
+            self.attitude.push(Spun::new(q, inverse));
+            if let Some(up) = up {
+                self.fall.push([Turned::new(m.times(inverse)), Turned::new(up)]);
+            }
+            if let Some(known) = &mut known {
+                known.push(q, m.times(inverse));
+            }
+        }
+    }
+
+    /// `Σ m_k × I⁻¹m_{n−k}` of the coefficients so far.
+    #[inline]
+    fn gyroscopic_term(&self) -> Vec3<S> {
+        let mut sum = [S::of(0.0); 4];
+        for (a, b) in self.momentum.iter().zip(self.momentum.iter().rev()) {
+            sum = from_fn(|lane| sum[lane] + a.next[lane] * b.after[lane]);
+        }
+        let [x, y, z, _] = sum;
+        self.gyroscopic.times(Vec3([x, y, z]))
+    }
+
+    /// `½ Σ q_k ∘ I⁻¹m_{n−k}` of the coefficients so far.
+    #[inline]
+    fn spin(&self) -> [S; 4] {
+        let mut sum = [S::of(0.0); 4];
+        for (q, m) in self.attitude.iter().zip(self.momentum.iter().rev()) {
+            let [x, y, z] = m.components();
+            sum = from_fn(|lane| sum[lane] + (q.by[0][lane] * x + q.by[1][lane] * y + q.by[2][lane] * z));
+        }
+        sum
+    }
+
+    /// `Σ Γ_k × I⁻¹m_{n−k}` of the coefficients so far.
+    #[inline]
+    fn fall_term(&self) -> Vec3<S> {
+        let mut sum = [S::of(0.0); 4];
+        for ([_, up], [omega, _]) in self.fall.iter().zip(self.fall.iter().rev()) {
+            let cross = |lane: usize| up.next[lane] * omega.after[lane] - up.after[lane] * omega.next[lane];
+            sum = from_fn(|lane| sum[lane] + cross(lane));
+        }
+        let [x, y, z, _] = sum;
+        Vec3([x, y, z])
+    }
+
+    /// The changes of attitude and momentum when `s` units have gone by, summed from the highest order down.
+    #[inline]
+    pub(super) fn change(&self, s: S) -> Phase<S> {
+        let (mut m, mut q) = ([S::of(0.0); 3], [S::of(0.0); 4]);
+        for (momentum, attitude) in self.momentum.iter().zip(&self.attitude).skip(1).rev() {
+            let (momentum, attitude) = (momentum.components(), attitude.components);
+            m = from_fn(|axis| (m[axis] + momentum[axis]) * s);
+            q = from_fn(|k| (q[k] + attitude[k]) * s);
+        }
+        Phase { attitude: Quat::from_components(q), momentum_body: Vec3(m) }
+    }
+
+    /// For how many units the terms of the two highest orders stay below `tolerance`, those of the attitude as they are, those of
+    /// the momentum relative to |m|, from rest to its first change. Rounded down to eleven bits, so that rounding, which
+    /// depends on the axes of space, does not change it.
+    pub(super) fn reach(&self, tolerance: f64) -> f64 {
+        let momentum = |n: usize| size(&self.momentum[n].components());
+        let moving = (0..self.order).find(|&n| momentum(n) != 0.0).unwrap_or(0);
+        let allowed = tolerance * momentum(moving);
+        let mut reach = f64::INFINITY;
+        for n in [self.order - 1, self.order] {
+            let of_attitude = (tolerance / size(&self.attitude[n].components), n);
+            let last = momentum(n);
+            let bounds = moving < n && last != 0.0;
+            let terms = [of_attitude, if bounds { (allowed / last, n - moving) } else { of_attitude }];
+            if moving == 0 {
+                // one root of the smaller of the two
+                reach = least(reach, root(least(terms[0].0, terms[1].0), n));
+            } else {
+                reach = terms.into_iter().fold(reach, |reach, (ratio, n)| least(reach, root(ratio, n)));
+            }
+        }
+        if !(reach.is_finite() && reach > 0.0) {
+            return reach;
+        }
+        let bits = 10 - libm::ilogb(reach);
+        libm::scalbn(libm::floor(libm::scalbn(reach, bits)), -bits)
+    }
+}
+
+/// `x^(1/n)`; infinite for the quotient of a number and 0.
+fn root(x: f64, n: usize) -> f64 {
+    libm::exp(libm::log(x) / n as f64)
+}
+
+/// The Euclidean length, which turns of space leave as it is.
+fn size<S: Real>(components: &[S]) -> f64 {
+    let length = |unit: f64| {
+        let squares = components.iter().map(|c| c.magnitude() / unit).fold(0.0, |sum, c| sum + c * c);
+        squares.sqrt() * unit
+    };
+    let plain = length(1.0);
+    if (1e-140..1e140).contains(&plain) {
+        return plain;
+    }
+    let largest = components.iter().map(|c| c.magnitude()).fold(0.0, f64::max);
+    if largest == 0.0 { plain } else { length(largest) }
+}
+
+/// The smaller of the two; NaN if one is NaN.
+fn least(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.min(b) }
+}
+
+/// Attitude and angular velocity as far as their series are known.
+struct Known<S> {
+    attitude: Quat<Series<S>>,
+    omega: Vec3<Series<S>>,
+}
+
+impl<S: Real> Known<S> {
+    fn new(attitude: Quat<S>, omega: Vec3<S>) -> Self {
+        let first = |c| Series::from_coefficients(&[c]);
+        Known { attitude: attitude.map(first), omega: omega.map(first) }
+    }
+
+    fn push(&mut self, [w, x, y, z]: [S; 4], omega: Vec3<S>) {
+        self.attitude.w.push(w);
+        for (axis, c) in [x, y, z].into_iter().enumerate() {
+            self.attitude.v[axis].push(c);
+            self.omega[axis].push(omega[axis]);
+        }
+    }
+}
