@@ -119,7 +119,8 @@ pub enum StepError {
     },
     /// The method evaluates forces on power series, and one is a closure in `f64`.
     #[error(
-        "method {method:?} cannot take {force}, a closure in f64: it evaluates laws on power series; write the law for every          Real, or take rk4 or, for a potential, kick-drift"
+        "method {method:?} cannot take {force}, a closure in f64: it evaluates laws on power series; write the law for every \
+         Real, or take rk4 or, for a potential, kick-drift"
     )]
     Closure {
         /// Name of the method.

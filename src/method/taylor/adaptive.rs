@@ -163,8 +163,11 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
     }
 
     fn close(&mut self, at: Time, x: &mut Point<S>) {
-        let unit = self.expanded(at, x).unit;
-        add_change(&self.series, S::from_dd((at.elapsed() - self.base) * (1.0 / unit)), x);
+        let elapsed = at.elapsed() - self.base;
+        if elapsed != Dd::ZERO {
+            let unit = self.expanded(at, x).unit;
+            add_change(&self.series, S::from_dd(elapsed * (1.0 / unit)), x);
+        }
     }
 
     fn memory(&self) -> Option<Dd> {

@@ -1,0 +1,329 @@
+//! Taylor's method against closed forms and other methods: its tolerance, its steps, its refusals.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::body::{Body, Clock, Force, Point, Potential, State, Time, Torque};
+use polhode::flow::ExactMotion;
+use polhode::inertia::Inertia;
+use polhode::method::{AnyMethod, Claimed, method};
+use polhode::num::{Dd, Real};
+use polhode::rotation::{Quat, Vec3, rotation_angle};
+use polhode::run::{Run, RunError, Watch};
+
+fn free() -> (Body, State) {
+    started(Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap()), [0.4, 1.0, -0.3])
+}
+
+fn top() -> (Body, State) {
+    let inertia = Inertia::from_moments([1.0, 1.0, 0.25]).unwrap();
+    started(Body::heavy(inertia, [0.0, 0.0, 0.7].into()).unwrap(), [0.3, -0.2, 5.0])
+}
+
+/// A magnet along body z in a field along space x, on a body whose tensor is not diagonal.
+struct Magnet(f64);
+
+impl<S: Real> Potential<S> for Magnet {
+    fn energy(&self, _: Time, attitude: Quat<S>) -> S {
+        -(S::of(self.0) * attitude.rotate(Vec3::unit(2))[0])
+    }
+    fn torque(&self, _: Time, attitude: Quat<S>) -> Vec3<S> {
+        Vec3::unit(2).cross(attitude.rotate_back(Vec3::unit(0))) * S::of(self.0)
+    }
+}
+
+fn magnet() -> (Body, State) {
+    let tensor = Matrix3::new(1.0, 0.1, 0.2, 0.1, 2.0, 0.3, 0.2, 0.3, 2.5);
+    let body = Body::free(Inertia::from_tensor(tensor).unwrap());
+    started(body.with(Force::potential("magnet", Magnet(0.5))), [0.4, 1.0, -0.3])
+}
+
+fn satellite() -> (Body, State) {
+    let inertia = Inertia::from_moments([10.0, 25.0, 30.0]).unwrap();
+    let gradient = Force::gravity_gradient(&inertia, 0.001, 0.3).unwrap();
+    started(Body::free(inertia).with(gradient), [2e-4, -3e-4, 1.2e-3])
+}
+
+fn started(body: Body, omega: [f64; 3]) -> (Body, State) {
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5);
+    let start = body.state(tilt, omega.into()).unwrap();
+    (body, start)
+}
+
+fn run(name: &str, (body, start): &(Body, State), h: f64) -> Run {
+    Run::new(&method(name).unwrap(), body, start, h).unwrap()
+}
+
+/// Attitude error after the time `t`, output in one step, and the worst error of the energy at the end.
+fn errors(name: &str, case: &(Body, State), t: f64) -> [f64; 2] {
+    let mut run = run(name, case, t);
+    let exact = ExactMotion::from_point(&case.0, run.start().to_dd()).unwrap().point_at_dd(Dd::of(t));
+    let end = run.advance_to(1).unwrap();
+    [rotation_angle(end.point.to_dd().attitude, exact.attitude).hi(), end.worst.energy.unwrap()]
+}
+
+#[test]
+fn errors_follow_the_tolerance_down_to_rounding() {
+    for (what, case, spin) in [("free", free(), 1.1), ("top", top(), 5.0)] {
+        for tolerance in [1e-6, 1e-9, 1e-12] {
+            let [attitude, energy] = errors(&format!("taylor:{tolerance:e}"), &case, 100.0);
+            println!("{what} {tolerance:e}: attitude {attitude:.1e}, energy {energy:.1e}");
+            // some hundred steps, and what is lost of the momentum turns the attitude from then on
+            assert!(attitude < 100.0 * tolerance && attitude > 1e-3 * tolerance, "{attitude:e}");
+            assert!(energy < 10.0 * tolerance && energy > 1e-4 * tolerance, "{energy:e}");
+        }
+        let [attitude, energy] = errors("taylor", &case, 1000.0);
+        println!("{what} to rounding, at 1000 s: attitude {attitude:.1e}, energy {energy:.1e}");
+        assert!(attitude < 1e-15 * spin * 1000.0 && energy < 5e-15, "{attitude:e}, {energy:e}");
+    }
+}
+
+/// Two methods of different kinds in double-double: laws on series, times and orbits on series, axes that are not principal.
+#[test]
+fn forces_on_series_are_those_of_a_composition_in_double_double() {
+    for (what, (body, start), t, most) in [
+        ("magnet", magnet(), 4.0, 1e-22),
+        ("satellite", satellite(), 4000.0, 1e-22),
+        (
+            "satellite on a tensor",
+            {
+                let (body, start) = satellite();
+                (body.with(Force::potential("m", Magnet(1e-5))), start)
+            },
+            4000.0,
+            1e-22,
+        ),
+    ] {
+        let end = |name: &str, steps: u64| {
+            let mut x = body.enter(&start).unwrap();
+            let clock = Clock { start: 0.25 * t, step: t / steps as f64 };
+            method(name).unwrap().prepare_dd(clock, &body).unwrap().steps(&mut x, steps);
+            x
+        };
+        let expected = end("kick-drift@sofroniou-spaletta-10", 256);
+        for (name, steps) in [("taylor", 4), ("taylor:30", 64)] {
+            let found = end(name, steps);
+            let off = rotation_angle(found.attitude, expected.attitude).hi();
+            println!("{what}, {name}: {off:.1e}");
+            assert!(off < most, "{what}, {name}: {off:.1e}");
+        }
+    }
+}
+
+/// States at the times 0.875, 1.75, … and the point at the last, whatever the interval of output, and wherever it was read.
+#[test]
+fn neither_output_nor_reading_changes_a_bit() {
+    for case in [free(), top(), magnet()] {
+        let at = |h: f64, steps: &[u64], watch: Watch| {
+            let mut run = run("taylor:1e-12", &case, h).watching(watch);
+            let samples: Vec<_> = steps.iter().map(|&n| run.advance_to(n).unwrap()).collect();
+            samples.last().unwrap().state
+        };
+        let expected = at(28.0, &[1], Watch::EveryStep);
+        for (h, steps) in [(28.0 / 1024.0, &[1024][..]), (3.5, &[1, 2, 5, 8]), (0.875, &[3, 4, 32])] {
+            for watch in [Watch::EveryStep, Watch::AtSamples, Watch::Never] {
+                assert_eq!(at(h, steps, watch), expected, "{h} {watch}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_run_is_taken_up_within_and_between_its_steps() {
+    for case in [free(), top(), magnet(), satellite()] {
+        for (h, taken) in [(0.01, 777), (5.0, 3)] {
+            let mut straight = run("taylor", &case, h);
+            straight.advance_to(taken).unwrap();
+            let text = straight.checkpoint().to_string();
+            let mut resumed =
+                Run::resume(&method("taylor").unwrap(), &case.0, &text.parse().unwrap()).unwrap();
+            assert_eq!(resumed.sample().point, straight.sample().point);
+            let (a, b) = (straight.advance_to(2 * taken).unwrap(), resumed.advance_to(2 * taken).unwrap());
+            assert_eq!((a.point, a.worst), (b.point, b.worst));
+            for broken in [text.replace("base ", "base x"), text.replace("base ", "basis ")] {
+                let error = broken.parse::<polhode::run::Checkpoint>().unwrap_err().to_string();
+                assert!(error.ends_with("it must hold two numbers, or - where there are none"), "{error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_steady_spin_keeps_its_momentum_to_the_last_bit() {
+    for axis in 0..3 {
+        let mut omega = [0.0; 3];
+        omega[axis] = 1.5;
+        let (body, start) = started(free().0, omega);
+        let mut run = run("taylor", &(body.clone(), start), 1000.0);
+        let exact = ExactMotion::from_point(&body, run.start().to_dd()).unwrap().point_at_dd(Dd::of(1000.0));
+        let end = run.advance_to(1).unwrap();
+        assert_eq!(end.point.momentum_body, run.start().momentum_body);
+        let off = rotation_angle(end.point.to_dd().attitude, exact.attitude).hi();
+        println!("axis {axis}: {off:.1e}");
+        assert!(off < 2e-13, "{off:e}");
+    }
+}
+
+#[test]
+fn a_body_at_rest_stays_falls_and_is_pushed() {
+    // nothing acts: one series for all times
+    let case = started(free().0, [0.0; 3]);
+    assert_eq!(run("taylor", &case, 1e9).advance_to(5).unwrap().state, case.1);
+    // hanging: the torque is zero, and the weight is not
+    let inertia = Inertia::from_moments([1.0, 2.0, 2.5]).unwrap();
+    let hanging = Body::heavy(inertia.clone(), [0.0, 0.0, -1.0].into()).unwrap();
+    let start = hanging.state(UnitQuaternion::identity(), Vector3::zeros()).unwrap();
+    assert_eq!(run("taylor", &(hanging.clone(), start), 100.0).advance_to(3).unwrap().state, start);
+    // released: its energy is kept
+    let mut falling = run("taylor", &started(hanging, [0.0; 3]), 0.1);
+    let end = falling.advance_to(10_000).unwrap();
+    assert!(end.worst.energy.unwrap() < 2e-14 && end.momentum_norm > 1e-3, "{:?}", end.worst);
+    // pushed along an axis: ω = τ t/I and half of that times t
+    let push = Force::constant_torque_body([0.0, 0.0, 0.5].into()).unwrap();
+    let pushed = Body::free(inertia).with(push);
+    let start = pushed.state(UnitQuaternion::identity(), Vector3::zeros()).unwrap();
+    for t in [0.5, 8.0, 64.0] {
+        let end = run("taylor", &(pushed.clone(), start), t).advance_to(1).unwrap();
+        let angle = 0.5 * 0.2 * t * t;
+        let expected = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+        assert!((end.omega_body.z - 0.2 * t).abs() < 1e-14 * t, "{t}: {}", end.omega_body.z - 0.2 * t);
+        let off = end.state.rotation().angle_to(&expected);
+        assert!(off < 1e-15 * angle.max(10.0), "{t}: {off:e}");
+    }
+}
+
+#[test]
+fn backwards_is_where_it_came_from() {
+    // the magnet tumbles, and what rounding takes grows with it
+    for ((body, start), steps) in [(free(), 400), (top(), 400), (magnet(), 100)] {
+        for name in ["taylor", "taylor:20"] {
+            let first = body.enter(&start).unwrap().to_f64();
+            let mut x = first;
+            for clock in [Clock::new(0.25), Clock { start: 0.25 * steps as f64, step: -0.25 }] {
+                x = Point::new(x.attitude, x.momentum_body);
+                method(name).unwrap().prepare_f64(clock, &body).unwrap().steps(&mut x, steps);
+            }
+            let off = rotation_angle(x.attitude, first.attitude);
+            println!("{name}: {off:.1e}");
+            assert!(off < 1e-12, "{name}: {off:e}");
+        }
+    }
+}
+
+/// Motions of any speed, on bodies of any size: units of the series that keep its coefficients in range.
+#[test]
+fn speeds_and_sizes_at_the_ends_of_the_range_change_nothing_but_the_scale() {
+    let turned = |size: f64, speed: f64| {
+        let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0].map(|i| i * size)).unwrap());
+        let case = started(body, [0.4, 1.0, -0.3].map(|w| w * speed));
+        run("taylor", &case, 64.0 / speed).advance_to(2).unwrap().state.attitude
+    };
+    let expected = turned(1.0, 1.0);
+    for (size, speed) in [(-150, 40), (110, -60), (0, 100), (0, -100)] {
+        assert_eq!(
+            turned(libm::scalbn(1.0, size), libm::scalbn(1.0, speed)),
+            expected,
+            "2^{size}, 2^{speed}"
+        );
+    }
+}
+
+#[test]
+fn orders_and_tolerances_that_there_are_not_are_refused() {
+    for name in [
+        "taylor:7",
+        "taylor:41",
+        "taylor:0",
+        "taylor:1e-17",
+        "taylor:0.5",
+        "taylor:x",
+        "taylor:NaN",
+        "taylor:-1e-9",
+    ] {
+        let error = method(name).err().unwrap().to_string();
+        assert_eq!(
+            error,
+            format!(
+                "method {name:?} has an argument that it cannot take; allowed: an order from 8 to 40, such as taylor:20, or a \
+                 tolerance from 1.2e-16, as the rounding of a double is 1.1e-16, to 1e-3, such as taylor:1e-12"
+            )
+        );
+    }
+    assert_eq!(
+        polhode::method::Taylor::of_order(7).unwrap_err().to_string(),
+        "there is no Taylor method of order 7; there are the orders from 8 to 40"
+    );
+    assert_eq!(
+        polhode::method::AdaptiveTaylor::of_tolerance(1e-20).unwrap_err().to_string(),
+        "1e-20 is no tolerance of Taylor's method; it must be from 1.1102230246251565e-16, the rounding of a double, to 1e-3"
+    );
+    for name in ["taylor", "taylor:8", "taylor:40", "taylor:1e-12", "taylor:1e-3", "taylor:1.2e-16"] {
+        assert_eq!(method(name).unwrap().name(), name);
+    }
+    assert!(method("taylor@suzuki-4").err().unwrap().to_string().contains("is not symmetric"));
+}
+
+#[test]
+fn closures_are_refused_and_singular_laws_end_a_run() {
+    let closure = Force::torque_fn("thruster", |_, _, _| Vector3::new(0.0, 0.0, 0.5));
+    let (body, start) = free();
+    for name in ["taylor", "taylor:20"] {
+        let error =
+            Run::new(&method(name).unwrap(), &body.clone().with(closure.clone()), &start, 0.1).err().unwrap();
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "method {name:?} cannot take thruster, a closure in f64: it evaluates laws on power series; write the law for \
+                 every Real, or take rk4 or, for a potential, kick-drift"
+            )
+        );
+    }
+    // √(5 − t) has no series at t = 5, and none that reaches beyond
+    struct Fading;
+    impl<S: Real> Torque<S> for Fading {
+        fn torque(&self, at: Time, _: Quat<S>, _: Vec3<S>) -> Vec3<S> {
+            Vec3::unit(2) * (S::of(5.0) - at.seconds::<S>()).sqrt()
+        }
+    }
+    let fading = (body.clone().with(Force::torque("fading", Fading)), start);
+    for watch in [Watch::EveryStep, Watch::AtSamples, Watch::Never] {
+        let error = run("taylor", &fading, 0.5).watching(watch).advance_to(100).unwrap_err();
+        let RunError::Force { force, time, .. } = error else { panic!("{error}") };
+        assert!(force == "fading" && time > 4.999 && time < 5.0, "{force}, {time}");
+    }
+    // |ω| has none where a body begins to turn
+    let drag = body.with(Force::drag(0.0, 0.1).unwrap());
+    let drag = drag.with(Force::constant_torque_body([0.0, 0.0, 1.0].into()).unwrap());
+    let error = run("taylor", &started(drag, [0.0; 3]), 0.5).advance_to(100).unwrap_err();
+    let RunError::Force { force, time, .. } = error else { panic!("{error}") };
+    assert_eq!((force.as_str(), time), ("drag", 0.0));
+}
+
+/// A law that counts how often it is evaluated on series.
+struct Counted(Arc<AtomicU32>);
+
+impl<S: Real> Torque<S> for Counted {
+    fn torque(&self, _: Time, _: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        omega_body * S::of(-0.1)
+    }
+}
+
+#[test]
+fn a_step_evaluates_a_law_as_often_as_its_order() {
+    let count = Arc::new(AtomicU32::new(0));
+    let (body, start) = free();
+    let body = body.with(Force::torque("counted", Counted(count.clone())));
+    for name in ["taylor:12", "taylor:30", "taylor"] {
+        let method = method(name).unwrap();
+        let mut x = body.enter(&start).unwrap().to_f64();
+        let mut step = method.prepare_f64(Clock::new(0.01), &body).unwrap();
+        count.store(0, Ordering::Relaxed);
+        step.steps(&mut x, 1);
+        let cost = method.claims(body.problem()).unwrap().cost;
+        assert_eq!(count.load(Ordering::Relaxed), cost.right_sides, "{name}");
+    }
+}
