@@ -23,7 +23,8 @@ const TERMS: usize = 41;
 /// let (sine, cosine) = x.sin_cos();
 /// assert_eq!(sine.coefficient(3), -1.0 / 6.0);
 /// let one = sine * sine + cosine * cosine;
-/// assert_eq!((one.known(), one.coefficient(0), one.coefficient(4)), (6, 1.0, 0.0));
+/// assert_eq!((one.known(), one.coefficient(0)), (6, 1.0));
+/// assert!((1..6).all(|n| one.coefficient(n).abs() < 1e-16));
 /// ```
 #[derive(Clone, Copy, Debug)]
 #[must_use]

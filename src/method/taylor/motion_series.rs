@@ -122,7 +122,7 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
         }
         let mut known = F::ACTS_BESIDES_GRAVITY.then(|| Known::new(q, m.times(inverse)));
         for n in 0..self.order {
-            let mut rate = self.gyroscopic_term();
+            let (mut rate, spin) = self.gyroscopic_term_and_spin();
             if let Some(gravity) = &gravity {
                 let up = Vec3(self.fall[n][1].components());
                 rate = rate + up.cross(gravity.weight_moment);
@@ -135,7 +135,7 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
                     };
             }
             let share = self.shares[n] * S::of(unit);
-            let q = self.spin().map(|c| c * share);
+            let q = spin.map(|c| c * share);
             let up = gravity.map(|_| self.fall_term() * share);
             let m = rate * share;
             self.momentum.push(Turned::new(m));
@@ -149,26 +149,18 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
         }
     }
 
-    /// `Σ m_k × I⁻¹m_{n−k}` of the coefficients so far.
+    /// `Σ m_k × I⁻¹m_{n−k}` and `½ Σ q_k ∘ I⁻¹m_{n−k}` of the coefficients so far.
     #[inline]
-    fn gyroscopic_term(&self) -> Vec3<S> {
-        let mut sum = [S::of(0.0); 4];
-        for (a, b) in self.momentum.iter().zip(self.momentum.iter().rev()) {
-            sum = from_fn(|lane| sum[lane] + a.next[lane] * b.after[lane]);
+    fn gyroscopic_term_and_spin(&self) -> (Vec3<S>, [S; 4]) {
+        let (mut products, mut spin) = ([S::of(0.0); 4], [S::of(0.0); 4]);
+        let pairs = self.momentum.iter().zip(&self.attitude).zip(self.momentum.iter().rev());
+        for ((a, q), b) in pairs {
+            let [x, y, z] = b.components();
+            products = from_fn(|lane| products[lane] + a.next[lane] * b.after[lane]);
+            spin = from_fn(|lane| spin[lane] + (q.by[0][lane] * x + q.by[1][lane] * y + q.by[2][lane] * z));
         }
-        let [x, y, z, _] = sum;
-        self.gyroscopic.times(Vec3([x, y, z]))
-    }
-
-    /// `½ Σ q_k ∘ I⁻¹m_{n−k}` of the coefficients so far.
-    #[inline]
-    fn spin(&self) -> [S; 4] {
-        let mut sum = [S::of(0.0); 4];
-        for (q, m) in self.attitude.iter().zip(self.momentum.iter().rev()) {
-            let [x, y, z] = m.components();
-            sum = from_fn(|lane| sum[lane] + (q.by[0][lane] * x + q.by[1][lane] * y + q.by[2][lane] * z));
-        }
-        sum
+        let [x, y, z, _] = products;
+        (self.gyroscopic.times(Vec3([x, y, z])), spin)
     }
 
     /// `Σ Γ_k × I⁻¹m_{n−k}` of the coefficients so far.
