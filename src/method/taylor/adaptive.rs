@@ -10,10 +10,10 @@ use crate::rotation::Vec3;
 /// Taylor's method with order and steps by a tolerance, in a step relative to the state: by default the rounding of the scalar.
 ///
 /// The order is `K = ⌈1 − ln(tolerance)/2⌉`, at least 8. A step ends where the terms of the two highest orders have grown to the
-/// tolerance over e² (§3.2 of Jorba and Zou, Experimental Math. 14 (2005) 99); so its length is near the radius of
-/// convergence over e², about as long as a third of a radian of the motion takes, and its error of discretisation below the tolerance.
-/// The step h of a run is only the interval of output: states there are values of the series that the time falls into, and the
-/// steps do not depend on h. The cost that is claimed is that of a step of its own, not of h.
+/// tolerance over e² (§3.2 of Jorba and Zou, Experimental Math. 14 (2005) 99), near the radius of convergence over e²: a free
+/// body turns by about half a radian in it. Its error of discretisation is below the tolerance. The step h of a run is only the
+/// interval of output: states there are values of the series that the time falls into, and the steps do not depend on h. The
+/// cost that is claimed is that of a step of its own, in `f64`, not of h.
 ///
 /// A force has to be analytic along the motion, as with [`Taylor`](super::Taylor). A thruster that is switched is not, as no
 /// series shows the switch.
