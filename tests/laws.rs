@@ -190,7 +190,6 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         "kick-drift@srkn-6b",
         "two-turn@blanes-moan-s6",
         "two-turn@kahan-li-6",
-        "taylor",
         "taylor:12",
         "taylor:1e-4",
     ] {

@@ -155,6 +155,7 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(ExactStep),
         Box::new(Splitting::strang(ExactFlow, Kicks)),
         Box::new(Splitting::with_scheme(ExactFlow, Kicks, SUZUKI_4)),
+        Box::new(AdaptiveTaylor::to_rounding()),
     ]
 }
 
