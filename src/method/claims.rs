@@ -25,6 +25,9 @@ pub struct Claims {
     pub symmetric: bool,
     /// Without torque the map of momenta keeps the Lie–Poisson bracket.
     pub poisson: bool,
+    /// The map of attitude and momentum is symplectic on T*SO(3): it keeps the form
+    /// `ξ₁·δm₂ − ξ₂·δm₁ + m·(ξ₁ × ξ₂)` of two variations, ξ a turn of the body about its own axes.
+    pub symplectic: bool,
     /// What is constant along the numerical solution.
     pub kept: Kept,
     /// Work per step.
@@ -34,9 +37,9 @@ pub struct Claims {
 }
 
 impl Claims {
-    /// Of a method that is neither symmetric nor Poisson; where it is, set the field.
+    /// Of a method that is neither symmetric nor Poisson nor symplectic; where it is, set the field.
     pub const fn new(order: Option<u32>, kept: Kept, cost: Cost, source: &'static str) -> Claims {
-        Claims { order, symmetric: false, poisson: false, kept, cost, source }
+        Claims { order, symmetric: false, poisson: false, symplectic: false, kept, cost, source }
     }
 }
 

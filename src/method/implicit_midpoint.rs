@@ -59,6 +59,7 @@ impl Claimed for ImplicitMidpoint {
             order: Some(2),
             symmetric: true,
             poisson: false,
+            symplectic: false,
             kept,
             cost: Cost::solves(1),
             source: "Austin, Krishnaprasad and Wang, J. Comput. Phys. 107 (1993) 105; Lewis and Simo, J. Nonlinear Sci. 4 (1994) 253",

@@ -28,6 +28,10 @@ pub trait FreePart: Symmetric {
     fn order(&self) -> Option<u32>;
     /// The energy of free motion.
     fn energy(&self) -> Energy;
+    /// Whether the map is symplectic: the turn of the body included, of which the bracket of the momenta knows nothing.
+    fn symplectic(&self) -> bool {
+        true
+    }
     /// Work of one map.
     fn cost(&self) -> Cost;
     /// Work of one map in a sequence of the same.
@@ -162,7 +166,10 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
             _ => self.a.cost() * count(Part::A),
         };
         let source = if self.scheme == STRANG { self.a.source() } else { self.scheme.source };
-        let claims = |order, kept, cost| Claims { order, symmetric: true, poisson: true, kept, cost, source };
+        let claims = |order, kept, cost| {
+            let symplectic = self.a.symplectic();
+            Claims { order, symmetric: true, poisson: true, symplectic, kept, cost, source }
+        };
         match problem {
             Problem::Free => {
                 // a composition keeps the order of its base where that is higher
