@@ -76,9 +76,13 @@ fn heavy() -> Case {
     let body = Body::heavy(inertia, case.weight_moment.map(|c| c * SIZE).into()).unwrap();
     let state =
         State { attitude: Quat::from_components(attitude), momentum_body: Vec3(start.map(|m| m * SIZE)) };
-    let exact = Vec3(momentum) * (Dd::from(SIZE) / Dd::from(body.scale()));
     let start = body.enter(&state).unwrap();
-    Case { body, start, span: t, exact: Point::new(Quat::from_components(result), exact) }
+    let case = followed(body, start, t, "kick-drift@sofroniou-spaletta-10", 256, 1e-24);
+    // the body of the fixture has moments that no double holds
+    assert!(rotation_angle(case.exact.attitude, Quat::from_components(result)).hi() < 1e-15);
+    let momentum = Vec3(momentum) * (Dd::from(SIZE) / Dd::from(case.body.scale()));
+    assert!((case.exact.momentum_body - momentum).magnitude() < 1e-15 * momentum.magnitude());
+    case
 }
 
 /// Linear and quadratic in the vertical, like gravity and a gradient: U = a·Γ + ½ Γ·BΓ, B diagonal. Keeps E and L_z.
@@ -113,8 +117,7 @@ impl<S: Real> Torque<S> for Pushed {
 }
 
 /// The end of a motion without closed form: by a composition of high order, in double-double; twice the step agrees.
-fn followed(body: Body, by: &str, steps: u64, agreement: f64) -> Case {
-    let (start, span) = (start_of(&body), 2.0);
+fn followed(body: Body, start: Point<Dd>, span: f64, by: &str, steps: u64, agreement: f64) -> Case {
     let end = |steps: u64| {
         let mut x = start;
         method(by).unwrap().prepare_dd(Clock::new(span / steps as f64), &body).unwrap().steps(&mut x, steps);
@@ -131,17 +134,15 @@ fn potential() -> Case {
         linear: [0.1, -0.2, 0.4].map(|a| a * SIZE),
         quadratic: [0.5, -0.25, 0.125].map(|a| a * SIZE),
     };
-    followed(
-        Body::free(inertia()).with(Force::potential("vertical", field)),
-        "kick-drift@sofroniou-spaletta-10",
-        256,
-        1e-24,
-    )
+    let body = Body::free(inertia()).with(Force::potential("vertical", field));
+    let start = start_of(&body);
+    followed(body, start, 2.0, "kick-drift@sofroniou-spaletta-10", 256, 1e-24)
 }
 
 fn pushed() -> Case {
     let body = Body::free(inertia()).with(Force::torque("push", Pushed));
-    followed(body, "implicit-midpoint@kahan-li-8", 256, 1e-13)
+    let start = start_of(&body);
+    followed(body, start, 2.0, "implicit-midpoint@kahan-li-8", 256, 1e-13)
 }
 
 /// All problems, each with its kind.
@@ -173,6 +174,9 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         "rattle@yoshida-4",
         "implicit-midpoint@mclachlan-4",
         "kick-drift@srkn-6b",
+        "kick-drift@blanes-casas-murua-6-11",
+        "implicit-midpoint@blanes-casas-murua-6-13",
+        "kick-drift@processed-6-4",
     ] {
         methods.push(method(name).unwrap());
     }
@@ -265,6 +269,7 @@ fn each_method_converges_with_its_order_and_no_better() {
                 (Problem::Gravity, _) => 6..9,
                 (_, 1) => 8..11,
                 (_, 8..) => 5..8,
+                (Problem::Torque, 6..) => 6..9,
                 (Problem::Torque, _) => 8..11,
                 _ => 6..9,
             };
@@ -282,8 +287,10 @@ fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
         assert_scheme_order(&potential, &exact, scheme);
         let split = Splitting::kicked(AxisSplit { axes: None }, *scheme);
         match scheme.stages {
-            Stages::Composition(_) => assert_scheme_order(&free, &split.unwrap(), scheme),
-            Stages::Alternating { .. } => {
+            Stages::Composition(_) | Stages::Processed { .. } => {
+                assert_scheme_order(&free, &split.unwrap(), scheme)
+            }
+            Stages::Alternating { .. } | Stages::ProcessedAlternating { .. } => {
                 assert_eq!(split.is_err(), scheme.order > 2, "{} over a free map of order 2", scheme.name)
             }
         }
@@ -294,8 +301,9 @@ fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
 fn assert_scheme_order(case: &Case, method: &dyn AnyMethod, scheme: &Scheme) {
     let exponents = match scheme.order {
         ..=4 => 6..10,
-        6 | 8 => 4..8,
-        _ => 3..7,
+        6 => 6..9,
+        8 => 5..8,
+        _ => 4..7,
     };
     assert_order(case, method, scheme.order, exponents);
 }
@@ -304,7 +312,7 @@ fn assert_kept(name: &str, what: &str, claimed: bool, error: f64) {
     if claimed {
         assert!(error < EXACT, "{name} claims to keep {what} and loses {error:.1e}");
     } else {
-        assert!(error > 1e-9, "{name} does not claim to keep {what}, yet its error is {error:.1e}");
+        assert!(error > 1e14 * EXACT, "{name} does not claim to keep {what}, yet its error is {error:.1e}");
     }
 }
 
@@ -367,12 +375,12 @@ fn mean_energy_drift(case: &Case, method: &dyn AnyMethod, h: f64, span: f64) -> 
 
 #[test]
 fn bounded_energy_stays_bounded_and_scales_with_the_order() {
-    let (h, long) = (0.0625, 250.0);
     for (problem, case) in cases() {
         for method in methods() {
             let Some(claims) = method.claims(problem) else { continue };
             let (Energy::Bounded, Some(order)) = (claims.kept.energy, claims.order) else { continue };
             let name = name(&method, problem);
+            let (h, long) = (if order < 6 { 0.0625 } else { 0.03125 }, 250.0);
             let (span, tolerance) = if problem == Problem::Free { (100.0, 0.05) } else { (50.0, 0.2) };
             let amplitude = |h: f64| worst(&case, &integrate(&case, &method, h, (span / h) as u64)).energy;
             let (coarse, fine) = (amplitude(h), amplitude(h / 2.0));
@@ -512,10 +520,11 @@ fn a_symmetric_method_returns_and_the_others_do_not() {
         for method in methods() {
             let Some(claims) = method.claims(problem) else { continue };
             let mut x = case.start;
-            let there = 50.0 * 0.0625;
-            for clock in [Clock::new(0.0625), Clock { start: there, step: -0.0625 }] {
+            let h = 0.125;
+            let there = 25.0 * h;
+            for clock in [Clock::new(h), Clock { start: there, step: -h }] {
                 x = Point::new(x.attitude, x.momentum_body);
-                method.prepare_dd(clock, &case.body).unwrap().steps(&mut x, 50);
+                method.prepare_dd(clock, &case.body).unwrap().steps(&mut x, 25);
             }
             let away = ((x.momentum_body - case.start.momentum_body).magnitude()
                 / case.start.momentum_body.magnitude())
@@ -524,7 +533,10 @@ fn a_symmetric_method_returns_and_the_others_do_not() {
             if claims.symmetric {
                 assert!(away < 10.0 * EXACT, "{name} claims to be symmetric and returns {away:.1e} off");
             } else {
-                assert!(away > 1e-9, "{name} does not claim to be symmetric, yet returns to {away:.1e}");
+                assert!(
+                    away > 1e6 * EXACT,
+                    "{name} does not claim to be symmetric, yet returns to {away:.1e}"
+                );
             }
         }
     }
@@ -562,7 +574,7 @@ fn a_poisson_map_keeps_the_bracket_and_the_others_do_not() {
             assert!(defect < 1e-20, "{} claims to be Poisson with a defect of {defect:.1e}", method.name());
         } else {
             assert!(
-                defect > 1e-7,
+                defect > 1e-14,
                 "{} does not claim to be Poisson, yet its defect is {defect:.1e}",
                 method.name()
             );
@@ -806,7 +818,7 @@ fn each_method_costs_what_it_claims() {
     assert_cost(&ImplicitMidpoint, true);
     assert_cost(&Composed::new(ImplicitMidpoint, schemes::SUZUKI_4).unwrap(), true);
     for scheme in schemes::ALL {
-        if let Stages::Composition(_) = scheme.stages {
+        if scheme.lengths().is_some() {
             assert_cost(&Splitting::kicked(AxisSplit { axes: None }, *scheme).unwrap(), false);
             assert_cost(&Splitting::kicked(Dmv, *scheme).unwrap(), true);
             assert_cost(&Splitting::kicked(TwoTurn { axes: None }, *scheme).unwrap(), false);

@@ -13,6 +13,7 @@ mod implicit_midpoint;
 mod map;
 mod modified_energy;
 mod preprocessed_dmv;
+mod processor;
 mod runge_kutta;
 pub mod schemes;
 mod splitting;

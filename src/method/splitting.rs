@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::processor::{Processor, Timed};
 use super::schemes::{Part, STRANG, Scheme, Stages};
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method, Symmetric};
 use crate::body::{Field, Point, Problem, Rotor, Time};
@@ -10,8 +11,8 @@ use crate::num::{Dd, Real};
 
 /// A splitting of H = A + B: maps of A and of B in turn, for the shares of the step that `scheme` gives.
 ///
-/// Strang's is Φ_h = B(h/2) A(h) B(h/2) (SIAM J. Numer. Anal. 5 (1968) 506). All schemes are palindromes, so that the
-/// splitting is symmetric where its parts are. Where two steps of a composition meet, their maps of B are merged.
+/// Strang's is Φ_h = B(h/2) A(h) B(h/2) (SIAM J. Numer. Anal. 5 (1968) 506). All schemes but processed ones are palindromes, so that
+/// the splitting is symmetric where its parts are. Where two steps of a composition meet, their maps of B are merged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Splitting<A, B> {
@@ -141,8 +142,8 @@ impl<A: FreePart> Splitting<A, Kicks> {
                 return Err(SchemeError::Lengths { scheme: scheme.name, outer, inner });
             }
         }
-        match (free.order(), scheme.stages) {
-            (Some(order), Stages::Alternating { .. }) if order < scheme.order => {
+        match (free.order(), scheme.lengths()) {
+            (Some(order), None) if order < scheme.order => {
                 Err(SchemeError::Inexact { scheme: scheme.name, base: free.name(), order })
             }
             _ => Ok(Splitting { a: free, b: Kicks, scheme }),
@@ -158,8 +159,9 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
     fn claims(&self, problem: Problem) -> Option<Claims> {
         let flows = self.scheme.flows();
         // in motion under a force the last flow of a step and the first of the next are one
-        let merged =
-            |part| u32::from(problem != Problem::Free && flows.first().is_some_and(|flow| flow.0 == part));
+        let at_both_ends =
+            |part| [flows.first(), flows.last()].iter().all(|end| end.is_some_and(|f| f.0 == part));
+        let merged = |part| u32::from(problem != Problem::Free && at_both_ends(part));
         let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u32 - merged(part);
         let free = match problem {
             Problem::Free if count(Part::A) == 1 => self.a.cost_in_sequence(),
@@ -168,7 +170,10 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
         let source = if self.scheme == STRANG { self.a.source() } else { self.scheme.source };
         let claims = |order, kept, cost| {
             let symplectic = self.a.symplectic();
-            Claims { order, symmetric: true, poisson: true, symplectic, kept, cost, source }
+            // of exact flows without kicks nothing is left but the step itself
+            let exact = problem == Problem::Free && self.a.order().is_none();
+            let symmetric = exact || !self.scheme.is_processed();
+            Claims { order, symmetric, poisson: true, symplectic, kept, cost, source }
         };
         match problem {
             Problem::Free => {
@@ -195,21 +200,23 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
             lengths::<S>(h, &shares).into_iter()
         };
         let (mut a_lengths, mut b_lengths) = (lengths(Part::A), lengths(Part::B));
+        let (a, b) = (|length| self.a.map(length, rotor, field), |length| self.b.map(length, rotor, field));
+        let processor = Processor::new::<S>(h, &self.scheme.processor(), a, b);
         let (mut opening, mut pairs, mut free) = (None, Vec::new(), None);
-        let (mut begun, mut first) = (Dd::ZERO, None);
+        let (mut begun, mut first) = (processor.duration, None);
         for (part, _) in &flows {
             match part {
                 // the time goes by in A; in B it stands
                 Part::A => {
                     let length = a_lengths.next().unwrap_or(Dd::ZERO);
                     first = first.or(Some(length));
-                    free = Some(Timed { begun, map: self.a.map(length, rotor, field) });
+                    free = Some(Timed { begun, map: a(length) });
                     begun = begun + length;
                 }
                 Part::B => {
                     let length = b_lengths.next().unwrap_or(Dd::ZERO);
                     first = first.or(Some(length));
-                    let kick = Timed { begun, map: self.b.map(length, rotor, field) };
+                    let kick = Timed { begun, map: b(length) };
                     match free.take() {
                         Some(free) => pairs.push((free, kick)),
                         None => opening = Some(kick),
@@ -221,22 +228,21 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
         let ends = match &free {
             // without forces B does nothing
             _ if !F::ACTS => Ends::OfA,
-            None => Ends::B {
-                merged: Timed { begun, map: self.b.map(first * 2.0, rotor, field) },
-                back: self.b.map(-first, rotor, field),
-            },
-            Some(last) => Ends::A {
-                merged: Timed { begun: last.begun, map: self.a.map(first * 2.0, rotor, field) },
-                back: self.a.map(-first, rotor, field),
-            },
+            None if opening.is_none() => Ends::Apart,
+            None => Ends::B { merged: Timed { begun, map: b(first * 2.0) }, back: b(-first) },
+            Some(last) => {
+                Ends::A { merged: Timed { begun: last.begun, map: a(first * 2.0) }, back: a(-first) }
+            }
         };
-        SplittingMap { opening, pairs, closing: free, ends }
+        SplittingMap { h, processor, opening, pairs, closing: free, ends }
     }
 }
 
 /// A prepared [`Splitting`]: B where it comes first, pairs of A and B, A where it comes last.
 #[derive(Clone, Debug)]
 pub struct SplittingMap<A, B> {
+    h: Dd,
+    processor: Processor<A, B>,
     opening: Option<Timed<B>>,
     pairs: Vec<(Timed<A>, Timed<B>)>,
     closing: Option<Timed<A>>,
@@ -248,32 +254,22 @@ pub struct SplittingMap<A, B> {
 enum Ends<A, B> {
     /// Without forces: what A itself merges, if the step is one A.
     OfA,
+    /// Nothing: the two flows are of different parts.
+    Apart,
     /// Two flows of A as one, and the one that takes half of it back.
     A { merged: Timed<A>, back: A },
     /// Two flows of B likewise.
     B { merged: Timed<B>, back: B },
 }
 
-/// A map and the time at which it begins, s since the beginning of the step.
-#[derive(Clone, Debug)]
-struct Timed<M> {
-    begun: Dd,
-    map: M,
-}
-
-impl<M> Timed<M> {
+impl<A, B> SplittingMap<A, B> {
+    /// One step without processor.
     #[inline]
-    fn apply<S: Real>(&mut self, at: Time, x: &mut Point<S>)
+    fn kernel<S: Real>(&mut self, at: Time, x: &mut Point<S>)
     where
-        M: Map<S>,
+        A: Map<S>,
+        B: Map<S>,
     {
-        self.map.apply(at.later(self.begun), x);
-    }
-}
-
-impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
-    #[inline]
-    fn apply(&mut self, at: Time, x: &mut Point<S>) {
         if let Some(b) = &mut self.opening {
             b.apply(at, x);
         }
@@ -285,8 +281,18 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
             a.apply(at, x);
         }
     }
+}
+
+impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
+    #[inline]
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.processor.apply(at, x);
+        self.kernel(at, x);
+        self.processor.take_back(at.later(self.h), x);
+    }
 
     fn open(&mut self, at: Time, x: &mut Point<S>) {
+        self.processor.apply(at, x);
         match (&self.ends, &mut self.pairs[..], &mut self.opening) {
             (Ends::OfA, [(a, _)], _) => a.map.open(at, x),
             (Ends::A { .. }, [(a, _), ..], _) => a.map.apply(at, x),
@@ -315,7 +321,7 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
                 last.apply(at, x);
                 merged.apply(at, x);
             }
-            _ => self.apply(at, x),
+            _ => self.kernel(at, x),
         }
     }
 
@@ -327,6 +333,7 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
             (Ends::B { back, .. }, _) => back.apply(at, x),
             _ => {}
         }
+        self.processor.take_back(at, x);
     }
 
     fn synchronize(&self, elapsed: Dd, x: &mut Point<S>) {
@@ -343,14 +350,19 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
             Ends::A { merged, .. } => merged.map.worst_residual(),
             _ => 0.0,
         };
-        pairs.chain(opening).chain(closing).fold(merged, f64::max)
+        pairs.chain(opening).chain(closing).fold(merged.max(self.processor.worst_residual()), f64::max)
     }
 }
 
-/// The `shares` of `h`, rounded to the digits of `S`; what closes the palindrome takes up what rounding the others has
+/// The `shares` of `h`, rounded to the digits of `S`; what closes the palindrome, or the last without one, takes up what rounding the others has
 /// changed, or the clock would be off.
 pub(super) fn lengths<S: Real>(h: Dd, shares: &[Dd]) -> Vec<Dd> {
     let n = shares.len();
+    if !shares.iter().eq(shares.iter().rev()) {
+        let but_last = shares[..n - 1].iter().map(|&share| S::rounded(h * share)).collect::<Vec<_>>();
+        let left = but_last.iter().fold(h, |left, &length| left - length);
+        return but_last.into_iter().chain([S::rounded(left)]).collect();
+    }
     let outer: Vec<Dd> = shares[..(n - 1) / 2].iter().map(|&share| S::rounded(h * share)).collect();
     let left = outer.iter().fold(h, |left, &length| left - length * 2.0);
     let centre = if n % 2 == 1 { vec![S::rounded(left)] } else { vec![S::rounded(left * 0.5); 2] };
