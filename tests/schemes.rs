@@ -363,6 +363,8 @@ fn suzuki_has_the_smallest_sum_of_five_stages() {
     };
     let sum = |x: f64, y: f64| 2.0 * (x.abs() + y.abs()) + (1.0 - 2.0 * (x + y)).abs();
     let suzuki = SUZUKI_4.lengths().unwrap().iter().map(|length| length.hi().abs()).sum::<f64>();
+    let bound = 1.0 + 2.0 / (libm::cbrt(16.0) - 1.0);
+    assert!((suzuki - bound).abs() < 1e-15, "{suzuki} {bound}");
     let grid = || (-400..=400).map(|n| f64::from(n) / 200.0);
     let (mut solutions, mut smallest) = (0, f64::INFINITY);
     for x in grid() {
