@@ -177,6 +177,8 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         "kick-drift@blanes-casas-murua-6-11",
         "implicit-midpoint@blanes-casas-murua-6-13",
         "kick-drift@processed-6-4",
+        "kick-drift@chin-4a",
+        "dmv:4@omelyan-mryglod-folk-4",
     ] {
         methods.push(method(name).unwrap());
     }
@@ -281,16 +283,19 @@ fn each_method_converges_with_its_order_and_no_better() {
 /// Every scheme over the exact free flow, and every composition over free maps of order 2, in the steps at which its order shows.
 #[test]
 fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
-    let (potential, free) = (potential(), free());
+    let (potential, heavy, free) = (potential(), heavy(), free());
     for scheme in schemes::ALL {
         let exact = Splitting::kicked(ExactFlow, *scheme).unwrap();
-        assert_scheme_order(&potential, &exact, scheme);
+        let case = if scheme.gradients().is_empty() { &potential } else { &heavy };
+        assert_scheme_order(case, &exact, scheme);
         let split = Splitting::kicked(AxisSplit { axes: None }, *scheme);
         match scheme.stages {
             Stages::Composition(_) | Stages::Processed { .. } => {
                 assert_scheme_order(&free, &split.unwrap(), scheme)
             }
-            Stages::Alternating { .. } | Stages::ProcessedAlternating { .. } => {
+            Stages::Alternating { .. }
+            | Stages::ForceGradient { .. }
+            | Stages::ProcessedAlternating { .. } => {
                 assert_eq!(split.is_err(), scheme.order > 2, "{} over a free map of order 2", scheme.name)
             }
         }
@@ -1009,6 +1014,12 @@ fn a_method_refuses_by_name_what_it_cannot_do() {
     assert_eq!(
         error.to_string(),
         "method \"free-only\" cannot take gravity, a potential: it is for free motion; take kick-drift, for one"
+    );
+    let error = refused(&method("kick-drift@chin-4a").unwrap(), &potential().body);
+    assert_eq!(
+        error.to_string(),
+        "method \"kick-drift@chin-4a\" takes the derivative of the torque, which is known of uniform gravity alone, and vertical \
+         acts; take kick-drift@srkn-6b, for one"
     );
     let error = refused(&method("lie-poisson").unwrap(), &pushed().body);
     assert_eq!(

@@ -17,11 +17,15 @@ use polhode::num::{Dd, Real};
 /// Coefficients of all words, by degree.
 type Series = Vec<Vec<Dd>>;
 
-/// The product of the exponentials of `flows`, up to words of `degree` letters.
-fn product(flows: &[(Part, Dd)], degree: usize) -> Series {
+/// The product of the exponentials of `flows`, a part, its share and the share of [B,[A,B]], up to words of `degree` letters.
+fn product(flows: &[(Part, Dd, Dd)], degree: usize) -> Series {
     let mut series: Series = (0..=degree).map(|d| vec![Dd::ZERO; 1 << d]).collect();
     series[0][0] = Dd::ONE;
-    for &(part, share) in flows {
+    for &(part, share, gradient) in flows {
+        if gradient != Dd::ZERO {
+            times_kick(&mut series, share, gradient);
+            continue;
+        }
         let letter = usize::from(part == Part::B);
         // a word gains from those that lack its last j letters, if all of these are of this flow; longest first
         for d in (1..=degree).rev() {
@@ -40,6 +44,34 @@ fn product(flows: &[(Part, Dd)], degree: usize) -> Series {
         }
     }
     series
+}
+
+/// The series times the exponential of b B + c [B,[A,B]], which is 2 BAB − ABB − BBA.
+fn times_kick(series: &mut Series, b: Dd, c: Dd) {
+    let mut power = series.clone();
+    for n in 1..series.len() {
+        let before = power.clone();
+        for d in 0..series.len() {
+            for word in 0..1 << d {
+                let mut value = Dd::ZERO;
+                if d >= 1 && word & 1 == 1 {
+                    value = before[d - 1][word >> 1] * b;
+                }
+                let factor = match word & 0b111 {
+                    0b101 => 2.0,
+                    0b011 | 0b110 => -1.0,
+                    _ => 0.0,
+                };
+                if d >= 3 && factor != 0.0 {
+                    value = value + before[d - 3][word >> 3] * c * factor;
+                }
+                power[d][word] = value / n as f64;
+            }
+        }
+        for (sum, words) in series.iter_mut().zip(&power) {
+            add(sum, words, Dd::ONE);
+        }
+    }
 }
 
 /// The words of `degree` letters in the product less those in exp(A + B).
@@ -161,10 +193,18 @@ fn orthonormal(vectors: Vec<Vec<Dd>>) -> Vec<Vec<Dd>> {
 const VISIBLE: f64 = 1e-11;
 
 /// All flows of one step: of the processor, of the kernel, and of the inverse of the processor.
-fn whole(scheme: &Scheme) -> Vec<(Part, Dd)> {
+fn whole(scheme: &Scheme) -> Vec<(Part, Dd, Dd)> {
     let processor = scheme.processor();
     let inverse = processor.iter().rev().map(|&(part, share)| (part, -share));
-    processor.iter().copied().chain(scheme.flows()).chain(inverse).collect()
+    let mut gradients = scheme.gradients().into_iter();
+    let mut with_gradient = |(part, share)| {
+        let gradient = if part == Part::B { gradients.next() } else { None };
+        (part, share, gradient.unwrap_or(Dd::ZERO))
+    };
+    let kernel: Vec<_> = scheme.flows().into_iter().map(&mut with_gradient).collect();
+    assert!(gradients.next().is_none());
+    let plain = |(part, share)| (part, share, Dd::ZERO);
+    processor.iter().copied().map(plain).chain(kernel).chain(inverse.map(plain)).collect()
 }
 
 /// How well the coefficients can satisfy their conditions: to a unit in the last decimal that their source prints, or
@@ -181,7 +221,7 @@ fn floor(scheme: &Scheme) -> f64 {
 /// What contradicts the order of a scheme, if anything does.
 fn contradiction(scheme: &Scheme) -> Option<String> {
     let pairs = match scheme.stages {
-        Stages::Composition(_) | Stages::Processed { .. } => Pairs::Any,
+        Stages::Composition(_) | Stages::Processed { .. } | Stages::ForceGradient { .. } => Pairs::Any,
         Stages::Alternating { pairs, .. } | Stages::ProcessedAlternating { pairs, .. } => pairs,
     };
     let flows = whole(scheme);
@@ -291,6 +331,7 @@ fn lists(scheme: &Scheme) -> Vec<(&'static str, &'static [Dd])> {
     match scheme.stages {
         Stages::Composition(gamma) => vec![("gamma", gamma)],
         Stages::Alternating { a, b, .. } => vec![("a", a), ("b", b)],
+        Stages::ForceGradient { a, b, c, .. } => vec![("a", a), ("b", b), ("c", c)],
         Stages::Processed { kernel, processor } => vec![("kernel", kernel), ("processor", processor)],
         Stages::ProcessedAlternating { a, b, processor_a, processor_b, .. } => {
             vec![("kernel-a", a), ("kernel-b", b), ("processor-a", processor_a), ("processor-b", processor_b)]
@@ -311,6 +352,9 @@ fn spoiled(scheme: &Scheme, list: &str, n: usize, by: f64) -> Scheme {
         Stages::Composition(gamma) => Stages::Composition(changed("gamma", gamma)),
         Stages::Alternating { first, a, b, pairs } => {
             Stages::Alternating { first, a: changed("a", a), b: changed("b", b), pairs }
+        }
+        Stages::ForceGradient { first, a, b, c } => {
+            Stages::ForceGradient { first, a: changed("a", a), b: changed("b", b), c: changed("c", c) }
         }
         Stages::Processed { kernel, processor } => Stages::Processed {
             kernel: changed("kernel", kernel),
@@ -348,7 +392,7 @@ fn one_wrong_digit_is_noticed() {
 #[test]
 fn srkn_6b_is_for_nystrom_systems_although_its_order_is_not() {
     let errors = |scheme: &Scheme| {
-        let log = logarithm(&product(&scheme.flows(), 5));
+        let log = logarithm(&product(&whole(scheme), 5));
         (largest(&log[5]), largest(&residual(&log[5], &vanishing(5))))
     };
     let (srkn, s6) = (errors(&SRKN_6B), errors(&BLANES_MOAN_S6));
@@ -435,6 +479,10 @@ fn the_numbers_of_flows_are_those_of_the_sources() {
         ("aba-8-4", 6, 5),
         ("aba-8-6-4", 8, 7),
         ("aba-10-6-4", 9, 8),
+        ("chin-4a", 2, 3),
+        ("chin-4b", 3, 2),
+        ("chin-4c", 4, 3),
+        ("omelyan-mryglod-folk-4", 4, 3),
         ("processed-6-4", 2, 2),
     ];
     let composition = [

@@ -118,6 +118,7 @@ fn schemes() -> Table {
                 let orders: Vec<String> = orders.iter().map(u32::to_string).collect();
                 format!("weak potential ({})", orders.join(","))
             }
+            Stages::ForceGradient { .. } => "kinetic and potential, force gradient".to_owned(),
             Stages::Processed { .. } => "composition, processed".to_owned(),
             Stages::ProcessedAlternating { .. } => "two flows, processed".to_owned(),
         };

@@ -72,6 +72,9 @@ where
                 Some(force) => force.name().into(),
                 None => "gravity".into(),
             };
+        if problem == Problem::Potential && method.claims(Problem::Gravity).is_some() {
+            return Err(StepError::NoGradient { method: method.name(), force: what });
+        }
         return Err(StepError::Refused { method: method.name(), force: what, problem });
     }
     let (h, rotor) = (Dd::from(clock.step), body.rotor());
@@ -97,6 +100,17 @@ pub enum StepError {
     NotATime {
         /// The time asked for, s.
         t: f64,
+    },
+    /// The method needs the derivative of the torque, and a force other than gravity acts.
+    #[error(
+        "method {method:?} takes the derivative of the torque, which is known of uniform gravity alone, and {force} acts; take \
+         kick-drift@srkn-6b, for one"
+    )]
+    NoGradient {
+        /// Name of the method.
+        method: String,
+        /// Name of the force.
+        force: String,
     },
     /// The method does not support the forces on the body.
     #[error("method {method:?} cannot take {force}, {}", remedy(*.problem))]

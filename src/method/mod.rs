@@ -10,6 +10,7 @@ mod dmv;
 mod dmv_series;
 mod exact_flow;
 mod implicit_midpoint;
+mod kicks;
 mod map;
 mod modified_energy;
 mod preprocessed_dmv;
@@ -28,10 +29,11 @@ pub use composed::{Composed, Symmetric};
 pub use dmv::Dmv;
 pub use exact_flow::ExactFlow;
 pub use implicit_midpoint::ImplicitMidpoint;
+pub use kicks::Kicks;
 pub use map::{Map, Method, Step};
 pub use preprocessed_dmv::{DmvOrderError, PreprocessedDmv};
 pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
-pub use splitting::{FreePart, Kicks, SchemeError, Splitting};
+pub use splitting::{FreePart, SchemeError, Splitting};
 pub use two_turn::{TwoAxes, TwoAxesError, TwoTurn};
 
 /// Turns about the principal axes, with [kicks](Kicks) around them.

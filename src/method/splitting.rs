@@ -2,11 +2,11 @@
 
 use thiserror::Error;
 
+use super::kicks::KickMap;
 use super::processor::{Processor, Timed};
 use super::schemes::{Part, STRANG, Scheme, Stages};
-use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method, Symmetric};
+use super::{Claimed, Claims, Cost, Energy, Kept, Kicks, Map, Method, Symmetric};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::flow::{Flow, Kick};
 use crate::num::{Dd, Real};
 
 /// A splitting of H = A + B: maps of A and of B in turn, for the shares of the step that `scheme` gives.
@@ -42,10 +42,6 @@ pub trait FreePart: Symmetric {
     /// Where it comes from.
     fn source(&self) -> &'static str;
 }
-
-/// The [kicks](Kick) of the potential, as the part B of a splitting.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kicks;
 
 /// A scheme does not fit its base.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -136,7 +132,9 @@ impl<A: FreePart> Splitting<A, Kicks> {
     /// # Ok::<(), polhode::method::SchemeError>(())
     /// ```
     pub fn kicked(free: A, scheme: Scheme) -> Result<Self, SchemeError> {
-        if let Stages::Alternating { first, a, b, .. } = scheme.stages {
+        if let Stages::Alternating { first, a, b, .. } | Stages::ForceGradient { first, a, b, .. } =
+            scheme.stages
+        {
             let (outer, inner) = if first == Part::A { (a.len(), b.len()) } else { (b.len(), a.len()) };
             if outer != inner && outer != inner + 1 {
                 return Err(SchemeError::Lengths { scheme: scheme.name, outer, inner });
@@ -161,7 +159,8 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
         // in motion under a force the last flow of a step and the first of the next are one
         let at_both_ends =
             |part| [flows.first(), flows.last()].iter().all(|end| end.is_some_and(|f| f.0 == part));
-        let merged = |part| u32::from(problem != Problem::Free && at_both_ends(part));
+        let exact = |part| part == Part::B || self.a.order().is_none();
+        let merged = |part| u32::from(problem != Problem::Free && at_both_ends(part) && exact(part));
         let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u32 - merged(part);
         let free = match problem {
             Problem::Free if count(Part::A) == 1 => self.a.cost_in_sequence(),
@@ -181,6 +180,7 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
                 let order = self.a.order().map(|order| order.max(self.scheme.order));
                 Some(claims(order, Kept::all_of_free_motion(self.a.energy()), free))
             }
+            Problem::Potential if !self.scheme.gradients().is_empty() => None,
             Problem::Gravity | Problem::Potential => {
                 let kept = Kept { energy: Energy::Bounded, momentum_z: true, norm: true, ..Kept::NOTHING };
                 Some(claims(Some(self.scheme.order), kept, free + Cost::kicks(count(Part::B))))
@@ -190,8 +190,8 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
     }
 }
 
-impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
-    type Map<F: Field<S>> = SplittingMap<A::Map<F>, B::Map<F>>;
+impl<S: Real, A: Method<S> + FreePart> Method<S> for Splitting<A, Kicks> {
+    type Map<F: Field<S>> = SplittingMap<A::Map<F>, KickMap<S, F>>;
 
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F> {
         let flows = self.scheme.flows();
@@ -201,6 +201,9 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
         };
         let (mut a_lengths, mut b_lengths) = (lengths(Part::A), lengths(Part::B));
         let (a, b) = (|length| self.a.map(length, rotor, field), |length| self.b.map(length, rotor, field));
+        let gradients = self.scheme.gradients();
+        let first_gradient = gradients.first().copied().unwrap_or(Dd::ZERO);
+        let mut gradients = gradients.into_iter();
         let processor = Processor::new::<S>(h, &self.scheme.processor(), a, b);
         let (mut opening, mut pairs, mut free) = (None, Vec::new(), None);
         let (mut begun, mut first) = (processor.duration, None);
@@ -216,7 +219,8 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
                 Part::B => {
                     let length = b_lengths.next().unwrap_or(Dd::ZERO);
                     first = first.or(Some(length));
-                    let kick = Timed { begun, map: b(length) };
+                    let gradient = gradients.next().unwrap_or(Dd::ZERO);
+                    let kick = Timed { begun, map: b(length).with_gradient(gradient, h, rotor) };
                     match free.take() {
                         Some(free) => pairs.push((free, kick)),
                         None => opening = Some(kick),
@@ -229,7 +233,12 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
             // without forces B does nothing
             _ if !F::ACTS => Ends::OfA,
             None if opening.is_none() => Ends::Apart,
-            None => Ends::B { merged: Timed { begun, map: b(first * 2.0) }, back: b(-first) },
+            None => Ends::B {
+                merged: Timed { begun, map: b(first * 2.0).with_gradient(first_gradient * 2.0, h, rotor) },
+                back: b(-first).with_gradient(-first_gradient, h, rotor),
+            },
+            // two maps of A in turn are one of the whole length only if it is exact
+            Some(_) if self.a.order().is_some() => Ends::Apart,
             Some(last) => {
                 Ends::A { merged: Timed { begun: last.begun, map: a(first * 2.0) }, back: a(-first) }
             }
@@ -254,7 +263,7 @@ pub struct SplittingMap<A, B> {
 enum Ends<A, B> {
     /// Without forces: what A itself merges, if the step is one A.
     OfA,
-    /// Nothing: the two flows are of different parts.
+    /// Nothing: the two flows are of different parts, or not exact.
     Apart,
     /// Two flows of A as one, and the one that takes half of it back.
     A { merged: Timed<A>, back: A },
@@ -367,25 +376,4 @@ pub(super) fn lengths<S: Real>(h: Dd, shares: &[Dd]) -> Vec<Dd> {
     let left = outer.iter().fold(h, |left, &length| left - length * 2.0);
     let centre = if n % 2 == 1 { vec![S::rounded(left)] } else { vec![S::rounded(left * 0.5); 2] };
     outer.iter().copied().chain(centre).chain(outer.iter().rev().copied()).collect()
-}
-
-impl<S: Real> Method<S> for Kicks {
-    type Map<F: Field<S>> = KickMap<S, F>;
-    fn map<F: Field<S>>(&self, h: Dd, _: &Rotor, field: &F) -> KickMap<S, F> {
-        KickMap { kick: Kick::new(field.clone()), h: S::from_dd(h) }
-    }
-}
-
-/// A kick of one length.
-#[derive(Clone, Debug)]
-pub struct KickMap<S, F> {
-    kick: Kick<S, F>,
-    h: S,
-}
-
-impl<S: Real, F: Field<S>> Map<S> for KickMap<S, F> {
-    #[inline]
-    fn apply(&mut self, at: Time, x: &mut Point<S>) {
-        self.kick.flow(at, self.h, x);
-    }
 }

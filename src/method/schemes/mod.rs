@@ -13,6 +13,7 @@
 
 mod alternating;
 mod composition;
+mod force_gradient;
 mod processed;
 
 pub use alternating::{
@@ -23,6 +24,7 @@ pub use composition::{
     KAHAN_LI_6, KAHAN_LI_8, MCLACHLAN_4, SOFRONIOU_SPALETTA_6, SOFRONIOU_SPALETTA_8, SOFRONIOU_SPALETTA_10,
     STRANG, SUZUKI_4, SUZUKI_UMENO_8, YOSHIDA_4, YOSHIDA_6,
 };
+pub use force_gradient::{CHIN_4A, CHIN_4B, CHIN_4C, OMELYAN_MRYGLOD_FOLK_4};
 pub use processed::{
     BLANES_CASAS_MURUA_6_11, BLANES_CASAS_MURUA_6_13, BLANES_CASAS_MURUA_8_13, BLANES_CASAS_MURUA_10_23,
     PROCESSED_6_4,
@@ -72,6 +74,18 @@ pub enum Stages {
         b: &'static [Dd],
         /// The flows for which the scheme has its order.
         pairs: Pairs,
+    },
+    /// Flows of A and kicks in turn, palindromic, as of an [`Alternating`](Self::Alternating) scheme; a kick with the share b and
+    /// the gradient c is the flow of b V − c h² τᵀI⁻¹τ, V the potential and τ its torque.
+    ForceGradient {
+        /// The part with which the step begins and ends.
+        first: Part,
+        /// Shares of A.
+        a: &'static [Dd],
+        /// Shares of the kicks.
+        b: &'static [Dd],
+        /// Gradients of the kicks of the first half, the one in the middle included.
+        c: &'static [Dd],
     },
     /// A palindromic composition of one symmetric map of order 2 between a processor and its inverse.
     Processed {
@@ -125,7 +139,9 @@ impl Scheme {
     pub fn lengths(&self) -> Option<Vec<Dd>> {
         match self.stages {
             Stages::Composition(gamma) | Stages::Processed { kernel: gamma, .. } => Some(closed(gamma, true)),
-            Stages::Alternating { .. } | Stages::ProcessedAlternating { .. } => None,
+            Stages::Alternating { .. }
+            | Stages::ForceGradient { .. }
+            | Stages::ProcessedAlternating { .. } => None,
         }
     }
 
@@ -166,6 +182,18 @@ impl Scheme {
         }
     }
 
+    /// The gradients of the kicks of one step in order; none without.
+    #[must_use]
+    pub fn gradients(&self) -> Vec<Dd> {
+        match self.stages {
+            Stages::ForceGradient { c, .. } => {
+                let kicks = self.flows().iter().filter(|flow| flow.0 == Part::B).count();
+                c.iter().chain(c.iter().rev().skip(kicks % 2)).copied().collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// The flows of one step in order, each with its share of the step; of a processed scheme those of the kernel.
     ///
     /// A composition stands for that of Strang's map B(½) A(1) B(½), neighbouring flows of B merged into one.
@@ -182,7 +210,7 @@ impl Scheme {
                 };
                 in_turn(Part::A, &whole(a), &whole(b))
             }
-            Stages::Alternating { first, a, b, .. } => {
+            Stages::Alternating { first, a, b, .. } | Stages::ForceGradient { first, a, b, .. } => {
                 let (outer, inner) = if first == Part::A { (a, b) } else { (b, a) };
                 let odd = outer.len() > inner.len();
                 in_turn(first, &closed(outer, odd), &closed(inner, !odd))
@@ -290,7 +318,7 @@ fn distance(from: &[char], to: &[char]) -> usize {
     row[to.len()]
 }
 
-/// Every scheme: compositions first, each family by order, processed ones last.
+/// Every scheme: compositions first, each family by order, those with force gradients and processed ones last.
 pub const ALL: &[Scheme] = &[
     STRANG,
     YOSHIDA_4,
@@ -316,6 +344,10 @@ pub const ALL: &[Scheme] = &[
     ABA_8_4,
     ABA_8_6_4,
     ABA_10_6_4,
+    CHIN_4A,
+    CHIN_4B,
+    CHIN_4C,
+    OMELYAN_MRYGLOD_FOLK_4,
     BLANES_CASAS_MURUA_6_11,
     BLANES_CASAS_MURUA_6_13,
     BLANES_CASAS_MURUA_8_13,
