@@ -1,28 +1,15 @@
 //! Processed schemes: a kernel between a processor and its inverse, which are taken once each, however many steps there are.
 //!
 //! The kernels have fewer stages or smaller errors than any composition of their order, because only those conditions bind
-//! them that no change of variables can satisfy; the processor is that change. A state is behind the inverse of the processor:
-//! each look at the motion takes it, and a run that is watched at every step pays for it in every step. With
-//! [`Watch::AtSamples`](crate::run::Watch::AtSamples) it is paid for at samples only.
-//!
-//! | scheme | stages a step | of the processor, at each look |
-//! |---|---|---|
-//! | [`BLANES_CASAS_MURUA_6_11`] | 11 | 12 |
-//! | [`BLANES_CASAS_MURUA_6_13`] | 13 | 12 |
-//! | [`BLANES_CASAS_MURUA_8_13`] | 13 | 20 |
-//! | [`BLANES_CASAS_MURUA_10_23`] | 23 | 24 |
-//! | [`PROCESSED_6_4`] | 2 | 3 free flows, 4 kicks |
-//!
-//! The processors are even in h only up to some order higher than that of the scheme, so that the whole step is no longer
-//! exactly symmetric, as its kernel is. Their digits are those of the source brought to 30 by Newton's method on the
-//! conditions of order, in tests/data/schemes/processed.py.
+//! them that no change of variables can satisfy; the processor is that change. The digits are those of the source brought to 30 by
+//! Newton's method on the conditions of order, in tests/data/schemes/processed.py.
 
 use super::{Pairs, Scheme, Stages};
 use crate::num::Dd;
 
 const SOURCE: &str = "Blanes, Casas & Murua, SIAM J. Sci. Comput. 27 (2006) 1817";
 
-/// Order 6 with a kernel of eleven stages.
+/// Order 6 with a kernel of eleven stages and a processor of twelve.
 pub const BLANES_CASAS_MURUA_6_11: Scheme = Scheme {
     name: "blanes-casas-murua-6-11",
     order: 6,
@@ -46,7 +33,7 @@ pub const BLANES_CASAS_MURUA_6_11: Scheme = Scheme {
     },
 };
 
-/// Order 6 with a kernel of thirteen stages.
+/// Order 6 with a kernel of thirteen stages and a processor of twelve.
 pub const BLANES_CASAS_MURUA_6_13: Scheme = Scheme {
     name: "blanes-casas-murua-6-13",
     order: 6,
@@ -71,7 +58,7 @@ pub const BLANES_CASAS_MURUA_6_13: Scheme = Scheme {
     },
 };
 
-/// Order 8 with a kernel of thirteen stages, fewer than the fifteen that a composition needs.
+/// Order 8 with a kernel of thirteen stages and a processor of twenty, fewer than the fifteen that a composition needs.
 pub const BLANES_CASAS_MURUA_8_13: Scheme = Scheme {
     name: "blanes-casas-murua-8-13",
     order: 8,
@@ -100,7 +87,7 @@ pub const BLANES_CASAS_MURUA_8_13: Scheme = Scheme {
     },
 };
 
-/// Order 10 with a kernel of 23 stages; compositions of that order have 31 at least.
+/// Order 10 with a kernel of 23 stages and a processor of 24; compositions of that order have 31 at least.
 pub const BLANES_CASAS_MURUA_10_23: Scheme = Scheme {
     name: "blanes-casas-murua-10-23",
     order: 10,
