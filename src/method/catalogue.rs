@@ -155,7 +155,8 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
 ///
 /// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
 /// order of axes as its argument, `two-turn` its two axes; `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and
-/// `kick-drift@suzuki-4`.
+/// `kick-drift@suzuki-4`, `no-squish` one of `lie-poisson:321`: that is the method of Miller et al., J. Chem. Phys. 116 (2002)
+/// 8649, which molecular dynamics programs write in quaternions and their momenta.
 ///
 /// # Errors
 /// A base or a scheme that does not exist, an argument that the base does not take, or a scheme that does not fit it.
@@ -195,6 +196,7 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
             let axes = axes.map_err(|_| asked.refused("a permutation of 123, such as lie-poisson:321"))?;
             kicked(AxisSplit { axes }, chosen)
         }
+        "no-squish" => kicked(AxisSplit { axes: Some(AxisOrder::NO_SQUISH) }, asked.scheme_alone()?),
         "two-turn" => {
             let chosen = asked.scheme()?;
             let axes = argument.map(str::parse::<TwoAxes>).transpose();
