@@ -184,14 +184,20 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         methods.push(Box::new(Splitting::strang(AxisSplit { axes: Some(order) }, Kicks)));
     }
     for name in [
+        "dmv:4",
         "lie-poisson@suzuki-4",
         "rattle@yoshida-4",
         "implicit-midpoint@mclachlan-4",
         "kick-drift@srkn-6b",
         "two-turn@blanes-moan-s6",
         "two-turn@kahan-li-6",
-        "taylor:12",
+        "taylor:8",
         "taylor:1e-4",
+        "kick-drift@blanes-casas-murua-6-11",
+        "implicit-midpoint@blanes-casas-murua-6-13",
+        "kick-drift@processed-6-4",
+        "kick-drift@chin-4a",
+        "dmv:4@omelyan-mryglod-folk-4",
     ] {
         methods.push(method(name).unwrap());
     }
@@ -249,23 +255,26 @@ fn worst(case: &Case, points: &[Point<Dd>]) -> Worst {
     })
 }
 
-/// Asserts the order of attitude and momentum over the last of the halvings.
+/// Asserts the order of attitude and momentum between any two neighbours of the halvings.
 fn assert_order(case: &Case, method: &dyn AnyMethod, claimed: u32, exponents: core::ops::Range<u32>) {
     let Case { body, start, span, exact } = case;
     let claimed = f64::from(claimed);
     let name = name(method, body.problem());
     let errors = halvings_against(exact, method, body, start, *span, exponents).unwrap();
+    assert!(errors.len() > 2);
     for (what, pick) in [
         ("attitude", (|e| e.attitude_error) as fn(&polhode::run::Halving) -> f64),
         ("momentum", |e| e.momentum_error),
     ] {
         let series: Vec<_> = errors.iter().map(|e| (e.h, pick(e))).collect();
-        let order = observed_order(&series).unwrap();
-        assert!(
-            (order - claimed).abs() < 0.02 * claimed.max(2.0),
-            "{name}: {what} converges with order {order:.3}, claimed {claimed}, {series:?}"
-        );
-        assert!(series[0].1 > 1e4 * EXACT, "{name}: {what} error absurdly small");
+        for pair in series.windows(2) {
+            let order = observed_order(pair).unwrap();
+            assert!(
+                (order - claimed).abs() < 0.02 * claimed.max(2.0),
+                "{name}: {what} converges with order {order:.3}, claimed {claimed}, {series:?}"
+            );
+        }
+        assert!(series[series.len() - 1].1 > 1e3 * EXACT, "{name}: {what} error absurdly small");
     }
 }
 
@@ -284,14 +293,13 @@ fn each_method_converges_with_its_order_and_no_better() {
                 continue;
             };
             let exponents = match (problem, order) {
-                (Problem::Free, 12..) => 4..6,
-                (_, 12..) => 5..7,
                 (Problem::Gravity, 1) => 8..11,
-                (Problem::Gravity, _) => 6..8,
+                (Problem::Gravity, _) => 6..9,
                 (_, 1) => 8..11,
-                (_, 8..) => 6..8,
-                (Problem::Torque, _) => 9..11,
-                _ => 7..9,
+                (_, 8..) => 5..8,
+                (Problem::Torque, 6..) => 6..9,
+                (Problem::Torque, _) => 8..11,
+                _ => 6..9,
             };
             assert_order(&case, &method, order, exponents);
         }
@@ -301,47 +309,54 @@ fn each_method_converges_with_its_order_and_no_better() {
 /// Every scheme over the exact free flow, and every composition over free maps of order 2, in the steps at which its order shows.
 #[test]
 fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
-    let (potential, free) = (potential(), free());
+    let (potential, heavy, free) = (potential(), heavy(), free());
     for scheme in schemes::ALL {
         let exact = Splitting::kicked(ExactFlow, *scheme).unwrap();
-        assert_scheme_order(&potential, &exact, scheme);
+        let case = if scheme.gradients().is_empty() { &potential } else { &heavy };
+        assert_scheme_order(case, &exact, scheme);
+        let two = Splitting::kicked(TwoTurn { axes: None }, *scheme);
+        let for_two_turns = matches!(
+            scheme.stages,
+            Stages::Composition(_)
+                | Stages::Processed { .. }
+                | Stages::Alternating { pairs: Pairs::Any | Pairs::NearIntegrable(_), .. }
+        );
+        assert_eq!(two.is_ok(), for_two_turns, "{} over two turns", scheme.name);
+        if let Ok(two) = two {
+            // the most exact of the free splittings
+            match scheme.order {
+                10 => assert_order(&free, &two, 10, 3..6),
+                _ => assert_scheme_order(&free, &two, scheme),
+            }
+        }
         let split = Splitting::kicked(AxisSplit { axes: None }, *scheme);
         match scheme.stages {
-            Stages::Composition(_) => assert_scheme_order(&free, &split.unwrap(), scheme),
-            Stages::Alternating { .. } => {
+            Stages::Composition(_) | Stages::Processed { .. } => {
+                assert_scheme_order(&free, &split.unwrap(), scheme)
+            }
+            Stages::Alternating { .. }
+            | Stages::ForceGradient { .. }
+            | Stages::ProcessedAlternating { .. } => {
                 assert_eq!(split.is_err(), scheme.order > 2, "{} over a free map of order 2", scheme.name)
             }
         }
     }
 }
 
-/// The order of `scheme` over `method`: the slope between two steps whose errors are small, and above the floor that the
-/// digits of the scheme set.
+/// The order of `scheme` over `method`, in steps whose errors are small, and above the floor that the digits of the scheme set.
 fn assert_scheme_order(case: &Case, method: &dyn AnyMethod, scheme: &Scheme) {
-    let Case { body, start, span, exact } = case;
-    let error = |k: u32| {
-        let found = halvings_against(exact, method, body, start, *span, k..k + 1).unwrap();
-        found[0].attitude_error + found[0].momentum_error
+    let exponents = match scheme.order {
+        ..=4 => 6..10,
+        6 => 6..9,
+        8 => 5..8,
+        _ => 4..7,
     };
-    let small = libm::exp10(-1.5 * f64::from(scheme.order) - 3.0);
-    let first = (2..16).find(|&k| error(k) < small).unwrap();
-    let (coarse, fine) = (error(first), error(first + 1));
-    let order = libm::log2(coarse / fine);
-    let claimed = f64::from(scheme.order);
-    let near_integrable =
-        matches!(scheme.stages, Stages::Alternating { pairs: Pairs::NearIntegrable(_), .. });
-    // the terms of the least order in h have the highest power of ε: at these steps they need not be the largest
-    let most = if near_integrable { 2.6 * claimed } else { 1.05 * claimed };
-    assert!(
-        order > 0.95 * claimed && order < most,
-        "{}: order {order:.3}, claimed {claimed}, {coarse:.1e}, {fine:.1e}",
-        method.name()
-    );
+    assert_order(case, method, scheme.order, exponents);
 }
 
-/// A step at which what a method loses shows: `usual`, and more for one of high order, and for one that takes steps of its own.
+/// A step at which what a method loses shows: `usual`, and more for one that takes steps of its own.
 fn telling_step(claims: &Claims, usual: f64) -> f64 {
-    if claims.order >= Some(12) || claims.tolerance.is_some() { 1.0 } else { usual }
+    if claims.tolerance.is_some() { 1.0 } else { usual }
 }
 
 fn assert_kept(name: &str, what: &str, claimed: bool, error: f64) {
@@ -375,34 +390,38 @@ fn each_method_keeps_what_it_claims_and_loses_what_it_does_not() {
     }
 }
 
-/// Secular drift of the relative energy error over `steps` steps.
+/// Secular drift of the relative energy error over `steps` steps in double precision.
 fn energy_drift(case: &Case, method: &dyn AnyMethod, h: f64, steps: u64) -> Drift {
-    let points = integrate(case, method, h, steps);
-    let times: Vec<f64> = (0..points.len()).map(|n| n as f64 * h).collect();
-    let start = energy(case, &case.start);
-    let series: Vec<f64> = points.iter().map(|x| (energy(case, x) / start - Dd::ONE).hi()).collect();
+    let mut x = case.start.to_f64();
+    let start = energy(case, &x.to_dd());
+    let mut step = method.prepare_f64(Clock::new(h), &case.body).unwrap();
+    step.open(&mut x);
+    let error = |_| {
+        step.advance(&mut x, 1);
+        (energy(case, &step.reading(&x).to_dd()) / start - Dd::ONE).hi()
+    };
+    let series: Vec<f64> = (0..steps).map(error).collect();
+    let times: Vec<f64> = (0..steps).map(|n| n as f64 * h).collect();
     secular_drift(&times, &series).unwrap()
 }
 
-fn assert_bounded(
-    case: &Case,
-    method: &dyn AnyMethod,
-    order: u32,
-    [h, span, long]: [f64; 3],
-    [tolerance, sure, share]: [f64; 3],
-) {
-    let name = name(method, case.body.problem());
-    let amplitude = |h: f64| worst(case, &integrate(case, method, h, (span / h) as u64)).energy;
-    let (coarse, fine) = (amplitude(h), amplitude(h / 2.0));
-    let slope = libm::log2(coarse / fine);
-    assert!((slope - f64::from(order)).abs() < tolerance, "{name}: energy amplitude of order {slope:.3}");
-
-    let drift = energy_drift(case, method, h, (long / h) as u64);
-    let travelled = drift.slope.abs() * long;
-    assert!(
-        drift.slope.abs() < sure * drift.half_width && travelled < share * coarse,
-        "{name}: energy drifts by {travelled:.1e} in {long} s, amplitude {coarse:.1e}, {drift:?}"
-    );
+/// The mean slope of the relative energy error over `span` seconds from twelve starts, and half of the interval that holds it
+/// with 99.9 %, so that one method of a thousand is found to drift by chance.
+fn mean_energy_drift(case: &Case, method: &dyn AnyMethod, h: f64, span: f64) -> [f64; 2] {
+    const STARTS: usize = 12;
+    const STUDENT_999_11: f64 = 4.437;
+    let slope = |n: usize| {
+        let (sin, cos) = Real::sin_cos(0.7 * n as f64);
+        let turn = Quat::<Dd>::of(Quat::from_components([1.0, sin, cos, sin * cos])).normalized();
+        let Point { attitude, momentum_body, .. } = case.start;
+        let start = Point::new(turn * attitude, turn.rotate(momentum_body));
+        energy_drift(&Case { body: case.body.clone(), start, ..*case }, method, h, (span / h) as u64).slope
+    };
+    let slopes: Vec<f64> = (0..STARTS).map(slope).collect();
+    let mean = slopes.iter().sum::<f64>() / STARTS as f64;
+    let squares: f64 = slopes.iter().map(|slope| (slope - mean) * (slope - mean)).sum();
+    let deviation = (squares / (STARTS * (STARTS - 1)) as f64).sqrt();
+    [mean, STUDENT_999_11 * deviation]
 }
 
 #[test]
@@ -411,13 +430,26 @@ fn bounded_energy_stays_bounded_and_scales_with_the_order() {
         for method in methods() {
             let Some(claims) = method.claims(problem) else { continue };
             let (Energy::Bounded, Some(order)) = (claims.kept.energy, claims.order) else { continue };
-            let (span, limits) = match problem {
-                Problem::Free => (100.0, [0.05, 1.0, 0.02]),
-                Problem::Gravity => (50.0, [0.2, 1.0, 0.02]),
-                // the motion itself wanders, with swings as long as the run: one method in twenty would be secular by chance
-                _ => (50.0, [0.2, 3.0, 0.5]),
+            let name = name(&method, problem);
+            let h = match (problem, order) {
+                (_, ..6) => 0.0625,
+                (Problem::Free, _) => 0.125,
+                _ => 0.03125,
             };
-            assert_bounded(&case, &method, order, [0.0625, span, 1000.0], limits);
+            let long = 250.0;
+            let (span, tolerance) = if problem == Problem::Free { (100.0, 0.05) } else { (50.0, 0.2) };
+            let amplitude = |h: f64| worst(&case, &integrate(&case, &method, h, (span / h) as u64)).energy;
+            let (coarse, fine) = (amplitude(h), amplitude(h / 2.0));
+            let slope = libm::log2(coarse / fine);
+            assert!(
+                (slope - f64::from(order)).abs() < tolerance,
+                "{name}: energy amplitude of order {slope:.3}"
+            );
+            let [drift, half_width] = mean_energy_drift(&case, &method, h, long);
+            assert!(
+                drift.abs() < half_width && half_width * long < 0.2 * coarse,
+                "{name}: energy drifts by {drift:.1e} ± {half_width:.1e} of itself per s, amplitude {coarse:.1e}"
+            );
         }
     }
 }
@@ -432,7 +464,7 @@ fn drifting_energy_is_seen_to_drift() {
             let Some(claims) = method.claims(problem) else { continue };
             if claims.kept.energy == Energy::Drifts {
                 // small steps for first-order methods: at larger ones the error soon is no longer small
-                let h = if claims.order == Some(1) { 0.000_976_562_5 } else { 0.0625 };
+                let h = if claims.order == Some(1) { 0.000_976_562_5 } else { telling_step(&claims, 0.0625) };
                 let drift = energy_drift(&case, &method, h, 16_000);
                 assert!(drift.is_secular(), "{}: no drift in {drift:?}", name(&method, problem));
             }
@@ -544,10 +576,10 @@ fn a_symmetric_method_returns_and_the_others_do_not() {
         for method in methods() {
             let Some(claims) = method.claims(problem) else { continue };
             let mut x = case.start;
-            let h = telling_step(&claims, 0.0625);
-            for clock in [Clock::new(h), Clock { start: 50.0 * h, step: -h }] {
+            let h = telling_step(&claims, 0.125);
+            for clock in [Clock::new(h), Clock { start: 25.0 * h, step: -h }] {
                 x = Point::new(x.attitude, x.momentum_body);
-                method.prepare_dd(clock, &case.body).unwrap().steps(&mut x, 50);
+                method.prepare_dd(clock, &case.body).unwrap().steps(&mut x, 25);
             }
             let away = ((x.momentum_body - case.start.momentum_body).magnitude()
                 / case.start.momentum_body.magnitude())
@@ -556,7 +588,10 @@ fn a_symmetric_method_returns_and_the_others_do_not() {
             if claims.symmetric {
                 assert!(away < 10.0 * EXACT, "{name} claims to be symmetric and returns {away:.1e} off");
             } else {
-                assert!(away > 1e-9, "{name} does not claim to be symmetric, yet returns to {away:.1e}");
+                assert!(
+                    away > 1e6 * EXACT,
+                    "{name} does not claim to be symmetric, yet returns to {away:.1e}"
+                );
             }
         }
     }
@@ -594,10 +629,79 @@ fn a_poisson_map_keeps_the_bracket_and_the_others_do_not() {
             assert!(defect < 1e-20, "{} claims to be Poisson with a defect of {defect:.1e}", method.name());
         } else {
             assert!(
-                defect > 1e-7,
+                defect > 1e-14,
                 "{} does not claim to be Poisson, yet its defect is {defect:.1e}",
                 method.name()
             );
+        }
+    }
+}
+
+/// The derivative of one step at the start of `case`, left-trivialised: columns for turns of the body by ξ about its own
+/// axes and for changes of its momentum, rows for those that they lead to. Also the momentum after the step.
+fn derivative(case: &Case, method: &dyn AnyMethod, h: f64) -> ([[Dd; 6]; 6], Vec3<Dd>) {
+    let map = |turn: Vec3<Dd>, push: Vec3<Dd>| {
+        let Point { attitude, momentum_body, .. } = case.start;
+        let mut x = Point::new(attitude * Quat::cayley(turn * Dd::of(0.5)), momentum_body + push);
+        method.prepare_dd(Clock::new(h), &case.body).unwrap().steps(&mut x, 1);
+        x
+    };
+    let image = map(Vec3::zero(), Vec3::zero());
+    let moved = |turn, push| {
+        let x = map(turn, push);
+        let turned = image.attitude.conjugate() * x.attitude;
+        let turned = turned.v * (Dd::of(2.0) / turned.w);
+        let pushed = x.momentum_body - image.momentum_body;
+        [turned[0], turned[1], turned[2], pushed[0], pushed[1], pushed[2]]
+    };
+    // fourth-order central differences: truncation 1e-24, rounding 1e-26
+    let d = 2.0_f64.recip() / f64::from(1_u32 << 18);
+    let columns: [[Dd; 6]; 6] = core::array::from_fn(|axis| {
+        let at = |k: f64| {
+            let by = Vec3::unit(axis % 3) * Dd::of(k * d);
+            if axis < 3 { moved(by, Vec3::zero()) } else { moved(Vec3::zero(), by) }
+        };
+        let (near, back, far, far_back) = (at(1.0), at(-1.0), at(2.0), at(-2.0));
+        core::array::from_fn(|row| {
+            let slope = (near[row] - back[row]) * Dd::of(8.0) - (far[row] - far_back[row]);
+            slope * (Dd::ONE / Dd::of(12.0 * d))
+        })
+    });
+    (columns, image.momentum_body)
+}
+
+/// Largest difference that one step makes to the symplectic form of two of the six unit variations.
+fn symplectic_defect(case: &Case, method: &dyn AnyMethod, h: f64) -> f64 {
+    let form = |m: Vec3<Dd>, a: &[Dd; 6], b: &[Dd; 6]| {
+        let part = |v: &[Dd; 6], k: usize| Vec3([v[k], v[k + 1], v[k + 2]]);
+        let turns = m.dot(part(a, 0).cross(part(b, 0)));
+        part(a, 0).dot(part(b, 3)) - part(b, 0).dot(part(a, 3)) + turns
+    };
+    let (columns, image) = derivative(case, method, h);
+    let unit = |axis: usize| core::array::from_fn(|k| if k == axis { Dd::ONE } else { Dd::ZERO });
+    let pairs = (0..6).flat_map(|i| (0..i).map(move |j| (i, j)));
+    pairs
+        .map(|(i, j)| {
+            let before = form(case.start.momentum_body, &unit(i), &unit(j));
+            (form(image, &columns[i], &columns[j]) - before).magnitude()
+        })
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn a_symplectic_map_keeps_the_form_and_the_others_do_not() {
+    for (problem, case) in cases() {
+        for method in methods() {
+            let Some(claims) = method.claims(problem) else { continue };
+            let (defect, name) = (symplectic_defect(&case, &method, 0.25), name(&method, problem));
+            if claims.symplectic {
+                assert!(defect < 1e-22, "{name} claims to be symplectic with a defect of {defect:.1e}");
+            } else {
+                assert!(
+                    defect > 1e-13,
+                    "{name} does not claim to be symplectic, yet its defect is {defect:.1e}"
+                );
+            }
         }
     }
 }
@@ -771,7 +875,7 @@ fn each_method_costs_what_it_claims() {
     assert_cost(&ImplicitMidpoint, true);
     assert_cost(&Composed::new(ImplicitMidpoint, schemes::SUZUKI_4).unwrap(), true);
     for scheme in schemes::ALL {
-        if let Stages::Composition(_) = scheme.stages {
+        if scheme.lengths().is_some() {
             assert_cost(&Splitting::kicked(AxisSplit { axes: None }, *scheme).unwrap(), false);
             assert_cost(&Splitting::kicked(Dmv, *scheme).unwrap(), true);
             assert_cost(&Splitting::kicked(TwoTurn { axes: None }, *scheme).unwrap(), false);
@@ -865,7 +969,7 @@ fn a_run_is_taken_up_only_by_its_method_and_body() {
 fn an_unsolved_step_is_told_again_and_again() {
     let body = body();
     let start = body.leave(&start_of(&body));
-    let mut run = Run::new(&method("implicit-midpoint").unwrap(), &body, &start, 4.0).unwrap();
+    let mut run = Run::new(&method("rattle").unwrap(), &body, &start, 4.0).unwrap();
     let error = run.advance_to(10).unwrap_err();
     let RunError::Unsolved { last, .. } = error else { panic!("{error}") };
     assert!(matches!(run.advance_to(last.steps), Err(RunError::Unsolved { .. })));
@@ -967,6 +1071,12 @@ fn a_method_refuses_by_name_what_it_cannot_do() {
     for (problem, case) in cases() {
         assert_eq!(ExactStep.prepare_dd(Clock::new(0.1), &case.body).is_ok(), problem == Problem::Free);
     }
+    let error = refused(&method("kick-drift@chin-4a").unwrap(), &potential().body);
+    assert_eq!(
+        error.to_string(),
+        "method \"kick-drift@chin-4a\" takes the derivative of the torque, which is known of uniform gravity alone, and vertical \
+         acts; take kick-drift@srkn-6b, for one"
+    );
     let error = refused(&method("lie-poisson").unwrap(), &pushed().body);
     assert_eq!(
         error.to_string(),

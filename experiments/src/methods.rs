@@ -107,10 +107,20 @@ fn schemes() -> Table {
             Stages::Composition(_) => "composition".to_owned(),
             Stages::Alternating { pairs: Pairs::Any, .. } => "any two flows".to_owned(),
             Stages::Alternating { pairs: Pairs::Nystrom, .. } => "kinetic and potential".to_owned(),
-            Stages::Alternating { pairs: Pairs::NearIntegrable(orders), .. } => {
+            Stages::Alternating {
+                pairs: Pairs::NearIntegrable(orders) | Pairs::NearIntegrableNystrom(orders),
+                ..
+            }
+            | Stages::ProcessedAlternating {
+                pairs: Pairs::NearIntegrable(orders) | Pairs::NearIntegrableNystrom(orders),
+                ..
+            } => {
                 let orders: Vec<String> = orders.iter().map(u32::to_string).collect();
                 format!("weak potential ({})", orders.join(","))
             }
+            Stages::ForceGradient { .. } => "kinetic and potential, force gradient".to_owned(),
+            Stages::Processed { .. } => "composition, processed".to_owned(),
+            Stages::ProcessedAlternating { .. } => "two flows, processed".to_owned(),
         };
         table.push(row![
             scheme.name,

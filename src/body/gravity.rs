@@ -33,4 +33,13 @@ impl<S: Real> Gravity<S> {
     pub fn torque(&self, attitude: Quat<S>) -> Vec3<S> {
         vertical(attitude).cross(self.weight_moment)
     }
+
+    /// What a turn of the body changes in τᵀI⁻¹τ, τ the torque: its derivative with respect to the angle about each body axis,
+    /// `2 (c × I⁻¹τ) × Γ`; moments as of the weight moment.
+    #[inline]
+    pub(crate) fn gradient_of_squared_torque(&self, inverse_moments: Vec3<S>, attitude: Quat<S>) -> Vec3<S> {
+        let up = vertical(attitude);
+        let rate = up.cross(self.weight_moment).times(inverse_moments);
+        self.weight_moment.cross(rate).cross(up) * S::of(2.0)
+    }
 }

@@ -21,6 +21,11 @@ impl<S: Real, F: Field<S>> Kick<S, F> {
     pub fn new(field: F) -> Self {
         Kick { field, scalar: PhantomData }
     }
+
+    #[inline]
+    pub(crate) fn field(&self) -> &F {
+        &self.field
+    }
 }
 
 impl<S: Real, F: Field<S>> Flow<S> for Kick<S, F> {

@@ -15,7 +15,7 @@ pub use free::{AtRest, Character, FreeBody, FreeFlow, FreeMotion, Mode, Symmetri
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop};
 pub use reach::TimeError;
-pub(crate) use turn::{AxisTurn, turn_a_little_about, turn_about, turn_about_axis};
+pub(crate) use turn::{turn_a_little_about, turn_about, turn_about_axis};
 
 use crate::body::{Point, Time};
 use crate::num::Real;

@@ -1,34 +1,8 @@
 //! The turn about a principal axis: the exact flow of `m_i²/(2 I_i)`.
 
-use super::Flow;
-use crate::body::{Point, Time};
+use crate::body::Point;
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
-
-/// The exact flow of the kinetic energy of one axis, `H_i = m_i² / (2 I_i)`
-/// (McLachlan, Phys. Rev. Lett. 71 (1993) 3043).
-///
-/// Φ_t: with θ = t m_i / I_i, turn (m_j, m_k) by −θ about axis i and the attitude by θ on the right;
-/// (i, j, k) cyclic. Keeps m_i, |m| and the momentum in space.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct AxisTurn<S> {
-    axis: usize,
-    half_rate: S,
-}
-
-impl<S: Real> AxisTurn<S> {
-    /// The flow of `rate · m_axis²/2`, `half_rate` being half of that rate; `axis` is 0, 1 or, for all else, 2.
-    pub(crate) fn new(axis: usize, half_rate: S) -> Self {
-        AxisTurn { axis, half_rate }
-    }
-}
-
-impl<S: Real> Flow<S> for AxisTurn<S> {
-    #[inline]
-    fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
-        turn_about_axis(self.axis, x, t * self.half_rate);
-    }
-}
 
 /// As [`turn_about`], about an axis that is known at run time only.
 #[inline]
@@ -40,7 +14,8 @@ pub(crate) fn turn_about_axis<S: Real>(axis: usize, x: &mut Point<S>, half_rate_
     }
 }
 
-/// Turns `x` about `AXIS` by the angle `2 · half_rate_time · m_AXIS`, rounding errors carried.
+/// Turns `x` about `AXIS` by the angle `2 · half_rate_time · m_AXIS`, rounding errors carried: the exact flow of the kinetic
+/// energy of one axis (McLachlan, Phys. Rev. Lett. 71 (1993) 3043).
 ///
 /// The momentum turns by `v = 2 sin²` and `w = 2 sin cos` of the *half* angle, both from the same sine: then
 /// `v² + w² − 2v` is a rounding error of random sign, and |m| walks at random instead of drifting. The quaternion

@@ -23,6 +23,9 @@ impl AxisOrder {
         AxisOrder([2, 1, 0]),
     ];
 
+    /// That of NO_SQUISH: the third axis outside, the first inside.
+    pub(super) const NO_SQUISH: AxisOrder = AxisOrder([2, 1, 0]);
+
     /// The axes from 0, outermost first.
     #[must_use]
     pub fn axes(self) -> [usize; 3] {

@@ -1,6 +1,6 @@
 //! The variational Lie–Poisson splitting: three turns about the principal axes.
 
-use super::schemes::{STRANG, Scheme};
+use super::schemes::{STRANG, Scheme, Stages};
 use super::turns::Turns;
 use super::{AxisOrder, Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
@@ -45,7 +45,10 @@ impl FreePart for AxisSplit {
         Cost::turns(5)
     }
     fn free_cost(&self, scheme: &Scheme) -> Option<Cost> {
-        Some(Cost::turns(4) * scheme.lengths()?.len() as u32)
+        match scheme.stages {
+            Stages::Composition(_) => Some(Cost::turns(4) * scheme.lengths()?.len() as u32),
+            _ => None,
+        }
     }
     fn source(&self) -> &'static str {
         "McLachlan, Phys. Rev. Lett. 71 (1993) 3043; Touma and Wisdom, Astron. J. 107 (1994) 1189"
@@ -60,6 +63,7 @@ impl<S: Precise> Method<S> for AxisSplit {
     }
 
     fn free_map<F: Field<S>>(&self, scheme: &Scheme, h: Dd, rotor: &Rotor, _: &F) -> Option<AxisSplitMap<S>> {
+        let _ = self.free_cost(scheme)?;
         let mut map = AxisSplitMap::new(self.axes, scheme.lengths()?, h, rotor);
         map.free_to_choose = self.axes.is_none() && *scheme == STRANG;
         Some(map)

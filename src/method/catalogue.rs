@@ -76,6 +76,9 @@ where
                 Some(force) => force.name().into(),
                 None => "gravity".into(),
             };
+        if problem == Problem::Potential && method.claims(Problem::Gravity).is_some() {
+            return Err(StepError::NoGradient { method: method.name(), force: what });
+        }
         return Err(StepError::Refused { method: method.name(), force: what, problem });
     }
     if method.needs_series()
@@ -106,6 +109,17 @@ pub enum StepError {
     NotATime {
         /// The time asked for, s.
         t: f64,
+    },
+    /// The method needs the derivative of the torque, and a force other than gravity acts.
+    #[error(
+        "method {method:?} takes the derivative of the torque, which is known of uniform gravity alone, and {force} acts; take \
+         kick-drift@srkn-6b, for one"
+    )]
+    NoGradient {
+        /// Name of the method.
+        method: String,
+        /// Name of the force.
+        force: String,
     },
     /// The method does not support the forces on the body.
     #[error("method {method:?} cannot take {force}, {}", remedy(*.problem))]
@@ -162,8 +176,10 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
 /// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in `lie-poisson:321@kahan-li-8`.
 ///
 /// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
-/// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance; `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and
-/// `kick-drift@suzuki-4`.
+/// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance;
+/// `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and `kick-drift@suzuki-4`, `no-squish` one of
+/// `lie-poisson:321`: that is the method of Miller et al., J. Chem. Phys. 116 (2002) 8649, which molecular dynamics programs
+/// write in quaternions and their momenta.
 ///
 /// # Errors
 /// A base or a scheme that does not exist, an argument that the base does not take, or a scheme that does not fit it.
@@ -203,6 +219,7 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
             let axes = axes.map_err(|_| asked.refused("a permutation of 123, such as lie-poisson:321"))?;
             kicked(AxisSplit { axes }, chosen)
         }
+        "no-squish" => kicked(AxisSplit { axes: Some(AxisOrder::NO_SQUISH) }, asked.scheme_alone()?),
         "two-turn" => {
             let chosen = asked.scheme()?;
             let axes = argument.map(str::parse::<TwoAxes>).transpose();

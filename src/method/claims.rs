@@ -34,6 +34,9 @@ pub struct Claims {
     pub symmetric: bool,
     /// Without torque the map of momenta keeps the Lie–Poisson bracket.
     pub poisson: bool,
+    /// The map of attitude and momentum is symplectic on T*SO(3): it keeps the form
+    /// `ξ₁·δm₂ − ξ₂·δm₁ + m·(ξ₁ × ξ₂)` of two variations, ξ a turn of the body about its own axes.
+    pub symplectic: bool,
     /// What is constant along the numerical solution.
     pub kept: Kept,
     /// Work per step.
@@ -43,9 +46,10 @@ pub struct Claims {
 }
 
 impl Claims {
-    /// Of a method that is neither symmetric nor Poisson and has no tolerance; where it is or has, set the field.
+    /// Of a method that is neither symmetric nor Poisson nor symplectic and has no tolerance; where it is or has, set the field.
     pub const fn new(order: Option<u32>, kept: Kept, cost: Cost, source: &'static str) -> Claims {
-        Claims { order, tolerance: None, symmetric: false, poisson: false, kept, cost, source }
+        let [symmetric, poisson, symplectic] = [false; 3];
+        Claims { order, tolerance: None, symmetric, poisson, symplectic, kept, cost, source }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Higher order by composition: one symmetric map, taken with steps of several lengths.
 
-use super::schemes::Scheme;
+use super::processor::Processor;
+use super::schemes::{Part, Scheme};
 use super::splitting::lengths;
 use super::{Claimed, Claims, Map, Method, SchemeError};
 use crate::body::{Field, Point, Problem, Rotor, Time};
@@ -55,7 +56,8 @@ impl<M: Symmetric + Claimed> Claimed for Composed<M> {
         let base = self.base.claims(problem)?;
         let stages = self.scheme.lengths().map_or(0, |lengths| lengths.len() as u32);
         let order = base.order.map(|_| self.scheme.order);
-        Some(Claims { order, cost: base.cost * stages, source: self.scheme.source, ..base })
+        let symmetric = base.symmetric && !self.scheme.is_processed();
+        Some(Claims { order, symmetric, cost: base.cost * stages, source: self.scheme.source, ..base })
     }
 }
 
@@ -70,24 +72,46 @@ impl<S: Real, M: Method<S> + Symmetric> Method<S> for Composed<M> {
             begun = begun + length;
             stage
         };
-        ComposedMap { stages: lengths::<S>(h, &shares).into_iter().map(stage).collect() }
+        let stages = lengths::<S>(h, &shares).into_iter().map(stage).collect();
+        // steps of one map alone
+        let processor: Vec<_> = self.scheme.processor_lengths().into_iter().map(|p| (Part::A, p)).collect();
+        let base = |length| self.base.map(length, rotor, field);
+        ComposedMap { h, processor: Processor::new::<S>(h, &processor, base, base), stages }
     }
 }
 
 /// A prepared [`Composed`]: its steps, each with the time at which it begins, s since the beginning of the whole.
 #[derive(Clone, Debug)]
 pub struct ComposedMap<T> {
+    h: Dd,
+    processor: Processor<T, T>,
     stages: Vec<(Dd, T)>,
 }
 
 impl<S: Real, T: Map<S>> Map<S> for ComposedMap<T> {
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.processor.apply(at, x);
+        self.advance(at, x);
+        self.processor.take_back(at.later(self.h), x);
+    }
+
+    fn open(&mut self, at: Time, x: &mut Point<S>) {
+        self.processor.apply(at, x);
+    }
+
+    #[inline]
+    fn advance(&mut self, at: Time, x: &mut Point<S>) {
         for (begun, map) in &mut self.stages {
             map.apply(at.later(*begun), x);
         }
     }
 
+    fn close(&mut self, at: Time, x: &mut Point<S>) {
+        self.processor.take_back(at, x);
+    }
+
     fn worst_residual(&self) -> f64 {
-        self.stages.iter().map(|stage| stage.1.worst_residual()).fold(0.0, f64::max)
+        let stages = self.stages.iter().map(|stage| stage.1.worst_residual());
+        stages.fold(self.processor.worst_residual(), f64::max)
     }
 }

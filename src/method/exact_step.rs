@@ -45,7 +45,12 @@ impl Claimed for ExactStep {
         let kept = Kept::all_of_free_motion(Energy::Exact);
         let source = "addition theorem, DLMF 22.8; Moser and Veselov, Commun. Math. Phys. 139 (1991) 217";
         let claims = Claims::new(None, kept, Cost::additions(1), source);
-        (problem == Problem::Free).then_some(Claims { symmetric: true, poisson: true, ..claims })
+        (problem == Problem::Free).then_some(Claims {
+            symmetric: true,
+            poisson: true,
+            symplectic: true,
+            ..claims
+        })
     }
 }
 

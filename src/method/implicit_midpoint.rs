@@ -62,6 +62,7 @@ impl Claimed for ImplicitMidpoint {
             tolerance: None,
             symmetric: true,
             poisson: false,
+            symplectic: false,
             kept,
             cost: Cost::solves(1),
             source: "Austin, Krishnaprasad and Wang, J. Comput. Phys. 107 (1993) 105; Lewis and Simo, J. Nonlinear Sci. 4 (1994) 253",

@@ -14,7 +14,8 @@ use crate::num::{Dd, Precise};
 /// reciprocal moments are `s/I_i + d`, with s and d such that this motion is that of the given body up to O(h^(order + 1)):
 /// order 2n of Hairer and Vilmart, J. Phys. A 39 (2006) 13225, who give s and d to order 10; the power series of any order are
 /// made for each body when a step is prepared. Keeps energy, |m|, L and the Lie–Poisson bracket like the plain map, at its
-/// cost per step: in free motion s and d are constants of the orbit, elsewhere two polynomials of the momentum.
+/// cost per step: in free motion s and d are constants of the orbit, elsewhere two polynomials of the momentum. As they differ
+/// from orbit to orbit, attitude and momentum together are symplectic up to O(h^(order + 1)) only.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -71,6 +72,9 @@ impl FreePart for PreprocessedDmv {
     }
     fn energy(&self) -> Energy {
         Energy::Exact
+    }
+    fn symplectic(&self) -> bool {
+        false
     }
     fn cost(&self) -> Cost {
         Cost::solves(1)

@@ -2,16 +2,17 @@
 
 use thiserror::Error;
 
+use super::kicks::KickMap;
+use super::processor::{Processor, Timed};
 use super::schemes::{Part, STRANG, Scheme, Stages};
-use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method, Symmetric};
+use super::{Claimed, Claims, Cost, Energy, Kept, Kicks, Map, Method, Symmetric};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::flow::{Flow, Kick};
 use crate::num::{Dd, Real};
 
 /// A splitting of H = A + B: maps of A and of B in turn, for the shares of the step that `scheme` gives.
 ///
-/// Strang's is Φ_h = B(h/2) A(h) B(h/2) (SIAM J. Numer. Anal. 5 (1968) 506). All schemes are palindromes, so that the
-/// splitting is symmetric where its parts are. Where two steps of a composition meet, their maps of B are merged.
+/// Strang's is Φ_h = B(h/2) A(h) B(h/2) (SIAM J. Numer. Anal. 5 (1968) 506). All schemes but processed ones are palindromes, so that
+/// the splitting is symmetric where its parts are. Where two steps of a composition meet, their maps of B are merged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Splitting<A, B> {
@@ -28,6 +29,10 @@ pub trait FreePart: Symmetric {
     fn order(&self) -> Option<u32>;
     /// The energy of free motion.
     fn energy(&self) -> Energy;
+    /// Whether the map is symplectic: the turn of the body included, of which the bracket of the momenta knows nothing.
+    fn symplectic(&self) -> bool {
+        true
+    }
     /// Work of one map.
     fn cost(&self) -> Cost;
     /// Work of one step of free motion by `scheme` in a sequence of the same, where neighbouring flows merge: as
@@ -38,10 +43,6 @@ pub trait FreePart: Symmetric {
     /// Where it comes from.
     fn source(&self) -> &'static str;
 }
-
-/// The [kicks](Kick) of the potential, as the part B of a splitting.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kicks;
 
 /// A scheme does not fit its base.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -132,16 +133,16 @@ impl<A: FreePart> Splitting<A, Kicks> {
     /// # Ok::<(), polhode::method::SchemeError>(())
     /// ```
     pub fn kicked(free: A, scheme: Scheme) -> Result<Self, SchemeError> {
-        if let Stages::Alternating { first, a, b, .. } = scheme.stages {
+        if let Stages::Alternating { first, a, b, .. } | Stages::ForceGradient { first, a, b, .. } =
+            scheme.stages
+        {
             let (outer, inner) = if first == Part::A { (a.len(), b.len()) } else { (b.len(), a.len()) };
             if outer != inner && outer != inner + 1 {
                 return Err(SchemeError::Lengths { scheme: scheme.name, outer, inner });
             }
         }
-        match (free.order(), scheme.stages) {
-            (Some(order), Stages::Alternating { .. })
-                if order < scheme.order && free.free_cost(&scheme).is_none() =>
-            {
+        match (free.order(), scheme.lengths()) {
+            (Some(order), None) if order < scheme.order && free.free_cost(&scheme).is_none() => {
                 Err(SchemeError::Inexact { scheme: scheme.name, base: free.name(), order })
             }
             _ => Ok(Splitting { a: free, b: Kicks, scheme }),
@@ -150,8 +151,7 @@ impl<A: FreePart> Splitting<A, Kicks> {
 
     /// Whether the scheme is for two flows and the free part no flow of its order.
     fn is_for_free_motion(&self) -> bool {
-        let two_flows = matches!(self.scheme.stages, Stages::Alternating { .. });
-        two_flows && self.a.order().is_some_and(|order| order < self.scheme.order)
+        self.scheme.lengths().is_none() && self.a.order().is_some_and(|order| order < self.scheme.order)
     }
 }
 
@@ -163,18 +163,25 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
     fn claims(&self, problem: Problem) -> Option<Claims> {
         let flows = self.scheme.flows();
         // in motion under a force the last flow of a step and the first of the next are one
-        let merged =
-            |part| u32::from(problem != Problem::Free && flows.first().is_some_and(|flow| flow.0 == part));
+        let at_both_ends =
+            |part| [flows.first(), flows.last()].iter().all(|end| end.is_some_and(|f| f.0 == part));
+        let exact = |part| part == Part::B || self.a.order().is_none();
+        let merged = |part| u32::from(problem != Problem::Free && at_both_ends(part) && exact(part));
         let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u32 - merged(part);
         let free = match self.a.free_cost(&self.scheme) {
             Some(cost) if problem == Problem::Free => cost,
             _ => self.a.cost() * count(Part::A),
         };
         let source = if self.scheme == STRANG { self.a.source() } else { self.scheme.source };
-        let claims = |order, kept, cost| Claims {
-            symmetric: true,
-            poisson: true,
-            ..Claims::new(order, kept, cost, source)
+        let claims = |order, kept, cost| {
+            // of exact flows without kicks nothing is left but the step itself
+            let exact = problem == Problem::Free && self.a.order().is_none();
+            Claims {
+                symmetric: exact || !self.scheme.is_processed(),
+                poisson: true,
+                symplectic: self.a.symplectic(),
+                ..Claims::new(order, kept, cost, source)
+            }
         };
         match problem {
             Problem::Free => {
@@ -184,6 +191,7 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
             }
             // the kicks would alternate with free motion of a lower order
             Problem::Gravity | Problem::Potential if self.is_for_free_motion() => None,
+            Problem::Potential if !self.scheme.gradients().is_empty() => None,
             Problem::Gravity | Problem::Potential => {
                 let kept = Kept { energy: Energy::Bounded, momentum_z: true, norm: true, ..Kept::NOTHING };
                 Some(claims(Some(self.scheme.order), kept, free + Cost::kicks(count(Part::B))))
@@ -193,16 +201,23 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
     }
 }
 
-impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
-    type Map<F: Field<S>> = SplittingMap<A::Map<F>, B::Map<F>>;
+impl<S: Real, A: Method<S> + FreePart> Method<S> for Splitting<A, Kicks> {
+    type Map<F: Field<S>> = SplittingMap<A::Map<F>, KickMap<S, F>>;
 
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F> {
+        let (a, b) = (|length| self.a.map(length, rotor, field), |length| self.b.map(length, rotor, field));
         if !F::ACTS
             && let Some(map) = self.a.free_map(&self.scheme, h, rotor, field)
         {
-            let nothing = Timed { begun: Dd::ZERO, map: self.b.map(Dd::ZERO, rotor, field) };
-            let pairs = vec![(Timed { begun: Dd::ZERO, map }, nothing)];
-            return SplittingMap { opening: None, pairs, closing: None, ends: Ends::OfA };
+            let nothing = Timed { begun: Dd::ZERO, map: b(Dd::ZERO) };
+            return SplittingMap {
+                h,
+                processor: Processor::new::<S>(h, &[], a, b),
+                opening: None,
+                pairs: vec![(Timed { begun: Dd::ZERO, map }, nothing)],
+                closing: None,
+                ends: Ends::OfA,
+            };
         }
         let flows = self.scheme.flows();
         let lengths = |part| {
@@ -210,21 +225,26 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
             lengths::<S>(h, &shares).into_iter()
         };
         let (mut a_lengths, mut b_lengths) = (lengths(Part::A), lengths(Part::B));
+        let gradients = self.scheme.gradients();
+        let first_gradient = gradients.first().copied().unwrap_or(Dd::ZERO);
+        let mut gradients = gradients.into_iter();
+        let processor = Processor::new::<S>(h, &self.scheme.processor(), a, b);
         let (mut opening, mut pairs, mut free) = (None, Vec::new(), None);
-        let (mut begun, mut first) = (Dd::ZERO, None);
+        let (mut begun, mut first) = (processor.duration, None);
         for (part, _) in &flows {
             match part {
                 // the time goes by in A; in B it stands
                 Part::A => {
                     let length = a_lengths.next().unwrap_or(Dd::ZERO);
                     first = first.or(Some(length));
-                    free = Some(Timed { begun, map: self.a.map(length, rotor, field) });
+                    free = Some(Timed { begun, map: a(length) });
                     begun = begun + length;
                 }
                 Part::B => {
                     let length = b_lengths.next().unwrap_or(Dd::ZERO);
                     first = first.or(Some(length));
-                    let kick = Timed { begun, map: self.b.map(length, rotor, field) };
+                    let gradient = gradients.next().unwrap_or(Dd::ZERO);
+                    let kick = Timed { begun, map: b(length).with_gradient(gradient, h, rotor) };
                     match free.take() {
                         Some(free) => pairs.push((free, kick)),
                         None => opening = Some(kick),
@@ -236,22 +256,26 @@ impl<S: Real, A: Method<S>, B: Method<S>> Method<S> for Splitting<A, B> {
         let ends = match &free {
             // without forces B does nothing
             _ if !F::ACTS => Ends::OfA,
+            None if opening.is_none() => Ends::Apart,
             None => Ends::B {
-                merged: Timed { begun, map: self.b.map(first * 2.0, rotor, field) },
-                back: self.b.map(-first, rotor, field),
+                merged: Timed { begun, map: b(first * 2.0).with_gradient(first_gradient * 2.0, h, rotor) },
+                back: b(-first).with_gradient(-first_gradient, h, rotor),
             },
-            Some(last) => Ends::A {
-                merged: Timed { begun: last.begun, map: self.a.map(first * 2.0, rotor, field) },
-                back: self.a.map(-first, rotor, field),
-            },
+            // two maps of A in turn are one of the whole length only if it is exact
+            Some(_) if self.a.order().is_some() => Ends::Apart,
+            Some(last) => {
+                Ends::A { merged: Timed { begun: last.begun, map: a(first * 2.0) }, back: a(-first) }
+            }
         };
-        SplittingMap { opening, pairs, closing: free, ends }
+        SplittingMap { h, processor, opening, pairs, closing: free, ends }
     }
 }
 
 /// A prepared [`Splitting`]: B where it comes first, pairs of A and B, A where it comes last.
 #[derive(Clone, Debug)]
 pub struct SplittingMap<A, B> {
+    h: Dd,
+    processor: Processor<A, B>,
     opening: Option<Timed<B>>,
     pairs: Vec<(Timed<A>, Timed<B>)>,
     closing: Option<Timed<A>>,
@@ -263,32 +287,22 @@ pub struct SplittingMap<A, B> {
 enum Ends<A, B> {
     /// Without forces: what A itself merges, if the step is one A.
     OfA,
+    /// Nothing: the two flows are of different parts, or not exact.
+    Apart,
     /// Two flows of A as one, and the one that takes half of it back.
     A { merged: Timed<A>, back: A },
     /// Two flows of B likewise.
     B { merged: Timed<B>, back: B },
 }
 
-/// A map and the time at which it begins, s since the beginning of the step.
-#[derive(Clone, Debug)]
-struct Timed<M> {
-    begun: Dd,
-    map: M,
-}
-
-impl<M> Timed<M> {
+impl<A, B> SplittingMap<A, B> {
+    /// One step without processor.
     #[inline]
-    fn apply<S: Real>(&mut self, at: Time, x: &mut Point<S>)
+    fn kernel<S: Real>(&mut self, at: Time, x: &mut Point<S>)
     where
-        M: Map<S>,
+        A: Map<S>,
+        B: Map<S>,
     {
-        self.map.apply(at.later(self.begun), x);
-    }
-}
-
-impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
-    #[inline]
-    fn apply(&mut self, at: Time, x: &mut Point<S>) {
         if let Some(b) = &mut self.opening {
             b.apply(at, x);
         }
@@ -300,8 +314,18 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
             a.apply(at, x);
         }
     }
+}
+
+impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
+    #[inline]
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.processor.apply(at, x);
+        self.kernel(at, x);
+        self.processor.take_back(at.later(self.h), x);
+    }
 
     fn open(&mut self, at: Time, x: &mut Point<S>) {
+        self.processor.apply(at, x);
         match (&self.ends, &mut self.pairs[..], &mut self.opening) {
             (Ends::OfA, [(a, _)], _) => a.map.open(at, x),
             (Ends::A { .. }, [(a, _), ..], _) => a.map.apply(at, x),
@@ -330,7 +354,7 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
                 last.apply(at, x);
                 merged.apply(at, x);
             }
-            _ => self.apply(at, x),
+            _ => self.kernel(at, x),
         }
     }
 
@@ -342,6 +366,7 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
             (Ends::B { back, .. }, _) => back.apply(at, x),
             _ => {}
         }
+        self.processor.take_back(at, x);
     }
 
     fn synchronize(&self, elapsed: Dd, x: &mut Point<S>) {
@@ -358,37 +383,21 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
             Ends::A { merged, .. } => merged.map.worst_residual(),
             _ => 0.0,
         };
-        pairs.chain(opening).chain(closing).fold(merged, f64::max)
+        pairs.chain(opening).chain(closing).fold(merged.max(self.processor.worst_residual()), f64::max)
     }
 }
 
-/// The `shares` of `h`, rounded to the digits of `S`; what closes the palindrome takes up what rounding the others has
+/// The `shares` of `h`, rounded to the digits of `S`; what closes the palindrome, or the last without one, takes up what rounding the others has
 /// changed, or the clock would be off.
 pub(super) fn lengths<S: Real>(h: Dd, shares: &[Dd]) -> Vec<Dd> {
     let n = shares.len();
+    if !shares.iter().eq(shares.iter().rev()) {
+        let but_last = shares[..n - 1].iter().map(|&share| S::rounded(h * share)).collect::<Vec<_>>();
+        let left = but_last.iter().fold(h, |left, &length| left - length);
+        return but_last.into_iter().chain([S::rounded(left)]).collect();
+    }
     let outer: Vec<Dd> = shares[..(n - 1) / 2].iter().map(|&share| S::rounded(h * share)).collect();
     let left = outer.iter().fold(h, |left, &length| left - length * 2.0);
     let centre = if n % 2 == 1 { vec![S::rounded(left)] } else { vec![S::rounded(left * 0.5); 2] };
     outer.iter().copied().chain(centre).chain(outer.iter().rev().copied()).collect()
-}
-
-impl<S: Real> Method<S> for Kicks {
-    type Map<F: Field<S>> = KickMap<S, F>;
-    fn map<F: Field<S>>(&self, h: Dd, _: &Rotor, field: &F) -> KickMap<S, F> {
-        KickMap { kick: Kick::new(field.clone()), h: S::from_dd(h) }
-    }
-}
-
-/// A kick of one length.
-#[derive(Clone, Debug)]
-pub struct KickMap<S, F> {
-    kick: Kick<S, F>,
-    h: S,
-}
-
-impl<S: Real, F: Field<S>> Map<S> for KickMap<S, F> {
-    #[inline]
-    fn apply(&mut self, at: Time, x: &mut Point<S>) {
-        self.kick.flow(at, self.h, x);
-    }
 }

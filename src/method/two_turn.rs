@@ -154,9 +154,14 @@ impl FreePart for TwoTurn {
         Cost::turns(4)
     }
     fn free_cost(&self, scheme: &Scheme) -> Option<Cost> {
-        let two_flows = !matches!(scheme.stages, Stages::Alternating { pairs: Pairs::Nystrom, .. });
-        // the last turn of a step and the first of the next are one
-        two_flows.then(|| Cost::turns(scheme.flows().len() as u32 - 1))
+        match scheme.stages {
+            // the last turn of a step and the first of the next are one
+            Stages::Composition(_)
+            | Stages::Alternating { pairs: Pairs::Any | Pairs::NearIntegrable(_), .. } => {
+                Some(Cost::turns(scheme.flows().len() as u32 - 1))
+            }
+            _ => None,
+        }
     }
     fn source(&self) -> &'static str {
         "Fasso, J. Comput. Phys. 189 (2003) 527; Hairer, Lubich and Wanner, Geometric Numerical Integration, (VII.5.33)"

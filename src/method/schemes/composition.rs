@@ -19,7 +19,12 @@ pub const YOSHIDA_4: Scheme = Scheme {
     stages: Stages::Composition(&[Dd::sum(1.3512071919596575, 8.427417755451761e-17)]),
 };
 
-/// Five stages, γ₁ = γ₂ = 1/(4 − ∛4): the smallest Σ|γ| of all compositions of order 4 with five stages.
+/// Five stages, γ₁ = γ₂ = 1/(4 − ∛4): the smallest Σ|γ| of all compositions of order 4 with five stages or fewer, palindromes
+/// or not.
+///
+/// Order 4 needs Σγ = 1 and Σγ³ = 0. Let n be the sum of the negative lengths without their sign; the sum of their cubes is n³ at
+/// most. The positive ones, four at most, add up to 1 + n, and their cubes to (1 + n)³/16 at least, when they are equal. So
+/// (1 + n)³ ≤ 16 n³, and Σ|γ| = 1 + 2n ≥ 1 + 2/(∛16 − 1), which this scheme attains.
 pub const SUZUKI_4: Scheme = Scheme {
     name: "suzuki-4",
     order: 4,

@@ -3,15 +3,18 @@
 //! ```text
 //! composition    Φ_h = S_{γ₁h} ∘ S_{γ₂h} ∘ … ∘ S_{γ₂h} ∘ S_{γ₁h}            S a symmetric map of order 2
 //! alternating    Φ_h = A_{a₁h} ∘ B_{b₁h} ∘ A_{a₂h} ∘ … ∘ B_{b₁h} ∘ A_{a₁h}   A, B flows; or B first and last
+//! processed      Φ_h = P⁻¹ ∘ K_h ∘ P, so that Φ_hⁿ = P⁻¹ ∘ K_hⁿ ∘ P          K, P of the former two kinds
 //! ```
 //!
-//! Every scheme reads the same from both ends, so Φ_h is symmetric, Φ_{−h} Φ_h = 1, and its order is even. The
+//! Compositions and alternating schemes read the same from both ends, so Φ_h is symmetric, Φ_{−h} Φ_h = 1, and its order is even. The
 //! constants hold the first half. What closes it follows: 1 − 2Σ in the centre of an odd number of lengths, ½ − Σ
 //! on either side of the middle of an even number. Coefficients are multiples of 2⁻¹⁰⁴: so their sums are exact in
 //! [`Dd`], and the lengths of a step add up to 1 without rounding.
 
 mod alternating;
 mod composition;
+mod force_gradient;
+mod processed;
 
 pub use alternating::{
     ABA_8_4, ABA_8_6_4, ABA_10_6_4, BCE_22, BLANES_MOAN_S6, BLANES_MOAN_S10, MCLACHLAN_S5, SABA_2, SABA_3,
@@ -20,6 +23,11 @@ pub use alternating::{
 pub use composition::{
     KAHAN_LI_6, KAHAN_LI_8, MCLACHLAN_4, SOFRONIOU_SPALETTA_6, SOFRONIOU_SPALETTA_8, SOFRONIOU_SPALETTA_10,
     STRANG, SUZUKI_4, SUZUKI_UMENO_8, YOSHIDA_4, YOSHIDA_6,
+};
+pub use force_gradient::{CHIN_4A, CHIN_4B, CHIN_4C, OMELYAN_MRYGLOD_FOLK_4};
+pub use processed::{
+    BLANES_CASAS_MURUA_6_11, BLANES_CASAS_MURUA_6_13, BLANES_CASAS_MURUA_8_13, BLANES_CASAS_MURUA_10_23,
+    PROCESSED_6_4,
 };
 
 use thiserror::Error;
@@ -67,6 +75,43 @@ pub enum Stages {
         /// The flows for which the scheme has its order.
         pairs: Pairs,
     },
+    /// Flows of A and kicks in turn, palindromic, as of an [`Alternating`](Self::Alternating) scheme; a kick with the share b and
+    /// the gradient c is the flow of b V − c h² τᵀI⁻¹τ, V the potential and τ its torque.
+    ForceGradient {
+        /// The part with which the step begins and ends.
+        first: Part,
+        /// Shares of A.
+        a: &'static [Dd],
+        /// Shares of the kicks.
+        b: &'static [Dd],
+        /// Gradients of the kicks of the first half, the one in the middle included.
+        c: &'static [Dd],
+    },
+    /// A palindromic composition of one symmetric map of order 2 between a processor and its inverse.
+    ///
+    /// The processor is taken once, before the first step. Its inverse is taken at each look at the motion, also by a run that is
+    /// watched at every step: such runs took two to three times as long as [unwatched](crate::run::Watch) ones, those by
+    /// [`PROCESSED_6_4`] four times, by compositions 1.3 times. The processors are even in h only up to some order higher than
+    /// that of the scheme, so that the step is no longer exactly symmetric, as its kernel is.
+    Processed {
+        /// γ₁, γ₂, … of the kernel, as of a [`Composition`](Self::Composition).
+        kernel: &'static [Dd],
+        /// p₁, p₂, … p_n of the processor, first in time first; −p₁, −p₂, … −p_n follow.
+        processor: &'static [Dd],
+    },
+    /// Two flows in turn between a processor and its inverse; the kernel begins with A and ends with B.
+    ProcessedAlternating {
+        /// Shares of A in the kernel but for the last, which is 1 − Σ.
+        a: &'static [Dd],
+        /// Shares of B in the kernel but for the last, which is 1 − Σ.
+        b: &'static [Dd],
+        /// Shares of A in the processor.
+        processor_a: &'static [Dd],
+        /// Shares of B in the processor, one more: it begins and ends with B.
+        processor_b: &'static [Dd],
+        /// The flows for which the scheme has its order.
+        pairs: Pairs,
+    },
 }
 
 /// One of the two flows of a splitting.
@@ -88,32 +133,89 @@ pub enum Pairs {
     /// H = A + εB with p₁, p₂, …: the error is of size ε h^p₁ + ε² h^p₂ + …, the last p standing for all further
     /// powers of ε. The order is the last p, the smallest.
     NearIntegrable(&'static [u32]),
+    /// The same where besides `[B,[B,[B,A]]] = 0`, as for [`Nystrom`](Self::Nystrom).
+    NearIntegrableNystrom(&'static [u32]),
 }
 
 impl Scheme {
-    /// Lengths of the steps of one symmetric map, all of them, palindromic; none for two flows in turn.
+    /// Lengths of the steps of one symmetric map, all of them, palindromic; none for two flows in turn. Of a processed
+    /// composition those of the kernel.
     #[must_use]
     pub fn lengths(&self) -> Option<Vec<Dd>> {
         match self.stages {
-            Stages::Composition(gamma) => Some(closed(gamma, true)),
-            Stages::Alternating { .. } => None,
+            Stages::Composition(gamma) | Stages::Processed { kernel: gamma, .. } => Some(closed(gamma, true)),
+            Stages::Alternating { .. }
+            | Stages::ForceGradient { .. }
+            | Stages::ProcessedAlternating { .. } => None,
         }
     }
 
-    /// The flows of one step in order, each with its share of the step.
+    /// Lengths of the steps of the processor, likewise; none without processor.
+    #[must_use]
+    pub fn processor_lengths(&self) -> Vec<Dd> {
+        match self.stages {
+            Stages::Processed { processor, .. } => {
+                processor.iter().copied().chain(processor.iter().map(|&p| -p)).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether there is a processor.
+    #[must_use]
+    pub fn is_processed(&self) -> bool {
+        matches!(self.stages, Stages::Processed { .. } | Stages::ProcessedAlternating { .. })
+    }
+
+    /// The flows of the processor in order, each with its share of the step, as [`flows`](Self::flows); none without.
+    ///
+    /// ```
+    /// use polhode::method::schemes::{BLANES_CASAS_MURUA_8_13, Part, SUZUKI_4};
+    /// let of_a = |flows: &[(Part, _)]| flows.iter().filter(|flow| flow.0 == Part::A).count();
+    /// let scheme = BLANES_CASAS_MURUA_8_13;
+    /// assert_eq!((of_a(&scheme.flows()), of_a(&scheme.processor())), (13, 20));
+    /// assert!(SUZUKI_4.processor().is_empty());
+    /// ```
+    #[must_use]
+    pub fn processor(&self) -> Vec<(Part, Dd)> {
+        match self.stages {
+            Stages::Processed { .. } => flows_of_strang(&self.processor_lengths()),
+            Stages::ProcessedAlternating { processor_a, processor_b, .. } => {
+                in_turn(Part::B, processor_b, processor_a)
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The gradients of the kicks of one step in order; none without.
+    #[must_use]
+    pub fn gradients(&self) -> Vec<Dd> {
+        match self.stages {
+            Stages::ForceGradient { c, .. } => {
+                let kicks = self.flows().iter().filter(|flow| flow.0 == Part::B).count();
+                c.iter().chain(c.iter().rev().skip(kicks % 2)).copied().collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The flows of one step in order, each with its share of the step; of a processed scheme those of the kernel.
     ///
     /// A composition stands for that of Strang's map B(½) A(1) B(½), neighbouring flows of B merged into one.
     #[must_use]
     pub fn flows(&self) -> Vec<(Part, Dd)> {
         match self.stages {
-            Stages::Composition(gamma) => {
-                let a = closed(gamma, true);
-                let mut b = vec![a[0] * 0.5];
-                b.extend(a.windows(2).map(|pair| (pair[0] + pair[1]) * 0.5));
-                b.push(b[0]);
-                in_turn(Part::B, &b, &a)
+            Stages::Composition(gamma) | Stages::Processed { kernel: gamma, .. } => {
+                flows_of_strang(&closed(gamma, true))
             }
-            Stages::Alternating { first, a, b, .. } => {
+            Stages::ProcessedAlternating { a, b, .. } => {
+                let whole = |shares: &[Dd]| {
+                    let last = shares.iter().fold(Dd::ONE, |left, &share| left - share);
+                    shares.iter().copied().chain([last]).collect::<Vec<_>>()
+                };
+                in_turn(Part::A, &whole(a), &whole(b))
+            }
+            Stages::Alternating { first, a, b, .. } | Stages::ForceGradient { first, a, b, .. } => {
                 let (outer, inner) = if first == Part::A { (a, b) } else { (b, a) };
                 let odd = outer.len() > inner.len();
                 in_turn(first, &closed(outer, odd), &closed(inner, !odd))
@@ -133,6 +235,14 @@ fn closed(half: &[Dd], odd: bool) -> Vec<Dd> {
     }
     all.extend(half.iter().rev());
     all
+}
+
+/// The flows of Strang's map in steps of these lengths.
+fn flows_of_strang(a: &[Dd]) -> Vec<(Part, Dd)> {
+    let half = |length: Option<&Dd>| length.map(|&length| length * 0.5);
+    let between = a.windows(2).map(|pair| (pair[0] + pair[1]) * 0.5);
+    let b: Vec<Dd> = half(a.first()).into_iter().chain(between).chain(half(a.last())).collect();
+    in_turn(Part::B, &b, a)
 }
 
 /// `outer` and `inner` alternating, from the first of `outer` to its last.
@@ -213,7 +323,7 @@ fn distance(from: &[char], to: &[char]) -> usize {
     row[to.len()]
 }
 
-/// Every scheme: compositions first, each family by order.
+/// Every scheme: compositions first, each family by order, those with force gradients and processed ones last.
 pub const ALL: &[Scheme] = &[
     STRANG,
     YOSHIDA_4,
@@ -239,4 +349,13 @@ pub const ALL: &[Scheme] = &[
     ABA_8_4,
     ABA_8_6_4,
     ABA_10_6_4,
+    CHIN_4A,
+    CHIN_4B,
+    CHIN_4C,
+    OMELYAN_MRYGLOD_FOLK_4,
+    BLANES_CASAS_MURUA_6_11,
+    BLANES_CASAS_MURUA_6_13,
+    BLANES_CASAS_MURUA_8_13,
+    BLANES_CASAS_MURUA_10_23,
+    PROCESSED_6_4,
 ];

@@ -65,12 +65,13 @@ impl Claimed for AdaptiveTaylor {
     fn name(&self) -> String {
         self.tolerance.map_or("taylor".into(), |tolerance| format!("taylor:{tolerance:e}"))
     }
-    fn claims(&self, _: Problem) -> Option<Claims> {
+    fn claims(&self, problem: Problem) -> Option<Claims> {
         let cost = Cost::right_sides(AdaptiveTaylor::order(self.tolerance.unwrap_or(f64::ROUNDOFF)));
         Some(match self.tolerance {
             None => Claims {
                 symmetric: true,
                 poisson: true,
+                symplectic: problem != Problem::Torque,
                 ..Claims::new(None, Kept::all_of_free_motion(Energy::Exact), cost, SOURCE)
             },
             tolerance => Claims { tolerance, ..Claims::new(None, Kept::NOTHING, cost, SOURCE) },

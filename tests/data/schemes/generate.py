@@ -14,6 +14,9 @@ from pathlib import Path
 
 from mpmath import cbrt, findroot, mp, mpf, nstr, polyroots, sqrt, taylor, legendre
 
+from force_gradient import force_gradient
+from processed import blanes_casas_murua, processed_6_4
+
 HERE = Path(__file__).parent
 GRID = 2**104
 mp.dps = 50
@@ -147,6 +150,9 @@ SCHEMES = {
                     "0.2076276957255412507162056113249882065158 0.4359097036515261592231548624010651844006"),
         "b": digits("0.09585888083707521061077150377145884776921 0.2044461531429987806805077839164344779763 "
                     "0.2170703479789911017143385924306336714532")},
+    **force_gradient(),
+    **blanes_casas_murua(),
+    "processed-6-4": processed_6_4(),
 }
 
 
