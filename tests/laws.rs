@@ -885,6 +885,20 @@ fn each_method_costs_what_it_claims() {
 }
 
 #[test]
+fn costs_add_and_multiply_by_kind() {
+    let sum = Cost::right_sides(1)
+        + Cost::turns(2)
+        + Cost::free_flows(3)
+        + Cost::additions(4)
+        + Cost::solves(5)
+        + Cost::kicks(6);
+    let twice = (sum + sum, sum * 2);
+    assert_eq!(twice.0, twice.1);
+    let Cost { right_sides, turns, free_flows, additions, solves, kicks, .. } = twice.0;
+    assert_eq!([right_sides, turns, free_flows, additions, solves, kicks], [2, 4, 6, 8, 10, 12]);
+}
+
+#[test]
 fn neighbouring_kicks_of_a_composition_are_merged() {
     let claims = method("kick-drift@suzuki-4").unwrap().claims(Problem::Gravity).unwrap();
     assert_eq!((claims.cost.free_flows, claims.cost.kicks), (5, 5));

@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::body::{Body, Conserved, Force, State, Time};
+use polhode::body::{Body, Conserved, Force, Potential, State, Time};
 use polhode::inertia::Inertia;
 use polhode::method::method;
 use polhode::num::{Dd, Real};
-use polhode::observe::secular_drift;
+use polhode::observe::{Invariants, secular_drift};
 use polhode::rotation::{Quat, Vec3};
-use polhode::run::{Run, Watch};
+use polhode::run::{Run, RunError, Watch};
 
 const MOMENTS: [f64; 3] = [10.0, 20.0, 26.0];
 const OMEGA: [f64; 3] = [0.4, 1.0, -0.3];
@@ -268,4 +268,71 @@ fn a_slope_and_its_interval_are_those_of_a_regression() {
         (drift.slope - 2e-3).abs() < 1e-16 && drift.half_width < 1e-16 && drift.is_secular(),
         "{drift:?}"
     );
+}
+
+#[test]
+fn a_resumed_run_remembers_its_largest_errors_and_flips() {
+    let body = Body::free(Inertia::from_moments(MOMENTS).unwrap());
+    let splitting = method("lie-poisson").unwrap();
+    let mut run = Run::new(&splitting, &body, &start_of(&body), 0.05).unwrap();
+    // past the largest error and after a flip
+    let before = run.advance_to(2000).unwrap();
+    let now = before.errors.of(Conserved::Energy).unwrap();
+    assert!(before.flips > Some(0) && before.worst.of(Conserved::Energy).unwrap() > 1.1 * now);
+    let checkpoint = run.checkpoint().to_string().parse().unwrap();
+    let resumed = Run::resume(&splitting, &body, &checkpoint).unwrap().sample();
+    assert_eq!((resumed.worst, resumed.flips), (before.worst, before.flips));
+}
+
+/// A potential that is the same everywhere, which leaves a free motion.
+struct Level;
+
+impl<S: Real> Potential<S> for Level {
+    fn energy(&self, _: Time, _: Quat<S>) -> S {
+        S::of(3.0)
+    }
+    fn torque(&self, _: Time, _: Quat<S>) -> Vec3<S> {
+        Vec3::zero()
+    }
+    fn conserved(&self) -> Vec<Conserved> {
+        vec![Conserved::Energy, Conserved::MomentumNorm, Conserved::Momentum]
+    }
+}
+
+#[test]
+fn errors_in_a_level_potential_are_those_of_free_motion() {
+    let free = Body::free(Inertia::from_moments(MOMENTS).unwrap());
+    let level = free.clone().with(Force::potential("level", Level));
+    let worst = |body: &Body| {
+        let mut run = Run::new(&method("rk4").unwrap(), body, &start_of(body), 0.05).unwrap();
+        run.advance_to(STEPS).unwrap().worst
+    };
+    let (free_worst, worst) = (worst(&free), worst(&level));
+    for quantity in [Conserved::MomentumNorm, Conserved::Momentum] {
+        assert_close(worst.of(quantity), free_worst.of(quantity).unwrap(), 1e-18, "level");
+    }
+    // relative to W = T₀ + |U₀|
+    let kinetic = kinetic(exact(&start_of(&free)).1).hi();
+    let expected = free_worst.of(Conserved::Energy).unwrap() * kinetic / (kinetic + 3.0);
+    assert_close(worst.of(Conserved::Energy), expected, 1e-18, "level");
+}
+
+#[test]
+fn a_run_ends_at_the_last_point_whose_errors_are_numbers() {
+    let inertia = Inertia::from_moments(MOMENTS).unwrap();
+    let bodies = [
+        Body::free(inertia.clone()),
+        Body::heavy(inertia.clone(), Vector3::new(0.0, 0.0, 2.0)).unwrap(),
+        Body::free(inertia).with(Force::potential("level", Level)),
+    ];
+    for body in bodies {
+        // Euler's method squares the momentum in each step: there is a point that is finite and whose energy is not
+        let mut run = Run::new(&method("explicit-euler").unwrap(), &body, &start_of(&body), 100.0).unwrap();
+        let error = run.advance_to(100).unwrap_err();
+        let RunError::Diverged { last } = error else { panic!("{error}") };
+        assert!(last.energy.is_finite() && last.momentum_norm > 1e30, "{last:?}");
+        let invariants = Invariants::of(&body, Time::from_dd(last.time), &last.point);
+        assert_eq!(invariants.momentum_norm().hi() * body.scale(), last.momentum_norm);
+        assert!(invariants.momentum_norm() == last.point.to_dd().momentum_body.norm());
+    }
 }

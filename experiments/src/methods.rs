@@ -46,6 +46,7 @@ pub(crate) fn table() -> Table {
             Column::new("norm", "", "whether |q| = 1 is kept").heading("|q|").latex("$|q|$"),
             Column::new("symmetric", "", "whether a step back undoes a step"),
             Column::new("poisson", "", "whether the Lie-Poisson bracket is kept").heading("Poisson"),
+            Column::new("symplectic", "", "whether the symplectic form of attitude and momentum is kept"),
             Column::new("cost", "", "work per step"),
             Column::new("source", "", "where it comes from"),
         ],
@@ -55,6 +56,7 @@ pub(crate) fn table() -> Table {
         "exact",
         None::<u64>,
         "exact",
+        "yes",
         "yes",
         "yes",
         "yes",
@@ -78,6 +80,7 @@ pub(crate) fn table() -> Table {
             yes(kept.norm),
             yes(claims.symmetric),
             yes(claims.poisson),
+            yes(claims.symplectic),
             claims.cost.to_string(),
             claims.source,
         ]);
