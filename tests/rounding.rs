@@ -5,7 +5,7 @@
 use polhode::body::{Body, Clock, Point, Time};
 use polhode::inertia::Inertia;
 use polhode::method::{AnyMethod, method};
-use polhode::num::Real;
+use polhode::num::{Dd, Real};
 use polhode::rotation::{Quat, Vec3};
 
 /// A symmetric body with a fixed point: moments (kg m²), axis of symmetry, weight moment along it (N m), spin (rad/s) and
@@ -75,6 +75,43 @@ fn rounding_moves_tops_of_an_ensemble_either_way() {
             let (mean, rms) = (average(|e| e), average(|e| e * e).sqrt());
             assert!(mean.abs() <= 0.4 * rms, "{:?}: {what} moves by {mean:.1e}, rms {rms:.1e}", top.moments);
             assert!(rms > 1e-19, "{:?}: {what} moves by {rms:.1e} only", top.moments);
+        }
+    }
+}
+
+/// What rounding makes of |m|, and of the energy where the method keeps it, over 64 asymmetric bodies.
+#[test]
+fn rounding_moves_free_bodies_of_an_ensemble_either_way() {
+    const MEMBERS: u32 = 64;
+    for (name, keeps_energy) in [
+        ("two-turn", false),
+        ("lie-poisson", false),
+        ("rattle", true),
+        ("dmv:10", true),
+        ("exact-step", true),
+    ] {
+        let method = method(name).unwrap();
+        let mut errors: [Vec<f64>; 2] = Default::default();
+        for member in 0..MEMBERS {
+            // multiples of the golden section modulo 1: bodies of every shape, momenta of every direction
+            let number = |k: u32| (f64::from(7 * member + k) * 0.618_033_988_749_894_9).fract();
+            let second = [1, 2, 3].map(|k| 0.1 + number(k));
+            let moments = [second[1] + second[2], second[2] + second[0], second[0] + second[1]];
+            let body = Body::free(Inertia::from_moments(moments).unwrap());
+            let momentum = Vec3([4, 5, 6].map(|k| 2.0 * number(k) - 1.0));
+            let start = Point::new(Quat::identity(), momentum);
+            let mut x = start;
+            method.prepare_f64(Clock::new(0.015_625), &body).unwrap().steps(&mut x, 100_000);
+            let (before, after) = (start.to_dd(), x.to_dd());
+            let change = |f: &dyn Fn(&Point<Dd>) -> Dd| ((f(&after) - f(&before)) / f(&before)).hi();
+            errors[0].push(change(&|x| x.momentum_body.norm()));
+            errors[1].push(change(&|x| body.energy_of(Time::from_seconds(0.0), x)));
+        }
+        for (errors, what) in errors.iter().zip(["|m|", "energy"]).take(1 + usize::from(keeps_energy)) {
+            let average = |f: fn(f64) -> f64| errors.iter().map(|e| f(*e)).sum::<f64>() / f64::from(MEMBERS);
+            let (mean, rms) = (average(|e| e), average(|e| e * e).sqrt());
+            assert!(mean.abs() <= 0.4 * rms, "{name}: {what} moves by {mean:.1e}, rms {rms:.1e}");
+            assert!(rms < 5e-16, "{name}: {what} walks by {rms:.1e}");
         }
     }
 }

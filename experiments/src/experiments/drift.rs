@@ -104,7 +104,8 @@ fn step_sizes(body: &NamedBody) -> Vec<f64> {
 /// The catalogue, and for the textbook body the splitting in two orders that others use.
 fn methods(body: &NamedBody) -> Vec<Box<dyn AnyMethod>> {
     let mut methods = catalogue();
-    methods.retain(|method| method.claims(Problem::Free).is_some_and(|claims| claims.order.is_some()));
+    // an exact flow has no step to speak of
+    methods.retain(|method| method.claims(Problem::Free).is_some_and(|claims| claims.cost.free_flows == 0));
     if body.name == "textbook" {
         let others =
             AxisOrder::ALL.into_iter().filter(|order| ["321", "123"].contains(&order.to_string().as_str()));

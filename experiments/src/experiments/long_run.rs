@@ -14,8 +14,16 @@ use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series, ten_to};
 use crate::table::{Cell, Column, Table, row};
 
-const METHODS: [&str; 7] =
-    ["rk4", "rk4-normalized", "implicit-midpoint", "rattle", "dmv:10", "lie-poisson", "two-turn"];
+const METHODS: [&str; 8] = [
+    "rk4",
+    "rk4-normalized",
+    "implicit-midpoint",
+    "rattle",
+    "dmv:10",
+    "lie-poisson",
+    "two-turn",
+    "exact-step",
+];
 
 /// A dyadic step: n h is exact, and about 0.05 rad.
 const STEP: f64 = 1.0 / 64.0;
