@@ -64,7 +64,8 @@ pub enum RunError {
     /// The equations of an implicit step could not be solved.
     #[error(
         "after {} steps, t = {} s, an implicit step was left with a relative residual of {residual:.1e} (at most {SOLVED:e}): \
-         it turns too far in one step; take a smaller one", .last.steps, Shown(.last.time.to_f64())
+         it turns too far in one step; take a smaller one, at this rate of turning below one radian or {:.2e} s",
+        .last.steps, Shown(.last.time.to_f64()), 1.0 / .last.omega_body.norm()
     )]
     Unsolved {
         /// The sample at which it was noticed.
