@@ -286,10 +286,10 @@ fn each_method_converges_with_its_order_and_no_better() {
             let Some(order) = claims.order else {
                 let Case { body, start, span, exact } = &case;
                 let errors = halvings_against(exact, &method, body, start, *span, 6..7).unwrap();
-                let most = claims.tolerance.unwrap_or(EXACT);
+                let most = claims.tolerance.filter(|_| !is_to_rounding(&claims)).unwrap_or(EXACT);
                 let error = errors[0].attitude_error.max(errors[0].momentum_error);
                 assert!(error < most, "{}: {errors:?}", name(&method, problem));
-                assert!(claims.tolerance.is_none_or(|tolerance| error > 1e-6 * tolerance), "{errors:?}");
+                assert!(most == EXACT || error > 1e-6 * most, "{errors:?}");
                 continue;
             };
             let exponents = match (problem, order) {
@@ -359,6 +359,11 @@ fn telling_step(claims: &Claims, usual: f64) -> f64 {
     if claims.tolerance.is_some() { 1.0 } else { usual }
 }
 
+/// Whether the tolerance of a method is the rounding of the scalar: what it does not keep it loses by rounding only.
+fn is_to_rounding(claims: &Claims) -> bool {
+    claims.tolerance == Some(f64::ROUNDOFF)
+}
+
 fn assert_kept(name: &str, what: &str, claimed: bool, error: f64) {
     if claimed {
         assert!(error < EXACT, "{name} claims to keep {what} and loses {error:.1e}");
@@ -382,10 +387,10 @@ fn each_method_keeps_what_it_claims_and_loses_what_it_does_not() {
                 (Conserved::MomentumZ, "L_z", kept.momentum_z, worst.vertical),
             ] {
                 if conserved.contains(&quantity) {
-                    assert_kept(&name, what, claimed, error);
+                    assert_kept(&name, what, claimed || is_to_rounding(&claims), error);
                 }
             }
-            assert_kept(&name, "|q|", kept.norm, worst.norm);
+            assert_kept(&name, "|q|", kept.norm || is_to_rounding(&claims), worst.norm);
         }
     }
 }
@@ -462,7 +467,7 @@ fn drifting_energy_is_seen_to_drift() {
         }
         for method in methods() {
             let Some(claims) = method.claims(problem) else { continue };
-            if claims.kept.energy == Energy::Drifts {
+            if claims.kept.energy == Energy::Drifts && !is_to_rounding(&claims) {
                 // small steps for first-order methods: at larger ones the error soon is no longer small
                 let h = if claims.order == Some(1) { 0.000_976_562_5 } else { telling_step(&claims, 0.0625) };
                 let drift = energy_drift(&case, &method, h, 16_000);
@@ -482,7 +487,8 @@ fn free_claims(method: &impl Claimed) -> Claims {
 fn rounding_does_not_bias_an_energy_that_is_kept() {
     let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap());
     let start = body.state(Default::default(), [0.4, 1.0, -0.3].into()).unwrap();
-    for method in catalogue().iter().filter(|m| free_claims(*m).kept.energy == Energy::Exact) {
+    let keeps = |claims: Claims| claims.kept.energy == Energy::Exact || is_to_rounding(&claims);
+    for method in catalogue().iter().filter(|m| keeps(free_claims(*m))) {
         let mut run = Run::new(method, &body, &start, 0.1).unwrap();
         let end = run.samples(Schedule::every(1_000_000, 1_000_000)).last().unwrap().unwrap();
         let energy = end.worst.energy.unwrap();
@@ -585,7 +591,7 @@ fn a_symmetric_method_returns_and_the_others_do_not() {
                 / case.start.momentum_body.magnitude())
             .max((x.attitude - case.start.attitude).magnitude());
             let name = name(&method, problem);
-            if claims.symmetric {
+            if claims.symmetric || is_to_rounding(&claims) {
                 assert!(away < 10.0 * EXACT, "{name} claims to be symmetric and returns {away:.1e} off");
             } else {
                 assert!(
@@ -625,7 +631,8 @@ fn poisson_defect(method: &dyn AnyMethod, h: f64) -> f64 {
 fn a_poisson_map_keeps_the_bracket_and_the_others_do_not() {
     for method in methods() {
         let defect = poisson_defect(&method, telling_step(&free_claims(&method), 0.25));
-        if free_claims(&method).poisson {
+        let claims = free_claims(&method);
+        if claims.poisson || is_to_rounding(&claims) {
             assert!(defect < 1e-20, "{} claims to be Poisson with a defect of {defect:.1e}", method.name());
         } else {
             assert!(
@@ -694,7 +701,9 @@ fn a_symplectic_map_keeps_the_form_and_the_others_do_not() {
         for method in methods() {
             let Some(claims) = method.claims(problem) else { continue };
             let (defect, name) = (symplectic_defect(&case, &method, 0.25), name(&method, problem));
-            if claims.symplectic {
+            // the motion under a torque is none of a Hamiltonian
+            let to_rounding = is_to_rounding(&claims) && problem != Problem::Torque;
+            if claims.symplectic || to_rounding {
                 assert!(defect < 1e-22, "{name} claims to be symplectic with a defect of {defect:.1e}");
             } else {
                 assert!(

@@ -27,8 +27,8 @@ pub struct Claims {
     /// Order of convergence of attitude and momentum; `None` where there is no error of discretisation but below the
     /// tolerance.
     pub order: Option<u32>,
-    /// What the error of discretisation stays below in each step that the method chooses, relative to the state; `None` where
-    /// the step is that of the run, or the tolerance the rounding of the scalar.
+    /// What the error of discretisation stays below in each step that the method chooses, relative to the state; the rounding
+    /// of a double also stands for that of any other scalar. `None` where the step is that of the run.
     pub tolerance: Option<f64>,
     /// Φ_{−h} ∘ Φ_h = 1.
     pub symmetric: bool,

@@ -3,7 +3,7 @@
 use super::motion_series::MotionSeries;
 use super::{LOOSEST, SOURCE, TaylorError, add_change, unit};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::{Claimed, Claims, Cost, Energy, Kept, Map, Method};
+use crate::method::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
@@ -18,7 +18,7 @@ use crate::rotation::Vec3;
 /// A force has to be analytic along the motion, as with [`Taylor`](super::Taylor). A thruster that is switched is not, as no
 /// series shows the switch.
 ///
-/// With the default tolerance errors are those of rounding, which walk: nothing is kept by construction, everything to rounding.
+/// Nothing is kept by construction; with the default tolerance what is lost is of the size of rounding.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -65,17 +65,10 @@ impl Claimed for AdaptiveTaylor {
     fn name(&self) -> String {
         self.tolerance.map_or("taylor".into(), |tolerance| format!("taylor:{tolerance:e}"))
     }
-    fn claims(&self, problem: Problem) -> Option<Claims> {
-        let cost = Cost::right_sides(AdaptiveTaylor::order(self.tolerance.unwrap_or(f64::ROUNDOFF)));
-        Some(match self.tolerance {
-            None => Claims {
-                symmetric: true,
-                poisson: true,
-                symplectic: problem != Problem::Torque,
-                ..Claims::new(None, Kept::all_of_free_motion(Energy::Exact), cost, SOURCE)
-            },
-            tolerance => Claims { tolerance, ..Claims::new(None, Kept::NOTHING, cost, SOURCE) },
-        })
+    fn claims(&self, _: Problem) -> Option<Claims> {
+        let tolerance = self.tolerance.unwrap_or(f64::ROUNDOFF);
+        let cost = Cost::right_sides(AdaptiveTaylor::order(tolerance));
+        Some(Claims { tolerance: Some(tolerance), ..Claims::new(None, Kept::NOTHING, cost, SOURCE) })
     }
     fn needs_series(&self) -> bool {
         true
