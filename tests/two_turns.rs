@@ -155,3 +155,22 @@ fn the_oscillation_of_the_energy_is_what_no_constant_explains_of_the_modified_en
         assert_eq!(AxisOrder::best(Vec3(moments)).energy_oscillation(Vec3(moments)), smallest);
     }
 }
+
+#[test]
+fn turns_of_any_angle_are_those_of_double_double() {
+    // from angles for which short polynomials serve to half a radian
+    let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap());
+    let start = State { attitude: Quat::identity(), momentum_body: Vec3([0.4, 2.0, -0.9]) };
+    let start = body.enter(&start).unwrap();
+    for name in ["two-turn", "lie-poisson", "two-turn@suzuki-4", "lie-poisson@suzuki-4"] {
+        for h in [0.001, 0.02, 0.05, 0.1, 0.4] {
+            let (method, clock) = (method(name).unwrap(), Clock::new(h));
+            let (mut rounded, mut exact) = (start.to_f64(), start);
+            method.prepare_f64(clock, &body).unwrap().steps(&mut rounded, 20);
+            method.prepare_dd(clock, &body).unwrap().steps(&mut exact, 20);
+            let off = rotation_angle(rounded.to_dd().attitude, exact.attitude).hi()
+                + (rounded.to_dd().momentum_body - exact.momentum_body).magnitude();
+            assert!(off < 1e-14, "{name} {h}: {off:e}");
+        }
+    }
+}
