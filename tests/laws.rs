@@ -968,7 +968,7 @@ fn a_run_is_taken_up_only_by_its_method_and_body() {
     assert!(resumed("rk4", &with(0.2)).unwrap_err().contains("is of a body with"));
     assert!(resumed("rk4", &body()).is_err());
     for (broken, line) in [
-        (text.replace("checkpoint 2", "checkpoint 1"), 1),
+        (text.replace("checkpoint 3", "checkpoint 1"), 1),
         (text.lines().take(4).collect::<Vec<_>>().join("\n"), 5),
         (text.replace("residual", "rest"), text.lines().count()),
         (format!("{text}more\n"), text.lines().count() + 1),

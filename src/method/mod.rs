@@ -35,7 +35,7 @@ pub use exact_flow::ExactFlow;
 pub use exact_step::ExactStep;
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use kicks::Kicks;
-pub use map::{Map, Method, Step};
+pub use map::{Map, Method, Step, Stuck, Work};
 pub use preprocessed_dmv::{DmvOrderError, PreprocessedDmv};
 pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
 pub use splitting::{FreePart, SchemeError, Splitting};

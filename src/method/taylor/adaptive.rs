@@ -117,6 +117,11 @@ struct Current {
 }
 
 impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
+    /// The point is of the time `base` now.
+    fn restart(&mut self, base: Dd) {
+        (self.base, self.current) = (base, None);
+    }
+
     /// The series about the point `x` at the time of the base.
     fn expanded(&mut self, at: Time, x: &Point<S>) -> Current {
         if let Some(current) = self.current {
@@ -141,7 +146,7 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
     }
 
     fn open(&mut self, at: Time, _: &mut Point<S>) {
-        self.remember(Some(at.elapsed()));
+        self.restart(at.elapsed());
     }
 
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
@@ -159,7 +164,7 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
             }
             add_change(&self.series, S::of(reach), x);
             x.renormalize();
-            self.remember(Some(next));
+            self.restart(next);
         }
     }
 
@@ -171,11 +176,13 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
         }
     }
 
-    fn memory(&self) -> Option<Dd> {
-        Some(self.base)
+    fn memory(&self) -> Vec<f64> {
+        vec![self.base.hi(), self.base.lo()]
     }
 
-    fn remember(&mut self, memory: Option<Dd>) {
-        (self.base, self.current) = (memory.unwrap_or(Dd::ZERO), None);
+    fn remember(&mut self, memory: &[f64]) {
+        if let &[high, low] = memory {
+            self.restart(Dd::sum(high, low));
+        }
     }
 }
