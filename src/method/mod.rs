@@ -8,6 +8,7 @@ mod claims;
 mod composed;
 mod dmv;
 mod dmv_series;
+mod embedded;
 mod exact_flow;
 mod exact_step;
 mod implicit_midpoint;
@@ -31,6 +32,10 @@ pub use catalogue::{AnyMethod, StepError, UnknownMethod, catalogue, method};
 pub use claims::{Claimed, Claims, Cost, Energy, Kept};
 pub use composed::{Composed, Symmetric};
 pub use dmv::Dmv;
+pub use embedded::{
+    Control, Dop853, DormandPrince853, Embedded, EmbeddedMap, Pair, Rk8, Rk8Map, Stage, Terms,
+    ToleranceError, Tsit5, Tsitouras54,
+};
 pub use exact_flow::ExactFlow;
 pub use exact_step::ExactStep;
 pub use implicit_midpoint::ImplicitMidpoint;
