@@ -143,10 +143,15 @@ fn a_run_is_taken_up_within_and_between_its_steps() {
             assert_eq!(resumed.sample().point, straight.sample().point);
             let (a, b) = (straight.advance_to(2 * taken).unwrap(), resumed.advance_to(2 * taken).unwrap());
             assert_eq!((a.point, a.worst), (b.point, b.worst));
-            for broken in [text.replace("base ", "base x"), text.replace("base ", "basis ")] {
+            for broken in [text.replace("memory ", "memory x"), text.replace("memory ", "memories ")] {
                 let error = broken.parse::<polhode::run::Checkpoint>().unwrap_err().to_string();
-                assert!(error.ends_with("it must hold two numbers, or - where there are none"), "{error}");
+                assert!(error.ends_with("it must hold numbers, or - where there are none"), "{error}");
             }
+            let line = text.lines().find(|line| line.starts_with("memory ")).unwrap();
+            let short: polhode::run::Checkpoint = text.replace(line, "memory 0.0").parse().unwrap();
+            let error = Run::resume(&method("taylor").unwrap(), &case.0, &short).err().unwrap().to_string();
+            let expected = "the checkpoint holds 1 numbers that the method remembers, and the method needs 2";
+            assert_eq!(error, expected);
         }
     }
 }

@@ -5,9 +5,9 @@ use thiserror::Error;
 use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
-    AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, ExactFlow, ExactStep, ExplicitEuler,
-    FreePart, ImplicitMidpoint, Kicks, Method, PreprocessedDmv, Rk4, SchemeError, SemiImplicitEuler,
-    Splitting, Step, Taylor, TwoAxes, TwoTurn,
+    AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, DormandPrince853, Embedded, ExactFlow,
+    ExactStep, ExplicitEuler, FreePart, ImplicitMidpoint, Kicks, Method, Pair, PreprocessedDmv, Rk4, Rk8,
+    SchemeError, SemiImplicitEuler, Splitting, Step, Taylor, Tsitouras54, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -253,8 +253,22 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
                 }
             }
         }
+        "dop853" => embedded::<DormandPrince853>(&asked),
+        "tsit5" => embedded::<Tsitouras54>(&asked),
+        "rk8" => plain(Rk8, asked.scheme_alone()?),
         _ => Err(UnknownMethod::Name { name: name.into() }),
     }
+}
+
+fn embedded<P: Pair>(asked: &Asked<'_>) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
+    let chosen = asked.scheme()?;
+    let Some(text) = asked.argument else {
+        return plain(Embedded::<P>::default(), chosen);
+    };
+    let refused =
+        || asked.refused("a tolerance from 1e-15, some roundings of a double, to 1e-3, such as dop853:1e-12");
+    let tolerance = text.parse().map_err(|_| refused())?;
+    plain(Embedded::<P>::of_tolerance(tolerance).map_err(|_| refused())?, chosen)
 }
 
 const TAYLOR_RULE: &str = "an order from 8 to 40, such as taylor:20, or a tolerance from 1.2e-16, as the rounding of a double is \

@@ -113,18 +113,52 @@ pub trait Map<S: Real>: Send + 'static {
     fn synchronize(&self, _elapsed: Dd, _x: &mut Point<S>) {}
 
     /// What [`advance`](Self::advance) needs to know besides the point, for a map whose form is not of the time of its step:
-    /// the time that it is of, s since the start.
-    fn memory(&self) -> Option<Dd> {
-        None
+    /// as many numbers at any time, finite, the time that it is of among them. Empty for all others.
+    fn memory(&self) -> Vec<f64> {
+        Vec::new()
     }
 
     /// Takes the map back, or on, to where its [`memory`](Self::memory) was `memory`; the point has to be the one of then.
-    fn remember(&mut self, _memory: Option<Dd>) {}
+    fn remember(&mut self, _memory: &[f64]) {}
 
     /// The worst relative residual at which an implicit solve ended; 0 for explicit maps.
     fn worst_residual(&self) -> f64 {
         0.0
     }
+
+    /// What the steps that a map chooses have cost since it was made; `None` where steps are as given.
+    fn work(&self) -> Option<Work> {
+        None
+    }
+
+    /// Why a map that chooses its steps cannot go on: the state that it leaves then is not finite.
+    fn stuck(&self) -> Option<Stuck> {
+        None
+    }
+}
+
+/// What the steps that a map chooses have cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Work {
+    /// Evaluations of the right-hand side.
+    pub evaluations: u64,
+    /// Steps that were accepted.
+    pub accepted: u64,
+    /// Steps that were tried and rejected.
+    pub rejected: u64,
+}
+
+/// Where no step that a map can choose has an error within its tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Stuck {
+    /// When, s.
+    pub time: f64,
+    /// The last step tried, s.
+    pub step: f64,
+    /// The error estimate of the last step tried, in units of the tolerance; `None` where it is not finite.
+    pub estimate: Option<f64>,
 }
 
 /// Whole steps, counted and timed: what the dynamic outside sees of a [`Map`], with one virtual call for many steps.
@@ -146,13 +180,19 @@ pub trait Step<S: Real>: Send {
     fn fill(&mut self, x: &mut Point<S>, block: &mut [Point<S>]);
 
     /// As [`Map::memory`]: to come back to a point, its memory has to be kept beside it.
-    fn memory(&self) -> Option<Dd>;
+    fn memory(&self) -> Vec<f64>;
 
     /// As [`Map::remember`].
-    fn remember(&mut self, memory: Option<Dd>);
+    fn remember(&mut self, memory: &[f64]);
 
     /// As [`Map::worst_residual`].
     fn worst_residual(&self) -> f64;
+
+    /// As [`Map::work`].
+    fn work(&self) -> Option<Work>;
+
+    /// As [`Map::stuck`].
+    fn stuck(&self) -> Option<Stuck>;
 
     /// Takes `n` steps, from a state to a state.
     fn steps(&mut self, x: &mut Point<S>, n: u64) {
@@ -206,15 +246,23 @@ impl<S: Real, M: Map<S>> Step<S> for Stepper<M> {
         }
     }
 
-    fn memory(&self) -> Option<Dd> {
+    fn memory(&self) -> Vec<f64> {
         self.map.memory()
     }
 
-    fn remember(&mut self, memory: Option<Dd>) {
+    fn remember(&mut self, memory: &[f64]) {
         self.map.remember(memory);
     }
 
     fn worst_residual(&self) -> f64 {
         self.map.worst_residual()
+    }
+
+    fn work(&self) -> Option<Work> {
+        self.map.work()
+    }
+
+    fn stuck(&self) -> Option<Stuck> {
+        self.map.stuck()
     }
 }

@@ -8,6 +8,7 @@ mod claims;
 mod composed;
 mod dmv;
 mod dmv_series;
+mod embedded;
 mod exact_flow;
 mod exact_step;
 mod implicit_midpoint;
@@ -31,11 +32,15 @@ pub use catalogue::{AnyMethod, StepError, UnknownMethod, catalogue, method};
 pub use claims::{Claimed, Claims, Cost, Energy, Kept};
 pub use composed::{Composed, Symmetric};
 pub use dmv::Dmv;
+pub use embedded::{
+    Control, Dop853, DormandPrince853, Embedded, EmbeddedMap, Pair, Rk8, Rk8Map, Stage, Terms,
+    ToleranceError, Tsit5, Tsitouras54,
+};
 pub use exact_flow::ExactFlow;
 pub use exact_step::ExactStep;
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use kicks::Kicks;
-pub use map::{Map, Method, Step};
+pub use map::{Map, Method, Step, Stuck, Work};
 pub use preprocessed_dmv::{DmvOrderError, PreprocessedDmv};
 pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
 pub use splitting::{FreePart, SchemeError, Splitting};

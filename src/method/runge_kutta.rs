@@ -14,19 +14,19 @@ fn claims(order: u32, norm: bool, right_sides: u32, source: &'static str) -> Opt
 
 /// The right-hand side.
 #[derive(Clone, Copy, Debug)]
-struct Equations<S, F> {
+pub(super) struct Equations<S, F> {
     inverse_moments: Vec3<S>,
     field: F,
 }
 
 impl<S: Real, F: Field<S>> Equations<S, F> {
-    fn new(rotor: &Rotor, field: &F) -> Self {
+    pub(super) fn new(rotor: &Rotor, field: &F) -> Self {
         Equations { inverse_moments: rotor.inverse_moments(), field: field.clone() }
     }
 
     /// q' and m'.
     #[inline]
-    fn rate(&self, at: Time, x: &Phase<S>) -> Phase<S> {
+    pub(super) fn rate(&self, at: Time, x: &Phase<S>) -> Phase<S> {
         let omega = x.momentum_body.times(self.inverse_moments);
         Phase { attitude: x.attitude.rate(omega), momentum_body: self.momentum_rate(at, x, omega) }
     }

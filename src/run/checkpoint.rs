@@ -24,8 +24,8 @@ pub struct Checkpoint {
     pub(super) watch: Watch,
     pub(super) start: Point<f64>,
     pub(super) point: Point<f64>,
-    /// The time that the point is of, where that is not the time of its step.
-    pub(super) base: Option<Dd>,
+    /// What the method remembers besides the point.
+    pub(super) method_memory: Vec<f64>,
     pub(super) memory: Memory,
     pub(super) residual: f64,
     /// Whether steps have been taken that were not watched.
@@ -62,10 +62,18 @@ pub enum CheckpointError {
         /// The same of the body given.
         given: String,
     },
+    /// The method remembers another count of numbers.
+    #[error("the checkpoint holds {stored} numbers that the method remembers, and the method needs {needed}")]
+    Memory {
+        /// How many the method needs.
+        needed: usize,
+        /// How many there are.
+        stored: usize,
+    },
 }
 
 /// First line of the text; the number is that of the format.
-const HEAD: &str = "polhode checkpoint 2";
+const HEAD: &str = "polhode checkpoint 3";
 
 /// What a body is identified by: moments, scale and principal axes, weight moment, the names of its forces, and energy and
 /// torque at the start, which tell forces of one name from each other.
@@ -125,9 +133,9 @@ impl fmt::Display for Checkpoint {
         writeln!(f, "start {}", list(&self.start.parts()))?;
         writeln!(f, "steps {}", self.point.steps())?;
         writeln!(f, "point {}", list(&self.point.parts()))?;
-        match self.base {
-            None => writeln!(f, "base -")?,
-            Some(base) => writeln!(f, "base {}", list(&[base.hi(), base.lo()]))?,
+        match self.method_memory.as_slice() {
+            [] => writeln!(f, "memory -")?,
+            memory => writeln!(f, "memory {}", list(memory))?,
         }
         writeln!(f, "worst {worst}")?;
         writeln!(f, "flips {} {sign}", self.memory.flips)?;
@@ -174,12 +182,8 @@ fn doubles<const N: usize>(text: &str) -> Option<[f64; N]> {
     text.split(' ').map(finite).collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
-fn base(text: &str) -> Option<Option<Dd>> {
-    if text == "-" {
-        return Some(None);
-    }
-    let [high, low] = doubles(text)?;
-    Some(Some(Dd::sum(high, low)))
+fn memory(text: &str) -> Option<Vec<f64>> {
+    if text == "-" { Some(Vec::new()) } else { text.split(' ').map(finite).collect() }
 }
 
 fn watched(text: &str) -> Option<(Watch, bool)> {
@@ -216,7 +220,7 @@ impl FromStr for Checkpoint {
         let mut lines = Lines { lines: text.lines().peekable(), taken: 1 };
         let head = lines.lines.next().unwrap_or("");
         if head != HEAD {
-            return Err(lines.refused(head, "it must be 'polhode checkpoint 2'"));
+            return Err(lines.refused(head, "it must be 'polhode checkpoint 3'"));
         }
         let quoted = |text: &str| Some(text.strip_prefix('"')?.strip_suffix('"')?.to_owned());
         let method = lines.parsed("method", "it must name the method in quotes", quoted)?;
@@ -233,7 +237,8 @@ impl FromStr for Checkpoint {
         let first = lines.parsed("start", "it must hold 14 numbers", doubles)?;
         let steps = lines.parsed("steps", "it must hold the number of steps", |text| text.parse().ok())?;
         let point = lines.parsed("point", "it must hold 14 numbers", doubles)?;
-        let base = lines.parsed("base", "it must hold two numbers, or - where there are none", base)?;
+        let method_memory =
+            lines.parsed("memory", "it must hold numbers, or - where there are none", memory)?;
         let worst = lines.parsed("worst", "it must hold 5 errors, - where there is none", errors)?;
         let (flips, positive) = lines.parsed("flips", "it must hold a count and a sign", flips)?;
         let residual = lines.parsed("residual", "it must hold a number", |text| text.parse().ok())?;
@@ -248,7 +253,7 @@ impl FromStr for Checkpoint {
             watch,
             start: Point::from_parts(first, 0),
             point: Point::from_parts(point, steps),
-            base,
+            method_memory,
             memory: Memory { worst: Errors::from_parts(worst), flips, positive },
             residual,
             missed,

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::{CheckpointError, Sample};
 use crate::body::StateError;
-use crate::method::StepError;
+use crate::method::{StepError, Stuck};
 use crate::num::{Precise, Shown};
 
 /// An implicit solve that ends further than this from its equation, relative, is no solution: the invariants would be
@@ -61,6 +61,19 @@ pub enum RunError {
         /// The last finite sample.
         last: Box<Sample>,
     },
+    /// No step that the method can choose has an error within its tolerance.
+    #[error(
+        "after {} steps, t = {} s, the method finds no step: at t = {} s one of {:.1e} s {}; the state at t = {} s is q = {:?}, \
+         omega_body = {:?} rad/s",
+        .last.steps, Shown(.last.time.to_f64()), Shown(.stuck.time), .stuck.step, left(.stuck),
+        Shown(.last.time.to_f64()), .last.state.attitude.components(), .last.omega_body.as_slice()
+    )]
+    Stuck {
+        /// The last sample before.
+        last: Box<Sample>,
+        /// The last step tried.
+        stuck: Stuck,
+    },
     /// The equations of an implicit step could not be solved.
     #[error(
         "after {} steps, t = {} s, an implicit step was left with a relative residual of {residual:.1e} (at most {SOLVED:e}): \
@@ -73,4 +86,11 @@ pub enum RunError {
         /// The worst relative residual.
         residual: f64,
     },
+}
+
+fn left(stuck: &Stuck) -> String {
+    match stuck.estimate {
+        Some(estimate) => format!("still has an error of {estimate:.1e} times the tolerance"),
+        None => "still leads to a state that is not finite".into(),
+    }
 }

@@ -3,9 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use super::error::SOLVED;
-use super::{Checkpoint, RunError, Sample, Schedule, Watch, checkpoint};
+use super::{Checkpoint, CheckpointError, RunError, Sample, Schedule, Watch, checkpoint};
 use crate::body::{Body, Clock, Point, State, StateError, Witness};
-use crate::method::{AnyMethod, Step};
+use crate::method::{AnyMethod, Step, Work};
 use crate::observe::{BLOCK, Errors, Invariants, Monitor};
 
 /// Steps between checks of the residual of implicit methods.
@@ -148,7 +148,7 @@ impl Run {
             watch: self.watch,
             start: self.start,
             point: self.point,
-            base: self.step.memory(),
+            method_memory: self.step.memory(),
             memory: self.monitor.memory(),
             residual: self.worst_residual(),
             missed: self.missed,
@@ -158,13 +158,17 @@ impl Run {
     /// Resumes the run of `checkpoint`: it continues as if it had not been interrupted, bit for bit.
     ///
     /// # Errors
-    /// A method or a body that is not that of the run.
+    /// A method or a body that is not that of the run, or a checkpoint that lacks what the method remembers.
     pub fn resume(method: &dyn AnyMethod, body: &Body, checkpoint: &Checkpoint) -> Result<Self, RunError> {
         checkpoint.check(&method.name(), body)?;
         let mut run = Run::from_point(method, body, checkpoint.start, checkpoint.clock)?;
         run.watch = checkpoint.watch;
         run.point = checkpoint.point;
-        run.step.remember(checkpoint.base);
+        let (needed, stored) = (run.step.memory().len(), checkpoint.method_memory.len());
+        if needed != stored {
+            return Err(CheckpointError::Memory { needed, stored }.into());
+        }
+        run.step.remember(&checkpoint.method_memory);
         run.read();
         run.monitor.remember(checkpoint.memory);
         run.residual = checkpoint.residual;
@@ -180,7 +184,7 @@ impl Run {
     /// Advances to `steps` steps from the start and samples the run there.
     ///
     /// # Errors
-    /// [`RunError::Diverged`] and [`RunError::Force`] with the last finite sample; [`RunError::Unsolved`] with the sample at
+    /// [`RunError::Diverged`], [`RunError::Force`] and [`RunError::Stuck`] with the last finite sample; [`RunError::Unsolved`] with the sample at
     /// which it was noticed, up to 4096 steps after the step that failed; [`RunError::OutOfRange`];
     /// [`RunError::Behind`] where the run is further on already.
     pub fn advance_to(&mut self, steps: u64) -> Result<Sample, RunError> {
@@ -240,7 +244,7 @@ impl Run {
             let finite = self.monitor.observe(block);
             if finite < block.len() {
                 self.point = before;
-                self.step.remember(memory);
+                self.step.remember(&memory);
                 self.step.advance(&mut self.point, finite as u64);
                 return false;
             }
@@ -258,12 +262,12 @@ impl Run {
             return true;
         }
         self.point = before;
-        self.step.remember(memory);
+        self.step.remember(&memory);
         for _ in 0..wanted {
             let mut next = self.point;
             self.step.advance(&mut next, 1);
             if !next.is_finite() {
-                self.step.remember(memory);
+                self.step.remember(&memory);
                 break;
             }
             (self.point, memory) = (next, self.step.memory());
@@ -279,7 +283,7 @@ impl Run {
         };
         if let Some((step, witness)) = &mut self.probe {
             let mut next = self.point;
-            step.remember(self.step.memory());
+            step.remember(&self.step.memory());
             step.advance(&mut next, 1);
             let next = step.reading(&next);
             if let Some(failure) = witness.get() {
@@ -290,7 +294,21 @@ impl Run {
                 return RunError::Force { force: force.into(), time: at.seconds(), last };
             }
         }
-        RunError::Diverged { last }
+        let (mut next, memory) = (self.point, self.step.memory());
+        self.step.advance(&mut next, 1);
+        let stuck = self.step.stuck();
+        self.step.remember(&memory);
+        match stuck {
+            Some(stuck) => RunError::Stuck { last, stuck },
+            None => RunError::Diverged { last },
+        }
+    }
+
+    /// What the steps that the method chooses have cost since the run was made, or taken up; `None` where steps are as given,
+    /// each with the cost that is [claimed](crate::method::Claims::cost).
+    #[must_use]
+    pub fn work(&self) -> Option<Work> {
+        self.step.work()
     }
 
     fn worst_residual(&self) -> f64 {

@@ -110,6 +110,11 @@ struct Current {
 }
 
 impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
+    /// The point is of the time `base` now.
+    fn restart(&mut self, base: Dd) {
+        (self.base, self.current) = (base, None);
+    }
+
     /// The series about the point `x` at the time of the base.
     fn expanded(&mut self, at: Time, x: &Point<S>) -> Current {
         if let Some(current) = self.current {
@@ -134,7 +139,7 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
     }
 
     fn open(&mut self, at: Time, _: &mut Point<S>) {
-        self.remember(Some(at.elapsed()));
+        self.restart(at.elapsed());
     }
 
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
@@ -152,7 +157,7 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
             }
             add_change(&self.series, S::of(reach), x);
             x.renormalize();
-            self.remember(Some(next));
+            self.restart(next);
         }
     }
 
@@ -164,11 +169,13 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
         }
     }
 
-    fn memory(&self) -> Option<Dd> {
-        Some(self.base)
+    fn memory(&self) -> Vec<f64> {
+        vec![self.base.hi(), self.base.lo()]
     }
 
-    fn remember(&mut self, memory: Option<Dd>) {
-        (self.base, self.current) = (memory.unwrap_or(Dd::ZERO), None);
+    fn remember(&mut self, memory: &[f64]) {
+        if let &[high, low] = memory {
+            self.restart(Dd::sum(high, low));
+        }
     }
 }
