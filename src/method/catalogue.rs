@@ -173,10 +173,14 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
     ]
 }
 
+/// Bases that choose their steps by a tolerance, which is their argument, as in `dop853:1e-12`.
+pub const ADAPTIVE: [&str; 3] = ["taylor", "dop853", "tsit5"];
+
 /// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in `lie-poisson:321@kahan-li-8`.
 ///
 /// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
-/// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance;
+/// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance, `dop853`
+/// and `tsit5` a tolerance;
 /// `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and `kick-drift@suzuki-4`, `no-squish` one of
 /// `lie-poisson:321`: that is the method of Miller et al., J. Chem. Phys. 116 (2002) 8649, which molecular dynamics programs
 /// write in quaternions and their momenta.
