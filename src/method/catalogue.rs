@@ -5,9 +5,9 @@ use thiserror::Error;
 use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
-    AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, DormandPrince853, Embedded, ExactFlow,
-    ExactStep, ExplicitEuler, FreePart, ImplicitMidpoint, Kicks, Method, Pair, PreprocessedDmv, Rk4, Rk8,
-    SchemeError, SemiImplicitEuler, Splitting, Step, Taylor, Tsitouras54, TwoAxes, TwoTurn,
+    AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, Dop853, DormandPrince853, Embedded,
+    ExactFlow, ExactStep, ExplicitEuler, FreePart, ImplicitMidpoint, Kicks, Method, Pair, PreprocessedDmv,
+    Rk4, Rk8, SchemeError, SemiImplicitEuler, Splitting, Step, Taylor, Tsit5, Tsitouras54, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -161,6 +161,9 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(SemiImplicitEuler),
         Box::new(Rk4 { normalized: false }),
         Box::new(Rk4 { normalized: true }),
+        Box::new(Rk8),
+        Box::new(Tsit5::default()),
+        Box::new(Dop853::default()),
         Box::new(ImplicitMidpoint),
         Box::new(Splitting::strang(Dmv, Kicks)),
         Box::new(Splitting::strang(PreprocessedDmv::ORDER_10, Kicks)),
