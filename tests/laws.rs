@@ -198,9 +198,7 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         "kick-drift@processed-6-4",
         "kick-drift@chin-4a",
         "dmv:4@omelyan-mryglod-folk-4",
-        "rk8",
-        "dop853",
-        "tsit5",
+        "dop853:1e-7",
     ] {
         methods.push(method(name).unwrap());
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use polhode::body::{Body, Clock, Conserved, Point, Problem, Time};
 use polhode::flow::ExactMotion;
-use polhode::method::{AnyMethod, Claimed, StepError, UnknownMethod, catalogue, method};
+use polhode::method::{ADAPTIVE, AnyMethod, Claimed, StepError, UnknownMethod, catalogue, method};
 use polhode::num::{Dd, Precise};
 use polhode::observe::{Errors, Monitor};
 use polhode::rotation::rotation_angle;
@@ -26,7 +26,9 @@ const EXAMPLES: &str = "Examples:
   polhode propagate --body t-handle --omega 20,0.02,0.01 --until 60 --every 0.1
   polhode propagate --body gyroscope --omega 0,0,400 --until 1 --every 0.1
   polhode propagate --body phone --omega 0,10,1 --until 5 --every 1 \\
-    --drag 1e-5 --method rk4 --step 0.01";
+    --drag 1e-5 --method rk4 --step 0.01
+  polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 100 --every 10 \\
+    --method dop853 --tolerance 1e-12";
 
 /// Rotation of one body: attitude, angular velocity and errors at given times
 #[derive(Args, Clone, Debug)]
@@ -54,9 +56,12 @@ pub(crate) struct Propagate {
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
     #[arg(long, value_name = "NAME", default_value = "exact")]
     method: String,
-    /// Step, s; every method but exact needs one
+    /// Step, s; every method but exact needs one; of methods that choose their steps the interval of output, by default DT
     #[arg(long, value_name = "h", value_parser = positive, allow_hyphen_values = true)]
     step: Option<f64>,
+    /// Tolerance of methods that choose their steps (taylor, dop853, tsit5), relative to the state
+    #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
     /// How rows are printed: table on a terminal, csv otherwise
     #[arg(long, value_enum)]
     format: Option<Format>,
@@ -111,6 +116,9 @@ impl Propagate {
                 "--step: --method exact takes no step; leave it out, or name a stepping method".into(),
             ));
         }
+        if let Some(tolerance) = self.tolerance {
+            return Err(self.without_tolerance(tolerance));
+        }
         let motion = ExactMotion::from_point(body, start).map_err(|error| {
             let method = if body.problem() == Problem::Torque { "rk4" } else { "kick-drift@srkn-6b" };
             Error::Input(format!("--method exact: {error}; use --method {method} with a --step"))
@@ -140,7 +148,8 @@ impl Propagate {
 
     fn stepped(&self, body: &Body, start: Point<Dd>, times: &[f64], rows: &mut Rows) -> Result<(), Error> {
         let method = self.stepping_method()?;
-        let Some(h) = self.step else {
+        let regular = if self.is_adaptive() { self.every.filter(|every| *every > 0.0) } else { None };
+        let Some(h) = self.step.or(regular) else {
             return Err(Error::Input(format!(
                 "--step: missing; --method {} needs a step in seconds",
                 self.method
@@ -153,7 +162,7 @@ impl Propagate {
             error => Error::Input(format!("--step: {error}")),
         })?;
         let speed = body.omega_of(&start).norm();
-        if h * speed > 1.0 {
+        if h * speed > 1.0 && !self.is_adaptive() {
             warn(&format!(
                 "--step: '{h:?}': turns the body by {:?} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
                 h * speed
@@ -167,6 +176,7 @@ impl Propagate {
                 Err(
                     error @ (RunError::Diverged { .. }
                     | RunError::Unsolved { .. }
+                    | RunError::Stuck { .. }
                     | RunError::Force { .. }
                     | RunError::OutOfRange { .. }),
                 ) => {
@@ -204,8 +214,47 @@ impl Propagate {
         )))
     }
 
+    /// Whether the method chooses its steps: an order, as of taylor:20, is of steps as given.
+    fn is_adaptive(&self) -> bool {
+        let (base, argument) = self.method.split_once(':').unwrap_or((&self.method, ""));
+        ADAPTIVE.contains(&base) && argument.parse::<u32>().is_err()
+    }
+
+    fn without_tolerance(&self, tolerance: f64) -> Error {
+        let rule = format!("--method {} does not choose its steps", self.method);
+        let remedy = format!("leave it out, or take one of {}", ADAPTIVE.join(", "));
+        Error::input("--tolerance", &format!("{tolerance:e}"), &rule, &remedy)
+    }
+
     fn stepping_method(&self) -> Result<Box<dyn AnyMethod>, Error> {
-        method(&self.method).map_err(|error| match error {
+        let found = match self.tolerance {
+            None => method(&self.method),
+            Some(tolerance) if ADAPTIVE.contains(&self.method.as_str()) => {
+                let named = method(&format!("{}:{tolerance:e}", self.method));
+                return named.map_err(|error| match error {
+                    UnknownMethod::Argument { rule, .. } => Error::input(
+                        "--tolerance",
+                        &format!("{tolerance:e}"),
+                        &format!("--method {} cannot take it", self.method),
+                        &format!("allowed: {rule}"),
+                    ),
+                    error => Error::Input(format!("--tolerance: {error}")),
+                });
+            }
+            Some(tolerance) => match method(&self.method) {
+                Ok(_) if self.is_adaptive() => {
+                    return Err(Error::input(
+                        "--tolerance",
+                        &format!("{tolerance:e}"),
+                        &format!("--method {} has a tolerance already", self.method),
+                        "give one of the two",
+                    ));
+                }
+                Ok(_) => return Err(self.without_tolerance(tolerance)),
+                error => error,
+            },
+        };
+        found.map_err(|error| match error {
             UnknownMethod::Name { name } => {
                 let mut known: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
                 known.insert(0, "exact".into());

@@ -5,9 +5,9 @@ use thiserror::Error;
 use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
-    AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, DormandPrince853, Embedded, ExactFlow,
-    ExactStep, ExplicitEuler, FreePart, ImplicitMidpoint, Kicks, Method, Pair, PreprocessedDmv, Rk4, Rk8,
-    SchemeError, SemiImplicitEuler, Splitting, Step, Taylor, Tsitouras54, TwoAxes, TwoTurn,
+    AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, Dop853, DormandPrince853, Embedded,
+    ExactFlow, ExactStep, ExplicitEuler, FreePart, ImplicitMidpoint, Kicks, Method, Pair, PreprocessedDmv,
+    Rk4, Rk8, SchemeError, SemiImplicitEuler, Splitting, Step, Taylor, Tsit5, Tsitouras54, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -161,6 +161,9 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(SemiImplicitEuler),
         Box::new(Rk4 { normalized: false }),
         Box::new(Rk4 { normalized: true }),
+        Box::new(Rk8),
+        Box::new(Tsit5::default()),
+        Box::new(Dop853::default()),
         Box::new(ImplicitMidpoint),
         Box::new(Splitting::strang(Dmv, Kicks)),
         Box::new(Splitting::strang(PreprocessedDmv::ORDER_10, Kicks)),
@@ -173,10 +176,14 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
     ]
 }
 
+/// Bases that choose their steps by a tolerance, which is their argument, as in `dop853:1e-12`.
+pub const ADAPTIVE: [&str; 3] = ["taylor", "dop853", "tsit5"];
+
 /// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in `lie-poisson:321@kahan-li-8`.
 ///
 /// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
-/// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance;
+/// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance, `dop853`
+/// and `tsit5` a tolerance;
 /// `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and `kick-drift@suzuki-4`, `no-squish` one of
 /// `lie-poisson:321`: that is the method of Miller et al., J. Chem. Phys. 116 (2002) 8649, which molecular dynamics programs
 /// write in quaternions and their momenta.

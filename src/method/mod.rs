@@ -28,7 +28,7 @@ mod two_turn;
 
 pub use axis_order::{AxisOrder, AxisOrderError};
 pub use axis_split::AxisSplit;
-pub use catalogue::{AnyMethod, StepError, UnknownMethod, catalogue, method};
+pub use catalogue::{ADAPTIVE, AnyMethod, StepError, UnknownMethod, catalogue, method};
 pub use claims::{Claimed, Claims, Cost, Energy, Kept};
 pub use composed::{Composed, Symmetric};
 pub use dmv::Dmv;

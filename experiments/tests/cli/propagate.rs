@@ -17,6 +17,7 @@ fn every_flag_is_in_the_help() {
         "--start-time",
         "--method",
         "--step",
+        "--tolerance",
         "--format",
         "--out",
     ] {
@@ -247,6 +248,49 @@ fn flags_that_exclude_or_need_each_other_say_so() {
     refused(DYADIC, &["--times: missing", "--until T --every DT"]);
     refused(&with("--times 1 --times 2"), &["--times", "multiple times"]);
     refused("experiment run", &["<NAMES>", "not provided"]);
+}
+
+#[test]
+fn a_tolerance_is_the_argument_of_methods_that_choose_their_steps() {
+    for name in ["dop853", "tsit5", "taylor"] {
+        let named = output(&with(&format!("--method {name}:1e-9 --step 5 --times 5,10")));
+        let given = output(&with(&format!("--method {name} --tolerance 1e-9 --step 5 --times 5,10")));
+        assert_eq!(named, given, "{name}");
+        // neither the interval of output nor its flag changes the steps
+        let regular = run(&with(&format!("--method {name} --tolerance 1e-9 --until 10 --every 2.5")));
+        assert_eq!((regular.code, regular.err.as_str()), (0, ""), "{name}");
+        let last = |text: &str| text.lines().last().unwrap().split(',').take(8).collect::<Vec<_>>().join(",");
+        assert_eq!(last(&regular.out), last(&given), "{name}");
+        let error = column(&given, "attitude_error")[1];
+        assert!(error > 1e-12 && error < 1e-6, "{name}: {error:e}");
+    }
+    golden("dop853.csv", &output(&with("--method dop853 --tolerance 1e-10 --until 20 --every 5")));
+    golden("tsit5.csv", &output(&with("--method tsit5 --until 20 --every 5")));
+    golden("rk8.csv", &output(&with("--method rk8 --step 0.125 --times 1,2")));
+}
+
+#[test]
+fn tolerances_that_do_not_fit_are_refused() {
+    let of = |method: &str, tolerance: &str| {
+        with(&format!("--method {method} --tolerance {tolerance} --step 1 --times 1"))
+    };
+    refused(&of("dop853", "0"), &["--tolerance", "0.0 is not positive"]);
+    refused(&of("dop853", "-1e-9"), &["--tolerance", "-1e-9 is not positive"]);
+    refused(&of("dop853", "nan"), &["--tolerance", "'nan' is not a finite number"]);
+    refused(&of("tsit5", "1e-16"), &["--tolerance: '1e-16'", "--method tsit5", "from 1e-15", "to 1e-3"]);
+    refused(&of("dop853", "0.01"), &["--tolerance: '1e-2'", "--method dop853", "from 1e-15", "to 1e-3"]);
+    refused(&of("taylor", "1e-17"), &["--tolerance: '1e-17'", "--method taylor", "from 1.2e-16", "to 1e-3"]);
+    refused(
+        &of("dop853:1e-9", "1e-8"),
+        &["--tolerance: '1e-8'", "has a tolerance already", "one of the two"],
+    );
+    for method in ["rk4", "rattle", "taylor:20", "rk8"] {
+        let says = ["--tolerance: '1e-8'", "does not choose its steps", "one of taylor, dop853, tsit5"];
+        refused(&of(method, "1e-8"), &says);
+    }
+    refused(&with("--tolerance 1e-8 --times 1"), &["--tolerance: '1e-8'", "--method exact", "leave it out"]);
+    refused(&of("rk5", "1e-8"), &["--method: 'rk5'", "no such method"]);
+    refused(&with("--method dop853 --times 1"), &["--step: missing"]);
 }
 
 #[test]
