@@ -198,6 +198,10 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         "kick-drift@processed-6-4",
         "kick-drift@chin-4a",
         "dmv:4@omelyan-mryglod-folk-4",
+        "gauss:2",
+        "gauss:4",
+        "gauss:6",
+        "gauss:8",
     ] {
         methods.push(method(name).unwrap());
     }
@@ -624,8 +628,10 @@ fn poisson_defect(method: &dyn AnyMethod, h: f64) -> f64 {
 #[test]
 fn a_poisson_map_keeps_the_bracket_and_the_others_do_not() {
     for method in methods() {
-        let defect = poisson_defect(&method, telling_step(&free_claims(&method), 0.25));
-        if free_claims(&method).poisson {
+        let claims = free_claims(&method);
+        // what a method of order 8 loses shows in a larger step
+        let defect = poisson_defect(&method, telling_step(&claims, if claims.poisson { 0.25 } else { 0.5 }));
+        if claims.poisson {
             assert!(defect < 1e-20, "{} claims to be Poisson with a defect of {defect:.1e}", method.name());
         } else {
             assert!(

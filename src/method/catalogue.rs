@@ -6,7 +6,7 @@ use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
     AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, ExactFlow, ExactStep, ExplicitEuler,
-    FreePart, ImplicitMidpoint, Kicks, Method, PreprocessedDmv, Rk4, SchemeError, SemiImplicitEuler,
+    FreePart, Gauss, ImplicitMidpoint, Kicks, Method, PreprocessedDmv, Rk4, SchemeError, SemiImplicitEuler,
     Splitting, Step, Taylor, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
@@ -237,6 +237,13 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
             (Some(_), None) => Err(asked.refused("2 or 4, its order")),
             (Some(_), Some(_)) => Err(asked.refused("none beside a scheme")),
         },
+        "gauss" => {
+            let order = argument.and_then(|order| order.parse().ok());
+            match (order.and_then(|order| Gauss::of_order(order).ok()), asked.scheme()?) {
+                (Some(gauss), None) => Ok(Box::new(gauss)),
+                _ => Err(asked.refused("an order 2, 4, 6 or 8, such as gauss:6, and no scheme")),
+            }
+        }
         "taylor" => {
             let chosen = asked.scheme()?;
             match argument {
