@@ -5,9 +5,9 @@ use thiserror::Error;
 use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
-    AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, ExactFlow, ExactStep, ExplicitEuler,
-    FreePart, Gauss, ImplicitMidpoint, Kicks, Method, PreprocessedDmv, Rk4, SchemeError, SemiImplicitEuler,
-    Splitting, Step, Taylor, TwoAxes, TwoTurn,
+    AdaptiveTaylor, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, ExactFlow, ExactStep, ExplicitEuler,
+    FreePart, Gauss, ImplicitMidpoint, Kicks, LieGroup, Method, MomentumEuler, MujocoRk4, PreprocessedDmv,
+    Richardson, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step, Taylor, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -244,6 +244,13 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
                 _ => Err(asked.refused("an order 2, 4, 6 or 8, such as gauss:6, and no scheme")),
             }
         }
+        "rkmk4" => plain(LieGroup::RKMK_4, asked.scheme_alone()?),
+        "commutator-free-4" => plain(LieGroup::COMMUTATOR_FREE_4, asked.scheme_alone()?),
+        "crouch-grossman-3" => plain(LieGroup::CROUCH_GROSSMAN_3, asked.scheme_alone()?),
+        "momentum-euler" => plain(MomentumEuler, asked.scheme_alone()?),
+        "buss-2" => plain(Buss, asked.scheme_alone()?),
+        "mujoco-rk4" => plain(MujocoRk4, asked.scheme_alone()?),
+        "richardson" => plain(Richardson, asked.scheme_alone()?),
         "taylor" => {
             let chosen = asked.scheme()?;
             match argument {
