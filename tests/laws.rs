@@ -209,6 +209,8 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         "buss-2",
         "mujoco-rk4",
         "richardson",
+        "lie-newmark",
+        "rk4-projected",
     ] {
         methods.push(method(name).unwrap());
     }

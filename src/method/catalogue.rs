@@ -6,8 +6,9 @@ use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
     AdaptiveTaylor, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, ExactFlow, ExactStep, ExplicitEuler,
-    FreePart, Gauss, ImplicitMidpoint, Kicks, LieGroup, Method, MomentumEuler, MujocoRk4, PreprocessedDmv,
-    Richardson, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step, Taylor, TwoAxes, TwoTurn,
+    FreePart, Gauss, ImplicitMidpoint, Kicks, LieGroup, LieNewmark, Method, MomentumEuler, MujocoRk4,
+    PreprocessedDmv, ProjectedRk4, Richardson, Rk4, SchemeError, SemiImplicitEuler, Splitting, Step, Taylor,
+    TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -250,6 +251,8 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         "momentum-euler" => plain(MomentumEuler, asked.scheme_alone()?),
         "buss-2" => plain(Buss, asked.scheme_alone()?),
         "mujoco-rk4" => plain(MujocoRk4, asked.scheme_alone()?),
+        "lie-newmark" => plain(LieNewmark, asked.scheme_alone()?),
+        "rk4-projected" => plain(ProjectedRk4, asked.scheme_alone()?),
         "richardson" => plain(Richardson, asked.scheme_alone()?),
         "taylor" => {
             let chosen = asked.scheme()?;

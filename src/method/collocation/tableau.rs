@@ -46,8 +46,8 @@ impl Tableau {
             let weight = integral(&lagrange, Dd::ONE) * 0.5;
             tableau.nodes[j] = (roots[j] + 1.0) * 0.5;
             tableau.weights[j] = weight;
-            for i in 0..stages {
-                tableau.mu[i][j] = integral(&lagrange, roots[i]) * 0.5 / weight;
+            for (row, root) in tableau.mu.iter_mut().zip(&roots) {
+                row[j] = integral(&lagrange, *root) * 0.5 / weight;
             }
         }
         tableau
