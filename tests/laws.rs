@@ -18,9 +18,9 @@ use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::method::schemes::{self, Pairs, Scheme, Stages};
 use polhode::method::{
-    AnyMethod, AxisOrder, AxisSplit, Claimed, Claims, Composed, Cost, Dmv, Energy, ExactFlow, ExactStep,
-    ExplicitEuler, ImplicitMidpoint, Kicks, Map, Method, Rk4, Rk8, SemiImplicitEuler, Splitting, StepError,
-    TwoTurn, catalogue, method,
+    AnyMethod, AxisOrder, AxisSplit, Buss, Claimed, Claims, Composed, Cost, Dmv, Energy, ExactFlow,
+    ExactStep, ExplicitEuler, ImplicitMidpoint, Kicks, LieGroup, Map, Method, MomentumEuler, MujocoRk4, Rk4,
+    Rk8, SemiImplicitEuler, Splitting, StepError, TwoTurn, catalogue, method,
 };
 use polhode::num::{Dd, Precise, Real};
 use polhode::observe::{Drift, Invariants, secular_drift};
@@ -199,6 +199,19 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         "kick-drift@chin-4a",
         "dmv:4@omelyan-mryglod-folk-4",
         "dop853:1e-7",
+        "gauss:2",
+        "gauss:4",
+        "gauss:6",
+        "gauss:8",
+        "rkmk4",
+        "commutator-free-4",
+        "crouch-grossman-3",
+        "momentum-euler",
+        "buss-2",
+        "mujoco-rk4",
+        "richardson",
+        "lie-newmark",
+        "rk4-projected",
     ] {
         methods.push(method(name).unwrap());
     }
@@ -299,6 +312,7 @@ fn each_method_converges_with_its_order_and_no_better() {
                 continue;
             };
             let exponents = match (problem, order) {
+                (_, 2..=4) if claims.cost.right_sides > 0 => 8..11,
                 (Problem::Gravity, 1) => 8..11,
                 (Problem::Gravity, _) => 6..9,
                 (_, 1) => 8..11,
@@ -479,8 +493,11 @@ fn drifting_energy_is_seen_to_drift() {
             let Some(claims) = method.claims(problem) else { continue };
             if claims.kept.energy == Energy::Drifts && !is_to_rounding(&claims) {
                 // small steps for first-order methods: at larger ones the error soon is no longer small
-                let h = if claims.order == Some(1) { 0.000_976_562_5 } else { telling_step(&claims, 0.0625) };
-                let drift = energy_drift(&case, &method, h, 16_000);
+                let (h, steps) = match claims.order {
+                    Some(1) => (0.000_976_562_5, 64_000),
+                    _ => (telling_step(&claims, 0.0625), 16_000),
+                };
+                let drift = energy_drift(&case, &method, h, steps);
                 assert!(drift.is_secular(), "{}: no drift in {drift:?}", name(&method, problem));
             }
         }
@@ -640,8 +657,9 @@ fn poisson_defect(method: &dyn AnyMethod, h: f64) -> f64 {
 #[test]
 fn a_poisson_map_keeps_the_bracket_and_the_others_do_not() {
     for method in methods() {
-        let defect = poisson_defect(&method, telling_step(&free_claims(&method), 0.25));
         let claims = free_claims(&method);
+        // what a method of order 8 loses shows in a larger step
+        let defect = poisson_defect(&method, telling_step(&claims, if claims.poisson { 0.25 } else { 0.5 }));
         if claims.poisson || is_to_rounding(&claims) {
             assert!(defect < 1e-20, "{} claims to be Poisson with a defect of {defect:.1e}", method.name());
         } else {
@@ -892,6 +910,12 @@ fn each_method_costs_what_it_claims() {
     assert_cost(&Rk4 { normalized: false }, false);
     assert_cost(&Rk4 { normalized: true }, false);
     assert_cost(&Rk8, false);
+    assert_cost(&LieGroup::RKMK_4, false);
+    assert_cost(&LieGroup::COMMUTATOR_FREE_4, false);
+    assert_cost(&LieGroup::CROUCH_GROSSMAN_3, false);
+    assert_cost(&MomentumEuler, false);
+    assert_cost(&MujocoRk4, false);
+    assert_cost(&Buss, false);
     assert_cost(&ImplicitMidpoint, true);
     assert_cost(&Composed::new(ImplicitMidpoint, schemes::SUZUKI_4).unwrap(), true);
     for scheme in schemes::ALL {

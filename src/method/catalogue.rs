@@ -5,9 +5,10 @@ use thiserror::Error;
 use super::map::Stepper;
 use super::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use super::{
-    AdaptiveTaylor, AxisOrder, AxisSplit, Claimed, Composed, Dmv, Dop853, DormandPrince853, Embedded,
-    ExactFlow, ExactStep, ExplicitEuler, FreePart, ImplicitMidpoint, Kicks, Method, Pair, PreprocessedDmv,
-    Rk4, Rk8, SchemeError, SemiImplicitEuler, Splitting, Step, Taylor, Tsit5, Tsitouras54, TwoAxes, TwoTurn,
+    AdaptiveTaylor, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, Dop853, DormandPrince853, Embedded,
+    ExactFlow, ExactStep, ExplicitEuler, FreePart, Gauss, ImplicitMidpoint, Kicks, LieGroup, LieNewmark,
+    Method, MomentumEuler, MujocoRk4, Pair, PreprocessedDmv, ProjectedRk4, Richardson, Rk4, Rk8, SchemeError,
+    SemiImplicitEuler, Splitting, Step, Taylor, Tsit5, Tsitouras54, TwoAxes, TwoTurn,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -244,6 +245,22 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
             (Some(_), None) => Err(asked.refused("2 or 4, its order")),
             (Some(_), Some(_)) => Err(asked.refused("none beside a scheme")),
         },
+        "gauss" => {
+            let order = argument.and_then(|order| order.parse().ok());
+            match (order.and_then(|order| Gauss::of_order(order).ok()), asked.scheme()?) {
+                (Some(gauss), None) => Ok(Box::new(gauss)),
+                _ => Err(asked.refused("an order 2, 4, 6 or 8, such as gauss:6, and no scheme")),
+            }
+        }
+        "rkmk4" => plain(LieGroup::RKMK_4, asked.scheme_alone()?),
+        "commutator-free-4" => plain(LieGroup::COMMUTATOR_FREE_4, asked.scheme_alone()?),
+        "crouch-grossman-3" => plain(LieGroup::CROUCH_GROSSMAN_3, asked.scheme_alone()?),
+        "momentum-euler" => plain(MomentumEuler, asked.scheme_alone()?),
+        "buss-2" => plain(Buss, asked.scheme_alone()?),
+        "mujoco-rk4" => plain(MujocoRk4, asked.scheme_alone()?),
+        "lie-newmark" => plain(LieNewmark, asked.scheme_alone()?),
+        "rk4-projected" => plain(ProjectedRk4, asked.scheme_alone()?),
+        "richardson" => plain(Richardson, asked.scheme_alone()?),
         "taylor" => {
             let chosen = asked.scheme()?;
             match argument {

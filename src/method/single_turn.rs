@@ -1,0 +1,74 @@
+//! One turn a step about a mean angular velocity.
+
+use super::exponential::{exponential, turn_with_impulse};
+use super::{Claimed, Claims, Cost, Kept, Map, Method};
+use crate::body::{Field, Point, Problem, Rotor, Time};
+use crate::num::{Dd, Real};
+use crate::rotation::Vec3;
+
+/// Buss's method of second order.
+///
+/// Φ_h: `Q' = Q exp(h ω̄)`, `ω̄ = ω + h/2 ω̇`, ω̇ = I⁻¹(m × ω + τ), with L constant in space. S. R. Buss, J. Comput. Phys. 164 (2000) 377. He leaves torques to the
+/// reader; here L' = L + h/2 (τ + τ') in space, τ' at the new attitude. Keeps L; the energy drifts.
+///
+/// ```
+/// use polhode::body::Problem;
+/// use polhode::method::{Buss, Claimed};
+/// let claims = Buss.claims(Problem::Free).unwrap();
+/// assert_eq!((claims.order, claims.kept.momentum_space), (Some(2), true));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Buss;
+
+/// A prepared [`Buss`].
+#[derive(Clone, Debug)]
+pub struct BussMap<S, F> {
+    h: S,
+    whole: Dd,
+    inverse_moments: Vec3<S>,
+    field: F,
+}
+
+impl Claimed for Buss {
+    fn name(&self) -> String {
+        "buss-2".into()
+    }
+    fn claims(&self, problem: Problem) -> Option<Claims> {
+        let free = problem == Problem::Free;
+        let kept = Kept {
+            momentum_norm: free,
+            momentum_space: free,
+            momentum_z: problem != Problem::Torque,
+            norm: true,
+            ..Kept::NOTHING
+        };
+        let cost = Cost::right_sides(if free { 1 } else { 2 }) + Cost::turns(1);
+        Some(Claims::new(Some(2), kept, cost, "Buss, J. Comput. Phys. 164 (2000) 377"))
+    }
+}
+
+impl<S: Real> Method<S> for Buss {
+    type Map<F: Field<S>> = BussMap<S, F>;
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> BussMap<S, F> {
+        BussMap { h: S::from_dd(h), whole: h, inverse_moments: rotor.inverse_moments(), field: field.clone() }
+    }
+}
+
+impl<S: Real, F: Field<S>> Map<S> for BussMap<S, F> {
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        let (h, half, m) = (self.h, self.h * S::of(0.5), x.momentum_body);
+        let omega = m.times(self.inverse_moments);
+        let torque = if F::ACTS { self.field.torque(at, x.attitude, omega) } else { Vec3::zero() };
+        let acceleration = (m.cross(omega) + torque).times(self.inverse_moments);
+        let mean = omega + acceleration * half;
+        let turn = exponential(mean * h);
+        let impulse = if F::ACTS {
+            let omega = turn.rotate_back(m + torque * h).times(self.inverse_moments);
+            let last = self.field.torque(at.later(self.whole), x.attitude * turn, omega);
+            (torque + turn.rotate(last)) * half
+        } else {
+            Vec3::zero()
+        };
+        turn_with_impulse(x, turn, impulse);
+    }
+}
