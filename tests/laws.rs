@@ -19,8 +19,8 @@ use polhode::inertia::Inertia;
 use polhode::method::schemes::{self, Pairs, Scheme, Stages};
 use polhode::method::{
     AnyMethod, AxisOrder, AxisSplit, Buss, Claimed, Claims, Composed, Cost, Dmv, Energy, ExactFlow,
-    ExactStep, ExplicitEuler, ImplicitMidpoint, Kicks, LieGroup, Map, Method, MomentumEuler, MujocoRk4, Rk4,
-    Rk8, SemiImplicitEuler, Splitting, StepError, TwoTurn, catalogue, method,
+    ExactStep, ExplicitEuler, Gauss, ImplicitMidpoint, Kicks, LieGroup, Map, Method, MomentumEuler,
+    MujocoRk4, Rk4, Rk8, SemiImplicitEuler, Splitting, StepError, TwoTurn, catalogue, method,
 };
 use polhode::num::{Dd, Precise, Real};
 use polhode::observe::{Drift, Invariants, secular_drift};
@@ -1290,6 +1290,22 @@ fn a_name_that_is_no_method_is_refused_with_its_reason() {
     assert!(error("kick-drift:6").ends_with("allowed: 2 or 4, its order"));
     assert!(error("kick-drift:4@srkn-6b").ends_with("allowed: none beside a scheme"));
     assert!(error("exact-step@suzuki-4").ends_with("allowed: none, and no scheme: its steps are exact"));
+    for name in ["gauss", "gauss:5", "gauss:10", "gauss:x", "gauss:4@suzuki-4"] {
+        assert!(
+            error(name).ends_with("allowed: an order 2, 4, 6 or 8, such as gauss:6, and no scheme"),
+            "{}",
+            error(name)
+        );
+    }
+    assert_eq!(
+        Gauss::of_order(5).unwrap_err().to_string(),
+        "there is no Gauss-Legendre collocation of order 5 here; there are the orders 2, 4, 6 and 8"
+    );
+    for name in ["rkmk4", "momentum-euler", "richardson", "mujoco-rk4", "lie-newmark", "rk4-projected"] {
+        assert_eq!(method(name).unwrap().name(), name);
+        assert!(error(&format!("{name}:2")).ends_with("allowed: none: this method takes no argument"));
+        assert!(error(&format!("{name}@suzuki-4")).contains("is not symmetric"));
+    }
     assert!(error("rattle@suzuki").contains("there is no scheme"));
     for known in catalogue() {
         assert_eq!(method(&known.name()).unwrap().name(), known.name());

@@ -174,6 +174,16 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(Splitting::strang(ExactFlow, Kicks)),
         Box::new(Splitting::with_scheme(ExactFlow, Kicks, SUZUKI_4)),
         Box::new(AdaptiveTaylor::to_rounding()),
+        Box::new(Gauss::ORDER_4),
+        Box::new(Gauss::ORDER_8),
+        Box::new(LieGroup::RKMK_4),
+        Box::new(LieGroup::COMMUTATOR_FREE_4),
+        Box::new(LieGroup::CROUCH_GROSSMAN_3),
+        Box::new(MomentumEuler),
+        Box::new(Buss),
+        Box::new(Richardson),
+        Box::new(MujocoRk4),
+        Box::new(LieNewmark),
     ]
 }
 

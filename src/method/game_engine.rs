@@ -20,7 +20,7 @@ use crate::rotation::Vec3;
 /// use polhode::{Body, Inertia, Run};
 /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(1.5, 0.2, -0.1))?;
-/// let end = Run::new(&MomentumEuler, &body, &start, 0.01)?.advance_to(20_000)?;
+/// let end = Run::new(&MomentumEuler, &body, &start, 1.0 / 60.0)?.advance_to(60_000)?;
 /// assert!(end.worst.of(Conserved::MomentumNorm).is_some_and(|error| error < 1e-12));
 /// let separatrix = start.momentum().norm_squared() / (2.0 * 2.0);
 /// assert!((end.energy / separatrix - 1.0).abs() < 0.05);

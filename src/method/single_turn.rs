@@ -8,8 +8,8 @@ use crate::rotation::Vec3;
 
 /// Buss's method of second order.
 ///
-/// Φ_h: `Q' = Q exp(h ω̄)`, `ω̄ = ω + h/2 ω̇`, ω̇ = I⁻¹(m × ω + τ), with L constant in space. S. R. Buss, J. Comput. Phys. 164 (2000) 377. He leaves torques to the
-/// reader; here L' = L + h/2 (τ + τ') in space, τ' at the new attitude. Keeps L; the energy drifts.
+/// Φ_h: `Q' = Q exp(h ω̄)`, `ω̄ = ω + h/2 ω̇`, ω̇ = I⁻¹(m × ω + τ), with L constant in space. S. R. Buss, J. Comput. Phys. 164 (2000) 377. Under a torque,
+/// L' = L + h/2 (τ + τ') in space, τ' at the new attitude. Keeps L; the energy drifts.
 ///
 /// ```
 /// use polhode::body::Problem;

@@ -52,6 +52,11 @@ pub struct GaussOrderError {
 }
 
 impl Gauss {
+    /// Two stages.
+    pub const ORDER_4: Gauss = Gauss { stages: 2 };
+    /// Four stages.
+    pub const ORDER_8: Gauss = Gauss { stages: 4 };
+
     /// The method of order `order`.
     ///
     /// # Errors
