@@ -28,9 +28,9 @@ MODULES = {
     "num": (["src/num/**"], 8, ["--lib", "--test=num"]),
     "rotation": (["src/rotation/**"], 4, ["--lib", "--test=rotation", "--test=euler", "--test=properties", "--test=laws"]),
     "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], 40, ["--lib", "--test=exact", "--test=properties", "--test=tops"]),
-    "method": (["src/method/**"], 40, ["--lib", "--test=laws", "--test=dmv", "--test=two_turns"]),
-    "observe": (["src/observe/**"], 5, ["--lib", "--test=observe", "--test=properties"]),
-    "fit": (["src/fit/**"], 120, ["--features=fit", "--lib", "--test=fit", "--test=fit_failures", "--test=record"]),
+    "method": (["src/method/**"], 50, ["--lib", "--test=laws", "--test=dmv", "--test=two_turns", "--test=schemes", "--test=taylor", "--test=exact_step"]),
+    "observe": (["src/observe/**"], 2, ["--lib", "--test=observe", "--test=properties"]),
+    "fit": (["src/fit/**"], 100, ["--features=fit", "--lib", "--test=fit", "--test=fit_failures", "--test=record"]),
 }
 OUTCOMES = {"CaughtMutant": "caught", "Timeout": "timeout", "MissedMutant": "missed", "Unviable": "unviable"}
 
