@@ -27,7 +27,7 @@ const ROWS: [(Case, &str, f64); 17] = [
     (Case::Free, "implicit-midpoint", 1.78),
     (Case::Free, "rattle", 2.18),
     (Case::Free, "dmv:10", 2.19),
-    (Case::Free, "kick-drift", 6.9),
+    (Case::Free, "kick-drift", 0.64),
     (Case::Free, "two-turn@blanes-moan-s10", 8.24),
     (Case::Free, "taylor:20", 16.4),
     (Case::Heavy, "rk4", 1.33),

@@ -607,3 +607,21 @@ fn sine_and_cosine_of_small_angles_are_right_to_rounding() {
         }
     }
 }
+
+#[test]
+fn sinc_and_cosine_of_a_root_are_right_to_rounding() {
+    use polhode::num::trig::SMALL;
+    for n in 0..=20_000 {
+        // both sides of the boundary between the two forms, and angles down to the smallest
+        for x in [2.0 * SMALL * f64::from(n) / 20_000.0, SMALL * libm::exp2(-f64::from(n) / 19.0)] {
+            let z = x * x;
+            let (sinc, c) = z.sinc_cos_of_root();
+            let (exact_sinc, exact_cos) = Dd::of(z).sinc_cos_of_root();
+            let error = |value: f64, exact: Dd| ((Dd::of(value) - exact) / exact).hi().abs();
+            assert!(error(sinc, exact_sinc) < 1.1 * f64::EPSILON, "sinc {x:e}: {sinc:e}");
+            assert!(error(c, exact_cos) < 0.53 * f64::EPSILON, "cos {x:e}: {c:e}");
+        }
+    }
+    assert_eq!(0.0.sinc_cos_of_root(), (1.0, 1.0));
+    assert_eq!(Dd::ZERO.sinc_cos_of_root(), (Dd::ONE, Dd::ONE));
+}

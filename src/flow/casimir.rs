@@ -3,7 +3,7 @@
 use super::Flow;
 use crate::body::{Point, Time};
 use crate::num::Real;
-use crate::rotation::Quat;
+use crate::rotation::{Quat, Vec3};
 
 /// The exact flow of the energy of a ball, `H = |m|²/(2 I)`.
 ///
@@ -21,17 +21,22 @@ impl<S: Real> Casimir<S> {
     }
 }
 
+impl<S: Real> Casimir<S> {
+    /// The quaternion of the body's turn in the time `t`, less one.
+    #[inline]
+    pub(super) fn turn(&self, t: S, m: Vec3<S>) -> Quat<S> {
+        // of half of the half angle, from its square: 1 − cos without cancellation, and no root
+        let rate = t * self.inverse_moment * S::of(0.25);
+        let squared = m.norm_squared() * (rate * rate);
+        let (sinc, cos) = squared.sinc_cos_of_root();
+        let twice = sinc + sinc;
+        Quat::new(-(twice * sinc * squared), m * (twice * cos * rate))
+    }
+}
+
 impl<S: Real> Flow<S> for Casimir<S> {
     #[inline]
     fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
-        let m = x.momentum_body;
-        let size = m.norm();
-        if size.magnitude() == 0.0 {
-            return;
-        }
-        // half of the half angle: 1 − cos without cancellation
-        let (s, c) = (size * t * self.inverse_moment * S::of(0.25)).sin_cos();
-        let twice = s + s;
-        x.add_attitude(x.attitude * Quat::new(-(twice * s), m * (twice * c / size)));
+        x.add_attitude(x.attitude * self.turn(t, x.momentum_body));
     }
 }

@@ -54,6 +54,14 @@ pub trait Real:
     fn sin_cos_small(self) -> (Self, Self) {
         self.sin_cos()
     }
+    /// `sin x / x` and `cos x` of the angle x, rad, whose square is `self`; no root where x is at most
+    /// [`SMALL`](trig::SMALL) and `f64` needs none.
+    #[inline]
+    fn sinc_cos_of_root(self) -> (Self, Self) {
+        let x = self.sqrt();
+        let (sin, cos) = x.sin_cos();
+        if x.magnitude() == 0.0 { (Self::of(1.0), cos) } else { (sin / x, cos) }
+    }
     /// |x| as `f64`; of several lanes the largest, NaN if one is NaN.
     fn magnitude(self) -> f64;
     /// `self + b` and the error of its rounding (Knuth): exact for `f64`, in any other scalar as good as its own rounding.
@@ -117,6 +125,15 @@ impl Real for f64 {
     #[inline]
     fn sin_cos_small(self) -> (Self, Self) {
         trig::sin_cos_small(self)
+    }
+    #[inline]
+    fn sinc_cos_of_root(self) -> (Self, Self) {
+        if self <= trig::SMALL * trig::SMALL {
+            return trig::sinc_cos_small(self);
+        }
+        let x = f64::sqrt(self);
+        let (sin, cos) = trig::sin_cos(x);
+        (sin / x, cos)
     }
     #[inline]
     fn magnitude(self) -> f64 {

@@ -49,11 +49,27 @@ pub const SMALL: f64 = 0.03125;
 #[inline]
 pub fn sin_cos_small(x: f64) -> (f64, f64) {
     let z = x * x;
-    let s = x * z * (-1.0 / 6.0 + z * (1.0 / 120.0 - z * (1.0 / 5040.0)));
+    (x + x * z * sine_small(z), cos_small(z))
+}
+
+/// `sin x / x` and `cos x` of the angle x with the square `z`, x ≤ [`SMALL`], by the same polynomials.
+#[inline]
+pub fn sinc_cos_small(z: f64) -> (f64, f64) {
+    (1.0 + z * sine_small(z), cos_small(z))
+}
+
+/// `(sin x / x − 1)/z`, z = x².
+#[inline(always)]
+fn sine_small(z: f64) -> f64 {
+    -1.0 / 6.0 + z * (1.0 / 120.0 - z * (1.0 / 5040.0))
+}
+
+#[inline(always)]
+fn cos_small(z: f64) -> f64 {
     let half = 0.5 * z;
     let c = 1.0 - half;
     let rest = (1.0 - c) - half + z * z * ((1.0 / 24.0 - z * (1.0 / 720.0)) + z * z * (1.0 / 40320.0));
-    (x + s, c + rest)
+    c + rest
 }
 
 #[inline(never)]

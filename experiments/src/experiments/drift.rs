@@ -104,8 +104,9 @@ fn step_sizes(body: &NamedBody) -> Vec<f64> {
 /// The catalogue, and for the textbook body the splitting in two orders that others use.
 fn methods(body: &NamedBody) -> Vec<Box<dyn AnyMethod>> {
     let mut methods = catalogue();
-    // an exact flow has no step to speak of
-    methods.retain(|method| method.claims(Problem::Free).is_some_and(|claims| claims.cost.free_flows == 0));
+    // without torque kick-drift is exact-step, whatever its scheme
+    methods
+        .retain(|method| method.claims(Problem::Free).is_some() && !method.name().starts_with("kick-drift"));
     if body.name == "textbook" {
         let others =
             AxisOrder::ALL.into_iter().filter(|order| ["321", "123"].contains(&order.to_string().as_str()));

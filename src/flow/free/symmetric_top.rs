@@ -39,24 +39,27 @@ impl<S: Real> SymmetricTop<S> {
 
 impl<S: Real> Flow<S> for SymmetricTop<S> {
     #[inline]
-    fn flow(&self, at: Time, t: S, x: &mut Point<S>) {
+    fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
         let angle = x.momentum_body[self.axis] * (t * self.half_spin);
-        match self.axis {
+        let spin = match self.axis {
             0 => spin::<0, S>(x, angle),
             1 => spin::<1, S>(x, angle),
             _ => spin::<2, S>(x, angle),
-        }
-        self.precession.flow(at, t, x);
+        };
+        // the two turns as one, (1 + a) ∘ (1 + b) − 1
+        let precession = self.precession.turn(t, x.momentum_body);
+        x.add_attitude(x.attitude * (spin + (precession + spin * precession)));
     }
 }
 
-/// Turns `x` about `AXIS` by twice the angle `half`, rounding errors carried.
+/// Turns the momentum of `x` about `AXIS` by twice the angle `half`, rounding errors carried, and gives the quaternion of that turn
+/// of the body, less one.
 ///
 /// Nothing but a torque about it changes the momentum along the axis, and of a top no torque does: its spin turns by the
 /// same angle in every step. What rounding that angle's sine and cosine adds to |m| is then the same in every step too, and
 /// the energy and L_z follow it. So sin² + cos² = 1, and the products, hold to twice the digits here.
 #[inline(always)]
-fn spin<const AXIS: usize, S: Real>(x: &mut Point<S>, half: S) {
+fn spin<const AXIS: usize, S: Real>(x: &mut Point<S>, half: S) -> Quat<S> {
     let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
     let (one, two) = (S::of(1.0), S::of(2.0));
     let (s, c) = half.sin_cos();
@@ -68,11 +71,7 @@ fn spin<const AXIS: usize, S: Real>(x: &mut Point<S>, half: S) {
     let m = x.momentum_body;
     x.add_component(j, w * m[k] - (v * m[j] - (w_low * m[k] - v_low * m[j])));
     x.add_component(k, -(w * m[j]) - (v * m[k] + (w_low * m[j] + v_low * m[k])));
-    // q ∘ (c, s e_i) − q, without the products by zero
-    let (q, less) = (x.attitude, one - c);
-    let mut change = Quat::new(-(s * q.v[AXIS]) - less * q.w, Vec3::zero());
-    change.v[AXIS] = s * q.w - less * q.v[AXIS];
-    change.v[j] = s * q.v[k] - less * q.v[j];
-    change.v[k] = -(s * q.v[j]) - less * q.v[k];
-    x.add_attitude(change);
+    let mut turn = Quat::new(c - one, Vec3::zero());
+    turn.v[AXIS] = s;
+    turn
 }
