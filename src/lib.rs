@@ -32,6 +32,7 @@
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence |
+//! | [`advise`] | which method with which step, from short runs on the body itself |
 //! | [`catalogue`] | named bodies with their sources |
 //! | `fit` | inertia from measured angular velocity; with the feature `fit` |
 //! | [`guide`] | your own force, your own method |
@@ -68,6 +69,7 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+pub mod advise;
 pub mod body;
 pub mod catalogue;
 #[cfg(feature = "fit")]

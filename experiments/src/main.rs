@@ -1,5 +1,6 @@
 //! The command line of polhode.
 
+mod advise;
 mod arguments;
 mod body_arguments;
 mod error;
@@ -42,6 +43,7 @@ enum Command {
     Experiment(results::ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
     Motion(motion::Motion),
+    Advise(Box<advise::Advise>),
     Fit(Box<fit::Fit>),
     Simulate(simulate::Simulate),
     Methods(methods::Methods),
@@ -63,6 +65,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Experiment(command) => command.run(),
         Command::Propagate(propagate) => propagate.run(),
         Command::Motion(motion) => motion.run(),
+        Command::Advise(advise) => advise.run(),
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),

@@ -1,0 +1,293 @@
+//! The search: a setting for each candidate from short runs, then the quickest over as much of the time as is affordable.
+
+use std::time::Instant;
+
+use super::candidate::Candidate;
+use super::reference::Reference;
+use super::trial::{Trial, trial};
+use super::{Advice, AdviseError, Choice, Demand, Predicted, Setting};
+use crate::body::{Body, Point};
+
+/// The turn, rad, over which each candidate is tried first.
+const SHORT: f64 = 512.0;
+
+/// Steps of a candidate's longest run.
+const AFFORDABLE: f64 = 1e6;
+
+/// Candidates whose settings are refined, and up to which multiple of the quickest's time.
+const FINALISTS: (usize, f64) = (6, 4.0);
+
+/// Nobody waits so many times longer than the quickest method takes.
+const SLOW: f64 = 100.0;
+
+/// Rungs of a search, each half the step or a hundredth of the tolerance of the one before.
+const RUNGS: usize = 14;
+
+/// What part of the demand is aimed at, and between which parts a setting is taken.
+const AIM: f64 = 0.5;
+const TAKEN: (f64, f64) = (0.15, 0.8);
+
+pub(super) struct Calibration<'a> {
+    body: &'a Body,
+    start: Point<f64>,
+    demand: &'a Demand,
+    reference: Reference,
+    /// Levels of the short runs and of the longest that can be judged.
+    short: u32,
+    longest: u32,
+    conditioning: f64,
+    /// The least time of a setting that meets the demand so far, s.
+    quickest: f64,
+}
+
+/// A setting of a candidate, and what it is expected to do over the whole time.
+#[derive(Clone, Debug)]
+struct Found {
+    value: f64,
+    choice: Choice,
+}
+
+impl<'a> Calibration<'a> {
+    pub(super) fn new(
+        body: &'a Body,
+        start: Point<f64>,
+        demand: &'a Demand,
+        mut reference: Reference,
+    ) -> Result<Self, AdviseError> {
+        let longest = reference.longest();
+        let turn = |level| reference.horizon(level) * reference.rate();
+        let short = (longest..longest + 200).find(|level| turn(*level) <= SHORT).unwrap_or(longest);
+        let wanted = demand.attitude_error;
+        let (horizon, looks) = (reference.horizon(longest), reference.looks(longest));
+        let truth = reference.truth(longest).ok_or(AdviseError::NoReference)?;
+        if let Some(k) = truth.doubt.iter().position(|doubt| *doubt > 0.05 * wanted) {
+            let agree_until = horizon * k as f64 / looks as f64;
+            return Err(AdviseError::Chaotic { demand: wanted, agree_until });
+        }
+        let level = if reference.closed().is_some() { 0 } else { short };
+        let conditioning = reference.conditioning(level).ok_or(AdviseError::NoReference)?;
+        if conditioning > wanted {
+            let until = demand.until;
+            return Err(AdviseError::Conditioning { demand: wanted, attainable: conditioning, until });
+        }
+        Ok(Calibration {
+            body,
+            start,
+            demand,
+            reference,
+            short,
+            longest,
+            conditioning,
+            quickest: f64::INFINITY,
+        })
+    }
+
+    pub(super) fn advice(mut self) -> Result<Advice, AdviseError> {
+        let candidates = Candidate::all(self.body, self.demand);
+        let (mut found, mut unfit) = (Vec::new(), Vec::new());
+        for candidate in &candidates {
+            match self.first(candidate) {
+                Ok(first) => {
+                    self.quickest = self.quickest.min(first.choice.seconds.value);
+                    found.push((candidate, first));
+                }
+                Err(nearest) => unfit.push((candidate.name.clone(), nearest)),
+            }
+        }
+        found.sort_by(|a, b| a.1.choice.seconds.value.total_cmp(&b.1.choice.seconds.value));
+        let quickest = found.first().map_or(0.0, |first| first.1.choice.seconds.value);
+        let (most, multiple) = FINALISTS;
+        let (mut fit, mut rest) = (self.closed_form(), Vec::new());
+        for (place, (candidate, first)) in found.into_iter().enumerate() {
+            if place >= most || first.choice.seconds.value > multiple * quickest {
+                rest.push(first.choice);
+                continue;
+            }
+            match self.refined(candidate, first) {
+                Ok(choice) => fit.push(choice),
+                Err(nearest) => unfit.push((candidate.name.clone(), nearest)),
+            }
+        }
+        fit.sort_by(|a, b| a.seconds.value.total_cmp(&b.seconds.value));
+        if fit.is_empty() {
+            return Err(self.unreached(&unfit));
+        }
+        let best = fit.remove(0);
+        if let Some(budget) = self.demand.budget.filter(|budget| best.seconds.value > *budget) {
+            return Err(AdviseError::Budget { budget, method: best.method, seconds: best.seconds.value });
+        }
+        fit.extend(rest);
+        Ok(Advice { best, others: fit, unfit, conditioning: self.conditioning })
+    }
+
+    fn unreached(&self, unfit: &[(String, Option<f64>)]) -> AdviseError {
+        let seen = unfit.iter().filter_map(|(name, error)| error.map(|error| (name, error)));
+        match seen.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((name, error)) => AdviseError::Unreached {
+                demand: self.demand.attitude_error,
+                method: name.clone(),
+                error,
+                until: self.demand.until,
+            },
+            None => AdviseError::NoCandidate,
+        }
+    }
+
+    /// The closed form, where there is one and it is wanted.
+    fn closed_form(&self) -> Vec<Choice> {
+        let excluded = self.demand.excluded.iter().any(|name| name == "exact");
+        let Some(motion) = self.reference.closed().filter(|_| !excluded) else { return Vec::new() };
+        let begun = Instant::now();
+        let Ok(state) = motion.at(self.demand.until) else { return Vec::new() };
+        let seconds = begun.elapsed().as_secs_f64();
+        let exact = self.body.leave(&motion.point_at_dd(self.demand.until.into()));
+        let error = state.rotation().angle_to(&exact.rotation());
+        if error > self.demand.attitude_error {
+            return Vec::new();
+        }
+        vec![Choice {
+            method: "exact".into(),
+            setting: Setting::Nothing,
+            steps: None,
+            attitude_error: Predicted { value: error, factor: 2.0 },
+            energy_error: None,
+            seconds: Predicted { value: seconds, factor: 2.0 },
+            whole_time: true,
+        }]
+    }
+
+    /// A run of `candidate` at the step or tolerance `value` over the horizon `level`.
+    fn run(&mut self, candidate: &Candidate, value: f64, level: u32) -> Option<Trial> {
+        let prepared = candidate.at(value).ok()?;
+        let horizon = self.reference.horizon(level);
+        let steps = if candidate.is_adaptive() || candidate.is_exact() { 1.0 } else { horizon / value };
+        let from = (self.body, self.start, self.demand.start_time);
+        let truth = self.reference.truth(level)?;
+        trial(prepared.method(), from, truth, (horizon, steps))
+    }
+
+    /// What a run at `value` makes expect of the whole time.
+    fn expected(&self, candidate: &Candidate, value: f64, level: u32, run: &Trial) -> Choice {
+        let (until, looks) = (self.demand.until, self.reference.looks(level));
+        // what is exact takes the whole time in one step, and did so from look to look
+        let (steps, seconds) = if candidate.is_exact() {
+            (1, run.price * run.horizon / looks as f64)
+        } else {
+            (libm::scalbn((looks * run.steps) as f64, level.cast_signed()) as u64, run.price * until)
+        };
+        Choice {
+            method: candidate.name.clone(),
+            setting: candidate.setting(value, until, steps),
+            steps: (!candidate.is_adaptive()).then_some(steps),
+            attitude_error: run.attitude_at(until, self.reference.rate(), candidate.drifts()),
+            energy_error: run.energy_at(until, candidate.drifts()),
+            seconds: Predicted { value: run.setup + seconds, factor: run.scatter },
+            whole_time: level == 0,
+        }
+    }
+
+    /// How many times the demand the errors are: the attitude's, or that of the energy where it is worse.
+    fn excess(&self, choice: &Choice) -> f64 {
+        let energy =
+            self.demand.energy_error.zip(choice.energy_error).map_or(0.0, |(most, error)| error / most);
+        (choice.attitude_error.value / self.demand.attitude_error).max(energy)
+    }
+
+    /// A setting from short runs, or the smallest attitude error that was seen.
+    fn first(&mut self, candidate: &Candidate) -> Result<Found, Option<f64>> {
+        let (mut value, level) = (candidate.coarse(self.reference.rate()), self.short);
+        let factor = if candidate.is_adaptive() { 0.01 } else { 0.5 };
+        let (mut nearest, mut before, mut plausible): (Option<f64>, Option<f64>, Option<Found>) =
+            Default::default();
+        for _ in 0..RUNGS {
+            if let Some(run) = self.run(candidate, value, level) {
+                let choice = self.expected(candidate, value, level, &run);
+                let (excess, error) = (self.excess(&choice), choice.attitude_error.value);
+                nearest = Some(nearest.map_or(error, |least: f64| least.min(error)));
+                let (seconds, doubt) = (choice.seconds.value, choice.attitude_error.factor);
+                let found = Found { value, choice };
+                if excess <= AIM {
+                    return Ok(found);
+                }
+                if candidate.is_exact() || seconds > SLOW * self.quickest {
+                    return plausible.ok_or(nearest);
+                }
+                if excess <= AIM * doubt && plausible.is_none() {
+                    plausible = Some(found.clone());
+                }
+                // two runs that differ as the order says tell the rest
+                let slope = before.map(|before: f64| libm::log(before / excess) / -libm::log(factor));
+                let lawful = slope.is_some_and(|slope| (slope / candidate.power() - 1.0).abs() < 0.15);
+                if lawful && run.attitude < 0.1 && !candidate.is_adaptive() {
+                    let finer = libm::pow(AIM / excess, 1.0 / candidate.power());
+                    let choice = scaled(found.choice, finer, AIM / excess);
+                    let slow = choice.seconds.value > SLOW * self.quickest;
+                    return if slow { Err(nearest) } else { Ok(Found { value: value * finer, choice }) };
+                }
+                before = Some(excess);
+            }
+            value *= factor;
+        }
+        plausible.ok_or(nearest)
+    }
+
+    /// The setting from runs over as much of the time as is affordable, or the smallest attitude error that was seen.
+    fn refined(&mut self, candidate: &Candidate, first: Found) -> Result<Choice, Option<f64>> {
+        if candidate.is_exact() {
+            return Ok(first.choice);
+        }
+        let (mut value, mut nearest) = (first.value, None);
+        let mut taken: Option<Choice> = None;
+        for _ in 0..6 {
+            let level = self.affordable(candidate, value);
+            let Some(run) = self.run(candidate, value, level) else {
+                value *= 0.5;
+                continue;
+            };
+            let choice = self.expected(candidate, value, level, &run);
+            let (excess, error) = (self.excess(&choice), choice.attitude_error.value);
+            nearest = Some(nearest.map_or(error, |least: f64| least.min(error)));
+            if excess <= TAKEN.1
+                && taken.as_ref().is_none_or(|best| choice.seconds.value < best.seconds.value)
+            {
+                taken = Some(choice);
+            }
+            if excess <= TAKEN.1 && excess >= TAKEN.0 {
+                break;
+            }
+            let change = libm::pow(AIM / excess, 1.0 / candidate.power()).clamp(0.1, 4.0);
+            let larger = value * change;
+            // a step of more than a radian is not asked of any method
+            value = if candidate.is_adaptive() {
+                larger
+            } else {
+                larger.min(candidate.coarse(self.reference.rate()))
+            };
+            if value >= larger.max(candidate.coarse(self.reference.rate())) && taken.is_some() {
+                break;
+            }
+        }
+        taken.ok_or(nearest)
+    }
+
+    /// The level of the longest run at `value` that is affordable and can be judged.
+    fn affordable(&self, candidate: &Candidate, value: f64) -> u32 {
+        let step = if candidate.is_adaptive() { 0.25 / self.reference.rate() } else { value };
+        let steps = |level| self.reference.horizon(level) / step;
+        (self.longest..=self.short.max(self.longest))
+            .find(|level| steps(*level) <= AFFORDABLE)
+            .unwrap_or(self.short)
+    }
+}
+
+/// The same at a setting finer by `finer`, where errors are smaller by `smaller`.
+fn scaled(mut choice: Choice, finer: f64, smaller: f64) -> Choice {
+    choice.attitude_error.value *= smaller;
+    choice.energy_error = choice.energy_error.map(|energy| energy * smaller);
+    choice.seconds.value /= finer;
+    if let (Setting::Step(h), Some(steps)) = (choice.setting, choice.steps) {
+        let more = libm::ceil(steps as f64 / finer);
+        (choice.setting, choice.steps) = (Setting::Step(h * steps as f64 / more), Some(more as u64));
+    }
+    choice
+}

@@ -1,0 +1,135 @@
+//! The methods that are tried: the catalogue, and the best of its bases under schemes of higher order.
+
+use super::{Demand, Setting};
+use crate::body::{Body, Problem};
+use crate::method::{ADAPTIVE, AnyMethod, Claims, Energy, UnknownMethod, catalogue, method};
+
+/// Methods of higher order than those of the catalogue.
+const BESIDES: [&str; 24] = [
+    "dmv:4",
+    "dmv:6",
+    "dmv:8",
+    "dmv:12",
+    "dmv:14",
+    "dmv:16",
+    "dmv:20",
+    "two-turn@suzuki-4",
+    "two-turn@blanes-moan-s6",
+    "two-turn@blanes-moan-s10",
+    "two-turn@kahan-li-8",
+    "two-turn@sofroniou-spaletta-8",
+    "two-turn@sofroniou-spaletta-10",
+    "two-turn@blanes-casas-murua-10-23",
+    "dmv:12@srkn-6b",
+    "dmv:12@srkn-11b",
+    "dmv:12@srkn-14a",
+    "kick-drift@srkn-6b",
+    "kick-drift@srkn-11b",
+    "kick-drift@srkn-14a",
+    "kick-drift@aba-10-6-4",
+    "kick-drift@sofroniou-spaletta-8",
+    "taylor:20",
+    "taylor:30",
+];
+
+/// Where a search for a tolerance begins.
+const COARSE: f64 = 1e-4;
+
+/// A method that may be advised.
+pub(super) struct Candidate {
+    pub(super) name: String,
+    method: Option<Box<dyn AnyMethod>>,
+    pub(super) claims: Claims,
+}
+
+impl Candidate {
+    /// All that take the forces on `body` and are not excluded.
+    pub(super) fn all(body: &Body, demand: &Demand) -> Vec<Self> {
+        let problem = body.problem();
+        let besides = BESIDES.iter().filter_map(|name| method(name).ok());
+        let all = catalogue().into_iter().chain(besides);
+        let taken = all.filter_map(|method| {
+            let claims = method.claims(problem)?;
+            let name = method.name();
+            let base = name.split([':', '@']).next().unwrap_or_default();
+            let exact = claims.order.is_none() && claims.tolerance.is_none();
+            let excluded = demand
+                .excluded
+                .iter()
+                .any(|other| *other == name || *other == base || (exact && other == "exact"));
+            // without a force, one name for the steps along the one orbit is enough
+            let twice = problem == Problem::Free && exact && base == "kick-drift";
+            let adaptive = ADAPTIVE.contains(&base) && claims.tolerance.is_some();
+            let method = (!adaptive).then_some(method);
+            (!excluded && !twice).then(|| Candidate {
+                name: if adaptive { base.into() } else { name.clone() },
+                method,
+                claims,
+            })
+        });
+        let mut all: Vec<Self> = taken.collect();
+        // the quick ones first: they tell which need not be tried in short steps
+        all.sort_by_key(|candidate| core::cmp::Reverse(candidate.claims.order.unwrap_or(u32::MAX)));
+        all
+    }
+
+    /// Whether the method chooses its steps.
+    pub(super) fn is_adaptive(&self) -> bool {
+        self.method.is_none()
+    }
+
+    /// Whether it has no error of discretisation.
+    pub(super) fn is_exact(&self) -> bool {
+        self.claims.order.is_none() && !self.is_adaptive()
+    }
+
+    /// How its error falls with the step or the tolerance: as this power.
+    pub(super) fn power(&self) -> f64 {
+        self.claims.order.map_or(1.0, f64::from)
+    }
+
+    /// Whether the energy moves away.
+    pub(super) fn drifts(&self) -> bool {
+        self.claims.kept.energy == Energy::Drifts
+    }
+
+    /// The setting that is tried first: a step of two radians, or a coarse tolerance.
+    pub(super) fn coarse(&self, rate: f64) -> f64 {
+        if self.is_adaptive() { COARSE } else { 2.0 / rate }
+    }
+
+    /// The method at the step or tolerance `value`, and the time from which to which it is told to move the body, s.
+    ///
+    /// # Errors
+    /// A tolerance that it does not take.
+    pub(super) fn at(&self, value: f64) -> Result<Prepared<'_>, UnknownMethod> {
+        match &self.method {
+            Some(method) => Ok(Prepared::Given(method.as_ref())),
+            None => Ok(Prepared::Made(method(&format!("{}:{value:e}", self.name))?)),
+        }
+    }
+
+    /// `value` as what a user sets, over the time `until` in `steps` steps.
+    pub(super) fn setting(&self, value: f64, until: f64, steps: u64) -> Setting {
+        if self.is_adaptive() {
+            Setting::Tolerance { tolerance: value, step: until }
+        } else {
+            Setting::Step(until / steps as f64)
+        }
+    }
+}
+
+/// A method at a tolerance, or one that takes none.
+pub(super) enum Prepared<'a> {
+    Given(&'a dyn AnyMethod),
+    Made(Box<dyn AnyMethod>),
+}
+
+impl Prepared<'_> {
+    pub(super) fn method(&self) -> &dyn AnyMethod {
+        match self {
+            Prepared::Given(method) => *method,
+            Prepared::Made(method) => method.as_ref(),
+        }
+    }
+}

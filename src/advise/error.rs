@@ -1,0 +1,112 @@
+//! Why there is no advice.
+
+use thiserror::Error;
+
+use crate::body::StateError;
+use crate::num::Shown;
+use crate::run::RunError;
+
+/// Why there is no advice.
+#[derive(Clone, Debug, Error)]
+#[non_exhaustive]
+pub enum AdviseError {
+    /// A part of the demand is not a positive number.
+    #[error("{quantity} is {}{}{unit}; it must be a finite number above 0", Shown(*value), if unit.is_empty() { "" } else { " " })]
+    NotPositive {
+        /// What it is.
+        quantity: &'static str,
+        /// Its unit.
+        unit: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// An attitude error that is none.
+    #[error("an attitude error of {} rad leaves the attitude unknown; ask for 1 rad or less", Shown(*attitude_error))]
+    Lost {
+        /// What was asked for, rad.
+        attitude_error: f64,
+    },
+    /// The start is not usable.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// Nothing moves.
+    #[error("the body is at rest and stays so: every method is exact")]
+    AtRest,
+    /// The demand is below what the digits of the start allow.
+    #[error(
+        "an attitude error of {demand:.1e} rad at t = {} s is below what the start allows: one unit in the last digit of the \
+         angular momentum grows to {attainable:.1e} rad until then; ask for more than that, or for a shorter time",
+        Shown(*until)
+    )]
+    Conditioning {
+        /// What was asked for, rad.
+        demand: f64,
+        /// What one unit in the last digit of the start grows to, rad.
+        attainable: f64,
+        /// Duration, s.
+        until: f64,
+    },
+    /// No run in double-double takes the forces.
+    #[error(
+        "the forces on the body cannot be evaluated in double-double, so that no run can be judged; write them for every Real"
+    )]
+    NoReference,
+    /// Two runs in double-double part.
+    #[error(
+        "two runs in double-double agree to {demand:.1e} rad up to t = {} s only: the motion is chaotic; ask for a time below that",
+        Shown(*agree_until)
+    )]
+    Chaotic {
+        /// What was asked for, rad.
+        demand: f64,
+        /// Until when they agree, s.
+        agree_until: f64,
+    },
+    /// No candidate meets the demand.
+    #[error("no method meets {demand:.1e} rad; the nearest is {method} with {error:.1e} rad at t = {} s", Shown(*until))]
+    Unreached {
+        /// What was asked for, rad.
+        demand: f64,
+        /// The nearest method.
+        method: String,
+        /// The error that it is expected to have, rad.
+        error: f64,
+        /// Duration, s.
+        until: f64,
+    },
+    /// No candidate meets the demand within the budget.
+    #[error("no method meets the demand within {} s of processor time; the quickest is {method} with {seconds:.2e} s", Shown(*budget))]
+    Budget {
+        /// What was given, s.
+        budget: f64,
+        /// The quickest method.
+        method: String,
+        /// What it takes, s.
+        seconds: f64,
+    },
+    /// A choice cannot be checked: there is no closed form, and the time is too long for double-double.
+    #[error(
+        "the motion has no closed form, and a run in double-double to t = {} s would take too long; check up to {} s",
+        Shown(*until), Shown(*reach)
+    )]
+    TooLong {
+        /// Duration, s.
+        until: f64,
+        /// The longest that can be checked, s.
+        reach: f64,
+    },
+    /// A choice that is none of this library's methods, or that the body or the step refuses.
+    #[error("{method} cannot be run: {why}")]
+    Unusable {
+        /// Its name.
+        method: String,
+        /// What was said.
+        why: String,
+    },
+    /// The run of a choice failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Everything is excluded.
+    #[error("no method is left: those that take the forces on the body are excluded")]
+    NoCandidate,
+}

@@ -1,0 +1,130 @@
+//! What is advised does what it says, and what cannot be met is refused with the law.
+
+#![allow(clippy::unwrap_used)]
+
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::advise::{AdviseError, Choice, Demand, Setting, advise, check};
+use polhode::body::{Body, Force, State};
+use polhode::flow::FreeMotion;
+use polhode::inertia::Inertia;
+use polhode::run::Run;
+
+fn textbook() -> (Body, State) {
+    let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap());
+    let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3)).unwrap();
+    (body, start)
+}
+
+/// The heavy body of Hairer, Lubich and Wanner, fig. VII.5.3: no closed form.
+fn asymmetric_top() -> (Body, State) {
+    let inertia = Inertia::from_moments([0.5, 0.85, 1.0]).unwrap();
+    let body = Body::heavy(inertia, Vector3::new(0.0, 0.0, 1.0)).unwrap();
+    let tilted = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5);
+    let start = body.state(tilted, Vector3::new(0.5, 0.2, 5.0)).unwrap();
+    (body, start)
+}
+
+fn without_closed_form(until: f64, attitude_error: f64) -> Demand {
+    let mut demand = Demand::new(until, attitude_error);
+    demand.excluded = vec!["exact".into()];
+    demand
+}
+
+#[test]
+fn the_advice_meets_the_demand() {
+    for (body, start) in [textbook(), asymmetric_top()] {
+        for (until, wanted) in [(20.0, 1e-3), (100.0, 1e-6), (100.0, 1e-10)] {
+            let demand = without_closed_form(until, wanted);
+            let advice = advise(&body, &start, &demand).unwrap();
+            let Choice { method, attitude_error, .. } = &advice.best;
+            let actual = check(&body, &start, &demand, &advice.best).unwrap();
+            assert!(actual <= wanted, "{method}: {actual:e} for {wanted:e}");
+            assert!(
+                actual <= attitude_error.value * attitude_error.factor,
+                "{method}: {actual:e}, {attitude_error:?}"
+            );
+            assert!(
+                advice
+                    .others
+                    .iter()
+                    .all(|other| other.seconds.value >= advice.best.seconds.value || !other.whole_time),
+                "{advice:?}"
+            );
+        }
+    }
+}
+
+/// The closed form is the quickest where there is one, and takes no step.
+#[test]
+fn a_free_body_needs_no_step() {
+    let (body, start) = textbook();
+    let advice = advise(&body, &start, &Demand::new(1e5, 1e-8)).unwrap();
+    assert_eq!((advice.best.method.as_str(), advice.best.setting), ("exact", Setting::Nothing));
+    assert!(check(&body, &start, &Demand::new(1e5, 1e-8), &advice.best).unwrap() < 1e-14);
+}
+
+/// A choice is what `Run` takes: the error at the end is that of its steps.
+#[test]
+fn method_and_step_stand_for_a_run() {
+    let (body, start) = textbook();
+    let mut demand = without_closed_form(100.0, 1e-5);
+    demand.excluded.extend(["taylor", "dop853", "tsit5"].map(String::from));
+    let best = advise(&body, &start, &demand).unwrap().best;
+    let (Setting::Step(h), Some(steps)) = (best.setting, best.steps) else { panic!("{best:?}") };
+    let method = polhode::method(&best.method).unwrap();
+    let end = Run::new(&method, &body, &start, h).unwrap().advance_to(steps).unwrap();
+    assert!((end.elapsed.hi() - 100.0).abs() < 1e-12);
+    let exact = FreeMotion::from_state(body.inertia(), &start).unwrap().at(100.0).unwrap();
+    let error = end.state.rotation().angle_to(&exact.rotation());
+    assert!(error < 1e-5 && error < 1.3 * best.attitude_error.value, "{error:e}, {best:?}");
+}
+
+#[test]
+fn a_demand_on_the_energy_is_met_too() {
+    let (body, start) = textbook();
+    let mut demand = without_closed_form(100.0, 1e-2);
+    demand.energy_error = Some(1e-12);
+    let best = advise(&body, &start, &demand).unwrap().best;
+    assert!(best.energy_error.is_some_and(|error| error <= 1e-12), "{best:?}");
+}
+
+#[test]
+fn what_cannot_be_met_is_refused_with_the_reason() {
+    let (body, start) = textbook();
+    let refused = |demand: &Demand| advise(&body, &start, demand).unwrap_err();
+    let error = refused(&Demand::new(-1.0, 1e-6)).to_string();
+    assert_eq!(error, "the duration is -1 s; it must be a finite number above 0");
+    assert!(refused(&Demand::new(1.0, f64::NAN)).to_string().starts_with("the attitude error is NaN rad"));
+    assert!(refused(&Demand::new(1.0, 2.0)).to_string().contains("ask for 1 rad or less"));
+    // one unit in the last digit of the start is more than this after so long a time
+    match refused(&Demand::new(1e9, 1e-9)) {
+        AdviseError::Conditioning { attainable, .. } => assert!(attainable > 1e-8 && attainable < 1e-5),
+        error => panic!("{error}"),
+    }
+    let mut impatient = without_closed_form(1e4, 1e-9);
+    impatient.budget = Some(1e-9);
+    assert!(matches!(refused(&impatient), AdviseError::Budget { .. }));
+    let mut coarse = without_closed_form(1000.0, 1e-6);
+    coarse.excluded.extend(polhode::method::catalogue().iter().map(polhode::method::Claimed::name));
+    coarse.excluded.extend(["dmv", "two-turn", "taylor", "kick-drift"].map(String::from));
+    assert!(matches!(refused(&coarse), AdviseError::NoCandidate), "{}", refused(&coarse));
+    coarse.excluded.retain(|name| name != "explicit-euler");
+    match refused(&coarse) {
+        AdviseError::Unreached { method, error, .. } => assert!(method == "explicit-euler" && error > 1e-6),
+        error => panic!("{error}"),
+    }
+    let rest = body.state(UnitQuaternion::identity(), Vector3::zeros()).unwrap();
+    assert!(matches!(advise(&body, &rest, &Demand::new(1.0, 1e-6)), Err(AdviseError::AtRest)));
+}
+
+/// A law in `f64` alone cannot be judged in double-double; a torque that starts a body from rest can.
+#[test]
+fn forces_decide_what_can_be_judged() {
+    let (free, _) = textbook();
+    let pushed = free.with(Force::constant_torque_space(Vector3::new(0.0, 0.1, 0.2)).unwrap());
+    let rest = pushed.state(UnitQuaternion::identity(), Vector3::zeros()).unwrap();
+    let demand = Demand::new(20.0, 1e-6);
+    let best = advise(&pushed, &rest, &demand).unwrap().best;
+    assert!(check(&pushed, &rest, &demand, &best).unwrap() <= 1e-6);
+    assert_eq!(best.energy_error, None);
+}
