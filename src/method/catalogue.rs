@@ -8,7 +8,8 @@ use super::{
     AdaptiveTaylor, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, Dop853, DormandPrince853, Embedded,
     ExactFlow, ExactStep, ExplicitEuler, FreePart, Gauss, ImplicitMidpoint, Kicks, LieGroup, LieNewmark,
     Method, MomentumEuler, MujocoRk4, Pair, PreprocessedDmv, ProjectedRk4, Richardson, Rk4, Rk8, SchemeError,
-    SemiImplicitEuler, Splitting, Step, Taylor, Tsit5, Tsitouras54, TwoAxes, TwoTurn,
+    SemiImplicitEuler, Splitting, Step, SymmetricProjection, Taylor, Tsit5, Tsitouras54, TwoAxes, TwoTurn,
+    VariationalCayley,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -180,7 +181,7 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(LieGroup::COMMUTATOR_FREE_4),
         Box::new(LieGroup::CROUCH_GROSSMAN_3),
         Box::new(MomentumEuler),
-        Box::new(Buss),
+        Box::new(Buss { augmented: false }),
         Box::new(Richardson),
         Box::new(MujocoRk4),
         Box::new(LieNewmark),
@@ -262,13 +263,18 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
                 _ => Err(asked.refused("an order 2, 4, 6 or 8, such as gauss:6, and no scheme")),
             }
         }
+        "variational-cayley" => kicked(VariationalCayley, asked.scheme_alone()?),
         "rkmk4" => plain(LieGroup::RKMK_4, asked.scheme_alone()?),
         "commutator-free-4" => plain(LieGroup::COMMUTATOR_FREE_4, asked.scheme_alone()?),
         "crouch-grossman-3" => plain(LieGroup::CROUCH_GROSSMAN_3, asked.scheme_alone()?),
         "momentum-euler" => plain(MomentumEuler, asked.scheme_alone()?),
-        "buss-2" => plain(Buss, asked.scheme_alone()?),
+        "buss-2" => plain(Buss { augmented: false }, asked.scheme_alone()?),
+        "buss-2-augmented" => plain(Buss { augmented: true }, asked.scheme_alone()?),
         "mujoco-rk4" => plain(MujocoRk4, asked.scheme_alone()?),
         "lie-newmark" => plain(LieNewmark, asked.scheme_alone()?),
+        "lie-poisson-projected" => {
+            plain(SymmetricProjection::new(AxisSplit { axes: None }), asked.scheme_alone()?)
+        }
         "rk4-projected" => plain(ProjectedRk4, asked.scheme_alone()?),
         "richardson" => plain(Richardson, asked.scheme_alone()?),
         "taylor" => {
