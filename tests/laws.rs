@@ -213,8 +213,6 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         "richardson",
         "lie-newmark",
         "rk4-projected",
-        "variational-cayley",
-        "buss-2-augmented",
         "lie-poisson-projected",
     ] {
         methods.push(method(name).unwrap());

@@ -182,9 +182,11 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(LieGroup::CROUCH_GROSSMAN_3),
         Box::new(MomentumEuler),
         Box::new(Buss { augmented: false }),
+        Box::new(Buss { augmented: true }),
         Box::new(Richardson),
         Box::new(MujocoRk4),
         Box::new(LieNewmark),
+        Box::new(Splitting::strang(VariationalCayley, Kicks)),
     ]
 }
 

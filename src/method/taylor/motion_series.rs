@@ -64,6 +64,11 @@ impl<S: Real> Spun<S> {
 }
 
 impl<S: Real, F: Field<S>> MotionSeries<S, F> {
+    /// The order K.
+    pub(super) fn order(&self) -> usize {
+        self.order
+    }
+
     pub(super) fn new(order: u32, rotor: &Rotor, field: &F) -> Self {
         let order = order as usize;
         MotionSeries {
