@@ -214,6 +214,7 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
         "lie-newmark",
         "rk4-projected",
         "lie-poisson-projected",
+        "lie-poisson-projected@suzuki-4",
     ] {
         methods.push(method(name).unwrap());
     }
@@ -1314,7 +1315,6 @@ fn a_name_that_is_no_method_is_refused_with_its_reason() {
         "lie-newmark",
         "rk4-projected",
         "buss-2-augmented",
-        "lie-poisson-projected",
     ] {
         assert_eq!(method(name).unwrap().name(), name);
         assert!(error(&format!("{name}:2")).ends_with("allowed: none: this method takes no argument"));

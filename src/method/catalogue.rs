@@ -8,8 +8,8 @@ use super::{
     AdaptiveTaylor, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, Dop853, DormandPrince853, Embedded,
     ExactFlow, ExactStep, ExplicitEuler, FreePart, Gauss, ImplicitMidpoint, Kicks, LieGroup, LieNewmark,
     Method, MomentumEuler, MujocoRk4, Pair, PreprocessedDmv, ProjectedRk4, Richardson, Rk4, Rk8, SchemeError,
-    SemiImplicitEuler, Splitting, Step, SymmetricProjection, Taylor, Tsit5, Tsitouras54, TwoAxes, TwoTurn,
-    VariationalCayley,
+    SemiImplicitEuler, Splitting, Step, Symmetric, SymmetricProjection, Taylor, Tsit5, Tsitouras54, TwoAxes,
+    TwoTurn, VariationalCayley,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -222,10 +222,7 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         "semi-implicit-euler" => plain(SemiImplicitEuler, asked.scheme_alone()?),
         "rk4" => plain(Rk4 { normalized: false }, asked.scheme_alone()?),
         "rk4-normalized" => plain(Rk4 { normalized: true }, asked.scheme_alone()?),
-        "implicit-midpoint" => Ok(match asked.scheme_alone()? {
-            Some(scheme) if scheme != STRANG => Box::new(Composed::new(ImplicitMidpoint, scheme)?),
-            _ => Box::new(ImplicitMidpoint),
-        }),
+        "implicit-midpoint" => composed(ImplicitMidpoint, asked.scheme_alone()?),
         "rattle" => kicked(Dmv, asked.scheme_alone()?),
         "dmv" => {
             let chosen = asked.scheme()?;
@@ -275,7 +272,7 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         "mujoco-rk4" => plain(MujocoRk4, asked.scheme_alone()?),
         "lie-newmark" => plain(LieNewmark, asked.scheme_alone()?),
         "lie-poisson-projected" => {
-            plain(SymmetricProjection::new(AxisSplit { axes: None }), asked.scheme_alone()?)
+            composed(SymmetricProjection::new(AxisSplit { axes: None }), asked.scheme_alone()?)
         }
         "rk4-projected" => plain(ProjectedRk4, asked.scheme_alone()?),
         "richardson" => plain(Richardson, asked.scheme_alone()?),
@@ -355,6 +352,16 @@ fn plain(
         Some(scheme) => Err(SchemeError::NotSymmetric { scheme: scheme.name, base: method.name() }.into()),
         None => Ok(Box::new(method)),
     }
+}
+
+fn composed<M>(base: M, chosen: Option<Scheme>) -> Result<Box<dyn AnyMethod>, UnknownMethod>
+where
+    M: Symmetric + Claimed + Method<f64> + Method<Dd> + 'static,
+{
+    Ok(match chosen {
+        Some(scheme) if scheme != STRANG => Box::new(Composed::new(base, scheme)?),
+        _ => Box::new(base),
+    })
 }
 
 fn kicked<A>(free: A, chosen: Option<Scheme>) -> Result<Box<dyn AnyMethod>, UnknownMethod>

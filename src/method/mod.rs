@@ -16,6 +16,7 @@ mod exponential;
 mod game_engine;
 mod implicit_midpoint;
 mod kicks;
+mod length;
 mod lie_group;
 mod lie_newmark;
 mod map;

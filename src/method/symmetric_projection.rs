@@ -1,6 +1,6 @@
 //! A symmetric map between two equal shifts, which return it to the energy and the |m| that it began with.
 
-use super::{Claimed, Claims, Cost, Energy, FreePart, Kept, Map, Method};
+use super::{Claimed, Claims, Cost, Energy, FreePart, Kept, Map, Method, Symmetric};
 use crate::body::{Field, Point, Problem, Rotor, Time};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
@@ -41,6 +41,8 @@ impl<A: FreePart> SymmetricProjection<A> {
         SymmetricProjection { base }
     }
 }
+
+impl<A: FreePart> Symmetric for SymmetricProjection<A> {}
 
 impl<A: FreePart> Claimed for SymmetricProjection<A> {
     fn name(&self) -> String {

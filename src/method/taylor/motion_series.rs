@@ -3,6 +3,7 @@
 use core::array::from_fn;
 
 use crate::body::{Field, Gyroscopic, Phase, Point, Rotor, Time, vertical};
+use crate::method::length::length;
 use crate::num::{Dd, Real, Series};
 use crate::rotation::{Quat, Vec3};
 
@@ -196,12 +197,12 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
     /// the momentum relative to |m|, from rest to its first change. Rounded down to eleven bits, so that rounding, which
     /// depends on the axes of space, does not change it.
     pub(super) fn reach(&self, tolerance: f64) -> f64 {
-        let momentum = |n: usize| size(&self.momentum[n].components());
+        let momentum = |n: usize| length(self.momentum[n].components());
         let moving = (0..self.order).find(|&n| momentum(n) != 0.0).unwrap_or(0);
         let allowed = tolerance * momentum(moving);
         let mut reach = f64::INFINITY;
         for n in [self.order - 1, self.order] {
-            let of_attitude = (tolerance / size(&self.attitude[n].components), n);
+            let of_attitude = (tolerance / length(self.attitude[n].components), n);
             let last = momentum(n);
             let bounds = moving < n && last != 0.0;
             let terms = [of_attitude, if bounds { (allowed / last, n - moving) } else { of_attitude }];
@@ -223,20 +224,6 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
 /// `x^(1/n)`; infinite for the quotient of a number and 0.
 fn root(x: f64, n: usize) -> f64 {
     libm::exp(libm::log(x) / n as f64)
-}
-
-/// The Euclidean length, which turns of space leave as it is.
-fn size<S: Real>(components: &[S]) -> f64 {
-    let length = |unit: f64| {
-        let squares = components.iter().map(|c| c.magnitude() / unit).fold(0.0, |sum, c| sum + c * c);
-        squares.sqrt() * unit
-    };
-    let plain = length(1.0);
-    if (1e-140..1e140).contains(&plain) {
-        return plain;
-    }
-    let largest = components.iter().map(|c| c.magnitude()).fold(0.0, f64::max);
-    if largest == 0.0 { plain } else { length(largest) }
 }
 
 /// The smaller of the two; NaN if one is NaN.
