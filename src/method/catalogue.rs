@@ -193,7 +193,8 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
 /// Bases that choose their steps by a tolerance, which is their argument, as in `dop853:1e-12`.
 pub const ADAPTIVE: [&str; 3] = ["taylor", "dop853", "tsit5"];
 
-/// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in `lie-poisson:321@kahan-li-8`.
+/// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in
+/// `lie-poisson:321@kahan-li-8`.
 ///
 /// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
 /// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance, `dop853`

@@ -10,10 +10,10 @@ use crate::rotation::{Quat, Vec3};
 /// Coefficients of attitude and momentum up to an order K, the time counted in a unit.
 ///
 /// With `m = Σ m_n`, `q = Σ q_n` and the unit u: `(n + 1) m_{n+1} = u (Σ m_k × I⁻¹m_{n−k} + τ_n)` and
-/// `2 (n + 1) q_{n+1} = u Σ q_k ∘ I⁻¹m_{n−k}`, k ≤ n. The first sum is taken as `D_i Σ (m_k)_j (m_{n−k})_l`, `D_i = 1/I_l − 1/I_j`,
-/// as its products cancel along the axis of a rod. Of uniform gravity τ_n is `Γ_n × c`, with
-/// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; of all other forces it is the coefficient n of their law, evaluated on the
-/// series so far, anew for each n. The unit is a power of two, so that it costs no rounding.
+/// `2 (n + 1) q_{n+1} = u Σ q_k ∘ I⁻¹m_{n−k}`, k ≤ n. The first sum is taken as `D_i Σ (m_k)_j (m_{n−k})_l`,
+/// `D_i = 1/I_l − 1/I_j`, as its products cancel along the axis of a rod. Of uniform gravity τ_n is `Γ_n × c`, with
+/// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; of all other forces it is the coefficient n of their law, evaluated on the series
+/// so far, anew for each n. The unit is a power of two, so that it costs no rounding.
 #[derive(Clone, Debug)]
 pub(super) struct MotionSeries<S, F> {
     order: usize,
