@@ -1,11 +1,12 @@
-//! Imports obey the order of the layers: num ← rotation ← inertia ← body ← flow ← observe ← method ← run.
+//! Imports obey the order of the layers: num ← rotation ← inertia ← body ← flow ← observe ← method ← run ←
+//! advise.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const ORDER: [&str; 8] = ["num", "rotation", "inertia", "body", "flow", "observe", "method", "run"];
+const ORDER: [&str; 9] = ["num", "rotation", "inertia", "body", "flow", "observe", "method", "run", "advise"];
 
 /// The layers that code in `layer` may name.
 fn allowed(layer: &str) -> Vec<&'static str> {

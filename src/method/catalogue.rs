@@ -8,7 +8,8 @@ use super::{
     AdaptiveTaylor, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, Dop853, DormandPrince853, Embedded,
     ExactFlow, ExactStep, ExplicitEuler, FreePart, Gauss, ImplicitMidpoint, Kicks, LieGroup, LieNewmark,
     Method, MomentumEuler, MujocoRk4, Pair, PreprocessedDmv, ProjectedRk4, Richardson, Rk4, Rk8, SchemeError,
-    SemiImplicitEuler, Splitting, Step, Taylor, Tsit5, Tsitouras54, TwoAxes, TwoTurn,
+    SemiImplicitEuler, Splitting, Step, Symmetric, SymmetricProjection, Taylor, Tsit5, Tsitouras54, TwoAxes,
+    TwoTurn, VariationalCayley,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -180,17 +181,20 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
         Box::new(LieGroup::COMMUTATOR_FREE_4),
         Box::new(LieGroup::CROUCH_GROSSMAN_3),
         Box::new(MomentumEuler),
-        Box::new(Buss),
+        Box::new(Buss { augmented: false }),
+        Box::new(Buss { augmented: true }),
         Box::new(Richardson),
         Box::new(MujocoRk4),
         Box::new(LieNewmark),
+        Box::new(Splitting::strang(VariationalCayley, Kicks)),
     ]
 }
 
 /// Bases that choose their steps by a tolerance, which is their argument, as in `dop853:1e-12`.
 pub const ADAPTIVE: [&str; 3] = ["taylor", "dop853", "tsit5"];
 
-/// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in `lie-poisson:321@kahan-li-8`.
+/// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in
+/// `lie-poisson:321@kahan-li-8`.
 ///
 /// Bases are those of the [catalogue], schemes those of [`schemes::ALL`](super::schemes::ALL). `lie-poisson` takes an
 /// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance, `dop853`
@@ -219,10 +223,7 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         "semi-implicit-euler" => plain(SemiImplicitEuler, asked.scheme_alone()?),
         "rk4" => plain(Rk4 { normalized: false }, asked.scheme_alone()?),
         "rk4-normalized" => plain(Rk4 { normalized: true }, asked.scheme_alone()?),
-        "implicit-midpoint" => Ok(match asked.scheme_alone()? {
-            Some(scheme) if scheme != STRANG => Box::new(Composed::new(ImplicitMidpoint, scheme)?),
-            _ => Box::new(ImplicitMidpoint),
-        }),
+        "implicit-midpoint" => composed(ImplicitMidpoint, asked.scheme_alone()?),
         "rattle" => kicked(Dmv, asked.scheme_alone()?),
         "dmv" => {
             let chosen = asked.scheme()?;
@@ -262,13 +263,18 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
                 _ => Err(asked.refused("an order 2, 4, 6 or 8, such as gauss:6, and no scheme")),
             }
         }
+        "variational-cayley" => kicked(VariationalCayley, asked.scheme_alone()?),
         "rkmk4" => plain(LieGroup::RKMK_4, asked.scheme_alone()?),
         "commutator-free-4" => plain(LieGroup::COMMUTATOR_FREE_4, asked.scheme_alone()?),
         "crouch-grossman-3" => plain(LieGroup::CROUCH_GROSSMAN_3, asked.scheme_alone()?),
         "momentum-euler" => plain(MomentumEuler, asked.scheme_alone()?),
-        "buss-2" => plain(Buss, asked.scheme_alone()?),
+        "buss-2" => plain(Buss { augmented: false }, asked.scheme_alone()?),
+        "buss-2-augmented" => plain(Buss { augmented: true }, asked.scheme_alone()?),
         "mujoco-rk4" => plain(MujocoRk4, asked.scheme_alone()?),
         "lie-newmark" => plain(LieNewmark, asked.scheme_alone()?),
+        "lie-poisson-projected" => {
+            composed(SymmetricProjection::new(AxisSplit { axes: None }), asked.scheme_alone()?)
+        }
         "rk4-projected" => plain(ProjectedRk4, asked.scheme_alone()?),
         "richardson" => plain(Richardson, asked.scheme_alone()?),
         "taylor" => {
@@ -347,6 +353,16 @@ fn plain(
         Some(scheme) => Err(SchemeError::NotSymmetric { scheme: scheme.name, base: method.name() }.into()),
         None => Ok(Box::new(method)),
     }
+}
+
+fn composed<M>(base: M, chosen: Option<Scheme>) -> Result<Box<dyn AnyMethod>, UnknownMethod>
+where
+    M: Symmetric + Claimed + Method<f64> + Method<Dd> + 'static,
+{
+    Ok(match chosen {
+        Some(scheme) if scheme != STRANG => Box::new(Composed::new(base, scheme)?),
+        _ => Box::new(base),
+    })
 }
 
 fn kicked<A>(free: A, chosen: Option<Scheme>) -> Result<Box<dyn AnyMethod>, UnknownMethod>

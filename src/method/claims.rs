@@ -80,6 +80,18 @@ impl Kept {
         norm: false,
     };
 
+    /// L as far as `problem` conserves it, and |q|: what a map keeps that turns the body alone and adds impulses in space.
+    pub const fn momentum_alone(problem: Problem) -> Kept {
+        let free = matches!(problem, Problem::Free);
+        Kept {
+            momentum_norm: free,
+            momentum_space: free,
+            momentum_z: !matches!(problem, Problem::Torque),
+            norm: true,
+            ..Kept::NOTHING
+        }
+    }
+
     /// Everything that free motion conserves, the energy as `energy` says.
     pub const fn all_of_free_motion(energy: Energy) -> Kept {
         Kept { energy, momentum_norm: true, momentum_space: true, momentum_z: true, norm: true }

@@ -16,12 +16,14 @@ const RENEW_EVERY: u64 = 64;
 /// discrete Moser–Veselov map, whose s and d are constants of that orbit too. No iteration, no sine: three divisions and
 /// two square roots a step. The energy and |m| are restored at each step.
 ///
-/// In every 64th step counted from the start, and in each one that turns the body by more than 1.25 rad, the point is
-/// that of the closed form ([`FreeMotion`](crate::flow::FreeMotion)), in `f64` good to 2e-15 at any time; so too in each step of a
-/// turn about a fixed axis and where k'² < 1e-4, next to the separatrix. So the error does not grow, with either number of steps or time.
+/// In every 64th step counted from the start, and in each one that turns the body by more than 1.25 rad, the point is that of
+/// the closed form ([`FreeMotion`](crate::flow::FreeMotion)), in `f64` good to 2e-15 at any time; so too in each step of a turn
+/// about a fixed axis and where k'² < 1e-4, next to the separatrix. So the error does not grow, with either number of steps or
+/// time.
 ///
 /// Reference: DLMF 22.8 for the addition theorem; Moser and Veselov, Commun. Math. Phys. 139 (1991) 217, and Hairer and
-/// Vilmart, J. Phys. A 39 (2006) 13225, for the map that is exact with other constants. We found no earlier use of the two together.
+/// Vilmart, J. Phys. A 39 (2006) 13225, for the map that is exact with other constants. We found no earlier use of the two
+/// together.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};

@@ -8,10 +8,10 @@ use crate::rotation::Vec3;
 
 /// Euler's step of the momentum, brought back to its length, and a turn by the new angular velocity.
 ///
-/// Φ_h: `m₁ = (m + h m × I⁻¹m) |m|/|m + h m × I⁻¹m|`, `m' = m₁ + h τ`, `q' = q ∘ exp(h I⁻¹m')`: the gyroscopic force of Jolt Physics
-/// (MotionProperties::ApplyGyroscopicForceInternal), which Avian takes too, before torque and turn. Keeps |m| of free motion. Each step
-/// leaves the curve of constant energy on the sphere |m| outwards, away from the axes of the smallest and of the largest moment, so that
-/// every motion ends next to the separatrix, with the energy |m|²/(2 I₂).
+/// Φ_h: `m₁ = (m + h m × I⁻¹m) |m|/|m + h m × I⁻¹m|`, `m' = m₁ + h τ`, `q' = q ∘ exp(h I⁻¹m')`: the gyroscopic force of Jolt
+/// Physics (MotionProperties::ApplyGyroscopicForceInternal), which Avian takes too, before torque and turn. Keeps |m| of free
+/// motion. Each step leaves the curve of constant energy on the sphere |m| outwards, away from the axes of the smallest and of
+/// the largest moment, so that every motion ends next to the separatrix, with the energy |m|²/(2 I₂).
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};

@@ -9,11 +9,12 @@ use crate::rotation::Vec3;
 
 /// The explicit Newmark method on SO(3), γ = ½ and β = 0, with the Cayley map.
 ///
-/// Φ_h: `m_½ = m + h/2 (m × I⁻¹m + τ)`, `q' = q ∘ cay(h/2 I⁻¹m_½)`, `m' = m_½ + h/2 (m' × I⁻¹m' + τ')`: one torque a step, explicit but for
-/// the last equation, of three unknowns (Simo and Vu-Quoc, Comput. Methods Appl. Mech. Eng. 66 (1988) 125; Krysl and Endres, Int. J. Numer. Methods
-/// Eng. 62 (2005) 2154). Symmetric where the torque does not depend on ω, which is foretold at the end of the step; neither variational nor
-/// symplectic, and in general potentials the energy drifts (Bou-Rabee, Ortolan and Saccon, arXiv:1005.3078). In free motion m follows the
-/// trapezoidal rule, which is conjugate to the implicit midpoint rule: the energy stays within O(h²), and under uniform gravity no drift is seen.
+/// Φ_h: `m_½ = m + h/2 (m × I⁻¹m + τ)`, `q' = q ∘ cay(h/2 I⁻¹m_½)`, `m' = m_½ + h/2 (m' × I⁻¹m' + τ')`: one torque a step,
+/// explicit but for the last equation, of three unknowns (Simo and Vu-Quoc, Comput. Methods Appl. Mech. Eng. 66 (1988) 125;
+/// Krysl and Endres, Int. J. Numer. Methods Eng. 62 (2005) 2154). Symmetric where the torque does not depend on ω, which is
+/// foretold at the end of the step; neither variational nor symplectic, and in general potentials the energy drifts (Bou-Rabee,
+/// Ortolan and Saccon, arXiv:1005.3078). In free motion m follows the trapezoidal rule, which is conjugate to the implicit
+/// midpoint rule: the energy stays within O(h²), and under uniform gravity no drift is seen.
 ///
 /// ```
 /// use polhode::body::Problem;

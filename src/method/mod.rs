@@ -16,6 +16,7 @@ mod exponential;
 mod game_engine;
 mod implicit_midpoint;
 mod kicks;
+mod length;
 mod lie_group;
 mod lie_newmark;
 mod map;
@@ -30,9 +31,11 @@ pub mod schemes;
 mod single_turn;
 mod splitting;
 mod stagnation;
+mod symmetric_projection;
 mod taylor;
 mod turns;
 mod two_turn;
+mod variational_cayley;
 
 pub use axis_order::{AxisOrder, AxisOrderError};
 pub use axis_split::AxisSplit;
@@ -59,8 +62,10 @@ pub use richardson::{Richardson, RichardsonMap};
 pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
 pub use single_turn::{Buss, BussMap};
 pub use splitting::{FreePart, SchemeError, Splitting};
+pub use symmetric_projection::{SymmetricProjection, SymmetricProjectionMap};
 pub use taylor::{AdaptiveTaylor, AdaptiveTaylorMap, Taylor, TaylorError, TaylorMap};
 pub use two_turn::{TwoAxes, TwoAxesError, TwoTurn};
+pub use variational_cayley::{VariationalCayley, VariationalCayleyMap};
 
 /// Turns about the principal axes, with [kicks](Kicks) around them.
 pub type LiePoisson = Splitting<AxisSplit, Kicks>;

@@ -11,10 +11,10 @@ const ITERATIONS: u32 = 20;
 
 /// The classical Runge–Kutta method with standard projection onto energy and |m|, of free motion.
 ///
-/// Φ_h: m̃ and q' by [`Rk4`] with |q| brought back to 1, then `m' = m̃ + λ₁ I⁻¹m̃ + λ₂ m̃` with the energy and |m| of m, by simplified Newton
-/// iteration (Hairer, Lubich and Wanner, Geometric Numerical Integration, algorithm IV.4.2). Where I⁻¹m is parallel to m, next to a turn about a
-/// principal axis, the two conditions are one, and only |m| is restored. Keeps energy and |m|, and yet is neither symmetric nor Poisson, and
-/// loses L: conservation is not accuracy.
+/// Φ_h: m̃ and q' by [`Rk4`] with |q| brought back to 1, then `m' = m̃ + λ₁ I⁻¹m̃ + λ₂ m̃` with the energy and |m| of m, by
+/// simplified Newton iteration (Hairer, Lubich and Wanner, Geometric Numerical Integration, algorithm IV.4.2). Where I⁻¹m is
+/// parallel to m, next to a turn about a principal axis, the two conditions are one, and only |m| is restored. Keeps |m| and
+/// the energy, and yet is neither symmetric nor Poisson, and loses L: conservation is not accuracy.
 ///
 /// ```
 /// use polhode::body::{Body, Conserved};

@@ -8,9 +8,10 @@ use crate::rotation::{Quat, Vec3};
 
 /// Richardson's extrapolation of Euler's step of the attitude, L constant, as LAMMPS takes it (fix nve/asphere, fix rigid).
 ///
-/// Φ_h: half a kick; then, with n(q) = q/|q| and ω in space, `q_f = n(q + h/2 ω q)`, `q_h = n(q + h/4 ω q)`, `q_h' = n(q_h + h/4 ω_h q_h)`
-/// with ω_h of the attitude q_h and the same L, `q' = n(2 q_h' − q_f)`; then half a kick at q'. Keeps L in free motion; the energy drifts.
-/// `MathExtra::richardson` of LAMMPS (Thompson et al., Comput. Phys. Commun. 271 (2022) 108171).
+/// Φ_h: half a kick; then, with n(q) = q/|q| and ω in space, `q_f = n(q + h/2 ω q)`, `q_h = n(q + h/4 ω q)`,
+/// `q_h' = n(q_h + h/4 ω_h q_h)` with ω_h of the attitude q_h and the same L, `q' = n(2 q_h' − q_f)`; then half a kick at q'.
+/// Keeps L in free motion; the energy drifts. `MathExtra::richardson` of LAMMPS (Thompson et al., Comput. Phys. Commun. 271
+/// (2022) 108171).
 ///
 /// ```
 /// use polhode::body::Problem;

@@ -184,9 +184,9 @@ impl Run {
     /// Advances to `steps` steps from the start and samples the run there.
     ///
     /// # Errors
-    /// [`RunError::Diverged`], [`RunError::Force`] and [`RunError::Stuck`] with the last finite sample; [`RunError::Unsolved`] with the sample at
-    /// which it was noticed, up to 4096 steps after the step that failed; [`RunError::OutOfRange`];
-    /// [`RunError::Behind`] where the run is further on already.
+    /// [`RunError::Diverged`], [`RunError::Force`] and [`RunError::Stuck`] with the last finite sample;
+    /// [`RunError::Unsolved`] with the sample at which it was noticed, up to 4096 steps after the step that failed;
+    /// [`RunError::OutOfRange`]; [`RunError::Behind`] where the run is further on already.
     pub fn advance_to(&mut self, steps: u64) -> Result<Sample, RunError> {
         let taken = self.point.steps();
         if steps < taken {

@@ -9,7 +9,7 @@ use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, catalo
 use polhode::observe::secular_drift;
 use polhode::run::Run;
 
-use super::followed::{Followed, attitude_error, follow, scatter};
+use super::followed::{Effort, Followed, attitude_error, follow, scatter};
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::table::{Cell, Column, Table, row};
@@ -63,7 +63,7 @@ fn caption(steps: u64) -> String {
 }
 
 fn columns() -> Vec<Column> {
-    vec![
+    let mut columns = vec![
         Column::new("body", "", "name in the catalogue of bodies"),
         Column::new("method", "", "name in the catalogue of methods"),
         Column::new("h", "s", "step").latex("$h$").digits(2),
@@ -88,7 +88,9 @@ fn columns() -> Vec<Column> {
         Column::new("flips_right", "", "whether they agree").heading("flips").latex("flips"),
         Column::new("status", "", "ok, diverged (the row holds the last finite state) or unsolved"),
         Column::new("time_reached", "s", "time of the row").hidden(),
-    ]
+    ];
+    columns.extend(Effort::columns());
+    columns
 }
 
 /// 0.01 s for the textbook body, whose figures others have published; elsewhere powers of two of about a tenth and
@@ -128,6 +130,7 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
     let angles: Vec<f64> = times.iter().map(|t| t * speed).collect();
     let slope = secular_drift(&angles, &energy_changes).filter(|_| status == "ok");
     let flips = exact.flips(last.elapsed);
+    let effort = Effort::of(&run, method, Problem::Free, last.steps);
     Ok(row![
         named.name,
         method.name(),
@@ -151,6 +154,8 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
         },
         status,
         last.elapsed.hi(),
+        effort.evaluations,
+        effort.rejected,
     ]
     .to_vec())
 }

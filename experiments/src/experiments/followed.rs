@@ -1,14 +1,14 @@
 //! What experiments that follow runs share: a run to its end, wherever that is, its attitude error, and the figure.
 
 use polhode::body::{Point, Problem};
-use polhode::method::catalogue;
+use polhode::method::{Claimed, catalogue};
 use polhode::num::Dd;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Sample, Schedule};
 
 use crate::error::{Error, unexpected};
 use crate::figure::{Figure, Series};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Column, Table};
 
 /// Looks at the energy for its secular slope.
 const LOOKS: u64 = 512;
@@ -40,6 +40,44 @@ pub(super) fn follow(run: &mut Run, steps: u64) -> Result<Followed, Error> {
         seen.energy_changes.push(seen.last.energy_change);
     }
     Ok(seen)
+}
+
+/// What a run has cost.
+pub(super) struct Effort {
+    /// Evaluations of the right-hand side: those that a method counts that chooses its steps, else as many for each step as the
+    /// method claims. `None` where a step is made of other work.
+    pub(super) evaluations: Option<u64>,
+    /// Steps that were tried and rejected; `None` where steps are as given.
+    pub(super) rejected: Option<u64>,
+}
+
+impl Effort {
+    /// Of `steps` steps of `method`, taken by `run`.
+    pub(super) fn of(run: &Run, method: &(impl Claimed + ?Sized), problem: Problem, steps: u64) -> Self {
+        match run.work() {
+            Some(work) => Effort { evaluations: Some(work.evaluations), rejected: Some(work.rejected) },
+            None => Effort { evaluations: claimed_evaluations(method, problem, steps), rejected: None },
+        }
+    }
+
+    pub(super) fn columns() -> [Column; 2] {
+        let evaluations = "evaluations of the right-hand side; empty where a step is made of other work";
+        [
+            Column::new("evaluations", "", evaluations).hidden(),
+            Column::new("rejected_steps", "", "steps tried and rejected; empty where steps are as given")
+                .hidden(),
+        ]
+    }
+}
+
+/// Evaluations of the right-hand side in `steps` steps, where nothing else is evaluated or solved.
+pub(super) fn claimed_evaluations(
+    method: &(impl Claimed + ?Sized),
+    problem: Problem,
+    steps: u64,
+) -> Option<u64> {
+    let cost = method.claims(problem)?.cost;
+    (cost.right_sides > 0).then(|| u64::from(cost.right_sides) * steps)
 }
 
 /// Angle between the attitude of a sample and that of the exact motion at its time, rad.

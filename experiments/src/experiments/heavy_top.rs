@@ -8,7 +8,7 @@ use polhode::method::{AnyMethod, catalogue};
 use polhode::observe::secular_drift;
 use polhode::run::Run;
 
-use super::followed::{Followed, attitude_error, follow, scatter};
+use super::followed::{Effort, Followed, attitude_error, follow, scatter};
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::table::{Cell, Column, Table, row};
@@ -43,7 +43,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
 }
 
 fn columns() -> Vec<Column> {
-    vec![
+    let mut columns = vec![
         Column::new("top", "", "name in the catalogue of tops"),
         Column::new("method", "", "name in the catalogue of methods"),
         Column::new("h", "s", "step").latex("$h$").digits(2),
@@ -64,7 +64,9 @@ fn columns() -> Vec<Column> {
             .digits(2),
         Column::new("status", "", "ok, diverged (the row holds the last finite state) or unsolved"),
         Column::new("time_reached", "s", "time of the row").hidden(),
-    ]
+    ];
+    columns.extend(Effort::columns());
+    columns
 }
 
 /// A power of two near `angle` rad per step, so that the times are exact.
@@ -90,6 +92,7 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
     let Followed { last, status, times, energy_changes } = follow(&mut run, steps)?;
     let attitude = exact.map(|exact| attitude_error(&last, &exact.point_at_dd(last.elapsed)));
     let slope = secular_drift(&times, &energy_changes);
+    let effort = Effort::of(&run, method, Problem::Gravity, last.steps);
     Ok(row![
         top.name,
         method.name(),
@@ -102,6 +105,8 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
         slope.map(|d| d.half_width),
         status,
         last.elapsed.hi(),
+        effort.evaluations,
+        effort.rejected,
     ]
     .to_vec())
 }

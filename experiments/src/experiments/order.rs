@@ -5,6 +5,7 @@ use polhode::catalogue;
 use polhode::method::{AnyMethod, catalogue};
 use polhode::run::{Halving, halvings};
 
+use super::followed::claimed_evaluations;
 use crate::error::Error;
 use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series};
@@ -38,6 +39,11 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         vec![
             Column::new("method", "", "name in the catalogue"),
             Column::new("h", "s", "step").latex("$h$"),
+            Column::new(
+                "evaluations",
+                "",
+                "evaluations of the right-hand side; empty where a step is made of other work",
+            ),
             Column::new("attitude_error", "rad", "angle between computed and exact attitude")
                 .heading("attitude"),
             Column::new("attitude_order", "", "log2 of the ratio to the error at twice the step")
@@ -75,7 +81,16 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             if now.attitude_error.min(now.momentum_error) > FLOOR {
                 last = found;
             }
-            errors.push(row![method.name(), now.h, now.attitude_error, found.0, now.momentum_error, found.1]);
+            let evaluations = claimed_evaluations(&method, Problem::Free, (SPAN / now.h) as u64);
+            errors.push(row![
+                method.name(),
+                now.h,
+                evaluations,
+                now.attitude_error,
+                found.0,
+                now.momentum_error,
+                found.1,
+            ]);
         }
         orders.push(row![method.name(), order(&method).map(u64::from), last.0, last.1]);
         figure

@@ -13,9 +13,9 @@ use crate::rotation::Vec3;
 
 /// Gauss–Legendre collocation of order 2, 4, 6 or 8, of one stage for each two orders.
 ///
-/// Φ_h: `x' = x + Σ_i l_i` with `l_i = h b_i f(x_i)`, `x_i = x + Σ_j μ_ij l_j`, `μ_ij = a_ij/b_j`, for x = (m, q), m' = m × I⁻¹m + τ
-/// and q' = ½ q ∘ (0, I⁻¹m); the nodes of the stages are the roots of Legendre's polynomial (Kuntzmann 1961; Butcher, Math. Comp. 18
-/// (1964) 50; Hairer, Lubich and Wanner, Geometric Numerical Integration, II.1.3).
+/// Φ_h: `x' = x + Σ_i l_i` with `l_i = h b_i f(x_i)`, `x_i = x + Σ_j μ_ij l_j`, `μ_ij = a_ij/b_j`, for x = (m, q), m' = m ×
+/// I⁻¹m + τ and q' = ½ q ∘ (0, I⁻¹m); the nodes of the stages are the roots of Legendre's polynomial (Kuntzmann 1961; Butcher,
+/// Math. Comp. 18 (1964) 50; Hairer, Lubich and Wanner, Geometric Numerical Integration, II.1.3).
 ///
 /// Keeps every quadratic invariant of (m, q), as μ_ij + μ_ji = 1 (Cooper, IMA J. Numer. Anal. 7 (1987) 1): energy, |m| and |q| in
 /// free motion, energy and |q| under gravity, as the vertical in the body is quadratic in q. L is cubic: its error is that of the

@@ -5,6 +5,7 @@ use core::marker::PhantomData;
 use super::pair::{LEAST_ESTIMATE, Pair, RATES, Stage, sum};
 use crate::body::{Field, Phase, Point, Rotor, Time};
 use crate::method::Map;
+use crate::method::length::length;
 use crate::method::map::{Stuck, Work};
 use crate::method::runge_kutta::Equations;
 use crate::num::{Dd, Real};
@@ -249,7 +250,7 @@ impl Next {
 impl Allowed {
     /// In a step from `x` to `y`. A momentum of zero at both allows any error: there is none.
     fn of<S: Real>(tolerance: f64, x: &Phase<S>, y: &Phase<S>) -> Self {
-        let sizes = [x, y].map(|x| (size(x.momentum_body.0), size(x.attitude.components())));
+        let sizes = [x, y].map(|x| (length(x.momentum_body.0), length(x.attitude.components())));
         let inverse = |size: f64| if size == 0.0 { 0.0 } else { 1.0 / (tolerance * size) };
         // f64::max would drop a NaN, and with a NaN in y the estimate is none either
         let largest = |a: f64, b: f64| if a > b { a } else { b };
@@ -272,22 +273,6 @@ impl Allowed {
         let vector = square(v[0], self.attitude) + square(v[1], self.attitude) + square(v[2], self.attitude);
         (momentum + square(w, self.attitude) + vector) * (1.0 / 7.0)
     }
-}
-
-/// Euclidean length, of numbers whose squares may leave the range of a double.
-fn size<S: Real, const N: usize>(x: [S; N]) -> f64 {
-    let x = x.map(S::magnitude);
-    let squares: f64 = x.iter().map(|x| x * x).sum();
-    if (1e-280..1e280).contains(&squares) {
-        return squares.sqrt();
-    }
-    let largest = x.iter().fold(0.0, |a: f64, &b| if b > a || b.is_nan() { b } else { a });
-    if largest == 0.0 {
-        return 0.0;
-    }
-    let unit = libm::scalbn(1.0, libm::ilogb(largest).clamp(-1000, 1000));
-    let squares: f64 = x.iter().map(|x| (x / unit) * (x / unit)).sum();
-    squares.sqrt() * unit
 }
 
 /// The first 24 bits of `x`: rounding, which depends on the axes of space, does not reach them.

@@ -29,11 +29,11 @@ const LOOSEST: f64 = 1e-3;
 /// An embedded Runge–Kutta pair with steps of its own by a tolerance: [`Dop853`] and [`Tsit5`].
 ///
 /// Φ_h: as many steps of the pair as it takes, the last of them by its dense output. A step is accepted where its error
-/// estimate is below 1 in the norm `|δ|² = (|δm|²/|m|² + |δq|²/|q|²)/(7 tolerance²)`, |m| and |q| the larger ones of its two ends:
-/// the mean square of seven numbers, each in units of what a mixed tolerance allows, so that no unit and no choice of axes
-/// counts. Steps are rounded down to 24 bits for the same reason. The first step is that of Hairer, Norsett and Wanner, Solving
-/// ODEs I, II.4, in the time in which the state changes by itself as unit; from rest without torque it is a microsecond, and a
-/// torque that begins and ends within a step of a body at rest goes unseen.
+/// estimate is below 1 in the norm `|δ|² = (|δm|²/|m|² + |δq|²/|q|²)/(7 tolerance²)`, |m| and |q| the larger ones of its two
+/// ends: the mean square of seven numbers, each in units of what a mixed tolerance allows, so that no unit and no choice of
+/// axes counts. Steps are rounded down to 24 bits for the same reason. The first step is that of Hairer, Norsett and Wanner,
+/// Solving ODEs I, II.4, in the time in which the state changes by itself as unit; from rest without torque it is a
+/// microsecond, and a torque that begins and ends within a step of a body at rest goes unseen.
 ///
 /// The step h of a run is only the interval of output: the steps of the pair do not depend on it. Sums are
 /// compensated. Nothing is kept, |q| neither. The cost that is claimed is that of an accepted step;

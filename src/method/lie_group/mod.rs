@@ -17,14 +17,7 @@ impl Claimed for LieGroup {
         self.name.into()
     }
     fn claims(&self, problem: Problem) -> Option<Claims> {
-        let free = problem == Problem::Free;
-        let kept = Kept {
-            momentum_norm: free,
-            momentum_space: free,
-            momentum_z: problem != Problem::Torque,
-            norm: true,
-            ..Kept::NOTHING
-        };
+        let kept = Kept::momentum_alone(problem);
         let turns = self.stages.iter().chain([&self.last]).map(|product| product.len() as u32).sum();
         let cost = Cost::right_sides(self.stages.len() as u32) + Cost::turns(turns);
         Some(Claims::new(Some(self.order), kept, cost, self.source))

@@ -9,9 +9,9 @@ use crate::rotation::Vec3;
 /// The classical Runge–Kutta method on the momentum in the body, and in the algebra on the attitude, as MuJoCo takes it.
 ///
 /// Φ_h: `m' = m + h/6 (f₁ + 2f₂ + 2f₃ + f₄)` with f_i = m_i × ω_i + τ; `q' = q ∘ exp(h/6 (k₁ + 2k₂ + 2k₃ + k₄))` with
-/// `k_i = ω_i + ½ u_i × ω_i + ¹⁄₁₂ u_i × (u_i × ω_i)`, u_i the turn of the stage: `u₂ = h/2 k₁`, `u₃ = h/2 k₂`, `u₄ = h k₃` (Munthe-Kaas,
-/// Appl. Numer. Math. 29 (1999) 115). Found from the motions that MuJoCo 4.0.0 computes, which it reproduces up to rounding (tests/programs.rs).
-/// Keeps |q|; [`LieGroup::RKMK_4`](super::LieGroup::RKMK_4) keeps L too.
+/// `k_i = ω_i + ½ u_i × ω_i + ¹⁄₁₂ u_i × (u_i × ω_i)`, u_i the turn of the stage: `u₂ = h/2 k₁`, `u₃ = h/2 k₂`, `u₄ = h k₃`
+/// (Munthe-Kaas, Appl. Numer. Math. 29 (1999) 115). Found from the motions that MuJoCo 4.0.0 computes, which it reproduces up
+/// to rounding (tests/programs.rs). Keeps |q|; [`LieGroup::RKMK_4`](super::LieGroup::RKMK_4) keeps L too.
 ///
 /// ```
 /// use polhode::body::Problem;

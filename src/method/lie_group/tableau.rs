@@ -39,9 +39,10 @@ impl Exponential {
 
 /// An explicit Runge–Kutta method on rotations and momenta in space.
 ///
-/// Φ_h: with the turns `k_i = h I⁻¹ Q_iᵀ L_i` of the stages `Q_i = Q Π exp(…)`, each exponential of a sum of turns before, the step is
-/// such a product too, and L' = τ in space is taken by the same weights. Without torque L is a constant, so that it is exact for every
-/// such method, and |m| and |q| with it; under a potential that the vertical leaves alone L_z is. The energy drifts.
+/// Φ_h: with the turns `k_i = h I⁻¹ Q_iᵀ L_i` of the stages `Q_i = Q Π exp(…)`, each exponential of a sum of turns before, the
+/// step is such a product too, and L' = τ in space is taken by the same weights. Without torque L is a constant, so that it is
+/// exact for every such method, and |m| and |q| with it; under a potential that the vertical leaves alone L_z is. The energy
+/// drifts.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};

@@ -1,7 +1,7 @@
 //! Schemes with force gradients: some of their kicks are those of the potential V − c h² τᵀI⁻¹τ, τ the torque.
 //!
-//! That term is a double bracket, `[V, [T, V]] = τᵀI⁻¹τ`, a function of the attitude alone, so that its kick is exact too. Without
-//! it no scheme of order above 2 has positive shares of both flows; with it these have order 4, and need fewer kicks.
+//! That term is a double bracket, `[V, [T, V]] = τᵀI⁻¹τ`, a function of the attitude alone, so that its kick is exact too.
+//! Without it no scheme of order above 2 has positive shares of both flows; with it these have order 4, and need fewer kicks.
 
 use super::{Part, Scheme, Stages};
 use crate::num::Dd;

@@ -6,9 +6,9 @@
 //! processed      Φ_h = P⁻¹ ∘ K_h ∘ P, so that Φ_hⁿ = P⁻¹ ∘ K_hⁿ ∘ P          K, P of the former two kinds
 //! ```
 //!
-//! Compositions and alternating schemes read the same from both ends, so Φ_h is symmetric, Φ_{−h} Φ_h = 1, and its order is even. The
-//! constants hold the first half. What closes it follows: 1 − 2Σ in the centre of an odd number of lengths, ½ − Σ
-//! on either side of the middle of an even number. Coefficients are multiples of 2⁻¹⁰⁴: so their sums are exact in
+//! Compositions and alternating schemes read the same from both ends, so Φ_h is symmetric, Φ_{−h} Φ_h = 1, and its order is
+//! even. The constants hold the first half. What closes it follows: 1 − 2Σ in the centre of an odd number of lengths, ½ − Σ on
+//! either side of the middle of an even number. Coefficients are multiples of 2⁻¹⁰⁴: so their sums are exact in
 //! [`Dd`], and the lengths of a step add up to 1 without rounding.
 
 mod alternating;

@@ -1,7 +1,7 @@
 //! Processed schemes: a kernel between a processor and its inverse, which are taken once each, however many steps there are.
 //!
-//! The kernels have fewer stages or smaller errors than any composition of their order, because only those conditions bind
-//! them that no change of variables can satisfy; the processor is that change. The digits are those of the source brought to 30 by
+//! The kernels have fewer stages or smaller errors than any composition of their order, because only those conditions bind them
+//! that no change of variables can satisfy; the processor is that change. The digits are those of the source brought to 30 by
 //! Newton's method on the conditions of order, in tests/data/schemes/processed.py.
 
 use super::{Pairs, Scheme, Stages};

@@ -3,7 +3,7 @@
 use super::motion_series::MotionSeries;
 use super::{LOOSEST, SOURCE, TaylorError, add_change, unit};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::{Claimed, Claims, Cost, Kept, Map, Method};
+use crate::method::{Claimed, Claims, Cost, Kept, Map, Method, Work};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
@@ -85,6 +85,7 @@ impl<S: Real> Method<S> for AdaptiveTaylor {
             series: MotionSeries::new(AdaptiveTaylor::order(tolerance), rotor, field),
             base: Dd::ZERO,
             current: None,
+            work: Work::default(),
         }
     }
 }
@@ -100,6 +101,7 @@ pub struct AdaptiveTaylorMap<S, F> {
     base: Dd,
     /// The series, once it is worked out.
     current: Option<Current>,
+    work: Work,
 }
 
 /// The unit that the current series counts, s, with the sign of h, and for how many units it is used.
@@ -127,6 +129,7 @@ impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
         self.series.expand(at.at_elapsed(self.base, unit), unit, x, others);
         let current = Current { unit, reach: self.series.reach(self.tolerance) };
         self.current = Some(current);
+        self.work.evaluations += self.series.order() as u64;
         current
     }
 }
@@ -158,6 +161,7 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
             add_change(&self.series, S::of(reach), x);
             x.renormalize();
             self.restart(next);
+            self.work.accepted += 1;
         }
     }
 
@@ -167,6 +171,11 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
             let unit = self.expanded(at, x).unit;
             add_change(&self.series, S::from_dd(elapsed * (1.0 / unit)), x);
         }
+    }
+
+    /// A series of the order K counts as K evaluations; no step is rejected.
+    fn work(&self) -> Option<Work> {
+        Some(self.work)
     }
 
     fn memory(&self) -> Vec<f64> {

@@ -3,16 +3,17 @@
 use core::array::from_fn;
 
 use crate::body::{Field, Gyroscopic, Phase, Point, Rotor, Time, vertical};
+use crate::method::length::length;
 use crate::num::{Dd, Real, Series};
 use crate::rotation::{Quat, Vec3};
 
 /// Coefficients of attitude and momentum up to an order K, the time counted in a unit.
 ///
 /// With `m = Σ m_n`, `q = Σ q_n` and the unit u: `(n + 1) m_{n+1} = u (Σ m_k × I⁻¹m_{n−k} + τ_n)` and
-/// `2 (n + 1) q_{n+1} = u Σ q_k ∘ I⁻¹m_{n−k}`, k ≤ n. The first sum is taken as `D_i Σ (m_k)_j (m_{n−k})_l`, `D_i = 1/I_l − 1/I_j`,
-/// as its products cancel along the axis of a rod. Of uniform gravity τ_n is `Γ_n × c`, with
-/// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; of all other forces it is the coefficient n of their law, evaluated on the
-/// series so far, anew for each n. The unit is a power of two, so that it costs no rounding.
+/// `2 (n + 1) q_{n+1} = u Σ q_k ∘ I⁻¹m_{n−k}`, k ≤ n. The first sum is taken as `D_i Σ (m_k)_j (m_{n−k})_l`,
+/// `D_i = 1/I_l − 1/I_j`, as its products cancel along the axis of a rod. Of uniform gravity τ_n is `Γ_n × c`, with
+/// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; of all other forces it is the coefficient n of their law, evaluated on the series
+/// so far, anew for each n. The unit is a power of two, so that it costs no rounding.
 #[derive(Clone, Debug)]
 pub(super) struct MotionSeries<S, F> {
     order: usize,
@@ -64,6 +65,11 @@ impl<S: Real> Spun<S> {
 }
 
 impl<S: Real, F: Field<S>> MotionSeries<S, F> {
+    /// The order K.
+    pub(super) fn order(&self) -> usize {
+        self.order
+    }
+
     pub(super) fn new(order: u32, rotor: &Rotor, field: &F) -> Self {
         let order = order as usize;
         MotionSeries {
@@ -191,12 +197,12 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
     /// the momentum relative to |m|, from rest to its first change. Rounded down to eleven bits, so that rounding, which
     /// depends on the axes of space, does not change it.
     pub(super) fn reach(&self, tolerance: f64) -> f64 {
-        let momentum = |n: usize| size(&self.momentum[n].components());
+        let momentum = |n: usize| length(self.momentum[n].components());
         let moving = (0..self.order).find(|&n| momentum(n) != 0.0).unwrap_or(0);
         let allowed = tolerance * momentum(moving);
         let mut reach = f64::INFINITY;
         for n in [self.order - 1, self.order] {
-            let of_attitude = (tolerance / size(&self.attitude[n].components), n);
+            let of_attitude = (tolerance / length(self.attitude[n].components), n);
             let last = momentum(n);
             let bounds = moving < n && last != 0.0;
             let terms = [of_attitude, if bounds { (allowed / last, n - moving) } else { of_attitude }];
@@ -218,20 +224,6 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
 /// `x^(1/n)`; infinite for the quotient of a number and 0.
 fn root(x: f64, n: usize) -> f64 {
     libm::exp(libm::log(x) / n as f64)
-}
-
-/// The Euclidean length, which turns of space leave as it is.
-fn size<S: Real>(components: &[S]) -> f64 {
-    let length = |unit: f64| {
-        let squares = components.iter().map(|c| c.magnitude() / unit).fold(0.0, |sum, c| sum + c * c);
-        squares.sqrt() * unit
-    };
-    let plain = length(1.0);
-    if (1e-140..1e140).contains(&plain) {
-        return plain;
-    }
-    let largest = components.iter().map(|c| c.magnitude()).fold(0.0, f64::max);
-    if largest == 0.0 { plain } else { length(largest) }
 }
 
 /// The smaller of the two; NaN if one is NaN.

@@ -91,8 +91,9 @@ fn hyperbolic<S: Precise>(u: S) -> (S, S, S) {
 
 /// (sn u, cn u, dn u) of any real argument, for a complementary parameter as in [`Modulus::new`].
 ///
-/// Everything is done in double-double, so in `f64` the results are right to the last place for |u| up to about
-/// 10¹², next to the zeros of cn too; they stay on the curve sn² + cn² = 1 at any u. Where one m1 serves many arguments, [`Modulus`] is many times faster.
+/// Everything is done in double-double, so in `f64` the results are right to the last place for |u| up to about 10¹², next to
+/// the zeros of cn too; they stay on the curve sn² + cn² = 1 at any u. Where one m1 serves many arguments, [`Modulus`] is many
+/// times faster.
 ///
 /// ```
 /// use polhode::num::elliptic::jacobi;

@@ -1,0 +1,154 @@
+//! What every method that chooses its steps has to do: output changes no bit, runs are taken up, no scale is special.
+
+#![allow(clippy::unwrap_used)]
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::body::{Body, Force, Potential, State, Time};
+use polhode::inertia::Inertia;
+use polhode::method::{ADAPTIVE, Claimed, method};
+use polhode::num::Real;
+use polhode::rotation::{Quat, Vec3};
+use polhode::run::{Run, Watch};
+
+fn free() -> (Body, State) {
+    started(Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap()), [0.4, 1.0, -0.3])
+}
+
+fn top() -> (Body, State) {
+    let inertia = Inertia::from_moments([1.0, 1.0, 0.25]).unwrap();
+    started(Body::heavy(inertia, [0.0, 0.0, 0.7].into()).unwrap(), [0.3, -0.2, 5.0])
+}
+
+/// A magnet along body z in a field along space x, on a body whose tensor is not diagonal.
+struct Magnet(f64);
+
+impl<S: Real> Potential<S> for Magnet {
+    fn energy(&self, _: Time, attitude: Quat<S>) -> S {
+        -(S::of(self.0) * attitude.rotate(Vec3::unit(2))[0])
+    }
+    fn torque(&self, _: Time, attitude: Quat<S>) -> Vec3<S> {
+        Vec3::unit(2).cross(attitude.rotate_back(Vec3::unit(0))) * S::of(self.0)
+    }
+}
+
+fn magnet() -> (Body, State) {
+    let tensor = Matrix3::new(1.0, 0.1, 0.2, 0.1, 2.0, 0.3, 0.2, 0.3, 2.5);
+    let body = Body::free(Inertia::from_tensor(tensor).unwrap());
+    started(body.with(Force::potential("magnet", Magnet(0.5))), [0.4, 1.0, -0.3])
+}
+
+fn satellite() -> (Body, State) {
+    let inertia = Inertia::from_moments([10.0, 25.0, 30.0]).unwrap();
+    let gradient = Force::gravity_gradient(&inertia, 0.001, 0.3).unwrap();
+    started(Body::free(inertia).with(gradient), [2e-4, -3e-4, 1.2e-3])
+}
+
+/// On from t = 3 to 4.5: steps are rejected at both ends.
+fn thruster() -> (Body, State) {
+    let (body, start) = free();
+    let push = |t: f64| Vector3::new(0.0, 0.0, if (3.0..4.5).contains(&t) { 0.5 } else { 0.0 });
+    (body.with(Force::torque_fn("thruster", move |t, _, _| push(t))), start)
+}
+
+fn started(body: Body, omega: [f64; 3]) -> (Body, State) {
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5);
+    let start = body.state(tilt, omega.into()).unwrap();
+    (body, start)
+}
+
+fn run(name: &str, (body, start): &(Body, State), h: f64) -> Run {
+    Run::new(&method(name).unwrap(), body, start, h).unwrap()
+}
+
+/// Every adaptive method with its usual tolerance and with a tight one, each with the motions that it is for.
+fn adaptive() -> Vec<(String, Vec<(Body, State)>)> {
+    let names = ADAPTIVE
+        .iter()
+        .flat_map(|base| [(*base).to_owned(), format!("{base}:1e-9"), format!("{base}:1e-12")]);
+    let with_cases = |name: String| {
+        let mut cases = vec![free(), top(), magnet(), satellite()];
+        if !method(&name).unwrap().needs_series() {
+            cases.push(thruster());
+        }
+        (name, cases)
+    };
+    names.map(with_cases).collect()
+}
+
+/// The state at t = 28, whatever the interval of output, and wherever it was read.
+#[test]
+fn neither_output_nor_reading_changes_a_bit() {
+    for (name, cases) in adaptive() {
+        for case in cases {
+            let at = |h: f64, steps: &[u64], watch: Watch| {
+                let mut run = run(&name, &case, h).watching(watch);
+                let samples: Vec<_> = steps.iter().map(|&n| run.advance_to(n).unwrap()).collect();
+                samples.last().unwrap().state
+            };
+            let expected = at(28.0, &[1], Watch::EveryStep);
+            for (h, steps) in [(28.0 / 1024.0, &[1024][..]), (3.5, &[1, 2, 5, 8]), (0.875, &[3, 4, 32])] {
+                for watch in [Watch::EveryStep, Watch::AtSamples, Watch::Never] {
+                    assert_eq!(at(h, steps, watch), expected, "{name} {h} {watch}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_run_is_taken_up_within_and_between_its_steps() {
+    for (name, cases) in adaptive() {
+        for case in cases {
+            for (h, taken) in [(0.01, 777), (5.0, 3)] {
+                let mut straight = run(&name, &case, h);
+                straight.advance_to(taken).unwrap();
+                let text = straight.checkpoint().to_string();
+                let mut resumed =
+                    Run::resume(&method(&name).unwrap(), &case.0, &text.parse().unwrap()).unwrap();
+                assert_eq!(resumed.sample().point, straight.sample().point, "{name}");
+                let (a, b) =
+                    (straight.advance_to(2 * taken).unwrap(), resumed.advance_to(2 * taken).unwrap());
+                assert_eq!((a.point, a.worst), (b.point, b.worst), "{name}");
+            }
+        }
+    }
+}
+
+/// Motions of any speed, on bodies of any size.
+#[test]
+fn speeds_and_sizes_at_the_ends_of_the_range_change_nothing_but_the_scale() {
+    for name in ADAPTIVE {
+        let turned = |size: f64, speed: f64| {
+            let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0].map(|i| i * size)).unwrap());
+            let case = started(body, [0.4, 1.0, -0.3].map(|w| w * speed));
+            run(name, &case, 64.0 / speed).advance_to(2).unwrap().state.attitude
+        };
+        let expected = turned(1.0, 1.0);
+        for (size, speed) in [(-150, 40), (110, -60), (0, 100), (0, -100)] {
+            let found = turned(libm::scalbn(1.0, size), libm::scalbn(1.0, speed));
+            assert_eq!(found, expected, "{name}: 2^{size}, 2^{speed}");
+        }
+    }
+}
+
+/// A method counts what it does; a map that is not asked for more does nothing.
+#[test]
+fn work_grows_with_the_steps_alone() {
+    for (name, cases) in adaptive() {
+        for case in cases {
+            let work = |h: f64, steps: u64| {
+                let mut run = run(&name, &case, h).watching(Watch::Never);
+                run.advance_to(steps).unwrap();
+                run.work().unwrap()
+            };
+            let (once, often) = (work(28.0, 1), work(28.0 / 64.0, 64));
+            assert_eq!((once.accepted, once.rejected), (often.accepted, often.rejected), "{name}");
+            assert!(once.evaluations > once.accepted, "{name}: {once:?}");
+            let cost = method(&name).unwrap().claims(case.0.problem()).unwrap().cost;
+            let claimed = u64::from(cost.right_sides) * (once.accepted + once.rejected);
+            // what the beginning, a rejected step and dense output take less or more
+            let apart = once.evaluations.abs_diff(claimed);
+            assert!(apart <= 8 + u64::from(cost.right_sides) + once.rejected, "{name}: {once:?}, {cost}");
+        }
+    }
+}
