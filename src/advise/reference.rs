@@ -10,7 +10,7 @@ use crate::num::Dd;
 use crate::rotation::{Vec3, rotation_angle};
 
 /// Most looks at a motion on the way to a horizon, at equal times: over shorter ways one in two radians.
-const MOST_LOOKS: f64 = 256.0;
+const MOST_LOOKS: f64 = 64.0;
 
 /// Steps that a run in double-double may take.
 const MOST_STEPS: f64 = 65_536.0;

@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod advise;
 mod experiment;
 mod fit;
 mod forces;
