@@ -9,7 +9,7 @@ use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, catalo
 use polhode::observe::secular_drift;
 use polhode::run::Run;
 
-use super::followed::{Effort, Followed, attitude_error, follow, scatter};
+use super::followed::{Effort, Followed, follow, scatter};
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::table::{Cell, Column, Table, row};
@@ -40,7 +40,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     for row in rows {
         drift.push(row?);
     }
-    let hidden = ["body", "status"];
+    let hidden = ["body"];
     for named in BODIES.iter().filter_map(|name| catalogue::body(name)) {
         let caption = format!("{}: {}.", named.name, named.summary);
         let name = format!("drift-{}", named.name);
@@ -86,7 +86,11 @@ fn columns() -> Vec<Column> {
         Column::new("flips", "", "changes of sign of the momentum along the middle axis").hidden(),
         Column::new("flips_exact", "", "the same of the exact motion").hidden(),
         Column::new("flips_right", "", "whether they agree").heading("flips").latex("flips"),
-        Column::new("status", "", "ok, diverged (the row holds the last finite state) or unsolved"),
+        Column::new(
+            "status",
+            "",
+            "ok; lost: the attitude was first seen more than 1 rad off; diverged or unsolved: the run ended",
+        ),
         Column::new("time_reached", "s", "time of the row").hidden(),
     ];
     columns.extend(Effort::columns());
@@ -125,10 +129,12 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
     let mut run = Run::new(method, &body, &start, h).map_err(unexpected)?;
     let exact = FreeMotion::from_point(body.inertia(), run.start().to_dd());
     let speed = nalgebra::Vector3::from(named.omega_body).norm();
-    let Followed { last, status, times, energy_changes } = follow(&mut run, steps)?;
-    let attitude = attitude_error(&last, &exact.point_at_dd(last.elapsed));
+    let motion = |elapsed| Some(exact.point_at_dd(elapsed));
+    let Followed { last, ending, attitude_error, times, energy_changes } = follow(&mut run, steps, motion)?;
+    // what a run that failed leaves behind is no error of the method
+    let of_whole = |error: Option<f64>| error.filter(|_| ending.is_whole());
     let angles: Vec<f64> = times.iter().map(|t| t * speed).collect();
-    let slope = secular_drift(&angles, &energy_changes).filter(|_| status == "ok");
+    let slope = secular_drift(&angles, &energy_changes).filter(|_| ending.is_whole());
     let flips = exact.flips(last.elapsed);
     let effort = Effort::of(&run, method, Problem::Free, last.steps);
     Ok(row![
@@ -137,22 +143,16 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
         h,
         h * speed,
         last.steps,
-        last.worst.energy,
-        last.worst.momentum_norm,
-        last.worst.momentum_vector,
-        attitude,
+        of_whole(last.worst.energy),
+        of_whole(last.worst.momentum_norm),
+        of_whole(last.worst.momentum_vector),
+        attitude_error,
         slope.map(|d| d.slope),
         slope.map(|d| d.half_width),
         last.flips,
         flips,
-        if status != "ok" {
-            status
-        } else if last.flips == Some(flips) {
-            "right"
-        } else {
-            "wrong"
-        },
-        status,
+        ending.is_whole().then_some(if last.flips == Some(flips) { "right" } else { "wrong" }),
+        ending.to_string(),
         last.elapsed.hi(),
         effort.evaluations,
         effort.rejected,

@@ -1,14 +1,15 @@
 //! What each method keeps of heavy tops, and how far its attitude is from the closed form.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use polhode::body::Problem;
+use polhode::body::{Body, Point, Problem};
 use polhode::catalogue::{self, NamedBody};
 use polhode::flow::{LagrangeError, LagrangeTop};
 use polhode::method::{AnyMethod, catalogue};
+use polhode::num::Dd;
 use polhode::observe::secular_drift;
 use polhode::run::Run;
 
-use super::followed::{Effort, Followed, attitude_error, follow, scatter};
+use super::followed::{Effort, Followed, follow, scatter};
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::table::{Cell, Column, Table, row};
@@ -51,6 +52,14 @@ fn columns() -> Vec<Column> {
         Column::new("energy_error", "", "max |E - E0| / (T0 + |c|) over every step, c the weight moment")
             .heading("energy")
             .digits(2),
+        Column::new(
+            "energy_error_exchanged",
+            "",
+            "max |E - E0| / (max U - min U), U the potential energy of the exact motion",
+        )
+        .heading("of exchanged")
+        .latex("$/\\Delta U$")
+        .digits(2),
         Column::new("momentum_z_error", "", "max |L_Z - L_Z0| over its largest possible value, every step")
             .heading("L_Z")
             .latex("$p_\\varphi$")
@@ -62,7 +71,11 @@ fn columns() -> Vec<Column> {
         Column::new("energy_slope_half_width", "1/s", "half width of its 95 % interval")
             .heading("±")
             .digits(2),
-        Column::new("status", "", "ok, diverged (the row holds the last finite state) or unsolved"),
+        Column::new(
+            "status",
+            "",
+            "ok; lost: the attitude was first seen more than 1 rad off; diverged or unsolved: the run ended",
+        ),
         Column::new("time_reached", "s", "time of the row").hidden(),
     ];
     columns.extend(Effort::columns());
@@ -78,6 +91,26 @@ fn step_size(top: &NamedBody, angle: f64) -> Result<f64, Error> {
     Ok(libm::exp2(libm::round(libm::log2(angle / fastest))))
 }
 
+/// max U − min U, J, of the exact motion at equal times up to `until`, s: as its energy is constant, that of its kinetic energy.
+fn exchanged_energy(body: &Body, exact: &LagrangeTop, until: f64) -> f64 {
+    const LOOKS: u32 = 256;
+    let kinetic = |k: u32| {
+        let x = exact.point_at_dd(Dd::from(until) * (f64::from(k) / f64::from(LOOKS)));
+        kinetic_energy(body, &x)
+    };
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for energy in (0..=LOOKS).map(kinetic) {
+        (least, most) = (least.min(energy), most.max(energy));
+    }
+    most - least
+}
+
+/// Kinetic energy of a point of the solver frame, J.
+fn kinetic_energy(body: &Body, x: &Point<Dd>) -> f64 {
+    let state = body.leave(x);
+    0.5 * body.omega_body(&state).dot(&state.momentum())
+}
+
 fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Result<Vec<Cell>, Error> {
     let body = top.body().map_err(unexpected)?;
     let [w, x, y, z] = top.attitude;
@@ -89,21 +122,28 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
         Err(LagrangeError::NotSymmetric { .. } | LagrangeError::OffAxis { .. }) => None,
         Err(error) => return Err(unexpected(error)),
     };
-    let Followed { last, status, times, energy_changes } = follow(&mut run, steps)?;
-    let attitude = exact.map(|exact| attitude_error(&last, &exact.point_at_dd(last.elapsed)));
-    let slope = secular_drift(&times, &energy_changes);
+    let motion = |elapsed| exact.as_ref().map(|exact| exact.point_at_dd(elapsed));
+    let Followed { last, ending, attitude_error, times, energy_changes } = follow(&mut run, steps, motion)?;
+    // what a run that failed leaves behind is no error of the method
+    let of_whole = |error: Option<f64>| error.filter(|_| ending.is_whole());
+    let slope = secular_drift(&times, &energy_changes).filter(|_| ending.is_whole());
+    let scale = kinetic_energy(&body, &run.start().to_dd()) + Vector3::from(top.weight_moment).norm();
+    let exchanged = exact.as_ref().map(|exact| exchanged_energy(&body, exact, last.elapsed.hi()));
+    let over_exchanged =
+        of_whole(last.worst.energy).zip(exchanged).map(|(energy, exchanged)| energy * scale / exchanged);
     let effort = Effort::of(&run, method, Problem::Gravity, last.steps);
     Ok(row![
         top.name,
         method.name(),
         h,
         last.steps,
-        last.worst.energy,
-        last.worst.momentum_z,
-        attitude,
+        of_whole(last.worst.energy),
+        over_exchanged,
+        of_whole(last.worst.momentum_z),
+        attitude_error,
         slope.map(|d| d.slope),
         slope.map(|d| d.half_width),
-        status,
+        ending.to_string(),
         last.elapsed.hi(),
         effort.evaluations,
         effort.rejected,
