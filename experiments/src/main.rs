@@ -2,6 +2,7 @@
 
 mod arguments;
 mod body_arguments;
+mod compare;
 mod error;
 mod experiment;
 mod experiments;
@@ -10,6 +11,7 @@ mod files;
 mod fit;
 mod force_arguments;
 mod inertia;
+mod measured;
 mod methods;
 mod motion;
 mod parallel;
@@ -42,6 +44,7 @@ enum Command {
     Experiment(results::ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
     Motion(motion::Motion),
+    Compare(Box<compare::Compare>),
     Fit(Box<fit::Fit>),
     Simulate(simulate::Simulate),
     Methods(methods::Methods),
@@ -63,6 +66,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Experiment(command) => command.run(),
         Command::Propagate(propagate) => propagate.run(),
         Command::Motion(motion) => motion.run(),
+        Command::Compare(compare) => compare.run(),
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),

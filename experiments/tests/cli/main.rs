@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod compare;
 mod experiment;
 mod fit;
 mod forces;
