@@ -1,5 +1,6 @@
 //! The experiments, one file each, and what two of them share.
 
+mod conservation;
 mod drift;
 mod exact;
 mod fit_efficiency;
@@ -9,6 +10,9 @@ mod inertia;
 mod lecture;
 mod long_run;
 mod order;
+mod phase;
+mod round_off;
+mod separatrix;
 
 use crate::experiment::Experiment;
 
@@ -53,5 +57,25 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "heavy-top",
         question: "what each method conserves of tops under gravity, and its attitude error",
         run: heavy_top::run,
+    },
+    Experiment {
+        name: "phase",
+        question: "how fast the attitude error grows, as time along the polhode and as twist about L: predicted and measured",
+        run: phase::run,
+    },
+    Experiment {
+        name: "conservation",
+        question: "what each family of methods conserves, with its sign, against time",
+        run: conservation::run,
+    },
+    Experiment {
+        name: "round-off",
+        question: "how rounding errors grow with the number of steps, with compensated sums and without",
+        run: round_off::run,
+    },
+    Experiment {
+        name: "separatrix",
+        question: "how long each method turns a body over at the right times, next to the separatrix",
+        run: separatrix::run,
     },
 ];

@@ -20,9 +20,12 @@ const LABEL: i32 = 14;
 /// Up to so many curves have a legend.
 const LEGEND: usize = 5;
 /// A curve has about so many marks.
-const MARKS: usize = 9;
-/// Average width of a letter in the sizes of labels and titles.
+const MARKS: i32 = 9;
+/// Average width of a letter in the sizes of titles and of labels.
 const LETTER: f64 = 7.0;
+const SMALL_LETTER: f64 = 6.2;
+/// Distance of the labels below the plot.
+const TICK: i32 = 48;
 
 const GREY: RGBColor = RGBColor(90, 90, 90);
 
@@ -43,11 +46,11 @@ impl Figure {
     fn names(&self) -> i32 {
         let longest = self.series.iter().map(|series| series.name.chars().count()).max().unwrap_or(0);
         if self.is_direct() {
-            (LETTER * longest as f64) as i32 + 24
+            (SMALL_LETTER * longest as f64) as i32 + 28
         } else if self.joined {
             12
         } else {
-            (LETTER * longest as f64) as i32 + 44
+            (SMALL_LETTER * longest as f64) as i32 + 44
         }
     }
 
@@ -88,7 +91,7 @@ impl Figure {
 }
 
 fn legend_width(series: &Series) -> f64 {
-    LETTER * series.name.chars().count() as f64 + 50.0
+    SMALL_LETTER * series.name.chars().count() as f64 + 54.0
 }
 
 /// `panels` in rows of `columns` below the lines of `title`.
@@ -162,8 +165,10 @@ impl Figure {
             .x_label_area_size(44)
             .y_label_area_size(64)
             .build_cartesian_2d(x.clone(), y.clone())?;
+        let wide = place.dim_in_pixel().0 as i32 - self.names() - 68;
         chart
             .configure_mesh()
+            .x_labels((wide / TICK).max(2) as usize)
             .x_desc(self.x)
             .y_desc(self.y)
             .axis_desc_style(("sans-serif", 15))
@@ -189,11 +194,15 @@ impl Figure {
                 let style = colour.stroke_width(if series.wide { 4 } else { 2 });
                 polyline(root, &places, dashes(k), style)?;
             }
-            let every = if self.joined { places.len().div_ceil(MARKS).max(1) } else { 1 };
-            // the marks of neighbouring curves stand at different points
-            let first = if every > 1 { (2 * k) % every } else { 0 };
-            for &at in places.iter().skip(first).step_by(every).filter(|_| !series.wide) {
-                root.draw(&mark(k, at, colour))?;
+            // the marks of neighbouring curves stand at different places
+            let all = !self.joined || places.len() as i32 <= MARKS;
+            let between = (right - left) / MARKS;
+            let mut next = left + between * (k as i32 % 4) / 4;
+            for &at in places.iter().filter(|_| !series.wide) {
+                if all || at.0 >= next {
+                    root.draw(&mark(k, at, colour))?;
+                    next = at.0 + between;
+                }
             }
         }
         for guide in &self.guides {
@@ -218,7 +227,7 @@ impl Figure {
         place: &DrawingArea<B, Shift>,
     ) -> Drawn<B> {
         let name = |at: (i32, i32), series: &Series, colour: RGBColor| {
-            let style = ("sans-serif", 14).into_text_style(root).color(&colour);
+            let style = ("sans-serif", 13).into_text_style(root).color(&colour);
             let style = style.pos(Pos::new(HPos::Left, VPos::Center));
             root.draw(&Text::new(series.name.clone(), at, style))
         };
@@ -263,6 +272,8 @@ impl Guide {
     /// Its ends within the axes, and the place of its label, in coordinates.
     fn line(&self, x: &Axis, y: &Axis) -> Option<([(f64, f64); 2], (f64, f64))> {
         let ([left, right], [low, high]) = (x.limits(), y.limits());
+        // the label has room above its end
+        let high = high - 0.06 * (high - low);
         let through = (x.place(self.through.0), y.place(self.through.1));
         let at = |x: f64| (x, through.1 + self.slope * (x - through.0));
         let [mut from, mut to] = self.ends.map_or([left, right], |ends| ends.map(|end| x.place(end)));
