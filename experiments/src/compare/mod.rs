@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use polhode::body::{Body, Clock};
 use polhode::method::{ADAPTIVE, AnyMethod};
-use polhode::run::{RunError, Schedule, ScheduleError, Watch};
+use polhode::run::{RunError, Schedule, ScheduleError};
 
 use crate::arguments::{list, number, positive};
 use crate::body_arguments::{BodyArguments, StartArguments};
@@ -21,8 +21,9 @@ use crate::table::{Cell, Column, Format, Table, row};
 use crate::text::short;
 use trajectory::Trajectory;
 
-const USAGE: &str = "polhode compare <BODY> --omega <wx,wy,wz> --until <T> --methods <A,B,...> [OPTIONS]
-  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
+const USAGE: &str = "polhode compare <BODY> <START> --methods <A,...> --until <T> [OPTIONS]
+  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
+  START: --omega <wx,wy,wz> [--attitude <w,x,y,z>]";
 
 const EXAMPLES: &str = "Examples:
   polhode compare --moments 1,2,3 --omega 0.4,1,-0.3 --until 100 \\
@@ -30,6 +31,8 @@ const EXAMPLES: &str = "Examples:
     --figure work.svg
   polhode compare --body gyroscope --omega 0,0,400 --until 1 \\
     --methods kick-drift@srkn-11b,dop853 --steps 1e-3 --tolerances 1e-8,1e-12
+  polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 10 --every 1 \\
+    --method mujoco-rk4 --step 0.01 --out simulator.csv
   polhode compare --moments 1,2,3 --omega 0.4,1,-0.3 --until 10 \\
     --methods rk4 --steps 0.01 --trajectory simulator.csv";
 
@@ -235,11 +238,11 @@ impl Compare {
 
     fn measured(&self, motion: &Motion, entry: &Entry) -> Result<(Measured, StepTime), Error> {
         let step = entry.step.unwrap_or(motion.interval());
-        let care = Care { watch: Watch::EveryStep, until_lost: false };
-        let measured = motion.measure(entry.method.as_ref(), step, care).map_err(|error| match error {
-            RunError::Step(error) => Error::Input(format!("--methods: {error}")),
-            error => Error::Failed(format!("{}: {error}", entry.method.name())),
-        })?;
+        let measured =
+            motion.measure(entry.method.as_ref(), step, Care::FULL).map_err(|error| match error {
+                RunError::Step(error) => Error::Input(format!("--methods: {error}")),
+                error => Error::Failed(format!("{}: {error}", entry.method.name())),
+            })?;
         Ok((measured, motion.step_time(entry.method.as_ref(), step)?))
     }
 

@@ -1,5 +1,6 @@
 //! The experiments, one file each, and what two of them share.
 
+mod chaos;
 mod conservation;
 mod drift;
 mod exact;
@@ -9,10 +10,13 @@ mod heavy_top;
 mod inertia;
 mod lecture;
 mod long_run;
+mod modified_energy;
 mod order;
 mod phase;
 mod round_off;
 mod separatrix;
+mod splitting_order;
+mod work_precision;
 
 use crate::experiment::Experiment;
 
@@ -77,5 +81,25 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "separatrix",
         question: "how long each method turns a body over at the right times, next to the separatrix",
         run: separatrix::run,
+    },
+    Experiment {
+        name: "work-precision",
+        question: "which method reaches which accuracy at least cost, by body, force and horizon",
+        run: work_precision::run,
+    },
+    Experiment {
+        name: "modified-energy",
+        question: "what energy a splitting keeps, and how small the rest is that no modified energy keeps",
+        run: modified_energy::run,
+    },
+    Experiment {
+        name: "splitting-order",
+        question: "how the order of the axes changes the errors of a splitting, predicted and measured",
+        run: splitting_order::run,
+    },
+    Experiment {
+        name: "chaos",
+        question: "what each method says of a chaotic top: energy, L_z, Lyapunov exponent, and how long the attitude holds",
+        run: chaos::run,
     },
 ];

@@ -69,8 +69,6 @@ impl Series {
     }
 
     /// Drawn twice as wide and without marks, as an envelope is.
-    // the first figures with an envelope come with the comparison of costs
-    #[cfg_attr(not(test), expect(dead_code, reason = "for envelopes"))]
     pub(crate) fn wide(self) -> Self {
         Self { wide: true, ..self }
     }

@@ -47,6 +47,8 @@ pub(crate) struct Look {
     pub(crate) elapsed: f64,
     /// Angle to the true attitude, rad.
     pub(crate) attitude_error: f64,
+    /// Evaluations so far.
+    pub(crate) evaluations: u64,
 }
 
 /// A run that was measured.
@@ -68,6 +70,13 @@ pub(crate) struct Care {
     pub(crate) watch: Watch,
     /// Whether the run ends where the attitude is lost.
     pub(crate) until_lost: bool,
+    /// Where it ends at the latest, s since the start.
+    pub(crate) until: f64,
+}
+
+impl Care {
+    /// Every step watched, to the end.
+    pub(crate) const FULL: Care = Care { watch: Watch::EveryStep, until_lost: false, until: f64::INFINITY };
 }
 
 impl Motion {
@@ -124,7 +133,7 @@ impl Motion {
             Measured { looks: Vec::new(), last: run.sample(), ending: Ending::Held, evaluations: 0 };
         let known = self.reference.known_until();
         let beyond = (known < self.span).then_some(self.span);
-        for time in self.reference.times().chain(beyond) {
+        for time in self.reference.times().chain(beyond).take_while(|time| *time <= care.until) {
             let steps = (time / step).round().max(1.0) as u64;
             if steps <= run.sample().steps {
                 continue;
@@ -153,7 +162,8 @@ impl Motion {
             }
             let there = self.reference.point_at(sample.elapsed)?;
             let attitude_error = reference::apart(sample.point.attitude, there.attitude);
-            measured.looks.push(Look { elapsed, attitude_error });
+            let evaluations = measured.evaluations;
+            measured.looks.push(Look { elapsed, attitude_error, evaluations });
             if attitude_error > LOST && measured.ending == Ending::Held {
                 measured.ending = Ending::Lost(elapsed);
                 if care.until_lost {
@@ -238,7 +248,7 @@ pub(crate) fn is_adaptive(name: &str) -> bool {
 }
 
 /// Evaluations in a step, of all kinds together.
-fn evaluations(method: &dyn AnyMethod, body: &Body) -> u64 {
+pub(crate) fn evaluations(method: &dyn AnyMethod, body: &Body) -> u64 {
     let Some(claims) = method.claims(body.problem()) else { return 0 };
     let cost = claims.cost;
     u64::from(cost.right_sides + cost.turns + cost.additions + cost.free_flows + cost.solves + cost.kicks)

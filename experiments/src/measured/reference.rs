@@ -2,11 +2,11 @@
 
 use polhode::body::{Body, Clock, Point};
 use polhode::flow::ExactMotion;
-use polhode::method::{AdaptiveTaylor, AnyMethod, StepError, method};
+use polhode::method::{AdaptiveTaylor, AnyMethod as _, StepError};
 use polhode::num::{Dd, Precise};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 
-use crate::error::{Error, unexpected};
+use crate::error::Error;
 
 /// Two runs in double-double agree up to this angle, rad: below it a double has no digits.
 const AGREEMENT: f64 = 1e-13;
@@ -14,8 +14,8 @@ const AGREEMENT: f64 = 1e-13;
 /// Turn between two looks at the flips of the run in double-double, rad.
 const FLIP_ANGLE: f64 = 0.25;
 
-/// Turn in a step of the second run in double-double, of order 40, rad.
-const SECOND_ANGLE: f64 = 0.4;
+/// Turn after which the series of the second run begin anew, rad: less than the first run takes in a step.
+const SECOND_ANGLE: f64 = 0.25;
 
 /// The motion of a body from one start, at times that are counted from it.
 pub(crate) struct Reference {
@@ -26,8 +26,15 @@ pub(crate) struct Reference {
     looks: Vec<Look>,
     /// About how fast the body turns, rad/s.
     speed: f64,
-    /// The method of the second run.
-    second: Box<dyn AnyMethod>,
+}
+
+/// Which steps a run in double-double takes.
+#[derive(Clone, Copy)]
+enum Steps {
+    /// As long as its series are good for.
+    OfTheirOwn,
+    /// A new series at every interval.
+    AsGiven,
 }
 
 #[derive(Clone, Copy)]
@@ -43,13 +50,14 @@ impl Reference {
     /// # Errors
     /// Times beyond the reach of the closed form, and a body that no run in double-double can follow.
     pub(crate) fn new(body: &Body, start: Point<f64>, start_time: f64, times: &[f64]) -> Result<Self, Error> {
-        let point = start.to_dd();
+        // the rounding of |q| would scale the torque
+        let Point { attitude, momentum_body, .. } = start.to_dd();
+        let point = Point::new(attitude.normalized(), momentum_body);
         let speed = speed(body, &point);
         let begin = Look { elapsed: 0.0, point, flips: Some(0) };
         let closed = ExactMotion::from_point(body, point).ok();
-        let second = method("taylor:40").map_err(unexpected)?;
         let (body, looks) = (body.clone(), vec![begin]);
-        let mut found = Reference { body, start_time, closed, looks, speed, second };
+        let mut found = Reference { body, start_time, closed, looks, speed };
         match &found.closed {
             Some(motion) => {
                 if let Some(last) = times.last() {
@@ -83,15 +91,10 @@ impl Reference {
             let span = elapsed - before.elapsed;
             let steps = |angle: f64| libm::ceil(span * self.speed / angle).max(1.0) as u64;
             let (mut point, mut flips) = (before.point, Flips::new(&self.body, before.point));
-            self.carry(
-                &AdaptiveTaylor::to_rounding(),
-                &mut point,
-                before.elapsed,
-                span,
-                steps(FLIP_ANGLE),
-                |x| flips.observe(x),
-            )?;
-            self.carry(self.second.as_ref(), &mut other, before.elapsed, span, steps(SECOND_ANGLE), |_| ())?;
+            self.carry(&mut point, (before.elapsed, span), steps(FLIP_ANGLE), Steps::OfTheirOwn, |x| {
+                flips.observe(x);
+            })?;
+            self.carry(&mut other, (before.elapsed, span), steps(SECOND_ANGLE), Steps::AsGiven, |_| ())?;
             let apart = rotation_angle(point.attitude, other.attitude).hi();
             if apart.is_nan() || apart > AGREEMENT {
                 return Ok(());
@@ -102,28 +105,34 @@ impl Reference {
         Ok(())
     }
 
-    /// Moves `x` from `from` s after the start on by `span` s, in `steps` steps, each shown to `seen`.
+    /// Moves `x` from `from` s after the start on by `span` s, in `count` intervals, the end of each shown to `seen`.
     fn carry(
         &self,
-        method: &dyn AnyMethod,
         x: &mut Point<Dd>,
-        from: f64,
-        span: f64,
-        steps: u64,
+        (from, span): (f64, f64),
+        count: u64,
+        steps: Steps,
         mut seen: impl FnMut(&Point<Dd>),
     ) -> Result<(), StepError> {
-        let h = span / steps as f64;
-        let clock = Clock { start: self.start_time + from, step: h };
-        let mut step = method.prepare_dd(clock, &self.body)?;
+        let clock = Clock { start: self.start_time + from, step: span / count as f64 };
+        let mut step = AdaptiveTaylor::to_rounding().prepare_dd(clock, &self.body)?;
         let mut moved = Point::new(x.attitude, x.momentum_body);
         step.open(&mut moved);
-        for _ in 0..steps {
-            step.advance(&mut moved, 1);
-            *x = step.reading(&moved);
+        for _ in 0..count {
+            match steps {
+                Steps::OfTheirOwn => {
+                    step.advance(&mut moved, 1);
+                    *x = step.reading(&moved);
+                }
+                Steps::AsGiven => {
+                    step.steps(&mut moved, 1);
+                    *x = moved;
+                }
+            }
             seen(x);
         }
         // steps · h is not the span to the digits of double-double
-        *x = self.nudged(x, from + span, Dd::from(span) - clock.elapsed(steps))?;
+        *x = self.nudged(x, from + span, Dd::from(span) - clock.elapsed(count))?;
         Ok(())
     }
 

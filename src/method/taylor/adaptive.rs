@@ -3,7 +3,7 @@
 use super::motion_series::MotionSeries;
 use super::{LOOSEST, SOURCE, TaylorError, add_change, unit};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::{Claimed, Claims, Cost, Kept, Map, Method};
+use crate::method::{Claimed, Claims, Cost, Kept, Map, Method, Work};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
@@ -85,6 +85,8 @@ impl<S: Real> Method<S> for AdaptiveTaylor {
             series: MotionSeries::new(AdaptiveTaylor::order(tolerance), rotor, field),
             base: Dd::ZERO,
             current: None,
+            order: AdaptiveTaylor::order(tolerance),
+            work: Work::default(),
         }
     }
 }
@@ -100,6 +102,8 @@ pub struct AdaptiveTaylorMap<S, F> {
     base: Dd,
     /// The series, once it is worked out.
     current: Option<Current>,
+    order: u32,
+    work: Work,
 }
 
 /// The unit that the current series counts, s, with the sign of h, and for how many units it is used.
@@ -125,6 +129,8 @@ impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
         let rate = self.series.rate(x, others);
         let unit = unit(if self.h.hi() < 0.0 { -1.0 / rate } else { 1.0 / rate });
         self.series.expand(at.at_elapsed(self.base, unit), unit, x, others);
+        // each order of the series takes one right side
+        self.work.evaluations += u64::from(self.order);
         let current = Current { unit, reach: self.series.reach(self.tolerance) };
         self.current = Some(current);
         current
@@ -157,6 +163,7 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
             }
             add_change(&self.series, S::of(reach), x);
             x.renormalize();
+            self.work.accepted += 1;
             self.restart(next);
         }
     }
@@ -167,6 +174,10 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
             let unit = self.expanded(at, x).unit;
             add_change(&self.series, S::from_dd(elapsed * (1.0 / unit)), x);
         }
+    }
+
+    fn work(&self) -> Option<Work> {
+        Some(self.work)
     }
 
     fn memory(&self) -> Vec<f64> {
