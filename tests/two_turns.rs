@@ -5,7 +5,7 @@
 use polhode::body::{Body, Clock, State};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
-use polhode::method::{AxisOrder, TwoAxes, method};
+use polhode::method::{AxisOrder, PhaseErrorRates, TwoAxes, method};
 use polhode::num::Real;
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 
@@ -54,6 +54,36 @@ fn the_attitude_runs_away_as_predicted() {
         for order in AxisOrder::ALL {
             let rate = order.attitude_error_rate(Vec3(m), Vec3(moments));
             assert_close(&format!("lie-poisson:{order}"), rate, 0.004);
+        }
+    }
+}
+
+#[test]
+fn the_attitude_error_is_a_shift_along_the_polhode_and_a_twist_about_l_as_predicted() {
+    const STEPS: u64 = 400_000;
+    for (moments, m) in [([0.625, 0.75, 1.0], [1.0, 0.5, -0.75]), ([3.0, 1.0, 2.5], [0.4, 0.2, 1.9])] {
+        let body = Body::free(Inertia::from_moments(moments).unwrap());
+        let start = State { attitude: Quat::identity(), momentum_body: Vec3(m) };
+        let motion = FreeMotion::from_state(body.inertia(), &start).unwrap();
+        let assert_explained = |name: &str, h: f64, rates: PhaseErrorRates| {
+            let mut x = body.enter(&start).unwrap().to_f64();
+            method(name).unwrap().prepare_f64(Clock::new(h), &body).unwrap().steps(&mut x, STEPS);
+            let t = h * STEPS as f64;
+            let shifted = motion.point_at(t + h * h * rates.shift * t);
+            let axis = Vec3(m) * (1.0 / Vec3(m).norm());
+            let (sin, cos) = Real::sin_cos(0.5 * h * h * rates.twist * t);
+            let predicted = Quat::new(cos, axis * sin) * shifted.attitude;
+            let error = rotation_angle(x.attitude, motion.point_at(t).attitude);
+            let rest = rotation_angle(x.attitude, predicted);
+            assert!(rest < 0.03 * error, "{name}, {moments:?}: {rest:e} of {error:e}");
+        };
+        for axes in TwoAxes::ALL {
+            let rates = axes.phase_error_rates(Vec3(m), Vec3(moments)).unwrap();
+            assert_explained(&format!("two-turn:{axes}"), 0.005, rates);
+        }
+        for order in AxisOrder::ALL {
+            let rates = order.phase_error_rates(Vec3(m), Vec3(moments)).unwrap();
+            assert_explained(&format!("lie-poisson:{order}"), 0.004, rates);
         }
     }
 }

@@ -3,6 +3,7 @@
 mod advise;
 mod arguments;
 mod body_arguments;
+mod compare;
 mod error;
 mod experiment;
 mod experiments;
@@ -11,6 +12,7 @@ mod files;
 mod fit;
 mod force_arguments;
 mod inertia;
+mod measured;
 mod methods;
 mod motion;
 mod parallel;
@@ -44,6 +46,7 @@ enum Command {
     Propagate(Box<propagate::Propagate>),
     Motion(motion::Motion),
     Advise(Box<advise::Advise>),
+    Compare(Box<compare::Compare>),
     Fit(Box<fit::Fit>),
     Simulate(simulate::Simulate),
     Methods(methods::Methods),
@@ -66,6 +69,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Propagate(propagate) => propagate.run(),
         Command::Motion(motion) => motion.run(),
         Command::Advise(advise) => advise.run(),
+        Command::Compare(compare) => compare.run(),
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),

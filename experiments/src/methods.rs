@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use polhode::body::Problem;
 use polhode::method::schemes::{self, Pairs, Part, Stages};
-use polhode::method::{Claimed, Claims, ExactFlow, Kicks, Splitting, catalogue};
+use polhode::method::{
+    AnyMethod, Claimed, Claims, ExactFlow, Kicks, Splitting, UnknownMethod, catalogue, method,
+};
 
 use crate::error::Error;
 use crate::files::emit;
@@ -29,6 +31,26 @@ impl Methods {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let table = if self.schemes { schemes() } else { table() };
         emit(&Format::or_default(self.format, self.out.is_some()).write(&table), self.out.as_deref())
+    }
+}
+
+/// The method that `flag` names.
+pub(crate) fn named(flag: &str, name: &str) -> Result<Box<dyn AnyMethod>, Error> {
+    method(name).map_err(|error| unknown(flag, error))
+}
+
+/// Why what `flag` names is no method.
+pub(crate) fn unknown(flag: &str, error: UnknownMethod) -> Error {
+    match error {
+        UnknownMethod::Name { name } => {
+            let mut known: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
+            known.insert(0, "exact".into());
+            Error::unknown_name(flag, "method", &name, known.iter().map(String::as_str))
+        }
+        UnknownMethod::Argument { name, rule } => {
+            Error::input(flag, &name, "has an argument that it cannot take", &format!("allowed: {rule}"))
+        }
+        error => Error::Input(format!("{flag}: {error}")),
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use polhode::body::{Body, Clock, Conserved, Point, Problem, Time};
 use polhode::flow::ExactMotion;
-use polhode::method::{ADAPTIVE, AnyMethod, Claimed, StepError, UnknownMethod, catalogue, method};
+use polhode::method::{ADAPTIVE, AnyMethod, StepError, UnknownMethod, method};
 use polhode::num::{Dd, Precise};
 use polhode::observe::{Errors, Monitor};
 use polhode::rotation::rotation_angle;
@@ -15,6 +15,7 @@ use crate::arguments::{Times, number, positive, regular, times};
 use crate::body_arguments::{BodyArguments, StartArguments};
 use crate::error::{Error, warn};
 use crate::force_arguments::ForceArguments;
+use crate::methods::unknown;
 use crate::table::{Column, Format, Rows, Table, row};
 
 const USAGE: &str = "polhode propagate <BODY> --omega <wx,wy,wz> <TIMES> [OPTIONS]
@@ -254,20 +255,7 @@ impl Propagate {
                 error => error,
             },
         };
-        found.map_err(|error| match error {
-            UnknownMethod::Name { name } => {
-                let mut known: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
-                known.insert(0, "exact".into());
-                Error::unknown_name("--method", "method", &name, known.iter().map(String::as_str))
-            }
-            UnknownMethod::Argument { name, rule } => Error::input(
-                "--method",
-                &name,
-                "has an argument that it cannot take",
-                &format!("allowed: {rule}"),
-            ),
-            error => Error::Input(format!("--method: {error}")),
-        })
+        found.map_err(|error| unknown("--method", error))
     }
 
     /// Why no steps lead to the times that were asked for.

@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-use super::modified_energy::{ModifiedEnergy, Orbit, of_least_error};
+use super::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
 use crate::rotation::Vec3;
 
 /// An order of the three axes, outermost turn first: `321` is Φ = R3(h/2) R2(h/2) R1(h) R2(h/2) R3(h/2).
@@ -75,6 +75,12 @@ impl AxisOrder {
     /// h²: rad/s³. `None` for pure spins, spheres and next to the separatrix.
     pub fn attitude_error_rate(self, m: Vec3<f64>, moments: Vec3<f64>) -> Option<f64> {
         Some(self.leading_term(moments).attitude_error_rate(&Orbit::through(m, moments)?))
+    }
+
+    /// The shift in time along the polhode and the twist about L that this error is made of, for a run that begins at the
+    /// momentum `m`. `None` where [`attitude_error_rate`](Self::attitude_error_rate) is.
+    pub fn phase_error_rates(self, m: Vec3<f64>, moments: Vec3<f64>) -> Option<PhaseErrorRates> {
+        Some(self.leading_term(moments).phase_error_rates(&Orbit::through(m, moments)?))
     }
 
     /// The order whose leading error of the attitude is smallest on the orbit through the momentum `m`, as a root mean square

@@ -56,6 +56,7 @@ pub use kicks::Kicks;
 pub use lie_group::{LieGroup, LieGroupMap, MujocoRk4, MujocoRk4Map};
 pub use lie_newmark::{LieNewmark, LieNewmarkMap};
 pub use map::{Map, Method, Step, Stuck, Work};
+pub use modified_energy::PhaseErrorRates;
 pub use preprocessed_dmv::{DmvOrderError, PreprocessedDmv};
 pub use projected::{ProjectedRk4, ProjectedRk4Map};
 pub use richardson::{Richardson, RichardsonMap};

@@ -49,6 +49,17 @@ pub(super) struct Orbit {
     omega_squared: f64,
 }
 
+/// The leading error of the attitude of a splitting of order 2, in its two parts: the attitude of step n is that of the exact
+/// motion at the time t + τ, turned about L by ψ, with τ and ψ proportional to t but for an oscillation of the size of h².
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PhaseErrorRates {
+    /// τ/t over h², 1/s²: the shift in time along the polhode.
+    pub shift: f64,
+    /// ψ/t over h², rad/s³: the twist about L.
+    pub twist: f64,
+}
+
 /// Means over one orbit, or how they change.
 #[derive(Clone, Copy, Debug)]
 struct Means {
@@ -79,6 +90,13 @@ impl ModifiedEnergy {
         self.rate(orbit, apart, apart * apart)
     }
 
+    /// The two parts of the same error, for the same start.
+    pub(super) fn phase_error_rates(self, orbit: &Orbit) -> PhaseErrorRates {
+        let apart = self.at(orbit.start) - self.mean(&orbit.here);
+        let [shift, twist] = self.parts(orbit).map(|[constant, slope]| constant + slope * apart);
+        PhaseErrorRates { shift, twist }
+    }
+
     /// The same as a root mean square over all starts on the orbit.
     fn mean_attitude_error_rate(self, orbit: &Orbit) -> f64 {
         let [k1, k2, k3] = self.0;
@@ -94,15 +112,20 @@ impl ModifiedEnergy {
         self.0.iter().zip(means.products).map(|(k, s)| k * s).sum()
     }
 
-    /// Of the given H₃(m₀) − ⟨H₃⟩ and its square, or the means of both.
-    fn rate(self, orbit: &Orbit, apart: f64, apart_squared: f64) -> f64 {
+    /// ρ and δΩ_G − Ω_G ρ as constant + slope times H₃(m₀) − ⟨H₃⟩, over h².
+    fn parts(self, orbit: &Orbit) -> [[f64; 2]; 2] {
         let (here, slope) = (&orbit.here, &orbit.slope);
         let (f, f_e) = (self.mean(here), self.mean(slope));
         let f_g = (4.0 * f - 2.0 * orbit.energy * f_e) / orbit.norm;
-        // ρ and δΩ_G − Ω_G ρ as constant + slope times H₃(m₀) − ⟨H₃⟩; ∂_EΩ_J / Ω_J = −∂_E T / T
+        // ∂_EΩ_J / Ω_J = −∂_E T / T
         let rho = [f_e, -slope.period / here.period];
         let turn = [f_g + here.turn * f_e, slope.turn];
-        let about = [0, 1].map(|k| turn[k] - here.turn * rho[k]);
+        [rho, [0, 1].map(|k| turn[k] - here.turn * rho[k])]
+    }
+
+    /// Of the given H₃(m₀) − ⟨H₃⟩ and its square, or the means of both.
+    fn rate(self, orbit: &Orbit, apart: f64, apart_squared: f64) -> f64 {
+        let [rho, about] = self.parts(orbit);
         let product = |a: [f64; 2], b: [f64; 2]| {
             a[0] * b[0] + (a[0] * b[1] + a[1] * b[0]) * apart + a[1] * b[1] * apart_squared
         };

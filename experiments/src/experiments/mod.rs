@@ -1,5 +1,7 @@
 //! The experiments, one file each, and what two of them share.
 
+mod chaos;
+mod conservation;
 mod drift;
 mod exact;
 mod fit_efficiency;
@@ -8,7 +10,13 @@ mod heavy_top;
 mod inertia;
 mod lecture;
 mod long_run;
+mod modified_energy;
 mod order;
+mod phase;
+mod round_off;
+mod separatrix;
+mod splitting_order;
+mod work_precision;
 
 use crate::experiment::Experiment;
 
@@ -53,5 +61,45 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "heavy-top",
         question: "what each method conserves of tops under gravity, and its attitude error",
         run: heavy_top::run,
+    },
+    Experiment {
+        name: "phase",
+        question: "how fast the attitude error grows, as time along the polhode and as twist about L: predicted and measured",
+        run: phase::run,
+    },
+    Experiment {
+        name: "conservation",
+        question: "what each family of methods conserves, with its sign, against time",
+        run: conservation::run,
+    },
+    Experiment {
+        name: "round-off",
+        question: "how rounding errors grow with the number of steps, with compensated sums and without",
+        run: round_off::run,
+    },
+    Experiment {
+        name: "separatrix",
+        question: "how long each method turns a body over at the right times, next to the separatrix",
+        run: separatrix::run,
+    },
+    Experiment {
+        name: "work-precision",
+        question: "which method reaches which accuracy at least cost, by body, force and horizon",
+        run: work_precision::run,
+    },
+    Experiment {
+        name: "modified-energy",
+        question: "what energy a splitting keeps, and how small the rest is that no modified energy keeps",
+        run: modified_energy::run,
+    },
+    Experiment {
+        name: "splitting-order",
+        question: "how the order of the axes changes the errors of a splitting, predicted and measured",
+        run: splitting_order::run,
+    },
+    Experiment {
+        name: "chaos",
+        question: "what each method says of a chaotic top: energy, L_z, Lyapunov exponent, and how long the attitude holds",
+        run: chaos::run,
     },
 ];

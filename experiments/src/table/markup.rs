@@ -75,7 +75,17 @@ fn escaped_latex(text: &str) -> String {
             '>' => escaped += r"\textgreater{}",
             'Δ' => escaped += r"$\Delta$",
             'ω' => escaped += r"$\omega$",
+            '⁻' => escaped += r"$^{-}$",
             '²' => escaped += r"\textsuperscript{2}",
+            '¹' | '³' | '⁰' | '⁴'..='⁹' => {
+                // all but three stand in the order of the digits
+                let digit = match c {
+                    '¹' => 1,
+                    '³' => 3,
+                    _ => c as u32 - '⁰' as u32,
+                };
+                escaped += &format!(r"\textsuperscript{{{digit}}}");
+            }
             '·' => escaped += r"$\cdot$",
             '×' => escaped += r"$\times$",
             _ => escaped.push(c),
@@ -114,8 +124,8 @@ two, "turns" \& 50 \% & $0.3$ &  \\
     fn latex_escapes_its_own_signs() {
         assert_eq!(escaped_latex(r"a_b\c^{2}"), r"a\_b\textbackslash{}c\textasciicircum{}\{2\}");
         assert_eq!(
-            escaped_latex("|ΔE| < 1 rad/s²"),
-            r"\textbar{}$\Delta$E\textbar{} \textless{} 1 rad/s\textsuperscript{2}"
+            escaped_latex("|ΔE| < 10⁻¹⁶ rad/s²"),
+            r"\textbar{}$\Delta$E\textbar{} \textless{} 10$^{-}$\textsuperscript{1}\textsuperscript{6} rad/s\textsuperscript{2}"
         );
     }
 }

@@ -10,6 +10,7 @@ fn help_is_everywhere_and_fits_into_80_columns() {
         "",
         "propagate",
         "motion",
+        "compare",
         "simulate",
         "fit",
         "methods",
@@ -37,7 +38,7 @@ fn the_examples_of_the_help_run() {
     let scratch = Scratch::new("examples");
     let mut count = 0;
     // the record that is simulated is the one that is fitted
-    for command in ["simulate", "fit", "propagate", "motion", "inertia", "experiment run"] {
+    for command in ["simulate", "fit", "propagate", "motion", "compare", "inertia", "experiment run"] {
         let help = output(&format!("{command} --help"));
         let (_, examples) = help.split_once("Examples:\n").unwrap();
         for line in examples.replace("\\\n", " ").lines() {

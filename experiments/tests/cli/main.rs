@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod advise;
+mod compare;
 mod experiment;
 mod fit;
 mod forces;

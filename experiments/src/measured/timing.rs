@@ -1,0 +1,77 @@
+//! Processor time of a step, beside that of a step of the classical Runge–Kutta method in the same moments.
+
+use std::time::Instant;
+
+use polhode::body::{Body, Clock, Point};
+use polhode::method::{AnyMethod, Rk4, Step, StepError};
+
+/// Bursts of each; the least counts, because whatever else the machine does only adds.
+const BURSTS: u32 = 9;
+
+/// Length of a burst, s.
+const BURST: f64 = 1e-4;
+
+/// Time of one step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepTime {
+    /// Of the method, s.
+    pub(crate) seconds: f64,
+    /// Of `rk4` on the same body, s.
+    pub(crate) rk4: f64,
+}
+
+impl StepTime {
+    /// Of `method` with the steps of `clock`, in bursts that alternate with those of `rk4`.
+    ///
+    /// # Errors
+    /// A body or a step that the method is not for.
+    pub(crate) fn measure(
+        method: &dyn AnyMethod,
+        body: &Body,
+        start: Point<f64>,
+        clock: Clock,
+    ) -> Result<Self, StepError> {
+        let mut contestants = [
+            Contestant::new(method.prepare_f64(clock, body)?, start),
+            Contestant::new((Rk4 { normalized: false }).prepare_f64(clock, body)?, start),
+        ];
+        for _ in 0..BURSTS {
+            contestants.iter_mut().for_each(Contestant::burst);
+        }
+        let [seconds, rk4] = contestants.map(|contestant| contestant.least);
+        Ok(StepTime { seconds, rk4 })
+    }
+}
+
+struct Contestant {
+    step: Box<dyn Step<f64>>,
+    /// In the form in which the step moves it, and what the step then remembers.
+    start: Point<f64>,
+    memory: Vec<f64>,
+    steps: u64,
+    least: f64,
+}
+
+impl Contestant {
+    /// With as many steps in a burst as fill its time.
+    fn new(mut step: Box<dyn Step<f64>>, mut start: Point<f64>) -> Self {
+        step.open(&mut start);
+        let memory = step.memory();
+        let mut contestant = Contestant { step, start, memory, steps: 1, least: f64::INFINITY };
+        for _ in 0..3 {
+            contestant.least = f64::INFINITY;
+            contestant.burst();
+            let wanted = BURST / contestant.least.max(1e-9);
+            contestant.steps = (wanted as u64).clamp(1, 16 * contestant.steps);
+        }
+        contestant
+    }
+
+    fn burst(&mut self) {
+        let mut x = self.start;
+        self.step.remember(&self.memory);
+        let clock = Instant::now();
+        self.step.advance(&mut x, self.steps);
+        self.least = self.least.min(clock.elapsed().as_secs_f64() / self.steps as f64);
+    }
+}

@@ -1,0 +1,141 @@
+//! `polhode compare`.
+
+use std::fs;
+
+use crate::harness::{Scratch, golden, output, polhode, refused, run, words};
+
+const TEXTBOOK: &str = "compare --moments 1,2,3 --omega 0.4,1,-0.3";
+
+/// Rows of a CSV by column, without the times of this machine.
+fn rows(text: &str) -> Vec<Vec<(String, String)>> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let row = |record: csv::StringRecord| {
+        let cells = header.iter().zip(record.iter()).map(|(name, cell)| (name.to_owned(), cell.to_owned()));
+        cells.filter(|(name, _)| !["seconds", "rk4_steps"].contains(&name.as_str())).collect()
+    };
+    reader.records().map(|record| row(record.unwrap())).collect()
+}
+
+/// The cell of a row.
+fn cell<'a>(row: &'a [(String, String)], name: &str) -> &'a str {
+    &row.iter().find(|(column, _)| column == name).unwrap().1
+}
+
+fn number(row: &[(String, String)], name: &str) -> f64 {
+    cell(row, name).parse().unwrap()
+}
+
+fn untimed(text: &str) -> String {
+    let line = |row: Vec<(String, String)>| {
+        row.into_iter().map(|(name, cell)| format!("{name}={cell}")).collect::<Vec<_>>().join(" ") + "\n"
+    };
+    rows(text).into_iter().map(line).collect()
+}
+
+#[test]
+fn methods_at_steps_and_tolerances_are_rows() {
+    let line = format!(
+        "{TEXTBOOK} --until 64 --methods rk4,rattle,explicit-euler,dop853 --steps 0.125,0.0625 --tolerances 1e-6,1e-9"
+    );
+    let free = output(&line);
+    let top = output(
+        "compare --body gyroscope --omega 0,0,400 --attitude 0.9659258262890683,0.25881904510252074,0,0 --until 0.5 \
+         --methods kick-drift@srkn-6b --steps 0.00048828125",
+    );
+    let asymmetric = output(
+        "compare --moments 0.5,0.85,1 --weight-moment 0,0,1 --omega 0.4,1.1764705882352942,0.4 --attitude 0.4,0.2,0.4,0.8 \
+         --until 32 --methods rk4 --steps 0.03125",
+    );
+    golden("compare.txt", &(untimed(&free) + &untimed(&top) + &untimed(&asymmetric)));
+}
+
+#[test]
+fn errors_and_cost_are_those_of_the_run() {
+    let found = rows(&output(&format!("{TEXTBOOK} --until 100 --methods rk4,rattle --steps 0.1,0.05")));
+    // orders 4 and 2, four right sides and one solution a step
+    let ratio = |k: usize| number(&found[k], "attitude_error") / number(&found[k + 1], "attitude_error");
+    assert!((12.0..24.0).contains(&ratio(0)), "{}", ratio(0));
+    assert!((3.5..4.5).contains(&ratio(2)), "{}", ratio(2));
+    let evaluations: Vec<&str> = found.iter().map(|row| cell(row, "evaluations")).collect();
+    assert_eq!(evaluations, ["4000", "8000", "1000", "2000"]);
+    // the same errors as those of a single run
+    let row = output("propagate --moments 1,2,3 --omega 0.4,1,-0.3 --times 100 --method rk4 --step 0.1");
+    let single = &rows(&row)[0];
+    for name in ["attitude_error", "energy_error", "momentum_error", "momentum_vector_error"] {
+        assert_eq!(cell(&found[0], name), cell(single, name), "{name}");
+    }
+}
+
+#[test]
+fn runs_that_lose_the_attitude_say_when() {
+    let found = rows(&output(&format!("{TEXTBOOK} --until 200 --methods explicit-euler,buss-2 --steps 0.5")));
+    assert!(cell(&found[0], "status").starts_with("diverged at t = "), "{:?}", found[0]);
+    assert!(cell(&found[1], "status").starts_with("lost at t = "), "{:?}", found[1]);
+    for row in &found {
+        assert_eq!((cell(row, "attitude_error"), cell(row, "attitude_time")), ("", ""));
+    }
+}
+
+#[test]
+fn a_trajectory_of_another_program_is_a_row() {
+    let scratch = Scratch::new("compare-trajectory");
+    let exact = output("propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 20 --every 0.5");
+    let right = scratch.file("right.csv", &exact);
+    let mistaken = scratch.file("mistaken.csv", exact.replace("q_w,q_x,q_y,q_z", "q_x,q_y,q_z,q_w"));
+    let line = format!(
+        "{TEXTBOOK} --until 20 --methods rk4 --steps 0.5 --trajectory {right} --trajectory {mistaken}"
+    );
+    let found = rows(&output(&line));
+    assert_eq!(cell(&found[1], "method"), right);
+    assert!(number(&found[1], "attitude_error") < 1e-14);
+    assert_eq!(number(&found[1], "attitude_time"), 20.0);
+    assert!(cell(&found[2], "status").starts_with("lost at t = "));
+
+    let flags = |file: &str| format!("{TEXTBOOK} --until 20 --methods rk4 --steps 0.5 --trajectory {file}");
+    let bad = |name: &str, text: &str| scratch.file(name, text);
+    refused(&flags("missing.csv"), &["missing.csv", "cannot be read", "t, q_w, q_x, q_y, q_z"]);
+    refused(&flags(&bad("a.csv", "t,q_w,q_x,q_y\n0,1,0,0\n")), &["a.csv: 'q_z': no such column"]);
+    refused(&flags(&bad("b.csv", "t,w,x,y,z\n1,1,0,0,0\n1,1,0,0,0\n")), &["b.csv:3: '1'", "sort the rows"]);
+    refused(&flags(&bad("c.csv", "t,w,x,y,z\n21,1,0,0,0\n")), &["c.csv:2: '21'", "t from 0 to 20"]);
+    refused(&flags(&bad("d.csv", "t,w,x,y,z\n2,0,0,0,0\n")), &["d.csv:2: '2'", "zero quaternion"]);
+    refused(&flags(&bad("e.csv", "t,w,x,y,z\n2,1,0,zero,0\n")), &["e.csv:2: 'zero' is not a number"]);
+    refused(&flags(&bad("f.csv", "t,w,x,y,z\n")), &["f.csv", "has no rows"]);
+}
+
+#[test]
+fn the_figure_is_written_whole() {
+    let scratch = Scratch::new("compare-figure");
+    let line = format!("{TEXTBOOK} --until 16 --methods rk4,rattle --steps 0.25,0.125 --figure work.svg");
+    assert_eq!(polhode(&words(&line), &scratch.0).code, 0);
+    let svg = fs::read_to_string(scratch.0.join("work.svg")).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("rattle") && svg.trim_end().ends_with("</svg>"));
+    // nothing is left to draw
+    let lost =
+        polhode(&words(&line.replace("rk4,rattle", "explicit-euler").replace("16", "512")), &scratch.0);
+    assert_eq!(lost.code, 1);
+    assert!(lost.err.contains("every attitude is lost"), "{}", lost.err);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused_with_a_remedy() {
+    let line = |flags: &str| format!("{TEXTBOOK} --until 100 {flags}");
+    refused(
+        &line("--methods rk4 --steps 0.3"),
+        &["--steps: '0.3'", "no whole number of these steps leads to --until 100", "take 0.3003003003003003"],
+    );
+    refused(&line("--methods rk4"), &["--steps: missing: rk4 needs steps", "--steps h1,h2"]);
+    refused(&line("--methods rk4,rkk4 --steps 1"), &["--methods: 'rkk4'", "did you mean 'rk4'?"]);
+    refused(&line("--methods exact,rk4 --steps 1"), &["--methods: 'exact'", "compared with", "exact-step"]);
+    refused(&line("--methods kick-drift --steps 1 --drag 0.1"), &["--methods:", "cannot take drag", "rk4"]);
+    refused(&line("--methods rk4 --steps 1 --tolerances 1e-3"), &["--tolerances: '1e-3'", "dop853"]);
+    refused(&line("--methods dop853 --tolerances 1"), &["--tolerances:", "1e-15", "1e-3"]);
+    refused(&line("--methods rk4 --steps 0"), &["--steps", "item 1", "not positive"]);
+    refused(
+        &format!("{TEXTBOOK} --until -1 --methods rk4 --steps 1"),
+        &["--until: '-1'", "must come after the start", "later"],
+    );
+    refused(&format!("{TEXTBOOK} --until 1e40 --methods rk4 --steps 1e39"), &["--until", "1e40"]);
+    let answer = run(&line("--steps 1"));
+    assert_eq!(answer.code, 2);
+}
