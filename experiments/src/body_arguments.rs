@@ -1,14 +1,12 @@
-//! The flags that name a body and its start, for every command that takes them.
+//! The flags that name a body, for every command that takes them.
 
 use clap::Args;
 use nalgebra::Matrix3;
-use polhode::body::{Body, Point};
-use polhode::catalogue;
+use polhode::body::Body;
+use polhode::catalogue::{self, NamedBody};
 use polhode::inertia::Inertia;
-use polhode::num::Dd;
-use polhode::rotation::{Quat, Vec3};
 
-use crate::arguments::{numbers, quaternion};
+use crate::arguments::numbers;
 use crate::error::Error;
 
 /// A body: exactly one of three flags.
@@ -52,6 +50,17 @@ impl BodyArguments {
         Ok(Body::free(inertia))
     }
 
+    /// The spin and attitude of a body of the catalogue.
+    pub(crate) fn published_start(&self) -> Option<PublishedStart> {
+        self.named().map(|body| PublishedStart { omega: body.omega_body, attitude: body.attitude })
+    }
+
+    /// The body of the catalogue that is named.
+    fn named(&self) -> Option<NamedBody> {
+        let name = self.body.as_deref()?;
+        catalogue::body(name).or_else(|| catalogue::top(name))
+    }
+
     /// Inertia, and the weight moment that the catalogue has with it.
     fn described(&self) -> Result<(Inertia, [f64; 3]), Error> {
         let refused =
@@ -65,29 +74,18 @@ impl BodyArguments {
             let name = self.body.as_deref().unwrap_or_default();
             let known: Vec<&str> =
                 catalogue::bodies().iter().chain(&catalogue::tops()).map(|body| body.name).collect();
-            let found = catalogue::body(name)
-                .or_else(|| catalogue::top(name))
+            let found = self
+                .named()
                 .ok_or_else(|| Error::unknown_name("--body", "body", name, known.iter().copied()))?;
             Ok((found.inertia, found.weight_moment))
         }
     }
 }
 
-/// Angular velocity and attitude at the start.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct StartArguments {
-    /// Angular velocity at the start, body axes, rad/s
-    #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]
-    omega: [f64; 3],
-    /// Attitude at the start: quaternion from body to space axes, scalar first, of any norm but zero
-    #[arg(long, value_name = "w,x,y,z", value_parser = quaternion, allow_hyphen_values = true, default_value = "1,0,0,0")]
-    attitude: [f64; 4],
-}
-
-impl StartArguments {
-    /// The exact start of `body` in the solver frame.
-    pub(crate) fn inside(&self, body: &Body) -> Result<Point<Dd>, Error> {
-        let start = body.enter_omega(Quat::from_components(self.attitude), Vec3(self.omega));
-        start.map_err(|error| Error::Input(format!("--omega: {error}")))
-    }
+/// The start that a body is published with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PublishedStart {
+    /// Body axes, rad/s.
+    pub(crate) omega: [f64; 3],
+    pub(crate) attitude: [f64; 4],
 }

@@ -16,8 +16,11 @@ mod parallel;
 mod propagate;
 mod results;
 mod simulate;
+mod start_arguments;
 mod table;
 mod text;
+mod times;
+mod tumbling_arguments;
 
 use std::process::ExitCode;
 
@@ -41,7 +44,7 @@ enum Command {
     #[command(subcommand)]
     Experiment(results::ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
-    Motion(motion::Motion),
+    Motion(Box<motion::Motion>),
     Fit(Box<fit::Fit>),
     Simulate(simulate::Simulate),
     Methods(methods::Methods),

@@ -12,4 +12,6 @@ mod harness;
 mod inertia;
 #[cfg(unix)]
 mod interrupted;
+mod motion;
 mod propagate;
+mod times;
