@@ -1,7 +1,9 @@
 //! The command line of polhode.
 
 mod arguments;
+mod bodies;
 mod body_arguments;
+mod body_file;
 mod error;
 mod experiment;
 mod experiments;
@@ -28,11 +30,20 @@ use clap::{Parser, Subcommand};
 
 use error::Error;
 
+const EXAMPLES: &str = "Examples:
+  polhode propagate --body t-handle --until 60 --every 10
+  polhode inertia box 0.3,0.2,0.1 --mass 2 --out box.json
+  polhode motion --body box.json --omega 0.3,5,0.2";
+
+const EXPERIMENT_EXAMPLES: &str = "Examples:
+  polhode experiment list
+  polhode experiment run order --scale smoke";
+
 /// Accurate long-time rotation of rigid bodies
 ///
 /// Exit code 0: success; 1: a claim, fit or check failed; 2: unusable input.
 #[derive(Parser)]
-#[command(name = "polhode", version, max_term_width = 80)]
+#[command(name = "polhode", version, max_term_width = 80, after_help = EXAMPLES)]
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
@@ -41,13 +52,14 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     /// List, run, check and publish the experiments
-    #[command(subcommand)]
+    #[command(subcommand, after_help = EXPERIMENT_EXAMPLES)]
     Experiment(results::ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
     Motion(Box<motion::Motion>),
     Fit(Box<fit::Fit>),
     Simulate(simulate::Simulate),
     Methods(methods::Methods),
+    Bodies(bodies::Bodies),
     Inertia(Box<inertia::Inertia>),
 }
 
@@ -69,6 +81,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),
+        Command::Bodies(bodies) => bodies.run(),
         Command::Inertia(inertia) => inertia.run(),
     }
 }

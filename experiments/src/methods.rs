@@ -11,8 +11,13 @@ use crate::error::Error;
 use crate::files::emit;
 use crate::table::{Column, Format, Table, row};
 
+const EXAMPLES: &str = "Examples:
+  polhode methods
+  polhode methods --schemes --format json";
+
 /// List the methods: order, what each conserves, cost per step, source
 #[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub(crate) struct Methods {
     /// List the schemes instead: what may stand behind @, as in kick-drift@srkn-6b
     #[arg(long)]
@@ -28,7 +33,7 @@ pub(crate) struct Methods {
 impl Methods {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let table = if self.schemes { schemes() } else { table() };
-        emit(&Format::or_default(self.format, self.out.is_some()).write(&table), self.out.as_deref())
+        emit(&Format::of(self.format, self.out.as_deref())?.write(&table), self.out.as_deref())
     }
 }
 

@@ -60,7 +60,7 @@ impl Motion {
         let motion = FreeMotion::from_point(body.inertia(), start);
         let character = motion.character().map_err(|error| Error::Input(format!("--omega: {error}")))?;
         let quantities = quantities(&body, &start, &motion, &character);
-        let format = Format::or_default(self.format, self.out.is_some());
+        let format = Format::of(self.format, self.out.as_deref())?;
         let text = if format == Format::Table { sheet(quantities) } else { format.write(&wide(quantities)) };
         emit(&text, self.out.as_deref())
     }

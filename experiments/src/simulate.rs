@@ -17,6 +17,7 @@ const USAGE: &str = "polhode simulate <BODY> --omega <wx,wy,wz> --until <T> --ev
   BODY: --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
 
 const EXAMPLES: &str = "Examples:
+  polhode simulate --moments 1,2,2.6 --omega 0.3,1,0.4 --until 30 --every 0.01
   polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
     --noise 0.01 --out record.csv";
 

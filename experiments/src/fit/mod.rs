@@ -11,6 +11,7 @@ use polhode::fit::{FitError, Known, Limit, RateUnit, Reading, Record, Settings, 
 use report::Facts;
 
 use crate::arguments::{number, numbers, positive};
+use crate::body_arguments::described;
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
 use crate::table::Format;
@@ -71,6 +72,9 @@ pub(crate) struct Fit {
 #[derive(Args, Clone, Debug)]
 #[group(multiple = false)]
 struct KnownArguments {
+    /// Body of the same trace: a name of the catalogue, or a file of `polhode inertia`
+    #[arg(long, value_name = "NAME|FILE")]
+    body: Option<String>,
     /// Trace of the tensor, kg m^2
     #[arg(long, value_name = "TRACE", value_parser = number, allow_hyphen_values = true)]
     trace: Option<f64>,
@@ -86,13 +90,17 @@ struct KnownArguments {
 }
 
 impl KnownArguments {
-    fn known(&self) -> Option<Known> {
+    fn known(&self) -> Result<Option<Known>, Error> {
+        if let Some(text) = &self.body {
+            return Ok(Some(Known::Trace(described(text)?.inertia.tensor().trace())));
+        }
         let moment = |[x, y, z, value]: [f64; 4]| Known::Moment { axis: Vector3::new(x, y, z), value };
-        self.trace
+        Ok(self
+            .trace
             .map(Known::Trace)
             .or(self.momentum.map(Known::Momentum))
             .or(self.twice_energy.map(Known::TwiceEnergy))
-            .or(self.moment.map(moment))
+            .or(self.moment.map(moment)))
     }
 }
 
@@ -145,10 +153,10 @@ impl Fit {
             radius: self.radius,
             noise: self.noise,
             limits: least.chain(most).collect(),
-            known: self.known.known(),
+            known: self.known.known()?,
             check_units: !self.trust_units,
         };
-        let format = Format::or_default(self.format, self.out.is_some());
+        let format = Format::of(self.format, self.out.as_deref())?;
         let estimate = match fit(&record, &settings) {
             Ok(estimate) => estimate,
             Err(error) => {
@@ -208,6 +216,12 @@ impl Fit {
         {
             let value = out.display().to_string();
             return Err(Error::input("--residuals", &value, "it would replace --out", "name another file"));
+        }
+        if let Some(plot) = &self.residuals
+            && plot.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("svg"))
+        {
+            let value = plot.display().to_string();
+            return Err(Error::input("--residuals", &value, "plots are written as SVG", "name a file .svg"));
         }
         Ok(())
     }

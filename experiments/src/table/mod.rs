@@ -8,9 +8,11 @@ mod rows;
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
+use std::path::Path;
 
 use serde_json::Value;
 
+use crate::error::Error;
 use crate::text::{visible_json, visible_lines};
 pub(crate) use layout::{Part, Shown};
 pub(crate) use rows::Rows;
@@ -293,11 +295,37 @@ pub(crate) enum Format {
 }
 
 impl Format {
-    /// The format asked for, or the one that suits standard output or a file.
-    pub(crate) fn or_default(asked: Option<Self>, to_file: bool) -> Self {
+    /// The format that is asked for, or that the ending of the file of `--out` names, or that suits standard output.
+    ///
+    /// # Errors
+    /// An ending that names no format or another one than is asked for.
+    pub(crate) fn of(asked: Option<Self>, out: Option<&Path>) -> Result<Self, Error> {
         use std::io::IsTerminal;
-        let terminal = !to_file && std::io::stdout().is_terminal();
-        asked.unwrap_or(if terminal { Self::Table } else { Self::Csv })
+        let Some(path) = out else {
+            let terminal = std::io::stdout().is_terminal();
+            return Ok(asked.unwrap_or(if terminal { Self::Table } else { Self::Csv }));
+        };
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let told = match ending.as_deref() {
+            Some("csv") => Some(Self::Csv),
+            Some("json") => Some(Self::Json),
+            Some("txt") => Some(Self::Table),
+            _ => None,
+        };
+        let refused =
+            |rule: &str, remedy: &str| Err(Error::input("--out", &path.display().to_string(), rule, remedy));
+        match (asked, told) {
+            (Some(asked), Some(told)) if asked != told => refused(
+                "the ending and --format name different formats",
+                "drop --format, or change the ending",
+            ),
+            (Some(format), _) | (None, Some(format)) => Ok(format),
+            (None, None) if ending.is_some() => refused(
+                "the ending names no format that is written here",
+                "name a file .csv, .json or .txt, or give --format too",
+            ),
+            (None, None) => Ok(Self::Csv),
+        }
     }
 
     pub(crate) fn write(self, table: &Table) -> String {

@@ -32,7 +32,7 @@ impl Rows {
         out: Option<&Path>,
         count: impl Into<Option<usize>>,
     ) -> Result<Self, Error> {
-        let format = Format::or_default(asked, out.is_some());
+        let format = Format::of(asked, out)?;
         let output = Output::new(out)?;
         let rows = Self { table, format, output, line: String::new(), is_empty: true };
         rows.check_readable(count.into().unwrap_or(0))?;

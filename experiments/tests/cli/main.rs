@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod compose;
 mod experiment;
 mod fit;
 mod forces;
