@@ -13,6 +13,7 @@ mod harness;
 mod inertia;
 #[cfg(unix)]
 mod interrupted;
+mod logs;
 mod motion;
 mod propagate;
 mod times;
