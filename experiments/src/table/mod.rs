@@ -75,11 +75,10 @@ impl Cell {
     /// Adds the field of a CSV that holds it.
     fn write_field(&self, line: &mut String) {
         match self {
-            // `{:?}` has an exponent there, and ryu none
-            Self::Number(x) if (1e-5..1e-4).contains(&x.abs()) => {
+            Self::Number(x) if is_plain(*x) => line.push_str(ryu::Buffer::new().format_finite(*x)),
+            Self::Number(x) => {
                 let _ = write!(line, "{x:?}");
             }
-            Self::Number(x) => line.push_str(ryu::Buffer::new().format_finite(*x)),
             Self::Integer(n) => {
                 let _ = write!(line, "{n}");
             }
@@ -260,6 +259,13 @@ impl Table {
     }
 }
 
+/// Whether ryu, which takes a fifth of the time, writes the number as `{:?}` does: that has an exponent below 1e-4 already, and
+/// rounds half up where a number lies halfway between two that are as short, which takes one with at most 26 binary places.
+fn is_plain(x: f64) -> bool {
+    const PLACES: f64 = 67_108_864.0; // 2^26
+    !(1e-5..1e-4).contains(&x.abs()) && (x * PLACES).fract() != 0.0
+}
+
 /// Adds a line of CSV with `count` fields, the last of them empty where `row` is short.
 fn write_row(row: impl IntoIterator<Item = Cell>, count: usize, line: &mut String) {
     let mut row = row.into_iter();
@@ -377,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_short_and_read_back() {
+    fn numbers_are_those_of_debug() {
         let mut random = polhode::num::Random::new(5);
         let spread = (0..20_000).map(|_| {
             let bits = (random.uniform() * 9_218_868_437_227_405_312.0) as u64;
@@ -385,12 +391,14 @@ mod tests {
         });
         let edges =
             [0.0, -0.0, 1e-4, 1e-5, 9.999e-6, 9.999e-5, -2.5e-5, 1e15, 1e16, 9.999e15, 5e-324, f64::MAX];
-        for x in spread.filter(|x| x.is_finite()).chain(edges) {
+        // halfway between two numbers of 17 digits
+        let halfway =
+            [94_085_939_853.640_625, 12_934_102_821_079.312_5, 2.0_f64.recip(), 33_554_432_f64.recip()];
+        let few_places = (0..20_000).map(|k| f64::from(k * 7919 + 1) / f64::from(1 << (k % 28)));
+        for x in spread.filter(|x| x.is_finite()).chain(edges).chain(halfway).chain(few_places) {
             let mut field = String::new();
             Cell::Number(x).write_field(&mut field);
-            assert_eq!(field.parse::<f64>().unwrap().to_bits(), x.to_bits());
-            // halfway between two such numbers either will do
-            assert_eq!(field.len(), format!("{x:?}").len(), "{field}");
+            assert_eq!(field, format!("{x:?}"));
         }
     }
 
