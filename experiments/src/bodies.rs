@@ -23,10 +23,10 @@ const EXAMPLES: &str = "Examples:
 pub(crate) struct Bodies {
     /// Show everything that is known of this body
     name: Option<String>,
-    /// How rows are printed: table on a terminal, csv otherwise
+    /// How rows are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// Write to this file instead of standard output
+    /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

@@ -22,10 +22,10 @@ pub(crate) struct Methods {
     /// List the schemes instead: what may stand behind @, as in kick-drift@srkn-6b
     #[arg(long)]
     schemes: bool,
-    /// How rows are printed: table on a terminal, csv otherwise
+    /// How rows are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// Write to this file instead of standard output
+    /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

@@ -42,10 +42,10 @@ pub(crate) struct Motion {
     body: BodyArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// How the quantities are printed: table on a terminal, csv otherwise
+    /// How the quantities are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// Write to this file instead of standard output
+    /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

@@ -62,10 +62,10 @@ pub(crate) struct Propagate {
     /// Columns of the rows, by commas: t, q, omega, energy, momentum, errors, euler, or names of columns [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     fields: Vec<String>,
-    /// How rows are printed: table on a terminal, csv otherwise
+    /// How rows are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// Write to this file instead of standard output
+    /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
