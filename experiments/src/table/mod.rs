@@ -392,8 +392,12 @@ mod tests {
         let edges =
             [0.0, -0.0, 1e-4, 1e-5, 9.999e-6, 9.999e-5, -2.5e-5, 1e15, 1e16, 9.999e15, 5e-324, f64::MAX];
         // halfway between two numbers of 17 digits
-        let halfway =
-            [94_085_939_853.640_625, 12_934_102_821_079.312_5, 2.0_f64.recip(), 33_554_432_f64.recip()];
+        let halfway = [
+            188_171_879_707.281_25 / 2.0,
+            206_945_645_137_269.0 / 16.0,
+            2.0_f64.recip(),
+            33_554_432_f64.recip(),
+        ];
         let few_places = (0..20_000).map(|k| f64::from(k * 7919 + 1) / f64::from(1 << (k % 28)));
         for x in spread.filter(|x| x.is_finite()).chain(edges).chain(halfway).chain(few_places) {
             let mut field = String::new();
