@@ -237,9 +237,9 @@ fn columns_of_text_may_stand_anywhere() {
             "a.csv: no column for time; the header has [\"day\", \"hour\", \"wx\"]",
         ),
         ("0,1,2,3\nt,wx,wy,wz\n0,1,2,3\n", "a.csv: no column for time; the header has []"),
-        // no row between header and numbers is passed over
-        ("t,wx,wy,wz\ns,deg/s,deg/s,deg/s\n0,1,2,3\n", "a.csv, line 2, column 1 (t): \"s\""),
-        ("time,wx,wy,wz\n2024-05-01,1,2,3\n", "a.csv, line 2, column 1 (time): \"2024-05-01\""),
+        // no row between header and numbers is passed over, and a row of units is read
+        ("t,wx,wy,wz\nsec,deg,deg,deg\n0,1,2,3\n", "a.csv, line 2, column 1 (t): \"sec\""),
+        ("time,wx,wy,wz\n2024-05-32,1,2,3\n", "a.csv, line 2, column 1 (time): \"2024-05-32\""),
     ] {
         let message = refusal(text);
         assert!(message.starts_with(start), "{message}");

@@ -8,14 +8,17 @@ use polhode::method::method;
 use serde_json::json;
 
 use crate::arguments::{number, positive};
-use crate::body_arguments::{BodyArguments, StartArguments};
+use crate::body_arguments::BodyArguments;
 use crate::error::{Error, warn};
 use crate::files::emit;
 use crate::force_arguments::ForceArguments;
+use crate::start_arguments::StartArguments;
 use crate::table::{Cell, Column, Format, Table, row};
+use crate::times::positive_duration;
 
-const USAGE: &str = "polhode advise <BODY> --omega <wx,wy,wz> --until <T> --attitude-error <E> [OPTIONS]
-  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
+const USAGE: &str = "polhode advise <BODY> [START] --until <T> --attitude-error <E> [OPTIONS]
+  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
+  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ... and an attitude";
 
 const EXAMPLES: &str = "Examples:
   polhode advise --moments 1,2,3 --omega 0.4,1,-0.3 --until 1e4 \\
@@ -37,8 +40,8 @@ pub(crate) struct Advise {
     start: StartArguments,
     #[command(flatten)]
     forces: ForceArguments,
-    /// Duration of the motion, s
-    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true)]
+    /// Duration of the motion, s, or with a unit, as 30d
+    #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true)]
     until: f64,
     /// Largest attitude error allowed up to then, rad
     #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true)]
@@ -85,7 +88,7 @@ impl Advise {
             }
         }
         let body = self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)?;
-        let start = body.leave(&self.start.inside(&body)?);
+        let start = body.leave(&self.start.inside(&body, self.body.published_start())?);
         let mut demand = Demand::new(self.until, self.attitude_error);
         demand.energy_error = self.energy_error;
         demand.budget = self.budget;
@@ -103,7 +106,7 @@ impl Advise {
         } else {
             None
         };
-        let format = Format::or_default(self.format, self.out.is_some());
+        let format = Format::of(self.format, self.out.as_deref())?;
         let text = match format {
             Format::Json => json(&advice, actual),
             _ => format.write(&self.table(&advice, actual)),

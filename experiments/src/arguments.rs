@@ -58,51 +58,6 @@ pub(crate) fn turn(q: [f64; 4]) -> Option<UnitQuaternion<f64>> {
     Some(UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)))
 }
 
-/// Output times as typed, a value of its own because clap reads `Vec` as a repeated flag.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Times(pub(crate) Vec<f64>);
-
-/// Output times separated by commas.
-pub(crate) fn times(text: &str) -> Result<Times, String> {
-    list(text).map(Times)
-}
-
-/// Rows of one run: more are rather a slip of the pen than a wish.
-const MOST_ROWS: f64 = 2e6;
-
-/// The times `start`, `start + every`, … up to `until`.
-///
-/// `until` itself is among them, as typed, when it lies within 4 ulp of a multiple.
-///
-/// # Errors
-/// `every` zero or pointing away from `until`, and more than [`MOST_ROWS`].
-pub(crate) fn regular(
-    start: f64,
-    until: f64,
-    every: f64,
-) -> Result<impl ExactSizeIterator<Item = f64>, String> {
-    let span = until - start;
-    if every == 0.0 {
-        return Err("--every: '0': rows need time between them; give a DT that is not zero".into());
-    }
-    if span != 0.0 && span.signum() != every.signum() {
-        return Err(format!(
-            "--every: '{every:?}': steps away from --until {until:?} (start time {start:?}); change its sign"
-        ));
-    }
-    let rows = span / every;
-    if rows.is_nan() || rows > MOST_ROWS {
-        return Err(format!(
-            "--every: '{every:?}': {rows:.0e} rows up to --until {until:?}, and at most {MOST_ROWS:e} are written; give a larger DT"
-        ));
-    }
-    let ulp = f64::EPSILON * until.abs().max(start.abs()).max(every.abs());
-    let nearest = rows.round();
-    let exact = (start + nearest * every - until).abs() <= 4.0 * ulp;
-    let last = if exact { nearest } else { rows.floor() } as usize;
-    Ok((0..last + 1).map(move |n| if exact && n == last { until } else { start + n as f64 * every }))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,25 +89,5 @@ mod tests {
             assert_eq!(turn([1.0, -3.0, 0.5, 0.25].map(|x| x * scale)), Some(unit), "2^{k}");
         }
         assert_eq!(turn([0.0, -0.0, 0.0, 0.0]), None);
-    }
-
-    #[test]
-    fn regular_times_end_at_the_typed_end() {
-        let regular = |a, b, c| regular(a, b, c).map(Iterator::collect::<Vec<_>>);
-        assert_eq!(regular(0.0, 0.3, 0.1), Ok(vec![0.0, 0.1, 0.2, 0.3]));
-        assert_eq!(regular(0.0, 1.0, 0.4), Ok(vec![0.0, 0.4, 0.8]));
-        assert_eq!(regular(5.0, 3.0, -1.0), Ok(vec![5.0, 4.0, 3.0]));
-        assert_eq!(regular(2.0, 2.0, 1.0), Ok(vec![2.0]));
-        assert_eq!(regular(0.0, 1e4, 1e-2).map(|t| t.len()), Ok(1_000_001));
-    }
-
-    #[test]
-    fn regular_times_refuse_what_never_arrives() {
-        let message = |a, b, c| regular(a, b, c).err().unwrap();
-        assert!(message(0.0, 1.0, 0.0).contains("rows need time between them"));
-        assert!(message(0.0, 1.0, -0.1).contains("change its sign"));
-        assert!(message(0.0, 1e-200, -1e-200).contains("change its sign"));
-        assert!(message(0.0, 1.0, 1e-300).contains("1e300 rows"));
-        assert!(message(-f64::MAX, f64::MAX, 1.0).contains("inf rows"));
     }
 }

@@ -1,14 +1,13 @@
-//! The flags that name a body and its start, for every command that takes them.
+//! The flags that name a body, for every command that takes them.
 
 use clap::Args;
 use nalgebra::Matrix3;
-use polhode::body::{Body, Point};
+use polhode::body::Body;
 use polhode::catalogue;
 use polhode::inertia::Inertia;
-use polhode::num::Dd;
-use polhode::rotation::{Quat, Vec3};
 
-use crate::arguments::{numbers, quaternion};
+use crate::arguments::{list, numbers};
+use crate::body_file;
 use crate::error::Error;
 
 /// A body: exactly one of three flags.
@@ -18,18 +17,60 @@ pub(crate) struct BodyArguments {
     /// Principal moments in the order of the body axes, in any consistent unit
     #[arg(long, value_name = "I1,I2,I3", value_parser = numbers::<3>, allow_hyphen_values = true)]
     moments: Option<[f64; 3]>,
-    /// Tensor entries in body axes, I_xy = -sum m x y
-    #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = numbers::<6>, allow_hyphen_values = true)]
-    inertia: Option<[f64; 6]>,
-    /// Body of the catalogue: toutatis, racket, t-handle, phone, water, spacecraft, textbook, dyadic, prolate, oblate, sphere; or a top with its weight moment: gyroscope, bicycle-wheel, simo-wong, bruls-cardona
-    #[arg(long, value_name = "NAME")]
+    /// Tensor entries in body axes, I_xy = -sum m x y; or all nine, by rows
+    #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = tensor, allow_hyphen_values = true)]
+    inertia: Option<Matrix3<f64>>,
+    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF or MJCF, with :LINK where it has several
+    #[arg(long, value_name = "NAME|FILE[:LINK]")]
     body: Option<String>,
+}
+
+/// Six entries of a tensor, or nine.
+fn tensor(text: &str) -> Result<Matrix3<f64>, String> {
+    match list(text)?[..] {
+        [xx, yy, zz, xy, xz, yz] => Ok(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)),
+        ref nine if nine.len() == 9 => Ok(Matrix3::from_row_slice(nine)),
+        ref found => Err(format!(
+            "{} given, 6 needed (Ixx,Iyy,Izz,Ixy,Ixz,Iyz) or 9 (by rows); separate them by commas",
+            found.len()
+        )),
+    }
+}
+
+/// A body with what is published of it.
+pub(crate) struct Described {
+    pub(crate) inertia: Inertia,
+    /// N m, body axes; zero of a body without a fixed point.
+    weight_moment: [f64; 3],
+}
+
+impl Described {
+    fn alone(inertia: Inertia) -> Self {
+        Self { inertia, weight_moment: [0.0; 3] }
+    }
+}
+
+/// The body that `--body` names: of the catalogue, or of a file.
+pub(crate) fn described(text: &str) -> Result<Described, Error> {
+    if let Some(found) = catalogue::body(text).or_else(|| catalogue::top(text)) {
+        return Ok(Described { inertia: found.inertia, weight_moment: found.weight_moment });
+    }
+    if let Some(inertia) = body_file::inertia(text)? {
+        return Ok(Described::alone(inertia));
+    }
+    let known: Vec<&str> =
+        catalogue::bodies().iter().chain(&catalogue::tops()).map(|body| body.name).collect();
+    if text.contains(['.', '/']) {
+        let rule = "no such file, and no such body in the catalogue";
+        return Err(Error::input("--body", text, rule, "`polhode bodies` lists the catalogue"));
+    }
+    Err(Error::unknown_name("--body", "body", text, known.iter().copied()))
 }
 
 impl BodyArguments {
     /// The body that the flags describe, with the catalogue's weight moment or `weight_moment` in its place.
     pub(crate) fn heavy(&self, weight_moment: Option<[f64; 3]>) -> Result<Body, Error> {
-        let (inertia, own) = self.described()?;
+        let Described { inertia, weight_moment: own } = self.described()?;
         let moment = weight_moment.unwrap_or(own);
         if moment == [0.0; 3] {
             return Ok(Body::free(inertia));
@@ -39,8 +80,8 @@ impl BodyArguments {
 
     /// The same for what only free bodies do.
     pub(crate) fn free(&self) -> Result<Body, Error> {
-        let (inertia, own) = self.described()?;
-        if own != [0.0; 3] {
+        let Described { inertia, weight_moment } = self.described()?;
+        if weight_moment != [0.0; 3] {
             let name = self.body.as_deref().unwrap_or_default();
             return Err(Error::input(
                 "--body",
@@ -52,42 +93,32 @@ impl BodyArguments {
         Ok(Body::free(inertia))
     }
 
-    /// Inertia, and the weight moment that the catalogue has with it.
-    fn described(&self) -> Result<(Inertia, [f64; 3]), Error> {
+    /// The spin and attitude that the catalogue has with its body.
+    pub(crate) fn published_start(&self) -> Option<PublishedStart> {
+        let name = self.body.as_deref()?;
+        let found = catalogue::body(name).or_else(|| catalogue::top(name))?;
+        Some(PublishedStart { omega: found.omega_body, attitude: found.attitude })
+    }
+
+    fn described(&self) -> Result<Described, Error> {
         let refused =
             |flag: &str, error: polhode::inertia::InertiaError| Error::Input(format!("{flag}: {error}"));
         if let Some(moments) = self.moments {
-            Ok((Inertia::from_moments(moments).map_err(|error| refused("--moments", error))?, [0.0; 3]))
-        } else if let Some([xx, yy, zz, xy, xz, yz]) = self.inertia {
-            let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-            Ok((Inertia::from_tensor(tensor).map_err(|error| refused("--inertia", error))?, [0.0; 3]))
-        } else {
-            let name = self.body.as_deref().unwrap_or_default();
-            let known: Vec<&str> =
-                catalogue::bodies().iter().chain(&catalogue::tops()).map(|body| body.name).collect();
-            let found = catalogue::body(name)
-                .or_else(|| catalogue::top(name))
-                .ok_or_else(|| Error::unknown_name("--body", "body", name, known.iter().copied()))?;
-            Ok((found.inertia, found.weight_moment))
+            let inertia = Inertia::from_moments(moments).map_err(|error| refused("--moments", error))?;
+            return Ok(Described::alone(inertia));
         }
+        if let Some(tensor) = self.inertia {
+            let inertia = Inertia::from_tensor(tensor).map_err(|error| refused("--inertia", error))?;
+            return Ok(Described::alone(inertia));
+        }
+        described(self.body.as_deref().unwrap_or_default())
     }
 }
 
-/// Angular velocity and attitude at the start.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct StartArguments {
-    /// Angular velocity at the start, body axes, rad/s
-    #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]
-    omega: [f64; 3],
-    /// Attitude at the start: quaternion from body to space axes, scalar first, of any norm but zero
-    #[arg(long, value_name = "w,x,y,z", value_parser = quaternion, allow_hyphen_values = true, default_value = "1,0,0,0")]
-    attitude: [f64; 4],
-}
-
-impl StartArguments {
-    /// The exact start of `body` in the solver frame.
-    pub(crate) fn inside(&self, body: &Body) -> Result<Point<Dd>, Error> {
-        let start = body.enter_omega(Quat::from_components(self.attitude), Vec3(self.omega));
-        start.map_err(|error| Error::Input(format!("--omega: {error}")))
-    }
+/// The start that a body is published with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PublishedStart {
+    /// Body axes, rad/s.
+    pub(crate) omega: [f64; 3],
+    pub(crate) attitude: [f64; 4],
 }

@@ -2,7 +2,9 @@
 
 mod advise;
 mod arguments;
+mod bodies;
 mod body_arguments;
+mod body_file;
 mod compare;
 mod error;
 mod experiment;
@@ -19,8 +21,11 @@ mod parallel;
 mod propagate;
 mod results;
 mod simulate;
+mod start_arguments;
 mod table;
 mod text;
+mod times;
+mod tumbling_arguments;
 
 use std::process::ExitCode;
 
@@ -28,11 +33,20 @@ use clap::{Parser, Subcommand};
 
 use error::Error;
 
+const EXAMPLES: &str = "Examples:
+  polhode propagate --body t-handle --until 60 --every 10
+  polhode inertia box 0.3,0.2,0.1 --mass 2 --out box.json
+  polhode motion --body box.json --omega 0.3,5,0.2";
+
+const EXPERIMENT_EXAMPLES: &str = "Examples:
+  polhode experiment list
+  polhode experiment run order --scale smoke";
+
 /// Accurate long-time rotation of rigid bodies
 ///
 /// Exit code 0: success; 1: a claim, fit or check failed; 2: unusable input.
 #[derive(Parser)]
-#[command(name = "polhode", version, max_term_width = 80)]
+#[command(name = "polhode", version, max_term_width = 80, after_help = EXAMPLES)]
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
@@ -41,15 +55,16 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     /// List, run, check and publish the experiments
-    #[command(subcommand)]
+    #[command(subcommand, after_help = EXPERIMENT_EXAMPLES)]
     Experiment(results::ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
-    Motion(motion::Motion),
+    Motion(Box<motion::Motion>),
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
     Fit(Box<fit::Fit>),
     Simulate(simulate::Simulate),
     Methods(methods::Methods),
+    Bodies(bodies::Bodies),
     Inertia(Box<inertia::Inertia>),
 }
 
@@ -73,6 +88,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),
+        Command::Bodies(bodies) => bodies.run(),
         Command::Inertia(inertia) => inertia.run(),
     }
 }

@@ -13,16 +13,21 @@ use crate::error::Error;
 use crate::files::emit;
 use crate::table::{Cell, Column, Format, Table, row};
 
+const EXAMPLES: &str = "Examples:
+  polhode methods
+  polhode methods --schemes --format json";
+
 /// List the methods: order, what each conserves, cost per step, source
 #[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub(crate) struct Methods {
     /// List the schemes instead: what may stand behind @, as in kick-drift@srkn-6b
     #[arg(long)]
     schemes: bool,
-    /// How rows are printed: table on a terminal, csv otherwise
+    /// How rows are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// Write to this file instead of standard output
+    /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -30,7 +35,7 @@ pub(crate) struct Methods {
 impl Methods {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let table = if self.schemes { schemes() } else { table() };
-        emit(&Format::or_default(self.format, self.out.is_some()).write(&table), self.out.as_deref())
+        emit(&Format::of(self.format, self.out.as_deref())?.write(&table), self.out.as_deref())
     }
 }
 

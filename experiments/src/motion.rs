@@ -3,26 +3,38 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::flow::FreeMotion;
+use nalgebra::Vector3;
+use polhode::body::{Body, Point};
+use polhode::flow::{Character, FreeMotion, Mode, Stability};
+use polhode::num::Dd;
 
-use crate::body_arguments::{BodyArguments, StartArguments};
+use crate::body_arguments::BodyArguments;
 use crate::error::Error;
 use crate::files::emit;
-use crate::table::{Column, Format, Table, row};
+use crate::start_arguments::StartArguments;
+use crate::table::{Cell, Column, Format, Table, row};
 
-const USAGE: &str = "polhode motion <BODY> --omega <wx,wy,wz> [OPTIONS]
-  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
+const USAGE: &str = "polhode motion <BODY> [START] [OPTIONS]
+  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
+  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ... and an attitude,
+         or --periods <P_phi,P_psi> --mode <lam|sam>";
 
 const EXAMPLES: &str = "Examples:
-  polhode motion --moments 1,2,3 --omega 0.4,1,-0.3
-  polhode motion --body racket --omega 0.3,15,0.2 --format json";
+  polhode motion --body toutatis
+  polhode motion --moments 1,2,3 --omega 0,1,0 --format json
+  polhode motion --moments 0.61,0.965,1 --periods 27.38h,263h --mode sam \\
+    --pole 250,-75 --phases 152,14 --angle-unit deg";
 
-/// Mode, periods and distance to the separatrix of torque-free motion
+/// Mode, periods, stability and distance to the separatrix of torque-free motion
 ///
-/// The angular momentum circulates in the body about the axis of the smallest moment (long-axis mode) or of the largest
-/// (short-axis mode). polhode_period: once round the polhode. nutation_period: that axis nods towards the angular momentum L and
-/// back. precession_period: mean time in which it goes once round L. spin: 2E/|L|. separatrix_distance: 0 on the separatrix,
-/// negative in long-axis mode.
+/// The angular momentum L circulates in the body about the axis of the smallest moment (long-axis mode) or of the largest
+/// (short-axis mode); of a steady spin the axis, its stability and the rate at which deviations grow are printed. Light-curve
+/// work calls precession_period P_phi and polhode_period P_psi: the mean period of that axis about L, and the period of L
+/// about the axis in the body. theta is the angle between the two; lambda and beta are longitude and latitude of L in space;
+/// phi and psi are the other two Euler angles (z-x-z, z along L and along the axis) at the start. combined_period, P_1 of
+/// light curves: 1/P_1 = 1/P_phi + 1/P_psi in long-axis mode, - in short-axis mode. nutation_period: the axis nods towards L
+/// and back. separatrix_distance: (|L|^2/2E - I_middle)/I_middle, negative in long-axis mode. energy_ratio: to the least energy
+/// with this L. csv and json have angles in rad and times in s.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Motion {
@@ -30,51 +42,175 @@ pub(crate) struct Motion {
     body: BodyArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// How rows are printed: table on a terminal, csv otherwise
+    /// How the quantities are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// Write to this file instead of standard output
+    /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
+/// Name, symbol of the field, unit, meaning and value of a quantity.
+type Quantity = (&'static str, &'static str, &'static str, &'static str, Cell);
+
 impl Motion {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let body = self.body.free()?;
-        let motion = FreeMotion::from_point(body.inertia(), self.start.inside(&body)?);
+        let start = self.start.inside(&body, self.body.published_start())?;
+        let motion = FreeMotion::from_point(body.inertia(), start);
         let character = motion.character().map_err(|error| Error::Input(format!("--omega: {error}")))?;
-        let mode = character.mode.name();
-        let column = Column::new;
-        let mut table = Table::new(
-            "motion",
-            "Character of a free motion.",
-            vec![
-                column("mode", "", "long-axis, short-axis, separatrix or steady"),
-                column("modulus", "", "k of the elliptic functions").digits(6),
-                column("complement", "", "1 - k^2").digits(6),
-                column("polhode_period", "s", "once round the polhode").heading("polhode period").digits(6),
-                column("nutation_period", "s", "the axis nods once").heading("nutation period").digits(6),
-                column("precession_period", "s", "mean time of the axis once round L")
-                    .heading("precession period")
-                    .digits(6),
-                column("precession_rate", "rad/s", "mean rate of the axis round L").hidden(),
-                column("spin", "rad/s", "2E/|L|").digits(6),
-                column("separatrix_distance", "", "(|L|^2/2E - I_middle)/I_middle, 0 on the separatrix")
-                    .heading("to separatrix")
-                    .digits(6),
-            ],
-        );
-        table.push(row![
-            mode,
-            character.parameter.map(f64::sqrt),
-            character.complement,
-            character.polhode_period,
-            character.nutation_period,
-            character.precession_rate.map(|rate| std::f64::consts::TAU / rate.abs()),
-            character.precession_rate,
-            character.spin,
-            character.separatrix_distance,
-        ]);
-        emit(&Format::or_default(self.format, self.out.is_some()).write(&table), self.out.as_deref())
+        let quantities = quantities(&body, &start, &motion, &character);
+        let format = Format::of(self.format, self.out.as_deref())?;
+        let text = if format == Format::Table { sheet(quantities) } else { format.write(&wide(quantities)) };
+        emit(&text, self.out.as_deref())
+    }
+}
+
+fn quantities(body: &Body, start: &Point<Dd>, motion: &FreeMotion, character: &Character) -> Vec<Quantity> {
+    let (tumbling, spin) = (motion.tumbling(), motion.pure_spin());
+    let tilt = motion.tilt_range();
+    let (axis_name, axis) = axis(body, motion, character);
+    let precession_period = character.precession_rate.map(|rate| core::f64::consts::TAU / rate.abs());
+    // the frequency of the light curve: the turn about L seen with the turn about the axis
+    let sign = if character.mode == Mode::LongAxis { 1.0 } else { -1.0 };
+    let combined = tumbling.map(|found| 1.0 / (1.0 / found.precession_period + sign / found.rotation_period));
+    let moments = body.inertia().principal_moments();
+    let largest = moments.iter().fold(0.0_f64, |most, moment| most.max(*moment));
+    let state = body.leave(start);
+    let momentum = state.momentum_body.norm();
+    let omega = body.omega_of(start);
+    let q = state.attitude.components();
+    let pole = tumbling.map(|found| found.pole);
+    let angles = tumbling.map(|found| found.angles);
+    vec![
+        ("mode", "", "", "long-axis, short-axis, separatrix or steady", character.mode.name().into()),
+        ("modulus", "k", "", "of the elliptic functions", character.parameter.map(|k| k.sqrt() + 0.0).into()),
+        ("complement", "1-k^2", "", "", character.complement.into()),
+        (
+            "polhode_period",
+            "P_psi",
+            "s",
+            "L once round the axis in the body",
+            character.polhode_period.into(),
+        ),
+        ("nutation_period", "", "s", "the axis nods towards L and back", character.nutation_period.into()),
+        ("precession_period", "P_phi", "s", "mean, the axis once round L", precession_period.into()),
+        ("precession_rate", "", "rad/s", "mean, positive about L", character.precession_rate.into()),
+        ("spin", "2E/|L|", "rad/s", "constant part of omega along L", character.spin.into()),
+        (
+            "separatrix_distance",
+            "",
+            "",
+            "(|L|^2/2E - I_middle)/I_middle, 0 on the separatrix",
+            character.separatrix_distance.into(),
+        ),
+        (
+            "combined_period",
+            "P_1",
+            "s",
+            "1/P_1 = 1/P_phi + 1/P_psi (long-axis) or - (short)",
+            combined.into(),
+        ),
+        (
+            "energy_ratio",
+            "E/E_0",
+            "",
+            "to the least energy with this L",
+            (largest * character.spin / momentum).into(),
+        ),
+        ("axis", "", "", "of the mode or of the spin", axis_name.into()),
+        ("axis_x", "", "", "unit vector, body axes", axis.map(|axis| axis.x + 0.0).into()),
+        ("axis_y", "", "", "", axis.map(|axis| axis.y + 0.0).into()),
+        ("axis_z", "", "", "", axis.map(|axis| axis.z + 0.0).into()),
+        ("stability", "", "", "of a steady spin", spin.map(|spin| spin.stability.name()).into()),
+        (
+            "growth_rate",
+            "",
+            "rad/s",
+            "of deviations from it, e-fold",
+            spin.map(|spin| spin.growth_rate).into(),
+        ),
+        ("theta_min", "theta", "rad", "least angle of the axis to L", tilt.map(|tilt| tilt[0]).into()),
+        ("theta_max", "theta", "rad", "largest", tilt.map(|tilt| tilt[1]).into()),
+        ("lambda", "lambda", "rad", "longitude of L in space", pole.map(|pole| pole[0]).into()),
+        ("beta", "beta", "rad", "latitude of L in space", pole.map(|pole| pole[1]).into()),
+        ("phi", "phi_0", "rad", "of the axis about L at the start", angles.map(|angles| angles[0]).into()),
+        (
+            "psi",
+            "psi_0",
+            "rad",
+            "of the body about the axis at the start",
+            angles.map(|angles| angles[1]).into(),
+        ),
+        ("q_w", "", "", "attitude at the start, body to space", q[0].into()),
+        ("q_x", "", "", "", q[1].into()),
+        ("q_y", "", "", "", q[2].into()),
+        ("q_z", "", "", "", q[3].into()),
+        ("omega_body_x", "", "rad/s", "angular velocity at the start", omega.x.into()),
+        ("omega_body_y", "", "rad/s", "", omega.y.into()),
+        ("omega_body_z", "", "rad/s", "", omega.z.into()),
+    ]
+}
+
+/// The axis of the mode or of a steady spin by its place among the moments, and its direction in body axes.
+fn axis(
+    body: &Body,
+    motion: &FreeMotion,
+    character: &Character,
+) -> (Option<&'static str>, Option<Vector3<f64>>) {
+    const NAMES: [&str; 3] = ["long", "middle", "short"];
+    let principal = |rank: usize| Some(body.inertia().principal_axes() * Vector3::ith(rank, 1.0));
+    if let Some(spin) = motion.pure_spin() {
+        let [least, _, most] = body.inertia().principal_moments();
+        let name = match spin.stability {
+            Stability::Neutral if least == most => "any",
+            Stability::Neutral => "equatorial",
+            _ => NAMES[spin.rank],
+        };
+        return (Some(name), Some(spin.axis));
+    }
+    match character.mode {
+        Mode::LongAxis => (Some(NAMES[0]), principal(0)),
+        Mode::ShortAxis => (Some(NAMES[2]), principal(2)),
+        _ => (Some(NAMES[1]), principal(1)),
+    }
+}
+
+/// One row with a column for each.
+fn wide(quantities: Vec<Quantity>) -> Table {
+    let column = |(name, _, unit, meaning, _): &Quantity| Column::new(name, unit, meaning);
+    let mut table =
+        Table::new("motion", "Character of a free motion.", quantities.iter().map(column).collect());
+    table.push(quantities.into_iter().map(|(.., value)| value));
+    table
+}
+
+/// One line a quantity; what the motion does not have is left out.
+fn sheet(quantities: Vec<Quantity>) -> String {
+    let columns = vec![
+        Column::new("quantity", "", ""),
+        Column::new("symbol", "", ""),
+        Column::new("value", "", "").digits(7),
+        Column::new("unit", "", ""),
+        Column::new("also", "", ""),
+    ];
+    let mut table = Table::new("motion", "Character of a free motion.", columns);
+    for (name, symbol, unit, _, value) in quantities {
+        if value != Cell::Empty {
+            let also = also(&value, unit);
+            table.push(row![name, symbol, value, unit, also]);
+        }
+    }
+    table.terminal()
+}
+
+/// The same in the unit that people say: hours and days, degrees.
+fn also(value: &Cell, unit: &str) -> String {
+    let Cell::Number(value) = *value else { return String::new() };
+    match unit {
+        "s" if value.abs() >= 2.0 * 86_400.0 => format!("{:.4} d", value / 86_400.0),
+        "s" if value.abs() >= 3600.0 => format!("{:.4} h", value / 3600.0),
+        "rad" => format!("{:.4} deg", value * (180.0 / core::f64::consts::PI)),
+        _ => String::new(),
     }
 }

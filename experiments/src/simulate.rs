@@ -7,15 +7,17 @@ use nalgebra::Vector3;
 use polhode::fit::simulate;
 use polhode::num::Random;
 
-use crate::arguments::{number, numbers, positive, regular};
+use crate::arguments::{number, numbers, positive};
 use crate::body_arguments::BodyArguments;
 use crate::error::Error;
 use crate::table::{Column, Format, Rows, Table, row};
+use crate::times::{Regular, regular};
 
 const USAGE: &str = "polhode simulate <BODY> --omega <wx,wy,wz> --until <T> --every <DT>
   BODY: --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
 
 const EXAMPLES: &str = "Examples:
+  polhode simulate --moments 1,2,2.6 --omega 0.3,1,0.4 --until 30 --every 0.01
   polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
     --noise 0.01 --out record.csv";
 
@@ -71,9 +73,9 @@ impl Simulate {
         }
         let body = self.body.free()?;
         let mut random = Random::new(self.seed);
-        let regular = regular(0.0, self.until, self.every).map_err(Error::Input)?;
+        let regular = regular(0.0, self.until, self.every).and_then(Regular::kept).map_err(Error::Input)?;
         let times: Vec<f64> =
-            regular.map(|t| t + self.jitter * self.every * (random.uniform() - 0.5)).collect();
+            regular.into_iter().map(|t| t + self.jitter * self.every * (random.uniform() - 0.5)).collect();
         let rates = simulate(body.inertia(), Vector3::from(self.omega), &times, self.noise, &mut random)
             .map_err(|error| Error::Input(format!("--omega: {error}")))?;
         let rate = |name, axis| Column::new(name, "rad/s", axis);

@@ -1,6 +1,7 @@
 //! Bodies: inertia and forces, states of rotation, and the solver frame of kernels.
 
 mod constant_torque;
+mod date;
 mod drag;
 mod field;
 mod force;
@@ -12,6 +13,7 @@ mod rotor;
 mod state;
 mod time;
 
+pub use date::{Date, DateError};
 pub(crate) use field::{Evaluated, Forces, Witness};
 pub use field::{Field, Free};
 pub use force::{Conserved, Force, ForceError, Potential, Torque};

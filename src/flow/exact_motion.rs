@@ -110,6 +110,15 @@ impl ExactMotion {
         TimeError::check(t, self.reach())
     }
 
+    /// The point of the solver frame at the time `t`, s, finite and within reach: worked out in `f64`, with phases reduced in
+    /// double-double, so that a time that is the difference of two others costs no digits.
+    pub fn point_at(&self, t: Dd) -> Point<f64> {
+        match self {
+            Self::Free(motion) => motion.point_after(t),
+            Self::Lagrange(top) => top.point_after(t),
+        }
+    }
+
     /// The point of the solver frame at the time `t`, s, in double-double; `t` finite and within reach.
     pub fn point_at_dd(&self, t: Dd) -> Point<Dd> {
         match self {

@@ -11,7 +11,10 @@ mod turn;
 pub use casimir::Casimir;
 pub use exact_motion::{ExactMotion, NoClosedForm};
 pub(crate) use free::{Addition, Curve, FreeOrbit};
-pub use free::{AtRest, Character, FreeBody, FreeFlow, FreeMotion, Mode, SymmetricTop};
+pub use free::{
+    AtRest, Character, FreeBody, FreeFlow, FreeMotion, Mode, PureSpin, Stability, SymmetricTop,
+    TumblingElements, TumblingError,
+};
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop};
 pub use reach::TimeError;

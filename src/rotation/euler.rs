@@ -144,6 +144,13 @@ impl EulerSequence {
     }
 }
 
+impl Default for EulerSequence {
+    /// `zxz`: precession, nutation and spin.
+    fn default() -> Self {
+        EulerSequence([2, 0, 2])
+    }
+}
+
 impl fmt::Display for EulerSequence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [i, j, k] = self.0.map(|axis| AXES[axis]);

@@ -10,13 +10,14 @@ use polhode::method::{ADAPTIVE, AnyMethod};
 use polhode::run::{RunError, Schedule, ScheduleError};
 
 use crate::arguments::{list, number, positive};
-use crate::body_arguments::{BodyArguments, StartArguments};
+use crate::body_arguments::BodyArguments;
 use crate::error::{Error, warn};
 use crate::figure::{Figure, Series};
 use crate::files::{Output, emit};
 use crate::force_arguments::ForceArguments;
 use crate::measured::{Care, Ending, Measured, Motion, StepTime, is_adaptive};
 use crate::methods::named;
+use crate::start_arguments::StartArguments;
 use crate::table::{Cell, Column, Format, Table, row};
 use crate::text::short;
 use trajectory::Trajectory;
@@ -106,7 +107,7 @@ struct Entry {
 impl Compare {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let body = self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)?;
-        let start = self.start.inside(&body)?;
+        let start = self.start.inside(&body, self.body.published_start())?;
         let span = self.span()?;
         let entries = self.entries(span)?;
         let trajectories: Vec<Trajectory> = self
@@ -157,7 +158,7 @@ impl Compare {
             }
             file.write_whole(&figure.svg()?)?;
         }
-        emit(&Format::or_default(self.format, self.out.is_some()).write(&table), self.out.as_deref())
+        emit(&Format::of(self.format, self.out.as_deref())?.write(&table), self.out.as_deref())
     }
 
     fn span(&self) -> Result<f64, Error> {

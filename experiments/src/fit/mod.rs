@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use nalgebra::Vector3;
-use polhode::fit::{FitError, Known, Limit, RateUnit, Reading, Record, Settings, TimeUnit, fit};
+use polhode::fit::{FitError, Known, Limit, RateUnit, Reading, Record, RecordError, Settings, TimeUnit, fit};
 use report::Facts;
 
 use crate::arguments::{number, numbers, positive};
+use crate::body_arguments::described;
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
 use crate::table::Format;
@@ -30,7 +31,13 @@ pub(crate) struct Fit {
     /// Records with a header: t, wx, wy, wz, or the names of phone apps
     #[arg(required = true, value_name = "DATA.csv")]
     data: Vec<PathBuf>,
-    /// Unit of time where the header names none: s, ms, us, ns [default: s]
+    /// Columns of the time and of the rates, by name or number, where they are not found: t=NAME,x=NAME,y=NAME,z=NAME
+    #[arg(long, value_name = "t=...,x=...,y=...,z=...", value_parser = columns)]
+    columns: Option<ColumnNames>,
+    /// Share of the rows that may be left out because they cannot be read [default: 0.02]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    skip_rows: Option<f64>,
+    /// Unit of time where the header names none: s, ms, us, ns, or a number of seconds [default: s]
     #[arg(long, value_name = "UNIT", value_parser = time_unit)]
     time_unit: Option<TimeUnit>,
     /// Unit of the rates where the header names none: rad/s, deg/s, rpm [default: rad/s]
@@ -71,6 +78,9 @@ pub(crate) struct Fit {
 #[derive(Args, Clone, Debug)]
 #[group(multiple = false)]
 struct KnownArguments {
+    /// Body of the same trace: a name of the catalogue, or a file of `polhode inertia`
+    #[arg(long, value_name = "NAME|FILE")]
+    body: Option<String>,
     /// Trace of the tensor, kg m^2
     #[arg(long, value_name = "TRACE", value_parser = number, allow_hyphen_values = true)]
     trace: Option<f64>,
@@ -86,13 +96,17 @@ struct KnownArguments {
 }
 
 impl KnownArguments {
-    fn known(&self) -> Option<Known> {
+    fn known(&self) -> Result<Option<Known>, Error> {
+        if let Some(text) = &self.body {
+            return Ok(Some(Known::Trace(described(text)?.inertia.tensor().trace())));
+        }
         let moment = |[x, y, z, value]: [f64; 4]| Known::Moment { axis: Vector3::new(x, y, z), value };
-        self.trace
+        Ok(self
+            .trace
             .map(Known::Trace)
             .or(self.momentum.map(Known::Momentum))
             .or(self.twice_energy.map(Known::TwiceEnergy))
-            .or(self.moment.map(moment))
+            .or(self.moment.map(moment)))
     }
 }
 
@@ -119,7 +133,53 @@ fn window(text: &str) -> Result<Window, String> {
 }
 
 fn time_unit(text: &str) -> Result<TimeUnit, String> {
-    TimeUnit::named(text).ok_or_else(|| format!("'{text}' is no unit of time here; known: s, ms, us, ns"))
+    let number = || positive(text).ok().map(TimeUnit::Multiple);
+    TimeUnit::named(text).or_else(number).ok_or_else(|| {
+        format!("'{text}' is no unit of time here; known: s, ms, us, ns, or a number of seconds")
+    })
+}
+
+/// Names or numbers of the columns of time and rates.
+#[derive(Clone, Debug)]
+struct ColumnNames([String; 4]);
+
+fn columns(text: &str) -> Result<ColumnNames, String> {
+    let mut found: [Option<String>; 4] = Default::default();
+    // a name may hold a comma: it goes on up to the next key
+    let mut last: Option<usize> = None;
+    for part in text.split(',') {
+        let keyed = part.split_once('=').and_then(|(key, name)| {
+            let place = ["t", "x", "y", "z"].iter().position(|known| *known == key.trim())?;
+            Some((place, name.trim()))
+        });
+        match (keyed, last) {
+            (Some((place, name)), _) => {
+                found[place] = Some(name.to_string());
+                last = Some(place);
+            }
+            (None, Some(place)) => {
+                if let Some(name) = &mut found[place] {
+                    *name += &format!(",{part}");
+                }
+            }
+            (None, None) => return Err(format!("'{part}' has no key; write t=NAME,x=NAME,y=NAME,z=NAME")),
+        }
+    }
+    let missing = found.iter().position(|name| name.as_ref().is_none_or(String::is_empty));
+    match (missing, found) {
+        (None, [Some(t), Some(x), Some(y), Some(z)]) => Ok(ColumnNames([t, x, y, z])),
+        (missing, _) => {
+            let key = ["t", "x", "y", "z"][missing.unwrap_or(0)];
+            Err(format!("{key}= is missing; write t=NAME,x=NAME,y=NAME,z=NAME, or numbers from 1"))
+        }
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        share if (0.0..1.0).contains(&share) => Ok(share),
+        share => Err(format!("{share:?} is no share of the rows; give a number from 0 to below 1")),
+    }
 }
 
 fn rate_unit(text: &str) -> Result<RateUnit, String> {
@@ -145,10 +205,10 @@ impl Fit {
             radius: self.radius,
             noise: self.noise,
             limits: least.chain(most).collect(),
-            known: self.known.known(),
+            known: self.known.known()?,
             check_units: !self.trust_units,
         };
-        let format = Format::or_default(self.format, self.out.is_some());
+        let format = Format::of(self.format, self.out.as_deref())?;
         let estimate = match fit(&record, &settings) {
             Ok(estimate) => estimate,
             Err(error) => {
@@ -209,6 +269,12 @@ impl Fit {
             let value = out.display().to_string();
             return Err(Error::input("--residuals", &value, "it would replace --out", "name another file"));
         }
+        if let Some(plot) = &self.residuals
+            && plot.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("svg"))
+        {
+            let value = plot.display().to_string();
+            return Err(Error::input("--residuals", &value, "plots are written as SVG", "name a file .svg"));
+        }
         Ok(())
     }
 
@@ -242,9 +308,31 @@ impl Fit {
 
     fn read(&self, path: &Path) -> Result<Record, Error> {
         let text = read(path, "name a text file with a header and columns")?;
-        let reading = Reading { time_unit: self.time_unit, rate_unit: self.rate_unit };
-        Record::read(&text, &path.display().to_string(), reading)
-            .map_err(|error| Error::Input(error.to_string()))
+        let reading = Reading {
+            time_unit: self.time_unit,
+            rate_unit: self.rate_unit,
+            columns: self.columns.clone().map(|ColumnNames(names)| names),
+            most_skipped: self.skip_rows,
+        };
+        let record = Record::read(&text, &path.display().to_string(), reading).map_err(|error| {
+            Error::Input(match &error {
+                RecordError::Column { .. } => {
+                    format!("{error}, or say which they are: --columns t=NAME,x=NAME,y=NAME,z=NAME")
+                }
+                RecordError::Value { .. } | RecordError::Cells { .. } | RecordError::Order { .. } => {
+                    format!("{error}, or allow for more such rows by --skip-rows SHARE")
+                }
+                _ => error.to_string(),
+            })
+        })?;
+        if let Some(first) = record.skipped().first() {
+            let rows = match record.skipped().len() {
+                1 => "1 row is".to_string(),
+                count => format!("{count} rows are"),
+            };
+            warn(&format!("{rows} left out beside {} that are read; the first: {first}", record.samples()));
+        }
+        Ok(record)
     }
 }
 

@@ -15,6 +15,7 @@ use polhode::inertia::{Amount, InertiaError, MassError, MassProperties, Mesh, Me
 use crate::arguments::{list, numbers, positive};
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
+use crate::table::Format;
 use crate::text::{short, visible};
 use examined::Examined;
 use given::Given;
@@ -37,6 +38,14 @@ const EXAMPLES: &str = "Examples:
 /// centre of mass. The base of a cone is at z = 0. Of a tensor that is not
 /// physically valid, the output states the violated law and by how much, the
 /// probable cause and the nearest valid tensor; the exit code is then 1.
+///
+/// A file of parts lists bodies that are summed:
+///   [[part]]
+///   shape = "cylinder"    # a shape, or mesh (with file), tensor (with
+///   size = [0.05, 0.2]    #   inertia = [6 entries]), point; size as ARGUMENT
+///   mass = 2.0            # kg, or density
+///   turn = [1, 0, 0, 0]   # quaternion w, x, y, z, part to whole; optional
+///   at = [0.0, 0.0, 0.1]  # m, where the origin of the part goes; optional
 #[derive(Args, Clone, Debug)]
 #[command(verbatim_doc_comment, after_help = EXAMPLES)]
 pub(crate) struct Inertia {
@@ -94,6 +103,46 @@ enum Form {
 }
 
 impl Form {
+    /// The form that is asked for, or that the ending of the file of `--out` names, or that suits standard output.
+    fn of(asked: Option<Self>, out: Option<&Path>) -> Result<Self, Error> {
+        let ending = out.and_then(Path::extension).map(|ending| ending.to_string_lossy().to_lowercase());
+        let told: &[Self] = match ending.as_deref() {
+            Some("urdf") => &[Self::Urdf],
+            Some("mjcf") => &[Self::Mjcf, Self::MjcfDiagonal],
+            Some("xml") if asked.is_some() => &[Self::Urdf, Self::Mjcf, Self::MjcfDiagonal],
+            Some("toml") => &[Self::Toml],
+            _ => {
+                let common = match asked {
+                    None => None,
+                    Some(Self::Table) => Some(Format::Table),
+                    Some(Self::Csv) => Some(Format::Csv),
+                    Some(Self::Json) => Some(Format::Json),
+                    Some(model) if !matches!(ending.as_deref(), Some("csv" | "json" | "txt")) => {
+                        return Ok(model);
+                    }
+                    // a model in a file of rows
+                    Some(_) => return Err(Self::contradicted(out)),
+                };
+                return Format::of(common, out).map(|format| match format {
+                    Format::Table => Self::Table,
+                    Format::Csv => Self::Csv,
+                    Format::Json => Self::Json,
+                });
+            }
+        };
+        match asked {
+            Some(asked) if !told.contains(&asked) => Err(Self::contradicted(out)),
+            Some(asked) => Ok(asked),
+            None => Ok(told[0]),
+        }
+    }
+
+    fn contradicted(out: Option<&Path>) -> Error {
+        let value = out.map(|path| path.display().to_string()).unwrap_or_default();
+        let rule = "the ending and --format name different formats";
+        Error::input("--out", &value, rule, "drop --format, or change the ending")
+    }
+
     /// Whether it says what is known of a tensor, also of an invalid one; the others are models to be used.
     fn is_report(self) -> bool {
         matches!(self, Self::Table | Self::Csv | Self::Json)
@@ -108,8 +157,7 @@ impl Inertia {
             let rule = "missing: --about moves a tensor by M (R^2 1 - R R^T)";
             return Err(Error::input("--mass", "", rule, "give --mass M"));
         }
-        let terminal = || self.out.is_none() && std::io::IsTerminal::is_terminal(&std::io::stdout());
-        let form = self.format.unwrap_or_else(|| if terminal() { Form::Table } else { Form::Csv });
+        let form = Form::of(self.format, self.out.as_deref())?;
         if !form.is_report() {
             self.check_masses(&given, form)?;
         }
@@ -269,6 +317,21 @@ impl Inertia {
         let mesh = read_mesh(path)?;
         scaled(&mesh, amount, self.length_unit.unwrap_or(1.0)).map_err(|error| self.refused(error))
     }
+}
+
+/// Name and tensor of every body of a file of the `kind`: toml, urdf, mjcf or xml.
+pub(crate) fn tensors_of_file(path: &Path, kind: &str) -> Result<Vec<(String, Matrix3<f64>)>, Error> {
+    if kind == "toml" {
+        return Ok(vec![(String::new(), parts::read_parts(path)?.tensor())]);
+    }
+    let text = read(path, "name a URDF or MJCF file")?;
+    let is_urdf = kind == "urdf" || (kind == "xml" && text.contains("<robot"));
+    let bodies = if is_urdf { xml::urdf(path, &text)? } else { xml::mjcf(path, &text)? };
+    let tensor = |body: &Given| {
+        let turn = body.turn.to_rotation_matrix();
+        turn * body.tensor * turn.transpose()
+    };
+    Ok(bodies.into_iter().map(|body| (body.name.clone(), tensor(&body))).collect())
 }
 
 /// A mesh by the ending of its name.

@@ -18,6 +18,18 @@ use crate::table::{Column, Format, Table, row};
 /// Results of paper scale, as they are committed.
 const RESULTS: &str = "experiments/results";
 
+const LIST_EXAMPLES: &str = "Examples:
+  polhode experiment list
+  polhode experiment list --format json";
+
+const CHECK_EXAMPLES: &str = "Examples:
+  polhode experiment check order
+  polhode experiment check order --root .";
+
+const PUBLISH_EXAMPLES: &str = "Examples:
+  polhode experiment publish
+  polhode experiment publish --root .";
+
 const EXAMPLES: &str = "Examples:
   polhode experiment run order drift --scale smoke
   polhode experiment run all --scale paper --out results";
@@ -25,6 +37,7 @@ const EXAMPLES: &str = "Examples:
 #[derive(Subcommand)]
 pub(crate) enum ExperimentCommand {
     /// List the experiments and the question of each
+    #[command(after_help = LIST_EXAMPLES)]
     List {
         /// How rows are printed: table on a terminal, csv otherwise
         #[arg(long, value_enum)]
@@ -48,6 +61,7 @@ pub(crate) enum ExperimentCommand {
     ///
     /// Timings are not compared. Exit code 1 if a cell differs or a claim fails; the first differences are listed with file, row,
     /// column and both values.
+    #[command(after_help = CHECK_EXAMPLES)]
     Check {
         /// Names of experiments, or all
         #[arg(default_value = "all")]
@@ -61,6 +75,7 @@ pub(crate) enum ExperimentCommand {
     },
     /// Write tables of the committed results of paper scale into README.md and
     /// paper/generated
+    #[command(after_help = PUBLISH_EXAMPLES)]
     Publish {
         /// Root of the repository
         #[arg(long, default_value = ".")]
@@ -89,7 +104,7 @@ fn list(format: Option<Format>) -> Result<(), Error> {
     for experiment in experiments::ALL {
         table.push(row![experiment.name, experiment.question]);
     }
-    emit(&Format::or_default(format, false).write(&table), None)
+    emit(&Format::of(format, None)?.write(&table), None)
 }
 
 /// The experiments called `names` (or `all`), each once, however often it is named.

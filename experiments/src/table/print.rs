@@ -1,4 +1,6 @@
-//! The rows for a terminal of eighty columns.
+//! The rows for a terminal, as wide as it is.
+
+use std::io::IsTerminal;
 
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Width, presets};
 
@@ -7,22 +9,32 @@ use super::rounded::rounded;
 use super::{Cell, Column, Table};
 use crate::text::visible;
 
+/// Where nothing tells the width of a line.
 const WIDTH: usize = 80;
+/// A narrower terminal breaks lines itself.
+const LEAST_WIDTH: usize = 40;
 /// Texts are wrapped rather than let push numbers out of sight.
 const TEXT_WIDTH: usize = 36;
 /// Blanks around a cell.
 const PADDING: usize = 2;
 
 impl Table {
-    /// Rounded rows; a table too wide is cut into blocks that each repeat the first column.
+    /// Rounded rows; a table too wide is cut into blocks that each repeat the first column. A column without a value in any row
+    /// is left out.
     pub(crate) fn terminal(&self) -> String {
-        let shown = self.shown();
+        self.within(line_width())
+    }
+
+    fn within(&self, most: usize) -> String {
+        let is_empty =
+            |k: usize| !self.rows().is_empty() && self.rows().iter().all(|row| row[k] == Cell::Empty);
+        let shown: Vec<_> = self.shown().into_iter().filter(|(k, _)| !is_empty(*k)).collect();
         let Some(first) = shown.first() else { return String::new() };
         let width = |(k, column): &(usize, &Column)| self.width(*k, column) + PADDING;
         let mut blocks = vec![vec![*first]];
         let mut used = width(first);
         for column in &shown[1..] {
-            if used + width(column) > WIDTH {
+            if used + width(column) > most {
                 blocks.push(vec![*first]);
                 used = width(first);
             }
@@ -31,7 +43,7 @@ impl Table {
                 block.push(*column);
             }
         }
-        blocks.iter().map(|block| self.block(block) + "\n").collect::<Vec<_>>().join("\n")
+        blocks.iter().map(|block| self.block(block, most) + "\n").collect::<Vec<_>>().join("\n")
     }
 
     fn width(&self, k: usize, column: &Column) -> usize {
@@ -40,10 +52,10 @@ impl Table {
         if self.is_numeric(k) { heading.max(cells) } else { heading.max(cells).min(TEXT_WIDTH) }
     }
 
-    fn block(&self, columns: &[(usize, &Column)]) -> String {
+    fn block(&self, columns: &[(usize, &Column)], most: usize) -> String {
         let mut table = comfy_table::Table::new();
         table.load_preset(presets::NOTHING);
-        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH as u16);
+        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(most as u16);
         table.set_header(columns.iter().map(|(_, column)| headings(column)));
         for row in self.rows() {
             table.add_row(columns.iter().map(|(k, column)| text(&row[*k], column)));
@@ -59,6 +71,14 @@ impl Table {
         }
         table.trim_fmt()
     }
+}
+
+/// That of the terminal where standard output is one.
+fn line_width() -> usize {
+    if !std::io::stdout().is_terminal() {
+        return WIDTH;
+    }
+    terminal_size::terminal_size().map_or(WIDTH, |(width, _)| usize::from(width.0).max(LEAST_WIDTH))
 }
 
 /// The unit stands below the name.
@@ -91,6 +111,19 @@ mod tests {
         let printed = table.terminal();
         assert!(printed.lines().all(|line| length(line) <= WIDTH), "{printed}");
         assert_eq!(printed.matches("-1.23457e-100").count(), 10, "{printed}"); // the first column twice
+    }
+
+    #[test]
+    fn a_wide_terminal_is_used_and_empty_columns_are_left_out() {
+        let names = ["alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota"];
+        let mut table = Table::new("wide", "", names.map(|name| Column::new(name, "", "")).into());
+        let mut cells = names.map(|_| Cell::from(-1.25e-100));
+        cells[3] = Cell::Empty;
+        table.push(cells);
+        let printed = table.within(200);
+        assert_eq!((printed.lines().count(), printed.matches("-1.25e-100").count()), (2, 8), "{printed}");
+        assert!(!printed.contains("delta"), "{printed}");
+        assert!(table.within(40).lines().all(|line| length(line) <= 40));
     }
 
     #[test]

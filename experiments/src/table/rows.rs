@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Cell, Format, Table};
+use super::{Cell, Format, Table, write_row};
 use crate::error::Error;
 use crate::files::Output;
 
@@ -15,11 +15,14 @@ pub(crate) struct Rows {
     table: Table,
     format: Format,
     output: Output,
+    /// The row that is being written.
+    line: String,
     is_empty: bool,
 }
 
 impl Rows {
-    /// Opens the file of `--out`, or standard output, for the rows of `table`, which are `count` if all goes well.
+    /// Opens the file of `--out`, or standard output, for the rows of `table`, which are `count` if all goes well, where
+    /// that is known.
     ///
     /// # Errors
     /// A place that cannot be written, and more rows than are read by eye.
@@ -27,28 +30,38 @@ impl Rows {
         table: Table,
         asked: Option<Format>,
         out: Option<&Path>,
-        count: usize,
+        count: impl Into<Option<usize>>,
     ) -> Result<Self, Error> {
-        let format = Format::or_default(asked, out.is_some());
-        if format == Format::Table && count > READABLE {
-            return Err(Error::input(
-                "--format",
-                "table",
-                &format!("{count} rows, and a table has at most {READABLE}"),
-                "give --format csv, or ask for fewer rows",
-            ));
+        let format = Format::of(asked, out)?;
+        let output = Output::new(out)?;
+        let rows = Self { table, format, output, line: String::new(), is_empty: true };
+        rows.check_readable(count.into().unwrap_or(0))?;
+        Ok(rows)
+    }
+
+    fn check_readable(&self, count: usize) -> Result<(), Error> {
+        if self.format != Format::Table || count <= READABLE {
+            return Ok(());
         }
-        Ok(Self { table, format, output: Output::new(out)?, is_empty: true })
+        let rule = format!("{count} rows, and a table has at most {READABLE}");
+        Err(Error::input("--format", "table", &rule, "give --format csv, or ask for fewer rows"))
     }
 
     /// Adds a row; a short one ends in empty cells.
     pub(crate) fn push(&mut self, row: impl IntoIterator<Item = Cell>) -> Result<(), Error> {
         match self.format {
-            Format::Table => self.table.push(row),
+            Format::Table => {
+                self.table.push(row);
+                self.check_readable(self.table.rows().len())?;
+            }
             // the header comes with the first row, so that a refusal before it prints nothing
             Format::Csv => {
-                let head = if self.is_empty { self.table.csv_head() } else { String::new() };
-                self.output.write(&(head + &self.table.csv_row(&self.table.whole(row))))?;
+                self.line.clear();
+                if self.is_empty {
+                    self.line += &self.table.csv_head();
+                }
+                write_row(row, self.table.columns.len(), &mut self.line);
+                self.output.write(&self.line)?;
             }
             Format::Json => {
                 let before = if self.is_empty { "[\n" } else { ",\n" };

@@ -163,8 +163,8 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     let still = (0..100).map(|i| format!("{i},0,0,0\n")).collect::<String>();
     let still = scratch.file("still.csv", format!("t,wx,wy,wz\n{still}"));
     refused(1, &format!("fit {still}"), &["still.csv: the rates have a root mean square of 0"]);
-    let headless = scratch.file("headless.csv", "0,1,2,3\n1,1,2,3\n");
-    refused(2, &format!("fit {headless}"), &["headless.csv: no column for time"]);
+    let headless = scratch.file("headless.csv", "0,9,1,2,3\n1,9,1,2,3\n");
+    refused(2, &format!("fit {headless}"), &["headless.csv: no column for time", "--columns t=NAME"]);
     let thousands = scratch.file("thousands.csv", "t,wx,wy,wz\n0.5,\"1,000\",0,0\n");
     refused(2, &format!("fit {thousands}"), &["thousands.csv, line 2, column 2 (wx): \"1,000\" has a comma"]);
     let wide = scratch.file("wide.csv", "t,wx,wy,wz\n0,5,1,0,0\n");

@@ -6,6 +6,7 @@
 
 mod advise;
 mod compare;
+mod compose;
 mod experiment;
 mod fit;
 mod forces;
@@ -14,4 +15,7 @@ mod harness;
 mod inertia;
 #[cfg(unix)]
 mod interrupted;
+mod logs;
+mod motion;
 mod propagate;
+mod times;

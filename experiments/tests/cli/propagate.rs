@@ -122,7 +122,9 @@ fn any_norm_of_the_attitude_will_do() {
 fn a_body_at_rest_stays() {
     for method in ["exact", "rk4 --step 0.5", "lie-poisson --step 0.5", "rattle --step 0.5"] {
         let text = output(&format!("propagate --moments 1,2,3 --omega 0,0,0 --times 1 --method {method}"));
-        assert!(text.ends_with("1.0,1.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,,0.0\n"), "{text}");
+        let error = if method == "exact" { "" } else { "0.0" };
+        let expected = format!("1.0,1.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,,{error}\n");
+        assert!(text.ends_with(&expected), "{text}");
     }
 }
 
@@ -232,7 +234,7 @@ fn steps_that_do_not_fit_are_refused() {
     refused(&with("--until 1 --every 0"), &["--every", "'0'", "not zero"]);
     refused(&with("--until 1 --every -0.5"), &["--every: '-0.5'", "--until 1.0", "change its sign"]);
     refused(&with("--start-time 5 --until 1 --every 1"), &["start time 5.0", "change its sign"]);
-    refused(&with("--until 1 --every 1e-9"), &["--every: '1e-9'", "1e9 rows", "larger DT"]);
+    refused(&with("--until 1 --every 1e-20"), &["--every: '1e-20'", "1e20 rows", "larger DT"]);
     refused(&with("--until 1e300 --every 1"), &["--every: '1.0'", "1e300 rows"]);
 }
 
@@ -240,10 +242,10 @@ fn steps_that_do_not_fit_are_refused() {
 fn flags_that_exclude_or_need_each_other_say_so() {
     refused("propagate --body dyadic --moments 1,2,3 --omega 1,0,0 --times 1", &["'--body", "'--moments"]);
     refused("propagate --omega 1,0,0 --times 1", &["--moments", "--inertia", "--body", "not provided"]);
-    refused("propagate --body dyadic --times 1", &["--omega <wx,wy,wz>", "not provided"]);
+    refused("propagate --moments 1,2,3 --times 1", &["--omega: missing", "--momentum-body"]);
     refused(&with("--times 1 --until 2"), &["--times", "cannot be used with", "--until"]);
     refused(&with("--times 1 --every 2"), &["--times", "cannot be used with", "--every"]);
-    refused(&with("--until 2"), &["--until: '2.0'", "give --every DT too"]);
+    refused(&with("--until 2"), &["--until: '2'", "give --every DT too"]);
     refused(&with("--every 2"), &["--every: '2.0'", "give --until T too"]);
     refused(DYADIC, &["--times: missing", "--until T --every DT"]);
     refused(&with("--times 1 --times 2"), &["--times", "multiple times"]);

@@ -1,12 +1,12 @@
-//! Which columns of a text hold what: separators, header, names and the units in them.
+//! Lines and cells of a text: separators, comments, and where the header is.
 
-use super::error::RecordError;
-use super::units::TimeUnit;
+use super::names::find_columns;
 
 /// What follows the mark of a comment.
 pub(super) fn uncommented(line: &str) -> Option<&str> {
     let line = line.trim_start();
-    line.starts_with('#').then(|| line.trim_start_matches('#').trim())
+    let marked = ["#", "%", "//"].into_iter().find(|mark| line.starts_with(mark))?;
+    Some(line.trim_start_matches(marked).trim())
 }
 
 fn is_number(cell: &str) -> bool {
@@ -23,7 +23,7 @@ pub(super) fn find_header(lines: &[(usize, &str)]) -> (usize, Vec<String>) {
     for (k, (_, line)) in lines.iter().enumerate() {
         let comment = uncommented(line);
         let row = cells(comment.unwrap_or(line));
-        if let Ok(columns) = find_columns(&row) {
+        if let Ok(columns) = find_columns(&row).map(|found| found.columns) {
             // prose may name t, x, y, z as well
             if named_by_comment || comment.is_none() {
                 header = Some((k, row, columns));
@@ -104,119 +104,4 @@ pub(super) fn cells(line: &str) -> Vec<String> {
     let wide: Vec<String> =
         words.split(|w| w.is_empty()).filter(|w| !w.is_empty()).map(|w| clean(&w.join(" "))).collect();
     if wide.len() > 1 { wide } else { words.into_iter().filter(|w| !w.is_empty()).map(clean).collect() }
-}
-
-/// A name without its unit, reduced to letters and digits, with sub- and superscripts as letters.
-fn reduced(name: &str) -> String {
-    let name = split_unit(name).0;
-    let letters = name.to_lowercase();
-    letters
-        .chars()
-        .filter_map(|c| match c {
-            'ω' => Some('w'),
-            'ₓ' | 'ˣ' => Some('x'),
-            'ᵧ' | 'ʸ' => Some('y'),
-            'ᶻ' => Some('z'),
-            c if c.is_alphanumeric() => Some(c),
-            _ => None,
-        })
-        .collect()
-}
-
-/// "Gyroscope x (rad/s)" as its name and its unit.
-fn split_unit(name: &str) -> (&str, Option<&str>) {
-    let Some(open) = name.find(['(', '[']) else { return (name, None) };
-    let unit = name[open + 1..].trim_end().trim_end_matches([')', ']']);
-    (&name[..open], Some(unit))
-}
-
-/// The first that a header has is read, but one without a unit only where no other has one.
-const TIME_NAMES: [&str; 5] = ["secondselapsed", "t", "time", "timestamp", "elapsed"];
-
-const RATE_NAMES: [&str; 12] = [
-    "w",
-    "omega",
-    "omegabody",
-    "gyro",
-    "gyr",
-    "gyroscope",
-    "g",
-    "angularvelocity",
-    "angularvelocitybody",
-    "rate",
-    "rotationrate",
-    "",
-];
-
-/// The unit in the name of a time, as in `time_ms`.
-fn suffixed_unit(name: &str) -> Option<&'static str> {
-    let reduced = reduced(name);
-    TIME_NAMES.iter().find_map(|stem| match reduced.strip_prefix(stem)? {
-        "ms" => Some("ms"),
-        "us" => Some("us"),
-        "ns" => Some("ns"),
-        // `ts` and `times` name no unit, `t_s` does
-        "s" if !name.trim_end().to_lowercase().strip_suffix('s')?.ends_with(char::is_alphanumeric) => {
-            Some("s")
-        }
-        "" if *stem == "secondselapsed" => Some("s"),
-        _ => None,
-    })
-}
-
-/// How late a column is considered for the time, if it is one: names with a unit come first, since a bare time may be
-/// anything, such as nanoseconds since 1970.
-fn time_rank(name: &str) -> Option<(bool, usize, usize)> {
-    let reduced = reduced(name);
-    let (stem, suffix) = TIME_NAMES.iter().enumerate().find_map(|(stem, text)| {
-        let rest = reduced.strip_prefix(text)?;
-        Some((stem, ["", "s", "ms", "us", "ns"].iter().position(|suffix| *suffix == rest)?))
-    })?;
-    let unit = split_unit(name).1.or_else(|| suffixed_unit(name)).and_then(TimeUnit::named);
-    Some((unit.is_none(), stem, suffix))
-}
-
-/// Where time and the three rates stand, or what is missing.
-pub(super) fn find_columns(names: &[String]) -> Result<[usize; 4], &'static str> {
-    fn least<R: Ord>(ranks: impl Iterator<Item = Option<R>>) -> Option<usize> {
-        let ranked = ranks.enumerate().filter_map(|(k, rank)| rank.map(|r| (r, k)));
-        ranked.min().map(|(_, k)| k)
-    }
-    let reduced: Vec<String> = names.iter().map(|n| reduced(n)).collect();
-    let rate = |axis: char| {
-        least(reduced.iter().map(|n| {
-            let stem = n.strip_suffix(axis)?;
-            RATE_NAMES.iter().position(|name| *name == stem)
-        }))
-    };
-    Ok([
-        least(names.iter().map(|n| time_rank(n))).ok_or("time")?,
-        rate('x').ok_or("the rate about x")?,
-        rate('y').ok_or("the rate about y")?,
-        rate('z').ok_or("the rate about z")?,
-    ])
-}
-
-/// The unit of a column, from its header or the setting, which must not contradict each other.
-pub(super) fn unit<U: PartialEq + Copy + core::fmt::Display>(
-    name: &str,
-    file: &str,
-    setting: Option<U>,
-    named: impl Fn(&str) -> Option<U>,
-) -> Result<Option<U>, RecordError> {
-    let Some(text) = split_unit(name).1.or_else(|| suffixed_unit(name)) else { return Ok(setting) };
-    let header = named(text).ok_or_else(|| RecordError::Unit {
-        file: file.into(),
-        name: name.into(),
-        unit: text.into(),
-    })?;
-    match setting {
-        Some(setting) if setting != header => Err(RecordError::UnitClash {
-            file: file.into(),
-            name: name.into(),
-            header: header.to_string(),
-            setting: setting.to_string(),
-        }),
-        _ => Ok(Some(header)),
-    }
 }

@@ -12,13 +12,13 @@ pub enum RecordError {
     #[error(
         "{file}: no column for {missing}; the header has {}. Name the columns t, wx, wy, wz (or \"Time (s)\", \
          \"Gyroscope x (rad/s)\", …)",
-        shown(found)
+        listed(found)
     )]
     Column {
         /// Name of the file.
         file: String,
         /// What is missing.
-        missing: &'static str,
+        missing: String,
         /// The names that were found.
         found: Vec<String>,
     },
@@ -71,6 +71,14 @@ pub enum RecordError {
         cells: usize,
         /// Columns of the header.
         columns: usize,
+    },
+    /// A last row that ends before its last column, and the file with it.
+    #[error("{file}, line {line}: the file ends in the middle of this row")]
+    Torn {
+        /// Name of the file.
+        file: String,
+        /// Its line.
+        line: usize,
     },
     /// Time runs backwards.
     #[error(
@@ -140,6 +148,31 @@ pub enum RecordError {
         /// Rates.
         rates: usize,
     },
+}
+
+impl RecordError {
+    /// Whether a text stands where a number is needed: not an empty cell, and not a reading that is not finite.
+    pub(super) fn is_text(&self) -> bool {
+        match self {
+            Self::Value { value, .. } => !value.is_empty() && value.parse::<f64>().is_err(),
+            Self::Comma { .. } => true,
+            _ => false,
+        }
+    }
+}
+
+/// Names of columns that a message lists, and their characters in all.
+const LISTED: (usize, usize) = (60, 1500);
+
+/// All names of a header; of a file of another kind, which has none, its beginning.
+fn listed(names: &[String]) -> String {
+    let length: usize = names.iter().map(String::len).sum();
+    let is_header = names.len() <= LISTED.0 && length <= LISTED.1;
+    if is_header && !names.iter().any(|name| name.contains(char::is_control)) {
+        format!("{names:?}")
+    } else {
+        shown(&names)
+    }
 }
 
 /// Characters of a file that a message shows; a file of another kind may be a single line.

@@ -1,8 +1,11 @@
 //! Records of angular velocity: read from text, checked row by row, split where they have gaps.
 
 mod clean;
+mod clock;
 mod columns;
+mod echo;
 mod error;
+mod names;
 mod read;
 mod segment;
 mod units;
@@ -37,6 +40,7 @@ pub struct Record {
     pub segments: Vec<Segment>,
     /// What was found among the rows, and when, s.
     findings: Vec<(f64, Finding)>,
+    skipped: Vec<RecordError>,
 }
 impl Record {
     /// From times (s) and angular velocities (rad/s, sensor axes).
@@ -59,22 +63,44 @@ impl Record {
         }
         let rows =
             times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
-        Record::cleaned("samples", Rows { rows, names: NAMES.map(String::from), columns: [1, 2, 3, 4] })
+        Record::cleaned(
+            "samples",
+            Rows { rows, names: NAMES.map(String::from), columns: [1, 2, 3, 4], skipped: Vec::new() },
+        )
     }
-    /// From a text with a header: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas
-    /// where semicolons or tabs part them, or within quotes; lines before the header and lines that begin with `#` may
-    /// hold anything, and so may columns that are not needed. Of several times the one whose name has a unit is read.
+    /// From a text of rows: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas where
+    /// semicolons or tabs part them, or within quotes. Lines before the header and lines that begin with `#`, `%` or `//` may
+    /// hold anything, and so may columns that are not needed. Columns are found by the names that phones, loggers, flight
+    /// controllers and ROS give them, or as [`Reading::columns`] says; four columns of numbers need no header. Of several times
+    /// the one whose name has a unit is read; dates, and counts since 1970, are taken from the first row on.
+    ///
+    /// Rows that cannot be read are [left out](Self::skipped), up to a [share](Reading::most_skipped), and so is a last row
+    /// in the middle of which the file ends.
+    ///
+    /// ```
+    /// use polhode::fit::{Reading, Record};
+    /// let text = "when;p_gyro;q_gyro;r_gyro\n22-Nov-2025 10:00:00.00;1;2;3\n22-Nov-2025 10:00:00.01;1;2;3\n";
+    /// let columns = ["when", "p_gyro", "q_gyro", "r_gyro"].map(String::from);
+    /// let record = Record::read(text, "flight.csv", Reading { columns: Some(columns), ..Reading::default() })?;
+    /// assert_eq!(record.segments[0].times(), [0.0, 0.01]);
+    /// # Ok::<(), polhode::fit::RecordError>(())
+    /// ```
     ///
     /// # Errors
-    /// Missing columns, unknown units, rows that do not fit the header, cells that are not finite numbers, times that
-    /// decrease.
+    /// Missing columns, unknown units, more bad rows than may be left out: the first of them.
     pub fn read(text: &str, file: &str, reading: Reading) -> Result<Record, RecordError> {
-        Record::cleaned(file, rows(text, file, reading)?)
+        Record::cleaned(file, rows(text, file, &reading)?)
     }
 
-    fn cleaned(file: &str, rows: Rows) -> Result<Record, RecordError> {
+    fn cleaned(file: &str, mut rows: Rows) -> Result<Record, RecordError> {
+        let skipped = core::mem::take(&mut rows.skipped);
         let Cleaned { segments, findings } = cleaned(file, rows)?;
-        Ok(Record { segments, findings })
+        Ok(Record { segments, findings, skipped })
+    }
+
+    /// Why rows of the text were left out, one by one.
+    pub fn skipped(&self) -> &[RecordError] {
+        &self.skipped
     }
 
     /// Number of samples.
@@ -112,7 +138,7 @@ impl Record {
         {
             return Err(RecordError::Window { start, end });
         }
-        let mut cut = Record::default();
+        let mut cut = Record { skipped: self.skipped.clone(), ..Record::default() };
         for (start, end) in joined(windows) {
             cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
             let before = cut.segments.len();
@@ -142,6 +168,7 @@ impl Record {
     pub fn join(mut self, other: Record) -> Record {
         self.segments.extend(other.segments);
         self.findings.extend(other.findings);
+        self.skipped.extend(other.skipped);
         self
     }
 }

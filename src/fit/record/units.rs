@@ -1,8 +1,10 @@
 //! Units of times and rates, by the names that files use.
 
+use crate::num::Shown;
+
 /// Unit of a time column.
 #[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeUnit {
     /// s
     Seconds,
@@ -12,13 +14,16 @@ pub enum TimeUnit {
     Microseconds,
     /// 1e-9 s
     Nanoseconds,
+    /// This many seconds, such as the time between two counts.
+    Multiple(f64),
 }
 
 /// Unit of a column of rates.
 #[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RateUnit {
     /// rad/s
+    #[default]
     RadiansPerSecond,
     /// deg/s
     DegreesPerSecond,
@@ -28,12 +33,13 @@ pub enum RateUnit {
 
 impl core::fmt::Display for TimeUnit {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Seconds => "s",
-            Self::Milliseconds => "ms",
-            Self::Microseconds => "us",
-            Self::Nanoseconds => "ns",
-        })
+        match self {
+            Self::Seconds => f.write_str("s"),
+            Self::Milliseconds => f.write_str("ms"),
+            Self::Microseconds => f.write_str("us"),
+            Self::Nanoseconds => f.write_str("ns"),
+            Self::Multiple(seconds) => write!(f, "{} s", Shown(*seconds)),
+        }
     }
 }
 
@@ -51,7 +57,7 @@ impl TimeUnit {
     /// The unit of that name: s, ms, us (µs), ns.
     pub fn named(name: &str) -> Option<Self> {
         match plain(name).as_str() {
-            "s" | "sec" | "second" | "seconds" => Some(Self::Seconds),
+            "s" | "sec" | "second" | "seconds" | "с" | "сек" => Some(Self::Seconds),
             "ms" | "msec" | "milliseconds" => Some(Self::Milliseconds),
             "us" | "µs" | "μs" | "microseconds" => Some(Self::Microseconds),
             "ns" | "nanoseconds" => Some(Self::Nanoseconds),
@@ -66,6 +72,7 @@ impl TimeUnit {
             Self::Milliseconds => "milliseconds",
             Self::Microseconds => "microseconds",
             Self::Nanoseconds => "nanoseconds",
+            Self::Multiple(_) => "multiples of a time",
         }
     }
 
@@ -76,6 +83,7 @@ impl TimeUnit {
             Self::Milliseconds => value / 1e3,
             Self::Microseconds => value / 1e6,
             Self::Nanoseconds => value / 1e9,
+            Self::Multiple(seconds) => value * seconds,
         }
     }
 }
@@ -84,8 +92,12 @@ impl RateUnit {
     /// The unit of that name: rad/s, deg/s (°/s, dps), rpm.
     pub fn named(name: &str) -> Option<Self> {
         match plain(name).as_str() {
-            "rad/s" | "rads" | "rad/sec" | "rads-1" | "rps" | "radians/s" => Some(Self::RadiansPerSecond),
-            "deg/s" | "°/s" | "dps" | "degs" | "deg/sec" | "degrees/s" => Some(Self::DegreesPerSecond),
+            "rad/s" | "рад/с" | "rads" | "rad/sec" | "rads-1" | "rps" | "radians/s" => {
+                Some(Self::RadiansPerSecond)
+            }
+            "deg/s" | "°/s" | "°/с" | "dps" | "degs" | "deg/sec" | "degrees/s" => {
+                Some(Self::DegreesPerSecond)
+            }
             "rpm" | "1/min" | "rev/min" => Some(Self::RevolutionsPerMinute),
             _ => None,
         }

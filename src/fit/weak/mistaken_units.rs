@@ -11,7 +11,7 @@ use crate::fit::record::TimeUnit::{self, Microseconds, Milliseconds, Nanoseconds
 
 /// A unit of the record that may have been taken for another.
 #[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MistakenUnit {
     /// Of the rates.
     Rate {

@@ -2,8 +2,9 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::character::{AtRest, Character};
+use super::character::{AtRest, Character, Mode};
 use super::orbit::FreeOrbit;
+use super::pure_spin::PureSpin;
 use crate::body::{Body, Point, State, StateError};
 use crate::flow::reach::{MOST_RADIANS, TimeError};
 use crate::inertia::Inertia;
@@ -110,6 +111,27 @@ impl FreeMotion {
         self.orbit.character()
     }
 
+    /// The axis of a steady spin, and whether it is stable; `None` of a body at rest and of one that tumbles.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::flow::{FreeMotion, Stability};
+    /// use polhode::inertia::Inertia;
+    /// let racket = Inertia::from_moments([1.0, 2.0, 3.0])?;
+    /// let motion = FreeMotion::from_omega(&racket, UnitQuaternion::identity(), Vector3::new(0.0, -3.0, 0.0))?;
+    /// let spin = motion.pure_spin().ok_or("it is steady")?;
+    /// assert_eq!((spin.rank, spin.stability, spin.axis.y), (1, Stability::Unstable, -1.0));
+    /// assert!((spin.growth_rate - 3.0 / 3_f64.sqrt()).abs() < 1e-15); // e-fold in 0.58 s
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn pure_spin(&self) -> Option<PureSpin> {
+        let character = self.character().ok().filter(|character| character.mode == Mode::Steady)?;
+        let start = self.point_at_dd(Dd::ZERO);
+        let omega = self.body.omega_of(&start) / character.spin;
+        Some(PureSpin::of(self.body.rotor().moments(), start.momentum_body, omega.normalize()))
+    }
+
     /// How often the momentum along the axis of the middle moment changes sign between the start and time `t` (s).
     #[must_use]
     pub fn flips(&self, t: Dd) -> u64 {
@@ -121,7 +143,13 @@ impl FreeMotion {
     /// The quaternion is the continuous lift from the start: it does not jump from `q` to `−q`.
     #[inline]
     pub fn point_at(&self, t: f64) -> Point<f64> {
-        self.orbit.at(Dd::from(t))
+        self.point_after(Dd::from(t))
+    }
+
+    /// The same at a time in double-double.
+    #[inline]
+    pub(crate) fn point_after(&self, t: Dd) -> Point<f64> {
+        self.orbit.at(t)
     }
 
     /// The same in double-double, by an independent form of the solution.

@@ -235,6 +235,11 @@ impl LagrangeTop {
         Point::new(attitude * frame.conjugate(), frame.rotate(Vec3([m1, m2, m3])))
     }
 
+    /// The same at a time in double-double.
+    pub(crate) fn point_after(&self, t: Dd) -> Point<f64> {
+        if t.lo() == 0.0 { self.point_at(t.hi()) } else { self.evaluate(t) }
+    }
+
     /// The same in double-double, by Carlson's integrals.
     pub fn point_at_dd(&self, t: Dd) -> Point<Dd> {
         self.evaluate(t)

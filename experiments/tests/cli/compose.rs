@@ -1,0 +1,124 @@
+//! One command reads what another wrote: bodies from files, formats by the ending of a file.
+
+use std::fs;
+
+use crate::harness::{Scratch, golden, output, polhode, refused, run, words};
+
+const BRICK: &str = "inertia tensor 0.0217,0.0333,0.0433,0.0021,-0.0012,0.0007 --mass 1.3";
+
+#[test]
+fn a_body_of_inertia_goes_into_every_command() {
+    let scratch = Scratch::new("compose");
+    let file = |name: &str| scratch.0.join(name).display().to_string();
+    let start = "--omega 0.3,1,0.4 --times 0,7 --fields q,omega";
+    let typed = output(&format!("propagate --inertia 0.0217,0.0333,0.0433,0.0021,-0.0012,0.0007 {start}"));
+    for name in ["brick.json", "brick.toml", "brick.urdf", "brick.mjcf"] {
+        assert_eq!(output(&format!("{BRICK} --out {}", file(name))), "");
+        assert_eq!(output(&format!("propagate --body {} {start}", file(name))), typed, "{name}");
+    }
+    let nine = "0.0217,0.0021,-0.0012,0.0021,0.0333,0.0007,-0.0012,0.0007,0.0433";
+    assert_eq!(output(&format!("propagate --inertia {nine} {start}")), typed);
+    let json = file("brick.json");
+    assert!(output(&format!("motion --body {json} --omega 0.3,1,0.4")).contains("axis"));
+    let record = file("record.csv");
+    let simulated = format!(
+        "simulate --body {json} --omega 0.3,5,0.4 --until 20 --every 0.01 --noise 1e-4 --out {record}"
+    );
+    assert_eq!(output(&simulated), "");
+    // the trace of the body gives the size of what is fitted, and that is a body again
+    let fitted = file("fitted.json");
+    let answer = run(&format!("fit {record} --body {json} --out {fitted}"));
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    let text = output(&format!("propagate --body {fitted} --omega 0.3,1,0.4 --times 0 --fields energy"));
+    let energy: f64 = text.lines().nth(1).unwrap().parse().unwrap();
+    let expected: f64 =
+        output(&format!("propagate --body {json} --omega 0.3,1,0.4 --times 0 --fields energy"))
+            .lines()
+            .nth(1)
+            .unwrap()
+            .parse()
+            .unwrap();
+    assert!((energy / expected - 1.0).abs() < 1e-3, "{energy} {expected}");
+    // without a size the ratios still move
+    let shape = file("shape.json");
+    assert_eq!(run(&format!("fit {record} --out {shape}")).code, 0);
+    let moved = run(&format!("motion --body {shape} --omega 0.3,1,0.4"));
+    assert!(moved.code == 0 && moved.err.contains("up to a factor"), "{}", moved.err);
+}
+
+#[test]
+fn a_link_of_a_model_is_named_behind_a_colon() {
+    let scratch = Scratch::new("links");
+    let link = |name: &str, xx: f64| {
+        format!(
+            "<link name='{name}'><inertial><origin xyz='0 0 1' rpy='0 0 1.5707963267948966'/><mass value='1'/>\
+             <inertia ixx='{xx}' iyy='2' izz='2.5' ixy='0' ixz='0' iyz='0'/></inertial></link>"
+        )
+    };
+    let robot = scratch
+        .file("arm.urdf", format!("<robot name='r'>{}{}</robot>", link("upper", 1.0), link("lower", 1.5)));
+    let start = "--omega 0.3,1,0.4 --times 0 --fields energy";
+    // the frame of the tensor is turned about z: its x is the y of the link
+    let text = output(&format!("propagate --body {robot}:upper {start}"));
+    let energy: f64 = text.lines().nth(1).unwrap().parse().unwrap();
+    assert!((energy - 0.5 * (2.0 * 0.09 + 1.0 + 2.5 * 0.16)).abs() < 1e-12, "{text}");
+    refused(&format!("propagate --body {robot} {start}"), &["has 2 bodies: upper, lower", "FILE:NAME"]);
+    refused(&format!("propagate --body {robot}:uper {start}"), &["'uper': no such link", "'upper'"]);
+}
+
+#[test]
+fn files_without_a_body_are_refused() {
+    let scratch = Scratch::new("no-body");
+    let start = "--omega 0.3,1,0.4 --times 0";
+    let of = |name: &str, text: &str| format!("propagate --body {} {start}", scratch.file(name, text));
+    refused(&of("a.json", "{\"mass\": 1}"), &["a.json", "no \"inertia\"", "polhode inertia"]);
+    refused(&of("b.json", "{"), &["b.json", "line 1"]);
+    refused(&of("c.json", "{\"inertia\": [[1,0,0],[0,1,0],[0,0,3]]}"), &["c.json", "I1 + I2 >= I3"]);
+    refused(&of("d.txt", "1,2,3"), &["d.txt", ".json, .toml, .urdf, .mjcf or .xml"]);
+    refused(&of("e.toml", "[[part]]\nshape = \"cube\"\n"), &["e.toml:2", "no such shape 'cube'"]);
+    refused(
+        &format!("propagate --body absent.json {start}"),
+        &["'absent.json'", "no such file", "polhode bodies"],
+    );
+}
+
+#[test]
+fn the_ending_of_a_file_names_its_format() {
+    let scratch = Scratch::new("endings");
+    let file = |name: &str| scratch.0.join(name).display().to_string();
+    let line = "propagate --body dyadic --times 0,1";
+    for (name, format) in [("a.csv", "csv"), ("a.json", "json"), ("a.txt", "table"), ("a", "csv")] {
+        assert_eq!(output(&format!("{line} --out {}", file(name))), "");
+        let printed = output(&format!("{line} --format {format}"));
+        assert_eq!(fs::read_to_string(file(name)).unwrap(), printed, "{name}");
+    }
+    refused(&format!("{line} --out {}", file("a.png")), &["--out", "a.png", ".csv, .json or .txt"]);
+    refused(&format!("{line} --format csv --out {}", file("a.json")), &["--out", "different formats"]);
+    assert_eq!(output(&format!("{line} --format csv --out {}", file("a.dat"))), "");
+    assert_eq!(output(&format!("{BRICK} --format mjcf-diagonal --out {}", file("b.xml"))), "");
+    refused(&format!("{BRICK} --format urdf --out {}", file("b.json")), &["--out", "different formats"]);
+    refused(&format!("{BRICK} --format json --out {}", file("b.urdf")), &["--out", "different formats"]);
+    let record = scratch.file("r.csv", "t,wx,wy,wz\n0,1,2,3\n");
+    refused(&format!("fit {record} --residuals {}", file("r.png")), &["--residuals", "r.png", "SVG", ".svg"]);
+}
+
+#[test]
+fn the_catalogue_is_shown_with_its_sources() {
+    golden("bodies.csv", &output("bodies"));
+    golden("toutatis.txt", &output("bodies toutatis --format table"));
+    let list = output("bodies --format table");
+    assert!(list.lines().all(|line| line.chars().count() <= 80), "{list}");
+    refused("bodies toutati", &["'toutati': no such body", "'toutatis'"]);
+}
+
+/// The file of parts in the help of `inertia` is one.
+#[test]
+fn the_parts_of_the_help_are_read() {
+    let scratch = Scratch::new("parts");
+    let help = output("inertia --help");
+    let (_, rest) = help.split_once("  [[part]]\n").unwrap();
+    let lines: Vec<&str> = rest.lines().take_while(|line| !line.trim().is_empty()).collect();
+    scratch.file("parts.toml", format!("[[part]]\n{}\n", lines.join("\n")));
+    let answer = polhode(&words("inertia parts parts.toml --format json"), &scratch.0);
+    assert!(answer.code == 0 && answer.out.contains("\"mass\": 2.0"), "{}", answer.err);
+}

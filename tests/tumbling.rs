@@ -1,0 +1,189 @@
+//! The elements of tumbling bodies: to a start and back, and against published asteroids.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use core::f64::consts::{PI, TAU};
+
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::catalogue;
+use polhode::flow::{FreeMotion, Mode, Stability, TumblingElements, TumblingError};
+use polhode::inertia::Inertia;
+use polhode::num::{Dd, Real};
+
+const DAY: f64 = 86_400.0;
+
+fn motion(inertia: &Inertia, omega: [f64; 3], attitude: UnitQuaternion<f64>) -> FreeMotion {
+    FreeMotion::from_omega(inertia, attitude, omega.into()).unwrap()
+}
+
+/// Largest relative deviation of the angular velocities and the attitudes of two starts.
+fn deviation(one: &FreeMotion, two: &FreeMotion) -> f64 {
+    let (a, b) = (one.at(0.0).unwrap(), two.at(0.0).unwrap());
+    let momenta = (a.momentum() - b.momentum()).norm() / a.momentum().norm();
+    momenta.max(a.rotation().angle_to(&b.rotation()))
+}
+
+#[test]
+fn toutatis_and_apophis_go_to_omega_and_back() {
+    let toutatis = catalogue::body("toutatis").unwrap();
+    let attitude = UnitQuaternion::from_euler_angles(0.3, -1.2, 2.5);
+    let spun = motion(&toutatis.inertia, toutatis.omega_body, attitude);
+    let elements = spun.tumbling().unwrap();
+    let back = FreeMotion::from_point(&toutatis.inertia, elements.point(&toutatis.inertia).unwrap());
+    assert!(deviation(&spun, &back) < 1e-12);
+    // Takahashi, Busch and Scheeres (2013), and Ostro et al., Science 270 (1995) 80: 5.41 and 7.35 days, to their digits
+    assert_eq!(elements.mode, Mode::LongAxis);
+    assert!((elements.rotation_period / DAY - 5.38).abs() < 0.01, "{}", elements.rotation_period / DAY);
+    assert!((elements.precession_period / DAY - 7.40).abs() < 0.01, "{}", elements.precession_period / DAY);
+
+    // Pravec et al., Icarus 233 (2014) 48: moments, periods and pole of Apophis, and what they found for 2E I_3/L²
+    let apophis = Inertia::from_moments([0.61, 0.965, 1.0]).unwrap();
+    let published = TumblingElements {
+        mode: Mode::ShortAxis,
+        precession_period: 27.38 * 3600.0,
+        rotation_period: 263.0 * 3600.0,
+        pole: [250.0 * PI / 180.0, -75.0 * PI / 180.0],
+        angles: [152.0 * PI / 180.0, 14.0 * PI / 180.0],
+        is_reversed: false,
+    };
+    let start = FreeMotion::from_point(&apophis, published.point(&apophis).unwrap());
+    let found = start.tumbling().unwrap();
+    assert_eq!((found.mode, found.is_reversed), (Mode::ShortAxis, false));
+    for (found, given) in [
+        (found.precession_period, published.precession_period),
+        (found.rotation_period, published.rotation_period),
+        (found.pole[0] + TAU, published.pole[0]),
+        (found.pole[1], published.pole[1]),
+        (found.angles[0], published.angles[0]),
+        (found.angles[1], published.angles[1]),
+    ] {
+        assert!((found / given - 1.0).abs() < 1e-12, "{found} of {given}");
+    }
+    let state = start.at(0.0).unwrap();
+    let energy_ratio = start.character().unwrap().spin / state.momentum().norm();
+    assert!((energy_ratio - 1.024).abs() < 0.013, "{energy_ratio}");
+}
+
+#[test]
+fn the_elements_of_any_motion_are_its_own() {
+    let mut seed = 11_u64;
+    for _ in 0..40 {
+        // Knuth's linear congruence
+        let mut uniform = |low: f64, high: f64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            low + (high - low) * (seed >> 11) as f64 / 9_007_199_254_740_992.0
+        };
+        let (a, b) = (uniform(0.1, 1.0), uniform(0.1, 1.0));
+        // a moment is at most the sum of the other two
+        let moments = [a, b, uniform((a - b).abs().max(0.05) * 1.01, (a + b) * 0.99)];
+        let inertia = Inertia::from_moments(moments).unwrap();
+        let omega = [0.0; 3].map(|_| uniform(-1.0, 1.0));
+        let attitude =
+            UnitQuaternion::from_euler_angles(uniform(-3.0, 3.0), uniform(-1.5, 1.5), uniform(-3.0, 3.0));
+        let spun = motion(&inertia, omega, attitude);
+        let elements = spun.tumbling().unwrap();
+        let back = FreeMotion::from_point(&inertia, elements.point(&inertia).unwrap());
+        // a motion next to a steady spin loses half of its digits in the periods
+        let [low, high] = spun.tilt_range().unwrap();
+        let lean = low.min(PI - high);
+        let allowed = 1e-13 + 1e-15 / (lean * lean);
+        assert!(deviation(&spun, &back) < allowed, "{moments:?} {omega:?}");
+
+        // after P_psi the momentum is back in the body, and z' has gone round L by the share P_psi/P_phi
+        let later = spun.point_at_dd(Dd::of(elements.rotation_period));
+        let later = FreeMotion::from_point(&inertia, later).tumbling().unwrap();
+        let turned = later.angles[0] - elements.angles[0];
+        let expected = TAU * elements.rotation_period / elements.precession_period;
+        let rest = |angle: f64| (angle / TAU - (angle / TAU).round()).abs() * TAU;
+        assert!(rest(later.angles[1] - elements.angles[1]) < 1e-10, "{moments:?} {omega:?}");
+        assert!(rest(turned - expected) < 1e-10, "{moments:?} {omega:?}");
+
+        // theta at any time lies between its limits, and comes near both
+        let (mut least, mut most) = (PI, 0.0_f64);
+        let ascending = inertia.principal_moments();
+        let rank = if elements.mode == Mode::LongAxis { 0 } else { 2 };
+        let axis = moments.iter().position(|moment| *moment == ascending[rank]).unwrap();
+        for k in 0..400 {
+            let m = spun.at(elements.rotation_period * f64::from(k) / 400.0).unwrap().momentum();
+            let theta = Vector3::ith(axis, 1.0).angle(&m);
+            (least, most) = (least.min(theta), most.max(theta));
+        }
+        assert!(least > low - 1e-9 && most < high + 1e-9, "{low} {least} {most} {high}");
+        assert!(least - low < 1e-3 && high - most < 1e-3, "{low} {least} {most} {high}");
+    }
+}
+
+#[test]
+fn the_ratio_of_the_periods_grows_with_the_lean() {
+    // the search for the motion with given periods rests on it
+    for moments in
+        [[1.0, 3.0836, 3.235], [0.61, 0.965, 1.0], [1.0, 2.0, 3.0], [0.9, 1.0, 1.05], [0.02, 1.0, 1.01]]
+    {
+        let inertia = Inertia::from_moments(moments).unwrap();
+        for axis in [0, 2] {
+            let mut before = 0.0;
+            for k in 1..200 {
+                let lean = 0.5 * PI * f64::from(k) / 200.0;
+                let (sin, cos) = libm::sincos(lean);
+                let mut omega = [0.0; 3];
+                omega[axis] = cos / moments[axis];
+                omega[1] = sin / moments[1];
+                let found = motion(&inertia, omega, UnitQuaternion::identity()).tumbling().unwrap();
+                let ratio = found.rotation_period / found.precession_period;
+                assert!(ratio > before, "{moments:?} axis {axis} at {lean}: {ratio} after {before}");
+                before = ratio;
+            }
+        }
+    }
+}
+
+#[test]
+fn elements_without_a_motion_are_refused() {
+    let apophis = Inertia::from_moments([0.61, 0.965, 1.0]).unwrap();
+    let elements = |mode, precession_period, rotation_period| TumblingElements {
+        mode,
+        precession_period,
+        rotation_period,
+        pole: [0.0; 2],
+        angles: [0.0; 2],
+        is_reversed: false,
+    };
+    let refused = elements(Mode::ShortAxis, 1.0, 5.0).point(&apophis).unwrap_err();
+    let TumblingError::Ratio { least, .. } = refused else { panic!("{refused}") };
+    // a small circulation: 1 + sqrt(I_1 I_2 / ((I_3 - I_1)(I_3 - I_2)))
+    assert!((least - (1.0 + (0.61 * 0.965 / (0.39 * 0.035_f64)).sqrt())).abs() < 1e-12);
+    assert!(refused.to_string().contains("P_psi/P_phi = 5.0"), "{refused}");
+    let oblate = Inertia::from_moments([1.0, 1.0, 2.0]).unwrap();
+    let refused = elements(Mode::LongAxis, 1.0, 5.0).point(&oblate).unwrap_err();
+    assert!(refused.to_string().contains("no long-axis motion with the moments 1, 1, 2"), "{refused}");
+    for bad in [elements(Mode::ShortAxis, 0.0, 5.0), elements(Mode::ShortAxis, 1.0, f64::NAN)] {
+        assert!(matches!(bad.point(&apophis), Err(TumblingError::Value { .. })));
+    }
+}
+
+#[test]
+fn a_steady_spin_has_an_axis_and_a_rate() {
+    let spin = |moments: [f64; 3], omega: [f64; 3]| {
+        let inertia = Inertia::from_moments(moments).unwrap();
+        motion(&inertia, omega, UnitQuaternion::identity()).pure_spin()
+    };
+    // exp(λt) about the middle axis: λ = ω sqrt((I_2 − I_1)(I_3 − I_2)/(I_1 I_3)), measured on the motion of a small deviation
+    let moments = [0.7, 1.0, 1.6];
+    let unstable = spin(moments, [0.0, 2.0, 0.0]).unwrap();
+    assert_eq!((unstable.rank, unstable.stability, unstable.circulation_rate), (1, Stability::Unstable, 0.0));
+    let inertia = Inertia::from_moments(moments).unwrap();
+    let near = motion(&inertia, [1e-9, 2.0, 1e-9], UnitQuaternion::identity());
+    let grown = |t: f64| near.omega_at(t).unwrap().x.abs();
+    let measured = libm::log(grown(12.0) / grown(8.0)) / 4.0;
+    assert!((measured / unstable.growth_rate - 1.0).abs() < 1e-3, "{measured} {}", unstable.growth_rate);
+    let stable = spin(moments, [0.0, 0.0, -2.0]).unwrap();
+    assert_eq!((stable.rank, stable.stability, stable.growth_rate), (2, Stability::Stable, 0.0));
+    assert_eq!(stable.axis, Vector3::new(0.0, 0.0, -1.0));
+    let near = motion(&inertia, [1e-9, 0.0, -2.0], UnitQuaternion::identity());
+    let period = near.character().unwrap().polhode_period.unwrap();
+    assert!((TAU / period / stable.circulation_rate - 1.0).abs() < 1e-9);
+    assert_eq!(spin([1.0, 1.0, 2.0], [0.6, 0.8, 0.0]).unwrap().stability, Stability::Neutral);
+    assert_eq!(spin([1.0; 3], [0.6, 0.8, 0.1]).unwrap().stability, Stability::Neutral);
+    assert_eq!(spin([1.0, 2.0, 3.0], [0.0; 3]), None);
+    assert_eq!(spin([1.0, 2.0, 3.0], [0.1, 1.0, 0.0]), None);
+}
