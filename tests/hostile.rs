@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Force, State};
 use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::inertia::{
-    Amount, Evidence, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid, diagnose,
+    Amount, Evidence, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid, Twin, diagnose,
 };
 use polhode::method::{Claimed, method};
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
@@ -274,7 +274,7 @@ fn amount(draw: &mut Draw) -> Amount {
 #[test]
 fn solids() {
     hostile(3, 1.0, |draw| {
-        let name = Solid::names().nth(draw.below(13) as usize).unwrap_or("brick");
+        let name = Solid::names().nth(draw.below(14) as usize).unwrap_or("brick");
         let sizes = draw.list::<3>();
         let solid = match Solid::named(name, &sizes[..draw.below(4) as usize]) {
             Ok(solid) => solid,
@@ -343,6 +343,7 @@ fn doctor() {
             mass: draw.one_in(2).then(|| draw.list::<1>()[0].abs()),
             center_of_mass: draw.one_in(2).then(|| draw.vector()),
             extents: draw.one_in(2).then(|| draw.list::<3>().map(f64::abs)),
+            twin: draw.one_in(2).then(|| Twin { center_of_mass: draw.vector(), tensor: draw.tensor() }),
         };
         let tensor = draw.tensor();
         let found = match diagnose(tensor, &evidence) {

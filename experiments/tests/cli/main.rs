@@ -13,3 +13,4 @@ mod inertia;
 #[cfg(unix)]
 mod interrupted;
 mod propagate;
+mod robots;
