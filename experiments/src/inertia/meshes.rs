@@ -138,8 +138,10 @@ impl MeshArguments {
             let list: Vec<String> = repairs.iter().map(Repair::to_string).collect();
             warn(&format!("{}: mended: {}", path.display(), list.join("; ")));
         }
-        if surface.degenerate() > 0 {
-            warn(&format!("{}: {} facets without area left out", path.display(), surface.degenerate()));
+        match surface.degenerate() {
+            0 => {}
+            1 => warn(&format!("{}: 1 facet without area left out", path.display())),
+            many => warn(&format!("{}: {many} facets without area left out", path.display())),
         }
         Ok(mesh)
     }

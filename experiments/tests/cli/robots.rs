@@ -314,6 +314,33 @@ fn orientations_and_settings_of_mjcf_are_obeyed() {
 }
 
 #[test]
+fn copies_of_copies_and_circles_of_includes_end() {
+    let scratch = Scratch::new("bombs");
+    let copies = "<replicate count='100000'>".repeat(6) + "<geom size='1'/>" + &"</replicate>".repeat(6);
+    scratch.file(
+        "copies.xml",
+        format!("<mujoco><worldbody><body name='b'>{copies}</body></worldbody></mujoco>"),
+    );
+    let answer = scratch.run("mjcf copies.xml");
+    assert_eq!(answer.code, 1, "{answer:?}");
+    assert!(answer.err.contains("more than 1000000 elements"), "{answer:?}");
+    scratch.file("circle.xml", "<mujoco><include file='circle.xml'/></mujoco>");
+    let answer = scratch.run("mjcf circle.xml");
+    assert_eq!(answer.code, 1, "{answer:?}");
+    assert!(answer.err.contains("includes itself"), "{answer:?}");
+    scratch.file("there.xml", "<mujoco><include file='back.xml'/></mujoco>");
+    scratch.file("back.xml", "<mujoco><include file='there.xml'/></mujoco>");
+    assert!(scratch.run("mjcf there.xml").err.contains("includes itself"));
+    let missing = "<mujoco><include file='nowhere.xml'/><worldbody><body name='b'/></worldbody></mujoco>";
+    scratch.file("missing.xml", missing);
+    let answer = scratch.run("mjcf missing.xml");
+    assert!(
+        answer.code == 1 && answer.out.contains("\nb,0.0,") && answer.err.contains("is not there"),
+        "{answer:?}"
+    );
+}
+
+#[test]
 fn meshes_are_mended_closed_or_asked_about() {
     let scratch = Scratch::new("mend");
     let open = OBJ_CUBE.replace("f 5 6 7 8\n", "");

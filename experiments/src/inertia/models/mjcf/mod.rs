@@ -21,8 +21,8 @@ use compiler::{Compiler, Source};
 use defaults::Defaults;
 use mesh::Meshes;
 
-/// Bodies that one model may have, copies of `<replicate>` among them.
-const MOST_BODIES: usize = 100_000;
+/// Elements of bodies that one model may have, copies of `<replicate>` among them: copies of copies grow without bound.
+const MOST_ELEMENTS: usize = 1_000_000;
 
 /// Every body in the order of the file, depth first, as MuJoCo numbers them.
 pub(super) fn bodies(document: Element, path: &Path, root: Option<&Path>) -> Vec<Given> {
@@ -33,6 +33,7 @@ pub(super) fn bodies(document: Element, path: &Path, root: Option<&Path>) -> Vec
         defaults: Defaults::of(&document),
         meshes: Meshes::of(&all, path),
         found: Vec::new(),
+        walked: 0,
     };
     model.walk(&document, Pose::identity(), "main", "", &mut None);
     let mut bodies = model.found;
@@ -46,6 +47,8 @@ struct Model<'e> {
     defaults: Defaults<'e>,
     meshes: Meshes<'e>,
     found: Vec<Given>,
+    /// Elements so far.
+    walked: usize,
 }
 
 /// The geoms of a body, with their frames in it and the class of their defaults.
@@ -62,9 +65,19 @@ impl<'e> Model<'e> {
         geoms: &mut Option<Geoms<'e>>,
     ) {
         for child in &element.children {
+            self.walked += 1;
+            if self.walked == MOST_ELEMENTS {
+                let defect = format!(
+                    "more than {MOST_ELEMENTS} elements, copies among them; the rest is not examined"
+                );
+                self.found.push(link(&name(child, suffix), child, Err(child.error(&defect))));
+            }
+            if self.walked >= MOST_ELEMENTS {
+                return;
+            }
             let class = child.attribute("childclass").unwrap_or(class);
             match child.tag.as_str() {
-                "body" if self.found.len() < MOST_BODIES => self.body(child, class, suffix),
+                "body" => self.body(child, class, suffix),
                 "geom" => {
                     if let Some(geoms) = geoms {
                         geoms.push((child, frame, child.attribute("class").unwrap_or(class)));
@@ -177,7 +190,10 @@ impl<'e> Model<'e> {
                 let digits = count.saturating_sub(1).to_string().len();
                 let separator = element.attribute("sep").unwrap_or_default();
                 let mut copy = frame;
-                for k in 0..count.min(MOST_BODIES) {
+                for k in 0..count {
+                    if self.walked >= MOST_ELEMENTS {
+                        return;
+                    }
                     self.walk(element, copy, class, &format!("{suffix}{separator}{k:0digits$}"), geoms);
                     copy = copy.around(&step);
                 }
