@@ -155,7 +155,8 @@ pub(super) fn closed(surface: &Surface, weld: f64, how: Closing) -> Result<(Mesh
 fn tidied(surface: &Surface, weld: f64) -> Result<(Surface, Vec<Repair>), MeshError> {
     let mut repairs = Vec::new();
     let extent = surface.extents().into_iter().fold(0.0, f64::max);
-    let distance = weld * extent;
+    // closer than rounding nothing is told apart
+    let distance = weld.max(f64::EPSILON) * extent;
     surface.welded.check_extent()?;
     let (mut welded, vertices) = weld_vertices(&surface.welded, distance)?;
     if vertices > 0 {
@@ -195,7 +196,11 @@ fn weld_vertices(mesh: &Welded, distance: f64) -> Result<(Welded, usize), MeshEr
     for (number, at) in mesh.vertices.iter().enumerate() {
         let [i, j, k] = cell(at);
         for (di, dj, dk) in (0..27).map(|n| (n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)) {
-            for &other in cells.get(&[i + di, j + dj, k + dk]).into_iter().flatten() {
+            for &other in cells
+                .get(&[i.saturating_add(di), j.saturating_add(dj), k.saturating_add(dk)])
+                .into_iter()
+                .flatten()
+            {
                 let there = mesh.vertices[other as usize];
                 if (Vec3(*at) + -Vec3(there)).norm_squared() <= distance * distance {
                     let (r, s) = (root(&mut roots, number as u32), root(&mut roots, other));
