@@ -5,7 +5,8 @@
 
 Every model below the folders is examined: exit codes, rows, and of the MJCF models that MuJoCo compiles the tensors of all
 bodies. Every mesh is given to polhode and, where trimesh calls it watertight, both answers are compared; the others are
-closed by a fan. The repaired copies of models with invalid links are read again. Nothing is written but a temporary folder.
+closed by a fan. The repaired copies of models with invalid links are read again, those of MJCF models for a moment from beside
+the model, where its includes and meshes are found.
 """
 import json
 import subprocess
