@@ -23,6 +23,7 @@ fn patient(parts: &[Part], extents: [f64; 3]) -> Patient {
         mass: Some(body.mass()),
         center_of_mass: Some(body.center_of_mass()),
         extents: Some(extents),
+        twin: None,
     };
     Patient { body, evidence }
 }

@@ -11,7 +11,8 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Force, State};
 use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::inertia::{
-    Amount, Evidence, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid, diagnose,
+    Amount, Closing, Evidence, FLOAT_WELD, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid,
+    Surface, Twin, diagnose,
 };
 use polhode::method::{Claimed, method};
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
@@ -274,7 +275,7 @@ fn amount(draw: &mut Draw) -> Amount {
 #[test]
 fn solids() {
     hostile(3, 1.0, |draw| {
-        let name = Solid::names().nth(draw.below(13) as usize).unwrap_or("brick");
+        let name = Solid::names().nth(draw.below(14) as usize).unwrap_or("brick");
         let sizes = draw.list::<3>();
         let solid = match Solid::named(name, &sizes[..draw.below(4) as usize]) {
             Ok(solid) => solid,
@@ -337,12 +338,49 @@ fn meshes() {
 }
 
 #[test]
+fn surfaces() {
+    hostile(7, 1.0, |draw| {
+        let (size, decades) = draw.scale();
+        let corners: Vec<Vector3<f64>> = (0..3 + draw.below(6))
+            .map(|_| {
+                Vector3::from([0; 3].map(|_| {
+                    let x = draw.near(size, decades);
+                    draw.sign() * x
+                }))
+            })
+            .collect();
+        let faces: Vec<[Vector3<f64>; 3]> = (0..1 + draw.below(8))
+            .map(|_| [0; 3].map(|_| corners[draw.below(corners.len() as u64) as usize]))
+            .collect();
+        let weld = if draw.one_in(2) { FLOAT_WELD } else { draw.list::<1>()[0] };
+        let surface = match Surface::new(faces) {
+            Ok(surface) => surface,
+            Err(error) => return refused(&error),
+        };
+        let closed = [Closing::Fan, Closing::Hull].map(|how| surface.closed(weld, how));
+        for found in closed.into_iter().chain([surface.mended(weld)]) {
+            match found {
+                Ok((mesh, repairs)) => {
+                    all(mesh.volume() > 0.0 && mesh.volume().is_finite(), "volume", &repairs)?;
+                }
+                Err(error) => refused(&error)?,
+            }
+        }
+        match surface.sheet(amount(draw)) {
+            Ok(body) => check_mass(&body, draw),
+            Err(error) => refused(&error),
+        }
+    });
+}
+
+#[test]
 fn doctor() {
     hostile(6, 1.0, |draw| {
         let evidence = Evidence {
             mass: draw.one_in(2).then(|| draw.list::<1>()[0].abs()),
             center_of_mass: draw.one_in(2).then(|| draw.vector()),
             extents: draw.one_in(2).then(|| draw.list::<3>().map(f64::abs)),
+            twin: draw.one_in(2).then(|| Twin { center_of_mass: draw.vector(), tensor: draw.tensor() }),
         };
         let tensor = draw.tensor();
         let found = match diagnose(tensor, &evidence) {

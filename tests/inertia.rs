@@ -330,7 +330,7 @@ fn bad_input_is_named() {
     let named = |name: &str, sizes: &[f64]| Solid::named(name, sizes).unwrap_err().to_string();
     assert_eq!(
         named("cube", &[1.0]),
-        "no such shape 'cube'; known: box, ellipsoid, sphere, shell, cylinder, tube, cone, torus, rod, disk, plate, hoop"
+        "no such shape 'cube'; known: box, ellipsoid, sphere, shell, cylinder, tube, cone, torus, rod, disk, plate, hoop, capsule"
     );
     assert_eq!(named("cylinder", &[1.0]), "cylinder takes 2 (radius, height), but 1 given");
     assert_eq!(message(MassProperties::sum([])), "a body needs at least one part");

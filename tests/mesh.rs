@@ -278,7 +278,7 @@ fn broken_meshes_name_an_edge() {
     fin.push([Vector3::zeros(), Vector3::new(0.0, 0.0, 1.0), Vector3::new(-1.0, -1.0, 0.5)]);
     assert_eq!(
         message(fin),
-        "the mesh is not manifold; edges with more than two triangles: 1, the first is edge (0, 0, 0)-(0, 0, 1) of \
+        "the mesh is not manifold; edges with more than two triangles that do not cancel: 1, the first is edge (0, 0, 0)-(0, 0, 1) of \
          triangle 2, with 3"
     );
     assert_eq!(

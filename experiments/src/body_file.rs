@@ -48,12 +48,12 @@ fn tensors(path: &Path) -> Result<Vec<(String, Matrix3<f64>)>, Error> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     match ending.as_deref() {
         Some("json") => json(path),
-        Some(kind @ ("toml" | "urdf" | "mjcf" | "xml")) => inertia::tensors_of_file(path, kind),
+        Some(kind @ ("toml" | "urdf" | "mjcf" | "sdf" | "xml")) => inertia::tensors_of_file(path, kind),
         _ => Err(Error::input(
             "--body",
             &path.display().to_string(),
             "the ending names no kind of file with a body",
-            "name a file .json, .toml, .urdf, .mjcf or .xml",
+            "name a file .json, .toml, .urdf, .mjcf, .sdf or .xml",
         )),
     }
 }

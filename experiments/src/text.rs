@@ -41,6 +41,13 @@ pub(crate) fn short(x: f64) -> String {
     }
 }
 
+/// The same without the noise of the last digit, as of 0.30000000000000004.
+pub(crate) fn rounded(x: f64) -> String {
+    let fifteen = format!("{x:.14e}").parse().unwrap_or(x);
+    let [exact, near] = [short(x + 0.0), short(fifteen)];
+    if near.len() + 2 < exact.len() { near } else { exact }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,6 +78,14 @@ mod tests {
         for (x, expected) in [(5e-324, "5e-324"), (1e300, "1e300"), (0.25, "0.25"), (3.0, "3"), (-0.0, "-0")]
         {
             assert_eq!(short(x), expected);
+        }
+        for (x, expected) in [
+            (0.1 + 0.2, "0.3"),
+            (2.0000000000000003e-6, "2e-6"),
+            (1.0 / 3.0, "0.3333333333333333"),
+            (-0.0, "0"),
+        ] {
+            assert_eq!(rounded(x), expected);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::num::Shown;
+use crate::num::{Computed, Shown};
 
 /// Why a tensor is not the inertia of a body.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -35,9 +35,9 @@ pub enum InertiaError {
     /// A principal moment is zero or negative.
     #[error(
         "principal moments {}, {}, {}: each must be positive (a moment is a sum of mass times distance squared)",
-        Shown(moments[0]),
-        Shown(moments[1]),
-        Shown(moments[2])
+        Computed(moments[0]),
+        Computed(moments[1]),
+        Computed(moments[2])
     )]
     NotPositive {
         /// The principal moments.
@@ -47,9 +47,9 @@ pub enum InertiaError {
     #[error(
         "principal moments {}, {}, {}: the smallest is less than 2^-200 (6e-61) of the largest; so slender a body is beyond \
          the range of a double",
-        Shown(moments[0]),
-        Shown(moments[1]),
-        Shown(moments[2])
+        Computed(moments[0]),
+        Computed(moments[1]),
+        Computed(moments[2])
     )]
     Slender {
         /// The principal moments.
@@ -64,7 +64,7 @@ pub enum InertiaError {
     /// Two moments together are less than the third.
     #[error(
         "principal moments {}, {}, {} violate I{} + I{} >= I{} by {} ({:.3} % of the largest); no mass distribution has them",
-        Shown(moments[0]), Shown(moments[1]), Shown(moments[2]), pair[0] + 1, pair[1] + 1, largest + 1, Shown(*excess), percent
+        Computed(moments[0]), Computed(moments[1]), Computed(moments[2]), pair[0] + 1, pair[1] + 1, largest + 1, Computed(*excess), percent
     )]
     Triangle {
         /// The principal moments.

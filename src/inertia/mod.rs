@@ -14,10 +14,10 @@ mod symmetry;
 mod tensor;
 
 pub use distribution::{DistributionError, Region, integrate_mass};
-pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Verdict, diagnose};
+pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Oddity, Twin, Verdict, diagnose};
 pub use error::{InertiaError, MassError};
 pub use mass::{Amount, MassProperties};
-pub use mesh::{Edge, Mesh, MeshError};
+pub use mesh::{Boundary, Closing, Edge, FLOAT_WELD, Mesh, MeshError, Repair, Surface};
 pub use solids::Solid;
 pub use symmetry::{Class, Symmetry};
 pub use tensor::{Inertia, InertiaShape};

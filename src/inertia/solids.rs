@@ -83,10 +83,17 @@ pub enum Solid {
         /// Radius, m.
         radius: f64,
     },
+    /// A solid cylinder with half a ball on either end.
+    Capsule {
+        /// Radius, m.
+        radius: f64,
+        /// Height of the cylinder, without the caps, m.
+        height: f64,
+    },
 }
 
 /// Name and sizes of each shape.
-const SHAPES: [(&str, &[&str]); 12] = [
+const SHAPES: [(&str, &[&str]); 13] = [
     ("box", &["length x", "length y", "length z"]),
     ("ellipsoid", &["semi-axis x", "semi-axis y", "semi-axis z"]),
     ("sphere", &["radius"]),
@@ -99,6 +106,7 @@ const SHAPES: [(&str, &[&str]); 12] = [
     ("disk", &["radius"]),
     ("plate", &["length x", "length y"]),
     ("hoop", &["radius"]),
+    ("capsule", &["radius", "height"]),
 ];
 
 impl Solid {
@@ -129,6 +137,7 @@ impl Solid {
             ("disk", &[radius]) => Solid::Disk { radius },
             ("plate", &[x, y]) => Solid::Plate([x, y]),
             ("hoop", &[radius]) => Solid::Hoop { radius },
+            ("capsule", &[radius, height]) => Solid::Capsule { radius, height },
             _ => {
                 return Err(MassError::SizeCount {
                     shape,
@@ -157,7 +166,9 @@ impl Solid {
             | Solid::Disk { radius }
             | Solid::Hoop { radius } => vec![radius],
             Solid::Rod { length } => vec![length],
-            Solid::Cylinder { radius, height } | Solid::Cone { radius, height } => vec![radius, height],
+            Solid::Cylinder { radius, height }
+            | Solid::Cone { radius, height }
+            | Solid::Capsule { radius, height } => vec![radius, height],
             Solid::Tube { inner, outer, height } => vec![inner, outer, height],
             Solid::Torus { ring, tube } => vec![ring, tube],
         }
@@ -177,6 +188,7 @@ impl Solid {
             Solid::Disk { .. } => 9,
             Solid::Plate(_) => 10,
             Solid::Hoop { .. } => 11,
+            Solid::Capsule { .. } => 12,
         }
     }
 
@@ -196,6 +208,7 @@ impl Solid {
             Solid::Disk { radius: r } => PI * (r * r),
             Solid::Plate([x, y]) => x * y,
             Solid::Hoop { radius } => 2.0 * PI * radius,
+            Solid::Capsule { radius: r, height: h } => PI * (r * r * (h + 4.0 / 3.0 * r)),
         }
     }
 
@@ -258,6 +271,14 @@ impl Solid {
             Solid::Disk { radius: r } => flat(r * r / 4.0, r * r / 4.0),
             Solid::Plate([x, y]) => flat(y * y / 12.0, x * x / 12.0),
             Solid::Hoop { radius: r } => flat(r * r / 2.0, r * r / 2.0),
+            Solid::Capsule { radius: r, height: h } => {
+                // shares of the mass: the cylinder, and the two caps, whose centres are 3/8 r beyond its ends
+                let caps = 4.0 * r / (3.0 * h + 4.0 * r);
+                let cylinder = 3.0 * h / (3.0 * h + 4.0 * r);
+                let across = cylinder * (3.0 * (r * r) + h * h) / 12.0
+                    + caps * (2.0 * (r * r) / 5.0 + h * h / 4.0 + 3.0 * (h * r) / 8.0);
+                diagonal(across, across, cylinder * (r * r) / 2.0 + caps * (2.0 * (r * r)) / 5.0)
+            }
         };
         let center = match *self {
             Solid::Cone { height, .. } => Vector3::new(0.0, 0.0, height / 4.0),

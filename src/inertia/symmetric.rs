@@ -74,6 +74,9 @@ pub(super) fn from_second_moments([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3
     from_entries([yy + zz, xx + zz, xx + yy, -xy, -xz, -yz])
 }
 
+/// 2⁻⁹⁸, above the rounding that double-double rotations leave of a zero beside entries of one.
+const ROTATED: f64 = 3.155_443_620_884_047e-30;
+
 /// Eigenvalues and eigenvectors of a symmetric tensor, whatever their signs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spectrum {
@@ -102,7 +105,10 @@ impl Spectrum {
         let largest = matrix.amax();
         let scale = if largest == 0.0 { 1.0 } else { power_of_two_below(largest) };
         let (moments, axes) = principal_axes(Tensor::symmetric_part(&(matrix / scale)).0);
-        Spectrum { scale, moments, axes }
+        // what a rotation leaves of a zero is no moment; without one the moments are the entries
+        let is_diagonal = (0..3).all(|j| (0..3).all(|k| j == k || matrix[(j, k)] == 0.0));
+        let kept = |moment: Dd| if is_diagonal || moment.hi().abs() > ROTATED { moment } else { Dd::ZERO };
+        Spectrum { scale, moments: moments.map(kept), axes }
     }
 
     pub(super) fn trace(&self) -> f64 {

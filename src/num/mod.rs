@@ -36,5 +36,5 @@ pub use expansion::Expansion;
 pub use random::Random;
 pub use real::{Precise, Real};
 pub use series::Series;
-pub(crate) use shown::Shown;
+pub(crate) use shown::{Computed, Shown};
 pub use sum::Compensated;

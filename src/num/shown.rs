@@ -12,3 +12,34 @@ impl fmt::Display for Shown {
         if short { write!(f, "{}", self.0) } else { write!(f, "{:e}", self.0) }
     }
 }
+
+/// A number that was computed, without the noise of its last digits: 0.3 of 0.30000000000000004.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Computed(pub(crate) f64);
+
+impl fmt::Display for Computed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let near = format!("{:.14e}", self.0).parse().unwrap_or(self.0);
+        let [exact, near] = [Shown(self.0 + 0.0), Shown(near)].map(|x| x.to_string());
+        f.write_str(if near.len() + 2 < exact.len() { &near } else { &exact })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn computed_numbers_lose_their_noise_and_no_digit_else() {
+        for (x, expected) in [
+            (0.1 + 0.2, "0.3"),
+            (1.009_000_000_000_000_1, "1.009"),
+            (1.0 / 3.0, "0.3333333333333333"),
+            (-0.0, "0"),
+            (2.000_000_000_000_000_3e-6, "2e-6"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(Computed(x).to_string(), expected);
+        }
+    }
+}

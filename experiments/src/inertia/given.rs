@@ -1,9 +1,11 @@
 //! A body as it was given, before anything is known to be right with it.
 
+use std::ops::Range;
 use std::path::Path;
+use std::rc::Rc;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::inertia::MassProperties;
+use polhode::inertia::{MassProperties, Twin};
 use serde::Deserialize;
 
 use crate::error::Error;
@@ -21,8 +23,32 @@ pub(super) struct Given {
     pub(super) tensor: Matrix3<f64>,
     /// Along the axes of the tensor.
     pub(super) extents: Option<[f64; 3]>,
+    /// The link that it mirrors, in the axes of the tensor.
+    pub(super) twin: Option<Twin>,
     /// Whether the tensor was computed here, so that there is no mistake of a user's to look for.
     pub(super) computed: bool,
+    /// File and line of a link.
+    pub(super) place: Option<String>,
+    /// What is wrong with a link that states no tensor that could be examined.
+    pub(super) defect: Option<String>,
+    /// A frame without a body.
+    pub(super) massless: bool,
+    /// What else is to be known of a tensor that was computed.
+    pub(super) remark: Option<String>,
+    /// Where the tensor stands in its file.
+    pub(super) writing: Option<Writing>,
+    /// Whether it is written as three moments.
+    pub(super) diagonal: bool,
+}
+
+/// The bytes of a file that hold a tensor.
+#[derive(Clone, Debug)]
+pub(super) struct Writing {
+    pub(super) file: Rc<Path>,
+    /// Of xx, yy, zz, xy, xz, yz each.
+    pub(super) entries: [Option<Range<usize>>; 6],
+    /// Of all entries, where they stand in one list.
+    pub(super) list: Option<Range<usize>>,
 }
 
 impl Given {
@@ -35,8 +61,32 @@ impl Given {
             turn: UnitQuaternion::identity(),
             tensor,
             extents: None,
+            twin: None,
             computed: false,
+            place: None,
+            defect: None,
+            massless: false,
+            remark: None,
+            writing: None,
+            diagonal: false,
         }
+    }
+
+    /// A frame without a body.
+    pub(super) fn massless() -> Self {
+        Self { massless: true, mass: Some(0.0), ..Self::of_tensor(Matrix3::zeros()) }
+    }
+
+    /// A link that states no tensor that could be examined, and why.
+    pub(super) fn defective(defect: String) -> Self {
+        Self { defect: Some(defect), ..Self::of_tensor(Matrix3::zeros()) }
+    }
+
+    pub(super) fn add_remark(&mut self, remark: &str) {
+        self.remark = Some(match self.remark.take() {
+            Some(before) => format!("{before}; {remark}"),
+            None => remark.into(),
+        });
     }
 
     /// A body that is right by construction.

@@ -2,23 +2,30 @@
 
 mod examined;
 mod given;
+mod links;
+mod meshes;
+mod models;
 mod output;
 mod parts;
-mod xml;
+mod repair;
+mod summary;
+mod twins;
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
-use polhode::inertia::{Amount, InertiaError, MassError, MassProperties, Mesh, MeshError, Solid, Verdict};
+use polhode::inertia::{Amount, InertiaError, MassError, MassProperties, Solid};
 
 use crate::arguments::{list, numbers, positive};
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
 use crate::table::Format;
 use crate::text::{short, visible};
-use examined::Examined;
+use examined::{Examined, Worth};
 use given::Given;
+use meshes::MeshArguments;
+use models::Language;
 
 const EXAMPLES: &str = "Examples:
   polhode inertia box 0.3,0.2,0.1 --mass 2
@@ -30,14 +37,17 @@ const EXAMPLES: &str = "Examples:
 /// SHAPE and its ARGUMENT, lengths in m, symmetry axis z:
 ///   box LX,LY,LZ    ellipsoid A,B,C (semi-axes)    sphere R    shell R
 ///   cylinder R,H    tube R1,R2,H    cone R,H    torus R,r    rod L
-///   disk R    plate LX,LY    hoop R    mesh FILE (.stl or .obj, closed)
+///   disk R    plate LX,LY    hoop R    capsule R,H (H without the caps)
+///   mesh FILE (.stl, .obj or .ply)
 ///   tensor Ixx,Iyy,Izz,Ixy,Ixz,Iyz (or all nine entries, by rows)
-///   parts FILE.toml    json FILE    urdf FILE    mjcf FILE
+///   parts FILE.toml    json FILE
+///   urdf FILE...    mjcf FILE...    sdf FILE...
 ///
 /// Tensor entries carry the minus sign, I_xy = -int x y dm, and are about the
 /// centre of mass. The base of a cone is at z = 0. Of a tensor that is not
 /// physically valid, the output states the violated law and by how much, the
-/// probable cause and the nearest valid tensor; the exit code is then 1.
+/// probable cause and the nearest valid tensor; the exit code is then 1. Every
+/// link of a robot model gets a line of its own.
 ///
 /// A file of parts lists bodies that are summed:
 ///   [[part]]
@@ -54,15 +64,17 @@ pub(crate) struct Inertia {
     /// Sizes, entries or a file
     #[arg(value_name = "ARGUMENT", allow_hyphen_values = true)]
     argument: String,
+    /// Further robot models
+    #[arg(value_name = "FILE")]
+    more: Vec<String>,
     /// Mass, kg
     #[arg(long, value_name = "M", value_parser = positive, allow_hyphen_values = true)]
     mass: Option<f64>,
     /// Density, kg/m^3 (of a surface kg/m^2, of a line kg/m)
     #[arg(long, value_name = "D", value_parser = positive, allow_hyphen_values = true, conflicts_with = "mass")]
     density: Option<f64>,
-    /// Unit of length of a mesh, in metres: 0.001 for millimetres
-    #[arg(long, value_name = "METRES", value_parser = positive, allow_hyphen_values = true)]
-    length_unit: Option<f64>,
+    #[command(flatten)]
+    mesh: MeshArguments,
     /// Centre of mass of a typed tensor, m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     center_of_mass: Option<[f64; 3]>,
@@ -75,6 +87,15 @@ pub(crate) struct Inertia {
     /// Print the tensor about this point too, m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     about: Option<[f64; 3]>,
+    /// Of every link of a model all that is known, not one line
+    #[arg(long)]
+    details: bool,
+    /// Write copies of the models with their invalid tensors repaired to this folder
+    #[arg(long, value_name = "DIR")]
+    repair: Option<PathBuf>,
+    /// Folder that includes of an MJCF model may not leave [default: its own]
+    #[arg(long, value_name = "DIR")]
+    root: Option<PathBuf>,
     /// What is written: table on a terminal, csv otherwise
     #[arg(long, value_enum)]
     format: Option<Form>,
@@ -151,13 +172,17 @@ impl Form {
 
 impl Inertia {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        if let Some(language) = Language::named(&self.shape) {
+            self.check_flags()?;
+            return links::run(self, language);
+        }
         let file = Output::new(self.out.as_deref())?;
         let given = self.given()?;
         if self.about.is_some() && given.iter().any(|body| body.mass.is_none()) {
             let rule = "missing: --about moves a tensor by M (R^2 1 - R R^T)";
             return Err(Error::input("--mass", "", rule, "give --mass M"));
         }
-        let form = Form::of(self.format, self.out.as_deref())?;
+        let form = self.form()?;
         if !form.is_report() {
             self.check_masses(&given, form)?;
         }
@@ -169,21 +194,70 @@ impl Inertia {
             let refused = |error| Error::Input(format!("{} {}{name}: {error}", self.shape, self.argument));
             bodies.push(Examined::of(body, point).map_err(refused)?);
         }
+        self.check_about(&bodies)?;
+        let invalid: Vec<String> =
+            bodies.iter().filter(|body| body.worth() == Worth::Invalid).map(Examined::report).collect();
+        for body in bodies.iter().filter(|body| body.worth() == Worth::Suspicious) {
+            warn(&body.report());
+        }
+        // a model must not contain an invalid tensor; a report shows it
+        if invalid.is_empty() || form.is_report() {
+            file.write_whole(&output::write(&bodies, &[], form))?;
+        }
+        if invalid.is_empty() { Ok(()) } else { Err(Error::Failed(invalid.join("\n"))) }
+    }
+
+    fn form(&self) -> Result<Form, Error> {
+        Form::of(self.format, self.out.as_deref())
+    }
+
+    fn check_about(&self, bodies: &[Examined]) -> Result<(), Error> {
         if bodies.iter().any(|body| body.body.is_some() && matches!(body.about, Some((_, None)))) {
             let value = self.about.unwrap_or_default().map(short).join(",");
             let rule = "the tensor about this point is outside the range of a double";
             return Err(Error::input("--about", &value, rule, "name a nearer one"));
         }
-        let invalid: Vec<String> =
-            bodies.iter().filter(|body| body.verdict() == Verdict::Invalid).map(Examined::report).collect();
-        for body in bodies.iter().filter(|body| body.verdict() == Verdict::Suspicious) {
-            warn(&body.report());
+        Ok(())
+    }
+
+    /// Refuses flags that say nothing about this shape.
+    fn check_flags(&self) -> Result<(), Error> {
+        let shape = self.shape.as_str();
+        let language = Language::named(shape);
+        if !matches!(shape, "tensor") {
+            self.only_for("tensor", "--center-of-mass", self.center_of_mass.is_some())?;
+            self.only_for("tensor", "--given-about", self.given_about.is_some())?;
+            self.only_for("tensor", "--extents", self.extents.is_some())?;
         }
-        // a model must not contain an invalid tensor; a report shows it
-        if invalid.is_empty() || form.is_report() {
-            file.write_whole(&output::write(&bodies, form))?;
+        if shape != "mesh" && !self.mesh.is_empty() {
+            let flags = "--length-unit, --weld, --close, --shell and --group";
+            let rule = format!("belong to mesh, not to {shape}");
+            return Err(Error::input(flags, "", &rule, "leave them out"));
         }
-        if invalid.is_empty() { Ok(()) } else { Err(Error::Failed(invalid.join("\n"))) }
+        let is_file = matches!(shape, "parts" | "json") || language.is_some();
+        if is_file || shape == "tensor" {
+            self.only_for("shapes and mesh", "--density", self.density.is_some())?;
+        }
+        if is_file {
+            self.only_for("shapes, mesh and tensor", "--mass", self.mass.is_some())?;
+        }
+        if language.is_none() {
+            self.only_for("robot models", "--details", self.details)?;
+            self.only_for("robot models", "--repair", self.repair.is_some())?;
+            if let Some(second) = self.more.first() {
+                let rule = format!("is one argument too many for {shape}");
+                return Err(Error::input(
+                    "ARGUMENT",
+                    second,
+                    &rule,
+                    "separate numbers by commas, without blanks",
+                ));
+            }
+        }
+        if language != Some(Language::Mjcf) {
+            self.only_for("mjcf", "--root", self.root.is_some())?;
+        }
+        Ok(())
     }
 
     /// A model states masses, and none is made up.
@@ -203,30 +277,15 @@ impl Inertia {
         let path = Path::new(&self.argument);
         let single = |given: Given| Ok(vec![given]);
         let shape = self.shape.as_str();
-        if !matches!(shape, "tensor") {
-            self.only_for("tensor", "--center-of-mass", self.center_of_mass.is_some())?;
-            self.only_for("tensor", "--given-about", self.given_about.is_some())?;
-            self.only_for("tensor", "--extents", self.extents.is_some())?;
-        }
-        if shape != "mesh" {
-            self.only_for("mesh", "--length-unit", self.length_unit.is_some())?;
-        }
-        if matches!(shape, "tensor" | "parts" | "json" | "urdf" | "mjcf") {
-            self.only_for("shapes and mesh", "--density", self.density.is_some())?;
-        }
-        if matches!(shape, "parts" | "json" | "urdf" | "mjcf") {
-            self.only_for("shapes, mesh and tensor", "--mass", self.mass.is_some())?;
-        }
+        self.check_flags()?;
         match shape {
             "tensor" => single(self.tensor()?),
-            "mesh" => single(Given::body(self.mesh(path)?)),
+            "mesh" => single(Given::body(self.mesh.body(path, self.amount()?)?)),
             "parts" => single(Given::body(parts::read_parts(path)?)),
             "json" => given::from_json(path, &read(path, "name a JSON file of this command")?),
-            "urdf" => xml::urdf(path, &read(path, "name a URDF file")?),
-            "mjcf" => xml::mjcf(path, &read(path, "name an MJCF file")?),
             _ => {
                 if !Solid::names().any(|name| name == shape) {
-                    let others = ["mesh", "tensor", "parts", "json", "urdf", "mjcf"];
+                    let others = ["mesh", "tensor", "parts", "json"].into_iter().chain(Language::NAMES);
                     return Err(Error::unknown_name("SHAPE", "shape", shape, Solid::names().chain(others)));
                 }
                 let sizes = list(&self.argument)
@@ -311,53 +370,27 @@ impl Inertia {
         }
         Ok(given)
     }
-
-    fn mesh(&self, path: &Path) -> Result<MassProperties, Error> {
-        let amount = self.amount()?;
-        let mesh = read_mesh(path)?;
-        scaled(&mesh, amount, self.length_unit.unwrap_or(1.0)).map_err(|error| self.refused(error))
-    }
 }
 
-/// Name and tensor of every body of a file of the `kind`: toml, urdf, mjcf or xml.
+/// Name and tensor of every body of a file of the `kind`: toml, urdf, mjcf, sdf or xml.
 pub(crate) fn tensors_of_file(path: &Path, kind: &str) -> Result<Vec<(String, Matrix3<f64>)>, Error> {
     if kind == "toml" {
         return Ok(vec![(String::new(), parts::read_parts(path)?.tensor())]);
     }
-    let text = read(path, "name a URDF or MJCF file")?;
-    let is_urdf = kind == "urdf" || (kind == "xml" && text.contains("<robot"));
-    let bodies = if is_urdf { xml::urdf(path, &text)? } else { xml::mjcf(path, &text)? };
+    let text = read(path, "name a URDF, MJCF or SDF file")?;
+    let language = Language::named(kind).unwrap_or(if text.contains("<robot") {
+        Language::Urdf
+    } else if text.contains("<sdf") {
+        Language::Sdf
+    } else {
+        Language::Mjcf
+    });
     let tensor = |body: &Given| {
         let turn = body.turn.to_rotation_matrix();
         turn * body.tensor * turn.transpose()
     };
-    Ok(bodies.into_iter().map(|body| (body.name.clone(), tensor(&body))).collect())
-}
-
-/// A mesh by the ending of its name.
-fn read_mesh(path: &Path) -> Result<Mesh, Error> {
-    let refused = |error: MeshError| Error::Input(format!("{}: {error}", path.display()));
-    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
-    let open =
-        || std::fs::File::open(path).map(std::io::BufReader::new).map_err(|error| refused(error.into()));
-    match ending.as_deref() {
-        Some("stl") => Mesh::from_stl(open()?).map_err(refused),
-        Some("obj") => Mesh::from_obj(open()?).map_err(refused),
-        _ => Err(Error::input(
-            "mesh",
-            &path.display().to_string(),
-            "the ending tells the format, and this one is unknown",
-            "name a file that ends in .stl or .obj",
-        )),
-    }
-}
-
-/// The body of a mesh whose coordinates are multiples of `unit` metres.
-fn scaled(mesh: &Mesh, amount: Amount, unit: f64) -> Result<MassProperties, MassError> {
-    let amount = match amount {
-        Amount::Density(density) => Amount::Density(density * unit * unit * unit),
-        mass => mass,
-    };
-    let body = mesh.with(amount)?;
-    MassProperties::new(body.mass(), body.center_of_mass() * unit, body.tensor() * (unit * unit))
+    let links = models::read(language, path, &text, None)?;
+    // a frame without a body, and a link that states no tensor, have none to give
+    let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
+    Ok(bodies.map(|body| (body.name.clone(), tensor(body))).collect())
 }

@@ -1,7 +1,7 @@
 //! Bodies as rows, JSON and fragments of models.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::inertia::MassProperties;
+use polhode::inertia::{Diagnosis, MassProperties};
 use serde_json::{Value, json};
 
 use super::Form;
@@ -12,8 +12,8 @@ use crate::text::{visible, visible_json};
 /// The sign of the products, which no two programs agree on.
 const SIGN: &str = "I_xy = -int x y dm";
 
-/// All bodies in one text.
-pub(super) fn write(bodies: &[Examined], form: Form) -> String {
+/// All bodies in one text; `files` are the files that they are from, where there are several.
+pub(super) fn write(bodies: &[Examined], files: &[String], form: Form) -> String {
     let each = |write: fn(&Examined, &MassProperties) -> String| -> String {
         bodies
             .iter()
@@ -22,10 +22,13 @@ pub(super) fn write(bodies: &[Examined], form: Form) -> String {
     };
     match form {
         Form::Table => bodies.iter().map(sheet).collect::<Vec<_>>().join("\n"),
-        Form::Csv => Format::Csv.write(&rows(bodies)),
+        Form::Csv => Format::Csv.write(&rows(bodies, files)),
         Form::Json => match bodies {
-            [one] => json(one) + "\n",
-            many => format!("[\n{}\n]\n", many.iter().map(json).collect::<Vec<_>>().join(",\n")),
+            [one] => json(one, files.first()) + "\n",
+            many => {
+                let each = many.iter().enumerate().map(|(k, body)| json(body, files.get(k)));
+                format!("[\n{}\n]\n", each.collect::<Vec<_>>().join(",\n"))
+            }
         },
         Form::Urdf => each(urdf),
         Form::Mjcf => each(mjcf),
@@ -36,13 +39,16 @@ pub(super) fn write(bodies: &[Examined], form: Form) -> String {
 
 /// The quantities of a body: name, unit, value.
 fn quantities(examined: &Examined) -> Vec<(&'static str, &'static str, Cell)> {
-    let found = &examined.diagnosis;
+    const NONE: [f64; 3] = [f64::NAN; 3]; // empty cells
+    let found = examined.diagnosis.as_ref();
     let body = examined.body.as_ref();
-    let center = examined.given.center_of_mass;
-    let moments = body.map_or(found.principal_moments, MassProperties::principal_moments);
-    let axes = body.map(|body| quaternion(body.principal_axes()));
-    let margins = body.map_or(found.triangle_margins, MassProperties::triangle_margins);
-    let tensor = six(&body.map_or(examined.given.tensor, MassProperties::tensor));
+    let center = found.map_or(NONE, |_| examined.given.center_of_mass.into());
+    let moments =
+        body.map_or(found.map_or(NONE, |found| found.principal_moments), MassProperties::principal_moments);
+    let axes = body.map_or([f64::NAN; 4], |body| quaternion(body.principal_axes()));
+    let margins =
+        body.map_or(found.map_or(NONE, |found| found.triangle_margins), MassProperties::triangle_margins);
+    let tensor = found.map(|_| six(&body.map_or(examined.given.tensor, MassProperties::tensor)));
     let mut list = vec![
         ("name", "", Cell::from(examined.given.name.as_str())),
         ("mass", "kg", examined.given.mass.into()),
@@ -50,32 +56,32 @@ fn quantities(examined: &Examined) -> Vec<(&'static str, &'static str, Cell)> {
     let mut add = |names: &[&'static str], unit, values: &[f64]| {
         list.extend(names.iter().zip(values).map(|(&name, &value)| (name, unit, Cell::from(value + 0.0))));
     };
-    add(&["center_of_mass_x", "center_of_mass_y", "center_of_mass_z"], "m", center.as_slice());
+    add(&["center_of_mass_x", "center_of_mass_y", "center_of_mass_z"], "m", &center);
     add(
         &["inertia_xx", "inertia_yy", "inertia_zz", "inertia_xy", "inertia_xz", "inertia_yz"],
         "kg m^2",
-        &tensor,
+        &tensor.unwrap_or([f64::NAN; 6]),
     );
     add(&["moment_1", "moment_2", "moment_3"], "kg m^2", &moments);
-    match axes {
-        Some(axes) => add(&["axes_w", "axes_x", "axes_y", "axes_z"], "", &axes),
-        None => add(&["axes_w", "axes_x", "axes_y", "axes_z"], "", &[f64::NAN; 4]),
-    }
+    add(&["axes_w", "axes_x", "axes_y", "axes_z"], "", &axes);
     add(&["margin_1", "margin_2", "margin_3"], "kg m^2", &margins);
     list.push(("class", "", class(examined).into()));
-    list.push(("verdict", "", examined.verdict_name().into()));
+    list.push(("verdict", "", examined.worth().name().into()));
     list.push(("trouble", "", examined.trouble().into()));
-    list.push(("cause", "", found.causes.first().map(|explanation| explanation.cause.to_string()).into()));
+    list.push(("cause", "", examined.cause().into()));
     let mut add = |names: &[&'static str], unit, values: &[f64]| {
         list.extend(names.iter().zip(values).map(|(&name, &value)| (name, unit, Cell::from(value + 0.0))));
     };
-    add(&["distance"], "kg m^2", &[found.distance]);
+    add(&["distance"], "kg m^2", &[found.map_or(f64::NAN, |found| found.distance)]);
     let edge = if examined.given.mass.is_some() { "m" } else { "" };
-    add(&["box_1", "box_2", "box_3"], edge, &found.equivalent_box);
+    add(&["box_1", "box_2", "box_3"], edge, &found.map_or(NONE, |found| found.equivalent_box));
     if let Some((point, tensor)) = &examined.about {
         add(&["point_x", "point_y", "point_z"], "m", point.as_slice());
         let names = ["about_xx", "about_yy", "about_zz", "about_xy", "about_xz", "about_yz"];
         add(&names, "kg m^2", &tensor.as_ref().map_or([f64::NAN; 6], six)); // an empty cell
+    }
+    if examined.given.place.is_some() {
+        list.push(("remark", "", examined.given.remark.clone().into()));
     }
     list
 }
@@ -85,13 +91,15 @@ fn class(examined: &Examined) -> &'static str {
 }
 
 /// A row a body.
-fn rows(bodies: &[Examined]) -> Table {
+fn rows(bodies: &[Examined], files: &[String]) -> Table {
     let all: Vec<_> = bodies.iter().map(quantities).collect();
     let columns = all.first().map_or(&[][..], Vec::as_slice).iter();
-    let columns = columns.map(|(name, unit, _)| Column::new(name, unit, "")).collect();
-    let mut table = Table::new("inertia", "Mass properties.", columns);
-    for quantities in all {
-        table.push(quantities.into_iter().map(|(_, _, value)| value));
+    let columns = columns.map(|(name, unit, _)| Column::new(name, unit, ""));
+    let file = (!files.is_empty()).then(|| Column::new("file", "", ""));
+    let mut table = Table::new("inertia", "Mass properties.", file.into_iter().chain(columns).collect());
+    for (k, quantities) in all.into_iter().enumerate() {
+        let file = files.get(k).map(|file| Cell::from(file.as_str()));
+        table.push(file.into_iter().chain(quantities.into_iter().map(|(_, _, value)| value)));
     }
     table
 }
@@ -116,45 +124,53 @@ fn sheet(examined: &Examined) -> String {
 }
 
 /// The object of the conventions, then what the examination adds.
-fn json(examined: &Examined) -> String {
-    let found = &examined.diagnosis;
+fn json(examined: &Examined, file: Option<&String>) -> String {
+    let found = examined.diagnosis.as_ref();
     let body = examined.body.as_ref();
     let vector = |values: &[f64]| Value::from(values.iter().map(|x| x + 0.0).collect::<Vec<f64>>());
     let matrix =
         |m: &Matrix3<f64>| Value::from([0, 1, 2].map(|j| vector(&[0, 1, 2].map(|k| m[(j, k)]))).to_vec());
-    let causes: Vec<Value> = found
-        .causes
-        .iter()
-        .map(|explanation| {
-            json!({
-                "cause": explanation.cause.name(),
-                "meaning": explanation.cause.to_string(),
-                "inertia": matrix(&explanation.corrected),
-            })
+    let causes = found.map_or(&[][..], |found| found.causes.as_slice()).iter().map(|explanation| {
+        json!({
+            "cause": explanation.cause.name(),
+            "meaning": explanation.cause.to_string(),
+            "inertia": matrix(&explanation.corrected),
         })
-        .collect();
+    });
+    let of = |value: &dyn Fn(&Diagnosis) -> Value| found.map_or(Value::Null, value);
+    let tensor = body.map_or(examined.given.tensor, MassProperties::tensor);
     let mut entries = vec![
         ("mass", examined.given.mass.into()),
-        ("center_of_mass", vector(examined.given.center_of_mass.as_slice())),
-        ("inertia", matrix(&body.map_or(examined.given.tensor, MassProperties::tensor))),
+        ("center_of_mass", of(&|_| vector(examined.given.center_of_mass.as_slice()))),
+        ("inertia", of(&|_| matrix(&tensor))),
         (
             "principal_moments",
-            vector(&body.map_or(found.principal_moments, MassProperties::principal_moments)),
+            of(&|found| vector(&body.map_or(found.principal_moments, MassProperties::principal_moments))),
         ),
         ("axes", body.map_or(Value::Null, |body| vector(&quaternion(body.principal_axes())))),
         ("class", class(examined).into()),
-        ("triangle_margins", vector(&body.map_or(found.triangle_margins, MassProperties::triangle_margins))),
+        (
+            "triangle_margins",
+            of(&|found| vector(&body.map_or(found.triangle_margins, MassProperties::triangle_margins))),
+        ),
         ("sign", SIGN.into()),
-        ("verdict", examined.verdict_name().into()),
+        ("verdict", examined.worth().name().into()),
         ("trouble", examined.trouble().into()),
-        ("causes", causes.into()),
+        ("cause", examined.cause().into()),
+        ("causes", causes.collect::<Vec<Value>>().into()),
         // in the axes it was typed in, like the causes; of a valid tensor it is the tensor itself
-        ("nearest", matrix(&body.map_or(found.nearest, MassProperties::tensor))),
-        ("distance", found.distance.into()),
-        ("equivalent_box", vector(&found.equivalent_box)),
+        ("nearest", of(&|found| matrix(&body.map_or(found.nearest, MassProperties::tensor)))),
+        ("distance", of(&|found| found.distance.into())),
+        ("equivalent_box", of(&|found| vector(&found.equivalent_box))),
     ];
-    if !examined.given.name.is_empty() {
+    if !examined.given.name.is_empty() || examined.given.place.is_some() {
         entries.insert(0, ("name", examined.given.name.as_str().into()));
+    }
+    if let Some(file) = file {
+        entries.insert(0, ("file", file.as_str().into()));
+    }
+    if let Some(remark) = &examined.given.remark {
+        entries.push(("remark", remark.as_str().into()));
     }
     if let Some((point, tensor)) = &examined.about {
         entries.push((
@@ -166,8 +182,9 @@ fn json(examined: &Examined) -> String {
     format!("{{\n{}\n}}", entries.iter().map(line).collect::<Vec<_>>().join(",\n"))
 }
 
+/// Scalar first; what rounding leaves of a zero is zero.
 fn quaternion(q: UnitQuaternion<f64>) -> [f64; 4] {
-    [q.w, q.i, q.j, q.k]
+    [q.w, q.i, q.j, q.k].map(|x| if x.abs() < f64::EPSILON { 0.0 } else { x })
 }
 
 /// Numbers with every digit, separated by `separator`.

@@ -7,7 +7,7 @@ use polhode::inertia::{Amount, MassError, MassProperties, Solid};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{read_mesh, scaled};
+use super::meshes::{MeshArguments, unit};
 use crate::arguments::{number, turn};
 use crate::error::Error;
 use crate::files::read;
@@ -81,10 +81,10 @@ impl Part<'_> {
                 let file =
                     self.text("file")?.ok_or_else(|| self.missing("file", "name an STL or OBJ file"))?;
                 let folder = self.file.path.parent().unwrap_or(Path::new("."));
-                let mesh = read_mesh(&folder.join(file));
-                let mesh = mesh.map_err(|error| self.at("file", &error.to_string()))?;
-                let unit = self.positive("length_unit")?.unwrap_or(1.0);
-                self.check(scaled(&mesh, self.amount()?, unit), "file")?
+                let length_unit = self.length_unit()?;
+                let mesh = MeshArguments { length_unit, ..MeshArguments::default() };
+                mesh.body(&folder.join(file), self.amount()?)
+                    .map_err(|error| self.at("file", &error.to_string()))?
             }
             "tensor" => {
                 self.only(&["mass", "inertia"], shape)?;
@@ -121,6 +121,16 @@ impl Part<'_> {
         };
         let by = Vector3::from(self.numbers::<3>("at")?.unwrap_or_default());
         self.check(turned.moved(by), "at")
+    }
+
+    /// Metres of the unit of a mesh, by name or as a number.
+    fn length_unit(&self) -> Result<Option<f64>, Error> {
+        match self.value("length_unit").map(Spanned::get_ref) {
+            Some(DeValue::String(text)) => {
+                unit(text).map(Some).map_err(|error| self.at("length_unit", &error))
+            }
+            _ => self.positive("length_unit"),
+        }
     }
 
     fn amount(&self) -> Result<Amount, Error> {

@@ -1,33 +1,33 @@
 //! `polhode inertia` as its users meet it: golden values, golden refusals, formats that read each other.
 
 use std::fmt::Write as _;
-use std::fs;
 
 use crate::harness::{self, Answer, Scratch, names, polhode};
+use crate::robots::ROBOT;
 
 impl Scratch {
     /// Runs `polhode inertia` in this folder.
-    fn run(&self, line: &str) -> Answer {
+    pub(crate) fn run(&self, line: &str) -> Answer {
         let arguments: Vec<&str> = std::iter::once("inertia").chain(line.split_whitespace()).collect();
         polhode(&arguments, &self.0)
     }
 
     /// The output of a run that has nothing to complain of.
-    fn output(&self, line: &str) -> String {
+    pub(crate) fn output(&self, line: &str) -> String {
         self.run(line).silent(line)
     }
 
-    fn json(&self, line: &str) -> serde_json::Value {
+    pub(crate) fn json(&self, line: &str) -> serde_json::Value {
         serde_json::from_str(&self.output(&format!("{line} --format json"))).unwrap()
     }
 }
 
-fn golden(name: &str, found: &str) {
+pub(crate) fn golden(name: &str, found: &str) {
     harness::golden(&format!("inertia/{name}"), found);
 }
 
 /// All numbers of a JSON value, in order.
-fn numbers(value: &serde_json::Value) -> Vec<f64> {
+pub(crate) fn numbers(value: &serde_json::Value) -> Vec<f64> {
     match value {
         serde_json::Value::Number(number) => vec![number.as_f64().unwrap()],
         serde_json::Value::Array(items) => items.iter().flat_map(numbers).collect(),
@@ -35,7 +35,7 @@ fn numbers(value: &serde_json::Value) -> Vec<f64> {
     }
 }
 
-const OBJ_CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+pub(crate) const OBJ_CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
                         f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
 /// A tetrahedron with three edges along the axes.
@@ -228,49 +228,6 @@ fn every_format_is_read_back_to_twelve_digits_and_names_its_sign() {
     }
 }
 
-/// A model of two links in the words of other programs, with axes turned by rpy.
-const ROBOT: &str = "\
-<robot name=\"r\">
-  <link name=\"base\">
-    <inertial>
-      <origin xyz=\"0 0 1\" rpy=\"0 0 1.5707963267948966\"/>
-      <mass value=\"200\"/>
-      <inertia ixx=\"10\" ixy=\"-1\" ixz=\"0\" iyy=\"20\" iyz=\"0\" izz=\"25\"/>
-    </inertial>
-  </link>
-  <link name=\"arm\">
-    <inertial>
-      <mass value=\"2\"/>
-      <inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\" iyz=\"0\" izz=\"1.5\"/>
-    </inertial>
-  </link>
-</robot>
-";
-
-#[test]
-fn models_are_examined_link_by_link() {
-    let scratch = Scratch::new("models");
-    scratch.file("robot.urdf", ROBOT);
-    let answer = scratch.run("urdf robot.urdf --out rows.csv");
-    assert_eq!((answer.code, answer.out.as_str()), (1, ""));
-    golden("robot.err", &answer.err);
-    golden("robot.csv", &fs::read_to_string(scratch.0.join("rows.csv")).unwrap());
-    // a model must not take over what no body has: nothing is written
-    let answer = scratch.run("urdf robot.urdf --format mjcf --out model.xml");
-    assert_eq!((answer.code, answer.out.as_str()), (1, ""));
-    assert!(!scratch.0.join("model.xml").exists());
-    // several bodies are an array, which is read back as the same bodies
-    let array = scratch.run("urdf robot.urdf --format json").out;
-    scratch.file("robot.json", &array);
-    assert_eq!(scratch.run("json robot.json --format json").out, array);
-    // a quarter turn about z: x of the inertial frame is y of the link, and I_xy changes its sign
-    scratch.file("base.urdf", ROBOT.split("  <link name=\"arm\">").next().unwrap().to_owned() + "</robot>");
-    let inertia = numbers(&scratch.json("urdf base.urdf")["inertia"]);
-    for (found, expected) in inertia.iter().zip([20.0, 1.0, 0.0, 1.0, 10.0, 0.0, 0.0, 0.0, 25.0]) {
-        assert!((found - expected).abs() < 1e-14, "{inertia:?}");
-    }
-}
-
 #[test]
 fn the_doctor_is_golden() {
     let scratch = Scratch::new("doctor");
@@ -290,11 +247,12 @@ fn the_doctor_is_golden() {
     golden("doctor.json", &scratch.run("tensor 1,1,3,0,0,0 --format json").out);
     let answer = scratch.run("tensor 1250,4250,5000,0,0,0 --mass 1.25");
     assert_eq!(answer.code, 0, "valid, though hardly of 1.25 kg");
+    let (head, rest) = answer.err.split_once('\n').unwrap();
     assert!(
-        answer.err.starts_with(
-            "warning: the tensor: valid, but hardly of the body described\n  cause 1: in kg mm^2"
-        )
+        head.starts_with("warning: the tensor: implausible density: ") && head.ends_with("air has 1.2"),
+        "{head}"
     );
+    assert!(rest.starts_with("  cause 1: in kg mm^2"), "{rest}");
     // thin bodies are well
     for line in ["tensor 1,2,3,0,0,0", "tensor 0,1,1,0,0,0", "tensor 0.1,0.2,0.30000000000000004,0,0,0"] {
         assert!(scratch.output(line).contains(",valid,"), "{line}");
@@ -311,9 +269,6 @@ fn refusals_are_golden() {
     scratch.file("ascii.stl", "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n");
     scratch.file("words.stl", "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n");
     scratch.file("open.obj", OBJ_CUBE.replace("f 5 6 7 8\n", ""));
-    scratch.file("inside-out.obj", reversed(OBJ_CUBE));
-    scratch.file("turned.obj", OBJ_CUBE.replace("f 5 6 7 8", "f 8 7 6 5"));
-    scratch.file("doubled.obj", format!("{OBJ_CUBE}f 5 6 7 8\n"));
     scratch.file("index.obj", OBJ_CUBE.replace("f 5 6 7 8", "f 5 6 7 9"));
     scratch.file("cube.ply", "ply");
     let toml = |name: &str, from: &str, to: &str| scratch.file(name, HAMMER.replacen(from, to, 1));
@@ -331,13 +286,10 @@ fn refusals_are_golden() {
     toml("mesh.toml", "cube.obj", "open.obj");
     toml("turn.toml", "[2, 0, 0, 1.0]", "[0, 0, 0, 0]");
     scratch.file("empty.toml", "name = \"nothing\"\n");
-    scratch.file("mass.urdf", ROBOT.replace("<mass value=\"2\"/>", "<mass value=\"-2\"/>"));
-    scratch.file("entry.urdf", ROBOT.replace("iyz=\"0\" izz=\"1.5\"", "izz=\"1.5\""));
-    scratch.file("number.urdf", ROBOT.replace("ixx=\"0.1\"", "ixx=\"0,1\""));
     scratch.file("broken.urdf", ROBOT.replace("</robot>", ""));
-    scratch.file("none.urdf", "<robot/>");
-    scratch.file("euler.xml", "<inertial pos=\"0 0 0\" euler=\"1 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>");
-    scratch.file("two.xml", "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1\"/>");
+    scratch.file("page.urdf", "<html><body/></html>");
+    scratch.file("entity.urdf", format!("<!DOCTYPE robot [<!ENTITY m \"1\">]>\n{ROBOT}"));
+    scratch.file("other.sdf", ROBOT);
     scratch.file("skew.json", "{\"mass\": 1, \"inertia\": [[2, 0.5, 0], [0.25, 2, 0], [0, 0, 3]]}");
     scratch.file("keys.json", "{\"mass\": 1}");
     scratch.file(
@@ -383,9 +335,6 @@ fn refusals_are_golden() {
         "mesh ascii.stl --mass 1",
         "mesh words.stl --mass 1",
         "mesh open.obj --mass 1",
-        "mesh inside-out.obj --mass 1",
-        "mesh turned.obj --mass 1",
-        "mesh doubled.obj --mass 1",
         "mesh index.obj --mass 1",
         "parts nowhere.toml",
         "parts hammer.toml --mass 1",
@@ -403,13 +352,19 @@ fn refusals_are_golden() {
         "parts mesh.toml",
         "parts turn.toml",
         "parts empty.toml",
-        "urdf mass.urdf",
-        "urdf entry.urdf",
-        "urdf number.urdf",
         "urdf broken.urdf",
-        "urdf none.urdf",
-        "mjcf euler.xml",
-        "mjcf two.xml",
+        "urdf page.urdf",
+        "urdf entity.urdf",
+        "urdf nowhere.urdf",
+        "urdf page.urdf --density 1",
+        "urdf page.urdf --length-unit mm",
+        "urdf page.urdf --root .",
+        "sdf other.sdf",
+        "box 1,2,3 4 --mass 1",
+        "box 1,2,3 --mass 1 --details",
+        "box 1,2,3 --mass 1 --repair copies",
+        "mesh cube.obj --mass 1 --length-unit furlong",
+        "mesh cube.obj --mass 1 --group lid",
         "json skew.json",
         "json keys.json",
     ];
@@ -451,7 +406,7 @@ fn a_quaternion_of_any_norm_is_a_turn() {
     let inertia = |line: &str| numbers(&scratch.json(line)["inertia"]);
     let mut found = Vec::new();
     for scale in ["1", "1e-200", "1e200", "5e-324"] {
-        let model = format!("<inertial quat=\"{scale} 0 0 {scale}\" mass=\"1\" diaginertia=\"1 1.5 2\"/>");
+        let model = format!("<inertial quat=\"{scale} 0 0 {scale}\" mass=\"100\" diaginertia=\"1 1.5 2\"/>");
         scratch.file("model.xml", model);
         let part = format!(
             "[[part]]\nshape = \"tensor\"\nmass = 1\ninertia = [1, 1.5, 2, 0, 0, 0]\nturn = [{scale}, 0, 0, {scale}]\n"
@@ -490,9 +445,9 @@ fn what_a_terminal_would_obey_is_written_out() {
     let name = "\u{1b}]0;arm\u{7}\u{9b}2J\u{202e}gpj\n";
     let body = |inertia: &str| {
         let name = serde_json::to_string(name).unwrap();
-        format!("{{\"name\": {name}, \"mass\": 1, \"inertia\": {inertia}}}")
+        format!("{{\"name\": {name}, \"mass\": 10, \"inertia\": {inertia}}}")
     };
-    scratch.file("valid.json", body("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"));
+    scratch.file("valid.json", body("[[1, 0, 0], [0, 1, 0], [0, 0, 1.5]]"));
     scratch.file("invalid.json", body("[[1, 0, 0], [0, 1, 0], [0, 0, 3]]"));
     scratch.file("skew.json", body("[[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]"));
     scratch.file("title.stl", "solid s\n\u{1b}]0;title\u{7}\n");
@@ -526,13 +481,4 @@ fn what_a_terminal_would_obey_is_written_out() {
     assert_eq!(read_back["name"], name);
     scratch.file("back.toml", scratch.output("json valid.json --format toml"));
     assert!(scratch.output("parts back.toml").contains(",valid,"));
-}
-
-/// The same faces seen from the other side.
-fn reversed(obj: &str) -> String {
-    let turn = |line: &str| match line.strip_prefix("f ") {
-        Some(face) => "f ".to_owned() + &face.split(' ').rev().collect::<Vec<_>>().join(" "),
-        None => line.to_owned(),
-    };
-    obj.lines().map(|line| turn(line) + "\n").collect()
 }

@@ -18,4 +18,5 @@ mod interrupted;
 mod logs;
 mod motion;
 mod propagate;
+mod robots;
 mod times;

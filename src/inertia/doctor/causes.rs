@@ -72,6 +72,11 @@ pub enum Cause {
         /// It is 10 to this power times too large.
         power: i32,
     },
+    /// The products have not the signs that the mirrored twin asks for.
+    MirroredTwin {
+        /// The axis that is reversed between the two.
+        axis: char,
+    },
     /// The second moments ∫ x_j x_k dm, the covariance of the mass, stand where the inertia belongs.
     SecondMoments,
 }
@@ -90,6 +95,7 @@ impl Cause {
             Cause::Order(_) => "entry-order",
             Cause::Swapped(..) => "swapped-entries",
             Cause::DecimalSlip { .. } => "decimal-slip",
+            Cause::MirroredTwin { .. } => "mirrored-twin",
             Cause::SecondMoments => "second-moments",
         }
     }
@@ -132,6 +138,9 @@ impl fmt::Display for Cause {
                 let (size, zeros) = if *power > 0 { ("large", power) } else { ("small", &-power) };
                 let times = 10_u64.pow(zeros.unsigned_abs());
                 write!(f, "{entry} is {times} times too {size}: a decimal slip")
+            }
+            Cause::MirroredTwin { axis } => {
+                write!(f, "the signs of the products are not those of its twin mirrored along {axis}")
             }
             Cause::SecondMoments => {
                 write!(f, "second moments int x_j x_k dm (a covariance), not inertia: I = tr(J) 1 - J")

@@ -2,6 +2,8 @@
 
 mod causes;
 mod nearest;
+mod oddity;
+mod twin;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -12,6 +14,8 @@ use super::{InertiaError, MassError};
 use crate::num::{Dd, Real};
 use crate::rotation::{AXES, Vec3};
 pub use causes::{Cause, Entry};
+pub use oddity::Oddity;
+pub use twin::Twin;
 
 /// A density within e^±14 of water's, 1e-3 to 1e9 kg/m³, is no evidence against a tensor.
 const ORDINARY: f64 = 14.0;
@@ -25,6 +29,8 @@ pub struct Evidence {
     pub center_of_mass: Option<Vector3<f64>>,
     /// Edges of the box around the body along the axes of the tensor, m.
     pub extents: Option<[f64; 3]>,
+    /// The body that it mirrors, as a left arm does a right one.
+    pub twin: Option<Twin>,
 }
 
 /// The outcome of an examination.
@@ -33,7 +39,7 @@ pub struct Evidence {
 pub enum Verdict {
     /// No law is broken, and no likelier tensor is near.
     Valid,
-    /// The tensor is physically valid, but a common mistake explains it better than the body described.
+    /// The tensor is physically valid, but a common mistake explains it better than the body described, or it is odd.
     Suspicious,
     /// The tensor is not physically valid, or no body of this mass and tensor fits into the extents.
     Invalid,
@@ -61,6 +67,17 @@ pub struct Explanation {
     pub corrected: Matrix3<f64>,
     /// How unlikely: rareness of the mistake plus oddness of the corrected body. Only the order of costs has a meaning.
     pub cost: f64,
+}
+
+/// Costs closer than this say nothing.
+const TIE: f64 = 0.25;
+
+impl Explanation {
+    /// Whether nothing decides between this explanation and `other`.
+    #[must_use]
+    pub fn is_tied_with(&self, other: &Explanation) -> bool {
+        (self.cost - other.cost).abs() < TIE
+    }
 }
 
 /// A second moment that is too large for the extents of the body.
@@ -105,8 +122,10 @@ pub struct Diagnosis {
     pub principal_moments: [f64; 3],
     /// By how much the sum of the other two moments exceeds the k-th, in the unit of the tensor.
     pub triangle_margins: [f64; 3],
-    /// Causes that would explain it, the likeliest first; none if the tensor is valid.
+    /// Causes that would explain it, the likeliest first; none if the tensor is valid, or a placeholder.
     pub causes: Vec<Explanation>,
+    /// What is odd about it.
+    pub oddity: Option<Oddity>,
     /// The nearest physically valid tensor in Frobenius norm; a moment of it may be zero.
     pub nearest: Matrix3<f64>,
     /// Frobenius distance to it, in the unit of the tensor.
@@ -133,7 +152,8 @@ pub struct Diagnosis {
 /// // a cube of 12 kg and 1 m, its tensor taken about a point 1 m below its centre
 /// let tensor = Matrix3::from_diagonal(&Vector3::new(14.0, 14.0, 2.0));
 /// let center_of_mass = Some(Vector3::new(0.0, 0.0, 1.0));
-/// let evidence = Evidence { mass: Some(12.0), center_of_mass, extents: Some([1.0; 3]) };
+/// let evidence =
+///     Evidence { mass: Some(12.0), center_of_mass, extents: Some([1.0; 3]), ..Evidence::default() };
 /// let found = diagnose(tensor, &evidence)?;
 /// assert_eq!(found.verdict, Verdict::Invalid); // no such mass distribution fits into the cube
 /// assert_eq!((&found.causes[0].cause, found.causes[0].corrected[(0, 0)]), (&Cause::AboutOrigin, 2.0));
@@ -177,8 +197,19 @@ pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, 
         })
         .filter(|explanation| explanation.cost < accepted)
         .collect();
+    // no rarer than any other: the twin says so
+    let mirrored = twin::contradiction(&tensor, evidence)
+        .filter(|(_, corrected)| check_tensor(corrected).is_ok() && evidence.misfit(corrected).is_none());
+    if let Some((axis, corrected)) = mirrored {
+        let cost = evidence.oddness(&corrected, 0.0);
+        causes.push(Explanation { cause: Cause::MirroredTwin { axis }, corrected, cost });
+    }
     causes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let verdict = match (broken, causes.is_empty()) {
+    let oddity = if is_zero { None } else { oddity::oddity(&tensor, evidence) };
+    if oddity.is_some_and(|oddity| oddity.is_placeholder()) {
+        causes.clear();
+    }
+    let verdict = match (broken, causes.is_empty() && oddity.is_none()) {
         (true, _) => Verdict::Invalid,
         (false, false) => Verdict::Suspicious,
         (false, true) => Verdict::Valid,
@@ -189,6 +220,7 @@ pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, 
         verdict,
         violation,
         misfit,
+        oddity,
         principal_moments,
         triangle_margins: triangle_margins(principal_moments),
         causes,

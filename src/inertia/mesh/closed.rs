@@ -1,121 +1,12 @@
-//! Triangles that share vertices, and whether they close.
+//! Whether triangles close, and whether they face outwards.
 
-use core::ops::RangeInclusive;
-
-use super::super::mass::LENGTHS;
 use super::boxes::{Bounds, Boxes};
+use super::welded::{NONE, Welded};
 use super::{Edge, MeshError};
 use crate::rotation::Vec3;
 
-/// Vertices are numbered below this, so that an edge and its direction fit into 64 bits.
-pub(super) const LIMIT: u32 = 1 << 31;
-
-/// Extents of a mesh.
-const EXTENTS: RangeInclusive<f64> = 1e-57..=1e57;
-
-/// Marks an empty place of the hash table.
-const NONE: u32 = u32::MAX;
-
-/// Triangles over distinct vertices.
-#[derive(Default)]
-pub(super) struct Welded {
-    pub(super) vertices: Vec<[f64; 3]>,
-    pub(super) triangles: Vec<[u32; 3]>,
-    /// Triangles of the input before the k-th that was left out, for messages that count the input's.
-    skipped: Vec<u64>,
-    /// Open addressing: numbers of vertices at the places of their hashes.
-    table: Vec<u32>,
-}
-
 impl Welded {
-    /// Adds a triangle; one with coinciding corners has no area and no side, and is left out.
-    pub(super) fn add(&mut self, corners: [Vec3<f64>; 3]) -> Result<(), MeshError> {
-        let number = (self.triangles.len() + self.skipped.len()) as u64 + 1;
-        let mut triangle = [0; 3];
-        for (index, corner) in triangle.iter_mut().zip(corners) {
-            if let Some(&value) = corner.0.iter().find(|value| !value.is_finite()) {
-                return Err(MeshError::NotFinite { triangle: number, value });
-            }
-            *index = self.vertex(corner.0)?;
-        }
-        let [a, b, c] = triangle;
-        if a == b || b == c || c == a {
-            self.skipped.push(number);
-        } else {
-            self.triangles.push(triangle);
-        }
-        Ok(())
-    }
-
-    /// The number of a vertex, a new one if these bits were not met before.
-    fn vertex(&mut self, at: [f64; 3]) -> Result<u32, MeshError> {
-        let at = at.map(|x| x + 0.0); // −0 is 0
-        if 2 * (self.vertices.len() + 1) > self.table.len() {
-            self.grow();
-        }
-        let mut place = self.home(&at);
-        loop {
-            match self.table[place] {
-                NONE => break,
-                number if self.vertices[number as usize] == at => return Ok(number),
-                _ => place = (place + 1) & (self.table.len() - 1),
-            }
-        }
-        let number = self.vertices.len() as u32;
-        if number == LIMIT {
-            return Err(MeshError::TooLarge);
-        }
-        self.table[place] = number;
-        self.vertices.push(at);
-        Ok(number)
-    }
-
-    fn grow(&mut self) {
-        self.table = vec![NONE; (2 * self.table.len()).max(64)];
-        for number in 0..self.vertices.len() {
-            let mut place = self.home(&self.vertices[number]);
-            while self.table[place] != NONE {
-                place = (place + 1) & (self.table.len() - 1);
-            }
-            self.table[place] = number as u32;
-        }
-    }
-
-    /// The place in the table, whose length is a power of two, where a vertex is looked for first.
-    fn home(&self, at: &[f64; 3]) -> usize {
-        let mut hash = 0_u64;
-        for x in at {
-            hash = (hash ^ x.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            hash ^= hash >> 32;
-        }
-        hash as usize & (self.table.len() - 1)
-    }
-
-    pub(super) fn corners(&self, triangle: [u32; 3]) -> [Vec3<f64>; 3] {
-        triangle.map(|k| Vec3(self.vertices[k as usize]))
-    }
-
-    /// The middle of the bounding box.
-    pub(super) fn middle(&self) -> Vec3<f64> {
-        let mut bounds = Bounds::default();
-        self.vertices.iter().for_each(|at| bounds.add(at));
-        Vec3([0, 1, 2].map(|k| bounds.low[k] + 0.5 * (bounds.high[k] - bounds.low[k])))
-    }
-
-    /// The fifth power of the longest edge of the bounding box, and the place of that, are doubles with all their digits.
-    pub(super) fn check_extent(&self) -> Result<(), MeshError> {
-        let mut bounds = Bounds::default();
-        self.vertices.iter().for_each(|at| bounds.add(at));
-        let extent = (0..3).map(|k| bounds.high[k] - bounds.low[k]).fold(0.0, f64::max);
-        let reach = (0..3).map(|k| bounds.high[k].max(-bounds.low[k])).fold(0.0, f64::max);
-        if EXTENTS.contains(&extent) && LENGTHS.contains(&reach) {
-            Ok(())
-        } else {
-            Err(MeshError::OutOfRange { extent: extent.min(f64::MAX), reach })
-        }
-    }
-
-    /// Every edge bounds two triangles, once in each direction.
+    /// Through every edge as many triangles run one way as the other.
     pub(super) fn check_edges(&self) -> Result<(), MeshError> {
         let mut edges = Vec::with_capacity(3 * self.triangles.len());
         for &triangle in &self.triangles {
@@ -124,10 +15,11 @@ impl Welded {
         edges.sort_unstable();
         let (mut open, mut crowded, mut turned) = (Kind::default(), Kind::default(), Kind::default());
         for uses in edges.chunk_by(|a, b| a >> 1 == b >> 1) {
+            let backward = uses.iter().filter(|key| *key & 1 == 1).count();
             match uses {
-                [a, b] if a != b => {}
-                [a, _] => turned.add(*a, 2),
+                _ if 2 * backward == uses.len() => {}
                 [a] => open.add(*a, 1),
+                [a, _] => turned.add(*a, 2),
                 [a, ..] => crowded.add(*a, uses.len()),
                 [] => {}
             }
@@ -163,6 +55,33 @@ impl Welded {
 
     /// Every connected part faces outwards, or is a cavity: it lies within a part that does.
     pub(super) fn check_parts(&self) -> Result<(), MeshError> {
+        let (parts, _) = self.parts();
+        match inside_out(&parts).first() {
+            Some(&inner) => {
+                let inner = &parts[inner];
+                let edge = self.named_edge(inner.place, directed(self.triangles[inner.place])[0]);
+                Err(MeshError::InsideOut { edge, volume: inner.volume6 / 6.0 })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Turns over every part that neither faces outwards nor is a cavity; how many they are.
+    pub(super) fn turn_parts_out(&mut self) -> usize {
+        let (parts, part_of) = self.parts();
+        let wrong = inside_out(&parts);
+        let mut is_wrong = vec![false; parts.len()];
+        wrong.iter().for_each(|&part| is_wrong[part] = true);
+        for (triangle, part) in self.triangles.iter_mut().zip(part_of) {
+            if is_wrong[part as usize] {
+                triangle.swap(1, 2);
+            }
+        }
+        wrong.len()
+    }
+
+    /// The connected parts, and of each triangle the number of its part.
+    fn parts(&self) -> (Vec<Part>, Vec<u32>) {
         let mut roots: Vec<u32> = (0..self.vertices.len() as u32).collect();
         for &[a, b, c] in &self.triangles {
             for other in [b, c] {
@@ -171,26 +90,28 @@ impl Welded {
             }
         }
         let mut parts: Vec<Part> = Vec::new();
-        let mut part_of = vec![NONE; self.vertices.len()];
+        let mut part_at = vec![NONE; self.vertices.len()];
+        let mut part_of = Vec::with_capacity(self.triangles.len());
         for (place, &triangle) in self.triangles.iter().enumerate() {
             let root = root(&mut roots, triangle[0]) as usize;
-            if part_of[root] == NONE {
-                part_of[root] = parts.len() as u32;
+            if part_at[root] == NONE {
+                part_at[root] = parts.len() as u32;
                 let origin = Vec3(self.vertices[triangle[0] as usize]);
                 parts.push(Part { origin, volume6: 0.0, bounds: Bounds::default(), place });
             }
-            parts[part_of[root] as usize].add(self.corners(triangle));
+            parts[part_at[root] as usize].add(self.corners(triangle));
+            part_of.push(part_at[root]);
         }
-        let outer = parts.iter().filter(|part| part.volume6 > 0.0);
-        let outer = Boxes::new(outer.map(|part| part.bounds).collect());
-        for inner in parts.iter().filter(|part| part.volume6 < 0.0) {
-            if !outer.contain(&inner.bounds) {
-                let edge = self.named_edge(inner.place, directed(self.triangles[inner.place])[0]);
-                return Err(MeshError::InsideOut { edge, volume: inner.volume6 / 6.0 });
-            }
-        }
-        Ok(())
+        (parts, part_of)
     }
+}
+
+/// The parts of negative volume that lie in none of positive volume.
+fn inside_out(parts: &[Part]) -> Vec<usize> {
+    let outer = parts.iter().filter(|part| part.volume6 > 0.0);
+    let outer = Boxes::new(outer.map(|part| part.bounds).collect());
+    let is_wrong = |part: &Part| part.volume6 < 0.0 && !outer.contain(&part.bounds);
+    parts.iter().enumerate().filter(|(_, part)| is_wrong(part)).map(|(place, _)| place).collect()
 }
 
 /// Edges of one kind: the first, with the number of its triangles, and how many.
@@ -224,17 +145,17 @@ impl Part {
     }
 }
 
-fn directed([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
+pub(super) fn directed([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
     [(a, b), (b, c), (c, a)]
 }
 
 /// Lower end, upper end, and in the last bit the direction.
-fn key((from, to): (u32, u32)) -> u64 {
+pub(super) fn key((from, to): (u32, u32)) -> u64 {
     u64::from(from.min(to)) << 32 | u64::from(from.max(to)) << 1 | u64::from(from > to)
 }
 
 /// The representative of a set of connected vertices; paths are halved on the way.
-fn root(roots: &mut [u32], mut k: u32) -> u32 {
+pub(super) fn root(roots: &mut [u32], mut k: u32) -> u32 {
     while roots[k as usize] != k {
         roots[k as usize] = roots[roots[k as usize] as usize];
         k = roots[k as usize];

@@ -2,204 +2,33 @@
 
 mod boxes;
 mod closed;
+mod error;
+mod hull;
+mod mend;
 mod obj;
+mod ply;
 mod stl;
+mod surface;
 mod text;
+mod welded;
 
-use std::io::{self, BufRead, Read};
+use std::io::{BufRead, Read};
 
 use nalgebra::{Matrix3, Vector3};
-use thiserror::Error;
 
 use super::symmetric::{Tensor, from_second_moments};
 use super::{Amount, MassError, MassProperties};
-use crate::num::{Compensated, Dd, Shown};
+use crate::num::{Compensated, Dd};
 use crate::rotation::Vec3;
-use closed::Welded;
+pub use error::{Edge, MeshError};
+pub use mend::{Closing, FLOAT_WELD, Repair};
+pub use surface::{Boundary, Surface};
+use welded::Welded;
 
-/// Why a mesh bounds no body. Triangles, lines and bytes are counted from 1, the byte of an end of file is its size.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum MeshError {
-    /// The file cannot be read.
-    #[error("cannot be read: {0}")]
-    Unreadable(#[from] io::Error),
-    /// The file is too short to be an STL.
-    #[error("STL ends at byte {length}, within its header of 84 bytes, and does not begin with 'solid'")]
-    Header {
-        /// Size of the file.
-        length: u64,
-    },
-    /// A binary STL ends early.
-    #[error(
-        "STL is truncated: its header announces {triangles} triangles, {announced} bytes, but it ends at byte {length}, \
-         in triangle {triangle}"
-    )]
-    Truncated {
-        /// The number in the header.
-        triangles: u32,
-        /// The size that goes with it.
-        announced: u64,
-        /// Size of the file.
-        length: u64,
-        /// The triangle that is not complete.
-        triangle: u64,
-    },
-    /// A binary STL goes on after the last triangle.
-    #[error(
-        "STL announces {triangles} triangles, which end at byte {announced}, but more bytes follow; its count is wrong"
-    )]
-    Surplus {
-        /// The number in the header.
-        triangles: u32,
-        /// The size that goes with it.
-        announced: u64,
-    },
-    /// An ASCII STL ends early.
-    #[error(
-        "STL is truncated: it ends at byte {length}, line {line}, in triangle {triangle}, without 'endsolid'"
-    )]
-    TruncatedText {
-        /// Size of the file.
-        length: u64,
-        /// Number of its lines.
-        line: u64,
-        /// The triangle that is not complete.
-        triangle: u64,
-    },
-    /// A line of text that does not belong there.
-    #[error("line {line}: '{found}' where {expected} is expected")]
-    Syntax {
-        /// Number of the line.
-        line: u64,
-        /// Its beginning.
-        found: String,
-        /// What belongs there.
-        expected: &'static str,
-    },
-    /// A line of text that does not end.
-    #[error("line {line} is longer than {} bytes; is this the right file?", text::LONGEST_LINE)]
-    LongLine {
-        /// Number of the line.
-        line: u64,
-    },
-    /// A face names a vertex that is not there.
-    #[error("line {line}: face names vertex {index}, but {vertices} vertices stand above it")]
-    Index {
-        /// Number of the line.
-        line: u64,
-        /// The offending index.
-        index: i64,
-        /// Vertices so far.
-        vertices: usize,
-    },
-    /// A coordinate is not a finite number.
-    #[error("triangle {triangle} has the coordinate {value}; every coordinate must be a finite number")]
-    NotFinite {
-        /// Number of the triangle.
-        triangle: u64,
-        /// The offending value.
-        value: f64,
-    },
-    /// There is no triangle.
-    #[error("the mesh has no triangle with three distinct corners")]
-    Empty,
-    /// More vertices than can be numbered.
-    #[error("the mesh has more than {} vertices", closed::LIMIT)]
-    TooLarge,
-    /// An edge bounds one triangle only.
-    #[error("the mesh is open; edges with one triangle only: {edges}, the first is {edge}")]
-    Open {
-        /// How many.
-        edges: usize,
-        /// The first.
-        edge: Edge,
-    },
-    /// More than two triangles meet in an edge.
-    #[error(
-        "the mesh is not manifold; edges with more than two triangles: {edges}, the first is {edge}, with {uses}"
-    )]
-    NonManifold {
-        /// How many.
-        edges: usize,
-        /// The first.
-        edge: Edge,
-        /// Number of triangles that meet there.
-        uses: usize,
-    },
-    /// Two neighbours turn in opposite senses.
-    #[error(
-        "the triangles are not consistently oriented; edges run through twice in one direction: {edges}, \
-         the first is {edge}; one of its two triangles is turned over"
-    )]
-    Orientation {
-        /// How many.
-        edges: usize,
-        /// The first.
-        edge: Edge,
-    },
-    /// All triangles of a part face inwards.
-    #[error(
-        "the mesh is inside out: the part with {edge} encloses the volume {}; \
-         list the corners of its triangles counterclockwise as seen from outside",
-        Shown(*volume)
-    )]
-    InsideOut {
-        /// The first edge of the part.
-        edge: Edge,
-        /// Signed volume of the part.
-        volume: f64,
-    },
-    /// Its size or place leaves the range of a double.
-    #[error(
-        "the mesh measures {} and reaches out to {}: its second moments are outside the range of a double; change the unit \
-         of length",
-        Shown(*extent),
-        Shown(*reach)
-    )]
-    OutOfRange {
-        /// The longest edge of its bounding box, at most the largest double.
-        extent: f64,
-        /// The largest coordinate, without sign.
-        reach: f64,
-    },
-    /// The mesh is closed and flat, or its cavities leave nothing.
-    #[error("the mesh encloses no volume")]
-    Flat,
-}
-
-/// An edge of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Edge {
-    /// One end.
-    pub from: Vector3<f64>,
-    /// The other end.
-    pub to: Vector3<f64>,
-    /// The first triangle that it bounds, from 1.
-    pub triangle: u64,
-}
-
-impl core::fmt::Display for Edge {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let (a, b) = (self.from, self.to);
-        write!(
-            f,
-            "edge ({}, {}, {})-({}, {}, {}) of triangle {}",
-            Shown(a.x),
-            Shown(a.y),
-            Shown(a.z),
-            Shown(b.x),
-            Shown(b.y),
-            Shown(b.z),
-            self.triangle
-        )
-    }
-}
-
-/// What a closed, oriented, manifold triangle mesh encloses.
+/// What a closed, oriented triangle mesh encloses.
 ///
-/// Vertices are the same where their bits are. Cavities are parts that face inwards and lie within another part;
+/// Vertices are the same where their bits are; [`Surface`] welds those that are nearly the same, and mends and closes. Through
+/// every edge as many triangles run one way as the other, so that the surface is a cycle and the volume integral exact. Cavities are parts that face inwards and lie within another part;
 /// parts that overlap count twice. Volume, centre and tensor come from one pass over the triangles, as sums over
 /// the signed tetrahedra that each spans with the middle of the bounding box (so that a mesh far from the origin
 /// loses no digits), compensated.
@@ -234,6 +63,7 @@ impl Mesh {
     /// # Errors
     /// Coordinates that are not finite, meshes below 1e-57 or above 1e57 in extent, and meshes that are open, not
     /// manifold, not consistently oriented, inside out or flat; the message names an edge.
+    /// To read files in another unit of length, see [`Surface::scaled`].
     pub fn new(triangles: impl IntoIterator<Item = [Vector3<f64>; 3]>) -> Result<Self, MeshError> {
         let mut welded = Welded::default();
         for corners in triangles {
@@ -258,14 +88,26 @@ impl Mesh {
         Self::of(obj::read(reader)?)
     }
 
+    /// From a PLY file, text or binary: `x`, `y`, `z` of its vertices and the `vertex_indices` of its faces.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); headers and elements that cannot be read.
+    pub fn from_ply(reader: impl BufRead) -> Result<Self, MeshError> {
+        Self::of(ply::read(reader)?)
+    }
+
     fn of(mesh: Welded) -> Result<Self, MeshError> {
+        Self::of_welded(&mesh)
+    }
+
+    fn of_welded(mesh: &Welded) -> Result<Self, MeshError> {
         if mesh.triangles.is_empty() {
             return Err(MeshError::Empty);
         }
         mesh.check_extent()?;
         mesh.check_edges()?;
         mesh.check_parts()?;
-        let unit = Enclosed::by(&mesh)?;
+        let unit = Enclosed::by(mesh)?;
         Ok(Mesh { triangles: mesh.triangles.len(), vertices: mesh.vertices.len(), unit })
     }
 

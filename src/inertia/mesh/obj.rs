@@ -1,10 +1,10 @@
-//! OBJ files: vertices and faces.
+//! OBJ files: vertices, faces and groups.
 
 use std::io::BufRead;
 
 use super::MeshError;
-use super::closed::Welded;
 use super::text::{Lines, beginning, numbers};
+use super::welded::Welded;
 use crate::rotation::Vec3;
 
 pub(super) fn read(reader: impl BufRead) -> Result<Welded, MeshError> {
@@ -39,7 +39,8 @@ pub(super) fn read(reader: impl BufRead) -> Result<Welded, MeshError> {
                     before = next;
                 }
             }
-            _ => {} // normals, texture, groups, materials, comments
+            Some("g" | "o") => mesh.begin_group(words.next().unwrap_or_default()),
+            _ => {} // normals, texture, materials, comments
         }
     }
     Ok(mesh)

@@ -3,8 +3,8 @@
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 
 use super::MeshError;
-use super::closed::Welded;
 use super::text::{Lines, beginning, numbers};
+use super::welded::Welded;
 use crate::rotation::Vec3;
 
 /// Bytes before the first triangle of a binary file.
@@ -74,7 +74,10 @@ fn ascii(reader: impl BufRead) -> Result<Welded, MeshError> {
                 facets += 1;
             }
             Some("endsolid") => closed = true,
-            Some("solid") => closed = false,
+            Some("solid") => {
+                closed = false;
+                mesh.begin_group(words.next().unwrap_or_default());
+            }
             Some("facet" | "outer" | "endloop") | None => {}
             Some(_) => return Err(syntax("a line of an ASCII STL")),
         }

@@ -34,6 +34,11 @@ impl<R: BufRead> Lines<R> {
         Lines { reader, buffer: Vec::new(), text: String::new(), line: 0, bytes: 0 }
     }
 
+    /// What follows the lines that were read.
+    pub(super) fn reader(&mut self) -> &mut R {
+        &mut self.reader
+    }
+
     /// The next line and its number, from 1.
     pub(super) fn next(&mut self) -> Result<Option<(u64, &str)>, MeshError> {
         self.buffer.clear();

@@ -99,6 +99,14 @@ def hoop(r):
     return (POINT, ANGLE, POINT), at
 
 
+def capsule(r, h):
+    def at(u, v, w):
+        column, (cx, sx) = h + 2 * r * u, ring(v)
+        rho = r * sqrt(1 - u * u)
+        return (rho * cx, rho * sx, column * (w - 0.5)), 2 * pi * r * r * u * column
+    return (LINE, ANGLE, LINE), at
+
+
 CASES = [
     ("box", box, (0.3, 1.7, 2.9)),
     ("box", box, (1e-6, 0.5, 40.0)),
@@ -113,6 +121,7 @@ CASES = [
     ("disk", disk, (0.45,)),
     ("plate", plate, (0.2, 1.9)),
     ("hoop", hoop, (0.33,)),
+    ("capsule", capsule, (0.2, 0.9)),
 ]
 DENSITY = 7.25
 

@@ -76,6 +76,7 @@ fn patient(random: &mut Random) -> Result<Patient, Error> {
         mass: Some(body.mass()),
         center_of_mass: Some(body.center_of_mass()),
         extents: Some((high - low).into()),
+        twin: None,
     };
     Ok(Patient { body, about_origin, evidence })
 }

@@ -2,6 +2,7 @@
 
 mod doctor;
 mod lecture;
+mod robots;
 mod shapes;
 
 use std::time::Instant;
@@ -26,9 +27,10 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let random = Random::new(SEED);
     let statements = lecture::statements(random.stream(0), &mut failures)?;
     let doctor = doctor::rates(context, &random.stream(1), &mut failures)?;
+    let robots = robots::rates(context, &random.stream(2), &mut failures)?;
     let timing = timing(context.scale.pick(32, 128, 289))?;
     Ok(Report {
-        tables: vec![solids, spheres, boxes, statements, doctor],
+        tables: vec![solids, spheres, boxes, statements, doctor, robots],
         figures: vec![figure],
         timing: Some(timing),
         seed: Some(SEED),

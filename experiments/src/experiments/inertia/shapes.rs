@@ -7,7 +7,7 @@ use polhode::inertia::Solid;
 use polhode::num::trig::sin_cos;
 
 /// Every shape, of sizes without a special ratio, with its moments over its mass.
-pub(super) const ALL: [(Solid, [&str; 3]); 12] = [
+pub(super) const ALL: [(Solid, [&str; 3]); 13] = [
     (Solid::Box([0.3, 1.7, 2.9]), ["(y^2 + z^2)/12", "(x^2 + z^2)/12", "(x^2 + y^2)/12"]),
     (Solid::Ellipsoid([0.4, 1.1, 2.3]), ["(b^2 + c^2)/5", "(a^2 + c^2)/5", "(a^2 + b^2)/5"]),
     (Solid::Sphere { radius: 0.7 }, ["2 r^2/5", "2 r^2/5", "2 r^2/5"]),
@@ -23,6 +23,15 @@ pub(super) const ALL: [(Solid, [&str; 3]); 12] = [
     (Solid::Disk { radius: 0.45 }, ["r^2/4", "r^2/4", "r^2/2"]),
     (Solid::Plate([0.2, 1.9]), ["y^2/12", "x^2/12", "(x^2 + y^2)/12"]),
     (Solid::Hoop { radius: 0.33 }, ["r^2/2", "r^2/2", "r^2"]),
+    // shares of the mass: c of the cylinder, s of the caps, c : s = 3 h : 4 r
+    (
+        Solid::Capsule { radius: 0.2, height: 0.9 },
+        [
+            "c (3 r^2 + h^2)/12 + s (2 r^2/5 + h^2/4 + 3 h r/8)",
+            "c (3 r^2 + h^2)/12 + s (2 r^2/5 + h^2/4 + 3 h r/8)",
+            "c r^2/2 + 2 s r^2/5",
+        ],
+    ),
 ];
 
 /// The point of `solid` at a place of the unit cube, and the volume, area or length per volume of the cube there.
@@ -58,6 +67,12 @@ pub(super) fn element(solid: Solid, [u, v, w]: [f64; 3]) -> (Vector3<f64>, f64) 
         Solid::Disk { radius } => (ring(radius * u, v, 0.0), 2.0 * PI * radius * radius * u),
         Solid::Plate([x, y]) => (Vector3::new(x * (u - 0.5), y * (v - 0.5), 0.0), x * y),
         Solid::Hoop { radius } => (ring(radius, v, 0.0), 2.0 * PI * radius),
+        Solid::Capsule { radius, height } => {
+            // columns below the caps, which rise radius u above the cylinder
+            let column = height + 2.0 * radius * u;
+            let rho = radius * (1.0 - u * u).sqrt();
+            (ring(rho, v, column * (w - 0.5)), 2.0 * PI * radius * radius * u * column)
+        }
     }
 }
 

@@ -1,0 +1,123 @@
+//! What `<compiler>` says of masses and angles.
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::inertia::MassProperties;
+
+use super::super::element::Element;
+use super::super::pose::Pose;
+use super::Given;
+use super::orientation::orientation;
+
+/// Where the inertia of a body comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    /// The element `<inertial>`, and the geoms of bodies without one.
+    Either,
+    /// `<inertial>` alone.
+    Inertial,
+    /// The geoms, whatever `<inertial>` says.
+    Geoms,
+}
+
+#[derive(Debug)]
+pub(super) struct Compiler {
+    pub(super) source: Source,
+    /// Radians of one unit of the angles.
+    pub(super) angle: f64,
+    pub(super) sequence: String,
+    /// Groups whose geoms have mass.
+    pub(super) groups: [f64; 2],
+    least_mass: f64,
+    least_moment: f64,
+    total_mass: Option<f64>,
+}
+
+impl Compiler {
+    /// Of all elements of a model; of an attribute that is given twice the last counts.
+    pub(super) fn of(all: &[&Element]) -> Self {
+        let mut settings = Compiler {
+            source: Source::Either,
+            angle: core::f64::consts::PI / 180.0,
+            sequence: "xyz".into(),
+            groups: [0.0, 5.0],
+            least_mass: 0.0,
+            least_moment: 0.0,
+            total_mass: None,
+        };
+        for element in all.iter().filter(|element| element.tag == "compiler") {
+            match element.attribute("inertiafromgeom") {
+                Some("true") => settings.source = Source::Geoms,
+                Some("false") => settings.source = Source::Inertial,
+                Some(_) => settings.source = Source::Either,
+                None => {}
+            }
+            match element.attribute("angle") {
+                Some("radian") => settings.angle = 1.0,
+                Some(_) => settings.angle = core::f64::consts::PI / 180.0,
+                None => {}
+            }
+            if let Some(sequence) = element.attribute("eulerseq") {
+                settings.sequence = sequence.into();
+            }
+            let number = |attribute| element.optional::<1>(attribute).ok().flatten().map(|[value]| value);
+            settings.groups =
+                element.optional::<2>("inertiagrouprange").ok().flatten().unwrap_or(settings.groups);
+            settings.least_mass = number("boundmass").unwrap_or(settings.least_mass);
+            settings.least_moment = number("boundinertia").unwrap_or(settings.least_moment);
+            settings.total_mass = number("settotalmass").or(settings.total_mass);
+        }
+        settings
+    }
+
+    /// The place and orientation of an element.
+    pub(super) fn pose(&self, element: &Element) -> Result<Pose, String> {
+        let at = Vector3::from(element.optional::<3>("pos")?.unwrap_or_default());
+        Ok(Pose { at, turn: orientation(element, self)? })
+    }
+
+    /// Least masses and moments, then the total mass.
+    pub(super) fn adjust(&self, bodies: &mut [Given]) {
+        for body in bodies.iter_mut().filter(|body| body.defect.is_none()) {
+            self.raise(body);
+        }
+        let Some(total) = self.total_mass.filter(|total| *total > 0.0) else { return };
+        let sum: f64 = bodies.iter().filter_map(|body| body.mass).sum();
+        if sum <= 0.0 {
+            return;
+        }
+        for body in bodies.iter_mut() {
+            let factor = total / sum;
+            body.mass = body.mass.map(|mass| mass * factor);
+            body.tensor *= factor;
+            if !body.massless && body.defect.is_none() {
+                body.writing = None; // what stands in the file is another tensor
+                body.add_remark(&format!("scaled so that all bodies have {total} kg (settotalmass)"));
+            }
+        }
+    }
+
+    fn raise(&self, body: &mut Given) {
+        if self.least_mass > 0.0 && body.mass.is_none_or(|mass| mass < self.least_mass) {
+            body.mass = Some(self.least_mass);
+            body.massless = false;
+            body.add_remark(&format!("raised to the least mass of {} kg (boundmass)", self.least_mass));
+        }
+        let Some(mass) = body.mass.filter(|_| self.least_moment > 0.0) else { return };
+        let least = self.least_moment;
+        if body.tensor == Matrix3::zeros() {
+            body.tensor = Matrix3::identity() * least;
+        } else {
+            let Ok(known) = MassProperties::new(mass, Vector3::zeros(), body.tensor) else { return };
+            let moments = known.principal_moments();
+            if moments[0] >= least {
+                return;
+            }
+            let axes = known.principal_axes().to_rotation_matrix();
+            let raised = Vector3::from(moments.map(|moment| (least - moment).max(0.0)));
+            let more = axes.matrix() * Matrix3::from_diagonal(&raised) * axes.matrix().transpose();
+            body.tensor += (more + more.transpose()) * 0.5;
+        }
+        body.writing = None;
+        body.add_remark(&format!("moments raised to at least {least} kg m^2 (boundinertia)"));
+    }
+}

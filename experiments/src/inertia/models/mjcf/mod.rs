@@ -1,0 +1,211 @@
+//! The bodies of an MJCF model, with what MuJoCo would compute from their geoms.
+//!
+//! Rules: MuJoCo's XML reference, sections compiler, default, asset/mesh, body/inertial, body/geom.
+
+mod compiler;
+mod defaults;
+mod geom;
+mod include;
+mod mesh;
+mod orientation;
+
+use std::path::Path;
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::inertia::MassProperties;
+
+use super::element::Element;
+use super::pose::Pose;
+use super::{Given, is_massless, link, positive, writing};
+use compiler::{Compiler, Source};
+use defaults::Defaults;
+use mesh::Meshes;
+
+/// Elements of bodies that one model may have, copies of `<replicate>` among them: copies of copies grow without bound.
+const MOST_ELEMENTS: usize = 1_000_000;
+
+/// Every body in the order of the file, depth first, as MuJoCo numbers them.
+pub(super) fn bodies(document: Element, path: &Path, root: Option<&Path>) -> Vec<Given> {
+    let (document, refused) = include::resolve(document, path, root);
+    let all = document.all();
+    let mut model = Model {
+        compiler: Compiler::of(&all),
+        defaults: Defaults::of(&document),
+        meshes: Meshes::of(&all, path),
+        found: Vec::new(),
+        walked: 0,
+    };
+    model.walk(&document, Pose::identity(), "main", "", &mut None);
+    let mut bodies = model.found;
+    model.compiler.adjust(&mut bodies);
+    bodies.extend(refused);
+    bodies
+}
+
+struct Model<'e> {
+    compiler: Compiler,
+    defaults: Defaults<'e>,
+    meshes: Meshes<'e>,
+    found: Vec<Given>,
+    /// Elements so far.
+    walked: usize,
+}
+
+/// The geoms of a body, with their frames in it and the class of their defaults.
+type Geoms<'e> = Vec<(&'e Element, Pose, &'e str)>;
+
+impl<'e> Model<'e> {
+    /// Adds the bodies below `element`, and its geoms to `geoms`; `suffix` ends the names in a copy.
+    fn walk(
+        &mut self,
+        element: &'e Element,
+        frame: Pose,
+        class: &'e str,
+        suffix: &str,
+        geoms: &mut Option<Geoms<'e>>,
+    ) {
+        for child in &element.children {
+            self.walked += 1;
+            if self.walked == MOST_ELEMENTS {
+                let defect = format!(
+                    "more than {MOST_ELEMENTS} elements, copies among them; the rest is not examined"
+                );
+                self.found.push(link(&name(child, suffix), child, Err(child.error(&defect))));
+            }
+            if self.walked >= MOST_ELEMENTS {
+                return;
+            }
+            let class = child.attribute("childclass").unwrap_or(class);
+            match child.tag.as_str() {
+                "body" => self.body(child, class, suffix),
+                "geom" => {
+                    if let Some(geoms) = geoms {
+                        geoms.push((child, frame, child.attribute("class").unwrap_or(class)));
+                    }
+                }
+                "frame" => match self.compiler.pose(child) {
+                    Ok(pose) => self.walk(child, frame.around(&pose), class, suffix, geoms),
+                    Err(defect) => self.found.push(link(&name(child, suffix), child, Err(defect))),
+                },
+                "replicate" => self.replicate(child, frame, class, suffix, geoms),
+                "attach" | "composite" | "flexcomp" => {
+                    let defect = child.error("bodies that this element makes are not computed");
+                    self.found.push(link(&name(child, suffix), child, Err(defect)));
+                }
+                "inertial" if geoms.is_none() && element.tag != "default" => {
+                    let stated = self.stated(child);
+                    self.found.push(link("", child, stated));
+                }
+                "default" | "asset" | "include" => {}
+                _ => self.walk(child, frame, class, suffix, geoms),
+            }
+        }
+    }
+
+    fn body(&mut self, element: &'e Element, class: &'e str, suffix: &str) {
+        let place = self.found.len();
+        // its place is before those of the bodies in it
+        self.found.push(Given::massless());
+        let mut geoms = Some(Geoms::new());
+        self.walk(element, Pose::identity(), class, suffix, &mut geoms);
+        let inertial = element.child("inertial").filter(|_| self.compiler.source != Source::Geoms);
+        let stated = match inertial {
+            Some(inertial) => self.stated(inertial),
+            None if self.compiler.source == Source::Inertial => Ok(None),
+            None => match self.of_geoms(&geoms.unwrap_or_default()) {
+                // without geoms of mass there is nothing to infer from
+                Ok(None) => element.child("inertial").map_or(Ok(None), |inertial| self.stated(inertial)),
+                other => other,
+            },
+        };
+        self.found[place] = link(&name(element, suffix), element, stated);
+    }
+
+    fn of_geoms(&mut self, geoms: &Geoms<'e>) -> Result<Option<Given>, String> {
+        let mut parts = Vec::new();
+        let mut remarks = Vec::new();
+        for (element, frame, class) in geoms {
+            let geom = geom::Geom { element, defaults: &self.defaults, class, compiler: &self.compiler };
+            if let Some(part) = geom.body(frame, &mut self.meshes, &mut remarks)? {
+                parts.push(part);
+            }
+        }
+        if parts.is_empty() {
+            return Ok(None);
+        }
+        let body = MassProperties::sum(parts).map_err(|error| error.to_string())?;
+        let remark = (!remarks.is_empty()).then(|| remarks.join("; "));
+        Ok(Some(Given { remark, ..Given::body(body) }))
+    }
+
+    /// What `<inertial>` states.
+    fn stated(&self, inertial: &Element) -> Result<Option<Given>, String> {
+        let [mass] = inertial.needed::<1>("mass")?;
+        let full = inertial.optional::<6>("fullinertia")?;
+        let diagonal = inertial.optional::<3>("diaginertia")?;
+        let (attribute, entries) = match (full, diagonal) {
+            (Some(entries), None) => ("fullinertia", entries),
+            (None, Some([x, y, z])) => ("diaginertia", [x, y, z, 0.0, 0.0, 0.0]),
+            (None, None) if mass == 0.0 => return Ok(None),
+            (None, None) => return Err(inertial.error("fullinertia or diaginertia is missing")),
+            (Some(_), Some(_)) => {
+                return Err(inertial.error("has both fullinertia and diaginertia; leave one out"));
+            }
+        };
+        if is_massless(mass, &entries) {
+            return Ok(None);
+        }
+        let pose = self.compiler.pose(inertial)?;
+        let [xx, yy, zz, xy, xz, yz] = entries;
+        Ok(Some(Given {
+            mass: Some(positive(mass).map_err(|error| inertial.error(&error))?),
+            center_of_mass: pose.at,
+            turn: pose.turn,
+            writing: Some(super::Writing {
+                list: inertial.value(attribute).map(|value| value.range.clone()),
+                ..writing(inertial, [None; 6])
+            }),
+            diagonal: diagonal.is_some(),
+            ..Given::of_tensor(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
+        }))
+    }
+
+    /// Copies, each moved and turned once more than the one before.
+    fn replicate(
+        &mut self,
+        element: &'e Element,
+        frame: Pose,
+        class: &'e str,
+        suffix: &str,
+        geoms: &mut Option<Geoms<'e>>,
+    ) {
+        let read = || -> Result<(usize, Pose), String> {
+            let [count] = element.needed::<1>("count")?;
+            let at = Vector3::from(element.optional::<3>("offset")?.unwrap_or_default());
+            let turn = self.compiler.pose(element)?.turn;
+            Ok((count as usize, Pose { at, turn }))
+        };
+        match read() {
+            Ok((count, step)) => {
+                let digits = count.saturating_sub(1).to_string().len();
+                let separator = element.attribute("sep").unwrap_or_default();
+                let mut copy = frame;
+                for k in 0..count {
+                    if self.walked >= MOST_ELEMENTS {
+                        return;
+                    }
+                    self.walk(element, copy, class, &format!("{suffix}{separator}{k:0digits$}"), geoms);
+                    copy = copy.around(&step);
+                }
+            }
+            Err(defect) => self.found.push(link(&name(element, suffix), element, Err(defect))),
+        }
+    }
+}
+
+fn name(element: &Element, suffix: &str) -> String {
+    match element.attribute("name") {
+        Some(name) => format!("{name}{suffix}"),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,87 @@
+//! The links of an SDF model.
+
+use nalgebra::Matrix3;
+
+use super::element::Element;
+use super::pose::{quarter_turns_exact, roll_pitch_yaw};
+use super::{Given, is_massless, link, positive, writing};
+
+/// Every link, with the names of the models around it where there are several.
+pub(super) fn links(document: &Element) -> Vec<Given> {
+    let mut found = Vec::new();
+    let models = document
+        .all()
+        .iter()
+        .filter(|element| element.tag == "model" && !element.children.is_empty())
+        .count();
+    collect(document, "", models > 1, &mut found);
+    found
+}
+
+fn collect(element: &Element, scope: &str, scoped: bool, found: &mut Vec<Given>) {
+    for child in &element.children {
+        let name = child.attribute("name").unwrap_or_default();
+        match child.tag.as_str() {
+            "model" if scoped => collect(child, &format!("{scope}{name}::"), scoped, found),
+            "link" => {
+                let given = child.child("inertial").map_or(Ok(None), stated);
+                found.push(link(&format!("{scope}{name}"), child, given));
+            }
+            "inertial" => found.push(link(scope, child, stated(child))),
+            _ => collect(child, scope, scoped, found),
+        }
+    }
+}
+
+/// What `<inertial>` states. Products that are left out are zero; a mass or a moment that is left out is not made up.
+fn stated(inertial: &Element) -> Result<Option<Given>, String> {
+    if inertial.attribute("auto").is_some_and(|auto| auto == "true" || auto == "1") {
+        return Err(
+            inertial.error("auto: inertia from the collision shapes is not computed; state <inertia>")
+        );
+    }
+    let [x, y, z, roll, pitch, yaw] = match inertial.child("pose") {
+        Some(pose) if pose.attribute("relative_to").is_some_and(|frame| !frame.is_empty()) => {
+            return Err(pose.error("relative_to: poses in other frames are not read; give it in the link's"));
+        }
+        Some(pose) => angles_in_radians(pose)?,
+        None => [0.0; 6],
+    };
+    let mass = inertial.child("mass").ok_or_else(|| inertial.error("<mass> is missing"))?;
+    let [value] = mass.content::<1>()?;
+    let Some(inertia) = inertial.child("inertia") else {
+        return if value == 0.0 { Ok(None) } else { Err(inertial.error("<inertia> is missing")) };
+    };
+    let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+    let children = names.map(|name| inertia.child(name));
+    let mut entries = [0.0; 6];
+    for (k, child) in children.iter().enumerate() {
+        match child {
+            Some(child) => [entries[k]] = child.content::<1>()?,
+            None if k < 3 => return Err(inertia.error(&format!("<{}> is missing", names[k]))),
+            None => {}
+        }
+    }
+    if is_massless(value, &entries) {
+        return Ok(None);
+    }
+    let [xx, yy, zz, xy, xz, yz] = entries;
+    Ok(Some(Given {
+        mass: Some(positive(value).map_err(|error| mass.error(&error))?),
+        center_of_mass: [x, y, z].into(),
+        turn: quarter_turns_exact(roll_pitch_yaw([roll, pitch, yaw])),
+        writing: Some(writing(inertia, children.map(|child| child.and_then(|child| child.text.as_ref())))),
+        ..Given::of_tensor(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
+    }))
+}
+
+fn angles_in_radians(pose: &Element) -> Result<[f64; 6], String> {
+    let blank = pose.text.as_ref().is_none_or(|text| text.text.trim().is_empty());
+    let mut values = if blank { [0.0; 6] } else { pose.content::<6>()? };
+    if pose.attribute("degrees").is_some_and(|degrees| degrees == "true" || degrees == "1") {
+        for angle in &mut values[3..] {
+            *angle = angle.to_radians();
+        }
+    }
+    Ok(values)
+}

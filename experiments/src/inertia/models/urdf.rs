@@ -1,0 +1,58 @@
+//! The links of a URDF model.
+
+use nalgebra::Matrix3;
+
+use super::element::Element;
+use super::pose::{quarter_turns_exact, roll_pitch_yaw};
+use super::{Given, is_massless, link, positive, writing};
+
+/// Every link, or every `<inertial>` of a fragment.
+pub(super) fn links(document: &Element) -> Vec<Given> {
+    let all = document.all();
+    let links: Vec<&&Element> =
+        all.iter().filter(|element| element.tag == "link" && is_link(element)).collect();
+    if links.is_empty() {
+        let fragments = all.iter().filter(|element| element.tag == "inertial");
+        return fragments.map(|inertial| link("", inertial, stated(inertial))).collect();
+    }
+    let each = |element: &&&Element| {
+        let name = element.attribute("name").unwrap_or_default();
+        let stated = element.child("inertial").map_or(Ok(None), stated);
+        link(name, element, stated)
+    };
+    links.iter().map(each).collect()
+}
+
+/// Transmissions and plugins name links by elements of the same name, which hold text or an attribute alone.
+fn is_link(element: &Element) -> bool {
+    element.text.is_none() && element.attribute("link").is_none() && element.attribute("name").is_some()
+}
+
+/// What `<inertial>` states; a mass of zero with a tensor of zeros is none.
+fn stated(inertial: &Element) -> Result<Option<Given>, String> {
+    let (xyz, rpy) = match inertial.child("origin") {
+        Some(origin) => (origin.optional::<3>("xyz")?, origin.optional::<3>("rpy")?),
+        None => (None, None),
+    };
+    let mass = inertial.child("mass").ok_or_else(|| inertial.error("<mass> is missing"))?;
+    let [value] = mass.needed::<1>("value")?;
+    let Some(inertia) = inertial.child("inertia") else {
+        return if value == 0.0 { Ok(None) } else { Err(inertial.error("<inertia> is missing")) };
+    };
+    let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+    let mut entries = [0.0; 6];
+    for (entry, name) in entries.iter_mut().zip(names) {
+        [*entry] = inertia.needed::<1>(name)?;
+    }
+    if is_massless(value, &entries) {
+        return Ok(None);
+    }
+    let [xx, yy, zz, xy, xz, yz] = entries;
+    Ok(Some(Given {
+        mass: Some(positive(value).map_err(|error| mass.error(&error))?),
+        center_of_mass: xyz.unwrap_or_default().into(),
+        turn: quarter_turns_exact(roll_pitch_yaw(rpy.unwrap_or_default())),
+        writing: Some(writing(inertia, names.map(|name| inertia.value(name)))),
+        ..Given::of_tensor(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
+    }))
+}
