@@ -184,9 +184,9 @@ struct Outcome {
 fn start(body: &Body, decade: i32, member: u64) -> Result<(Point<f64>, f64), Error> {
     let mut random = Random::new(SEED).stream(member);
     let moments: Vec3<f64> = body.rotor().moments();
-    let [a, b, c] = if member % 2 == 0 { [2, 1, 0] } else { [0, 1, 2] };
+    let [a, b, c] = if member.is_multiple_of(2) { [2, 1, 0] } else { [0, 1, 2] };
     let (ia, ib, ic) = (moments[a], moments[b], moments[c]);
-    // |m| = 1 and m_c = 0: m is next to the middle axis, and dn = k' there
+    // where m_c = 0 the momentum is next to the middle axis, and dn = k'; worked out for |m| = 1, and doubled
     let complement = ten(decade);
     let square = (1.0 - complement) * (ib - ia);
     let twice_energy = (square + (ic - ib)) / (square * ic + ia * (ic - ib));
@@ -210,7 +210,7 @@ fn first_wrong(name: &str, h: f64, decade: i32, member: u64, horizon: f64) -> Re
     let method = method(name).map_err(unexpected)?;
     let mut run = Run::from_point(method.as_ref(), &body, point, Clock::new(h)).map_err(unexpected)?;
     // the axis that the momentum circulates about, which it never leaves
-    let axis = if member % 2 == 0 { 2 } else { 0 };
+    let axis = if member.is_multiple_of(2) { 2 } else { 0 };
     for k in 1_u64.. {
         // every flip, and half-way between two
         let t = 0.5 * half * k as f64 - begun;
@@ -235,7 +235,7 @@ fn first_wrong(name: &str, h: f64, decade: i32, member: u64, horizon: f64) -> Re
         };
         let exact = motion.flips(Dd::of(t));
         let other_way = sample.point.momentum_body[axis] * point.momentum_body[axis] < 0.0;
-        let miscounted = k % 2 == 0 && sample.flips != Some(motion.flips(sample.elapsed));
+        let miscounted = k.is_multiple_of(2) && sample.flips != Some(motion.flips(sample.elapsed));
         if other_way || miscounted {
             return Ok(Outcome { time: t, flips: exact, right: false, other_way });
         }

@@ -46,7 +46,7 @@ impl Figure {
     fn names(&self) -> i32 {
         let longest = self.series.iter().map(|series| series.name.chars().count()).max().unwrap_or(0);
         if self.is_direct() {
-            (SMALL_LETTER * longest as f64) as i32 + 28
+            (SMALL_LETTER * longest as f64) as i32 + 40
         } else if self.joined {
             12
         } else {
@@ -184,7 +184,9 @@ impl Figure {
         for (k, series) in self.series.iter().enumerate() {
             let place = |p: &(f64, f64)| pixel(&(x.place(p.0), y.place(p.1)));
             let places: Vec<(i32, i32)> = series.points.iter().map(place).collect();
-            ends.push(places.last().copied());
+            let mut by_place = places.clone();
+            by_place.sort_by_key(|at| at.0);
+            ends.push(by_place.last().copied());
             let colour = COLOURS[k % COLOURS.len()];
             for (p, bar) in series.points.iter().zip(&series.spread) {
                 let line = [place(&(p.0, bar.0)), place(&(p.0, bar.1))];
@@ -198,7 +200,7 @@ impl Figure {
             let all = !self.joined || places.len() as i32 <= MARKS;
             let between = (right - left) / MARKS;
             let mut next = left + between * (k as i32 % 4) / 4;
-            for &at in places.iter().filter(|_| !series.wide) {
+            for &at in by_place.iter().filter(|_| !series.wide) {
                 if all || at.0 >= next {
                     root.draw(&mark(k, at, colour))?;
                     next = at.0 + between;
@@ -206,10 +208,10 @@ impl Figure {
             }
         }
         for guide in &self.guides {
-            let Some((line, label)) = guide.line(&x, &y) else { continue };
+            let Some(line) = guide.line(&x, &y) else { continue };
             let line = line.map(|at| pixel(&at));
+            let label = line[1];
             polyline(root, &line, Some((2, 4)), GREY.stroke_width(1))?;
-            let label = pixel(&label);
             let at = Pos::new(HPos::Right, VPos::Bottom);
             let style = ("sans-serif", 13).into_text_style(root).color(&GREY).pos(at);
             root.draw(&Text::new(guide.label.as_str(), (label.0, label.1 - 2), style))?;
@@ -226,8 +228,8 @@ impl Figure {
         [top, bottom]: [i32; 2],
         place: &DrawingArea<B, Shift>,
     ) -> Drawn<B> {
-        let name = |at: (i32, i32), series: &Series, colour: RGBColor| {
-            let style = ("sans-serif", 13).into_text_style(root).color(&colour);
+        let name = |at: (i32, i32), series: &Series| {
+            let style = ("sans-serif", 13).into_text_style(root).color(&BLACK);
             let style = style.pos(Pos::new(HPos::Left, VPos::Center));
             root.draw(&Text::new(series.name.clone(), at, style))
         };
@@ -242,7 +244,10 @@ impl Figure {
                     let leader = [end, (right + 14, y)];
                     root.draw(&PathElement::new(leader, GREY.mix(0.6).stroke_width(1)))?;
                 }
-                name((right + 17, y), series, colour)?;
+                if !series.wide {
+                    root.draw(&mark(k, (right + 21, y), colour))?;
+                }
+                name((right + 31, y), series)?;
             }
         } else if self.joined {
             let y = place.get_base_pixel().1 + 10 + LINE * self.title_lines().len() as i32;
@@ -253,7 +258,7 @@ impl Figure {
                     let line = [(x, y), (x + 30, y)];
                     polyline(root, &line, dashes(k), colour.stroke_width(2))?;
                     root.draw(&mark(k, (x + 15, y), colour))?;
-                    name((x + 36, y), &self.series[k], colour)?;
+                    name((x + 36, y), &self.series[k])?;
                     x += legend_width(&self.series[k]) as i32;
                 }
             }
@@ -261,7 +266,7 @@ impl Figure {
             for (k, series) in self.series.iter().enumerate() {
                 let (y, colour) = (top + 10 + 24 * k as i32, COLOURS[k % COLOURS.len()]);
                 root.draw(&mark(k, (right + 18, y), colour))?;
-                name((right + 34, y), series, colour)?;
+                name((right + 34, y), series)?;
             }
         }
         Ok(())
@@ -269,8 +274,8 @@ impl Figure {
 }
 
 impl Guide {
-    /// Its ends within the axes, and the place of its label, in coordinates.
-    fn line(&self, x: &Axis, y: &Axis) -> Option<([(f64, f64); 2], (f64, f64))> {
+    /// Its ends within the axes, in coordinates; the label stands at the second.
+    fn line(&self, x: &Axis, y: &Axis) -> Option<[(f64, f64); 2]> {
         let ([left, right], [low, high]) = (x.limits(), y.limits());
         // the label has room above its end
         let high = high - 0.06 * (high - low);
@@ -283,7 +288,7 @@ impl Guide {
             let [a, b] = [low, high].map(|edge| through.0 + (edge - through.1) / self.slope);
             (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
         }
-        (from < to).then(|| ([at(from), at(to)], at(to)))
+        (from < to).then(|| [at(from), at(to)])
     }
 }
 
