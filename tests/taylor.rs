@@ -146,6 +146,20 @@ fn a_steady_spin_keeps_its_momentum_to_the_last_bit() {
     }
 }
 
+/// A series of order 20 for each step, and the one that the end falls into; whatever the interval of output.
+#[test]
+fn work_is_that_of_the_steps_that_are_chosen() {
+    let works = [0.25, 2.0, 64.0].map(|h| {
+        let mut run = run("taylor", &top(), h).watching(Watch::Never);
+        run.advance_to((64.0 / h) as u64).unwrap();
+        run.work().unwrap()
+    });
+    let [work, ..] = works;
+    assert_eq!((work.evaluations, work.rejected), (20 * (work.accepted + 1), 0));
+    assert!(work.accepted > 64 && works == [work; 3], "{works:?}");
+    assert_eq!(run("taylor:20", &top(), 0.25).work(), None);
+}
+
 #[test]
 fn a_body_at_rest_stays_falls_and_is_pushed() {
     // nothing acts: one series for all times

@@ -71,7 +71,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let motions: Vec<Motion> = motions.into_iter().collect::<Result<_, _>>()?;
     let budget = Budget {
         evaluations: context.scale.pick(40.0, 160.0, 640.0),
-        to_the_end: 160.0,
+        to_the_end: 80.0,
         tolerances: context.scale.pick(3, 1, 1),
     };
     let mut parts = Vec::new();
