@@ -43,7 +43,7 @@ enum Command {
     Propagate(Box<propagate::Propagate>),
     Motion(motion::Motion),
     Fit(Box<fit::Fit>),
-    Simulate(simulate::Simulate),
+    Simulate(Box<simulate::Simulate>),
     Methods(methods::Methods),
     Inertia(Box<inertia::Inertia>),
 }

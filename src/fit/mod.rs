@@ -56,5 +56,5 @@ pub use report::scale::Known;
 pub use report::torque_free::{InvariantTrend, Whiteness};
 pub use report::warning::Warning;
 pub use settings::Settings;
-pub use simulate::simulate;
+pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_with};
 pub use weak::mistaken_units::MistakenUnit;
