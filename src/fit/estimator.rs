@@ -11,7 +11,7 @@ use super::report::averages;
 use super::report::estimate::Estimate;
 use super::report::facts::Facts;
 use super::report::identifiability::Identifiability;
-use super::settings::Settings;
+use super::settings::{SensorPriors, Settings, TorqueModel};
 use super::weak::mistaken_units::{Better, better_unit};
 use super::weak::noise;
 use super::weak::normalised::{Normalised, normalised};
@@ -50,6 +50,12 @@ use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
 /// look mistaken; limits that contradict each other or the physical law; a program without a certified answer.
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
+    if settings.sensor != SensorPriors::default() {
+        return Err(FitError::Unsupported { what: "an error of the sensor" });
+    }
+    if !matches!(settings.torque, TorqueModel::None | TorqueModel::Auto) {
+        return Err(FitError::Unsupported { what: "a torque" });
+    }
     let Normalised { stretches, rms } = normalised(record)?;
     let variance = match settings.noise {
         Some(sigma) => Some((sigma / rms) * (sigma / rms))

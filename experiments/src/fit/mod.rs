@@ -147,6 +147,7 @@ impl Fit {
             limits: least.chain(most).collect(),
             known: self.known.known(),
             check_units: !self.trust_units,
+            ..Settings::default()
         };
         let format = Format::or_default(self.format, self.out.is_some());
         let estimate = match fit(&record, &settings) {

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, UnitQuaternion};
 
 use super::identifiability::Identifiability;
+use super::nuisance::{Nuisance, SegmentSummary, Spike, Systematic, Torque};
 use super::torque_free::{InvariantTrend, Whiteness};
 use super::warning::Warning;
 use crate::fit::physical::certificate::Certificate;
@@ -100,6 +101,16 @@ pub struct Estimate {
     pub energy_trend: InvariantTrend,
     /// Correlation of neighbouring residuals.
     pub whiteness: Whiteness,
+    /// The torque that the fit reckons with.
+    pub torque: Torque,
+    /// What was estimated of the sensor, each with its prior.
+    pub nuisances: Vec<Nuisance>,
+    /// What errors of the sensor that the fit takes to be zero would do to the moments.
+    pub systematic: Vec<Systematic>,
+    /// Each segment that was long enough.
+    pub per_segment: Vec<SegmentSummary>,
+    /// Samples that were left out because they stand out of their neighbours.
+    pub spikes: Vec<Spike>,
     /// Residuals by segment.
     pub residuals: Vec<Residuals>,
     /// What limits the use of the estimate.

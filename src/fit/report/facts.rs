@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::estimate::{Estimate, Residuals};
 use super::identifiability::Identifiability;
+use super::nuisance::Torque;
 use super::torque_free::{InvariantTrend, Whiteness, trends};
 use super::warnings::{Grounds, warnings};
 use crate::fit::cramer_rao::Motions;
@@ -96,6 +97,11 @@ impl Facts<'_> {
             momentum_trend: per_second(momentum),
             energy_trend: per_second(energy),
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
+            torque: Torque::default(),
+            nuisances: Vec::new(),
+            systematic: Vec::new(),
+            per_segment: Vec::new(),
+            spikes: Vec::new(),
             residuals,
             warnings: Vec::new(),
             shape,

@@ -4,6 +4,7 @@ pub(crate) mod averages;
 pub(crate) mod estimate;
 pub(crate) mod facts;
 pub(crate) mod identifiability;
+pub(crate) mod nuisance;
 pub(crate) mod scale;
 pub(crate) mod torque_free;
 pub(crate) mod warning;
