@@ -149,8 +149,8 @@ pub enum FitError {
         /// The radius, s.
         radius: f64,
     },
-    /// The quadratic program has no certified answer.
-    #[error("the quadratic program has no certified answer: {0}")]
+    /// The program for the nearest physical tensor has no certified answer.
+    #[error("the program for the nearest physical tensor has no certified answer: {0}")]
     Solver(SolverFailure),
 }
 

@@ -28,8 +28,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The tensor comes from rounds of linear least squares with one quadratic program at their end; it is not refined by
-//! maximum likelihood.
+//! The tensor comes from rounds of linear least squares with one small semidefinite program at their end, which is solved
+//! by outer approximation; it is not refined by maximum likelihood.
 
 mod cramer_rao;
 mod error;
