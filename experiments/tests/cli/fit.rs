@@ -117,6 +117,58 @@ fn what_is_simulated_is_found_again() {
     assert!(fs::read_to_string(svg).unwrap().starts_with("<svg"));
 }
 
+/// The page stands alone, the residuals are those of the noise, and a refusal has its page too.
+#[test]
+fn a_report_is_one_page_also_of_a_refusal() {
+    let scratch = Scratch::new("report");
+    let path = |name: &str| scratch.0.join(name).display().to_string();
+    let [record, html, markdown, rows] = ["record.csv", "fit.html", "fit.md", "residuals.csv"].map(path);
+    output(&format!("{SIMULATE} --until 8 --noise 1e-2 --tosses 3 --scatter 0.3 --out {record}"));
+    let text = output(&format!("fit {record} --report {html} --residuals {rows} --format table"));
+    assert!(text.starts_with("I1 : I2 : I3 = 0.1"), "{text}");
+    assert!(
+        text.contains("(95 %, statistical)") && text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
+    let page = fs::read_to_string(&html).unwrap();
+    for part in ["I1 : I2 : I3 = 0.1", "<th>segment</th>", "Segment 3: rms", "white noise", "|Jω|", "</html>"]
+    {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(!page.contains("src=") && !page.contains("href="), "needs another file");
+    assert!(page.matches("<svg").count() == 7 && !page.contains("NaN"), "{}", page.matches("<svg").count());
+    let residuals = fs::read_to_string(&rows).unwrap();
+    let (mut sum, mut count) = (0.0, 0.0);
+    for row in residuals.lines().skip(1) {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert!((cells[2] - cells[5] - cells[8]).abs() < 1e-15);
+        sum += cells[8..].iter().map(|x| x * x).sum::<f64>();
+        count += 3.0;
+    }
+    // 1203 samples of noise 0.01, of which 14 numbers are fitted
+    assert!(count == 3609.0 && ((sum / count).sqrt() / 1e-2 - 1.0).abs() < 0.05, "{sum} {count}");
+    output(&format!("fit {record} --report {markdown}"));
+    assert!(
+        fs::read_to_string(&markdown).unwrap().starts_with(&format!("# Inertia from {record}\n\nI1 : I2"))
+    );
+
+    output(&format!(
+        "simulate --moments 1,2,2.6 --omega 0,0,2 --until 10 --every 0.01 --noise 1e-3 --out {record}"
+    ));
+    refused(1, &format!("fit {record} --report {html}"), &["does not determine the tensor"]);
+    let page = fs::read_to_string(&html).unwrap();
+    for part in ["No inertia from", "Undetermined", "is a principal axis", "Size of the rate"] {
+        assert!(page.contains(part), "{part}");
+    }
+    let pdf = path("fit.pdf");
+    refused(2, &format!("fit {record} --report {pdf}"), &["--report: '", "end in .html or .md"]);
+    refused(
+        2,
+        &format!("fit {record} --report {html} --residuals {html}"),
+        &["it would replace --residuals"],
+    );
+}
+
 #[test]
 fn what_is_not_determined_is_said_and_fails() {
     let scratch = Scratch::new("spin");
@@ -283,7 +335,7 @@ fn help_names_every_flag_in_80_columns() {
                 "--radius",
                 "--noise",
                 "--at-least",
-                "--trace",
+                "--report",
                 "--residuals",
             ],
         ),
