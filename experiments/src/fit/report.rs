@@ -1,7 +1,7 @@
 //! A fit as text, as rows and as JSON.
 
 use nalgebra::{Matrix3, SMatrix};
-use polhode::fit::{AverageAxis, Estimate, Identifiability, Record};
+use polhode::fit::{AverageAxis, Estimate, Identifiability, Nuisance, Record, TorqueModel};
 use serde_json::{Value, json};
 
 use crate::table::{Column, Format, Table, row};
@@ -125,9 +125,33 @@ fn object(e: &Estimate) -> Value {
         "dof": e.dof,
         "momentum_drift": { "rate": e.momentum_trend.rate, "sigma": e.momentum_trend.sigma },
         "energy_drift": { "rate": e.energy_trend.rate, "sigma": e.energy_trend.sigma },
+        "torque": {
+            "model": torque_name(e.torque.model), "gain": e.torque.gain, "ratios_without": e.torque.ratios_without,
+            "coefficients": nuisances(&e.torque.coefficients),
+        },
+        "nuisances": nuisances(&e.nuisances),
         "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
         "warnings": e.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
+}
+
+/// By name, each with value, standard deviation, unit and prior.
+fn nuisances(list: &[Nuisance]) -> Value {
+    let each = list.iter().map(|n| {
+        let value = json!({ "value": n.value, "sigma": n.sigma, "unit": n.unit, "prior": n.prior });
+        (n.name.to_string(), value)
+    });
+    Value::Object(each.collect())
+}
+
+fn torque_name(model: TorqueModel) -> &'static str {
+    match model {
+        TorqueModel::Drag => "drag",
+        TorqueModel::Drag3 => "drag3",
+        TorqueModel::Drag6 => "drag6",
+        TorqueModel::Constant => "constant",
+        _ => "none",
+    }
 }
 
 fn rows(e: &Estimate) -> Table {
@@ -153,6 +177,9 @@ fn rows(e: &Estimate) -> Table {
         for (k, (name, i, j)) in ENTRIES.into_iter().enumerate() {
             table.push(row![format!("inertia_{name}"), inertia.tensor()[(i, j)], covariance[(k, k)].sqrt()]);
         }
+    }
+    for n in e.torque.coefficients.iter().chain(&e.nuisances) {
+        table.push(row![n.name, n.value, n.sigma]);
     }
     table.push(row!["triangle_slack", e.triangle_slack, 2.0 * e.sigma_principal[2]]);
     table.push(row!["noise_sigma", e.noise_sigma, None::<f64>]);
@@ -200,6 +227,9 @@ fn text(e: &Estimate) -> String {
         let row = |i: usize| format!("  {:13.6e} {:13.6e} {:13.6e}", m[(i, 0)], m[(i, 1)], m[(i, 2)]);
         format!("\n{name}:\n{}\n{}\n{}", row(0), row(1), row(2))
     };
+    for n in e.torque.coefficients.iter().chain(&e.nuisances) {
+        lines.push(format!("  {:<16} {} {}", n.name, with_error(n.value, n.sigma), n.unit).trim_end().into());
+    }
     lines.push(tensor("shape (trace 1)", &e.shape.tensor()));
     if let Some(inertia) = &e.inertia {
         lines.push(tensor("inertia (kg m^2)", &inertia.tensor()));
