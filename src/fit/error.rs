@@ -121,12 +121,6 @@ pub enum FitError {
         /// Its value.
         value: f64,
     },
-    /// A setting that this version does not know how to fit.
-    #[error("{what} cannot be fitted by this version; leave it out")]
-    Unsupported {
-        /// Which one.
-        what: &'static str,
-    },
     /// Test functions that no segment has room for.
     #[error(
         "a radius of {radius} s needs a segment of {:.4} s, which holds two test functions with {needed} samples in each; \

@@ -7,9 +7,11 @@ mod report;
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use nalgebra::Vector3;
-use polhode::fit::{FitError, Known, Limit, RateUnit, Reading, Record, Settings, TimeUnit, fit};
+use polhode::fit::{
+    FitError, Known, Limit, RateUnit, Reading, Record, SensorPriors, Settings, TimeUnit, TorqueModel, fit,
+};
 use report::Facts;
 
 use crate::arguments::{number, numbers, positive};
@@ -56,6 +58,11 @@ pub(crate) struct Fit {
     at_most: Vec<[f64; 4]>,
     #[command(flatten)]
     known: KnownArguments,
+    /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, constant in body axes
+    #[arg(long, value_enum, default_value_t = Torque::Auto)]
+    torque: Torque,
+    #[command(flatten)]
+    sensor: SensorArguments,
     /// Fit even if the record agrees far better with other units than those named
     #[arg(long)]
     trust_units: bool,
@@ -71,6 +78,68 @@ pub(crate) struct Fit {
     /// Write to this file instead of standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+}
+
+/// The torque models of the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Torque {
+    /// The body is free
+    None,
+    /// -k J w
+    Drag,
+    /// -D w, D diagonal in sensor axes
+    Drag3,
+    /// -D w, D symmetric
+    Drag6,
+    /// Constant in body axes
+    Constant,
+    /// The simplest that the record does not contradict
+    Auto,
+}
+
+impl From<Torque> for TorqueModel {
+    fn from(torque: Torque) -> Self {
+        match torque {
+            Torque::None => TorqueModel::None,
+            Torque::Drag => TorqueModel::Drag,
+            Torque::Drag3 => TorqueModel::Drag3,
+            Torque::Drag6 => TorqueModel::Drag6,
+            Torque::Constant => TorqueModel::Constant,
+            Torque::Auto => TorqueModel::Auto,
+        }
+    }
+}
+
+/// Standard deviations of what may be wrong with the sensor.
+#[derive(Args, Clone, Debug)]
+struct SensorArguments {
+    /// Standard deviation of the offset of each axis, rad/s: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_bias: Option<f64>,
+    /// Standard deviation of the relative error of scale that the axes share: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_scale: Option<f64>,
+    /// Standard deviation of the relative errors of scale of each axis: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_axis_scales: Option<f64>,
+    /// Standard deviation of the errors of the right angles between axes, rad: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_misalignment: Option<f64>,
+    /// Standard deviation of the delays of y and z behind x, s: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_skew: Option<f64>,
+}
+
+impl SensorArguments {
+    fn priors(&self) -> SensorPriors {
+        SensorPriors {
+            offset: self.gyro_bias,
+            scale: self.gyro_scale,
+            axis_scales: self.gyro_axis_scales,
+            misalignment: self.gyro_misalignment,
+            skew: self.gyro_skew,
+        }
+    }
 }
 
 /// What gives the absolute size: at most one of these.
@@ -212,6 +281,8 @@ impl Fit {
             limits: least.chain(most).collect(),
             known: self.known.known(),
             check_units: !self.trust_units,
+            torque: self.torque.into(),
+            sensor: self.sensor.priors(),
             ..Settings::default()
         };
         let format = Format::or_default(self.format, self.out.is_some());

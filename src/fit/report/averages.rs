@@ -41,8 +41,8 @@ pub(crate) fn axes(stretches: &[Stretch], variance: f64) -> Vec<AverageAxis> {
     for s in stretches {
         let Some(tests) = TestFunctions::new(s, 0.5 * s.duration()) else { continue };
         for ((&t, w), &weight) in s.times.iter().zip(&s.rates).zip(&s.weights) {
-            let seen = Seen::new(&tests, t, weight);
-            let (slope, value) = (seen.slope[0], seen.value[0]);
+            let seen = Seen::new(&tests, t);
+            let (slope, value) = (weight * seen.slope[0], weight * seen.value[0]);
             m += w * w.transpose() * value;
             v += w * slope;
             squares += value * value * w.norm_squared();

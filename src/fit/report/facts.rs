@@ -2,9 +2,10 @@
 
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
+use super::columns::{is_torque, nuisances};
 use super::estimate::{Estimate, Residuals};
 use super::identifiability::Identifiability;
-use super::nuisance::Torque;
+use super::nuisance::{Nuisance, Torque};
 use super::torque_free::{InvariantTrend, Whiteness, trends};
 use super::warnings::{Grounds, warnings};
 use crate::fit::cramer_rao::Motions;
@@ -15,8 +16,9 @@ use crate::fit::physical::failure::SolverFailure;
 use crate::fit::physical::law::LARGEST_SHARE;
 use crate::fit::record::Record;
 use crate::fit::settings::Settings;
+use crate::fit::weak::ladder::Chosen;
 use crate::fit::weak::mistaken_units::Better;
-use crate::fit::weak::rounds::WeakEstimate;
+use crate::fit::weak::model::{Column, Unknowns};
 use crate::fit::weak::test_functions::Stretch;
 use crate::inertia::{Inertia, InertiaShape};
 
@@ -27,7 +29,7 @@ pub(crate) struct Facts<'a> {
     pub(crate) stretches: &'a [Stretch],
     pub(crate) rms: f64,
     pub(crate) variance: f64,
-    pub(crate) weak: &'a WeakEstimate,
+    pub(crate) chosen: &'a Chosen,
     pub(crate) misfit: f64,
 }
 
@@ -40,7 +42,8 @@ impl Facts<'_> {
         identifiability: Identifiability,
         better: Option<&Better>,
     ) -> Result<Estimate, FitError> {
-        let root = self.weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
+        let weak = &self.chosen.weak;
+        let root = weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
         let on_face = face_factor(&free, &nearest.face);
         let shape = shape_of(&tensor(&nearest.x))?;
         let j = shape.tensor();
@@ -65,11 +68,14 @@ impl Facts<'_> {
         let bound_ratio = bound.map(|b| free.norm() / b.trace().sqrt());
         let covariance = on_face * on_face.transpose();
         let (inertia, inertia_covariance) = self.absolute(&j, &covariance, motions.as_ref())?;
-        let (momentum, energy) = trends(self.stretches, &j, self.variance);
+        let (momentum, energy) = trends(self.stretches, &j, self.variance * self.misfit.max(1.0));
         let per_second =
             |d: InvariantTrend| InvariantTrend { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
-        let residuals = self.residuals(&nearest.x);
-        let pull = (root * (nearest.x - self.weak.x)).norm();
+        let at = weak.stacked.as_ref().and_then(|s| s.with_columns(nearest.x));
+        let at = at.unwrap_or_else(|| weak.at.clone());
+        let residuals = self.residuals(&at);
+        let (torques, sensor) = self.nuisances(&at);
+        let pull = (root * (nearest.x - weak.x())).norm();
         let mut estimate = Estimate {
             principal: [moments[0], moments[1], moments[2]],
             sigma_principal,
@@ -84,12 +90,12 @@ impl Facts<'_> {
             inertia,
             inertia_covariance,
             noise_sigma: self.variance.sqrt() * self.rms,
-            chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / self.weak.dof().max(1) as f64,
+            chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / weak.dof().max(1) as f64,
             pull,
-            dof: self.weak.dof(),
+            dof: weak.dof(),
             samples: residuals.iter().map(|r| self.record.segments[r.segment].times().len()).sum(),
             segments: residuals.len(),
-            radius: self.weak.radius / self.rms,
+            radius: weak.radius / self.rms,
             identifiability,
             triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
             active_constraints: nearest.active,
@@ -97,8 +103,8 @@ impl Facts<'_> {
             momentum_trend: per_second(momentum),
             energy_trend: per_second(energy),
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
-            torque: Torque::default(),
-            nuisances: Vec::new(),
+            torque: torques,
+            nuisances: sensor,
             systematic: Vec::new(),
             per_segment: Vec::new(),
             spikes: Vec::new(),
@@ -106,7 +112,7 @@ impl Facts<'_> {
             warnings: Vec::new(),
             shape,
         };
-        let grounds = Grounds { record: self.record, weak: self.weak, misfit: self.misfit, better };
+        let grounds = Grounds { record: self.record, weak, misfit: self.misfit, better };
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
     }
@@ -130,17 +136,36 @@ impl Facts<'_> {
         Ok((Some(inertia), Some(scale.covariance(j, covariance, excess, motions))))
     }
 
-    fn residuals(&self, x: &Coordinates) -> Vec<Residuals> {
+    /// The coefficients of the torque, and what was estimated of the sensor.
+    fn nuisances(&self, at: &Unknowns) -> (Torque, Vec<Nuisance>) {
+        let variance = self.variance * self.misfit.max(1.0);
+        let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms);
+        let (torques, sensor): (Vec<_>, Vec<_>) = all.into_iter().partition(|(column, _)| is_torque(column));
+        let values = |list: Vec<(Column, Nuisance)>| list.into_iter().map(|(_, n)| n).collect();
+        let ratios_without = self.chosen.without.map(|x| {
+            let (moments, _) = eigen(tensor(&x));
+            [moments[0] / moments[2], moments[1] / moments[2]]
+        });
+        let torque = Torque {
+            model: self.chosen.model,
+            coefficients: values(torques),
+            gain: self.chosen.gain,
+            ratios_without,
+        };
+        (torque, values(sensor))
+    }
+
+    fn residuals(&self, at: &Unknowns) -> Vec<Residuals> {
         let deviation = self.variance.sqrt();
-        let each = self.weak.parts.iter();
+        let each = self.chosen.weak.parts.iter();
         each.map(|part| {
             let start = self.record.segments[part.stretch].times().first().copied().unwrap_or(0.0);
-            let e = part.residuals(x);
+            let e = part.residuals(at);
             let values: Vec<[f64; 3]> =
                 e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
             Residuals {
                 segment: part.stretch,
-                times: part.centres.iter().map(|c| start + c / self.rms).collect(),
+                times: part.centres().iter().map(|c| start + c / self.rms).collect(),
                 mean_square: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
                 values,
             }

@@ -1,6 +1,7 @@
 //! The report: an estimate with its deviations, its scale, what the record leaves open, and what it contradicts.
 
 pub(crate) mod averages;
+pub(crate) mod columns;
 pub(crate) mod estimate;
 pub(crate) mod facts;
 pub(crate) mod identifiability;

@@ -3,6 +3,7 @@
 use super::estimate::Estimate;
 use super::warning::Warning;
 use crate::fit::record::Record;
+use crate::fit::settings::TorqueModel;
 use crate::fit::weak::mistaken_units::Better;
 use crate::fit::weak::rounds::WeakEstimate;
 
@@ -45,11 +46,15 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if e.whiteness.significant() {
         list.push(Warning::Correlated(e.whiteness));
     }
-    if e.momentum_trend.significant() {
-        list.push(Warning::MomentumTrend(e.momentum_trend));
-    }
-    if e.energy_trend.significant() {
-        list.push(Warning::EnergyTrend(e.energy_trend));
+    if e.torque.model == TorqueModel::None {
+        if e.momentum_trend.significant() {
+            list.push(Warning::MomentumTrend(e.momentum_trend));
+        }
+        if e.energy_trend.significant() {
+            list.push(Warning::EnergyTrend(e.energy_trend));
+        }
+    } else if e.torque.gain > 0.0 {
+        list.push(Warning::Torque(e.torque.clone()));
     }
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);

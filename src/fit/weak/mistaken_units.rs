@@ -3,11 +3,13 @@
 use core::f64::consts::PI;
 use core::fmt;
 
+use super::ladder::columns_of;
 use super::radius;
-use super::rounds::WeakEstimate;
+use super::rounds::{Noise, WeakEstimate};
 use super::test_functions::Stretch;
 use crate::fit::record::RateUnit::{self, DegreesPerSecond, RadiansPerSecond, RevolutionsPerMinute};
 use crate::fit::record::TimeUnit::{self, Microseconds, Milliseconds, Nanoseconds, Seconds};
+use crate::fit::settings::TorqueModel;
 
 /// A unit of the record that may have been taken for another.
 #[non_exhaustive]
@@ -90,9 +92,14 @@ const ANY: f64 = 1e12;
 /// Units that a message lists.
 const LISTED: usize = 3;
 
-/// The units that explain the record best, where they do so at least three times better.
-pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<Better> {
+/// Largest misfit of a unit that explains a record.
+const EXPLAINED: f64 = 2.0;
+
+/// The units that explain the record, where there are such.
+pub(crate) fn better_unit(stretches: &[Stretch], variance: f64) -> Option<Better> {
     let pilot = radius::pilot(stretches);
+    // drag slows a body in any unit
+    let columns = columns_of(TorqueModel::Drag);
     let mut found = Vec::new();
     let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
     for (factor, mistake) in candidates.chain([(ANY, None)]) {
@@ -100,7 +107,8 @@ pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
-        let settled = radius::estimate(&scaled, None, variance).ok().filter(WeakEstimate::settled);
+        let weak = radius::descended(&scaled, None, &columns, variance, Noise::White);
+        let settled = weak.ok().filter(WeakEstimate::settled);
         found.extend(settled.map(|weak| Found {
             factor,
             mistake,
@@ -110,7 +118,7 @@ pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
         }));
     }
     found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-    let best = found.first().filter(|best| best.misfit < misfit / 3.0)?;
+    let best = found.first().filter(|best| best.misfit < EXPLAINED)?;
     let equal = |f: &Found| (f.misfit - best.misfit) * best.dof <= EQUAL * best.misfit.max(1.0);
     let mut units: Vec<&Found> = found.iter().filter(|f| equal(f)).collect();
     units.sort_by(|a, b| a.factor.total_cmp(&b.factor));
@@ -141,5 +149,5 @@ const MAX_RELATIVE_SIGMA: f64 = 0.2;
 fn credible(weak: &WeakEstimate, variance: f64) -> bool {
     let Some((singular, _)) = weak.spectrum() else { return false };
     let deviation = (variance * weak.misfit(variance).max(1.0)).sqrt() / singular[4];
-    deviation <= MAX_RELATIVE_SIGMA * weak.x.norm()
+    deviation <= MAX_RELATIVE_SIGMA * weak.x().norm()
 }
