@@ -67,14 +67,9 @@ pub(super) fn residuals(e: &Estimate, motion: &[Fitted], record: &Record) -> Res
     let caption =
         "Residuals of the weak equations in standard deviations; the band is two of them wide on each side.";
     parts.push(Part::Figure(plot::residuals(e)?, caption.into()));
-    let longest = motion
-        .iter()
-        .filter_map(|m| Some((m, m.residuals()?)))
-        .max_by_key(|(m, residuals)| (residuals.len(), usize::MAX - m.segment));
-    let Some((m, left)) = longest else { return Ok(parts) };
-    let Some(interval) = record.segments.get(m.segment).and_then(|s| interval(s.times())) else {
-        return Ok(parts);
-    };
+    let left: Vec<_> = motion.iter().filter_map(Fitted::residuals).collect();
+    let times = motion.iter().filter_map(|m| record.segments.get(m.segment)).map(|s| s.times());
+    let Some(interval) = interval(times).filter(|_| !left.is_empty()) else { return Ok(parts) };
     let spectrum = noise::spectrum(&left, interval);
     if let (Some(first), Some(last)) = (spectrum.first(), spectrum.last()) {
         let level = 2.0 * e.noise_sigma * e.noise_sigma * interval;
@@ -83,9 +78,8 @@ pub(super) fn residuals(e: &Estimate, motion: &[Fitted], record: &Record) -> Res
         let white = vec![(first.0, level), (last.0, level)];
         figure.series = vec![Series::new("residuals", spectrum.clone()), Series::new("white noise", white)];
         let caption = format!(
-            "Power spectral density of measured less fitted rates, segment {}, mean of the axes; the line is the \
-             level of white noise of {:.2e} rad/s.",
-            m.segment + 1,
+            "Power spectral density of measured less fitted rates, mean of the axes; the line is the level of \
+             white noise of {:.2e} rad/s.",
             e.noise_sigma
         );
         parts.push(Part::Figure(figure.svg()?, caption));
@@ -110,8 +104,9 @@ pub(super) fn residuals(e: &Estimate, motion: &[Fitted], record: &Record) -> Res
 }
 
 /// The median time between samples.
-fn interval(times: &[f64]) -> Option<f64> {
-    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+fn interval<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
+    let mut steps: Vec<f64> =
+        segments.flat_map(|times| times.windows(2)).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     steps.get(steps.len() / 2).copied()
 }

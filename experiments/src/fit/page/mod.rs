@@ -77,8 +77,8 @@ fn answer(e: &Estimate) -> Vec<Part> {
     let row = |name: String, value: f64, sigma: f64, off: Option<f64>| {
         let places = digits(SURE * sigma);
         let number = |x: f64| format!("{x:.places$}");
-        let off = off.map_or("–".into(), number);
-        vec![name, number(value), format!("± {}", number(SURE * sigma)), format!("± {off}")]
+        let off = off.map_or("–".into(), |off| format!("± {}", number(off)));
+        vec![name, number(value), format!("± {}", number(SURE * sigma)), off]
     };
     let [a, b, c] = [0, 1, 2].map(|k| format!("{:.*}", digits(e.sigma_principal[k]).min(6), e.principal[k]));
     let head = ["", "value", "95 %, statistical", "systematic"].map(String::from).to_vec();
@@ -101,7 +101,7 @@ fn answer(e: &Estimate) -> Vec<Part> {
     let head = ["axis", "x", "y", "z", "turn about it"].map(String::from).to_vec();
     let rows = (0..3).map(|k| {
         let turn = e.sigma_axes[k].to_degrees();
-        let turn = if turn < 90.0 { format!("± {turn:.2}°") } else { "any".into() };
+        let turn = if turn < 90.0 { format!("± {turn:.*}°", digits(turn)) } else { "any".into() };
         let mut cells = vec![format!("{}", k + 1)];
         cells.extend(axes.matrix().column(k).iter().map(|v| format!("{v:.5}")));
         cells.push(turn);

@@ -12,23 +12,30 @@ const BLOCKS: usize = 32;
 const PER_DECADE: f64 = 12.0;
 
 /// Power spectral density of a component, mean of the three axes: (Hz, (rad/s)²/Hz), one-sided, averaged over blocks with a
-/// Hann window and over frequencies that are close on a logarithmic axis. Empty where there are too few samples.
+/// Hann window and over frequencies that are close on a logarithmic axis. Segments shorter than the median one are left
+/// out. Empty where there are too few samples.
 ///
 /// Source: P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70.
-pub(super) fn spectrum(residuals: &[Vector3<f64>], interval: f64) -> Vec<(f64, f64)> {
-    let block = BLOCK.min(residuals.len());
+pub(super) fn spectrum(segments: &[Vec<Vector3<f64>>], interval: f64) -> Vec<(f64, f64)> {
+    let mut lengths: Vec<usize> = segments.iter().map(Vec::len).collect();
+    lengths.sort_unstable();
+    let block = lengths.get(lengths.len() / 2).copied().unwrap_or(0).min(BLOCK);
     if block < 16 {
         return Vec::new();
     }
+    // blocks overlap by half
+    let mut blocks: Vec<&[Vector3<f64>]> = Vec::new();
+    for s in segments.iter().filter(|s| s.len() >= block) {
+        let count = (s.len() - block) / (block / 2) + 1;
+        blocks.extend((0..count).map(|b| &s[b * (block / 2)..][..block]));
+    }
+    let every = blocks.len().div_ceil(BLOCKS);
+    let blocks: Vec<&[Vector3<f64>]> = blocks.into_iter().step_by(every).collect();
     let turns: Vec<(f64, f64)> = (0..block).map(|k| Real::sin_cos(TAU * k as f64 / block as f64)).collect();
     let window: Vec<f64> = turns.iter().map(|(_, cos)| 0.5 - 0.5 * cos).collect();
     let norm: f64 = window.iter().map(|w| w * w).sum::<f64>() / interval;
-    let possible = (residuals.len() - block) / (block / 2) + 1;
-    let count = possible.min(BLOCKS);
     let mut power = vec![0.0; block / 2];
-    for b in 0..count {
-        let first = if count > 1 { b * (residuals.len() - block) / (count - 1) } else { 0 };
-        let part = &residuals[first..first + block];
+    for part in &blocks {
         let mean = part.iter().sum::<Vector3<f64>>() / block as f64;
         let windowed: Vec<Vector3<f64>> = part.iter().zip(&window).map(|(r, w)| (r - mean) * *w).collect();
         for (k, power) in power.iter_mut().enumerate().skip(1) {
@@ -38,7 +45,8 @@ pub(super) fn spectrum(residuals: &[Vector3<f64>], interval: f64) -> Vec<(f64, f
                 real += r * cos;
                 imaginary += r * sin;
             }
-            *power += 2.0 * (real.norm_squared() + imaginary.norm_squared()) / (3.0 * norm * count as f64);
+            let square = real.norm_squared() + imaginary.norm_squared();
+            *power += 2.0 * square / (3.0 * norm * blocks.len() as f64);
         }
     }
     let frequency = |k: usize| k as f64 / (block as f64 * interval);
@@ -53,27 +61,39 @@ pub(super) fn spectrum(residuals: &[Vector3<f64>], interval: f64) -> Vec<(f64, f
     points.into_iter().map(|(_, f, p, n)| (f / n, p / n)).filter(|(_, p)| *p > 0.0).collect()
 }
 
-/// Allan deviation of a component, mean of the three axes: (s, rad/s), at averaging times of powers of two.
+/// Allan deviation of a component, mean of the three axes and of all segments: (s, rad/s), at averaging times of powers of
+/// two.
 ///
 /// Source: D. W. Allan, Proc. IEEE 54 (1966) 221; overlapping averages.
-pub(super) fn allan(residuals: &[Vector3<f64>], interval: f64) -> Vec<(f64, f64)> {
-    let mut sums = vec![Vector3::zeros()];
-    for r in residuals {
-        sums.push(sums[sums.len() - 1] + r);
-    }
+pub(super) fn allan(segments: &[Vec<Vector3<f64>>], interval: f64) -> Vec<(f64, f64)> {
+    let sums: Vec<Vec<Vector3<f64>>> = segments.iter().map(|s| running(s)).collect();
+    let longest = segments.iter().map(Vec::len).max().unwrap_or(0);
     let mut points = Vec::new();
     let mut width = 1;
-    while 3 * width <= residuals.len() {
-        let count = residuals.len() - 2 * width + 1;
-        let sum: f64 =
-            (0..count).map(|k| (sums[k + 2 * width] - sums[k + width] * 2.0 + sums[k]).norm_squared()).sum();
-        let variance = sum / (6.0 * count as f64 * (width * width) as f64);
+    while 3 * width <= longest {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for s in &sums {
+            for k in 0..(s.len()).saturating_sub(2 * width) {
+                sum += (s[k + 2 * width] - s[k + width] * 2.0 + s[k]).norm_squared();
+                count += 1.0;
+            }
+        }
+        let variance = sum / (6.0 * count * (width * width) as f64);
         if variance > 0.0 {
             points.push((width as f64 * interval, variance.sqrt()));
         }
         width *= 2;
     }
     points
+}
+
+/// Sums of the first samples, from none to all.
+fn running(samples: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    let mut sums = vec![Vector3::zeros()];
+    for sample in samples {
+        sums.push(sums[sums.len() - 1] + sample);
+    }
+    sums
 }
 
 #[cfg(test)]
@@ -86,6 +106,7 @@ mod tests {
     fn white_noise_has_a_flat_spectrum_and_a_falling_allan_deviation() {
         let mut random = Random::new(6);
         let noise: Vec<Vector3<f64>> = (0..20_000).map(|_| random.normal_vector() * 0.3).collect();
+        let noise = [noise];
         let spectrum = spectrum(&noise, 0.01);
         // 2 σ² Δt
         let level = 2.0 * 0.09 * 0.01;
@@ -104,8 +125,15 @@ mod tests {
     fn a_tone_stands_at_its_frequency() {
         let tone = |i: i32| Vector3::x() * Real::sin_cos(TAU * 7.0 * 0.01 * f64::from(i)).0;
         let samples: Vec<Vector3<f64>> = (0..4096).map(tone).collect();
-        let highest = spectrum(&samples, 0.01).into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+        let short = [samples[..10].to_vec()];
+        // tosses of one motion have its spectrum
+        let parts = [samples[..900].to_vec(), samples[900..1800].to_vec(), samples[1800..1900].to_vec()];
+        let highest = spectrum(&parts, 0.01).into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
         assert!((highest.0 - 7.0).abs() < 0.6, "{highest:?}");
-        assert!(spectrum(&samples[..10], 0.01).is_empty() && allan(&samples[..2], 0.01).is_empty());
+        assert!(
+            spectrum(&short, 0.01).is_empty()
+                && spectrum(&[], 0.01).is_empty()
+                && allan(&[], 0.01).is_empty()
+        );
     }
 }

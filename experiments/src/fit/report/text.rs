@@ -61,7 +61,11 @@ fn axes(e: &Estimate) -> Vec<String> {
     for k in 0..3 {
         let v = axes.matrix().column(k);
         let turn = e.sigma_axes[k].to_degrees();
-        let turn = if turn < 90.0 { format!("{turn:.2} deg about it") } else { "any turn about it".into() };
+        let turn = if turn < 90.0 {
+            format!("{turn:.*} deg about it", digits(turn))
+        } else {
+            "any turn about it".into()
+        };
         lines.push(format!("  {}  ({:8.5}, {:8.5}, {:8.5}) +- {turn}", k + 1, v[0], v[1], v[2]));
     }
     lines
