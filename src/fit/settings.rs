@@ -31,9 +31,9 @@ pub enum TorqueModel {
 pub enum TorqueNoise {
     /// None.
     None,
-    /// Of this power spectral density, (rad/s²)² s: torque per trace of the tensor.
+    /// A white angular acceleration ξ of this power spectral density, (rad/s²)² s, and the torque J ξ.
     Given(f64),
-    /// By restricted likelihood, for each segment.
+    /// By restricted likelihood, for each segment: a torque J ξ, or one that is alike along all axes.
     #[default]
     Fitted,
 }

@@ -148,10 +148,11 @@ fn likelihood(weak: &WeakEstimate, variance: f64) -> f64 {
 /// Whether the residuals of an estimate without torque noise ask for some.
 fn has_torque_noise(weak: &WeakEstimate, variance: f64) -> bool {
     let free = weak.dof().max(1) as f64 / weak.rows.max(1) as f64;
-    let choice = Choice { white: false, least: 0.0, most: f64::MAX };
+    let choice = Choice { white: false };
     weak.parts.iter().any(|part| {
         let e = part.linearised.residuals(&weak.at);
-        likeliest(&part.linearised, &e, variance, free, choice).is_some_and(|levels| levels.torque > 0.0)
+        likeliest(&part.linearised, &e, variance, free, choice, None)
+            .is_some_and(|levels| levels.torque > 0.0)
     })
 }
 

@@ -24,10 +24,20 @@ fn crossed(s: &Matrix3<f64>, b: &Matrix3<f64>) -> Vector3<f64> {
 pub(crate) struct Levels {
     pub(crate) white: f64,
     pub(crate) torque: f64,
+    pub(crate) shape: Shape,
+}
+
+/// Along which axes torque noise acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// As the moments of inertia: J ξ with white ξ, an angular acceleration that is alike along all axes.
+    Moments,
+    /// Alike along all axes, with the same mean square as the other at a sphere.
+    Alike,
 }
 
 impl Levels {
-    pub(crate) const WHITE: Levels = Levels { white: 1.0, torque: 0.0 };
+    pub(crate) const WHITE: Levels = Levels { white: 1.0, torque: 0.0, shape: Shape::Moments };
 }
 
 /// The weak equations of one stretch, linearised at samples `rates` − `noise`, a tensor and values of the columns.
@@ -122,12 +132,26 @@ impl Linearised {
         covariance.scale(levels.white);
         if levels.torque > 0.0 {
             for (apart, overlap) in self.tests.overlaps().into_iter().enumerate() {
-                for row in 3 * apart..3 * self.tests.count {
-                    covariance.add(row, row - 3 * apart, levels.torque * overlap);
+                let shape = self.covariance_of(levels.shape) * (levels.torque * overlap);
+                for m in apart..self.tests.count {
+                    let n = m - apart;
+                    for p in 0..3 {
+                        for q in 0..if apart == 0 { p + 1 } else { 3 } {
+                            covariance.add(3 * m + p, 3 * n + q, shape[(p, q)]);
+                        }
+                    }
                 }
             }
         }
         covariance.factor().then_some(covariance)
+    }
+
+    /// Covariance of torque noise of level 1.
+    fn covariance_of(&self, shape: Shape) -> Matrix3<f64> {
+        match shape {
+            Shape::Moments => self.terms.j * self.terms.j,
+            Shape::Alike => Matrix3::identity() / 9.0,
+        }
     }
 
     /// Residuals at other unknowns, not whitened.
@@ -147,7 +171,7 @@ impl Linearised {
     pub(crate) fn mean_variances(&self) -> (f64, f64) {
         let size = 3 * self.tests.count;
         let white = (0..size).map(|i| self.noise.get(i, i)).sum::<f64>() / size as f64;
-        (white, self.tests.overlaps().first().copied().unwrap_or(0.0))
+        (white, self.tests.overlaps().first().copied().unwrap_or(0.0) / 9.0)
     }
 
     /// V of this stretch.

@@ -286,7 +286,7 @@ impl<'a> Rounds<'a> {
             if round == 0 {
                 let boundless = |part: &Linearised| {
                     let (noise, torque) = part.mean_variances();
-                    Levels { white: 1.0, torque: BOUNDLESS * noise / torque }
+                    Levels { torque: BOUNDLESS * noise / torque, ..Levels::WHITE }
                 };
                 self.levels = parts.iter().map(boundless).collect();
             }
@@ -301,10 +301,11 @@ impl<'a> Rounds<'a> {
                 let floor = FALL * levels.torque;
                 let target = match noise {
                     Noise::White => Levels::WHITE,
-                    Noise::Given(torque) => Levels { white: 1.0, torque },
+                    Noise::Given(torque) => Levels { torque, ..Levels::WHITE },
                     Noise::Fitted => {
-                        let choice = Choice { white: several, least: 0.0, most: f64::MAX };
-                        likeliest(part, &part.residuals(&next), variance, fitted, choice)?
+                        let choice = Choice { white: several };
+                        let last = (round > 0).then_some(*levels);
+                        likeliest(part, &part.residuals(&next), variance, fitted, choice, last)?
                     }
                 };
                 let mut new = Levels { torque: target.torque.max(floor), ..target };
