@@ -17,6 +17,17 @@ pub(super) enum Model {
     WrongUnit,
 }
 
+impl Model {
+    /// As tables print it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::AtHand => "at hand",
+            Self::Missing => "missing",
+            Self::WrongUnit => "wrong unit",
+        }
+    }
+}
+
 /// One row.
 pub(super) struct Case {
     pub(super) name: &'static str,

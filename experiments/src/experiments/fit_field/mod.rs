@@ -42,11 +42,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let shown = |x: Option<f64>| x.and_then(rounded);
         table.push(row![
             case.name,
-            match case.model {
-                Model::AtHand => "at hand",
-                Model::Missing => "missing",
-                Model::WrongUnit => "wrong unit",
-            },
+            case.model.name(),
             noise,
             shown(tally.over_bound()),
             shown(tally.median()),
@@ -65,8 +61,20 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         }
     }
     let totals = totals(&pooled, &cells, &results, trials as usize);
+    let hidden = ["model", "median", "coverage_low", "coverage_high"];
+    let by_model = [
+        ("at-hand", "Records of which the fit has a model.", Model::AtHand),
+        ("missing", "Records with what the fit has no model of.", Model::Missing),
+        ("wrong-unit", "Records in other units than they say.", Model::WrongUnit),
+    ];
+    let mut views: Vec<Table> = by_model
+        .into_iter()
+        .map(|(name, what, model)| table.view(name, what, &hidden, ("model", model.name())))
+        .collect();
+    views.push(totals.clone());
     Ok(Report {
         tables: vec![table, totals],
+        views,
         timing: Some(timing),
         seed: Some(SEED),
         failures,

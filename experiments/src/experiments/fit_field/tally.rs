@@ -48,7 +48,10 @@ impl Interval {
         let square = z * z / n;
         let centre = (share + 0.5 * square) / (1.0 + square);
         let half = z / (1.0 + square) * (share * (1.0 - share) / n + 0.25 * square / n).sqrt();
-        Some(Interval { share, low: (centre - half).max(0.0), high: (centre + half).min(1.0) })
+        // none and all end at the end, whatever the rounding
+        let low = if count == 0 { 0.0 } else { (centre - half).max(0.0) };
+        let high = if count == of { 1.0 } else { (centre + half).min(1.0) };
+        Some(Interval { share, low, high })
     }
 }
 
@@ -183,7 +186,11 @@ mod tests {
         let i = Interval::new(81, 263).unwrap();
         assert!((i.low - 0.2553).abs() < 5e-5 && (i.high - 0.3662).abs() < 5e-5, "{} {}", i.low, i.high);
         let i = Interval::new(0, 20).unwrap();
-        assert!(i.low == 0.0 && (i.high - 0.1611).abs() < 5e-5, "{}", i.high);
+        assert!(
+            i.low == 0.0 && Interval::new(0, 18).unwrap().low == 0.0 && (i.high - 0.1611).abs() < 5e-5,
+            "{}",
+            i.high
+        );
         assert!(Interval::new(0, 0).is_none());
     }
 
