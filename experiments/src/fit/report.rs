@@ -130,6 +130,15 @@ fn object(e: &Estimate) -> Value {
             "coefficients": nuisances(&e.torque.coefficients),
         },
         "nuisances": nuisances(&e.nuisances),
+        "systematic": e.systematic.iter().map(|s| json!({
+            "name": s.name, "size": s.size, "unit": s.unit, "principal": s.principal, "ratios": s.ratios,
+        })).collect::<Vec<_>>(),
+        "per_segment": e.per_segment.iter().map(|s| json!({
+            "segment": s.segment + 1, "samples": s.samples, "noise_sigma": s.noise_sigma,
+            "torque_noise": s.torque_noise, "weight": s.weight, "shift": s.shift,
+        })).collect::<Vec<_>>(),
+        "spikes": e.spikes.iter().map(|s| json!({ "line": s.line, "time": s.time })).collect::<Vec<_>>(),
+        "rho": e.per_segment.iter().map(|s| s.torque_noise * s.weight).sum::<f64>(),
         "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
         "warnings": e.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
@@ -229,6 +238,16 @@ fn text(e: &Estimate) -> String {
     };
     for n in e.torque.coefficients.iter().chain(&e.nuisances) {
         lines.push(format!("  {:<16} {} {}", n.name, with_error(n.value, n.sigma), n.unit).trim_end().into());
+    }
+    if !e.systematic.is_empty() {
+        lines.push(
+            "systematic changes of I1, I2, I3 by errors of the sensor that are taken to be zero:".into(),
+        );
+        for s in &e.systematic {
+            let [a, b, c] = s.principal.map(|change| format!("{change:9.5}"));
+            let name = format!("{} {} {}", s.name, s.size, s.unit);
+            lines.push(format!("  {:<28} {a} {b} {c}", name.trim_end()));
+        }
     }
     lines.push(tensor("shape (trace 1)", &e.shape.tensor()));
     if let Some(inertia) = &e.inertia {
