@@ -11,10 +11,12 @@ use super::report::averages;
 use super::report::estimate::Estimate;
 use super::report::facts::Facts;
 use super::report::identifiability::Identifiability;
-use super::settings::{Settings, TorqueNoise};
+use super::report::nuisance::Spike;
+use super::report::torque_free::trends;
+use super::settings::{Settings, TorqueModel, TorqueNoise};
 use super::weak::ladder::{Demand, climb};
 use super::weak::mistaken_units::better_unit;
-use super::weak::model::sensor_columns;
+use super::weak::model::{Column, Kind, sensor_columns};
 use super::weak::noise;
 use super::weak::normalised::{Normalised, normalised};
 use super::weak::radius::Failure;
@@ -52,7 +54,20 @@ use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
 /// look mistaken; limits that contradict each other or the physical law; a program without a certified answer.
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
-    let Normalised { stretches, rms } = normalised(record)?;
+    if settings.leave_out_spikes {
+        let (spikes, rest) = record.without_spikes();
+        fit_to(&rest, settings, spikes)
+    } else {
+        fit_to(record, settings, Vec::new())
+    }
+}
+
+/// The same of a record whose spikes were left out.
+fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Estimate, FitError> {
+    let Normalised { stretches, rms, input } = normalised(record)?;
+    if input.is_some() && settings.known.is_some() {
+        return Err(FitError::TwoScales);
+    }
     let variance = match settings.noise {
         Some(sigma) => Some((sigma / rms) * (sigma / rms))
             .filter(|v| v.is_normal())
@@ -66,6 +81,8 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
     }
     let singular = || FitError::Solver(SolverFailure::Covariance);
+    let mut columns = sensor_columns(&settings.sensor, rms);
+    columns.extend(input.map(|_| Column { kind: Kind::Input, prior: None }));
     let demand = Demand {
         radius: settings.radius.map(|r| r * rms),
         torque: settings.torque,
@@ -74,7 +91,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
             TorqueNoise::Given(density) => Noise::Given(density / (rms * rms * rms) / variance),
             TorqueNoise::Fitted => Noise::Fitted,
         },
-        columns: &sensor_columns(&settings.sensor, rms),
+        columns: &columns,
     };
     let chosen = climb(&stretches, demand, variance).map_err(|failure| match failure {
         Failure::Dense => settings.radius.map_or_else(singular, |radius| FitError::Dense { radius }),
@@ -85,8 +102,9 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let misfit = weak.misfit(variance);
     // torque noise may hide a mistaken unit, which must then explain the record without any
     let noisy = weak.levels().iter().any(|levels| levels.torque > 0.0);
-    let better = if settings.check_units && (misfit > 4.0 || noisy || !weak.settled()) {
-        better_unit(&stretches, variance)
+    let scaled = stretches.iter().any(|s| s.inputs.is_some());
+    let better = if settings.check_units && !scaled && (misfit > 4.0 || noisy || !weak.settled()) {
+        better_unit(&stretches, &weak.columns, variance)
     } else {
         None
     };
@@ -107,7 +125,10 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         // the rates are not constant, and still no tensor explains them
         let axes = averages::axes(&stretches, variance);
         let factor = better.map(|b| b.factor);
-        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes });
+        let (fall, _) = trends(&stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0));
+        let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
+            .then_some(-fall.rate * rms);
+        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall });
     }
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
@@ -116,7 +137,17 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     // R⁻¹, a factor of the covariance
     let free = root.try_inverse().ok_or(FitError::Solver(SolverFailure::Information))?;
     let answer = nearest(weak.x(), root, &settings.limits)?;
-    let facts = Facts { record, settings, stretches: &stretches, rms, variance, chosen: &chosen, misfit };
+    let facts = Facts {
+        record,
+        settings,
+        stretches: &stretches,
+        rms,
+        variance,
+        chosen: &chosen,
+        misfit,
+        spikes,
+        input,
+    };
     facts.report(answer, free, identifiability, better.as_ref().filter(|b| b.credible))
 }
 

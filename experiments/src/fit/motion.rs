@@ -1,6 +1,6 @@
 //! The motion that a fit stands for, beside the readings.
 
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use polhode::fit::{Estimate, Nuisance, Record, Segment};
 
 /// One segment, measured and fitted.
@@ -91,12 +91,33 @@ impl Sensor {
     }
 }
 
-/// J ω' = −ω × J ω − k J ω − D ω + τ with trace 1.
+/// p' = p × ω − k J ω − D ω + τ with p = J ω + h, everything over the trace of the tensor.
 struct Law {
     j: Matrix3<f64>,
     inverse: Matrix3<f64>,
+    /// k J + D.
     damping: Matrix3<f64>,
     torque: Vector3<f64>,
+    /// Trace of the tensor, kg m², where it is known.
+    trace: Option<f64>,
+}
+
+/// Momentum of wheels and torque of a record at its samples, over the trace; empty where there is none.
+struct Inputs {
+    wheel: Vec<Vector3<f64>>,
+    torque: Vec<Vector3<f64>>,
+}
+
+impl Inputs {
+    /// Between samples `i` and the next.
+    fn at(&self, i: usize, share: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let between = |list: &[Vector3<f64>]| match (list.get(i), list.get(i + 1)) {
+            (Some(a), Some(b)) => a + (b - a) * share,
+            (Some(a), None) => *a,
+            _ => Vector3::zeros(),
+        };
+        (between(&self.wheel), between(&self.torque))
+    }
 }
 
 /// Radians of the first window, and how much each is longer than the one before.
@@ -118,32 +139,45 @@ impl Law {
             inverse: j.try_inverse()?,
             damping: j * drag + symmetric(of, "drag"),
             torque: vector(of, "torque"),
+            trace: e.inertia.as_ref().map(|inertia| inertia.tensor().trace()),
         })
     }
 
-    fn slope(&self, w: &Vector3<f64>) -> Vector3<f64> {
-        self.inverse * (self.torque - w.cross(&(self.j * w)) - self.damping * w)
+    fn inputs(&self, s: &Segment) -> Inputs {
+        let scaled = |list: Option<&[Vector3<f64>]>| match (list, self.trace) {
+            (Some(list), Some(trace)) => list.iter().map(|v| v / trace).collect(),
+            _ => Vec::new(),
+        };
+        Inputs { wheel: scaled(s.wheel()), torque: scaled(s.torque()) }
     }
 
-    /// The derivative of the slope.
-    fn linear(&self, w: &Vector3<f64>) -> Matrix3<f64> {
-        let own = (self.j * w).cross_matrix() - w.cross_matrix() * self.j;
-        self.inverse * (own - self.damping)
+    /// p', and its derivative with respect to p.
+    fn slope(
+        &self,
+        p: &Vector3<f64>,
+        (wheel, torque): (Vector3<f64>, Vector3<f64>),
+    ) -> (Vector3<f64>, Matrix3<f64>) {
+        let w = self.inverse * (p - wheel);
+        let linear = (p.cross_matrix() - self.damping) * self.inverse - w.cross_matrix();
+        (self.torque + torque + p.cross(&w) - self.damping * w, linear)
     }
 
-    /// The classical Runge–Kutta step, for a rate and its derivative with respect to the start.
-    fn advance(&self, w: &mut Vector3<f64>, s: &mut Matrix3<f64>, time: f64) {
-        let parts = (w.norm() * time / STEP).ceil().clamp(1.0, 1000.0);
+    /// From sample `i` to the next by the classical Runge–Kutta step, for p and its derivative with respect to the start.
+    fn advance(&self, p: &mut Vector3<f64>, s: &mut Matrix3<f64>, time: f64, inputs: &Inputs, i: usize) {
+        let speed = (self.inverse * (*p - inputs.at(i, 0.0).0)).norm();
+        let parts = (speed * time / STEP).ceil().clamp(1.0, 1000.0);
         let h = time / parts;
-        for _ in 0..parts as usize {
-            let (w1, s1) = (self.slope(w), self.linear(w) * *s);
-            let middle = *w + w1 * (0.5 * h);
-            let (w2, s2) = (self.slope(&middle), self.linear(&middle) * (*s + s1 * (0.5 * h)));
-            let middle = *w + w2 * (0.5 * h);
-            let (w3, s3) = (self.slope(&middle), self.linear(&middle) * (*s + s2 * (0.5 * h)));
-            let end = *w + w3 * h;
-            let (w4, s4) = (self.slope(&end), self.linear(&end) * (*s + s3 * h));
-            *w += (w1 + (w2 + w3) * 2.0 + w4) * (h / 6.0);
+        for part in 0..parts as usize {
+            let at = |share: f64| inputs.at(i, (part as f64 + share) / parts);
+            let (p1, l1) = self.slope(p, at(0.0));
+            let s1 = l1 * *s;
+            let (p2, l2) = self.slope(&(*p + p1 * (0.5 * h)), at(0.5));
+            let s2 = l2 * (*s + s1 * (0.5 * h));
+            let (p3, l3) = self.slope(&(*p + p2 * (0.5 * h)), at(0.5));
+            let s3 = l3 * (*s + s2 * (0.5 * h));
+            let (p4, l4) = self.slope(&(*p + p3 * h), at(1.0));
+            let s4 = l4 * (*s + s3 * h);
+            *p += (p1 + (p2 + p3) * 2.0 + p4) * (h / 6.0);
             *s += (s1 + (s2 + s3) * 2.0 + s4) * (h / 6.0);
         }
     }
@@ -154,20 +188,23 @@ impl Law {
         times: &[f64],
         measured: &[Vector3<f64>],
         used: &[bool],
+        inputs: &Inputs,
         start: Vector3<f64>,
     ) -> (Vec<Vector3<f64>>, Matrix3<f64>, Vector3<f64>, f64) {
-        let (mut w, mut s) = (start, SMatrix::identity());
+        let (mut p, mut s) = (self.j * start + inputs.at(0, 0.0).0, self.j);
         let (mut normal, mut gradient, mut sum) = (Matrix3::zeros(), Vector3::zeros(), 0.0);
         let mut rates = Vec::with_capacity(times.len());
         for i in 0..times.len() {
             if i > 0 {
-                self.advance(&mut w, &mut s, times[i] - times[i - 1]);
+                self.advance(&mut p, &mut s, times[i] - times[i - 1], inputs, i - 1);
             }
+            let w = self.inverse * (p - inputs.at(i, 0.0).0);
+            let by_start = self.inverse * s;
             rates.push(w);
             if used[i] {
                 let left = measured[i] - w;
-                normal += s.transpose() * s;
-                gradient += s.transpose() * left;
+                normal += by_start.transpose() * by_start;
+                gradient += by_start.transpose() * left;
                 sum += left.norm_squared();
             }
         }
@@ -178,18 +215,20 @@ impl Law {
     /// for the next.
     fn nearest(&self, s: &Segment, measured: &[Vector3<f64>], used: &[bool]) -> Option<Vec<Vector3<f64>>> {
         let times = s.times();
+        let inputs = self.inputs(s);
         let speed = (measured.iter().map(Vector3::norm_squared).sum::<f64>() / measured.len() as f64).sqrt();
         let mut start = measured[used.iter().position(|used| *used)?];
         let mut radius = FIRST / speed;
         loop {
             let count = times.partition_point(|t| *t <= times[0] + radius).max(4).min(times.len());
             let part = (&times[..count], &measured[..count], &used[..count]);
-            let (mut rates, mut normal, mut gradient, mut sum) = self.shoot(part.0, part.1, part.2, start);
+            let (mut rates, mut normal, mut gradient, mut sum) =
+                self.shoot(part.0, part.1, part.2, &inputs, start);
             let mut damping = 0.0;
             for _ in 0..STEPS {
                 let ridge = Matrix3::identity() * (damping * normal.trace());
                 let step = (normal + ridge).cholesky()?.solve(&gradient);
-                let next = self.shoot(part.0, part.1, part.2, start + step);
+                let next = self.shoot(part.0, part.1, part.2, &inputs, start + step);
                 if next.3 < sum {
                     let gain = sum - next.3;
                     start += step;

@@ -27,3 +27,4 @@ pub(crate) mod law;
 pub(crate) mod limits;
 pub(crate) mod nearest;
 mod program;
+pub(crate) mod truncated;

@@ -5,7 +5,7 @@ use crate::fit::weak::model::{Column, Kind};
 use crate::fit::weak::rounds::WeakEstimate;
 
 /// Name and unit of an unknown, and the power of the unit rate that it goes with.
-fn named(kind: Kind) -> (&'static str, &'static str, i32) {
+pub(crate) fn named(kind: Kind) -> (&'static str, &'static str, i32) {
     let of = |names: [&'static str; 6], k: usize| names[k.min(5)];
     match kind {
         Kind::Drag => ("drag", "1/s", 1),

@@ -60,7 +60,8 @@ pub struct Estimate {
     pub ratios: [f64; 2],
     /// Their standard deviations.
     pub sigma_ratios: [f64; 2],
-    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the shape, shares² of the trace; rank 5, less on the face of an active constraint.
+    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the shape, shares² of the trace; rank 5. Of an answer that a
+    /// constraint holds it is the mean square distance from it of what the record tells within the constraints.
     pub covariance: SMatrix<f64, 6, 6>,
     /// Covariance of the same before the physical law was imposed: what a test of other tensors should use.
     pub free_covariance: SMatrix<f64, 6, 6>,

@@ -7,6 +7,8 @@ pub(crate) mod facts;
 pub(crate) mod identifiability;
 pub(crate) mod nuisance;
 pub(crate) mod scale;
+pub(crate) mod segments;
+pub(crate) mod systematic;
 pub(crate) mod torque_free;
 pub(crate) mod warning;
 mod warnings;

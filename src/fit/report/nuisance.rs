@@ -26,16 +26,10 @@ pub struct Torque {
     pub model: TorqueModel,
     /// Its coefficients.
     pub coefficients: Vec<Nuisance>,
-    /// Gain of the restricted log-likelihood over no torque.
-    pub gain: f64,
+    /// Gain of log-likelihood over no torque, where both were fitted.
+    pub gain: Option<f64>,
     /// I₁/I₃ and I₂/I₃ as they would be without the torque.
     pub ratios_without: Option<[f64; 2]>,
-}
-
-impl Default for Torque {
-    fn default() -> Self {
-        Torque { model: TorqueModel::None, coefficients: Vec::new(), gain: 0.0, ratios_without: None }
-    }
 }
 
 /// What an error of the sensor that the fit takes to be zero would do to the moments.

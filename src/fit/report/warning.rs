@@ -21,6 +21,13 @@ pub enum Warning {
         /// Samples that were left out.
         samples: usize,
     },
+    /// Samples that stand out of their neighbours were left out.
+    Spikes {
+        /// Samples that were left out.
+        samples: usize,
+        /// Line of the first of them.
+        line: usize,
+    },
     /// Segments were left out, as too short for the test functions.
     ShortSegments {
         /// Segments that were left out.
@@ -57,6 +64,8 @@ pub enum Warning {
     MomentumTrend(InvariantTrend),
     /// The energy ω·J ω changes.
     EnergyTrend(InvariantTrend),
+    /// Wheel momenta and torques of the record are too small to give the tensor its size.
+    NoScale,
     /// A torque was found and reckoned with.
     Torque(Torque),
     /// The residuals of one segment exceed those of the median segment.
@@ -104,6 +113,11 @@ impl fmt::Display for Warning {
                 let (subject, verb) = if *samples == 1 { ("sample", "was") } else { ("samples", "were") };
                 write!(f, "{samples} {subject} at the end of the sensor's range (flat tops) {verb} left out")
             }
+            Self::Spikes { samples, line } => write!(
+                f,
+                "{} left out as standing far out of what their neighbours foresee; the first is in line {line}",
+                counted(*samples, "was", "were")
+            ),
             Self::ShortSegments { short, segments } => {
                 write!(f, "{short} of {segments} segments are too short for the test functions")
             }
@@ -132,6 +146,9 @@ impl fmt::Display for Warning {
             ),
             Self::MomentumTrend(trend) => torque(f, "momentum |J w|", trend),
             Self::EnergyTrend(trend) => torque(f, "energy w J w", trend),
+            Self::NoScale => f.write_str(
+                "the wheel momenta and torques do not stand out of the noise: the size of the tensor is unknown",
+            ),
             Self::Torque(torque) => reckoned(f, torque),
             Self::NoisySegment { segment, start, times } => write!(
                 f,

@@ -20,7 +20,7 @@ pub(crate) struct Chosen {
     pub(crate) weak: WeakEstimate,
     pub(crate) model: TorqueModel,
     /// Gain of log-likelihood over no torque.
-    pub(crate) gain: f64,
+    pub(crate) gain: Option<f64>,
     /// Coordinates without the torque.
     pub(crate) without: Option<Coordinates>,
 }
@@ -55,7 +55,7 @@ impl Demand<'_> {
 
 /// The weak estimate that the demand asks for.
 pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) -> Result<Chosen, Failure> {
-    let plain = |weak, model| Chosen { weak, model, gain: 0.0, without: None };
+    let plain = |weak, model| Chosen { weak, model, gain: None, without: None };
     let free = matches!(demand.torque, TorqueModel::None | TorqueModel::Auto);
     let descent = |model: TorqueModel, radius: Option<f64>| {
         descended(stretches, radius, &demand.columns(model), variance, demand.noise)
@@ -95,12 +95,14 @@ pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) ->
     let none = descent(TorqueModel::None, radius)?;
     let floor = likelihood(&none, variance);
     let without = none.settled().then(|| none.x());
-    let mut best = Chosen { weak: none, model: TorqueModel::None, gain: 0.0, without: None };
+    let mut best = Chosen { weak: none, model: TorqueModel::None, gain: None, without: None };
     let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
         let gain = likelihood(&weak, variance) - floor;
         let more = columns_of(model).len().saturating_sub(columns_of(best.model).len()).max(1);
         let asked = if best.model == TorqueModel::None { needed(0, model) } else { threshold(more) };
-        let better = weak.settled() && (!best.weak.settled() || gain - best.gain > asked);
+        let before = likelihood(&best.weak, variance) - floor;
+        let better = weak.settled() && (!best.weak.settled() || gain - before > asked);
+        let gain = Some(gain).filter(|gain| gain.is_finite());
         if better { Chosen { weak, model, gain, without } } else { best }
     };
     best = climb(best, TorqueModel::Drag, drag);
@@ -113,7 +115,9 @@ pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) ->
         best = climb(best, TorqueModel::Drag3, drag);
     }
     // what a descent did not settle, plain rounds may have
-    if first.settled() && (!best.weak.settled() || (explained && best.gain == 0.0 && !noisy(&best.weak))) {
+    if first.settled()
+        && (!best.weak.settled() || (explained && best.model == TorqueModel::None && !noisy(&best.weak)))
+    {
         return Ok(plain(first, base));
     }
     Ok(best)

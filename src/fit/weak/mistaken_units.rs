@@ -4,6 +4,7 @@ use core::f64::consts::PI;
 use core::fmt;
 
 use super::ladder::columns_of;
+use super::model::Column;
 use super::radius;
 use super::rounds::{Noise, WeakEstimate};
 use super::test_functions::Stretch;
@@ -95,11 +96,18 @@ const LISTED: usize = 3;
 /// Largest misfit of a unit that explains a record.
 const EXPLAINED: f64 = 2.0;
 
-/// The units that explain the record, where there are such.
-pub(crate) fn better_unit(stretches: &[Stretch], variance: f64) -> Option<Better> {
+/// The units that explain the record, where there are such and the unit that it was read in is none of them: with the
+/// columns that were fitted in that unit, and with drag, which slows a body in any, but without torque noise.
+pub(crate) fn better_unit(stretches: &[Stretch], columns: &[Column], variance: f64) -> Option<Better> {
     let pilot = radius::pilot(stretches);
-    // drag slows a body in any unit
-    let columns = columns_of(TorqueModel::Drag);
+    let drag = columns_of(TorqueModel::Drag);
+    let as_read = [columns, &drag[..]].into_iter().any(|columns| {
+        let weak = radius::descended(&pilot, None, columns, variance, Noise::White);
+        weak.is_ok_and(|weak| weak.settled() && weak.misfit(variance) < EXPLAINED)
+    });
+    if as_read {
+        return None;
+    }
     let mut found = Vec::new();
     let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
     for (factor, mistake) in candidates.chain([(ANY, None)]) {
@@ -107,7 +115,7 @@ pub(crate) fn better_unit(stretches: &[Stretch], variance: f64) -> Option<Better
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
-        let weak = radius::descended(&scaled, None, &columns, variance, Noise::White);
+        let weak = radius::descended(&scaled, None, &drag, variance, Noise::White);
         let settled = weak.ok().filter(WeakEstimate::settled);
         found.extend(settled.map(|weak| Found {
             factor,

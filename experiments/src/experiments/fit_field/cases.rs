@@ -88,7 +88,7 @@ const DEGREES_READ: Case = Case { model: Model::WrongUnit, rate_factor: DEGREES,
 const MILLISECONDS_READ: Case = Case { model: Model::WrongUnit, time_factor: 1000.0, ..IDEAL };
 
 /// The rows.
-pub(super) const CASES: [Case; 23] = [
+pub(super) const CASES: [Case; 24] = [
     IDEAL,
     Case { name: "drag 0.1 %/s", drag: 1e-3, ..IDEAL },
     Case { name: "drag 1 %/s", drag: 1e-2, ..IDEAL },
@@ -108,6 +108,7 @@ pub(super) const CASES: [Case; 23] = [
         scale_prior: Some(0.02),
         ..IDEAL
     },
+    Case { name: "known wheel, 10 %", wheel: 0.1, wheel_known: true, ..IDEAL },
     Case { name: "offset 0.01", offset: 0.01, ..UNMODELLED },
     Case { name: "scale 2 %", scale: 0.02, ..UNMODELLED },
     Case { name: "axis scales 2 %", axis_scales: 0.02, ..UNMODELLED },

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
-use polhode::fit::{Estimate, FitError, Record, fit, simulate_with};
+use polhode::fit::{Estimate, FitError, Record, Segment, fit, simulate_with};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 
@@ -60,7 +60,7 @@ pub(super) fn trial(case: &Case, noise: f64, times: &[f64], seed: u64, stream: u
     let drawn = case.draw(noise, (j * omega).norm(), &mut random);
     let (acting, sensor) = (&drawn.disturbances, &drawn.gyroscope);
     let rates = simulate_with(&body, omega, times, acting, sensor, &mut random).map_err(unexpected)?;
-    let record = record(case, times, &rates)?;
+    let record = record(case, times, &rates, &drawn)?;
 
     let start = Instant::now();
     let found = fit(&record, &case.settings());
@@ -88,10 +88,17 @@ pub(super) fn trial(case: &Case, noise: f64, times: &[f64], seed: u64, stream: u
 }
 
 /// The readings in the units that the case gives them.
-fn record(case: &Case, times: &[f64], rates: &[Vector3<f64>]) -> Result<Record, Error> {
+fn record(case: &Case, times: &[f64], rates: &[Vector3<f64>], drawn: &Drawn) -> Result<Record, Error> {
     let times: Vec<f64> = times.iter().map(|t| t * case.time_factor).collect();
     let rates: Vec<Vector3<f64>> = rates.iter().map(|w| w * case.rate_factor).collect();
-    Record::from_samples(&times, &rates).map_err(unexpected)
+    if !case.wheel_known {
+        return Record::from_samples(&times, &rates).map_err(unexpected);
+    }
+    let momenta = times.iter().map(|t| drawn.disturbances.wheel_at(*t)).collect();
+    let segment = Segment::new("record", times, rates).and_then(|segment| segment.with_wheel(momenta));
+    let mut record = Record::default();
+    record.segments.push(segment.map_err(unexpected)?);
+    Ok(record)
 }
 
 fn answer(

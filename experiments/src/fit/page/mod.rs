@@ -136,11 +136,11 @@ fn torques(e: &Estimate) -> Vec<Part> {
         return Vec::new();
     }
     let mut parts = vec![Part::Heading("Torque".into())];
-    parts.push(Part::Paragraph(format!(
-        "Model: {}. It gains {:.1} in log-likelihood over none.",
-        torque(e.torque.model),
-        e.torque.gain
-    )));
+    let model = torque(e.torque.model);
+    parts.push(Part::Paragraph(match e.torque.gain {
+        Some(gain) => format!("Model: {model}. It gains {gain:.1} in log-likelihood over none."),
+        None => format!("Model: {model}."),
+    }));
     parts.push(numbers(&e.torque.coefficients));
     if let Some(without) = e.torque.ratios_without {
         let head = ["", "with the torque", "without it"].map(String::from).to_vec();

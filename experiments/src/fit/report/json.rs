@@ -61,13 +61,13 @@ pub(super) fn object(e: &Estimate) -> Value {
             "name": line.name, "size": line.size, "unit": line.unit,
             "principal": line.principal, "ratios": line.ratios,
         })).collect::<Vec<_>>(),
-        "rho": e.per_segment.iter().map(|s| s.torque_noise).collect::<Vec<_>>(),
+        "rho": e.per_segment.iter().map(|s| s.torque_noise * s.weight).sum::<f64>(),
         "per_segment": e.per_segment.iter().map(|s| json!({
-            "segment": s.segment, "samples": s.samples, "noise_sigma": s.noise_sigma,
-            "rho": s.torque_noise, "weight": s.weight, "shift": s.shift,
+            "segment": s.segment + 1, "samples": s.samples, "noise_sigma": s.noise_sigma,
+            "torque_noise": s.torque_noise, "weight": s.weight, "shift": s.shift,
         })).collect::<Vec<_>>(),
         "spikes": e.spikes.iter().map(|s| json!({
-            "segment": s.segment, "sample": s.sample, "time": s.time, "line": s.line,
+            "segment": s.segment + 1, "line": s.line, "time": s.time,
         })).collect::<Vec<_>>(),
         "warnings": e.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })

@@ -88,7 +88,10 @@ fn torques(e: &Estimate) -> Vec<String> {
     }
     let mut lines = vec![
         String::new(),
-        format!("torque: {}, gain of log-likelihood {:.1}", torque(e.torque.model), e.torque.gain),
+        match e.torque.gain {
+            Some(gain) => format!("torque: {}, gain of log-likelihood {gain:.1}", torque(e.torque.model)),
+            None => format!("torque: {}", torque(e.torque.model)),
+        },
     ];
     lines.extend(e.torque.coefficients.iter().map(number));
     if let Some([a, b]) = e.torque.ratios_without {
