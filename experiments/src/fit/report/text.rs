@@ -43,7 +43,7 @@ fn answer(e: &Estimate) -> Vec<String> {
         lines.push(format!("  {name}  {:.places$} +- {sigma:.places$} (95 %, statistical)", e.ratios[k]));
     }
     if off.is_some() {
-        lines.push(format!("systematic: if the sensor is off by {}", sizes(e)));
+        lines.extend(["systematic: if the sensor is off by".into(), format!("  {}", sizes(e))]);
     }
     lines.push(format!(
         "{} samples, segments: {}, noise {:.3e} rad/s{}",
