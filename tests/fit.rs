@@ -271,8 +271,12 @@ fn a_flat_body_comes_out_physical_and_says_what_holds_it() {
             assert_eq!(constraint.constraint, Constraint::Triangle);
             assert!(constraint.multiplier > 0.0 && estimate.triangle_slack < 1e-12);
             assert!(estimate.warnings.iter().any(|w| w.to_string().contains("I1 + I2 >= I3")));
-            // on the face I₃ is ½, without error
-            assert!(estimate.sigma_principal[2] < 1e-3 * estimate.sigma_principal[0]);
+            // the wall says nothing of how far the truth is from it
+            let free = estimate.free_covariance.trace().sqrt();
+            assert!(estimate.sigma_principal.iter().all(|s| (1e-3 * free..2.0 * free).contains(s)));
+            let truth = [1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0];
+            let off = (0..3).map(|k| (estimate.principal[k] - truth[k]).abs() / estimate.sigma_principal[k]);
+            assert!(off.fold(0.0, f64::max) < 4.0, "{:?}", estimate.sigma_principal);
         }
     }
     assert!((2..=10).contains(&held), "{held} of 12 held by the law");

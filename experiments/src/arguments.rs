@@ -25,6 +25,14 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A finite number, zero or above.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        value if value >= 0.0 => Ok(value),
+        value => Err(format!("{value:?} is negative; give 0 or more")),
+    }
+}
+
 /// Finite numbers separated by commas.
 pub(crate) fn list(text: &str) -> Result<Vec<f64>, String> {
     let items = text.split(',').enumerate();

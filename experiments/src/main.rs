@@ -62,7 +62,7 @@ enum Command {
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
     Fit(Box<fit::Fit>),
-    Simulate(simulate::Simulate),
+    Simulate(Box<simulate::Simulate>),
     Methods(methods::Methods),
     Bodies(bodies::Bodies),
     Inertia(Box<inertia::Inertia>),

@@ -60,8 +60,8 @@ pub enum FitError {
     #[error(
         "the rates change, but the iteration did not converge in {rounds} rounds at any radius of the test functions: the \
          noise of {noise:.3e} rad/s may hide the motion, torques may act, or the body may be slender; record longer, \
-         with a larger wobble, or set the radius{}{}",
-        smaller(*factor), known(axes)
+         with a larger wobble, or set the radius{}{}{}",
+        slowed(*fall), smaller(*factor), known(axes)
     )]
     Unsettled {
         /// Rounds of reweighting at each radius.
@@ -72,6 +72,8 @@ pub enum FitError {
         factor: Option<f64>,
         /// What is known all the same, if no torque acted.
         axes: Vec<AverageAxis>,
+        /// Relative rate at which the rotation slows, 1/s, where it does and no torque was to be fitted.
+        fall: Option<f64>,
     },
     /// Another unit of the rates or times explains the record far better.
     #[error(
@@ -121,6 +123,12 @@ pub enum FitError {
         /// Its value.
         value: f64,
     },
+    /// The size of the tensor is given twice.
+    #[error(
+        "the record has wheel momenta or torques, which give the size of the tensor, and so does the known quantity; \
+         leave out one of them"
+    )]
+    TwoScales,
     /// Test functions that no segment has room for.
     #[error(
         "a radius of {radius} s needs a segment of {:.4} s, which holds two test functions with {needed} samples in each; \
@@ -143,8 +151,8 @@ pub enum FitError {
         /// The radius, s.
         radius: f64,
     },
-    /// The quadratic program has no certified answer.
-    #[error("the quadratic program has no certified answer: {0}")]
+    /// The program for the nearest physical tensor has no certified answer.
+    #[error("the program for the nearest physical tensor has no certified answer: {0}")]
     Solver(SolverFailure),
 }
 
@@ -154,6 +162,12 @@ fn demand(constraint: &Constraint) -> String {
         Constraint::Triangle => "the law I1 + I2 >= I3, by which a moment is at most half the trace".into(),
         limit => limit.to_string(),
     }
+}
+
+fn slowed(fall: Option<f64>) -> String {
+    fall.map_or(String::new(), |fall| {
+        format!(". The rates fall by {:.2} per cent per second: let the fit reckon with drag", 100.0 * fall)
+    })
 }
 
 fn smaller(factor: Option<f64>) -> String {

@@ -11,12 +11,16 @@ use super::report::averages;
 use super::report::estimate::Estimate;
 use super::report::facts::Facts;
 use super::report::identifiability::Identifiability;
-use super::settings::Settings;
-use super::weak::mistaken_units::{Better, better_unit};
+use super::report::nuisance::Spike;
+use super::report::torque_free::trends;
+use super::settings::{Settings, TorqueModel, TorqueNoise};
+use super::weak::ladder::{Demand, climb};
+use super::weak::mistaken_units::better_unit;
+use super::weak::model::{Column, Kind, sensor_columns};
 use super::weak::noise;
 use super::weak::normalised::{Normalised, normalised};
-use super::weak::radius::{self, Failure};
-use super::weak::rounds::{ROUNDS, WeakEstimate};
+use super::weak::radius::Failure;
+use super::weak::rounds::{Noise, ROUNDS, WeakEstimate};
 use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
 
 /// Fits one tensor to all segments of a record.
@@ -50,7 +54,20 @@ use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
 /// look mistaken; limits that contradict each other or the physical law; a program without a certified answer.
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
-    let Normalised { stretches, rms } = normalised(record)?;
+    if settings.leave_out_spikes {
+        let (spikes, rest) = record.without_spikes();
+        fit_to(&rest, settings, spikes)
+    } else {
+        fit_to(record, settings, Vec::new())
+    }
+}
+
+/// The same of a record whose spikes were left out.
+fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Estimate, FitError> {
+    let Normalised { stretches, rms, input } = normalised(record)?;
+    if input.is_some() && settings.known.is_some() {
+        return Err(FitError::TwoScales);
+    }
     let variance = match settings.noise {
         Some(sigma) => Some((sigma / rms) * (sigma / rms))
             .filter(|v| v.is_normal())
@@ -64,23 +81,35 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
     }
     let singular = || FitError::Solver(SolverFailure::Covariance);
-    let weak =
-        radius::estimate(&stretches, settings.radius.map(|r| r * rms), variance).map_err(|failure| {
-            match failure {
-                Failure::Dense => settings.radius.map_or_else(singular, |radius| FitError::Dense { radius }),
-                Failure::TooShort => too_short(record, settings, &stretches, rms),
-                Failure::Singular => singular(),
-            }
-        })?;
-    let misfit = weak.misfit(variance);
-    let better =
-        if settings.check_units && misfit > 4.0 { better_unit(&stretches, variance, misfit) } else { None };
-    // without a settled tensor to compare with, a unit must explain the record by itself, and one of any size must not:
-    // there is a tensor next to the sphere for any small wobble in large enough a unit
-    let convincing = |b: &&Better| {
-        b.credible && if weak.settled() { b.misfit < 0.1 * misfit } else { b.misfit < 2.0 && !b.vague }
+    let mut columns = sensor_columns(&settings.sensor, rms);
+    columns.extend(input.map(|_| Column { kind: Kind::Input, prior: None }));
+    let demand = Demand {
+        radius: settings.radius.map(|r| r * rms),
+        torque: settings.torque,
+        noise: match settings.torque_noise {
+            TorqueNoise::None => Noise::White,
+            TorqueNoise::Given(density) => Noise::Given(density / (rms * rms * rms) / variance),
+            TorqueNoise::Fitted => Noise::Fitted,
+        },
+        columns: &columns,
     };
-    if let Some(b) = better.as_ref().filter(convincing) {
+    let chosen = climb(&stretches, demand, variance).map_err(|failure| match failure {
+        Failure::Dense => settings.radius.map_or_else(singular, |radius| FitError::Dense { radius }),
+        Failure::TooShort => too_short(record, settings, &stretches, rms),
+        Failure::Singular => singular(),
+    })?;
+    let weak = &chosen.weak;
+    let misfit = weak.misfit(variance);
+    // torque noise may hide a mistaken unit, which must then explain the record without any
+    let noisy = weak.levels().iter().any(|levels| levels.torque > 0.0);
+    let scaled = stretches.iter().any(|s| s.inputs.is_some());
+    let better = if settings.check_units && !scaled && (misfit > 4.0 || noisy || !weak.settled()) {
+        better_unit(&stretches, &weak.columns, variance)
+    } else {
+        None
+    };
+    // a unit of any size must not convince: there is a tensor next to the sphere for any small wobble in large enough a unit
+    if let Some(b) = better.as_ref().filter(|b| b.credible && !b.vague) {
         return Err(FitError::Units {
             factor: b.factor,
             mistakes: b.mistakes.clone(),
@@ -88,13 +117,18 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
             better: b.misfit,
         });
     }
+    // torque noise that explains what a unit would explain without any explains nothing
+    let hidden = noisy && better.as_ref().is_some_and(|b| b.vague);
     // what the noise does not explain enlarges the deviations
-    let identifiability = identify(&weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
-    if !weak.settled() && misfit > 1.0 + 5.0 * (2.0 / weak.dof().max(1) as f64).sqrt() {
+    let identifiability = identify(weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
+    if hidden || (!weak.settled() && misfit > weak.expected_misfit()) {
         // the rates are not constant, and still no tensor explains them
         let axes = averages::axes(&stretches, variance);
-        let factor = better.filter(|b| b.misfit < 2.0).map(|b| b.factor);
-        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes });
+        let factor = better.map(|b| b.factor);
+        let (fall, _) = trends(&stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0));
+        let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
+            .then_some(-fall.rate * rms);
+        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall });
     }
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
@@ -102,8 +136,18 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     let root = weak.root / (variance * misfit.max(1.0)).sqrt();
     // R⁻¹, a factor of the covariance
     let free = root.try_inverse().ok_or(FitError::Solver(SolverFailure::Information))?;
-    let answer = nearest(weak.x, root, &settings.limits)?;
-    let facts = Facts { record, settings, stretches: &stretches, rms, variance, weak: &weak, misfit };
+    let answer = nearest(weak.x(), root, &settings.limits)?;
+    let facts = Facts {
+        record,
+        settings,
+        stretches: &stretches,
+        rms,
+        variance,
+        chosen: &chosen,
+        misfit,
+        spikes,
+        input,
+    };
     facts.report(answer, free, identifiability, better.as_ref().filter(|b| b.credible))
 }
 
@@ -133,5 +177,5 @@ fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option
     }
     let (singular, directions) = weak.spectrum()?;
     let spectrum = (singular / variance.sqrt(), directions);
-    Some(Identifiability::new(&spectrum, &(scatter / count), &tensor(&weak.x)))
+    Some(Identifiability::new(&spectrum, &(scatter / count), &tensor(&weak.x())))
 }

@@ -28,8 +28,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The tensor comes from rounds of linear least squares with one quadratic program at their end; it is not refined by
-//! maximum likelihood.
+//! The tensor comes from rounds of linear least squares with one small semidefinite program at their end, which is solved
+//! by outer approximation; it is not refined by maximum likelihood.
 
 mod cramer_rao;
 mod error;
@@ -52,9 +52,10 @@ pub use record::{RateUnit, Reading, Record, RecordError, Segment, TimeUnit};
 pub use report::averages::AverageAxis;
 pub use report::estimate::{Estimate, Residuals};
 pub use report::identifiability::{Identifiability, PrincipalAxis, Undetermined};
+pub use report::nuisance::{Nuisance, SegmentSummary, Spike, Systematic, Torque};
 pub use report::scale::Known;
 pub use report::torque_free::{InvariantTrend, Whiteness};
 pub use report::warning::Warning;
-pub use settings::Settings;
-pub use simulate::simulate;
+pub use settings::{SensorPriors, Settings, TorqueModel, TorqueNoise};
+pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_with};
 pub use weak::mistaken_units::MistakenUnit;

@@ -4,6 +4,77 @@ use super::error::FitError;
 use super::physical::limits::Limit;
 use super::report::scale::Known;
 
+/// A torque that acts on the body besides what the record measures. Coefficients are per trace of the tensor, so that
+/// they need no absolute scale.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TorqueModel {
+    /// None: the body is free.
+    None,
+    /// Drag that slows every rotation alike: τ = −k J ω, k ≥ 0 in 1/s.
+    Drag,
+    /// Viscous drag with a coefficient for each sensor axis: τ = −D ω, D diagonal.
+    Drag3,
+    /// Viscous drag with a symmetric matrix: τ = −D ω, six coefficients.
+    Drag6,
+    /// A torque that is constant in body axes.
+    Constant,
+    /// The first of no torque, [`Drag`](Self::Drag) or [`Constant`](Self::Constant), and [`Drag3`](Self::Drag3) that
+    /// the next one does not surpass in restricted likelihood.
+    #[default]
+    Auto,
+}
+
+/// White torque noise: what acts on the body at random, as turbulence does.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum TorqueNoise {
+    /// None.
+    None,
+    /// A white angular acceleration ξ of this power spectral density, (rad/s²)² s, and the torque J ξ.
+    Given(f64),
+    /// By restricted likelihood, for each segment: a torque J ξ, or one that is alike along all axes.
+    #[default]
+    Fitted,
+}
+
+/// Standard deviations of what may be wrong with the sensor, each a Gaussian prior about zero; `None` takes the sensor
+/// to be right.
+///
+/// ```
+/// use polhode::fit::{SensorPriors, Settings};
+/// // an offset of some 0.02 rad/s on each axis, and a scale of 2 per cent
+/// let sensor = SensorPriors { offset: Some(0.02), scale: Some(0.02), ..SensorPriors::default() };
+/// let settings = Settings { sensor, ..Settings::default() };
+/// assert!(settings.sensor.skew.is_none());
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SensorPriors {
+    /// Of the offset of each axis, rad/s.
+    pub offset: Option<f64>,
+    /// Of the relative error of scale that the axes share.
+    pub scale: Option<f64>,
+    /// Of the relative errors of scale of each axis by itself.
+    pub axis_scales: Option<f64>,
+    /// Of the angles by which pairs of axes are not at right angles, rad.
+    pub misalignment: Option<f64>,
+    /// Of the delays of the y and z axes behind the x axis, s.
+    pub skew: Option<f64>,
+}
+
+impl SensorPriors {
+    /// With their names.
+    fn named(&self) -> [(&'static str, Option<f64>); 5] {
+        [
+            ("the deviation of the offset", self.offset),
+            ("the deviation of the scale", self.scale),
+            ("the deviation of the axis scales", self.axis_scales),
+            ("the deviation of the misalignment", self.misalignment),
+            ("the deviation of the skew", self.skew),
+        ]
+    }
+}
+
 /// What the user may set; the default leaves everything to the record.
 ///
 /// ```
@@ -30,13 +101,31 @@ pub struct Settings {
     pub limits: Vec<Limit>,
     /// What gives the absolute size.
     pub known: Option<Known>,
-    /// Whether a unit that explains the record ten times better is an error.
+    /// Whether a unit that explains the record better is an error.
     pub check_units: bool,
+    /// The torque that acts.
+    pub torque: TorqueModel,
+    /// The torque noise.
+    pub torque_noise: TorqueNoise,
+    /// What may be wrong with the sensor.
+    pub sensor: SensorPriors,
+    /// Whether single samples that stand out of their neighbours are left out.
+    pub leave_out_spikes: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { radius: None, noise: None, limits: Vec::new(), known: None, check_units: true }
+        Settings {
+            radius: None,
+            noise: None,
+            limits: Vec::new(),
+            known: None,
+            check_units: true,
+            torque: TorqueModel::default(),
+            torque_noise: TorqueNoise::default(),
+            sensor: SensorPriors::default(),
+            leave_out_spikes: true,
+        }
     }
 }
 
@@ -44,9 +133,17 @@ impl Settings {
     /// Whether each value is one that a fit can use.
     pub(super) fn check(&self) -> Result<(), FitError> {
         let known = self.known.map(Known::value);
-        for (name, value) in
-            [("the radius", self.radius), ("the noise", self.noise), ("the known quantity", known)]
-        {
+        let density = match self.torque_noise {
+            TorqueNoise::Given(density) => Some(density),
+            TorqueNoise::None | TorqueNoise::Fitted => None,
+        };
+        let own = [
+            ("the radius", self.radius),
+            ("the noise", self.noise),
+            ("the known quantity", known),
+            ("the torque noise", density),
+        ];
+        for (name, value) in own.into_iter().chain(self.sensor.named()) {
             if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
                 return Err(FitError::Setting { name, value });
             }

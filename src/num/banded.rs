@@ -64,16 +64,28 @@ impl Banded {
         true
     }
 
-    /// L⁻¹ b, of a factor, in place, of several right-hand sides side by side.
-    pub(crate) fn forward<const N: usize>(&self, b: &mut [[f64; N]]) {
+    /// L⁻¹ b, of a factor, in place; b has rows of `width` numbers, one for each right-hand side.
+    pub(crate) fn forward(&self, b: &mut [f64], width: usize) {
         for i in 0..self.size {
             let first = i.saturating_sub(self.band);
-            let mut sum = b[i];
-            for (l, known) in self.row(i, first, i).iter().zip(&b[first..i]) {
-                (0..N).for_each(|k| sum[k] -= l * known[k]);
+            let (known, rest) = b.split_at_mut(i * width);
+            let own = &mut rest[..width];
+            for (l, row) in self.row(i, first, i).iter().zip(known[first * width..].chunks_exact(width)) {
+                own.iter_mut().zip(row).for_each(|(sum, value)| *sum -= l * value);
             }
-            b[i] = sum.map(|s| s / self.get(i, i));
+            let pivot = self.get(i, i);
+            own.iter_mut().for_each(|sum| *sum /= pivot);
         }
+    }
+
+    /// log |L Lᵀ| of a factor L.
+    pub(crate) fn log_determinant(&self) -> f64 {
+        2.0 * (0..self.size).map(|i| libm::log(self.get(i, i))).sum::<f64>()
+    }
+
+    /// Every entry times `factor`.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        self.rows.iter_mut().for_each(|entry| *entry *= factor);
     }
 
     /// L⁻ᵀ b, of a factor, in place.
@@ -145,10 +157,9 @@ mod tests {
         assert!(factor.factor());
         let z = factor.inverse_band();
         for j in 0..n {
-            let mut column = vec![[0.0]; n];
-            column[j] = [1.0];
-            factor.forward(&mut column);
-            let mut column: Vec<f64> = column.into_iter().flatten().collect();
+            let mut column = vec![0.0; n];
+            column[j] = 1.0;
+            factor.forward(&mut column, 1);
             factor.backward(&mut column);
             for i in 0..n {
                 let product: f64 = (0..n).map(|k| a.get(i, k) * column[k]).sum();

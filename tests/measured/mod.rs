@@ -3,6 +3,8 @@
 #![allow(dead_code)] // each test binary takes what it needs
 #![allow(clippy::unwrap_used)]
 
+pub(crate) mod torques;
+
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
 use polhode::fit::{Record, simulate};
 use polhode::inertia::Inertia;

@@ -5,6 +5,7 @@ mod conservation;
 mod drift;
 mod exact;
 mod fit_efficiency;
+mod fit_field;
 mod followed;
 mod heavy_top;
 mod inertia;
@@ -51,6 +52,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "fit-efficiency",
         question: "how close a fitted tensor comes to the Cramer-Rao bound, and what other formulations lose",
         run: fit_efficiency::run,
+    },
+    Experiment {
+        name: "fit-field",
+        question: "what drag, torques, wheels, sensors that are off, spikes and mistaken units do to a fit",
+        run: fit_field::run,
     },
     Experiment {
         name: "lecture",

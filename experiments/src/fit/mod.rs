@@ -1,24 +1,28 @@
 //! `polhode fit`: inertia from measured angular velocity.
 
+mod arguments;
+mod motion;
+mod page;
 mod plot;
 mod report;
 
 use std::path::{Path, PathBuf};
 
+use arguments::{KnownArguments, SensorArguments, Torque};
 use clap::Args;
 use nalgebra::Vector3;
-use polhode::fit::{FitError, Known, Limit, RateUnit, Reading, Record, RecordError, Settings, TimeUnit, fit};
+use polhode::fit::{FitError, Limit, RateUnit, Reading, Record, RecordError, Settings, TimeUnit, fit};
 use report::Facts;
 
 use crate::arguments::{number, numbers, positive};
-use crate::body_arguments::described;
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
-use crate::table::Format;
+use crate::table::{Cell, Column, Format, Table};
 
 const EXAMPLES: &str = "Examples:
   polhode fit record.csv
   polhode fit record.csv --window 0,2.5 --trace 0.0007
+  polhode fit record.csv --report fit.html --residuals residuals.csv
   polhode fit record.csv --residuals residuals.svg --format json";
 
 /// Inertia tensor of a torque-free body from its measured angular velocity
@@ -60,54 +64,26 @@ pub(crate) struct Fit {
     at_most: Vec<[f64; 4]>,
     #[command(flatten)]
     known: KnownArguments,
+    /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, constant in body axes
+    #[arg(long, value_enum, default_value_t = Torque::Auto)]
+    torque: Torque,
+    #[command(flatten)]
+    sensor: SensorArguments,
     /// Fit even if the record agrees far better with other units than those named
     #[arg(long)]
     trust_units: bool,
-    /// Write a plot of the residuals to this file
-    #[arg(long, value_name = "FILE.svg")]
+    /// Write the residuals to this file: a plot, or rows where it ends in .csv
+    #[arg(long, value_name = "FILE.svg|.csv")]
     residuals: Option<PathBuf>,
+    /// Write one page with the answer, its tables and plots to this file, also where the fit is refused
+    #[arg(long, value_name = "FILE.html|.md")]
+    report: Option<PathBuf>,
     /// How the result is printed: table on a terminal, csv otherwise
     #[arg(long, value_enum)]
     format: Option<Format>,
     /// Write to this file instead of standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-}
-
-/// What gives the absolute size: at most one of these.
-#[derive(Args, Clone, Debug)]
-#[group(multiple = false)]
-struct KnownArguments {
-    /// Body of the same trace: a name of the catalogue, or a file of `polhode inertia`
-    #[arg(long, value_name = "NAME|FILE")]
-    body: Option<String>,
-    /// Trace of the tensor, kg m^2
-    #[arg(long, value_name = "TRACE", value_parser = number, allow_hyphen_values = true)]
-    trace: Option<f64>,
-    /// Magnitude of the angular momentum, kg m^2/s
-    #[arg(long, value_name = "L", value_parser = number, allow_hyphen_values = true)]
-    momentum: Option<f64>,
-    /// Twice the kinetic energy, kg m^2/s^2
-    #[arg(long, value_name = "2T", value_parser = number, allow_hyphen_values = true)]
-    twice_energy: Option<f64>,
-    /// Moment about an axis, kg m^2
-    #[arg(long, value_name = "nx,ny,nz,I", value_parser = numbers::<4>, allow_hyphen_values = true)]
-    moment: Option<[f64; 4]>,
-}
-
-impl KnownArguments {
-    fn known(&self) -> Result<Option<Known>, Error> {
-        if let Some(text) = &self.body {
-            return Ok(Some(Known::Trace(described(text)?.inertia.tensor().trace())));
-        }
-        let moment = |[x, y, z, value]: [f64; 4]| Known::Moment { axis: Vector3::new(x, y, z), value };
-        Ok(self
-            .trace
-            .map(Known::Trace)
-            .or(self.momentum.map(Known::Momentum))
-            .or(self.twice_energy.map(Known::TwiceEnergy))
-            .or(self.moment.map(moment)))
-    }
 }
 
 /// A window of one file, counted from 1, or of every file.
@@ -187,12 +163,71 @@ fn rate_unit(text: &str) -> Result<RateUnit, String> {
         .ok_or_else(|| format!("'{text}' is no unit of rates here; known: rad/s, deg/s, rpm"))
 }
 
+/// Whether the name of a file has one of these endings, in letters of any size.
+fn ends_in(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
+}
+
+/// How a page of this name is written.
+fn form(path: &Path) -> Result<page::Form, Error> {
+    if ends_in(path, &["html", "htm"]) {
+        Ok(page::Form::Html)
+    } else if ends_in(path, &["md"]) {
+        Ok(page::Form::Markdown)
+    } else {
+        let value = path.display().to_string();
+        Err(Error::input(
+            "--report",
+            &value,
+            "a page is HTML or Markdown",
+            "let the name end in .html or .md",
+        ))
+    }
+}
+
+/// Measured and fitted rates, and their difference.
+fn residual_rows(record: &Record, motion: &[motion::Fitted]) -> Table {
+    let rate = |name, meaning| Column::new(name, "rad/s", meaning);
+    let columns = vec![
+        Column::new("segment", "", "number of the segment"),
+        Column::new("t", "s", "time"),
+        rate("wx", "measured rate about x, less what was found of the sensor"),
+        rate("wy", "the same about y"),
+        rate("wz", "the same about z"),
+        rate("fitted_x", "rate of the fitted motion about x"),
+        rate("fitted_y", "the same about y"),
+        rate("fitted_z", "the same about z"),
+        rate("residual_x", "measured less fitted about x; empty where the sample was left out"),
+        rate("residual_y", "the same about y"),
+        rate("residual_z", "the same about z"),
+    ];
+    let mut table = Table::new("residuals", "Measured less fitted rates.", columns);
+    for m in motion {
+        let times = record.segments.get(m.segment).map_or(&[][..], |s| s.times());
+        for (i, (t, w)) in times.iter().zip(&m.measured).enumerate() {
+            let fitted = m.fitted.as_ref().map(|rates| rates[i]);
+            let left = fitted.filter(|_| m.used[i]).map(|fitted| w - fitted);
+            let mut cells = vec![Cell::from(m.segment as u64 + 1), Cell::from(*t)];
+            cells.extend(w.iter().map(|x| Cell::from(*x)));
+            for of in [fitted, left] {
+                cells.extend((0..3).map(|k| Cell::from(of.map(|v| v[k]))));
+            }
+            table.push(cells);
+        }
+    }
+    table
+}
+
 impl Fit {
     pub(crate) fn run(&self) -> Result<(), Error> {
         self.check_paths()?;
+        let form = self.report.as_deref().map(form).transpose()?;
         let output = Output::new(self.out.as_deref())?;
         let residuals = self.residuals.as_deref().map(|path| Output::to_file("--residuals", path));
         let residuals = residuals.transpose()?;
+        let page = self.report.as_deref().map(|path| Output::to_file("--report", path)).transpose()?;
+        let page = page.zip(form);
         let record = self.record()?;
         let limit = |axis: &[f64; 4]| Limit {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
@@ -207,31 +242,50 @@ impl Fit {
             limits: least.chain(most).collect(),
             known: self.known.known()?,
             check_units: !self.trust_units,
+            torque: self.torque.into(),
+            sensor: self.sensor.priors(),
+            ..Settings::default()
         };
         let format = Format::of(self.format, self.out.as_deref())?;
         let estimate = match fit(&record, &settings) {
             Ok(estimate) => estimate,
             Err(error) => {
-                let facts = match &error {
-                    FitError::Unidentifiable(what) => Some(Facts::unidentified(what)),
-                    FitError::Unsettled { axes, .. } => Some(Facts::unsettled(axes)),
-                    FitError::NoRotation { .. } | FitError::Solver(_) => None,
-                    _ => return Err(Error::Input(format!("{}: {error}", self.names()))),
+                let reason = error.to_string();
+                let (facts, failed) = match &error {
+                    FitError::Unidentifiable(what) => (Some(Facts::unidentified(what)), true),
+                    FitError::Unsettled { axes, .. } => (Some(Facts::unsettled(axes)), true),
+                    FitError::NoRotation { .. } | FitError::Solver(_) => (None, true),
+                    _ => (None, false),
                 };
+                if let Some((file, form)) = page {
+                    file.write_whole(&page::refused(&reason, facts.as_ref(), &record, &self.names(), form)?)?;
+                }
                 if let Some(facts) = facts {
                     output.write_whole(&facts.report(&record, format))?;
                 }
-                return Err(Error::Failed(format!("{}: {error}", self.names())));
+                let message = format!("{}: {reason}", self.names());
+                return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
             }
         };
-        let drawing = residuals.map(|file| plot::residuals(&estimate).map(|svg| (file, svg))).transpose()?;
+        let motion = motion::fitted(&estimate, &record);
+        let left = match self.residuals.as_deref() {
+            Some(path) if ends_in(path, &["csv"]) => Some(residual_rows(&record, &motion).csv()),
+            Some(_) => Some(plot::residuals(&estimate)?),
+            None => None,
+        };
+        let page = match page {
+            Some((file, form)) => {
+                Some((file, page::estimated(&estimate, &record, &motion, &self.names(), form)?))
+            }
+            None => None,
+        };
         output.write_whole(&report::identified(&estimate, format))?;
         // the JSON holds them too; a file of rows does not
         estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
-        match drawing {
-            Some((file, svg)) => file.write_whole(&svg),
-            None => Ok(()),
+        for (file, text) in residuals.zip(left).into_iter().chain(page) {
+            file.write_whole(&text)?;
         }
+        Ok(())
     }
 
     /// No sample is read twice, and no measurement is written over.
@@ -251,8 +305,28 @@ impl Fit {
                 ));
             }
         }
-        for (flag, out) in [("--out", &self.out), ("--residuals", &self.residuals)] {
+        if let Some(path) = self
+            .residuals
+            .as_deref()
+            .filter(|path| path.extension().is_some() && !ends_in(path, &["svg", "csv"]))
+        {
+            let value = path.display().to_string();
+            let rule = "residuals are written as SVG or CSV";
+            return Err(Error::input("--residuals", &value, rule, "let the name end in .svg or .csv"));
+        }
+        let written = [("--out", &self.out), ("--residuals", &self.residuals), ("--report", &self.report)];
+        for (k, (flag, out)) in written.iter().enumerate() {
             let Some(out) = out else { continue };
+            let twice = written[..k].iter().find(|(_, other)| other.as_ref().is_some_and(|o| same(o, out)));
+            if let Some((other, _)) = twice {
+                let value = out.display().to_string();
+                return Err(Error::input(
+                    flag,
+                    &value,
+                    &format!("it would replace {other}"),
+                    "name another file",
+                ));
+            }
             if self.data.iter().any(|path| same(path, out)) {
                 let value = out.display().to_string();
                 return Err(Error::input(
@@ -262,18 +336,6 @@ impl Fit {
                     "name another file",
                 ));
             }
-        }
-        if let Some(out) =
-            self.out.as_ref().filter(|out| self.residuals.as_ref().is_some_and(|r| same(r, out)))
-        {
-            let value = out.display().to_string();
-            return Err(Error::input("--residuals", &value, "it would replace --out", "name another file"));
-        }
-        if let Some(plot) = &self.residuals
-            && plot.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("svg"))
-        {
-            let value = plot.display().to_string();
-            return Err(Error::input("--residuals", &value, "plots are written as SVG", "name a file .svg"));
         }
         Ok(())
     }

@@ -35,6 +35,34 @@ fn a_simulated_record_is_the_golden_one() {
     }
 }
 
+/// Two tosses with everything at once, and what each row must add up to.
+#[test]
+fn a_simulated_instrument_is_the_golden_one() {
+    let found = output(&format!(
+        "{SIMULATE} --until 0.1 --noise 0.01 --hidden-jitter 0.5 --tosses 2 --pause 1 --scatter 0.1 --seed 3 \
+         --relative-drag 0.2 --drag 0.1,0.2,0.3 --torque 0,0.01,0 --known-torque 0.5,0,0 --torque-noise 0.01 \
+         --wheel 0,0,1 --wheel-rate 1,0,0 --offset 0.01,0,-0.02 --offset-walk 0.001 --scale-error 0.01 \
+         --axis-scale-errors 0,0.02,0 --misalignment 0.01,0,0 --quantum 0.001 --skew 0,0.001,0.002 \
+         --spikes 0.2,5"
+    ));
+    golden("simulate-instrument.csv", &found);
+    assert!(found.starts_with("t,wx,wy,wz,hx,hy,hz,tx,ty,tz\n0.0,"), "{found}");
+    let rows: Vec<Vec<f64>> =
+        found.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 12);
+    for (k, row) in rows.iter().enumerate() {
+        let toss = (k / 6) as f64;
+        assert!((row[0] - (1.1 * toss + 0.02 * (k % 6) as f64)).abs() < 1e-12);
+        assert!(row[1..4].iter().all(|w| (w / 0.001 - (w / 0.001).round()).abs() < 1e-9));
+        assert!((row[4] - (row[0] - 1.1 * toss)).abs() < 1e-12 && row[5..] == [0.0, 1.0, 0.5, 0.0, 0.0]);
+    }
+    // what is zero changes nothing
+    let plain = format!("{SIMULATE} --until 0.2 --noise 0.01 --jitter 0.5 --seed 3");
+    let zeros =
+        "--relative-drag 0 --drag 0,0,0 --torque 0,0,0 --offset 0,0,0 --spikes 0,5 --quantum 0 --tosses 1";
+    assert_eq!(output(&plain), output(&format!("{plain} {zeros}")));
+}
+
 #[test]
 fn what_is_simulated_is_found_again() {
     let scratch = Scratch::new("again");
@@ -87,6 +115,58 @@ fn what_is_simulated_is_found_again() {
     let line = format!("fit {record} --window 1:0,12 --window 15,30 --residuals {}", svg.display());
     assert_eq!(json(&line)["segments"], Value::from(2));
     assert!(fs::read_to_string(svg).unwrap().starts_with("<svg"));
+}
+
+/// The page stands alone, the residuals are those of the noise, and a refusal has its page too.
+#[test]
+fn a_report_is_one_page_also_of_a_refusal() {
+    let scratch = Scratch::new("report");
+    let path = |name: &str| scratch.0.join(name).display().to_string();
+    let [record, html, markdown, rows] = ["record.csv", "fit.html", "fit.md", "residuals.csv"].map(path);
+    output(&format!("{SIMULATE} --until 8 --noise 1e-2 --tosses 3 --scatter 0.3 --out {record}"));
+    let text = output(&format!("fit {record} --report {html} --residuals {rows} --format table"));
+    assert!(text.starts_with("I1 : I2 : I3 = 0.1"), "{text}");
+    assert!(
+        text.contains("(95 %, statistical)") && text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
+    let page = fs::read_to_string(&html).unwrap();
+    for part in ["I1 : I2 : I3 = 0.1", "<th>segment</th>", "Segment 3: rms", "white noise", "|Jω|", "</html>"]
+    {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(!page.contains("src=") && !page.contains("href="), "needs another file");
+    assert!(page.matches("<svg").count() == 7 && !page.contains("NaN"), "{}", page.matches("<svg").count());
+    let residuals = fs::read_to_string(&rows).unwrap();
+    let (mut sum, mut count) = (0.0, 0.0);
+    for row in residuals.lines().skip(1) {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert!((cells[2] - cells[5] - cells[8]).abs() < 1e-15);
+        sum += cells[8..].iter().map(|x| x * x).sum::<f64>();
+        count += 3.0;
+    }
+    // 1203 samples of noise 0.01, of which 14 numbers are fitted
+    assert!(count == 3609.0 && ((sum / count).sqrt() / 1e-2 - 1.0).abs() < 0.05, "{sum} {count}");
+    output(&format!("fit {record} --report {markdown}"));
+    assert!(
+        fs::read_to_string(&markdown).unwrap().starts_with(&format!("# Inertia from {record}\n\nI1 : I2"))
+    );
+
+    output(&format!(
+        "simulate --moments 1,2,2.6 --omega 0,0,2 --until 10 --every 0.01 --noise 1e-3 --out {record}"
+    ));
+    refused(1, &format!("fit {record} --report {html}"), &["does not determine the tensor"]);
+    let page = fs::read_to_string(&html).unwrap();
+    for part in ["No inertia from", "Undetermined", "is a principal axis", "Size of the rate"] {
+        assert!(page.contains(part), "{part}");
+    }
+    let pdf = path("fit.pdf");
+    refused(2, &format!("fit {record} --report {pdf}"), &["--report: '", "end in .html or .md"]);
+    refused(
+        2,
+        &format!("fit {record} --report {html} --residuals {html}"),
+        &["it would replace --residuals"],
+    );
 }
 
 #[test]
@@ -209,8 +289,21 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     let same = scratch.0.join("same").display().to_string();
     refused(2, &format!("fit {record} --out {same} --residuals {same}"), &["it would replace --out"]);
     assert_eq!(fs::read_to_string(&record).unwrap(), before);
-    refused(2, &format!("{SIMULATE} --until 1 --noise -1"), &["--noise: '-1.0'", "not negative"]);
-    refused(2, &format!("{SIMULATE} --until 1 --jitter 1"), &["--jitter: '1.0'", "keep their order"]);
+    refused(2, &format!("{SIMULATE} --until 1 --noise -1"), &["'--noise <SIGMA>'", "-1.0 is negative"]);
+    refused(2, &format!("{SIMULATE} --until 1 --jitter 1"), &["'--jitter <SHARE>'", "keep their order"]);
+    for (flags, says) in [
+        ("--relative-drag -0.1", ["'--relative-drag <K>'", "-0.1 is negative"]),
+        ("--drag 0,-1,0", ["'--drag <dx,dy,dz>'", "-1.0 would drive the body"]),
+        ("--spikes 2,5", ["'--spikes <SHARE,SIZE>'", "a share from 0 to 1"]),
+        ("--hidden-jitter -1", ["'--hidden-jitter <SHARE>'", "keep their order"]),
+        ("--tosses 0", ["'--tosses <N>'", "0"]),
+        ("--tosses 100000", ["--tosses: '100000'", "51 samples each"]),
+        ("--pause 0", ["'--pause <P>'", "not positive"]),
+        ("--torque 1e99,0,1e98", ["the motion cannot be followed beyond", "weaken the torques"]),
+        ("--offset 0,x,0", ["'--offset <bx,by,bz>'", "item 2: 'x' is not a number"]),
+    ] {
+        refused(2, &format!("{SIMULATE} --until 1 {flags}"), &says);
+    }
     // a refusal leaves the file of an earlier answer alone
     let kept = scratch.file("kept.csv", "kept");
     refused(2, &format!("fit {nan} --out {kept}"), &["line 3"]);
@@ -220,7 +313,19 @@ fn unusable_input_is_refused_by_file_line_and_column() {
 #[test]
 fn help_names_every_flag_in_80_columns() {
     for (command, flags) in [
-        ("simulate", ["--omega", "--until", "--every", "--noise", "--jitter", "--seed", "--format", "--out"]),
+        (
+            "simulate",
+            [
+                "--omega",
+                "--every",
+                "--noise",
+                "--jitter",
+                "--tosses",
+                "--wheel",
+                "--spikes",
+                "--relative-drag",
+            ],
+        ),
         (
             "fit",
             [
@@ -230,7 +335,7 @@ fn help_names_every_flag_in_80_columns() {
                 "--radius",
                 "--noise",
                 "--at-least",
-                "--trace",
+                "--report",
                 "--residuals",
             ],
         ),

@@ -1,11 +1,11 @@
-//! Why the quadratic program has no certified answer.
+//! Why the program for the nearest physical tensor has no certified answer.
 
 use thiserror::Error;
 
 use super::certificate::Certificate;
 use crate::inertia::InertiaError;
 
-/// Why the quadratic program has no certified answer.
+/// Why the program for the nearest physical tensor has no certified answer.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolverFailure {

@@ -1,4 +1,7 @@
-//! The nearest physical tensor, by a quadratic program in whitened increments.
+//! The nearest physical tensor: a semidefinite program in whitened increments, by outer approximation.
+//!
+//! The law ½ − J ⪰ 0 is a semidefinite cone, which is approached from outside, since a solver's own such cone would need
+//! BLAS and LAPACK; answers agree with those of one (tests/data/fit/semidefinite.py).
 //!
 //! x = x̂ + R⁻¹ y with Rᵀ R the information, so that the objective is ½|y|² whatever the conditioning: in raw entries
 //! a solver stops at its tolerance long before the badly determined directions have settled. With trace 1 the one
@@ -24,3 +27,4 @@ pub(crate) mod law;
 pub(crate) mod limits;
 pub(crate) mod nearest;
 mod program;
+pub(crate) mod truncated;

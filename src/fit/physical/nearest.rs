@@ -107,6 +107,38 @@ mod tests {
         assert!(held > 100 && negative > 10, "{held}, {negative}");
     }
 
+    /// The answers of a semidefinite cone, in standard deviations: the cuts are another way to the same point. That solver
+    /// stops within its own residual of it.
+    #[test]
+    fn answers_are_those_of_a_semidefinite_program() {
+        let programs = include_str!("../../../tests/data/fit/semidefinite.csv");
+        let mut held = 0;
+        let mut distances = Vec::new();
+        for (trial, line) in programs.lines().skip(1).enumerate() {
+            let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            let vector = |at: usize| Coordinates::from_fn(|k, _| numbers[at + k]);
+            let mut upper = numbers[6..21].iter();
+            let mut root = Form::zeros();
+            for i in 0..5 {
+                for k in i..5 {
+                    root[(i, k)] = *upper.next().unwrap();
+                }
+            }
+            let answer = nearest(vector(1), root, &[]).unwrap_or_else(|error| panic!("{trial}: {error}"));
+            let (distance, residual) = ((root * (answer.x - vector(21))).norm(), numbers[26]);
+            assert!(distance < residual + 1e-6, "{trial}: {distance:e} beyond {residual:e}");
+            assert!(answer.certificate.stationarity < 1e-9, "{trial}");
+            distances.push(distance);
+            held += answer.active.len();
+        }
+        distances.sort_by(f64::total_cmp);
+        let (half, all) = (distances[distances.len() / 2], distances[distances.len() - 1]);
+        println!(
+            "{held} constraints active; half of the answers differ by less than {half:.1e}, all by {all:.1e}"
+        );
+        assert!(held > 30 && half < 1e-6 && all < 1e-3, "{held} {half:e} {all:e}");
+    }
+
     /// A flat body well measured: the law is a hair's breadth away, the other walls 1e5 standard deviations.
     #[test]
     fn remote_walls_do_not_stop_the_solver() {

@@ -32,7 +32,7 @@ pub(super) fn cleaned(file: &str, rows: Rows) -> Result<Cleaned, RecordError> {
     let Rows { rows, names, columns, .. } = rows;
     let mut segments: Vec<Segment> = Vec::new();
     let mut findings = Vec::new();
-    let mut merged: Vec<([f64; 4], f64)> = Vec::with_capacity(rows.len());
+    let mut merged: Vec<([f64; 4], f64, usize)> = Vec::with_capacity(rows.len());
     for (line, row) in rows {
         if let Some(k) = row.iter().position(|v| !v.is_finite()) {
             return Err(RecordError::Value {
@@ -44,29 +44,30 @@ pub(super) fn cleaned(file: &str, rows: Rows) -> Result<Cleaned, RecordError> {
             });
         }
         match merged.last_mut() {
-            Some((last, _)) if row[0] < last[0] => {
+            Some((last, ..)) if row[0] < last[0] => {
                 return Err(RecordError::Order { file: file.into(), line, time: row[0], before: last[0] });
             }
-            Some((last, count)) if row[0] == last[0] => {
+            Some((last, count, _)) if row[0] == last[0] => {
                 *count += 1.0;
                 for k in 1..4 {
                     last[k] += (row[k] - last[k]) / *count;
                 }
                 findings.push((row[0], Finding::Merged));
             }
-            _ => merged.push((row, 1.0)),
+            _ => merged.push((row, 1.0, line)),
         }
     }
     if merged.is_empty() {
         return Err(RecordError::Empty { file: file.into(), window: None, span: (0.0, 0.0) });
     }
-    let samples: Vec<[f64; 4]> = merged.into_iter().map(|(row, _)| row).collect();
+    let lines: Vec<usize> = merged.iter().map(|(_, _, line)| *line).collect();
+    let samples: Vec<[f64; 4]> = merged.into_iter().map(|(row, ..)| row).collect();
     let flat = flat_tops(&samples);
     let mut intervals: Vec<f64> = samples.windows(2).map(|w| w[1][0] - w[0][0]).collect();
     intervals.sort_by(f64::total_cmp);
     let median = intervals.get(intervals.len() / 2).copied().unwrap_or(0.0);
     let mut last: Option<f64> = None;
-    for (row, flat) in samples.iter().zip(flat) {
+    for ((row, flat), line) in samples.iter().zip(flat).zip(lines) {
         if flat {
             findings.push((row[0], Finding::Saturated));
             last = None;
@@ -77,10 +78,17 @@ pub(super) fn cleaned(file: &str, rows: Rows) -> Result<Cleaned, RecordError> {
             findings.push((row[0], Finding::Gap));
         }
         if gap || last.is_none() {
-            segments.push(Segment { source: file.into(), times: Vec::new(), rates: Vec::new() });
+            segments.push(Segment {
+                source: file.into(),
+                times: Vec::new(),
+                rates: Vec::new(),
+                lines: Vec::new(),
+                inputs: None,
+            });
         }
         if let Some(segment) = segments.last_mut() {
             segment.times.push(row[0]);
+            segment.lines.push(line);
             segment.rates.push(Vector3::new(row[1], row[2], row[3]));
         }
         last = Some(row[0]);

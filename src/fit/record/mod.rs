@@ -8,9 +8,12 @@ mod error;
 mod names;
 mod read;
 mod segment;
+mod spikes;
 mod units;
 
 use nalgebra::Vector3;
+
+use super::report::nuisance::Spike;
 
 use clean::{Cleaned, Finding, cleaned};
 pub use error::RecordError;
@@ -108,6 +111,23 @@ impl Record {
         self.segments.iter().map(|s| s.times.len()).sum()
     }
 
+    /// The spikes of all segments, and the record without them.
+    pub(crate) fn without_spikes(&self) -> (Vec<Spike>, Record) {
+        let mut all = Vec::new();
+        let mut record = Record { segments: Vec::new(), ..self.clone() };
+        for (k, segment) in self.segments.iter().enumerate() {
+            let (spikes, rest) = segment.without_spikes();
+            all.extend(spikes.into_iter().map(|sample| Spike {
+                segment: k,
+                sample,
+                time: segment.times[sample],
+                line: segment.lines()[sample],
+            }));
+            record.segments.push(rest);
+        }
+        (all, record)
+    }
+
     /// Number of samples that were merged into one of the same time.
     pub fn merged(&self) -> usize {
         self.count(Finding::Merged)
@@ -150,6 +170,8 @@ impl Record {
                         source: s.source.clone(),
                         times: s.times[a..b].to_vec(),
                         rates: s.rates[a..b].to_vec(),
+                        lines: s.lines[a..b].to_vec(),
+                        inputs: s.inputs.as_ref().map(|inputs| inputs.of(a..b)),
                     });
                 }
             }

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::error::RecordError;
+use super::spikes::spikes;
 
 /// Samples without a gap between them: finite, at ascending times.
 ///
@@ -22,6 +23,24 @@ pub struct Segment {
     pub(super) source: String,
     pub(super) times: Vec<f64>,
     pub(super) rates: Vec<Vector3<f64>>,
+    /// The line of each sample in its source, from 1.
+    pub(super) lines: Vec<usize>,
+    pub(super) inputs: Option<Inputs>,
+}
+
+/// Wheel momenta (N m s) and torques (N m) at the times of a segment, sensor axes; a list is empty where there are none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Inputs {
+    pub(crate) wheel: Vec<Vector3<f64>>,
+    pub(crate) torque: Vec<Vector3<f64>>,
+}
+
+impl Inputs {
+    /// Those of some samples.
+    pub(super) fn of(&self, kept: impl Iterator<Item = usize> + Clone) -> Inputs {
+        let of = |list: &[Vector3<f64>]| kept.clone().filter_map(|i| list.get(i).copied()).collect();
+        Inputs { wheel: of(&self.wheel), torque: of(&self.torque) }
+    }
 }
 
 impl Segment {
@@ -52,7 +71,92 @@ impl Segment {
             let (before, time) = (times[k], times[k + 1]);
             return Err(RecordError::Order { file: source.into(), line: k + 2, time, before });
         }
-        Ok(Segment { source: source.into(), times, rates })
+        let lines = (1..=times.len()).collect();
+        Ok(Segment { source: source.into(), times, rates, lines, inputs: None })
+    }
+
+    /// With the angular momentum of wheels in the body relative to it, N m s, sensor axes, one per time.
+    ///
+    /// A wheel that turns while the body does gives the tensor its size: the fit then has an absolute tensor.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::fit::Segment;
+    /// let rates = vec![Vector3::new(0.1, 2.0, 0.3); 2];
+    /// let segment = Segment::new("toss 1", vec![0.0, 0.01], rates)?;
+    /// assert!(segment.clone().with_wheel(vec![Vector3::z() * 1e-3; 2]).is_ok());
+    /// assert!(segment.with_wheel(vec![Vector3::z() * 1e-3; 3]).is_err());
+    /// # Ok::<(), polhode::fit::RecordError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A list of another length than the times, values that are not finite.
+    pub fn with_wheel(mut self, momenta: Vec<Vector3<f64>>) -> Result<Self, RecordError> {
+        self.check_input(&momenta, "the wheel momentum")?;
+        self.inputs.get_or_insert_default().wheel = momenta;
+        Ok(self)
+    }
+
+    /// With the torque on the body, N m, sensor axes, one per time: it gives the tensor its size.
+    ///
+    /// # Errors
+    /// A list of another length than the times, values that are not finite.
+    pub fn with_torque(mut self, torques: Vec<Vector3<f64>>) -> Result<Self, RecordError> {
+        self.check_input(&torques, "the torque")?;
+        self.inputs.get_or_insert_default().torque = torques;
+        Ok(self)
+    }
+
+    fn check_input(&self, list: &[Vector3<f64>], name: &str) -> Result<(), RecordError> {
+        if list.len() != self.times.len() {
+            return Err(RecordError::Lengths { times: self.times.len(), rates: list.len() });
+        }
+        let broken = list.iter().position(|v| v.iter().any(|v| !v.is_finite()));
+        broken.map_or(Ok(()), |k| {
+            let axis = (0..3).find(|&axis| !list[k][axis].is_finite()).unwrap_or(0);
+            Err(RecordError::Value {
+                file: self.source.clone(),
+                line: self.lines[k],
+                column: axis + 1,
+                name: name.into(),
+                value: list[k][axis].to_string(),
+            })
+        })
+    }
+
+    /// Angular momentum of wheels, N m s, sensor axes, one per time; `None` where there is none.
+    pub fn wheel(&self) -> Option<&[Vector3<f64>]> {
+        self.inputs.as_ref().map(|inputs| inputs.wheel.as_slice()).filter(|list| !list.is_empty())
+    }
+
+    /// Torque on the body that the record tells, N m, sensor axes, one per time; `None` where it tells none.
+    pub fn torque(&self) -> Option<&[Vector3<f64>]> {
+        self.inputs.as_ref().map(|inputs| inputs.torque.as_slice()).filter(|list| !list.is_empty())
+    }
+
+    /// Wheel momenta and torques, where there are any.
+    pub(crate) fn inputs(&self) -> Option<&Inputs> {
+        self.inputs.as_ref()
+    }
+
+    /// Samples that stand out of their neighbours by far, and the segment without them.
+    pub(crate) fn without_spikes(&self) -> (Vec<usize>, Segment) {
+        let spikes = spikes(&self.rates);
+        let mut left = spikes.iter().copied().peekable();
+        let kept: Vec<usize> = (0..self.times.len()).filter(|i| left.next_if_eq(i).is_none()).collect();
+        let segment = Segment {
+            source: self.source.clone(),
+            times: kept.iter().map(|&i| self.times[i]).collect(),
+            rates: kept.iter().map(|&i| self.rates[i]).collect(),
+            lines: kept.iter().map(|&i| self.lines[i]).collect(),
+            inputs: self.inputs.as_ref().map(|inputs| inputs.of(kept.iter().copied())),
+        };
+        (spikes, segment)
+    }
+
+    /// The line of each sample in its source, from 1; of a segment that was not read from a text its place.
+    pub(crate) fn lines(&self) -> &[usize] {
+        &self.lines
     }
 
     /// Where it comes from.

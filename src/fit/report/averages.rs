@@ -34,15 +34,34 @@ impl fmt::Display for AverageAxis {
     }
 }
 
+/// Parts of a stretch whose mean squares of the rates are compared.
+const PARTS: usize = 8;
+/// Largest difference of two of them, over their mean, that a body keeps up without a torque.
+const UNEVEN: f64 = 0.5;
+
+/// Whether the mean square of the rates stays the same along a stretch: a hand that holds the body changes it.
+fn steady(s: &Stretch) -> bool {
+    let size = s.rates.len().div_ceil(PARTS).max(1);
+    let means = s
+        .rates
+        .chunks(size)
+        .map(|part| part.iter().map(|w| w.norm_squared()).sum::<f64>() / part.len() as f64);
+    let (low, high) = means.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), m| (a.min(m), b.max(m)));
+    high - low <= UNEVEN * 0.5 * (high + low)
+}
+
 /// The axes whose products of inertia have a useful bound.
 pub(crate) fn axes(stretches: &[Stretch], variance: f64) -> Vec<AverageAxis> {
+    if !stretches.iter().all(steady) {
+        return Vec::new();
+    }
     let (mut m, mut v) = (Matrix3::zeros(), Vector3::zeros());
     let (mut squares, mut slopes) = (0.0, 0.0);
     for s in stretches {
         let Some(tests) = TestFunctions::new(s, 0.5 * s.duration()) else { continue };
         for ((&t, w), &weight) in s.times.iter().zip(&s.rates).zip(&s.weights) {
-            let seen = Seen::new(&tests, t, weight);
-            let (slope, value) = (seen.slope[0], seen.value[0]);
+            let seen = Seen::new(&tests, t);
+            let (slope, value) = (weight * seen.slope[0], weight * seen.value[0]);
             m += w * w.transpose() * value;
             v += w * slope;
             squares += value * value * w.norm_squared();

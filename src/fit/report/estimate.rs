@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, UnitQuaternion};
 
 use super::identifiability::Identifiability;
+use super::nuisance::{Nuisance, SegmentSummary, Spike, Systematic, Torque};
 use super::torque_free::{InvariantTrend, Whiteness};
 use super::warning::Warning;
 use crate::fit::physical::certificate::Certificate;
@@ -59,7 +60,8 @@ pub struct Estimate {
     pub ratios: [f64; 2],
     /// Their standard deviations.
     pub sigma_ratios: [f64; 2],
-    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the shape, shares² of the trace; rank 5, less on the face of an active constraint.
+    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the shape, shares² of the trace; rank 5. Of an answer that a
+    /// constraint holds it is the mean square distance from it of what the record tells within the constraints.
     pub covariance: SMatrix<f64, 6, 6>,
     /// Covariance of the same before the physical law was imposed: what a test of other tensors should use.
     pub free_covariance: SMatrix<f64, 6, 6>,
@@ -100,6 +102,16 @@ pub struct Estimate {
     pub energy_trend: InvariantTrend,
     /// Correlation of neighbouring residuals.
     pub whiteness: Whiteness,
+    /// The torque that the fit reckons with.
+    pub torque: Torque,
+    /// What was estimated of the sensor, each with its prior.
+    pub nuisances: Vec<Nuisance>,
+    /// What errors of the sensor that the fit takes to be zero would do to the moments.
+    pub systematic: Vec<Systematic>,
+    /// Each segment that was long enough.
+    pub per_segment: Vec<SegmentSummary>,
+    /// Samples that were left out because they stand out of their neighbours.
+    pub spikes: Vec<Spike>,
     /// Residuals by segment.
     pub residuals: Vec<Residuals>,
     /// What limits the use of the estimate.

@@ -1,21 +1,31 @@
 //! The report, drawn from the record, its weak estimate and the nearest physical tensor.
 
-use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, Matrix3, SMatrix, UnitQuaternion, Vector3};
 
+use super::columns::{is_torque, nuisances};
 use super::estimate::{Estimate, Residuals};
 use super::identifiability::Identifiability;
+use super::nuisance::{Nuisance, Spike, Torque};
+use super::segments::summaries;
+use super::systematic::systematic;
 use super::torque_free::{InvariantTrend, Whiteness, trends};
 use super::warnings::{Grounds, warnings};
 use crate::fit::cramer_rao::Motions;
 use crate::fit::error::FitError;
-use crate::fit::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, pair, tensor};
+use crate::fit::physical::coordinates::{
+    Coordinates, ENTRIES, Form, eigen, entries_of_coordinates, pair, tensor,
+};
 use crate::fit::physical::face::Nearest;
 use crate::fit::physical::failure::SolverFailure;
 use crate::fit::physical::law::LARGEST_SHARE;
+use crate::fit::physical::truncated::spread;
 use crate::fit::record::Record;
-use crate::fit::settings::Settings;
+use crate::fit::settings::{Settings, TorqueModel};
+use crate::fit::weak::ladder::Chosen;
 use crate::fit::weak::mistaken_units::Better;
-use crate::fit::weak::rounds::WeakEstimate;
+use crate::fit::weak::model::{Column, Kind, Unknowns};
+use crate::fit::weak::noise::SURE;
+use crate::fit::weak::stacked::Stacked;
 use crate::fit::weak::test_functions::Stretch;
 use crate::inertia::{Inertia, InertiaShape};
 
@@ -26,8 +36,11 @@ pub(crate) struct Facts<'a> {
     pub(crate) stretches: &'a [Stretch],
     pub(crate) rms: f64,
     pub(crate) variance: f64,
-    pub(crate) weak: &'a WeakEstimate,
+    pub(crate) chosen: &'a Chosen,
     pub(crate) misfit: f64,
+    pub(crate) spikes: Vec<Spike>,
+    /// Unit of the column of wheel momenta and torques, kg m².
+    pub(crate) input: Option<f64>,
 }
 
 impl Facts<'_> {
@@ -39,8 +52,12 @@ impl Facts<'_> {
         identifiability: Identifiability,
         better: Option<&Better>,
     ) -> Result<Estimate, FitError> {
-        let root = self.weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
-        let on_face = face_factor(&free, &nearest.face);
+        let weak = &self.chosen.weak;
+        let root = weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
+        // of an answer that is held, what the record tells inside the walls; far outside, what it tells without them
+        let held = !nearest.face.is_empty();
+        let cut = || spread(&weak.x(), &free, &self.settings.limits, &nearest.x).unwrap_or(free);
+        let on_face = if held { cut() } else { free };
         let shape = shape_of(&tensor(&nearest.x))?;
         let j = shape.tensor();
         let (moments, _) = eigen(j);
@@ -58,17 +75,23 @@ impl Facts<'_> {
         };
         let entries = entries_of_coordinates();
         // of a factor, so that no variance is negative
-        let spread = |factor: Form| (entries * factor) * (entries * factor).transpose();
-        let motions = Motions::nearest(self.stretches, &nearest.x, self.variance);
+        let of_entries = |factor: Form| (entries * factor) * (entries * factor).transpose();
+        // a motion under torques, or of other rates than those of the record, is not that of a free body
+        let free_body = weak.columns.is_empty();
+        let motions =
+            free_body.then(|| Motions::nearest(self.stretches, &nearest.x, self.variance)).flatten();
         let bound = motions.as_ref().and_then(|m| m.bound(self.variance));
         let bound_ratio = bound.map(|b| free.norm() / b.trace().sqrt());
         let covariance = on_face * on_face.transpose();
-        let (inertia, inertia_covariance) = self.absolute(&j, &covariance, motions.as_ref())?;
-        let (momentum, energy) = trends(self.stretches, &j, self.variance);
+        let at = weak.stacked.as_ref().and_then(|s| s.with_columns(nearest.x));
+        let at = at.unwrap_or_else(|| weak.at.clone());
+        let (inertia, inertia_covariance) = self.absolute(&j, &covariance, motions.as_ref(), &at)?;
+        let (momentum, energy) = trends(self.stretches, &j, self.variance * self.misfit.max(1.0));
         let per_second =
             |d: InvariantTrend| InvariantTrend { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
-        let residuals = self.residuals(&nearest.x);
-        let pull = (root * (nearest.x - self.weak.x)).norm();
+        let residuals = self.residuals(&at);
+        let (torques, sensor) = self.nuisances(&at);
+        let pull = (root * (nearest.x - weak.x())).norm();
         let mut estimate = Estimate {
             principal: [moments[0], moments[1], moments[2]],
             sigma_principal,
@@ -76,19 +99,19 @@ impl Facts<'_> {
             sigma_axes,
             ratios: [ratio(0).0, ratio(1).0],
             sigma_ratios: [ratio(0).1, ratio(1).1],
-            covariance: spread(on_face),
-            free_covariance: spread(free),
+            covariance: of_entries(on_face),
+            free_covariance: of_entries(free),
             bound: bound.map(|b| entries * b * entries.transpose()),
             bound_ratio,
             inertia,
             inertia_covariance,
             noise_sigma: self.variance.sqrt() * self.rms,
-            chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / self.weak.dof().max(1) as f64,
+            chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / weak.dof().max(1) as f64,
             pull,
-            dof: self.weak.dof(),
+            dof: weak.dof(),
             samples: residuals.iter().map(|r| self.record.segments[r.segment].times().len()).sum(),
             segments: residuals.len(),
-            radius: self.weak.radius / self.rms,
+            radius: weak.radius / self.rms,
             identifiability,
             triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
             active_constraints: nearest.active,
@@ -96,11 +119,24 @@ impl Facts<'_> {
             momentum_trend: per_second(momentum),
             energy_trend: per_second(energy),
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
+            torque: torques,
+            nuisances: sensor,
+            systematic: systematic(weak, self.stretches, &v, &moments.into(), self.variance, self.rms),
+            per_segment: summaries(weak, self.record, self.variance, self.rms),
+            spikes: self.spikes.clone(),
             residuals,
             warnings: Vec::new(),
             shape,
         };
-        let grounds = Grounds { record: self.record, weak: self.weak, misfit: self.misfit, better };
+        let found = self.settings.torque == TorqueModel::Auto;
+        let grounds = Grounds {
+            record: self.record,
+            weak,
+            misfit: self.misfit,
+            better,
+            found,
+            driven: self.input.is_some(),
+        };
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
     }
@@ -110,7 +146,11 @@ impl Facts<'_> {
         j: &Matrix3<f64>,
         covariance: &Form,
         motions: Option<&Motions<'_>>,
+        at: &Unknowns,
     ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+        if let Some(unit) = self.input {
+            return self.by_inputs(j, unit, at);
+        }
         let Some(known) = self.settings.known else { return Ok((None, None)) };
         let scale = known.scale(self.stretches, self.rms, j, self.variance);
         let trace = scale.trace;
@@ -124,38 +164,75 @@ impl Facts<'_> {
         Ok((Some(inertia), Some(scale.covariance(j, covariance, excess, motions))))
     }
 
-    fn residuals(&self, x: &Coordinates) -> Vec<Residuals> {
+    /// The absolute tensor J/u by wheel momenta and torques, where u stands out of its noise.
+    fn by_inputs(
+        &self,
+        j: &Matrix3<f64>,
+        unit: f64,
+        at: &Unknowns,
+    ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+        let weak = &self.chosen.weak;
+        let column = weak.columns.iter().position(|column| column.kind == Kind::Input);
+        let factor = weak.stacked.as_ref().and_then(Stacked::joint_factor);
+        let (Some(k), Some(factor)) = (column, factor) else { return Ok((None, None)) };
+        let factor = factor * (self.variance * self.misfit.max(1.0)).sqrt();
+        let u = at.c[k];
+        if u <= SURE * factor.row(k).norm() {
+            return Ok((None, None));
+        }
+        let trace = unit / u;
+        let inertia =
+            Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
+        // d(J/u) = dJ/u − J du/u²
+        let entries = entries_of_coordinates();
+        let count = weak.columns.len();
+        let spread = DMatrix::from_fn(6, count + 5, |row, l| {
+            let of_shape: f64 = (0..5).map(|c| entries[(row, c)] * factor[(count + c, l)]).sum();
+            trace * (of_shape - j[ENTRIES[row]] * factor[(k, l)] / u)
+        });
+        let covariance = &spread * spread.transpose();
+        Ok((Some(inertia), Some(SMatrix::from_fn(|row, column| covariance[(row, column)]))))
+    }
+
+    /// The coefficients of the torque, and what was estimated of the sensor.
+    fn nuisances(&self, at: &Unknowns) -> (Torque, Vec<Nuisance>) {
+        let variance = self.variance * self.misfit.max(1.0);
+        let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms);
+        let (torques, sensor): (Vec<_>, Vec<_>) = all
+            .into_iter()
+            .filter(|(column, _)| column.kind != Kind::Input)
+            .partition(|(column, _)| is_torque(column));
+        let values = |list: Vec<(Column, Nuisance)>| list.into_iter().map(|(_, n)| n).collect();
+        let ratios_without = self.chosen.without.map(|x| {
+            let (moments, _) = eigen(tensor(&x));
+            [moments[0] / moments[2], moments[1] / moments[2]]
+        });
+        let torque = Torque {
+            model: self.chosen.model,
+            coefficients: values(torques),
+            gain: self.chosen.gain,
+            ratios_without,
+        };
+        (torque, values(sensor))
+    }
+
+    fn residuals(&self, at: &Unknowns) -> Vec<Residuals> {
         let deviation = self.variance.sqrt();
-        let each = self.weak.parts.iter();
+        let each = self.chosen.weak.parts.iter();
         each.map(|part| {
             let start = self.record.segments[part.stretch].times().first().copied().unwrap_or(0.0);
-            let e = part.residuals(x);
+            let e = part.residuals(at);
             let values: Vec<[f64; 3]> =
                 e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
             Residuals {
                 segment: part.stretch,
-                times: part.centres.iter().map(|c| start + c / self.rms).collect(),
+                times: part.centres().iter().map(|c| start + c / self.rms).collect(),
                 mean_square: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
                 values,
             }
         })
         .collect()
     }
-}
-
-/// A factor F, with covariance F Fᵀ, of an answer that is held on a face: increments along the active gradients are gone.
-///
-/// With the projector Q onto the face in whitened increments it is R⁻¹ Q.
-fn face_factor(free: &Form, face: &[Coordinates]) -> Form {
-    // gradients span a subspace of the whitened increments y; orthonormal by Gram and Schmidt
-    let mut q: Vec<Coordinates> = Vec::new();
-    for g in face {
-        let rest = q.iter().chain(q.iter()).fold(*g, |r, u| r - u * u.dot(&r));
-        if rest.norm() > 1e-10 * g.norm() {
-            q.push(rest.normalize());
-        }
-    }
-    q.iter().fold(*free, |f, u| f - (f * u) * u.transpose())
 }
 
 /// A tensor as a checked shape.

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::nuisance::Torque;
 use super::torque_free::{InvariantTrend, Whiteness};
 use crate::fit::physical::constraint::ActiveConstraint;
 use crate::fit::weak::mistaken_units::{MistakenUnit, alternatives};
@@ -19,6 +20,13 @@ pub enum Warning {
     Saturated {
         /// Samples that were left out.
         samples: usize,
+    },
+    /// Samples that stand out of their neighbours were left out.
+    Spikes {
+        /// Samples that were left out.
+        samples: usize,
+        /// Line of the first of them.
+        line: usize,
     },
     /// Segments were left out, as too short for the test functions.
     ShortSegments {
@@ -56,6 +64,10 @@ pub enum Warning {
     MomentumTrend(InvariantTrend),
     /// The energy ω·J ω changes.
     EnergyTrend(InvariantTrend),
+    /// Wheel momenta and torques of the record are too small to give the tensor its size.
+    NoScale,
+    /// A torque was found and reckoned with.
+    Torque(Torque),
     /// The residuals of one segment exceed those of the median segment.
     NoisySegment {
         /// Which segment of the record, from 0.
@@ -101,6 +113,11 @@ impl fmt::Display for Warning {
                 let (subject, verb) = if *samples == 1 { ("sample", "was") } else { ("samples", "were") };
                 write!(f, "{samples} {subject} at the end of the sensor's range (flat tops) {verb} left out")
             }
+            Self::Spikes { samples, line } => write!(
+                f,
+                "{} left out as standing far out of what their neighbours foresee; the first is in line {line}",
+                counted(*samples, "was", "were")
+            ),
             Self::ShortSegments { short, segments } => {
                 write!(f, "{short} of {segments} segments are too short for the test functions")
             }
@@ -129,6 +146,10 @@ impl fmt::Display for Warning {
             ),
             Self::MomentumTrend(trend) => torque(f, "momentum |J w|", trend),
             Self::EnergyTrend(trend) => torque(f, "energy w J w", trend),
+            Self::NoScale => f.write_str(
+                "the wheel momenta and torques do not stand out of the noise: the size of the tensor is unknown",
+            ),
+            Self::Torque(torque) => reckoned(f, torque),
             Self::NoisySegment { segment, start, times } => write!(
                 f,
                 "segment {} (from {start} s) has {times:.1} times the residuals of the median segment: check it",
@@ -162,6 +183,17 @@ impl fmt::Display for Warning {
 fn torque(f: &mut fmt::Formatter<'_>, name: &str, trend: &InvariantTrend) -> fmt::Result {
     let change = with_sigma(100.0 * trend.rate, 100.0 * trend.sigma);
     write!(f, "not free of torques: the {name} changes by {change} per cent per second")
+}
+
+fn reckoned(f: &mut fmt::Formatter<'_>, torque: &Torque) -> fmt::Result {
+    let values = torque.coefficients.iter();
+    let values = values.map(|c| format!("{} {} {}", c.name, with_sigma(c.value, c.sigma), c.unit));
+    let values: Vec<String> = values.collect();
+    write!(f, "not free of torques: the fit reckons with {}", values.join(", "))?;
+    match torque.ratios_without {
+        Some([first, second]) => write!(f, "; without it I1/I3 would be {first:.4} and I2/I3 {second:.4}"),
+        None => Ok(()),
+    }
 }
 
 /// Both to two digits of the deviation.

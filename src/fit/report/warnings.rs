@@ -3,6 +3,7 @@
 use super::estimate::Estimate;
 use super::warning::Warning;
 use crate::fit::record::Record;
+use crate::fit::settings::TorqueModel;
 use crate::fit::weak::mistaken_units::Better;
 use crate::fit::weak::rounds::WeakEstimate;
 
@@ -16,17 +17,24 @@ pub(super) struct Grounds<'a> {
     /// Mean square of the residuals over the noise.
     pub(super) misfit: f64,
     pub(super) better: Option<&'a Better>,
+    /// Whether the fit has found the torque by itself.
+    pub(super) found: bool,
+    /// Whether wheels or known torques act, which change |J ω| and ω·J ω.
+    pub(super) driven: bool,
 }
 
 /// What of the record, the residuals and the answer limits the use of `e`.
 pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     let mut list = Vec::new();
-    let Grounds { record, weak, misfit, better } = *grounds;
+    let Grounds { record, weak, misfit, better, found, driven } = *grounds;
     if record.merged() > 0 {
         list.push(Warning::Merged { samples: record.merged() });
     }
     if record.saturated() > 0 {
         list.push(Warning::Saturated { samples: record.saturated() });
+    }
+    if let Some(first) = e.spikes.first() {
+        list.push(Warning::Spikes { samples: e.spikes.len(), line: first.line });
     }
     let short = record.segments.len() - e.segments;
     if short > 0 {
@@ -45,11 +53,20 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if e.whiteness.significant() {
         list.push(Warning::Correlated(e.whiteness));
     }
-    if e.momentum_trend.significant() {
-        list.push(Warning::MomentumTrend(e.momentum_trend));
+    if driven {
+        if e.inertia.is_none() {
+            list.push(Warning::NoScale);
+        }
+    } else if e.torque.model == TorqueModel::None {
+        if e.momentum_trend.significant() {
+            list.push(Warning::MomentumTrend(e.momentum_trend));
+        }
+        if e.energy_trend.significant() {
+            list.push(Warning::EnergyTrend(e.energy_trend));
+        }
     }
-    if e.energy_trend.significant() {
-        list.push(Warning::EnergyTrend(e.energy_trend));
+    if found && e.torque.model != TorqueModel::None {
+        list.push(Warning::Torque(e.torque.clone()));
     }
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);

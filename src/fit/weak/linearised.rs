@@ -2,8 +2,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::model::{Column, Kind, Terms, Unknowns, distortion, symmetric};
+use super::moments::{Group, Inputs, Moments, Sums, groups};
 use super::test_functions::{Seen, Stretch, TestFunctions};
-use crate::fit::physical::coordinates::{Coordinates, Form, basis, tensor};
+use crate::fit::physical::coordinates::{ENTRIES, Form, basis};
 use crate::num::banded::Banded;
 
 /// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
@@ -11,121 +13,371 @@ pub(crate) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f6
     w.cross_matrix() * b - (b * w).cross_matrix()
 }
 
-/// The weak equations of one stretch, linearised at samples `rates` − `noise` and tensor J, whitened by L⁻¹.
+/// Σ v × B v from S = Σ v vᵀ; of an S that is not symmetric, Σ v × B u from Σ v uᵀ.
+fn crossed(s: &Matrix3<f64>, b: &Matrix3<f64>) -> Vector3<f64> {
+    let p = s * b.transpose();
+    Vector3::new(p[(1, 2)] - p[(2, 1)], p[(2, 0)] - p[(0, 2)], p[(0, 1)] - p[(1, 0)])
+}
+
+/// Variances of the noise of the rates and of the torque noise, over the variance of the noise of the record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Levels {
+    pub(crate) white: f64,
+    pub(crate) torque: f64,
+    pub(crate) shape: Shape,
+}
+
+/// Along which axes torque noise acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// As the moments of inertia: J ξ with white ξ, an angular acceleration that is alike along all axes.
+    Moments,
+    /// Alike along all axes, with the same mean square as the other at a sphere.
+    Alike,
+}
+
+impl Levels {
+    pub(crate) const WHITE: Levels = Levels { white: 1.0, torque: 0.0, shape: Shape::Moments };
+}
+
+/// The weak equations of one stretch, linearised at samples `rates` − `noise`, a tensor and values of the columns.
+///
+/// Rows hold the derivatives with respect to the columns, to the coordinates of the tensor, and the residual.
 pub(crate) struct Linearised {
-    tests: TestFunctions,
+    pub(crate) tests: TestFunctions,
+    /// Numbers in a row.
+    pub(crate) width: usize,
+    /// Row by row, not whitened.
+    pub(crate) rows: Vec<f64>,
+    /// Covariance of the residuals by the noise of the rates, per its variance.
+    noise: Banded,
+    /// Groups of samples.
+    groups: Vec<Group>,
+    /// What the unknowns make of torque and sensor.
+    terms: Terms,
+    /// Where it was linearised.
+    pub(crate) origin: Unknowns,
+}
+
+/// Equations that are whitened by the covariance of their noise.
+pub(crate) struct Whitened {
     factor: Banded,
-    /// The coordinates that the last column is the residual of: what is left of x is small, and so is its rounding.
-    pub(crate) origin: Coordinates,
-    /// L⁻¹ [G | r], row by row.
-    pub(crate) rows: Vec<[f64; 6]>,
+    pub(crate) levels: Levels,
+    pub(crate) width: usize,
+    pub(crate) rows: Vec<f64>,
 }
 
 impl Linearised {
-    /// `None` where the covariance is not positive, as for a tensor far from physical.
     pub(crate) fn new(
         stretch: &Stretch,
         noise: &[Vector3<f64>],
-        origin: Coordinates,
+        columns: &[Column],
+        origin: Unknowns,
         tests: TestFunctions,
-    ) -> Option<Self> {
-        let j = &tensor(&origin);
-        let size = 3 * tests.count;
-        let mut covariance = Banded::zeros(size, 3 * tests.reach + 2);
-        let mut rows = vec![[0.0; 6]; size];
-        let bases: [Matrix3<f64>; 6] = core::array::from_fn(|k| if k < 5 { basis(k) } else { *j });
-        let jj = j * j;
-        for (i, noise) in noise.iter().enumerate() {
-            let seen = Seen::new(&tests, stretch.times[i], stretch.weights[i]);
-            let w = stretch.rates[i] - noise;
-            let products = bases.map(|b| b * w);
-            let crosses = products.map(|p| w.cross(&p));
-            let k = cross_derivative(j, &w);
-            let (jn, kn) = (j * noise, k * noise);
-            let (jk, kk) = (j * k.transpose(), k * k.transpose());
-            let with_noise = |v: &[Vector3<f64>; 6], own: &Vector3<f64>| -> [[f64; 6]; 3] {
-                core::array::from_fn(|c| {
-                    core::array::from_fn(|l| if l < 5 { v[l][c] } else { v[l][c] + own[c] })
-                })
-            };
-            let (products, crosses) = (with_noise(&products, &jn), with_noise(&crosses, &kn));
-            // A Aᵀ by rows p: slope times (slope J J − value J Kᵀ) and value times (value K Kᵀ − slope K J)
-            let line = |m: &Matrix3<f64>, p: usize| [m[(p, 0)], m[(p, 1)], m[(p, 2)]];
-            let kj = jk.transpose();
-            let by_slope: [_; 3] = core::array::from_fn(|p| seen.mix(line(&jj, p), line(&jk, p)));
-            let by_value: [_; 3] = core::array::from_fn(|p| seen.mix(line(&kj, p), line(&kk, p)));
-            for row in 0..seen.count {
-                let (a, b, p) = (seen.slope[row], seen.value[row], row % 3);
-                for ((sum, cross), product) in
-                    rows[seen.first + row].iter_mut().zip(&crosses[p]).zip(&products[p])
-                {
-                    *sum += b * cross - a * product;
+    ) -> Self {
+        let terms = Terms::new(columns, &origin);
+        let groups = groups(stretch, noise, tests.radius);
+        let covariance = covariance(&groups, &terms, &tests);
+        let moments = Moments::new(stretch, noise, &tests);
+        let width = columns.len() + 6;
+        let mut rows = vec![0.0; 3 * tests.count * width];
+        let skewed: Vec<Option<Vec<Vector3<f64>>>> = columns
+            .iter()
+            .map(|column| match column.kind {
+                Kind::Skew(axis) => Some(skewed(&groups, &terms, &tests, axis)),
+                _ => None,
+            })
+            .collect();
+        for m in 0..tests.count {
+            let inputs = moments.inputs.get(m);
+            let area = moments.area[m];
+            let motion = Corrected::new(&terms, &moments.motion[m], area);
+            let readings = Corrected::new(&terms, &moments.readings[m], area);
+            let mut residual = readings.residual(&terms, inputs);
+            let mut put = |column: usize, values: Vector3<f64>| {
+                for p in 0..3 {
+                    rows[(3 * m + p) * width + column] = values[p];
                 }
-                let entries = covariance.row_mut(seen.first + row, seen.first, seen.first + row + 1);
-                for ((entry, s), v) in entries.iter_mut().zip(&by_slope[p]).zip(&by_value[p]) {
-                    *entry += b * v - a * s;
+            };
+            for (k, (column, skewed)) in columns.iter().zip(&skewed).enumerate() {
+                let derivative = match skewed {
+                    Some(skewed) => {
+                        residual += skewed[m] * origin.c[k];
+                        skewed[m]
+                    }
+                    None => motion.derivative(column.kind, &terms, inputs),
+                };
+                put(k, derivative);
+            }
+            for k in 0..5 {
+                let b = basis(k);
+                let own = b * (motion.value * terms.drag - motion.slope) + crossed(&motion.square, &b);
+                put(columns.len() + k, own);
+            }
+            put(columns.len() + 5, residual);
+        }
+        Linearised { tests, width, rows, noise: covariance, groups, terms, origin }
+    }
+
+    /// The equations whitened; `None` where the covariance is not positive, as for a tensor far from physical.
+    pub(crate) fn whitened(&self, levels: Levels) -> Option<Whitened> {
+        let factor = self.factor(levels)?;
+        let mut rows = self.rows.clone();
+        factor.forward(&mut rows, self.width);
+        Some(Whitened { factor, levels, width: self.width, rows })
+    }
+
+    fn factor(&self, levels: Levels) -> Option<Banded> {
+        let mut covariance = self.noise.clone();
+        covariance.scale(levels.white);
+        if levels.torque > 0.0 {
+            for (apart, overlap) in self.tests.overlaps().into_iter().enumerate() {
+                let shape = self.covariance_of(levels.shape) * (levels.torque * overlap);
+                for m in apart..self.tests.count {
+                    let n = m - apart;
+                    for p in 0..3 {
+                        for q in 0..if apart == 0 { p + 1 } else { 3 } {
+                            covariance.add(3 * m + p, 3 * n + q, shape[(p, q)]);
+                        }
+                    }
                 }
             }
         }
-        if !covariance.factor() {
-            return None;
+        covariance.factor().then_some(covariance)
+    }
+
+    /// Covariance of torque noise of level 1.
+    fn covariance_of(&self, shape: Shape) -> Matrix3<f64> {
+        match shape {
+            Shape::Moments => self.terms.j * self.terms.j,
+            Shape::Alike => Matrix3::identity() / 9.0,
         }
-        covariance.forward(&mut rows);
-        Some(Linearised { tests, factor: covariance, origin, rows })
     }
 
-    /// Whitened residuals at `x`.
-    pub(crate) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
-        let step = x - self.origin;
-        self.rows.iter().map(|row| row[5] + (0..5).map(|k| row[k] * step[k]).sum::<f64>()).collect()
+    /// Residuals at other unknowns, not whitened.
+    pub(crate) fn residuals(&self, at: &Unknowns) -> Vec<f64> {
+        residuals(&self.rows, self.width, &self.origin, at)
     }
 
-    /// The noise n̂ = Aᵀ C⁻¹ r that carries the samples onto the weak equations of `x`.
-    pub(crate) fn noise(
-        &self,
-        stretch: &Stretch,
-        old: &[Vector3<f64>],
-        j: &Matrix3<f64>,
-        x: &Coordinates,
-    ) -> Vec<Vector3<f64>> {
-        let mut multipliers = self.residuals(x);
-        self.factor.backward(&mut multipliers);
-        (0..stretch.times.len())
-            .map(|i| {
-                let seen = Seen::new(&self.tests, stretch.times[i], stretch.weights[i]);
-                let (mut slopes, mut values) = (Vector3::<f64>::zeros(), Vector3::<f64>::zeros());
-                for row in 0..seen.count {
-                    slopes[row % 3] += multipliers[seen.first + row] * seen.slope[row];
-                    values[row % 3] += multipliers[seen.first + row] * seen.value[row];
-                }
-                let k = cross_derivative(j, &(stretch.rates[i] - old[i]));
-                k.transpose() * values - j * slopes
-            })
-            .collect()
+    /// log |C| and eᵀ C⁻¹ e of residuals `e`.
+    pub(crate) fn likelihood(&self, e: &[f64], levels: Levels) -> Option<(f64, f64)> {
+        let factor = self.factor(levels)?;
+        let mut white = e.to_vec();
+        factor.forward(&mut white, 1);
+        Some((factor.log_determinant(), white.iter().map(|e| e * e).sum()))
+    }
+
+    /// Mean variances of the residuals by noise of the rates and by torque noise of level 1.
+    pub(crate) fn mean_variances(&self) -> (f64, f64) {
+        let size = 3 * self.tests.count;
+        let white = (0..size).map(|i| self.noise.get(i, i)).sum::<f64>() / size as f64;
+        (white, self.tests.overlaps().first().copied().unwrap_or(0.0) / 9.0)
     }
 
     /// V of this stretch.
-    pub(crate) fn inflation(&self, stretch: &Stretch, noise: &[Vector3<f64>]) -> Form {
-        let inverse = self.factor.inverse_band();
+    pub(crate) fn inflation(&self, whitened: &Whitened) -> Form {
+        let inverse = whitened.factor.inverse_band();
         let bases: [Matrix3<f64>; 5] = core::array::from_fn(basis);
         let mut sum = Form::zeros();
-        for (i, noise) in noise.iter().enumerate() {
-            let seen = Seen::new(&self.tests, stretch.times[i], stretch.weights[i]);
-            let [aa, ab, bb] = seen.sums(&inverse);
-            let ba = ab.transpose();
-            let w = stretch.rates[i] - noise;
-            let k = bases.map(|b| cross_derivative(&b, &w));
+        for group in &self.groups {
+            let seen = Seen::new(&self.tests, group.time);
+            let [aa, ba, bb] = seen.sums(&inverse);
+            let ab = ba.transpose();
+            let w = self.terms.rate(&group.reading);
+            let k = bases.map(|b| cross_derivative(&b, &w) + b * self.terms.drag);
             // Σ tr Z D_l D_kᵀ with D_k = −φ' B_k + φ K_k
             for l in 0..5 {
                 let from_slope = bases[l] * aa - k[l] * ba;
                 let from_value = k[l] * bb - bases[l] * ab;
                 for m in 0..=l {
                     // tr(M Nᵀ) is the entry by entry product
-                    sum[(l, m)] += from_slope.dot(&bases[m]) + from_value.dot(&k[m]);
+                    sum[(l, m)] += group.square * (from_slope.dot(&bases[m]) + from_value.dot(&k[m]));
                 }
             }
         }
         sum.fill_upper_triangle_with_lower_triangle();
-        sum
+        sum * whitened.levels.white
+    }
+}
+
+impl Whitened {
+    /// log |C|.
+    pub(crate) fn log_determinant(&self) -> f64 {
+        self.factor.log_determinant()
+    }
+
+    /// Whitened residuals at `at`.
+    pub(crate) fn residuals(&self, origin: &Unknowns, at: &Unknowns) -> Vec<f64> {
+        residuals(&self.rows, self.width, origin, at)
+    }
+
+    /// The noise n̂ = Aᵀ C⁻¹ r that carries the samples onto the weak equations at `at`.
+    pub(crate) fn noise(
+        &self,
+        part: &Linearised,
+        stretch: &Stretch,
+        old: &[Vector3<f64>],
+        at: &Unknowns,
+    ) -> Vec<Vector3<f64>> {
+        let mut multipliers = self.residuals(&part.origin, at);
+        self.factor.backward(&mut multipliers);
+        let terms = &part.terms;
+        let each = stretch.times.iter().zip(&stretch.weights).zip(&stretch.rates).zip(old).enumerate();
+        each.map(|(i, (((&t, &weight), y), n))| {
+            let seen = Seen::new(&part.tests, t);
+            let (mut slopes, mut values) = (Vector3::<f64>::zeros(), Vector3::<f64>::zeros());
+            for (m, slope, value) in seen.each() {
+                for p in 0..3 {
+                    slopes[p] += multipliers[3 * m + p] * slope;
+                    values[p] += multipliers[3 * m + p] * value;
+                }
+            }
+            let wheel = stretch.inputs.as_ref().map_or(Vector3::zeros(), |inputs| inputs.wheel[i]);
+            let k = by_rate(terms, &terms.rate(&(y - n)), &wheel);
+            (k.tr_mul(&values) - terms.j * slopes) * (weight * self.levels.white)
+        })
+        .collect()
+    }
+}
+
+/// The derivative of ω × (J ω + u h) + D ω.
+fn by_rate(terms: &Terms, w: &Vector3<f64>, wheel: &Vector3<f64>) -> Matrix3<f64> {
+    cross_derivative(&terms.j, w) + terms.viscous - wheel.cross_matrix() * terms.input
+}
+
+fn residuals(rows: &[f64], width: usize, origin: &Unknowns, at: &Unknowns) -> Vec<f64> {
+    let columns = origin.c.len();
+    let mut step: Vec<f64> = at.c.iter().zip(&origin.c).map(|(a, b)| a - b).collect();
+    step.extend((at.x - origin.x).iter());
+    rows.chunks_exact(width)
+        .map(|row| row[columns + 5] + row.iter().zip(&step).map(|(g, s)| g * s).sum::<f64>())
+        .collect()
+}
+
+/// Σ A Aᵀ with A = −φ' J + φ K by pairs of tests.
+fn covariance(groups: &[Group], terms: &Terms, tests: &TestFunctions) -> Banded {
+    let mut sum = Banded::zeros(3 * tests.count, 3 * tests.reach + 2);
+    let jj = terms.j * terms.j;
+    // K is linear in the rate
+    let per_rate: [Matrix3<f64>; 3] =
+        core::array::from_fn(|a| cross_derivative(&terms.j, &terms.sensor.column(a).into_owned()));
+    let pairs: [Matrix3<f64>; 6] = core::array::from_fn(|entry| {
+        let (a, b) = ENTRIES[entry];
+        let product = per_rate[a] * per_rate[b].transpose();
+        if a == b { product } else { product + product.transpose() }
+    });
+    for group in groups {
+        let seen = Seen::new(tests, group.time);
+        let k = by_rate(terms, &terms.rate(&group.reading), &group.wheel);
+        let mut kk = k * k.transpose();
+        for (pair, (a, b)) in pairs.iter().zip(ENTRIES) {
+            kk += pair * group.scatter[(a, b)];
+        }
+        let (jk, kk) = (terms.j * k.transpose() * group.square, kk * group.square);
+        let (jj, kj) = (jj * group.square, jk.transpose());
+        for (row, (m, a, b)) in seen.each().enumerate() {
+            let (left, right) = (kj * b - jj * a, kk * b - jk * a);
+            for (n, c, d) in seen.each().take(row + 1) {
+                for p in 0..3 {
+                    let most = if m == n { p + 1 } else { 3 };
+                    let entries = sum.row_mut(3 * m + p, 3 * n, 3 * n + most);
+                    for (q, entry) in entries.iter_mut().enumerate() {
+                        *entry += right[(p, q)] * d - left[(p, q)] * c;
+                    }
+                }
+            }
+        }
+    }
+    sum
+}
+
+/// The derivative of the equations of each test with respect to the delay of an axis.
+fn skewed(groups: &[Group], terms: &Terms, tests: &TestFunctions, axis: usize) -> Vec<Vector3<f64>> {
+    let mut sums = vec![Vector3::zeros(); tests.count];
+    let Some(inverse) = terms.j.try_inverse() else { return sums };
+    for group in groups {
+        let w = terms.rate(&group.reading);
+        let momentum = terms.j * w + group.wheel * terms.input;
+        let slope = inverse * (terms.constant - w.cross(&momentum) - terms.viscous * w);
+        let change = Vector3::ith(axis, slope[axis]) * group.weight;
+        let (by_slope, by_value) = (terms.j * change, by_rate(terms, &w, &group.wheel) * change);
+        for (m, slope, value) in Seen::new(tests, group.time).each() {
+            sums[m] += by_value * value - by_slope * slope;
+        }
+    }
+    sums
+}
+
+/// Sums of the rates ω = P y − b from those of the readings y.
+struct Corrected {
+    slope: Vector3<f64>,
+    value: Vector3<f64>,
+    square: Matrix3<f64>,
+    mixed: Matrix3<f64>,
+    area: f64,
+    /// Σ w φ' y.
+    slope_of_readings: Vector3<f64>,
+    /// Σ w φ y.
+    value_of_readings: Vector3<f64>,
+    /// Σ w φ y ωᵀ.
+    with_readings: Matrix3<f64>,
+    /// Σ w φ y hᵀ.
+    mixed_of_readings: Matrix3<f64>,
+}
+
+impl Corrected {
+    fn new(terms: &Terms, s: &Sums, area: f64) -> Corrected {
+        let (p, b) = (terms.sensor, terms.offset);
+        let turned = p * s.value;
+        let value = turned - b * area;
+        let with_readings = s.square * p.transpose() - s.value * b.transpose();
+        Corrected {
+            slope: p * s.slope,
+            value,
+            square: p * with_readings - b * value.transpose(),
+            mixed: p * s.mixed,
+            area,
+            slope_of_readings: s.slope,
+            value_of_readings: s.value,
+            with_readings,
+            mixed_of_readings: s.mixed,
+        }
+    }
+
+    fn residual(&self, terms: &Terms, inputs: Option<&Inputs>) -> Vector3<f64> {
+        let own = terms.viscous * self.value - terms.j * self.slope - terms.constant * self.area;
+        own + crossed(&self.square, &terms.j)
+            + inputs.map_or(Vector3::zeros(), |i| self.input(terms, i) * terms.input)
+    }
+
+    /// Σ w (−φ' h + φ ω × h − φ τ).
+    fn input(&self, terms: &Terms, inputs: &Inputs) -> Vector3<f64> {
+        let mixed = self.mixed - terms.offset * inputs.value.transpose();
+        crossed(&mixed, &Matrix3::identity()) - inputs.slope - inputs.torque
+    }
+
+    /// The derivative of the residual with respect to a column.
+    fn derivative(&self, kind: Kind, terms: &Terms, inputs: Option<&Inputs>) -> Vector3<f64> {
+        let wheel = |mixed: Matrix3<f64>| crossed(&mixed, &Matrix3::identity()) * terms.input;
+        match kind {
+            Kind::Drag => terms.j * self.value,
+            Kind::Viscous(k) => symmetric(k) * self.value,
+            Kind::Constant(k) => Vector3::ith(k, -self.area),
+            Kind::Offset(k) => {
+                let e = Vector3::ith(k, 1.0);
+                let square = e * self.value.transpose() + self.value * e.transpose();
+                let own = -(terms.viscous * e) * self.area - crossed(&square, &terms.j);
+                own - inputs.map_or(Vector3::zeros(), |i| wheel(e * i.value.transpose()))
+            }
+            Kind::Input => inputs.map_or(Vector3::zeros(), |i| self.input(terms, i)),
+            Kind::Skew(_) => Vector3::zeros(),
+            Kind::Scale | Kind::AxisScale(_) | Kind::Misalignment(_) => {
+                let q = distortion(kind).unwrap_or_else(Matrix3::zeros);
+                let square = q * self.with_readings;
+                let own =
+                    terms.viscous * (q * self.value_of_readings) - terms.j * (q * self.slope_of_readings);
+                own + crossed(&(square + square.transpose()), &terms.j) + wheel(q * self.mixed_of_readings)
+            }
+        }
     }
 }

@@ -3,11 +3,14 @@
 use core::f64::consts::PI;
 use core::fmt;
 
+use super::ladder::columns_of;
+use super::model::Column;
 use super::radius;
-use super::rounds::WeakEstimate;
+use super::rounds::{Noise, WeakEstimate};
 use super::test_functions::Stretch;
 use crate::fit::record::RateUnit::{self, DegreesPerSecond, RadiansPerSecond, RevolutionsPerMinute};
 use crate::fit::record::TimeUnit::{self, Microseconds, Milliseconds, Nanoseconds, Seconds};
+use crate::fit::settings::TorqueModel;
 
 /// A unit of the record that may have been taken for another.
 #[non_exhaustive]
@@ -90,9 +93,21 @@ const ANY: f64 = 1e12;
 /// Units that a message lists.
 const LISTED: usize = 3;
 
-/// The units that explain the record best, where they do so at least three times better.
-pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> Option<Better> {
+/// Largest misfit of a unit that explains a record.
+const EXPLAINED: f64 = 2.0;
+
+/// The units that explain the record, where there are such and the unit that it was read in is none of them: with the
+/// columns that were fitted in that unit, and with drag, which slows a body in any, but without torque noise.
+pub(crate) fn better_unit(stretches: &[Stretch], columns: &[Column], variance: f64) -> Option<Better> {
     let pilot = radius::pilot(stretches);
+    let drag = columns_of(TorqueModel::Drag);
+    let as_read = [columns, &drag[..]].into_iter().any(|columns| {
+        let weak = radius::descended(&pilot, None, columns, variance, Noise::White);
+        weak.is_ok_and(|weak| weak.settled() && weak.misfit(variance) < EXPLAINED)
+    });
+    if as_read {
+        return None;
+    }
     let mut found = Vec::new();
     let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
     for (factor, mistake) in candidates.chain([(ANY, None)]) {
@@ -100,7 +115,8 @@ pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
-        let settled = radius::estimate(&scaled, None, variance).ok().filter(WeakEstimate::settled);
+        let weak = radius::descended(&scaled, None, &drag, variance, Noise::White);
+        let settled = weak.ok().filter(WeakEstimate::settled);
         found.extend(settled.map(|weak| Found {
             factor,
             mistake,
@@ -110,7 +126,7 @@ pub(crate) fn better_unit(stretches: &[Stretch], variance: f64, misfit: f64) -> 
         }));
     }
     found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-    let best = found.first().filter(|best| best.misfit < misfit / 3.0)?;
+    let best = found.first().filter(|best| best.misfit < EXPLAINED)?;
     let equal = |f: &Found| (f.misfit - best.misfit) * best.dof <= EQUAL * best.misfit.max(1.0);
     let mut units: Vec<&Found> = found.iter().filter(|f| equal(f)).collect();
     units.sort_by(|a, b| a.factor.total_cmp(&b.factor));
@@ -141,5 +157,5 @@ const MAX_RELATIVE_SIGMA: f64 = 0.2;
 fn credible(weak: &WeakEstimate, variance: f64) -> bool {
     let Some((singular, _)) = weak.spectrum() else { return false };
     let deviation = (variance * weak.misfit(variance).max(1.0)).sqrt() / singular[4];
-    deviation <= MAX_RELATIVE_SIGMA * weak.x.norm()
+    deviation <= MAX_RELATIVE_SIGMA * weak.x().norm()
 }

@@ -8,6 +8,10 @@
 //! weighted by C⁻¹ at the samples ω − n̂ that the round before left on the constraints, n̂ = Aᵀ C⁻¹ r. Its fixed
 //! point minimises |n|² subject to the weak equations (Gauss–Helmert), which weights at the raw samples do not.
 //!
+//! Torques and errors of the sensor are further unknowns, one column of G each. White torque noise of density ρ adds
+//! ρ ∫ φ_m φ_m' dt to C, in the same band. From ρ = ∞, where the weights do not depend on J and the problem is convex, the
+//! rounds descend to the ρ of the largest restricted likelihood.
+//!
 //! | here | meaning |
 //! |---|---|
 //! | r, G | residuals of the weak equations, and their derivatives with respect to the coordinates x of J |
@@ -15,8 +19,12 @@
 //! | V | what the noise in G adds to H at raw samples, in expectation and in units of 1/σ² |
 //! | D | Dᵀ D is what errors of the mean rates may add to H where nothing but their mean stands out of the noise |
 
+pub(crate) mod ladder;
+pub(crate) mod levels;
 pub(crate) mod linearised;
 pub(crate) mod mistaken_units;
+pub(crate) mod model;
+pub(crate) mod moments;
 pub(crate) mod noise;
 pub(crate) mod normalised;
 pub(crate) mod radius;

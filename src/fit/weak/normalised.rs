@@ -1,6 +1,8 @@
 //! A record in its own units.
 
-use super::test_functions::{SAMPLES_PER_TEST, Stretch};
+use nalgebra::Vector3;
+
+use super::test_functions::{KnownInputs, SAMPLES_PER_TEST, Stretch};
 use crate::fit::error::FitError;
 use crate::fit::record::{Record, Segment};
 
@@ -9,6 +11,8 @@ pub(crate) struct Normalised {
     pub(crate) stretches: Vec<Stretch>,
     /// Root mean square rate, rad/s.
     pub(crate) rms: f64,
+    /// Unit of wheel momenta over rates and of torques over their squares, kg m², where the record has any.
+    pub(crate) input: Option<f64>,
 }
 
 pub(crate) fn normalised(record: &Record) -> Result<Normalised, FitError> {
@@ -27,11 +31,29 @@ pub(crate) fn normalised(record: &Record) -> Result<Normalised, FitError> {
     }
     let mean = rates().map(|w| (w / largest).norm_squared()).sum::<f64>() / samples as f64;
     let rms = largest * mean.sqrt();
+    // the largest of them is 1
+    let sizes = record.segments.iter().filter_map(Segment::inputs).flat_map(|inputs| {
+        let wheel = inputs.wheel.iter().map(|h| h.amax() / rms);
+        wheel.chain(inputs.torque.iter().map(|torque| torque.amax() / rms / rms))
+    });
+    let input = Some(sizes.fold(0.0, f64::max)).filter(|size| size.is_normal());
     let segments = record.segments.iter();
     let stretches = segments.map(|s| {
         let start = s.times().first().copied().unwrap_or(0.0);
         let times = s.times().iter().map(|t| (t - start) * rms).collect();
-        Stretch::new(times, s.rates().iter().map(|w| w / rms).collect())
+        let mut stretch = Stretch::new(times, s.rates().iter().map(|w| w / rms).collect());
+        stretch.inputs = input.map(|unit| {
+            let scaled = |list: Option<&Vec<Vector3<f64>>>, factor: f64| {
+                list.filter(|list| !list.is_empty()).map_or(vec![Vector3::zeros(); s.times().len()], |list| {
+                    list.iter().map(|v| v / factor).collect()
+                })
+            };
+            KnownInputs {
+                wheel: scaled(s.inputs().map(|i| &i.wheel), unit * rms),
+                torque: scaled(s.inputs().map(|i| &i.torque), unit * rms * rms),
+            }
+        });
+        stretch
     });
-    Ok(Normalised { stretches: stretches.collect(), rms })
+    Ok(Normalised { stretches: stretches.collect(), rms, input })
 }

@@ -1,7 +1,7 @@
 //! The half width of the test functions: chosen by least predicted covariance, doubled where the rounds do not settle.
 
-use super::rounds::{RESTLESS, Rounds, TORQUES, WeakEstimate};
-use super::stacked::Stacked;
+use super::model::{Column, Unknowns};
+use super::rounds::{Noise, RESTLESS, Rounds, TORQUES, WeakEstimate};
 use super::test_functions::{SAMPLES_PER_TEST, Stretch, TestFunctions};
 use crate::fit::physical::coordinates::{Coordinates, Form};
 
@@ -41,25 +41,40 @@ fn candidates(stretches: &[Stretch]) -> Vec<f64> {
     radii
 }
 
-/// The radius of least predicted covariance, and the coordinates it was judged at.
-fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinates)> {
+/// The radius of least predicted covariance, and the unknowns it was judged at.
+///
+/// Torque noise that was fitted at one radius is that of all: its level is a property of the body.
+fn choose_radius(
+    stretches: &[Stretch],
+    columns: &[Column],
+    variance: f64,
+    noise: Option<Noise>,
+) -> Option<(f64, Unknowns)> {
     let radii = candidates(stretches);
-    let mut start = Coordinates::zeros();
-    let mut pilot = Rounds::new(stretches, radii[radii.len() / 2], start)?;
-    for _ in 0..2 {
-        if pilot.round(variance, true).is_none() {
-            break;
+    let mut start = Unknowns::at(Coordinates::zeros(), columns);
+    let mut pilot = Rounds::new(stretches, radii[radii.len() / 2], columns, start.clone())?;
+    if let Some(noise) = noise {
+        if pilot.descend(variance, noise).is_some() {
+            start = pilot.at.clone();
         }
-        start = pilot.x;
+    } else {
+        for _ in 0..2 {
+            if pilot.round(variance, true).is_none() {
+                break;
+            }
+            start = pilot.at.clone();
+        }
     }
     let mut best = (f64::INFINITY, radii[radii.len() / 2]);
     for radius in radii {
-        let Some(rounds) = Rounds::new(stretches, radius, start) else { continue };
-        let Some(parts) = rounds.linearise() else { continue };
-        let stacked = Stacked::new(&parts);
+        let Some(rounds) = Rounds::new(stretches, radius, columns, start.clone()) else { continue };
+        let rounds = rounds.with_levels(&pilot);
+        let parts = rounds.linearise();
+        let Some(whitened) = rounds.whiten(&parts) else { continue };
+        let stacked = rounds.stack(&whitened, variance);
         // a misfit counts as noise, so that radii too short for the sampling or too long for the torques lose
         let inflated = variance * stacked.excess(variance);
-        let spread = covariance(&stacked.information(), &rounds.inflation(&parts), inflated);
+        let spread = covariance(&stacked.information(), &rounds.inflation(&parts, &whitened), inflated);
         let trace = spread.map_or(f64::INFINITY, |c| c.trace());
         if trace < best.0 {
             best = (trace, radius);
@@ -69,28 +84,32 @@ fn choose_radius(stretches: &[Stretch], variance: f64) -> Option<(f64, Coordinat
 }
 
 /// Samples on which the radius is chosen: more would not change it.
-const PILOT_SAMPLES: usize = 40_000;
+const PILOT_SAMPLES: usize = 8_000;
 
-/// The weak estimate; `variance` is that of the noise in units of the mean square rate.
+/// Refuses a radius whose equations are nearly as many as the samples.
+fn check_radius(stretches: &[Stretch], radius: f64) -> Result<(), Failure> {
+    let dense = |s: &Stretch| {
+        let tests = TestFunctions::new(s, radius);
+        tests.is_some_and(|tests| tests.count as f64 > DENSE * s.times.len() as f64)
+    };
+    if stretches.iter().any(dense) { Err(Failure::Dense) } else { Ok(()) }
+}
+
+/// The weak estimate without torque noise; `variance` is that of the noise in units of the mean square rate.
 pub(crate) fn estimate(
     stretches: &[Stretch],
     radius: Option<f64>,
+    columns: &[Column],
     variance: f64,
 ) -> Result<WeakEstimate, Failure> {
     let (first, start, largest) = match radius {
         Some(radius) => {
-            let dense = |s: &Stretch| {
-                let tests = TestFunctions::new(s, radius);
-                tests.is_some_and(|tests| tests.count as f64 > DENSE * s.times.len() as f64)
-            };
-            if stretches.iter().any(dense) {
-                return Err(Failure::Dense);
-            }
-            (radius, Coordinates::zeros(), radius)
+            check_radius(stretches, radius)?;
+            (radius, Unknowns::at(Coordinates::zeros(), columns), radius)
         }
         None => {
             let pilot = pilot(stretches);
-            let (radius, start) = choose_radius(&pilot, variance).ok_or(Failure::TooShort)?;
+            let (radius, start) = choose_radius(&pilot, columns, variance, None).ok_or(Failure::TooShort)?;
             (radius, start, candidates(&pilot).into_iter().fold(radius, f64::max))
         }
     };
@@ -98,7 +117,7 @@ pub(crate) fn estimate(
     let mut radius = first;
     let mut best: Option<WeakEstimate> = None;
     while radius <= largest * (1.0 + 1e-9) {
-        let mut rounds = Rounds::new(stretches, radius, start).ok_or(Failure::TooShort)?;
+        let mut rounds = Rounds::new(stretches, radius, columns, start.clone()).ok_or(Failure::TooShort)?;
         let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS);
         let weak = moved.and_then(|moved| rounds.finish(variance, moved));
         if let Some(weak) = weak.filter(|weak| weak.possible(variance)) {
@@ -113,7 +132,49 @@ pub(crate) fn estimate(
         }
         radius *= 2.0;
     }
-    let sphere = || Rounds::new(stretches, first, start)?.at_sphere(variance);
+    let sphere = || Rounds::new(stretches, first, columns, start)?.at_sphere(variance);
+    best.or_else(sphere).ok_or(Failure::Singular)
+}
+
+/// The weak estimate with torque noise, from the convex least squares downwards.
+pub(crate) fn descended(
+    stretches: &[Stretch],
+    radius: Option<f64>,
+    columns: &[Column],
+    variance: f64,
+    noise: Noise,
+) -> Result<WeakEstimate, Failure> {
+    let radii = match radius {
+        Some(radius) => {
+            check_radius(stretches, radius)?;
+            vec![radius]
+        }
+        None => {
+            let pilot = pilot(stretches);
+            let (first, _) =
+                choose_radius(&pilot, columns, variance, Some(noise)).ok_or(Failure::TooShort)?;
+            let all = candidates(&pilot);
+            let longer = all.iter().copied().filter(|r| *r > first * (1.0 + 1e-9));
+            let shorter = all.iter().rev().copied().filter(|r| *r < first * (1.0 - 1e-9));
+            core::iter::once(first).chain(longer).chain(shorter).collect()
+        }
+    };
+    let origin = Unknowns::at(Coordinates::zeros(), columns);
+    let mut best: Option<WeakEstimate> = None;
+    for &radius in &radii {
+        let Some(mut rounds) = Rounds::new(stretches, radius, columns, origin.clone()) else { continue };
+        let moved = rounds.descend(variance, noise).filter(|&moved| moved <= RESTLESS);
+        let weak = moved.and_then(|moved| rounds.finish(variance, moved));
+        if let Some(weak) = weak.filter(|weak| weak.possible(variance)) {
+            if weak.still() {
+                return Ok(weak);
+            }
+            if best.as_ref().is_none_or(|b| weak.moved < b.moved) {
+                best = Some(weak);
+            }
+        }
+    }
+    let sphere = || Rounds::new(stretches, *radii.first()?, columns, origin.clone())?.at_sphere(variance);
     best.or_else(sphere).ok_or(Failure::Singular)
 }
 

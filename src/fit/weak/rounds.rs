@@ -3,7 +3,9 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
-use super::linearised::Linearised;
+use super::levels::{Choice, likeliest};
+use super::linearised::{Levels, Linearised, Whitened};
+use super::model::{Column, Unknowns};
 use super::noise::SURE;
 use super::stacked::Stacked;
 use super::test_functions::{Stretch, TestFunctions};
@@ -29,40 +31,77 @@ const KEPT: f64 = 0.1;
 /// How far beyond the law, as a share of the trace, torques may carry an estimate that the law is to bring back.
 const BEYOND: f64 = 0.05;
 
+/// Share of its torque noise that a round may take off at most.
+const FALL: f64 = 0.03;
+/// Rounds of a descent from boundless torque noise.
+const DESCENT: usize = 30;
+/// Relative change of a level of torque noise that no longer matters.
+const SAME: f64 = 0.05;
+/// Where a descent begins: the share of torque noise in the residuals over that of the noise of the rates.
+const BOUNDLESS: f64 = 1e5;
+/// Share below which torque noise counts as none.
+const NEGLIGIBLE: f64 = 1e-3;
+
 /// The weak estimate of a record: where its rounds ended.
 pub(crate) struct WeakEstimate {
     pub(crate) radius: f64,
-    pub(crate) x: Coordinates,
+    pub(crate) columns: Vec<Column>,
+    pub(crate) at: Unknowns,
     /// Standard deviations by which a further round would move x; infinite where no round could be made, and this is
     /// good for one question only: what is undetermined.
     pub(crate) moved: f64,
     /// Upper triangular, Rᵀ R = H at a motion free of noise.
     pub(crate) root: Form,
+    /// The equations of all stretches; `None` where no round could be made.
+    pub(crate) stacked: Option<Stacked>,
     /// D of the mean rates; zero where R is taken at a motion that stands out of the noise.
     doubt: Form,
     /// Sum of squares of the whitened residuals.
     pub(crate) squares: f64,
-    /// Equations.
+    /// Equations beyond the columns without a prior.
     pub(crate) rows: usize,
     /// Each stretch that is long enough.
     pub(crate) parts: Vec<Part>,
 }
 
-/// The whitened equations of one stretch.
+/// The equations of one stretch.
 pub(crate) struct Part {
     pub(crate) stretch: usize,
-    pub(crate) centres: Vec<f64>,
-    linearised: Linearised,
+    pub(crate) linearised: Linearised,
+    pub(crate) whitened: Whitened,
+    /// The noise of the samples so far.
+    noise: Vec<Vector3<f64>>,
 }
 
 impl Part {
-    /// Three for each centre.
-    pub(crate) fn residuals(&self, x: &Coordinates) -> Vec<f64> {
-        self.linearised.residuals(x)
+    /// The equations at the same samples with other columns.
+    pub(crate) fn with_columns(
+        &self,
+        stretch: &Stretch,
+        columns: &[Column],
+        at: &Unknowns,
+    ) -> Option<Whitened> {
+        let tests = self.linearised.tests.clone();
+        Linearised::new(stretch, &self.noise, columns, at.clone(), tests).whitened(self.whitened.levels)
+    }
+
+    /// Three for each centre, whitened.
+    pub(crate) fn residuals(&self, at: &Unknowns) -> Vec<f64> {
+        self.whitened.residuals(&self.linearised.origin, at)
+    }
+
+    /// Centres of the test functions.
+    pub(crate) fn centres(&self) -> Vec<f64> {
+        self.linearised.tests.centres()
     }
 }
 
 impl WeakEstimate {
+    /// The coordinates of the tensor.
+    pub(crate) fn x(&self) -> Coordinates {
+        self.at.x
+    }
+
     /// Whether the rounds ended near enough to a fixed point.
     pub(crate) fn settled(&self) -> bool {
         self.moved <= RESTLESS
@@ -76,7 +115,7 @@ impl WeakEstimate {
     /// Whether a body may have this tensor, or one near it: J = n nᵀ solves the equations of any spin about n, with
     /// residuals and covariance that vanish together, and rounds may end there.
     pub(crate) fn possible(&self, variance: f64) -> bool {
-        let (moments, axes) = eigen(tensor(&self.x));
+        let (moments, axes) = eigen(tensor(&self.at.x));
         let top = axes.column(2).into_owned();
         let share = self.root.transpose().solve_lower_triangular(&pair(&top, &top));
         let excess = variance * self.misfit(variance).max(1.0);
@@ -86,12 +125,22 @@ impl WeakEstimate {
 
     /// Equations beyond the unknowns.
     pub(crate) fn dof(&self) -> usize {
-        self.rows - 5
+        self.rows.saturating_sub(5)
     }
 
     /// Mean square of the residuals over the noise.
     pub(crate) fn misfit(&self, variance: f64) -> f64 {
         self.squares / variance / self.dof().max(1) as f64
+    }
+
+    /// Misfit beyond which noise alone does not carry it.
+    pub(crate) fn expected_misfit(&self) -> f64 {
+        1.0 + 5.0 * (2.0 / self.dof().max(1) as f64).sqrt()
+    }
+
+    /// Levels of the noise of each stretch that is long enough.
+    pub(crate) fn levels(&self) -> Vec<Levels> {
+        self.parts.iter().map(|part| part.whitened.levels).collect()
     }
 
     /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
@@ -109,14 +158,32 @@ impl WeakEstimate {
     }
 }
 
+/// What of its noise a descent fits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Noise {
+    /// No torque noise.
+    White,
+    /// Torque noise of a given level.
+    Given(f64),
+    /// Torque noise by restricted likelihood, and the noise of the rates of each of several stretches.
+    Fitted,
+}
+
 pub(crate) struct Rounds<'a> {
     used: Vec<(usize, &'a Stretch, TestFunctions)>,
+    columns: &'a [Column],
     noise: Vec<Vec<Vector3<f64>>>,
-    pub(crate) x: Coordinates,
+    levels: Vec<Levels>,
+    pub(crate) at: Unknowns,
 }
 
 impl<'a> Rounds<'a> {
-    pub(crate) fn new(stretches: &'a [Stretch], radius: f64, x: Coordinates) -> Option<Self> {
+    pub(crate) fn new(
+        stretches: &'a [Stretch],
+        radius: f64,
+        columns: &'a [Column],
+        at: Unknowns,
+    ) -> Option<Self> {
         let used: Vec<_> = stretches
             .iter()
             .enumerate()
@@ -127,42 +194,68 @@ impl<'a> Rounds<'a> {
             return None;
         }
         let noise = used.iter().map(|(_, s, _)| vec![Vector3::zeros(); s.times.len()]).collect();
-        Some(Rounds { used, noise, x })
+        let levels = vec![Levels::WHITE; used.len()];
+        Some(Rounds { used, columns, noise, levels, at })
     }
 
-    pub(crate) fn linearise(&self) -> Option<Vec<Linearised>> {
-        self.used
-            .iter()
-            .zip(&self.noise)
-            .map(|((_, s, tests), n)| Linearised::new(s, n, self.x, tests.clone()))
+    /// The equations of each stretch at the samples so far.
+    pub(crate) fn linearise(&self) -> Vec<Linearised> {
+        let each = self.used.iter().zip(&self.noise);
+        each.map(|((_, s, tests), n)| Linearised::new(s, n, self.columns, self.at.clone(), tests.clone()))
             .collect()
+    }
+
+    /// The same whitened.
+    pub(crate) fn whiten(&self, parts: &[Linearised]) -> Option<Vec<Whitened>> {
+        parts.iter().zip(&self.levels).map(|(part, levels)| part.whitened(*levels)).collect()
+    }
+
+    pub(crate) fn stack(&self, whitened: &[Whitened], variance: f64) -> Stacked {
+        let rows: Vec<&[f64]> = whitened.iter().map(|w| w.rows.as_slice()).collect();
+        Stacked::new(&rows, self.columns, &self.at, variance.sqrt())
     }
 
     /// One round, and by how many standard deviations it would move the tensor if it took its whole step.
     ///
     /// A ridge as weak as one reading keeps x finite before it is known that the record determines it.
     pub(crate) fn round(&mut self, variance: f64, full: bool) -> Option<f64> {
-        let parts = self.linearise()?;
-        let stacked = Stacked::new(&parts);
-        let x = stacked.ridge(variance)?;
+        let parts = self.linearise();
+        let whitened = self.whiten(&parts)?;
+        let stacked = self.stack(&whitened, variance);
+        let next = stacked.ridge(variance)?;
         // where torques act, full steps may end in going to and fro
         let relax = if full || stacked.excess(variance) < TORQUES { 1.0 } else { 0.5 };
-        let step = x - self.x;
+        Some(self.advance(&parts, &whitened, &stacked, &next, relax, variance))
+    }
+
+    fn advance(
+        &mut self,
+        parts: &[Linearised],
+        whitened: &[Whitened],
+        stacked: &Stacked,
+        next: &Unknowns,
+        relax: f64,
+        variance: f64,
+    ) -> f64 {
+        let step = next.x - self.at.x;
         let relax = relax * self.room(&step);
-        let j = tensor(&self.x);
-        for ((part, (_, s, _)), noise) in parts.iter().zip(&self.used).zip(&mut self.noise) {
-            let next = part.noise(s, noise, &j, &x);
-            for (old, new) in noise.iter_mut().zip(next) {
+        let used = self.used.iter().map(|(_, s, _)| *s);
+        for (((part, white), s), noise) in parts.iter().zip(whitened).zip(used).zip(&mut self.noise) {
+            let new = white.noise(part, s, noise, next);
+            for (old, new) in noise.iter_mut().zip(new) {
                 *old += (new - *old) * relax;
             }
         }
-        self.x += step * relax;
-        Some((stacked.root * step).norm() / (variance * stacked.excess(variance)).sqrt())
+        self.at.x += step * relax;
+        for (c, next) in self.at.c.iter_mut().zip(&next.c) {
+            *c += (next - *c) * relax;
+        }
+        (stacked.root * step).norm() / (variance * stacked.excess(variance)).sqrt()
     }
 
     /// The share of `step` after which the smallest moment is not yet lost.
     fn room(&self, step: &Coordinates) -> f64 {
-        let smallest = |share: f64| eigen(tensor(&(self.x + step * share))).0[0];
+        let smallest = |share: f64| eigen(tensor(&(self.at.x + step * share))).0[0];
         let least = KEPT * smallest(0.0);
         if smallest(1.0) >= least {
             return 1.0;
@@ -184,88 +277,166 @@ impl<'a> Rounds<'a> {
         Some(moved)
     }
 
+    /// Rounds from boundless torque noise, where the equations are those of convex least squares, down to the likeliest.
+    pub(crate) fn descend(&mut self, variance: f64, noise: Noise) -> Option<f64> {
+        let several = self.used.len() > 1;
+        let mut moved = f64::INFINITY;
+        for round in 0..DESCENT {
+            let parts = self.linearise();
+            if round == 0 {
+                let boundless = |part: &Linearised| {
+                    let (noise, torque) = part.mean_variances();
+                    Levels { torque: BOUNDLESS * noise / torque, ..Levels::WHITE }
+                };
+                self.levels = parts.iter().map(boundless).collect();
+            }
+            let whitened = self.whiten(&parts)?;
+            let stacked = self.stack(&whitened, variance);
+            let next = stacked.ridge(variance)?;
+            moved = self.advance(&parts, &whitened, &stacked, &next, 1.0, variance);
+            let fitted = (stacked.rows.saturating_sub(5).max(1)) as f64 / stacked.rows.max(1) as f64;
+            let mut changed = false;
+            for (part, levels) in parts.iter().zip(&mut self.levels) {
+                let (own, torque) = part.mean_variances();
+                let floor = FALL * levels.torque;
+                let target = match noise {
+                    Noise::White => Levels::WHITE,
+                    Noise::Given(torque) => Levels { torque, ..Levels::WHITE },
+                    Noise::Fitted => {
+                        let choice = Choice { white: several };
+                        let last = (round > 0).then_some(*levels);
+                        likeliest(part, &part.residuals(&next), variance, fitted, choice, last)?
+                    }
+                };
+                let mut new = Levels { torque: target.torque.max(floor), ..target };
+                if new.torque * torque < NEGLIGIBLE * own * new.white && target.torque < new.torque {
+                    new.torque = target.torque;
+                }
+                changed |= (new.torque - levels.torque).abs() > SAME * levels.torque;
+                *levels = new;
+            }
+            if moved <= STILL && !changed {
+                break;
+            }
+        }
+        Some(moved)
+    }
+
+    /// With the levels that other rounds of the same stretches have found.
+    pub(crate) fn with_levels(mut self, other: &Rounds<'_>) -> Self {
+        let of = |stretch: usize| other.used.iter().position(|(k, ..)| *k == stretch);
+        for ((k, ..), levels) in self.used.iter().zip(&mut self.levels) {
+            if let Some(at) = of(*k) {
+                *levels = other.levels[at];
+            }
+        }
+        self
+    }
+
     pub(crate) fn finish(&self, variance: f64, moved: f64) -> Option<WeakEstimate> {
-        let parts = self.linearise()?;
-        let stacked = Stacked::new(&parts);
-        let x = stacked.minimiser().filter(|x| x.iter().all(|v| v.is_finite())).unwrap_or(self.x);
+        let parts = self.linearise();
+        let whitened = self.whiten(&parts)?;
+        let stacked = self.stack(&whitened, variance);
+        let at = stacked.minimiser().unwrap_or_else(|| self.at.clone());
         // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
         // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
-        let gain = (self.squares_of_sphere()? - stacked.squares) / (variance * stacked.excess(variance));
+        let gain =
+            (self.squares_of_sphere(variance)? - stacked.squares) / (variance * stacked.excess(variance));
         let (root, doubt) = if gain > SIGNIFICANT_GAIN {
             (stacked.root, Form::zeros())
         } else {
             self.constant_rates(variance)?
         };
+        let each = self.used.iter().zip(parts).zip(whitened).zip(&self.noise);
         Some(WeakEstimate {
             radius: self.used.first()?.2.radius,
-            x,
+            columns: self.columns.to_vec(),
+            at,
             moved,
             root,
             doubt,
             squares: stacked.squares,
             rows: stacked.rows,
-            parts: self
-                .used
-                .iter()
-                .zip(parts)
-                .map(|((k, _, tests), linearised)| Part { stretch: *k, centres: tests.centres(), linearised })
+            stacked: Some(stacked),
+            parts: each
+                .map(|((((k, _, _), linearised), whitened), noise)| Part {
+                    stretch: *k,
+                    linearised,
+                    whitened,
+                    noise: noise.clone(),
+                })
                 .collect(),
         })
     }
 
     /// What can be said without any tensor to go by: the information of constant rates, weighted as for a sphere.
     pub(crate) fn at_sphere(mut self, variance: f64) -> Option<WeakEstimate> {
-        self.x = Coordinates::zeros();
-        let ((root, doubt), squares) = (self.constant_rates(variance)?, self.squares_of_sphere()?);
+        self.at = Unknowns::at(Coordinates::zeros(), self.columns);
+        let ((root, doubt), squares) = (self.constant_rates(variance)?, self.squares_of_sphere(variance)?);
         let rows = self.used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
         Some(WeakEstimate {
             radius: self.used.first()?.2.radius,
-            x: self.x,
+            columns: self.columns.to_vec(),
+            at: self.at,
             moved: f64::INFINITY,
             root,
             doubt,
             squares,
             rows,
+            stacked: None,
             parts: Vec::new(),
         })
     }
 
-    /// What the weak equations of the sphere leave, whose rates are constant.
-    fn squares_of_sphere(&self) -> Option<f64> {
-        let mut sum = 0.0;
-        for (_, s, tests) in &self.used {
+    /// What the weak equations of the sphere leave, whose rates are constant but for the columns.
+    fn squares_of_sphere(&self, variance: f64) -> Option<f64> {
+        let origin = Unknowns { x: Coordinates::zeros(), c: self.at.c.clone() };
+        let mut all = Vec::new();
+        for ((_, s, tests), levels) in self.used.iter().zip(&self.levels) {
             let raw = vec![Vector3::zeros(); s.times.len()];
-            let part = Linearised::new(s, &raw, Coordinates::zeros(), tests.clone())?;
-            sum += part.rows.iter().map(|row| row[5] * row[5]).sum::<f64>();
+            let part = Linearised::new(s, &raw, self.columns, origin.clone(), tests.clone());
+            all.push(part.whitened(*levels)?);
         }
-        Some(sum)
+        let rows: Vec<&[f64]> = all.iter().map(|w| w.rows.as_slice()).collect();
+        Some(Stacked::new(&rows, self.columns, &origin, variance.sqrt()).squares_at(&origin.x))
     }
 
     /// R of motions that keep their mean rates, and D.
     fn constant_rates(&self, variance: f64) -> Option<(Form, Form)> {
         let (mut at_means, mut displaced) = (Vec::new(), Vec::new());
-        for (_, s, tests) in &self.used {
+        let width = self.columns.len() + 6;
+        for ((_, s, tests), levels) in self.used.iter().zip(&self.levels) {
             let count = s.rates.len() as f64;
             let mean = s.rates.iter().sum::<Vector3<f64>>() / count;
             let at = |rate: Vector3<f64>| {
                 let noise: Vec<_> = s.rates.iter().map(|w| w - rate).collect();
-                Linearised::new(s, &noise, self.x, tests.clone())
+                let part = Linearised::new(s, &noise, self.columns, self.at.clone(), tests.clone());
+                part.whitened(*levels).map(|w| w.rows)
             };
-            at_means.extend(at(mean)?.rows);
+            at_means.push(at(mean)?);
             let sure = SURE * (variance / count).sqrt();
             for axis in 0..3 {
                 let step = Vector3::ith(axis, sure);
-                let (above, below) = (at(mean + step)?.rows, at(mean - step)?.rows);
-                let difference =
-                    |(a, b): (&[f64; 6], &[f64; 6])| core::array::from_fn(|k| (a[k] - b[k]) / 2.0);
-                displaced.extend(above.iter().zip(&below).map(difference));
+                let (above, below) = (at(mean + step)?, at(mean - step)?);
+                let rows = above.chunks_exact(width).zip(below.chunks_exact(width));
+                let tensor = self.columns.len()..width;
+                let difference = |(a, b): (&[f64], &[f64])| {
+                    let pairs = a[tensor.clone()].iter().zip(&b[tensor.clone()]);
+                    pairs.map(|(a, b)| 0.5 * (a - b)).collect::<Vec<f64>>()
+                };
+                displaced.push(rows.flat_map(difference).collect::<Vec<f64>>());
             }
         }
-        Some((Stacked::triangle(&at_means, self.x).root, Stacked::triangle(&displaced, self.x).root))
+        let root = |rows: &[Vec<f64>], columns: &[Column]| {
+            let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+            let at = Unknowns { x: self.at.x, c: self.at.c[..columns.len()].to_vec() };
+            Stacked::new(&rows, columns, &at, variance.sqrt()).root
+        };
+        Some((root(&at_means, self.columns), root(&displaced, &[])))
     }
 
     /// V.
-    pub(crate) fn inflation(&self, parts: &[Linearised]) -> Form {
-        parts.iter().zip(&self.used).zip(&self.noise).map(|((p, (_, s, _)), n)| p.inflation(s, n)).sum()
+    pub(crate) fn inflation(&self, parts: &[Linearised], whitened: &[Whitened]) -> Form {
+        parts.iter().zip(whitened).map(|(p, w)| p.inflation(w)).sum()
     }
 }

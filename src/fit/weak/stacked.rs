@@ -1,40 +1,61 @@
-//! Rows of all stretches stacked into one triangle.
+//! Rows of all stretches and priors stacked into one triangle.
 
 use faer::Mat;
-use nalgebra::SMatrix;
+use nalgebra::{DMatrix, DVector, SMatrix};
 
-use super::linearised::Linearised;
+use super::model::{Column, Unknowns};
 use crate::fit::physical::coordinates::{Coordinates, Form};
 
-/// min |R (x − origin) + z|²: what all stretches say together.
+/// Standard deviation of a column without a prior: so far beyond what a record can show that it says nothing.
+const FLAT: f64 = 1e3;
+
+/// min |R (x − origin) + z|²: what all stretches say together, each column at its best for x.
 pub(crate) struct Stacked {
-    origin: Coordinates,
+    pub(crate) origin: Unknowns,
     /// Upper triangular, Rᵀ R = H.
     pub(crate) root: Form,
     z: Coordinates,
+    /// Rows of the columns: their own triangle, their part in x, and their right-hand side.
+    own: DMatrix<f64>,
+    shared: DMatrix<f64>,
+    right: DVector<f64>,
     /// Sum of squares of the whitened residuals that no x removes.
     pub(crate) squares: f64,
-    /// Equations.
+    /// Equations beyond the columns without a prior.
     pub(crate) rows: usize,
 }
 
 impl Stacked {
-    /// The triangle of all whitened rows, without forming their squares.
-    pub(crate) fn new(stretches: &[Linearised]) -> Stacked {
-        let rows: Vec<[f64; 6]> = stretches.iter().flat_map(|s| s.rows.iter().copied()).collect();
-        Stacked::triangle(&rows, stretches.first().map_or(Coordinates::zeros(), |s| s.origin))
-    }
-
-    pub(crate) fn triangle(rows: &[[f64; 6]], origin: Coordinates) -> Stacked {
-        let stack = Mat::from_fn(rows.len().max(6), 6, |i, k| rows.get(i).map_or(0.0, |row| row[k]));
+    /// The triangle of all whitened rows, without forming their squares. `deviation` is that of the noise.
+    pub(crate) fn new(rows: &[&[f64]], columns: &[Column], origin: &Unknowns, deviation: f64) -> Stacked {
+        let count = columns.len();
+        let width = count + 6;
+        let equations: usize = rows.iter().map(|rows| rows.len() / width).sum();
+        let mut stack = Mat::<f64>::zeros((equations + count).max(width), width);
+        let each = rows.iter().flat_map(|rows| rows.chunks_exact(width));
+        for (i, row) in each.enumerate() {
+            for (k, value) in row.iter().enumerate() {
+                stack[(i, k)] = *value;
+            }
+        }
+        for (k, column) in columns.iter().enumerate() {
+            let weight = deviation / column.prior.unwrap_or(FLAT);
+            stack[(equations + k, k)] = weight;
+            stack[(equations + k, width - 1)] = weight * origin.c[k];
+        }
         let qr = stack.qr();
         let r = qr.thin_R();
+        let flat = columns.iter().filter(|column| column.prior.is_none()).count();
+        let left = r[(width - 1, width - 1)];
         Stacked {
-            origin,
-            root: Form::from_fn(|i, k| if i <= k { r[(i, k)] } else { 0.0 }),
-            z: Coordinates::from_fn(|i, _| r[(i, 5)]),
-            squares: r[(5, 5)] * r[(5, 5)],
-            rows: rows.len(),
+            origin: origin.clone(),
+            root: Form::from_fn(|i, k| if i <= k { r[(count + i, count + k)] } else { 0.0 }),
+            z: Coordinates::from_fn(|i, _| r[(count + i, width - 1)]),
+            own: DMatrix::from_fn(count, count, |i, k| if i <= k { r[(i, k)] } else { 0.0 }),
+            shared: DMatrix::from_fn(count, 5, |i, k| r[(i, count + k)]),
+            right: DVector::from_fn(count, |i, _| r[(i, width - 1)]),
+            squares: left * left,
+            rows: equations - flat.min(equations),
         }
     }
 
@@ -47,22 +68,45 @@ impl Stacked {
         self.root.transpose() * self.root
     }
 
-    /// The x that makes |R (x − origin) + z|² + ridge |x|² least.
-    pub(crate) fn ridge(&self, ridge: f64) -> Option<Coordinates> {
+    /// The x that makes |R (x − origin) + z|² + ridge |x|² least, with its columns.
+    pub(crate) fn ridge(&self, ridge: f64) -> Option<Unknowns> {
         // far above the rounding of R, where the record tells nothing and has no noise either; only weights are at stake
         let weight = ridge.sqrt().max(1e-7 * self.root.norm());
         let mut stack = SMatrix::<f64, 10, 6>::zeros();
         stack.fixed_view_mut::<5, 5>(0, 0).copy_from(&self.root);
         stack.fixed_view_mut::<5, 1>(0, 5).copy_from(&self.z);
         stack.fixed_view_mut::<5, 5>(5, 0).copy_from(&(Form::identity() * weight));
-        stack.fixed_view_mut::<5, 1>(5, 5).copy_from(&(self.origin * weight));
+        stack.fixed_view_mut::<5, 1>(5, 5).copy_from(&(self.origin.x * weight));
         let r = stack.qr().r();
         let step = r.fixed_view::<5, 5>(0, 0).solve_upper_triangular(&-r.fixed_view::<5, 1>(0, 5))?;
-        Some(self.origin + step)
+        self.with_columns(self.origin.x + step)
     }
 
-    /// The x that makes |R (x − origin) + z| least.
-    pub(crate) fn minimiser(&self) -> Option<Coordinates> {
-        Some(self.origin + self.root.solve_upper_triangular(&-self.z)?)
+    /// The x that makes |R (x − origin) + z| least, with its columns.
+    pub(crate) fn minimiser(&self) -> Option<Unknowns> {
+        self.with_columns(self.origin.x + self.root.solve_upper_triangular(&-self.z)?)
+    }
+
+    /// The columns that are best for `x`.
+    pub(crate) fn with_columns(&self, x: Coordinates) -> Option<Unknowns> {
+        let step = DVector::from_column_slice((x - self.origin.x).as_slice());
+        let moved = self.own.solve_upper_triangular(&-(&self.right + &self.shared * step))?;
+        let c: Vec<f64> = self.origin.c.iter().zip(moved.iter()).map(|(c, m)| c + m).collect();
+        (x.iter().chain(&c).all(|v| v.is_finite())).then_some(Unknowns { x, c })
+    }
+
+    /// A factor F of the covariance F Fᵀ of (c, x), per variance of the noise.
+    pub(crate) fn joint_factor(&self) -> Option<DMatrix<f64>> {
+        let count = self.own.nrows();
+        let mut r = DMatrix::zeros(count + 5, count + 5);
+        r.view_mut((0, 0), (count, count)).copy_from(&self.own);
+        r.view_mut((0, count), (count, 5)).copy_from(&self.shared);
+        r.view_mut((count, count), (5, 5)).copy_from(&self.root);
+        r.try_inverse()
+    }
+
+    /// |R (x − origin) + z|² + squares at `x`, the columns at their best.
+    pub(crate) fn squares_at(&self, x: &Coordinates) -> f64 {
+        (self.root * (x - self.origin.x) + self.z).norm_squared() + self.squares
     }
 }

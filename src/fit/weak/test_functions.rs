@@ -18,12 +18,21 @@ pub(crate) struct Stretch {
     pub(crate) times: Vec<f64>,
     pub(crate) rates: Vec<Vector3<f64>>,
     pub(crate) weights: Vec<f64>,
+    /// What acts on the body and is known.
+    pub(crate) inputs: Option<KnownInputs>,
+}
+
+/// Wheel momenta and torques at the times of a stretch, in units of the unit rate and its square.
+#[derive(Clone, Debug)]
+pub(crate) struct KnownInputs {
+    pub(crate) wheel: Vec<Vector3<f64>>,
+    pub(crate) torque: Vec<Vector3<f64>>,
 }
 
 impl Stretch {
     pub(crate) fn new(times: Vec<f64>, rates: Vec<Vector3<f64>>) -> Self {
         let weights = quadrature::weights(&times);
-        Stretch { times, rates, weights }
+        Stretch { times, rates, weights, inputs: None }
     }
 
     pub(crate) fn duration(&self) -> f64 {
@@ -32,7 +41,12 @@ impl Stretch {
 
     /// Its first `count` samples.
     pub(crate) fn head(&self, count: usize) -> Stretch {
-        Stretch::new(self.times[..count].to_vec(), self.rates[..count].to_vec())
+        let head = |of: &[Vector3<f64>]| of[..count].to_vec();
+        let inputs = self.inputs.as_ref();
+        Stretch {
+            inputs: inputs.map(|i| KnownInputs { wheel: head(&i.wheel), torque: head(&i.torque) }),
+            ..Stretch::new(self.times[..count].to_vec(), head(&self.rates))
+        }
     }
 }
 
@@ -111,6 +125,18 @@ impl TestFunctions {
         (0..self.count).map(|m| self.first + m as f64 * self.spacing).collect()
     }
 
+    /// ∫ φ_m φ_n dt of tests that are 0, 1, … `reach` apart.
+    pub(crate) fn overlaps(&self) -> Vec<f64> {
+        // the integrand vanishes with its first seven derivatives at both ends, so that a plain sum is exact to rounding
+        const PARTS: usize = 64;
+        let step = 2.0 * self.radius / PARTS as f64;
+        let overlap = |apart: usize| {
+            let at = |i: usize| self.first - self.radius + (i as f64 + 0.5) * step;
+            (0..PARTS).map(|i| self.value(0, at(i)).0 * self.value(apart, at(i)).0).sum::<f64>() * step
+        };
+        (0..=self.reach).map(overlap).collect()
+    }
+
     /// φ_m and φ'_m at `t`.
     fn value(&self, m: usize, t: f64) -> (f64, f64) {
         let u = self.position(m, t);
@@ -119,10 +145,10 @@ impl TestFunctions {
     }
 }
 
-/// Most rows that one sample takes part in: three for each of the tests that overlap it.
-const MOST: usize = 30;
+/// Most tests that overlap at one time.
+const MOST: usize = 10;
 
-/// The rows that see one sample, three to a test, with their weights w φ' and w φ.
+/// The tests that are not zero at one time, with their φ' and φ.
 pub(crate) struct Seen {
     pub(crate) first: usize,
     pub(crate) count: usize,
@@ -131,50 +157,38 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    pub(crate) fn new(tests: &TestFunctions, t: f64, weight: f64) -> Seen {
+    pub(crate) fn new(tests: &TestFunctions, t: f64) -> Seen {
         let range = tests.at(t);
-        let count = (3 * range.len()).min(MOST);
-        let mut seen = Seen { first: 3 * range.start, count, slope: [0.0; MOST], value: [0.0; MOST] };
-        for (k, m) in range.take(count / 3).enumerate() {
-            let (value, slope) = tests.value(m, t);
+        let count = range.len().min(MOST);
+        let mut seen = Seen { first: range.start, count, slope: [0.0; MOST], value: [0.0; MOST] };
+        for (k, m) in range.take(count).enumerate() {
             let (u, q) = (tests.position(m, t), &tests.corrections[m]);
-            let correction = value / tests.radius * (q[0] + u * (q[1] + u * (q[2] + u * q[3])));
-            seen.slope[3 * k..3 * k + 3].fill(weight * (slope + correction));
-            seen.value[3 * k..3 * k + 3].fill(weight * value);
+            let v = (1.0 - u * u).max(0.0);
+            let cube = v * v * v;
+            let cubic = q[0] + u * (q[1] + u * (q[2] + u * q[3]));
+            seen.slope[k] = (v * cubic - 8.0 * u) * cube / tests.radius;
+            seen.value[k] = v * cube;
         }
         seen
     }
 
-    /// −slope·a + value·b by row, with the rows of `a` and `b` in turn: one axis of the tests' share in a product.
-    pub(crate) fn mix(&self, a: [f64; 3], b: [f64; 3]) -> [f64; MOST] {
-        let mut mixed = [0.0; MOST];
-        for ((m, s), v) in mixed.chunks_mut(3).zip(self.slope.chunks(3)).zip(self.value.chunks(3)) {
-            for q in 0..3 {
-                m[q] = v[q] * b[q] - s[q] * a[q];
-            }
-        }
-        mixed
+    /// Each test with its φ' and φ.
+    pub(crate) fn each(&self) -> impl Iterator<Item = (usize, f64, f64)> {
+        (0..self.count).map(|k| (self.first + k, self.slope[k], self.value[k]))
     }
 
-    /// Σ over pairs of tests of the blocks Z of `inverse`, weighted by slope·slope, slope·value and value·value; in
-    /// the second the row belongs to the value. Lower halves only are summed, then mirrored.
+    /// Σ over pairs of tests of the blocks Z of `inverse`, weighted by slope·slope, value·slope and value·value; in
+    /// the second the row belongs to the value.
     pub(crate) fn sums(&self, inverse: &Banded) -> [Matrix3<f64>; 3] {
-        let (mut slopes, mut values) = ([[0.0; MOST]; 3], [[0.0; MOST]; 3]);
-        for row in 0..self.count {
-            let (a, b, p) = (self.slope[row], self.value[row], row % 3);
-            let entries = inverse.row(self.first + row, self.first, self.first + row + 1);
-            for ((z, s), v) in entries[..row].iter().zip(&mut slopes[p]).zip(&mut values[p]) {
-                *s += a * z;
-                *v += b * z;
+        let mut sums = [Matrix3::zeros(); 3];
+        for (m, a, b) in self.each() {
+            for (n, c, d) in self.each() {
+                let z = Matrix3::from_fn(|p, q| inverse.get(3 * m + p, 3 * n + q));
+                sums[0] += z * (a * c);
+                sums[1] += z * (b * c);
+                sums[2] += z * (b * d);
             }
-            slopes[p][row] += 0.5 * a * entries[row];
-            values[p][row] += 0.5 * b * entries[row];
         }
-        let sum = |rows: &[[f64; MOST]; 3], weights: &[f64; MOST]| {
-            Matrix3::from_fn(|p, q| (q..self.count).step_by(3).map(|i| rows[p][i] * weights[i]).sum::<f64>())
-        };
-        let (aa, ab) = (sum(&slopes, &self.slope), sum(&values, &self.slope));
-        let (ba, bb) = (sum(&slopes, &self.value), sum(&values, &self.value));
-        [aa + aa.transpose(), ab + ba.transpose(), bb + bb.transpose()]
+        sums
     }
 }

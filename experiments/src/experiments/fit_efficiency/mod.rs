@@ -1,17 +1,20 @@
 //! How far each estimator of inertia stays from the Cramér–Rao bound, and whether its own errors are honest.
 
-mod baselines;
+mod outcome;
+mod rivals;
 
-use baselines::Baseline;
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
-use polhode::fit::{Estimate, FitError, Record, Settings, fit, foreseen_bound, simulate};
+use polhode::fit::{FitError, Record, Settings, fit, foreseen_bound, simulate};
+use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 
-use crate::error::Error;
+use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series};
-use crate::table::{Cell, Column, Table, row};
+use crate::table::{Cell, Column, Table};
+use outcome::{Outcome, Summary, best, rounded};
+use rivals::{ATTITUDE_NOISE, RIVALS, Rival};
 
 const SEED: u64 = 40_400;
 /// Noise of a component as a share of the rate.
@@ -21,25 +24,19 @@ const NOISE_COLUMNS: [(&str, &str); 3] =
     [("noise_0.001", "noise 0.001"), ("noise_0.01", "noise 0.01"), ("noise_0.1", "noise 0.1")];
 const BODIES: [(&str, [f64; 3]); 3] =
     [("asymmetric", [1.0, 2.0, 2.6]), ("near-symmetric", [1.0, 2.0, 2.1]), ("planar", [1.0, 2.0, 3.0])];
-const BASELINES: [Baseline; 4] = [
-    Baseline::CentralDifferences,
-    Baseline::SavitzkyGolay { window: 21 },
-    Baseline::SavitzkyGolay { window: 101 },
-    Baseline::Momentum,
-];
 const OWN: &str = "weak form, denoised";
-/// The 95 % point of χ² with five degrees of freedom.
-const ELLIPSOID: f64 = 11.070_497_693_516_35;
+/// Streams of random numbers for those attitudes, apart from those of the records.
+const ATTITUDES: u64 = 1 << 48;
 
-/// One trial: squared error in units of the bound, by estimator.
+/// One record, as each estimator answers it.
 struct Trial {
-    /// The library's own; `None` where it refused.
-    own: Option<f64>,
-    covered: bool,
+    /// The library; `None` where it refused.
+    own: Option<Outcome>,
     physical: bool,
     /// Broke off for another reason than a record that says too little.
     broken: bool,
-    baselines: [Option<f64>; 4],
+    /// By rival and choice.
+    rivals: Vec<Vec<Option<Outcome>>>,
 }
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
@@ -61,24 +58,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         format!(
             "Error over the Cramer-Rao bound, {trials} records of {seconds} s at 100 Hz, random axes and starts."
         ),
-        vec![
-            Column::new(
-                "body",
-                "",
-                "principal moments: asymmetric 1, 2, 2.6; near-symmetric 1, 2, 2.1; planar 1, 2, 3",
-            ),
-            Column::new("estimator", "", "formulation"),
-            Column::new("noise", "", "standard deviation of a component over the rate"),
-            Column::new(
-                "error_over_bound",
-                "",
-                "root of the mean of e C^-1 e / 5 with C the bound; 1 is the best possible",
-            )
-            .heading("error/bound"),
-            Column::new("coverage", "", "share of trials whose own 95 % ellipsoid holds the truth"),
-            Column::new("answered", "", "trials with an answer"),
-            Column::new("refused", "", "trials refused because the record does not determine the tensor"),
-        ],
+        columns(),
     );
     let mut figure = Figure::log_log(
         "efficiency",
@@ -90,12 +70,26 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut curves: Vec<Series> = Vec::new();
     for (&(body, noise), cell) in cells.iter().zip(results.chunks(trials as usize)) {
         let (name, level) = (BODIES[body].0, NOISES[noise]);
-        let own: Vec<f64> = cell.iter().filter_map(|t| t.own).collect();
-        let covered = cell.iter().filter(|t| t.covered).count() as f64 / own.len().max(1) as f64;
+        let likelihood: Vec<Option<Outcome>> = match RIVALS.iter().position(|r| *r == Rival::OutputError) {
+            Some(place) => cell.iter().map(|t| t.rivals[place][0]).collect(),
+            None => Vec::new(),
+        };
+        let own: Vec<Option<Outcome>> = cell.iter().map(|t| t.own).collect();
+        let summary = Summary::new(&own, &likelihood);
         let broken = cell.iter().filter(|t| t.broken).count();
-        let refused = cell.len() - own.len() - broken;
-        let over = over_bound(&own);
-        table.push(row![name, OWN, level, rounded(over), rounded(covered), own.len() as u64, refused as u64]);
+        let refused = (cell.len() - summary.answered - broken) as u64;
+        let mut point = |label: &str, summary: &Summary| {
+            if body != 0 {
+                return;
+            }
+            let value = (level, summary.over_bound);
+            match curves.iter_mut().find(|s| s.name == label) {
+                Some(series) => series.points.push(value),
+                None => curves.push(Series::new(label, vec![value])),
+            }
+        };
+        table.push(summary.row(name, OWN, "", level, Some(refused)));
+        point(OWN, &summary);
         if broken > 0 || cell.iter().any(|t| t.own.is_some() && !t.physical) {
             failures
                 .push(format!("{name}, noise {level}: {broken} fits broke off, or a tensor is not physical"));
@@ -103,32 +97,28 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         if body == 0 && refused > 0 {
             failures.push(format!("{name}, noise {level}: {refused} of {trials} records refused"));
         }
+        let over = summary.over_bound;
         if let Some(limits) =
             promise(body, level, trials).filter(|(low, high)| !(*low..=*high).contains(&over))
         {
             failures.push(format!("{name}, noise {level}: {over:.3} of the bound, outside {limits:?}"));
         }
-        let mut point = |label: String, value: f64| {
-            if body != 0 {
-                return;
-            }
-            match curves.iter_mut().find(|s| s.name == label) {
-                Some(series) => series.points.push((level, value)),
-                None => curves.push(Series::new(label, vec![(level, value)])),
-            }
-        };
-        point(OWN.into(), over);
-        for (k, form) in BASELINES.into_iter().enumerate() {
-            let errors: Vec<f64> = cell.iter().filter_map(|t| t.baselines[k]).collect();
-            let over = over_bound(&errors);
-            let answered = errors.len() as u64;
-            table.push(row![name, form.name(), level, rounded(over), None::<f64>, answered, Cell::Empty]);
-            point(form.name().trim_start_matches("baseline: ").into(), over);
+        for (place, rival) in RIVALS.into_iter().enumerate() {
+            let by_choice = (0..rival.choices())
+                .map(|k| cell.iter().map(|t| t.rivals[place][k]).collect::<Vec<_>>())
+                .map(|outcomes| Summary::new(&outcomes, &likelihood));
+            let Some((k, summary)) = best(by_choice) else { continue };
+            table.push(summary.row(name, rival.name(), &rival.choice(k), level, None));
+            point(rival.name(), &summary);
         }
     }
     let compared = comparison(&curves);
+    let hidden = ["body", "choice", "answered", "refused"];
+    let caption = "Errors over the Cramer-Rao bound, and coverage of the 95 % ellipsoids, asymmetric body.";
+    let asymmetric = table.view("asymmetric", caption, &hidden, ("body", "asymmetric"));
     figure.series = curves;
     Ok(Report {
+        views: vec![asymmetric, compared.clone()],
         tables: vec![table, compared],
         figures: vec![figure],
         seed: Some(SEED),
@@ -159,15 +149,6 @@ fn promise(body: usize, noise: f64, trials: u64) -> Option<(f64, f64)> {
     (body == 0).then_some((1.0 - margin, if noise < 0.05 { 1.0 + margin } else { 1.6 }))
 }
 
-fn over_bound(squares: &[f64]) -> f64 {
-    (squares.iter().sum::<f64>() / (5 * squares.len()) as f64).sqrt()
-}
-
-/// Four digits: what a Monte Carlo figure can bear, and the same on every machine.
-fn rounded(x: f64) -> Option<f64> {
-    format!("{x:.3e}").parse().ok().filter(|x: &f64| x.is_finite())
-}
-
 fn entries(j: &Matrix3<f64>) -> SMatrix<f64, 6, 1> {
     SMatrix::from([[j[(0, 0)], j[(1, 1)], j[(2, 2)], j[(0, 1)], j[(0, 2)], j[(1, 2)]]])
 }
@@ -192,17 +173,86 @@ fn trial(moments: [f64; 3], noise: f64, seconds: usize, stream: u64) -> Result<T
     let rates = simulate(&body, omega, &times, noise, &mut random).map_err(|error| failed(&error))?;
     let record = Record::from_samples(&times, &rates).map_err(|error| failed(&error))?;
 
-    let nothing = Trial { own: None, covered: false, physical: false, broken: false, baselines: [None; 4] };
-    let estimate: Estimate = match fit(&record, &Settings::default()) {
-        Ok(estimate) => estimate,
-        Err(FitError::Unidentifiable(_) | FitError::Unsettled { .. }) => return Ok(nothing),
-        Err(_) => return Ok(Trial { broken: true, ..nothing }),
-    };
-    let error = |shape: Matrix3<f64>| entries(&(shape - j));
     let bound = foreseen_bound(&body, omega, &times, noise).ok_or_else(|| failed(&"no Cramér–Rao bound"))?;
-    let own = error(estimate.shape.tensor());
-    let covered = square(&own, &estimate.free_covariance).is_some_and(|s| s < ELLIPSOID);
-    let baselines = BASELINES.map(|form| square(&error(form.shape(&record)?), &bound));
-    let physical = estimate.principal[2] <= 0.5 && estimate.principal[0] > 0.0;
-    Ok(Trial { own: square(&own, &bound), covered, physical, broken: false, baselines })
+    let over_bound = |shape: Matrix3<f64>| square(&entries(&(shape - j)), &bound);
+
+    let (mut own, mut broken, mut physical) = (None, false, true);
+    match fit(&record, &Settings::default()) {
+        Ok(estimate) => {
+            let error = entries(&(estimate.shape.tensor() - j));
+            own = over_bound(estimate.shape.tensor())
+                .map(|over_bound| Outcome { over_bound, own: square(&error, &estimate.free_covariance) });
+            physical = estimate.principal[2] <= 0.5 && estimate.principal[0] > 0.0;
+        }
+        Err(FitError::Unidentifiable(_) | FitError::Unsettled { .. }) => {}
+        Err(_) => broken = true,
+    }
+    let attitudes = attitudes(&body, omega, &times, stream)?;
+    let rivals = RIVALS
+        .iter()
+        .map(|rival| {
+            (0..rival.choices())
+                .map(|k| {
+                    let answer = rival.answer(k, &record, noise, &attitudes)?;
+                    let over_bound = over_bound(answer.shape)?;
+                    Some(Outcome { over_bound, own: answer.own_square(&j) })
+                })
+                .collect()
+        })
+        .collect();
+    Ok(Trial { own, physical, broken, rivals })
+}
+
+/// The attitudes at `times` as a second instrument measures them.
+fn attitudes(
+    body: &Inertia,
+    omega: Vector3<f64>,
+    times: &[f64],
+    stream: u64,
+) -> Result<Vec<UnitQuaternion<f64>>, Error> {
+    let mut random = Random::new(SEED).stream(ATTITUDES + stream);
+    let motion = FreeMotion::from_omega(body, UnitQuaternion::identity(), omega).map_err(unexpected)?;
+    times
+        .iter()
+        .map(|&t| {
+            let exact = motion.at(t).map_err(unexpected)?.rotation();
+            let off = random.normal_vector() * (0.5 * ATTITUDE_NOISE);
+            Ok(exact * UnitQuaternion::from_quaternion(Quaternion::new(1.0, off.x, off.y, off.z)))
+        })
+        .collect()
+}
+
+fn columns() -> Vec<Column> {
+    vec![
+        Column::new(
+            "body",
+            "",
+            "principal moments: asymmetric 1, 2, 2.6; near-symmetric 1, 2, 2.1; planar 1, 2, 3",
+        ),
+        Column::new("estimator", "", "formulation"),
+        Column::new("choice", "", "what serves the estimator best at this noise, of several tried"),
+        Column::new("noise", "", "standard deviation of a component over the rate"),
+        Column::new(
+            "error_over_bound",
+            "",
+            "root of the mean of e C^-1 e / 5 with C the bound; 1 is the best possible",
+        )
+        .heading("error/bound"),
+        Column::new("median", "", "median over records of the root of e C^-1 e / 5; 0.933 if efficient"),
+        Column::new(
+            "quantile_90",
+            "",
+            "the same, which nine records of ten do not exceed; 1.36 if efficient",
+        )
+        .heading("90 %"),
+        Column::new(
+            "over_likelihood",
+            "",
+            "error over that of maximum likelihood, records that both answered",
+        )
+        .heading("over ML"),
+        Column::new("coverage", "", "share of answers whose own 95 % ellipsoid holds the truth"),
+        Column::new("answered", "", "records with an answer"),
+        Column::new("refused", "", "records refused because they do not determine the tensor"),
+    ]
 }

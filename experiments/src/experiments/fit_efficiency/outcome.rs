@@ -1,0 +1,119 @@
+//! What the answers of one estimator to many records amount to.
+
+use crate::table::{Cell, row};
+
+/// The 95 % point of χ² with five degrees of freedom.
+const ELLIPSOID: f64 = 11.070_497_693_516_35;
+
+/// The squared error of one answer, eᵀ C⁻¹ e.
+#[derive(Clone, Copy)]
+pub(super) struct Outcome {
+    /// With C the Cramér–Rao bound.
+    pub(super) over_bound: f64,
+    /// With the covariance that the estimator states, if it states one.
+    pub(super) own: Option<f64>,
+}
+
+/// All answers of one estimator.
+pub(super) struct Summary {
+    pub(super) answered: usize,
+    /// Root of the mean square error over the bound.
+    pub(super) over_bound: f64,
+    median: Option<f64>,
+    quantile_90: Option<f64>,
+    over_likelihood: Option<f64>,
+    coverage: Option<f64>,
+}
+
+impl Summary {
+    /// Of the outcomes of each record, beside those of maximum likelihood.
+    pub(super) fn new(outcomes: &[Option<Outcome>], likelihood: &[Option<Outcome>]) -> Self {
+        let answers: Vec<Outcome> = outcomes.iter().flatten().copied().collect();
+        let mut sorted: Vec<f64> = answers.iter().map(|o| (o.over_bound / 5.0).sqrt()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let stated: Vec<f64> = answers.iter().filter_map(|o| o.own).collect();
+        let covered = stated.iter().filter(|square| **square < ELLIPSOID).count();
+        let both = outcomes.iter().zip(likelihood).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
+        let (own, other) =
+            both.fold((0.0, 0.0), |(own, other), (a, b)| (own + a.over_bound, other + b.over_bound));
+        Summary {
+            answered: answers.len(),
+            over_bound: (answers.iter().map(|o| o.over_bound).sum::<f64>() / (5 * answers.len()) as f64)
+                .sqrt(),
+            median: quantile(&sorted, 0.5),
+            quantile_90: quantile(&sorted, 0.9),
+            over_likelihood: (other > 0.0).then(|| (own / other).sqrt()),
+            coverage: (!stated.is_empty()).then(|| covered as f64 / stated.len() as f64),
+        }
+    }
+
+    /// A row of the table of all.
+    pub(super) fn row(
+        &self,
+        body: &str,
+        estimator: &str,
+        choice: &str,
+        noise: f64,
+        refused: Option<u64>,
+    ) -> [Cell; 11] {
+        row![
+            body,
+            estimator,
+            choice,
+            noise,
+            rounded(self.over_bound),
+            self.median.and_then(rounded),
+            self.quantile_90.and_then(rounded),
+            self.over_likelihood.and_then(rounded),
+            self.coverage.and_then(rounded),
+            self.answered as u64,
+            refused,
+        ]
+    }
+}
+
+/// The choice that most records are answered with, and of those the one with the smallest median error.
+pub(super) fn best(choices: impl Iterator<Item = Summary>) -> Option<(usize, Summary)> {
+    choices.enumerate().min_by(|(_, a), (_, b)| {
+        let error = |s: &Summary| s.median.unwrap_or(f64::INFINITY);
+        b.answered.cmp(&a.answered).then(error(a).total_cmp(&error(b)))
+    })
+}
+
+/// Of ascending values, by linear interpolation.
+fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let last = sorted.len().checked_sub(1)?;
+    let place = share * last as f64;
+    let below = place.floor() as usize;
+    let above = (below + 1).min(last);
+    Some(sorted[below] + (place - below as f64) * (sorted[above] - sorted[below]))
+}
+
+/// Four digits: what a Monte Carlo figure can bear, and the same on every machine.
+pub(super) fn rounded(x: f64) -> Option<f64> {
+    format!("{x:.3e}").parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn outcome(over_bound: f64, own: Option<f64>) -> Option<Outcome> {
+        Some(Outcome { over_bound, own })
+    }
+
+    #[test]
+    fn a_summary_counts_what_was_answered() {
+        let outcomes = [outcome(5.0, Some(1.0)), None, outcome(20.0, Some(12.0)), outcome(45.0, None)];
+        let likelihood = [outcome(5.0, None), outcome(5.0, None), outcome(5.0, None), None];
+        let s = Summary::new(&outcomes, &likelihood);
+        assert_eq!((s.answered, s.median, s.coverage), (3, Some(2.0), Some(0.5)));
+        assert_eq!(s.over_bound, (70.0_f64 / 15.0).sqrt());
+        assert_eq!(s.over_likelihood, Some(2.5_f64.sqrt()));
+        assert_eq!(s.quantile_90, Some(2.0 + 0.8));
+        let none = Summary::new(&[None], &[None]);
+        assert_eq!((none.answered, none.median, none.coverage, none.over_likelihood), (0, None, None, None));
+        let (choice, _) = best([none, s].into_iter()).unwrap();
+        assert_eq!(choice, 1);
+    }
+}

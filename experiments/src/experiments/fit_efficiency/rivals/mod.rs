@@ -1,0 +1,254 @@
+//! What others do with the same records, each with the same physical law and, where it has something to choose, with the
+//! choice that serves it best.
+
+mod coordinates;
+mod euler;
+mod kalman;
+mod momentum;
+mod output_error;
+mod record;
+mod strong;
+mod wendy;
+
+use nalgebra::{DMatrix, Matrix3, Matrix5, UnitQuaternion, Vector5};
+use polhode::fit::Record;
+
+use coordinates::{basis, nearest, tensor};
+use record::{Stretch, normalised};
+
+/// A way to the tensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rival {
+    /// J ω' + ω × J ω = 0 at every sample, ω' by central differences.
+    CentralDifferences,
+    /// The same with local cubics, the window being the best of [`WINDOWS`] at each noise.
+    SavitzkyGolay,
+    /// R(t) J ω(t) = L with R by integration of the same rates.
+    Momentum,
+    /// The same with R from a second instrument, which no other row has.
+    MomentumWithAttitude,
+    /// Weak form with errors in variables, the radius being the best of [`RADII`] at each noise.
+    Wendy,
+    /// Extended Kalman filter of rate and tensor, three runs.
+    Kalman,
+    /// Maximum likelihood by multiple shooting.
+    OutputError,
+}
+
+/// All of them, maximum likelihood last.
+pub(super) const RIVALS: [Rival; 7] = [
+    Rival::CentralDifferences,
+    Rival::SavitzkyGolay,
+    Rival::Momentum,
+    Rival::MomentumWithAttitude,
+    Rival::Wendy,
+    Rival::Kalman,
+    Rival::OutputError,
+];
+
+/// Samples of a Savitzky–Golay window.
+const WINDOWS: [usize; 5] = [51, 101, 151, 201, 301];
+/// Half widths of the test functions of WENDy, in radians of the motion.
+const RADII: [f64; 3] = [1.5, 3.0, 6.0];
+/// Window of the start of those that need one.
+const START: usize = 101;
+
+/// Error of the attitudes that one rival is given, rad.
+pub(super) const ATTITUDE_NOISE: f64 = 1e-3;
+
+/// What a rival says.
+pub(super) struct Answer {
+    /// The tensor with trace 1.
+    pub(super) shape: Matrix3<f64>,
+    /// Its coordinates, and their information before the physical law, where the rival states its uncertainty.
+    coordinates: Vector5<f64>,
+    information: Option<Matrix5<f64>>,
+}
+
+impl Answer {
+    fn constrained(centre: Vector5<f64>, information: Matrix5<f64>) -> Option<Self> {
+        let answer = Self::unweighted(centre, &information)?;
+        Some(Answer { information: Some(information), ..answer })
+    }
+
+    /// Without a statement of uncertainty, in the metric of `information`.
+    fn unweighted(centre: Vector5<f64>, information: &Matrix5<f64>) -> Option<Self> {
+        let usable = centre.iter().chain(information).all(|v| v.is_finite());
+        usable.then(|| {
+            let coordinates = nearest(centre, information);
+            Answer { shape: tensor(&coordinates), coordinates, information: None }
+        })
+    }
+
+    /// eᵀ C⁻¹ e with the rival's own covariance.
+    pub(super) fn own_square(&self, truth: &Matrix3<f64>) -> Option<f64> {
+        let e = self.coordinates - Vector5::from_fn(|k, _| basis(k).dot(truth));
+        self.information.map(|information| e.dot(&(information * e)))
+    }
+}
+
+impl Rival {
+    /// Its name, as tables print it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::CentralDifferences => "central differences",
+            Self::SavitzkyGolay => "Savitzky-Golay, tuned",
+            Self::Momentum => "momentum",
+            Self::MomentumWithAttitude => "momentum with attitude",
+            Self::Wendy => "WENDy, tuned",
+            Self::Kalman => "extended Kalman filter",
+            Self::OutputError => "maximum likelihood",
+        }
+    }
+
+    /// How many choices it has.
+    pub(super) fn choices(self) -> usize {
+        match self {
+            Self::SavitzkyGolay => WINDOWS.len(),
+            Self::Wendy => RADII.len(),
+            _ => 1,
+        }
+    }
+
+    /// A choice in words.
+    pub(super) fn choice(self, k: usize) -> String {
+        match self {
+            Self::SavitzkyGolay => format!("window {}", WINDOWS[k]),
+            Self::Wendy => format!("radius {} rad", RADII[k]),
+            _ => String::new(),
+        }
+    }
+
+    /// The answer with its k-th choice to a record with noise `sigma` (rad/s), which rivals are told, and attitudes that
+    /// one rival is given. `None` where there is no answer.
+    pub(super) fn answer(
+        self,
+        k: usize,
+        record: &Record,
+        sigma: f64,
+        attitudes: &[UnitQuaternion<f64>],
+    ) -> Option<Answer> {
+        let (stretches, rms) = normalised(record);
+        let sigma = sigma / rms;
+        // those that need a start have it from here
+        let start = || {
+            let answer = least_squares(&stretches, |s| strong::savitzky_golay(s, START))?;
+            Some(answer.coordinates)
+        };
+        match self {
+            Self::CentralDifferences => least_squares(&stretches, strong::central_differences),
+            Self::SavitzkyGolay => least_squares(&stretches, |s| strong::savitzky_golay(s, WINDOWS[k])),
+            Self::Momentum => least_squares(&stretches, momentum::integrated),
+            Self::MomentumWithAttitude => {
+                momentum::measured(stretches.first()?, attitudes, start()?, sigma, ATTITUDE_NOISE)
+            }
+            Self::Wendy => wendy::answer(&stretches, RADII[k], sigma),
+            Self::Kalman => kalman::answer(&stretches, start()?, sigma),
+            Self::OutputError => output_error::answer(&stretches, start()?, sigma),
+        }
+    }
+}
+
+/// Least squares over all rows, unweighted.
+fn least_squares(stretches: &[Stretch], rows: impl Fn(&Stretch) -> strong::Rows) -> Option<Answer> {
+    let rows: strong::Rows = stretches.iter().flat_map(rows).collect();
+    if rows.len() < 6 {
+        return None;
+    }
+    let r = DMatrix::from_row_iterator(rows.len(), 6, rows.iter().flatten().copied()).qr().r();
+    let root = r.fixed_view::<5, 5>(0, 0).into_owned();
+    let centre = root.solve_upper_triangular(&-r.fixed_view::<5, 1>(0, 5))?;
+    Answer::unweighted(centre, &(root.transpose() * root))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Quaternion, Vector3};
+    use polhode::fit::{Settings, fit, simulate};
+    use polhode::flow::FreeMotion;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+
+    use super::*;
+
+    struct Example {
+        j: Matrix3<f64>,
+        record: Record,
+        attitudes: Vec<UnitQuaternion<f64>>,
+    }
+
+    fn example(sigma: f64) -> Example {
+        let mut random = Random::new(99);
+        let (w, v) = (random.normal(), random.normal_vector());
+        let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
+        let moments = Vector3::new(1.0, 2.0, 2.6) / 5.6;
+        let j = turn.matrix() * Matrix3::from_diagonal(&moments) * turn.matrix().transpose();
+        let j = (j + j.transpose()) * 0.5;
+        let times: Vec<f64> = (0..3000).map(|i| 0.01 * f64::from(i)).collect();
+        let body = Inertia::from_tensor(j).unwrap();
+        let omega = Vector3::new(0.3, -0.8, 0.6);
+        let rates = simulate(&body, omega, &times, sigma, &mut random).unwrap();
+        let motion = FreeMotion::from_omega(&body, UnitQuaternion::identity(), omega).unwrap();
+        let attitudes = times.iter().map(|&t| motion.at(t).unwrap().rotation()).collect();
+        Example { j, record: Record::from_samples(&times, &rates).unwrap(), attitudes }
+    }
+
+    fn best(rival: Rival, example: &Example, sigma: f64) -> (f64, Option<f64>) {
+        let answers = (0..rival.choices())
+            .filter_map(|k| rival.answer(k, &example.record, sigma, &example.attitudes))
+            .map(|a| ((a.shape - example.j).norm(), a.own_square(&example.j)));
+        answers.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
+    }
+
+    #[test]
+    fn rivals_are_right_without_noise() {
+        let example = example(0.0);
+        for rival in RIVALS {
+            let error = best(rival, &example, 1e-9).0;
+            let limit = if rival == Rival::Momentum { 1e-4 } else { 1e-5 };
+            assert!(error < limit, "{}: {error:e}", rival.name());
+        }
+    }
+
+    #[test]
+    fn rivals_that_weigh_are_near_the_bound_and_the_others_are_not() {
+        let sigma = 1e-2;
+        let example = example(sigma);
+        let own = fit(&example.record, &Settings::default()).unwrap();
+        let own = (own.shape.tensor() - example.j).norm();
+        let likelihood = best(Rival::OutputError, &example, sigma).0;
+        assert!(own < 2.0 * likelihood && likelihood < 2.0 * own, "{own:e} {likelihood:e}");
+        assert!(best(Rival::CentralDifferences, &example, sigma).0 > 30.0 * likelihood);
+        for rival in [Rival::Wendy, Rival::Kalman, Rival::OutputError] {
+            // the 99.9 % point of χ² with five degrees of freedom
+            let square = best(rival, &example, sigma).1.unwrap();
+            assert!(square < 20.5, "{}: {square}", rival.name());
+        }
+    }
+
+    /// In the metric of entries the nearest physical tensor is the clipped spectrum; in any metric no step towards another
+    /// physical tensor leads nearer.
+    #[test]
+    fn the_nearest_physical_tensor_is_nearest() {
+        let coordinates = |d: [f64; 3]| {
+            let j = Matrix3::from_diagonal(&Vector3::from(d));
+            Vector5::from_fn(|k, _| basis(k).dot(&j))
+        };
+        for (far, near) in [([0.05, 0.25, 0.7], [0.15, 0.35, 0.5]), ([-0.4, 0.65, 0.75], [0.0, 0.5, 0.5])] {
+            let found = nearest(coordinates(far), &Matrix5::identity());
+            assert!((found - coordinates(near)).norm() < 1e-14, "{found}");
+        }
+        let mut random = Random::new(4);
+        for _ in 0..20 {
+            let root = Matrix5::from_fn(|i, k| if i == k { 3.0 } else { random.normal() });
+            let information = root.transpose() * root;
+            let centre = Vector5::from_fn(|_, _| 0.3 * random.normal());
+            let found = nearest(centre, &information);
+            for _ in 0..20 {
+                let other = coordinates::physical(&Vector5::from_fn(|_, _| random.normal()));
+                let slope = (information * (found - centre)).dot(&(other - found));
+                assert!(slope > -1e-10, "{slope:e}");
+            }
+        }
+    }
+}

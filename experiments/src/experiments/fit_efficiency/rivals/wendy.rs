@@ -1,0 +1,205 @@
+//! Weak-form estimation of nonlinear dynamics (WENDy): the weak form with errors in variables.
+//!
+//! Test functions φ(u) = exp(−9/(1 − u²)), equations −∫ φ' J ω + ∫ φ ω × J ω = 0 by the trapezoidal rule, ordinary least
+//! squares first, then least squares weighted by the covariance of the residuals, linearised about the samples as they
+//! are and about the last answer, until the answer rests.
+//!
+//! Source: D. M. Bortz, D. A. Messenger, V. Dukic, Bull. Math. Biol. 85 (2023) 110, doi 10.1007/s11538-023-01208-6.
+
+use nalgebra::{Matrix3, Matrix5, Vector5};
+
+use super::Answer;
+use super::coordinates::{basis, tensor};
+use super::euler::cross_derivative;
+use super::record::Stretch;
+
+/// Test functions for each radius.
+const PER_RADIUS: f64 = 6.0;
+const ROUNDS: usize = 50;
+/// Change of the coordinates that ends the rounds.
+const STILL: f64 = 1e-8;
+
+/// A test function on the samples that it sees: values and slopes, times the weights of the trapezoidal rule.
+struct Test {
+    first: usize,
+    values: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+/// With test functions of half width `radius`. `None` where the rounds do not come to rest.
+pub(super) fn answer(stretches: &[Stretch], radius: f64, sigma: f64) -> Option<Answer> {
+    let tests: Vec<Vec<Test>> = stretches.iter().map(|s| tests(s, radius)).collect();
+    let equations: Vec<Vec<[f64; 6]>> = stretches.iter().zip(&tests).map(|(s, t)| equations(s, t)).collect();
+    let (mut x, _) = solve(&equations)?;
+    for _ in 0..ROUNDS {
+        let mut whitened = Vec::with_capacity(equations.len());
+        for ((s, tests), rows) in stretches.iter().zip(&tests).zip(&equations) {
+            let mut covariance = covariance(s, tests, &x);
+            covariance.factor()?;
+            let mut rows = rows.clone();
+            covariance.forward(&mut rows);
+            whitened.push(rows);
+        }
+        let (next, information) = solve(&whitened)?;
+        let step = (next - x).norm();
+        x = next;
+        if step < STILL {
+            return Answer::constrained(x, information / (sigma * sigma));
+        }
+    }
+    None
+}
+
+fn tests(s: &Stretch, radius: f64) -> Vec<Test> {
+    let count = s.times.len();
+    let (start, end) = (s.times[0] + radius, s.times[count - 1] - radius);
+    let room = (end - start).max(0.0);
+    let centres = (room * PER_RADIUS / radius).floor() as usize + 1;
+    let weight = |i: usize| {
+        let next = s.times[(i + 1).min(count - 1)];
+        let last = s.times[i.saturating_sub(1)];
+        0.5 * (next - last)
+    };
+    (0..centres)
+        .map(|k| {
+            let centre = start + room * k as f64 / (centres - 1).max(1) as f64;
+            let first = s.times.partition_point(|t| *t <= centre - radius);
+            let last = s.times.partition_point(|t| *t < centre + radius);
+            let (mut values, mut slopes) = (Vec::new(), Vec::new());
+            for i in first..last {
+                let u = (s.times[i] - centre) / radius;
+                let width = 1.0 - u * u;
+                let value = libm::exp(9.0 - 9.0 / width) * weight(i);
+                values.push(value);
+                slopes.push(-18.0 * u / (width * width * radius) * value);
+            }
+            Test { first, values, slopes }
+        })
+        .collect()
+}
+
+fn equations(s: &Stretch, tests: &[Test]) -> Vec<[f64; 6]> {
+    let bases: [Matrix3<f64>; 6] =
+        core::array::from_fn(|k| if k < 5 { basis(k) } else { Matrix3::identity() / 3.0 });
+    let mut rows = vec![[0.0; 6]; 3 * tests.len()];
+    for (m, test) in tests.iter().enumerate() {
+        for (n, (value, slope)) in test.values.iter().zip(&test.slopes).enumerate() {
+            let w = s.rates[test.first + n];
+            for (k, b) in bases.iter().enumerate() {
+                let product = b * w;
+                let part = w.cross(&product) * *value - product * *slope;
+                (0..3).for_each(|c| rows[3 * m + c][k] += part[c]);
+            }
+        }
+    }
+    rows
+}
+
+/// Covariance of the residuals, in units of the variance of a sample.
+fn covariance(s: &Stretch, tests: &[Test], x: &Vector5<f64>) -> Banded {
+    let j = tensor(x);
+    let crossed: Vec<Matrix3<f64>> = s.rates.iter().map(|w| cross_derivative(&j, w)).collect();
+    let reach = (0..tests.len())
+        .map(|m| {
+            let last = tests[m].first + tests[m].values.len();
+            tests[m..].iter().take_while(|other| other.first < last).count()
+        })
+        .max()
+        .unwrap_or(1);
+    let mut sum = Banded::zeros(3 * tests.len(), 3 * reach);
+    for (m, test) in tests.iter().enumerate() {
+        let last = test.first + test.values.len();
+        for (l, other) in tests.iter().enumerate().skip(m).take_while(|(_, other)| other.first < last) {
+            let mut block = Matrix3::zeros();
+            let range = other.first..last.min(other.first + other.values.len());
+            let shift = other.first - test.first;
+            let one = test.values[shift..].iter().zip(&test.slopes[shift..]);
+            let two = other.values.iter().zip(&other.slopes);
+            for ((k, one), two) in crossed[range].iter().zip(one).zip(two) {
+                let of = |(value, slope): (&f64, &f64)| k * *value - j * *slope;
+                block += of(one) * of(two).transpose();
+            }
+            for p in 0..3 {
+                for q in 0..3 {
+                    sum.add(3 * l + q, 3 * m + p, block[(p, q)]);
+                }
+            }
+        }
+    }
+    sum
+}
+
+/// The coordinates that leave least of `rows`, and their information.
+fn solve(rows: &[Vec<[f64; 6]>]) -> Option<(Vector5<f64>, Matrix5<f64>)> {
+    let (mut information, mut right) = (Matrix5::zeros(), Vector5::zeros());
+    for row in rows.iter().flatten() {
+        let g = Vector5::from_column_slice(&row[..5]);
+        information += g * g.transpose();
+        right -= g * row[5];
+    }
+    let x = information.cholesky()?.solve(&right);
+    x.iter().all(|v| v.is_finite()).then_some((x, information))
+}
+
+/// The lower half of a symmetric matrix with a band, and after [`factor`](Banded::factor) its Cholesky factor.
+struct Banded {
+    size: usize,
+    width: usize,
+    /// Row by row, the diagonal last.
+    entries: Vec<f64>,
+}
+
+impl Banded {
+    fn zeros(size: usize, width: usize) -> Self {
+        Banded { size, width, entries: vec![0.0; size * (width + 1)] }
+    }
+
+    fn place(&self, row: usize, column: usize) -> usize {
+        row * (self.width + 1) + self.width + column - row
+    }
+
+    /// Adds to an entry of the lower half; one of the upper half stands there already.
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        if row >= column {
+            let place = self.place(row, column);
+            self.entries[place] += value;
+        }
+    }
+
+    /// `None` where the matrix is not positive.
+    fn factor(&mut self) -> Option<()> {
+        for i in 0..self.size {
+            let first = i.saturating_sub(self.width);
+            for k in first..=i {
+                let start = first.max(k.saturating_sub(self.width));
+                let mut sum = self.entries[self.place(i, k)];
+                for l in start..k {
+                    sum -= self.entries[self.place(i, l)] * self.entries[self.place(k, l)];
+                }
+                let place = self.place(i, k);
+                if k < i {
+                    self.entries[place] = sum / self.entries[self.place(k, k)];
+                } else if sum > 0.0 {
+                    self.entries[place] = sum.sqrt();
+                } else {
+                    return None;
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// L⁻¹ times the rows.
+    fn forward(&self, rows: &mut [[f64; 6]]) {
+        for i in 0..self.size {
+            let (before, rest) = rows.split_at_mut(i);
+            let first = i.saturating_sub(self.width);
+            for (k, other) in before.iter().enumerate().skip(first) {
+                let factor = self.entries[self.place(i, k)];
+                (0..6).for_each(|c| rest[0][c] -= factor * other[c]);
+            }
+            let diagonal = self.entries[self.place(i, i)];
+            rest[0] = rest[0].map(|v| v / diagonal);
+        }
+    }
+}

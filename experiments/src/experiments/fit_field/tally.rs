@@ -1,0 +1,216 @@
+//! What the fits of one row amount to, and what is demanded of them.
+
+use super::cases::{Case, Model};
+use super::trial::{Trial, Verdict};
+
+/// The 95 % points of χ² with five and six degrees of freedom, and the 99.9 % points.
+const ELLIPSOIDS: [(f64, f64); 2] =
+    [(11.070_497_693_516_35, 20.515_005_652_432_87), (12.591_587_243_743_98, 22.457_744_484_825_326)];
+/// The normal deviate that one in twenty exceeds, either sign.
+const ONE_IN_TWENTY: f64 = 1.959_963_984_540_054;
+
+/// Counts of one row or several.
+#[derive(Default)]
+pub(super) struct Tally {
+    numbers: u64,
+    /// Squared errors over the bound, where there is one.
+    squares: Vec<f64>,
+    answered: u64,
+    covered: u64,
+    stated: u64,
+    pub(super) warned: u64,
+    pub(super) silent: u64,
+    pub(super) units: u64,
+    pub(super) refused: u64,
+    seconds: Vec<f64>,
+}
+
+/// A share with its 95 % interval.
+#[derive(Clone, Copy)]
+pub(super) struct Interval {
+    pub(super) share: f64,
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl Interval {
+    /// Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209. `None` of nothing.
+    pub(super) fn new(count: u64, of: u64) -> Option<Self> {
+        Self::wide(count, of, ONE_IN_TWENTY)
+    }
+
+    /// Of another number of standard deviations.
+    fn wide(count: u64, of: u64, z: f64) -> Option<Self> {
+        if of == 0 {
+            return None;
+        }
+        let (n, share) = (of as f64, count as f64 / of as f64);
+        let square = z * z / n;
+        let centre = (share + 0.5 * square) / (1.0 + square);
+        let half = z / (1.0 + square) * (share * (1.0 - share) / n + 0.25 * square / n).sqrt();
+        // none and all end at the end, whatever the rounding
+        let low = if count == 0 { 0.0 } else { (centre - half).max(0.0) };
+        let high = if count == of { 1.0 } else { (centre + half).min(1.0) };
+        Some(Interval { share, low, high })
+    }
+}
+
+/// Four digits: what a Monte Carlo figure can bear, and the same on every machine.
+pub(super) fn rounded(x: f64) -> Option<f64> {
+    format!("{x:.3e}").parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+impl Tally {
+    /// Of tensors with `numbers` unknowns, five or six.
+    pub(super) fn new(trials: &[Trial], numbers: u64) -> Self {
+        let mut t = Tally { numbers, ..Tally::default() };
+        let (inside, outside) = ELLIPSOIDS[usize::from(numbers == 6)];
+        for trial in trials {
+            t.seconds.push(trial.seconds);
+            match &trial.verdict {
+                Verdict::Units => t.units += 1,
+                Verdict::Refused => t.refused += 1,
+                Verdict::Answered(answer) => {
+                    t.answered += 1;
+                    t.squares.extend(answer.over_bound);
+                    t.warned += u64::from(answer.warned);
+                    t.stated += u64::from(answer.own.is_some());
+                    t.covered += u64::from(answer.own.is_some_and(|square| square < inside));
+                    let wrong = answer.own.is_none_or(|square| square > outside);
+                    t.silent += u64::from(wrong && !answer.warned && !answer.lines_cover);
+                }
+            }
+        }
+        t
+    }
+
+    pub(super) fn add(&mut self, other: Tally) {
+        self.squares.extend(other.squares);
+        self.seconds.extend(other.seconds);
+        self.answered += other.answered;
+        self.covered += other.covered;
+        self.stated += other.stated;
+        self.warned += other.warned;
+        self.silent += other.silent;
+        self.units += other.units;
+        self.refused += other.refused;
+    }
+
+    pub(super) fn answered(&self) -> u64 {
+        self.answered
+    }
+
+    pub(super) fn covered(&self) -> u64 {
+        self.covered
+    }
+
+    pub(super) fn records(&self) -> u64 {
+        self.answered + self.units + self.refused
+    }
+
+    pub(super) fn coverage(&self) -> Option<Interval> {
+        Interval::new(self.covered, self.stated)
+    }
+
+    /// Root of the mean square error over the bound.
+    pub(super) fn over_bound(&self) -> Option<f64> {
+        let sum: f64 = self.squares.iter().sum();
+        let count = self.numbers * self.squares.len() as u64;
+        (count > 0).then(|| (sum / count as f64).sqrt())
+    }
+
+    pub(super) fn median(&self) -> Option<f64> {
+        middle(&self.squares, 0.5).map(|square| (square / self.numbers as f64).sqrt())
+    }
+
+    /// The time that a share of the fits do not exceed.
+    pub(super) fn seconds(&self, share: f64) -> Option<f64> {
+        middle(&self.seconds, share)
+    }
+
+    /// What this row should show and does not, by more than chance.
+    pub(super) fn demands(&self, case: &Case, noise: f64) -> Vec<String> {
+        let records = self.records();
+        let mut failed = Vec::new();
+        let mut say = |what: String| failed.push(format!("{}, noise {noise}: {what}", case.name));
+        // five standard deviations of chance
+        let surely = |count: u64, of: u64| Interval::wide(count, of, 5.0);
+        if case.model == Model::WrongUnit {
+            if surely(self.units, records).is_some_and(|i| i.high < 0.95) {
+                say(format!("{} of {records} mistaken units caught", self.units));
+            }
+            return failed;
+        }
+        if self.units > 0 {
+            say(format!("{} of {records} right units taken for mistaken", self.units));
+        }
+        if self.silent > 0 {
+            say(format!("{} of {} silently wrong", self.silent, self.answered));
+        }
+        if case.model == Model::Missing {
+            return failed;
+        }
+        if surely(self.refused, records).is_some_and(|i| i.low > 0.02) {
+            say(format!("{} of {records} refused", self.refused));
+        }
+        let scatter = (2.0 / (self.numbers.max(1) * self.squares.len().max(1) as u64) as f64).sqrt() / 2.0;
+        if let Some(over) = self.over_bound().filter(|over| *over > 1.1 + 5.0 * scatter) {
+            say(format!("{over:.3} of the bound"));
+        }
+        if surely(self.covered, self.stated).is_some_and(|i| i.high < 0.91 || i.low > 0.985) {
+            say(format!("{} of {} covered", self.covered, self.stated));
+        }
+        if case.name == "ideal" && surely(self.warned, self.answered).is_some_and(|i| i.low > 0.05) {
+            say(format!("{} of {} warned of", self.warned, self.answered));
+        }
+        failed
+    }
+}
+
+/// The value that a share of the values do not exceed.
+fn middle(values: &[f64], share: f64) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let last = sorted.len().checked_sub(1)?;
+    Some(sorted[(share * last as f64).round() as usize])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::trial::Answer;
+    use super::*;
+
+    #[test]
+    fn intervals_are_those_of_the_published_example() {
+        // Newcombe, Stat. Med. 17 (1998) 857, table I: 81 of 263, and 0 of 20
+        let i = Interval::new(81, 263).unwrap();
+        assert!((i.low - 0.2553).abs() < 5e-5 && (i.high - 0.3662).abs() < 5e-5, "{} {}", i.low, i.high);
+        let i = Interval::new(0, 20).unwrap();
+        assert!(
+            i.low == 0.0 && Interval::new(0, 18).unwrap().low == 0.0 && (i.high - 0.1611).abs() < 5e-5,
+            "{}",
+            i.high
+        );
+        assert!(Interval::new(0, 0).is_none());
+    }
+
+    #[test]
+    fn a_tally_counts_each_verdict_once() {
+        let answer = |own, warned, lines_cover| {
+            Verdict::Answered(Answer { over_bound: Some(own), own: Some(own), warned, lines_cover })
+        };
+        let verdicts = [
+            answer(5.0, false, true),
+            answer(30.0, true, false),
+            answer(30.0, false, true),
+            answer(30.0, false, false),
+            Verdict::Units,
+            Verdict::Refused,
+        ];
+        let trials = verdicts.map(|verdict| Trial { verdict, seconds: 0.1 });
+        let t = Tally::new(&trials, 5);
+        assert_eq!((t.answered(), t.covered(), t.warned, t.silent), (4, 1, 1, 1));
+        assert_eq!((t.units, t.refused, t.records()), (1, 1, 6));
+        assert_eq!(t.over_bound(), Some((95.0_f64 / 20.0).sqrt()));
+    }
+}

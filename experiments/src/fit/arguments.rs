@@ -1,0 +1,107 @@
+//! The flags of what the fit reckons with: torques, the sensor, and what gives the absolute size.
+
+use clap::{Args, ValueEnum};
+use nalgebra::Vector3;
+use polhode::fit::{Known, SensorPriors, TorqueModel};
+
+use crate::arguments::{number, numbers, positive};
+use crate::body_arguments::described;
+use crate::error::Error;
+
+/// The torque models of the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Torque {
+    /// The body is free
+    None,
+    /// -k J w
+    Drag,
+    /// -D w, D diagonal in sensor axes
+    Drag3,
+    /// -D w, D symmetric
+    Drag6,
+    /// Constant in body axes
+    Constant,
+    /// The simplest that the record does not contradict
+    Auto,
+}
+
+impl From<Torque> for TorqueModel {
+    fn from(torque: Torque) -> Self {
+        match torque {
+            Torque::None => TorqueModel::None,
+            Torque::Drag => TorqueModel::Drag,
+            Torque::Drag3 => TorqueModel::Drag3,
+            Torque::Drag6 => TorqueModel::Drag6,
+            Torque::Constant => TorqueModel::Constant,
+            Torque::Auto => TorqueModel::Auto,
+        }
+    }
+}
+
+/// Standard deviations of what may be wrong with the sensor.
+#[derive(Args, Clone, Debug)]
+pub(super) struct SensorArguments {
+    /// Standard deviation of the offset of each axis, rad/s: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_bias: Option<f64>,
+    /// Standard deviation of the relative error of scale that the axes share: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_scale: Option<f64>,
+    /// Standard deviation of the relative errors of scale of each axis: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_axis_scales: Option<f64>,
+    /// Standard deviation of the errors of the right angles between axes, rad: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_misalignment: Option<f64>,
+    /// Standard deviation of the delays of y and z behind x, s: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_skew: Option<f64>,
+}
+
+impl SensorArguments {
+    pub(super) fn priors(&self) -> SensorPriors {
+        SensorPriors {
+            offset: self.gyro_bias,
+            scale: self.gyro_scale,
+            axis_scales: self.gyro_axis_scales,
+            misalignment: self.gyro_misalignment,
+            skew: self.gyro_skew,
+        }
+    }
+}
+
+/// What gives the absolute size: at most one of these.
+#[derive(Args, Clone, Debug)]
+#[group(multiple = false)]
+pub(super) struct KnownArguments {
+    /// Body of the same trace: a name of the catalogue, or a file of `polhode inertia`
+    #[arg(long, value_name = "NAME|FILE")]
+    body: Option<String>,
+    /// Trace of the tensor, kg m^2
+    #[arg(long, value_name = "TRACE", value_parser = number, allow_hyphen_values = true)]
+    trace: Option<f64>,
+    /// Magnitude of the angular momentum, kg m^2/s
+    #[arg(long, value_name = "L", value_parser = number, allow_hyphen_values = true)]
+    momentum: Option<f64>,
+    /// Twice the kinetic energy, kg m^2/s^2
+    #[arg(long, value_name = "2T", value_parser = number, allow_hyphen_values = true)]
+    twice_energy: Option<f64>,
+    /// Moment about an axis, kg m^2
+    #[arg(long, value_name = "nx,ny,nz,I", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    moment: Option<[f64; 4]>,
+}
+
+impl KnownArguments {
+    pub(super) fn known(&self) -> Result<Option<Known>, Error> {
+        if let Some(text) = &self.body {
+            return Ok(Some(Known::Trace(described(text)?.inertia.tensor().trace())));
+        }
+        let moment = |[x, y, z, value]: [f64; 4]| Known::Moment { axis: Vector3::new(x, y, z), value };
+        Ok(self
+            .trace
+            .map(Known::Trace)
+            .or(self.momentum.map(Known::Momentum))
+            .or(self.twice_energy.map(Known::TwiceEnergy))
+            .or(self.moment.map(moment)))
+    }
+}

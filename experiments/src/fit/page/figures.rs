@@ -1,0 +1,187 @@
+//! The drawings of a page.
+
+use nalgebra::Vector3;
+use polhode::fit::{Estimate, Record};
+
+use super::super::motion::Fitted;
+use super::super::plot::{self, AXES, Curve, Plot, Style, without_gaps};
+use super::document::Part;
+use super::noise;
+use crate::error::Error;
+use crate::figure::{Figure, Series};
+
+/// Segments that are drawn one by one.
+const DRAWN: usize = 8;
+
+const SMALL: (u32, u32) = (860, 260);
+
+/// Measured and fitted rates of each segment, or of those that fit worst.
+pub(super) fn motions(motion: &[Fitted], record: &Record) -> Result<Vec<Part>, Error> {
+    let mut chosen: Vec<&Fitted> = motion.iter().collect();
+    if chosen.len() > DRAWN {
+        chosen.sort_by(|a, b| b.rms().unwrap_or(f64::MAX).total_cmp(&a.rms().unwrap_or(f64::MAX)));
+        chosen.truncate(DRAWN);
+    }
+    let mut parts = vec![Part::Heading("Measured and fitted rates".into())];
+    if motion.len() > DRAWN {
+        parts.push(Part::Paragraph(format!("The {DRAWN} segments of {} that fit worst.", motion.len())));
+    }
+    for m in chosen {
+        let Some(s) = record.segments.get(m.segment) else { continue };
+        let mut curves = rates(s.times(), &m.measured, Style::Dots, "");
+        if let Some(fitted) = &m.fitted {
+            curves.extend(rates(s.times(), fitted, Style::Line, " fitted"));
+        }
+        let title = format!("Segment {}", m.segment + 1);
+        let plot = Plot {
+            title: &title,
+            x: "time (s)",
+            y: "angular velocity (rad/s)",
+            band: None,
+            size: SMALL,
+            curves,
+        };
+        let caption = match m.rms() {
+            Some(rms) => format!("Segment {}: rms of the difference {rms:.2e} rad/s.", m.segment + 1),
+            None => format!("Segment {}: no motion of the fitted body follows it.", m.segment + 1),
+        };
+        parts.push(Part::Figure(plot.svg()?, caption));
+    }
+    Ok(parts)
+}
+
+fn rates(times: &[f64], rates: &[Vector3<f64>], style: Style, which: &str) -> Vec<Curve> {
+    (0..3)
+        .map(|axis| Curve {
+            name: format!("{}{which}", AXES[axis]),
+            colour: axis,
+            style,
+            points: times.iter().zip(rates).map(|(t, w)| (*t, w[axis])).collect(),
+        })
+        .collect()
+}
+
+/// Residuals: whitened against time, their spectrum and their Allan deviation.
+pub(super) fn residuals(e: &Estimate, motion: &[Fitted], record: &Record) -> Result<Vec<Part>, Error> {
+    let mut parts = vec![Part::Heading("Residuals".into())];
+    let caption =
+        "Residuals of the weak equations in standard deviations; the band is two of them wide on each side.";
+    parts.push(Part::Figure(plot::residuals(e)?, caption.into()));
+    let left: Vec<_> = motion.iter().filter_map(Fitted::residuals).collect();
+    let times = motion.iter().filter_map(|m| record.segments.get(m.segment)).map(|s| s.times());
+    let Some(interval) = interval(times).filter(|_| !left.is_empty()) else { return Ok(parts) };
+    let spectrum = noise::spectrum(&left, interval);
+    if let (Some(first), Some(last)) = (spectrum.first(), spectrum.last()) {
+        let level = 2.0 * e.noise_sigma * e.noise_sigma * interval;
+        let mut figure =
+            Figure::log_log("spectrum", "Spectrum of measured less fitted", "frequency (Hz)", "(rad/s)²/Hz");
+        let white = vec![(first.0, level), (last.0, level)];
+        figure.series = vec![Series::new("residuals", spectrum.clone()), Series::new("white noise", white)];
+        let caption = format!(
+            "Power spectral density of measured less fitted rates, mean of the axes; the line is the level of \
+             white noise of {:.2e} rad/s.",
+            e.noise_sigma
+        );
+        parts.push(Part::Figure(figure.svg()?, caption));
+    }
+    let allan = noise::allan(&left, interval);
+    if let (Some(first), Some(last)) = (allan.first(), allan.last()) {
+        let white = [first.0, last.0].map(|t| (t, e.noise_sigma * (interval / t).sqrt())).to_vec();
+        let mut figure = Figure::log_log(
+            "allan",
+            "Allan deviation of measured less fitted",
+            "averaging time (s)",
+            "Allan deviation (rad/s)",
+        );
+        figure.series = vec![Series::new("residuals", allan), Series::new("white noise", white)];
+        let caption = format!(
+            "Allan deviation of the same, mean of the axes, with white noise of {:.2e} rad/s.",
+            e.noise_sigma
+        );
+        parts.push(Part::Figure(figure.svg()?, caption));
+    }
+    Ok(parts)
+}
+
+/// The median time between samples.
+fn interval<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
+    let mut steps: Vec<f64> =
+        segments.flat_map(|times| times.windows(2)).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied()
+}
+
+/// |J ω| and ω·J ω of the samples over their means.
+pub(super) fn invariants(e: &Estimate, motion: &[Fitted], record: &Record) -> Result<Part, Error> {
+    let j = e.shape.tensor();
+    let segments: Vec<&Fitted> = motion.iter().collect();
+    let source = |m: &Fitted| record.segments.get(m.segment).map_or(&[][..], |s| s.times());
+    let single = segments.len() == 1;
+    let times: Vec<Vec<f64>> = if single {
+        segments.iter().map(|m| source(m).to_vec()).collect()
+    } else {
+        without_gaps(segments.iter().map(|m| source(m)))
+    };
+    let curve = |name: &str, colour: usize, of: &dyn Fn(&Vector3<f64>) -> f64| {
+        let mut points = Vec::new();
+        for (m, times) in segments.iter().zip(&times) {
+            let used = || m.measured.iter().zip(times).zip(&m.used).filter(|(_, used)| **used);
+            let count = used().count().max(1) as f64;
+            let mean = used().map(|((w, _), _)| of(w)).sum::<f64>() / count;
+            points.extend(used().map(|((w, t), _)| (*t, of(w) / mean)));
+        }
+        Curve { name: name.into(), colour, style: Style::Dots, points }
+    };
+    let plot = Plot {
+        title: "Angular momentum and energy along the record",
+        x: if single { "time (s)" } else { "time without the gaps between segments (s)" },
+        y: "value over the mean of the segment",
+        band: None,
+        size: (860, 320),
+        curves: vec![curve("|Jω|", 0, &|w| (j * w).norm()), curve("2T", 1, &|w| w.dot(&(j * w)))],
+    };
+    let caption = "Angular momentum |Jω| and twice the energy, 2T = ω·Jω, which a free body keeps.";
+    Ok(Part::Figure(plot.svg()?, caption.into()))
+}
+
+/// The readings of a record that was refused.
+pub(super) fn readings(record: &Record) -> Result<Vec<Part>, Error> {
+    let shown = record.segments.iter().enumerate().take(DRAWN);
+    let mut parts = Vec::new();
+    for (k, s) in shown {
+        let title = format!("Segment {}", k + 1);
+        let plot = Plot {
+            title: &title,
+            x: "time (s)",
+            y: "angular velocity (rad/s)",
+            band: None,
+            size: SMALL,
+            curves: rates(s.times(), s.rates(), Style::Dots, ""),
+        };
+        parts.push(Part::Figure(plot.svg()?, format!("Segment {} of {}.", k + 1, s.source())));
+    }
+    if record.segments.len() > DRAWN {
+        parts.push(Part::Paragraph(format!("The first {DRAWN} segments of {}.", record.segments.len())));
+    }
+    let lengths = record.segments.iter().flat_map(|s| s.times().iter().zip(s.rates()));
+    let single = record.segments.len() == 1;
+    let times = without_gaps(record.segments.iter().map(|s| s.times()));
+    let points = if single {
+        lengths.map(|(t, w)| (*t, w.norm())).collect()
+    } else {
+        times.into_iter().flatten().zip(lengths).map(|(t, (_, w))| (t, w.norm())).collect()
+    };
+    let plot = Plot {
+        title: "Size of the rate along the record",
+        x: if single { "time (s)" } else { "time without the gaps between segments (s)" },
+        y: "|ω| (rad/s)",
+        band: None,
+        size: SMALL,
+        curves: vec![Curve { name: "|ω|".into(), colour: 0, style: Style::Dots, points }],
+    };
+    parts.push(Part::Figure(
+        plot.svg()?,
+        "Size of the rate: jumps are blows or catches, a fall is drag.".into(),
+    ));
+    Ok(parts)
+}

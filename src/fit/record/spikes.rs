@@ -1,0 +1,142 @@
+//! Samples that stand out of their neighbours: Hampel's rule about what short polynomials through them foresee.
+//!
+//! Source: Hampel 1974, Journal of the American Statistical Association 69, 383, with predictions in place of the median,
+//! since rates of a tumbling body have slopes.
+
+use nalgebra::Vector3;
+
+/// Sets of neighbours that foresee a sample: how many before it, and how many after.
+const SETS: [(usize, usize); 5] = [(2, 2), (3, 1), (1, 3), (3, 0), (0, 3)];
+/// Samples on each side among which the usual deviation is sought, and whose deviations a spike changes.
+const NEIGHBOURS: usize = 25;
+/// Usual deviations that a spike exceeds by the median of its predictions: normal noise does so once in 1e17 samples.
+const FAR: f64 = 6.0;
+/// The same by every prediction, also those that magnify the noise: beside a jump one is as usual.
+const EVERY: f64 = 1.5;
+
+/// Indices of the spikes among samples at nearly even times, ascending.
+///
+/// A sample counts as one only if no set of its neighbours foresees it: those beside a jump have a set without it. The
+/// worst comes first, and is no neighbour of the others any more.
+pub(super) fn spikes(rates: &[Vector3<f64>]) -> Vec<usize> {
+    let mut left = vec![true; rates.len()];
+    let of_sets: Vec<[f64; 5]> = (0..rates.len()).map(|i| deviations(rates, &left, i)).collect();
+    let usual: [f64; 5] = core::array::from_fn(|k| {
+        let mut all: Vec<f64> = of_sets.iter().map(|d| d[k]).filter(|d| d.is_finite()).collect();
+        median(&mut all).unwrap_or(0.0)
+    });
+    let score = |of_sets: &[f64; 5]| {
+        let mut each: Vec<f64> =
+            of_sets.iter().zip(usual).map(|(d, u)| d / u).filter(|s| s.is_finite()).collect();
+        let first = each.first().copied().unwrap_or(0.0);
+        let least = each.iter().copied().fold(f64::INFINITY, f64::min);
+        Score { first, least, middle: median(&mut each).unwrap_or(0.0) }
+    };
+    let mut scores: Vec<Score> = of_sets.iter().map(score).collect();
+    // where the motion is too fast for the sampling, all samples deviate
+    let stands_out = |scores: &[Score], i: usize| {
+        let own = scores[i];
+        if !(own.least.is_finite() && own.least > EVERY && own.middle > FAR) {
+            return false;
+        }
+        let around = &scores[i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(scores.len())];
+        let mut near: Vec<f64> = around.iter().map(|s| s.middle).collect();
+        median(&mut near).is_some_and(|near| own.middle > FAR * near)
+    };
+    let mut suspects: Vec<usize> = (0..rates.len()).filter(|&i| stands_out(&scores, i)).collect();
+    let mut found = Vec::new();
+    while let Some(worst) =
+        (0..suspects.len()).max_by(|&a, &b| scores[suspects[a]].first.total_cmp(&scores[suspects[b]].first))
+    {
+        let spike = suspects.swap_remove(worst);
+        found.push(spike);
+        left[spike] = false;
+        for i in spike.saturating_sub(NEIGHBOURS)..(spike + NEIGHBOURS + 1).min(rates.len()) {
+            if left[i] {
+                scores[i] = score(&deviations(rates, &left, i));
+            }
+        }
+        // without the spike among their neighbours others may stand out, or no longer do
+        suspects.retain(|&i| i.abs_diff(spike) > NEIGHBOURS);
+        let near = spike.saturating_sub(NEIGHBOURS)..(spike + NEIGHBOURS + 1).min(rates.len());
+        suspects.extend(near.filter(|&i| left[i] && stands_out(&scores, i)));
+    }
+    found.sort_unstable();
+    found
+}
+
+/// How far no set of neighbours foresees a sample, in usual deviations, and the median of the sets.
+#[derive(Clone, Copy)]
+struct Score {
+    /// By the set with the least noise: of a spike it is larger than of those beside it.
+    first: f64,
+    least: f64,
+    middle: f64,
+}
+
+/// The deviation of a sample from each of its predictions, in units of their noise; infinite where neighbours are missing.
+fn deviations(rates: &[Vector3<f64>], left: &[bool], i: usize) -> [f64; 5] {
+    let before = (0..i).rev().filter(|&k| left[k]).take(3);
+    let after = (i + 1..rates.len()).filter(|&k| left[k]).take(3);
+    let (mut low, mut high) = ([None; 3], [None; 3]);
+    before.zip(&mut low).for_each(|(k, slot)| *slot = Some(k));
+    after.zip(&mut high).for_each(|(k, slot)| *slot = Some(k));
+    SETS.map(|(below, above)| {
+        let mut nodes = [0; 4];
+        let chosen = low[..below].iter().chain(&high[..above]);
+        let mut count = 0;
+        for (slot, node) in nodes.iter_mut().zip(chosen) {
+            let Some(node) = node else { return f64::INFINITY };
+            *slot = *node;
+            count += 1;
+        }
+        let offsets = nodes.map(|k| k as f64 - i as f64);
+        let (mut rest, mut noise) = (rates[i], 1.0);
+        for k in 0..count {
+            let others = (0..count).filter(|&l| l != k);
+            let weight: f64 = others.map(|l| offsets[l] / (offsets[l] - offsets[k])).product();
+            rest -= rates[nodes[k]] * weight;
+            noise += weight * weight;
+        }
+        rest.norm() / noise.sqrt()
+    })
+}
+
+fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    if values.is_empty() { None } else { Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::Random;
+
+    #[test]
+    fn spikes_are_found_and_samples_beside_them_kept() {
+        let mut random = Random::new(3);
+        let mut rates: Vec<Vector3<f64>> = (0..2000)
+            .map(|i| {
+                let t = 0.01 * f64::from(i);
+                Vector3::new(libm::sin(t), libm::cos(1.3 * t), 0.2) + random.normal_vector() * 1e-2
+            })
+            .collect();
+        assert_eq!(spikes(&rates).len(), 0);
+        let at = [3, 500, 501, 505, 1200, 1996];
+        for i in at {
+            rates[i].y += 0.5;
+        }
+        assert_eq!(spikes(&rates), at);
+    }
+
+    #[test]
+    fn a_jump_and_noiseless_samples_have_no_spikes() {
+        let mut rates: Vec<Vector3<f64>> =
+            (0..400).map(|i| Vector3::new(libm::sin(0.02 * f64::from(i)), 1.0, 0.0)).collect();
+        assert!(spikes(&rates).is_empty());
+        for rate in &mut rates[200..] {
+            rate.z += 3.0;
+        }
+        assert!(spikes(&rates).is_empty());
+    }
+}

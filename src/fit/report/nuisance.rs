@@ -1,0 +1,81 @@
+//! What was estimated beside the tensor, and what errors of the sensor would do to the moments.
+
+use crate::fit::settings::TorqueModel;
+
+/// A number that was estimated beside the tensor.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nuisance {
+    /// Its name, as `drag` or `offset_x`.
+    pub name: &'static str,
+    /// Its unit, empty for a ratio.
+    pub unit: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// The standard deviation of its prior, where it has one.
+    pub prior: Option<f64>,
+}
+
+/// The torque that a fit reckons with.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Torque {
+    /// The model; never [`TorqueModel::Auto`].
+    pub model: TorqueModel,
+    /// Its coefficients.
+    pub coefficients: Vec<Nuisance>,
+    /// Gain of log-likelihood over no torque, where both were fitted.
+    pub gain: Option<f64>,
+    /// I₁/I₃ and I₂/I₃ as they would be without the torque.
+    pub ratios_without: Option<[f64; 2]>,
+}
+
+/// What an error of the sensor that the fit takes to be zero would do to the moments.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Systematic {
+    /// The error, as `offset_x`.
+    pub name: &'static str,
+    /// Its size.
+    pub size: f64,
+    /// The unit of its size, empty for a ratio.
+    pub unit: &'static str,
+    /// The change of the principal moments, as shares of the trace, that an error of this size makes.
+    pub principal: [f64; 3],
+    /// The same of I₁/I₃ and I₂/I₃.
+    pub ratios: [f64; 2],
+}
+
+/// One segment of a record in a fit.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct SegmentSummary {
+    /// Index of the segment in the record.
+    pub segment: usize,
+    /// Samples that were used.
+    pub samples: usize,
+    /// Noise of one component of its rates, rad/s.
+    pub noise_sigma: f64,
+    /// Power spectral density of its torque noise, (rad/s²)² s.
+    pub torque_noise: f64,
+    /// Its share of the information about the tensor: the shares of all segments sum to 1.
+    pub weight: f64,
+    /// Distance, in standard deviations of the estimate, by which the tensor moves where the segment is left out.
+    pub shift: f64,
+}
+
+/// A sample that was left out because it stands out of its neighbours.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spike {
+    /// Index of the segment in the record.
+    pub segment: usize,
+    /// Index of the sample in the segment.
+    pub sample: usize,
+    /// Its time, s.
+    pub time: f64,
+    /// Its line in the file, from 1; of a record that is not read from a text its place among the samples.
+    pub line: usize,
+}

@@ -1,0 +1,182 @@
+//! The torque that a record asks for: one rung after the other, each on its gain of likelihood.
+
+use super::levels::{Choice, likeliest};
+use super::linearised::Levels;
+use super::model::{Column, Kind};
+use super::radius::{Failure, descended, estimate};
+use super::rounds::{Noise, WeakEstimate};
+use super::stacked::Stacked;
+use super::test_functions::Stretch;
+use crate::fit::physical::coordinates::Coordinates;
+use crate::fit::settings::TorqueModel;
+
+/// Gain of log-likelihood that the first coefficient of a torque must bring; noise alone brings it once in 600 records.
+const FIRST: f64 = 5.0;
+/// What each further coefficient must bring beyond that.
+const FURTHER: f64 = 1.5;
+
+/// A weak estimate with the torque it was made with.
+pub(crate) struct Chosen {
+    pub(crate) weak: WeakEstimate,
+    pub(crate) model: TorqueModel,
+    /// Gain of log-likelihood over no torque.
+    pub(crate) gain: Option<f64>,
+    /// Coordinates without the torque.
+    pub(crate) without: Option<Coordinates>,
+}
+
+/// The columns of a torque.
+pub(crate) fn columns_of(model: TorqueModel) -> Vec<Column> {
+    let flat = |kind| Column { kind, prior: None };
+    match model {
+        TorqueModel::None | TorqueModel::Auto => Vec::new(),
+        TorqueModel::Drag => vec![flat(Kind::Drag)],
+        TorqueModel::Drag3 => (0..3).map(Kind::Viscous).map(flat).collect(),
+        TorqueModel::Drag6 => (0..6).map(Kind::Viscous).map(flat).collect(),
+        TorqueModel::Constant => (0..3).map(Kind::Constant).map(flat).collect(),
+    }
+}
+
+/// What a fit is asked to reckon with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Demand<'a> {
+    pub(crate) radius: Option<f64>,
+    pub(crate) torque: TorqueModel,
+    pub(crate) noise: Noise,
+    /// Columns that every model has.
+    pub(crate) columns: &'a [Column],
+}
+
+impl Demand<'_> {
+    fn columns(&self, model: TorqueModel) -> Vec<Column> {
+        columns_of(model).into_iter().chain(self.columns.iter().copied()).collect()
+    }
+}
+
+/// The weak estimate that the demand asks for.
+pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) -> Result<Chosen, Failure> {
+    let plain = |weak, model| Chosen { weak, model, gain: None, without: None };
+    let free = matches!(demand.torque, TorqueModel::None | TorqueModel::Auto);
+    let descent = |model: TorqueModel, radius: Option<f64>| {
+        descended(stretches, radius, &demand.columns(model), variance, demand.noise)
+    };
+    if let Noise::Given(_) = demand.noise
+        && demand.torque != TorqueModel::Auto
+    {
+        return descent(demand.torque, demand.radius).map(|weak| plain(weak, demand.torque));
+    }
+    // most records need neither torque nor torque noise
+    let base = if free { TorqueModel::None } else { demand.torque };
+    let first = estimate(stretches, demand.radius, &demand.columns(base), variance)?;
+    let explained = first.misfit(variance) <= first.expected_misfit();
+    if explained {
+        let restless = demand.noise == Noise::Fitted && has_torque_noise(&first, variance);
+        let asks = demand.torque == TorqueModel::Auto
+            && [TorqueModel::Drag, TorqueModel::Constant]
+                .into_iter()
+                .any(|model| gain_of(stretches, &first, &demand, model, variance) > needed(0, model));
+        let done = match demand.noise {
+            Noise::Given(_) => false,
+            Noise::White | Noise::Fitted => !restless && !asks,
+        };
+        if done || !first.settled() {
+            return Ok(plain(first, base));
+        }
+    }
+    let radius = demand.radius;
+    if demand.torque != TorqueModel::Auto {
+        let weak = descent(base, radius)?;
+        let keep = first.still() && !weak.settled();
+        return Ok(plain(if keep { first } else { weak }, base));
+    }
+    // one radius for all, so that their likelihoods are those of the same equations
+    let drag = descent(TorqueModel::Drag, radius)?;
+    let radius = Some(drag.radius);
+    let none = descent(TorqueModel::None, radius)?;
+    let floor = likelihood(&none, variance);
+    let without = none.settled().then(|| none.x());
+    let mut best = Chosen { weak: none, model: TorqueModel::None, gain: None, without: None };
+    let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
+        let gain = likelihood(&weak, variance) - floor;
+        let more = columns_of(model).len().saturating_sub(columns_of(best.model).len()).max(1);
+        let asked = if best.model == TorqueModel::None { needed(0, model) } else { threshold(more) };
+        let before = likelihood(&best.weak, variance) - floor;
+        let better = weak.settled() && (!best.weak.settled() || gain - before > asked);
+        let gain = Some(gain).filter(|gain| gain.is_finite());
+        if better { Chosen { weak, model, gain, without } } else { best }
+    };
+    best = climb(best, TorqueModel::Drag, drag);
+    if let Ok(constant) = descent(TorqueModel::Constant, radius) {
+        best = climb(best, TorqueModel::Constant, constant);
+    }
+    if best.model == TorqueModel::Drag
+        && let Ok(drag) = descent(TorqueModel::Drag3, radius)
+    {
+        best = climb(best, TorqueModel::Drag3, drag);
+    }
+    // what a descent did not settle, plain rounds may have
+    if first.settled()
+        && (!best.weak.settled() || (explained && best.model == TorqueModel::None && !noisy(&best.weak)))
+    {
+        return Ok(plain(first, base));
+    }
+    Ok(best)
+}
+
+/// Whether torque noise has a part in an estimate.
+fn noisy(weak: &WeakEstimate) -> bool {
+    weak.levels().iter().any(|levels| levels.torque > 0.0)
+}
+
+fn threshold(coefficients: usize) -> f64 {
+    FIRST + FURTHER * (coefficients.max(1) - 1) as f64
+}
+
+fn needed(already: usize, model: TorqueModel) -> f64 {
+    threshold(columns_of(model).len().saturating_sub(already))
+}
+
+/// Log-likelihood of an estimate, the unknowns at their best; estimates at one radius can be compared.
+///
+/// It is that of the samples: the determinants are over those without torque noise, since residuals and covariance
+/// that both shrink with the tensor tell nothing.
+fn likelihood(weak: &WeakEstimate, variance: f64) -> f64 {
+    let mut sum = weak.squares / variance;
+    for part in &weak.parts {
+        let Some(white) = part.linearised.whitened(Levels::WHITE) else { return f64::NEG_INFINITY };
+        sum += part.whitened.log_determinant() - white.log_determinant();
+    }
+    if weak.parts.is_empty() { f64::NEG_INFINITY } else { -0.5 * sum }
+}
+
+/// Whether the residuals of an estimate without torque noise ask for some.
+fn has_torque_noise(weak: &WeakEstimate, variance: f64) -> bool {
+    let free = weak.dof().max(1) as f64 / weak.rows.max(1) as f64;
+    let choice = Choice { white: false };
+    weak.parts.iter().any(|part| {
+        let e = part.linearised.residuals(&weak.at);
+        likeliest(&part.linearised, &e, variance, free, choice, None)
+            .is_some_and(|levels| levels.torque > 0.0)
+    })
+}
+
+/// Gain of log-likelihood that the columns of a torque would bring to the equations of an estimate without.
+fn gain_of(
+    stretches: &[Stretch],
+    weak: &WeakEstimate,
+    demand: &Demand<'_>,
+    model: TorqueModel,
+    variance: f64,
+) -> f64 {
+    let columns = demand.columns(model);
+    let mut at = weak.at.clone();
+    at.c = vec![0.0; columns.len() - at.c.len()].into_iter().chain(at.c).collect();
+    let mut rows = Vec::new();
+    for part in &weak.parts {
+        let Some(whitened) = part.with_columns(&stretches[part.stretch], &columns, &at) else { return 0.0 };
+        rows.push(whitened.rows);
+    }
+    let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+    let with = Stacked::new(&rows, &columns, &at, variance.sqrt());
+    0.5 * (weak.squares - with.squares) / variance
+}

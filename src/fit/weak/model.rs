@@ -1,0 +1,142 @@
+//! What the weak equations reckon with beside the tensor: torques on the body, and errors of the sensor.
+//!
+//! J ω' + ω × J ω + D ω − τ₀ = 0 with ω = P y − b of the readings y. Every unknown but the tensor is one column.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::fit::physical::coordinates::{Coordinates, ENTRIES, tensor};
+use crate::fit::settings::SensorPriors;
+
+/// An unknown beside the tensor, in units of the root mean square rate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// k in the torque −k J ω.
+    Drag,
+    /// An entry of D in the torque −D ω, in the order xx, yy, zz, xy, xz, yz.
+    Viscous(usize),
+    /// A component of the torque τ₀.
+    Constant(usize),
+    /// A component of the offset b.
+    Offset(usize),
+    /// The relative error of scale of all axes.
+    Scale,
+    /// That of one axis.
+    AxisScale(usize),
+    /// The angle by which a pair of axes is not a right one: the third axis is its number.
+    Misalignment(usize),
+    /// The delay of an axis behind the first.
+    Skew(usize),
+    /// One over the trace of the tensor: the factor of wheel momenta and known torques.
+    Input,
+}
+
+/// An unknown and the standard deviation of its prior about zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) kind: Kind,
+    pub(crate) prior: Option<f64>,
+}
+
+/// Values of all unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Unknowns {
+    pub(crate) x: Coordinates,
+    /// One for each column.
+    pub(crate) c: Vec<f64>,
+}
+
+impl Unknowns {
+    pub(crate) fn at(x: Coordinates, columns: &[Column]) -> Self {
+        Unknowns { x, c: vec![0.0; columns.len()] }
+    }
+}
+
+/// The columns of what may be wrong with a sensor, in units of the rate `rms`.
+pub(crate) fn sensor_columns(priors: &SensorPriors, rms: f64) -> Vec<Column> {
+    let each = [
+        (priors.offset.map(|p| p / rms), [0, 1, 2].map(Kind::Offset).to_vec()),
+        (priors.scale, vec![Kind::Scale]),
+        (priors.axis_scales, [0, 1, 2].map(Kind::AxisScale).to_vec()),
+        (priors.misalignment, [0, 1, 2].map(Kind::Misalignment).to_vec()),
+        (priors.skew.map(|p| p * rms), [1, 2].map(Kind::Skew).to_vec()),
+    ];
+    let columns = |(prior, kinds): (Option<f64>, Vec<Kind>)| {
+        let kinds = if prior.is_some() { kinds } else { Vec::new() };
+        kinds.into_iter().map(move |kind| Column { kind, prior })
+    };
+    each.into_iter().flat_map(columns).collect()
+}
+
+/// e_i e_jᵀ + e_j e_iᵀ of entry `k` in the order xx, yy, zz, xy, xz, yz; e_i e_iᵀ on the diagonal.
+pub(crate) fn symmetric(k: usize) -> Matrix3<f64> {
+    let (i, j) = ENTRIES[k];
+    let mut m = Matrix3::zeros();
+    m[(i, j)] = 1.0;
+    m[(j, i)] = 1.0;
+    m
+}
+
+/// The change of P with an error of scale or alignment, which is that of ω = P y.
+pub(crate) fn distortion(kind: Kind) -> Option<Matrix3<f64>> {
+    match kind {
+        Kind::Scale => Some(Matrix3::identity()),
+        Kind::AxisScale(k) => Some(symmetric(k)),
+        // xy has z as its third axis, and so on
+        Kind::Misalignment(third) => Some(symmetric(5 - third) * 0.5),
+        _ => None,
+    }
+}
+
+/// What the unknowns make of torque and sensor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Terms {
+    pub(crate) j: Matrix3<f64>,
+    /// k.
+    pub(crate) drag: f64,
+    /// D, with k J.
+    pub(crate) viscous: Matrix3<f64>,
+    /// τ₀.
+    pub(crate) constant: Vector3<f64>,
+    /// P.
+    pub(crate) sensor: Matrix3<f64>,
+    /// b.
+    pub(crate) offset: Vector3<f64>,
+    /// Delay of each axis.
+    pub(crate) skew: Vector3<f64>,
+    /// One over the trace.
+    pub(crate) input: f64,
+}
+
+impl Terms {
+    pub(crate) fn new(columns: &[Column], unknowns: &Unknowns) -> Terms {
+        let j = tensor(&unknowns.x);
+        let mut terms = Terms {
+            j,
+            drag: 0.0,
+            viscous: Matrix3::zeros(),
+            constant: Vector3::zeros(),
+            sensor: Matrix3::identity(),
+            offset: Vector3::zeros(),
+            skew: Vector3::zeros(),
+            input: 0.0,
+        };
+        for (column, &value) in columns.iter().zip(&unknowns.c) {
+            match column.kind {
+                Kind::Drag => terms.drag += value,
+                Kind::Viscous(k) => terms.viscous += symmetric(k) * value,
+                Kind::Constant(k) => terms.constant[k] += value,
+                Kind::Offset(k) => terms.offset[k] += value,
+                Kind::Skew(k) => terms.skew[k] += value,
+                Kind::Input => terms.input += value,
+                kind => terms.sensor += distortion(kind).unwrap_or_else(Matrix3::zeros) * value,
+            }
+        }
+        terms.viscous += j * terms.drag;
+        terms
+    }
+
+    /// ω of a reading.
+    pub(crate) fn rate(&self, reading: &Vector3<f64>) -> Vector3<f64> {
+        self.sensor * reading - self.offset
+    }
+}
