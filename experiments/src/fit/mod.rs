@@ -305,15 +305,6 @@ impl Fit {
                 ));
             }
         }
-        if let Some(path) = self
-            .residuals
-            .as_deref()
-            .filter(|path| path.extension().is_some() && !ends_in(path, &["svg", "csv"]))
-        {
-            let value = path.display().to_string();
-            let rule = "residuals are written as SVG or CSV";
-            return Err(Error::input("--residuals", &value, rule, "let the name end in .svg or .csv"));
-        }
         let written = [("--out", &self.out), ("--residuals", &self.residuals), ("--report", &self.report)];
         for (k, (flag, out)) in written.iter().enumerate() {
             let Some(out) = out else { continue };
@@ -336,6 +327,15 @@ impl Fit {
                     "name another file",
                 ));
             }
+        }
+        if let Some(path) = self
+            .residuals
+            .as_deref()
+            .filter(|path| path.extension().is_some() && !ends_in(path, &["svg", "csv"]))
+        {
+            let value = path.display().to_string();
+            let rule = "residuals are written as SVG or CSV";
+            return Err(Error::input("--residuals", &value, rule, "let the name end in .svg or .csv"));
         }
         Ok(())
     }
