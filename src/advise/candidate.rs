@@ -98,7 +98,7 @@ impl Candidate {
         if self.is_adaptive() { COARSE } else { 2.0 / rate }
     }
 
-    /// The method at the step or tolerance `value`, and the time from which to which it is told to move the body, s.
+    /// The method at the step or tolerance `value`.
     ///
     /// # Errors
     /// A tolerance that it does not take.

@@ -196,11 +196,14 @@ fn place(line: &str, wanted: Option<&str>) -> Result<(Place, bool), (String, Str
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
     use super::*;
     use crate::files::scratch::Scratch;
 
     fn read(text: &str, wanted: Option<&str>, epoch: Option<&str>) -> Result<Vec<f64>, String> {
-        let scratch = Scratch::new(&format!("times-{}", text.len()));
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let scratch = Scratch::new(&format!("times-{}", COUNT.fetch_add(1, Ordering::Relaxed)));
         let path = scratch.path().join("epochs.txt");
         std::fs::write(&path, text).unwrap();
         let column = Column {
