@@ -141,7 +141,10 @@ impl Motion {
             let failed = |last: &Sample| last.elapsed.hi();
             let (sample, ending) = match run.advance_to(steps) {
                 Ok(sample) => (sample, None),
-                Err(RunError::Diverged { last }) => (*last, Some(Ending::Diverged(failed(&last)))),
+                // the forces here are finite at every attitude: one that is not was asked at none
+                Err(RunError::Diverged { last } | RunError::Force { last, .. }) => {
+                    (*last, Some(Ending::Diverged(failed(&last))))
+                }
                 Err(RunError::Unsolved { last, .. }) => (*last, Some(Ending::Unsolved(failed(&last)))),
                 Err(RunError::Stuck { last, .. }) => (*last, Some(Ending::Stuck(failed(&last)))),
                 Err(error) => return Err(error),
