@@ -8,6 +8,7 @@ use crate::body::{Body, Clock, Conserved, Point};
 use crate::method::AnyMethod;
 use crate::observe::Monitor;
 use crate::rotation::rotation_angle;
+use crate::run::SOLVED;
 
 /// What a run over a horizon showed.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +58,7 @@ pub(super) fn trial(
         step.advance(&mut x, n as u64);
         prices.push(begun.elapsed().as_secs_f64() / apart);
         let seen = step.reading(&x);
-        if !seen.is_finite() || step.stuck().is_some() || step.worst_residual() > UNSOLVED {
+        if !seen.is_finite() || step.stuck().is_some() || step.worst_residual() > SOLVED {
             return None;
         }
         attitude = attitude.max(rotation_angle(seen.to_dd().attitude, exact.attitude).hi());
@@ -88,9 +89,6 @@ pub(super) fn trial(
 
 /// Between two looks the error may be larger than at them by about this factor.
 const SAME_RUN: f64 = 1.25;
-
-/// A relative residual of an implicit step that is no solution.
-const UNSOLVED: f64 = 1e-13;
 
 impl Trial {
     /// The largest attitude error up to `until`: as the second half of the run grew, between √t and t. Where the energy `drifts`,

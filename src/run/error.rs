@@ -9,7 +9,7 @@ use crate::num::{Precise, Shown};
 
 /// An implicit solve that ends further than this from its equation, relative, is no solution: the invariants would be
 /// lost by as much in every step. Rounding alone leaves about 1e-16.
-pub(super) const SOLVED: f64 = 1e-13;
+pub(crate) const SOLVED: f64 = 1e-13;
 
 /// Why a run could not start or go on.
 #[derive(Clone, Debug, Error)]

@@ -12,6 +12,7 @@ mod schedule;
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use convergence::{Halving, HalvingError, halvings, halvings_against, observed_order};
 pub use error::RunError;
+pub(crate) use error::SOLVED;
 pub use run::Run;
 pub use sample::{Sample, Watch};
 pub use schedule::{Multiples, Schedule, ScheduleError};
