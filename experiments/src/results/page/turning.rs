@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use polhode::catalogue;
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
+use polhode::num::Real;
 use serde::Serialize;
 
 use crate::error::{Error, unexpected};
@@ -66,8 +67,9 @@ fn polhodes(inertia: &Inertia, motion: &FreeMotion) -> Result<Vec<Curve>, Error>
                 // between the stable axis and the middle one, on the great circle through both
                 let angle = 0.5 * core::f64::consts::PI * f64::from(k) / f64::from(FAMILY + 1);
                 let mut momentum = Vector3::zeros();
-                momentum[stable] = side * angle.cos();
-                momentum[1] = angle.sin();
+                let (sin, cos) = Real::sin_cos(angle);
+                momentum[stable] = side * cos;
+                momentum[1] = sin;
                 let points = round(&from_momentum(inertia, momentum)?)?;
                 curves.push(Curve::new("", quiet, 1.0, points));
             }
@@ -79,7 +81,8 @@ fn polhodes(inertia: &Inertia, motion: &FreeMotion) -> Result<Vec<Curve>, Error>
         let across = Vector3::new(1.0, 0.0, sign * tilt).normalize();
         let points = (0..=POINTS).map(|k| {
             let angle = core::f64::consts::TAU * f64::from(k) / f64::from(POINTS);
-            (across * angle.cos() + Vector3::y() * angle.sin()).into()
+            let (sin, cos) = Real::sin_cos(angle);
+            (across * cos + Vector3::y() * sin).into()
         });
         curves.push(Curve::new(
             if sign > 0.0 { "separatrix" } else { "" },
