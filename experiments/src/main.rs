@@ -18,6 +18,7 @@ mod measured;
 mod methods;
 mod motion;
 mod parallel;
+mod plot;
 mod propagate;
 mod results;
 mod simulate;
@@ -61,6 +62,7 @@ enum Command {
     Motion(Box<motion::Motion>),
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
+    Plot(Box<plot::Plot>),
     Fit(Box<fit::Fit>),
     Simulate(Box<simulate::Simulate>),
     Methods(methods::Methods),
@@ -85,6 +87,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Motion(motion) => motion.run(),
         Command::Advise(advise) => advise.run(),
         Command::Compare(compare) => compare.run(),
+        Command::Plot(plot) => plot.run(),
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),

@@ -42,11 +42,15 @@ impl Output {
     /// # Errors
     /// [`Error::Unread`] where the reader of standard output has seen enough: `polhode … | head`.
     pub(crate) fn write(&mut self, text: &str) -> Result<(), Error> {
+        self.write_bytes(text.as_bytes())
+    }
+
+    fn write_bytes(&mut self, bytes: &[u8]) -> Result<(), Error> {
         match self {
             Self::File { file, flag, path } => {
-                file.write(text.as_bytes()).map_err(|reason| unwritable(flag, path, &reason))
+                file.write(bytes).map_err(|reason| unwritable(flag, path, &reason))
             }
-            Self::Standard(stdout) => stdout.write_all(text.as_bytes()).map_err(|reason| unprinted(&reason)),
+            Self::Standard(stdout) => stdout.write_all(bytes).map_err(|reason| unprinted(&reason)),
         }
     }
 
@@ -61,8 +65,13 @@ impl Output {
     }
 
     /// The whole of a text that is short.
-    pub(crate) fn write_whole(mut self, text: &str) -> Result<(), Error> {
-        match self.write(text).and_then(|()| self.finish()) {
+    pub(crate) fn write_whole(self, text: &str) -> Result<(), Error> {
+        self.write_whole_bytes(text.as_bytes())
+    }
+
+    /// The whole of a picture.
+    pub(crate) fn write_whole_bytes(mut self, bytes: &[u8]) -> Result<(), Error> {
+        match self.write_bytes(bytes).and_then(|()| self.finish()) {
             Err(Error::Unread) => Ok(()),
             other => other,
         }

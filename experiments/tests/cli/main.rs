@@ -17,6 +17,7 @@ mod inertia;
 mod interrupted;
 mod logs;
 mod motion;
+mod plot;
 mod propagate;
 mod report;
 mod robots;

@@ -1,7 +1,7 @@
 //! A fit, or a refusal, as one page that needs no other file.
 
 mod document;
-mod figures;
+pub(super) mod figures;
 mod noise;
 
 use polhode::fit::{Estimate, Nuisance, Record};
