@@ -2,10 +2,12 @@
 
 mod advise;
 mod arguments;
+mod audit;
 mod bodies;
 mod body_arguments;
 mod body_file;
 mod compare;
+mod document;
 mod error;
 mod experiment;
 mod experiments;
@@ -61,6 +63,7 @@ enum Command {
     Motion(Box<motion::Motion>),
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
+    Audit(Box<audit::Audit>),
     Fit(Box<fit::Fit>),
     Simulate(Box<simulate::Simulate>),
     Methods(methods::Methods),
@@ -85,6 +88,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Motion(motion) => motion.run(),
         Command::Advise(advise) => advise.run(),
         Command::Compare(compare) => compare.run(),
+        Command::Audit(audit) => audit.run(),
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),
