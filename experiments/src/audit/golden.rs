@@ -110,6 +110,13 @@ pub(super) fn write(folder: &Path) -> Result<(), Error> {
         let rule = format!("cannot be made: {reason}");
         Error::input("--golden", &folder.display().to_string(), &rule, "name another folder")
     })?;
+    let [(readme, ours), ..] = FILES;
+    if let (Ok(found), Some(title)) = (std::fs::read_to_string(folder.join(readme)), ours.lines().next())
+        && !found.starts_with(title)
+    {
+        let rule = format!("has a {readme} of another kind");
+        return Err(Error::input("--golden", &folder.display().to_string(), &rule, "name an empty folder"));
+    }
     let put = |name: &str, text: &str| Output::to_file("--golden", &folder.join(name))?.write_whole(text);
     for case in &CASES {
         put(&format!("{}.csv", case.name), &trajectory(case)?)?;
