@@ -1,6 +1,6 @@
 //! The verdict on one body of a record, in the quantities that every form of the answer shows.
 
-use polhode::audit::{Fault, Judgement, Missing, Reading, Suspect, Verdict};
+use polhode::audit::{Fault, Judgement, Missing, Suspect, Verdict};
 use polhode::body::Conserved;
 
 use super::against::Difference;
@@ -81,9 +81,4 @@ pub(super) fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().collect::<String>()).unwrap_or_default();
     first + letters.as_str() + "."
-}
-
-/// A reading in words; of angular velocities alone too.
-pub(super) fn words(reading: &Reading) -> String {
-    reading.to_string()
 }

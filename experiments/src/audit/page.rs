@@ -1,7 +1,7 @@
 //! Verdicts as one page that needs no other file.
 
 use super::figure::panels;
-use super::outcome::{Outcome, named, sentence, words};
+use super::outcome::{Outcome, named, sentence};
 use super::text::{attitude, integrator};
 use crate::document::{Form, Part};
 use crate::error::Error;
@@ -29,11 +29,11 @@ fn one(outcome: &Outcome) -> Vec<Part> {
         if outcome.is_suspected() { format!(" Suspect: {}.", outcome.suspect()) } else { String::new() };
     let mut parts = vec![
         Part::Paragraph(format!("Verdict on {} rows: {}.{suspect}", outcome.rows, outcome.judgement())),
-        Part::Paragraph(format!("Reading: {}.", words(&verdict.reading))),
+        Part::Paragraph(format!("Reading: {}.", verdict.reading)),
     ];
     if let Some(tie) = &verdict.tie {
         parts.push(Part::Paragraph(format!("{} readings fit alike: {}.", tie.readings.len(), tie.reason)));
-        parts.push(Part::List(tie.readings.iter().map(words).collect()));
+        parts.push(Part::List(tie.readings.iter().map(ToString::to_string).collect()));
     }
     parts.extend(attitude(outcome).into_iter().map(Part::Paragraph));
     if let Some(signature) = &verdict.signature {
@@ -62,7 +62,7 @@ fn one(outcome: &Outcome) -> Vec<Part> {
     let head = ["reading", "log-likelihood ratio", "attitude defect (rad)", "rate defect"];
     let rows = verdict.ranking.iter().take(super::RANKED).map(|ranked| {
         vec![
-            words(&ranked.reading),
+            ranked.reading.to_string(),
             short((10.0 * ranked.log_likelihood_ratio).round() / 10.0),
             optional(ranked.attitude_defect),
             optional(ranked.rate_defect),

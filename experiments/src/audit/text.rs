@@ -2,7 +2,7 @@
 
 use polhode::audit::{Signature, Verdict};
 
-use super::outcome::{Outcome, named, sentence, words};
+use super::outcome::{Outcome, named, sentence};
 use crate::table::{Cell, Column, Table, row};
 use crate::text::short;
 
@@ -20,11 +20,11 @@ fn one(name: &str, outcome: &Outcome) -> String {
     let suspect =
         if outcome.is_suspected() { format!("; suspect: {}", outcome.suspect()) } else { String::new() };
     push(&mut lines, &format!("{name}{of}: {}{suspect}", outcome.judgement()), "");
-    push(&mut lines, &format!("Reading: {}.", words(&verdict.reading)), "  ");
+    push(&mut lines, &format!("Reading: {}.", verdict.reading), "  ");
     if let Some(tie) = &verdict.tie {
         push(&mut lines, &format!("{} readings fit alike: {}.", tie.readings.len(), tie.reason), "  ");
         for reading in &tie.readings {
-            push(&mut lines, &format!("- {}", words(reading)), "    ");
+            push(&mut lines, &format!("- {}", reading), "    ");
         }
     }
     lines.push(String::new());
