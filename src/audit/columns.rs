@@ -3,7 +3,7 @@
 use super::program::{Dynamics, Program, Turn};
 use super::rows::Windows;
 use super::shape::Look;
-use super::{Frame, RateUnit, Reading, Trajectory};
+use super::{Attitudes, Frame, RateUnit, Reading, Trajectory};
 use crate::num::trig::sin_cos;
 use crate::rotation::{Quat, Vec3};
 
@@ -40,6 +40,18 @@ impl<'a> Columns<'a> {
             (None, None) => Source::Attitude,
         };
         Columns { record, source }
+    }
+
+    /// Whether no row differs from the first in attitude, and none has an angular velocity or momentum.
+    pub(super) fn is_at_rest(&self) -> bool {
+        let none = |vectors: &Option<Vec<[f64; 3]>>| {
+            vectors.as_ref().is_none_or(|vectors| vectors.iter().flatten().all(|x| *x == 0.0))
+        };
+        let stays =
+            |attitude: &Attitudes| (1..attitude.len()).all(|row| attitude.row(row) == attitude.row(0));
+        none(&self.record.rates)
+            && none(&self.record.momentum)
+            && self.record.attitude.as_ref().is_none_or(stays)
     }
 
     /// Windows that a program is tried on: two in a row where ω is to be found from the attitudes.

@@ -1,7 +1,7 @@
 //! What the motion keeps, and how well the record does.
 
 use super::resolution::{noise, triples};
-use super::states::{Quantities, states};
+use super::states::{Quantities, Row, states};
 use super::{Conservation, Reading, Traces, Trajectory};
 use crate::body::{Body, Conserved, Problem};
 use crate::observe::secular_drift;
@@ -16,13 +16,15 @@ const DRAWN: usize = 2000;
 /// How many times the noise the largest of many rows may be off.
 const SPREAD: f64 = 6.0;
 
-/// What is kept, by `reading`, and its errors at rows for figures. `rounding`: of the numbers, relative.
+/// What is kept, by `reading`, and its errors at rows for figures. `rounding`: of the numbers, relative; `every`: all rows, where
+/// the largest error is to be that of all.
 pub(super) fn conservation(
     record: &Trajectory,
     reading: &Reading,
     body: &Body,
     tolerance: f64,
     rounding: f64,
+    every: &[Row],
 ) -> (Vec<Conservation>, Traces) {
     let free = body.problem() == Problem::Free;
     let count = record.times.len();
@@ -31,8 +33,7 @@ pub(super) fn conservation(
     let Some(first) = looked.first().copied() else { return (Vec::new(), Traces::default()) };
     let quantities = Quantities::new(body);
     let has_attitude = first.attitude.is_some();
-    let space =
-        |row: &super::states::Row| row.attitude.map_or(Vec3::zero(), |q| q.rotate(quantities.momentum(row)));
+    let space = |row: &Row| row.attitude.map_or(Vec3::zero(), |q| q.rotate(quantities.momentum(row)));
     let start_momentum = quantities.momentum(&first);
     let (l, norm) = (space(&first), start_momentum.norm());
     let energy = quantities.energy(&first);
@@ -41,16 +42,16 @@ pub(super) fn conservation(
     if !(norm > 0.0 && energy_scale > 0.0) {
         return (Vec::new(), Traces::default());
     }
-    let energy_of = |row: &super::states::Row| (quantities.energy(row) - energy) / energy_scale;
-    let norm_of = |row: &super::states::Row| (quantities.momentum(row).norm() - norm) / norm;
-    let vector_of = |row: &super::states::Row| (space(row) - l).norm() / norm;
-    let z_of = |row: &super::states::Row| (space(row)[2] - l[2]) / norm;
+    let energy_of = |row: &Row| (quantities.energy(row) - energy) / energy_scale;
+    let norm_of = |row: &Row| (quantities.momentum(row).norm() - norm) / norm;
+    let vector_of = |row: &Row| (space(row) - l).norm() / norm;
+    let z_of = |row: &Row| (space(row)[2] - l[2]) / norm;
     // the direction across which L leaves first tells the sign of its angle
     let side = looked
         .iter()
         .map(|row| (space(row) - l) * (1.0 / norm))
         .fold(Vec3::zero(), |most: Vec3<f64>, off| if off.norm() > most.norm() { off } else { most });
-    let direction_of = |row: &super::states::Row| {
+    let direction_of = |row: &Row| {
         let now = space(row);
         let angle = libm::atan2(now.cross(l).norm(), now.dot(l));
         if (now - l).dot(side) < 0.0 { -angle } else { angle }
@@ -59,7 +60,7 @@ pub(super) fn conservation(
     let times: Vec<f64> = looked.iter().map(|row| row.time).collect();
     let kept = body.conserved();
     let mut found = Vec::new();
-    let mut look = |quantity: Conserved, of: &dyn Fn(&super::states::Row) -> f64| {
+    let mut look = |quantity: Conserved, of: &dyn Fn(&Row) -> f64| {
         if !kept.contains(&quantity) {
             return;
         }
@@ -70,10 +71,8 @@ pub(super) fn conservation(
         let series: Vec<f64> = looked.iter().map(of).collect();
         let resolution = (SPREAD * noise(&rows, &series)).max(12.0 * rounding);
         let mut error = series.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        if free && count > rows.len() && record.rates.is_some() {
-            let every: Vec<usize> = (0..count).collect();
-            error =
-                states(record, reading, body, &every).iter().fold(error, |most, row| most.max(of(row).abs()));
+        if count > rows.len() {
+            error = every.iter().fold(error, |most, row| most.max(of(row).abs()));
         }
         let drift = secular_drift(&times, &series);
         let conserved = error <= tolerance.max(resolution);

@@ -62,6 +62,9 @@ pub(super) fn investigate(record: &Trajectory, question: &Question) -> Result<Fi
     if columns.source == Source::Momentum && question.body.is_none() {
         return Err(AuditError::MomentumNeedsBody);
     }
+    if columns.is_at_rest() {
+        return Err(AuditError::AtRest);
+    }
     let windows = columns.windows();
     let case = Case { columns, windows, claims: question.claims, bodies: orders(question) };
     let attitudes = candidates::attitudes(record, &question.claims);
@@ -138,10 +141,7 @@ impl Case<'_> {
                 }
                 let degree = RateUnit::DegreesPerSecond.radians_per_second();
                 for factor in [degree, 1.0 / degree] {
-                    found.push((
-                        Suspect::Degrees,
-                        Program { rate_factor: factor, turn: Turn { frame, factor: 1.0 / factor }, ..right },
-                    ));
+                    found.push((Suspect::Degrees, Program { turn: Turn { frame, factor }, ..right }));
                 }
             }
             found.push((Suspect::GyroscopicTermMissing, Program { law: Law::NoGyroscopicTerm, ..right }));
@@ -174,11 +174,10 @@ impl Case<'_> {
         let mut found: Vec<(f64, (Suspect, Reading, Program))> = all
             .map(|hypothesis| {
                 let (_, reading, program) = &hypothesis;
-                let turn = Turn { factor: program.turn.factor * program.rate_factor, ..program.turn };
                 let dynamics = self.body(reading).map(Dynamics::new);
                 let dynamics = dynamics.as_ref().or(ball.as_ref());
                 let defect = dynamics.and_then(|dynamics| {
-                    self.columns.kinematic(reading, turn, dynamics, &self.windows, every)
+                    self.columns.kinematic(reading, program.turn, dynamics, &self.windows, every)
                 });
                 (defect.unwrap_or(0.0), hypothesis)
             })

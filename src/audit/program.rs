@@ -34,14 +34,12 @@ pub(super) struct Program {
     pub(super) frame: Frame,
     pub(super) law: Law,
     pub(super) turn: Turn,
-    /// The unit of ω that its equations take it in, over the unit it has; not 1 of a wrong unit.
-    pub(super) rate_factor: f64,
 }
 
 impl Program {
     /// The program without a mistake.
     pub(super) fn right(frame: Frame) -> Self {
-        Program { frame, law: Law::Euler, turn: Turn { frame, factor: 1.0 }, rate_factor: 1.0 }
+        Program { frame, law: Law::Euler, turn: Turn { frame, factor: 1.0 } }
     }
 }
 
@@ -57,8 +55,8 @@ pub(super) struct Dynamics {
 /// Turn of one step, rad.
 const STEP: f64 = 0.06;
 
-/// Most steps between two rows.
-const MOST_STEPS: f64 = 4096.0;
+/// Most steps between two rows; a way of more turns tells nothing.
+const MOST_STEPS: f64 = 512.0;
 
 /// Attitude, body → space, and what the program moves: the momentum in its frame, or ω itself.
 type Phase = (Quat<f64>, Vec3<f64>);
@@ -98,17 +96,20 @@ impl Dynamics {
     ) -> (Quat<f64>, Vec3<f64>) {
         // solver frame: vectors in the body turn with the axes
         let inside = |v: Vec3<f64>| if program.frame == Frame::Body { self.axes.rotate_back(v) } else { v };
-        let start = inside(omega) * program.rate_factor;
+        let start = inside(omega);
         let q = attitude * self.axes;
         let turned = (program.turn.factor.abs()).max(1.0) * start.norm() * dt.abs();
-        let n = (turned / STEP).ceil().clamp(4.0, MOST_STEPS);
+        let n = (turned / STEP).ceil().max(4.0);
+        if n.is_nan() || n > MOST_STEPS {
+            return (attitude, omega);
+        }
         let h = dt / n;
         let mut x = (q, self.momentum_of(program, q, start));
         for k in 0..n as usize {
             x = self.rk4(program, t + h * k as f64, h, x);
         }
         let (q, moved) = x;
-        let omega = self.omega_of(program, q, moved) * (1.0 / program.rate_factor);
+        let omega = self.omega_of(program, q, moved);
         let q = q * self.axes.conjugate();
         let q = q * (1.0 / q.norm_squared().sqrt());
         (q, if program.frame == Frame::Body { self.axes.rotate(omega) } else { omega })

@@ -81,9 +81,9 @@ pub(super) fn noise(rows: &[usize], values: &[f64]) -> f64 {
         })
         .collect();
     squares.sort_by(f64::total_cmp);
-    // without the largest tenth: jumps are no noise
+    // without the largest tenth, jumps, which leaves 1/1.267² of the variance of normal deviates
     let kept = &squares[..(squares.len() * 9).div_ceil(10)];
-    if kept.is_empty() { 0.0 } else { 1.2 * (kept.iter().sum::<f64>() / kept.len() as f64).sqrt() }
+    if kept.is_empty() { 0.0 } else { 1.267 * (kept.iter().sum::<f64>() / kept.len() as f64).sqrt() }
 }
 
 impl Attitudes {

@@ -35,7 +35,18 @@ impl Windows {
         let stride = (stride / node).max(1) * node;
         let last = rows - 1 - pieces * stride;
         let count = MOST.min(last + 1);
-        let starts = (0..count).map(|k| if count > 1 { k * last / (count - 1) } else { 0 }).collect();
+        let spread = |count: usize, k: usize| if count > 1 { k * last / (count - 1) } else { 0 };
+        // where a program has run away, the body turns too fast for its rows to tell
+        let wide = (4 * MOST).min(last + 1);
+        let mut turns: Vec<(f64, usize)> =
+            (0..wide).map(|k| spread(wide, k)).map(|row| (turn_between(record, row), row)).collect();
+        turns.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let slow = turns[turns.len() / 4].0.max(1.0);
+        let mut kept: Vec<usize> =
+            turns.iter().filter(|(turn, _)| *turn <= slow).map(|(_, row)| *row).collect();
+        kept.sort_unstable();
+        let starts =
+            (0..count.min(kept.len())).map(|k| kept[k * kept.len() / count.min(kept.len())]).collect();
         Windows { starts, stride, node }
     }
 }
@@ -45,21 +56,21 @@ impl Windows {
 fn typical_turn(record: &Trajectory) -> f64 {
     let rows = record.times.len();
     let count = 256.min(rows - 1);
-    let mut turns: Vec<f64> = (0..count)
-        .map(|k| {
-            let row = k * (rows - 1) / count;
-            match &record.attitude {
-                Some(attitude) => attitude.turn(row),
-                None => record.rates.as_ref().or(record.momentum.as_ref()).map_or(0.0, |rates| {
-                    // the direction of the angular velocity turns about as fast as the body
-                    let (a, b) = (Vec3(rates[row]), Vec3(rates[row + 1]));
-                    libm::atan2(a.cross(b).norm(), a.dot(b))
-                }),
-            }
-        })
-        .collect();
+    let mut turns: Vec<f64> = (0..count).map(|k| turn_between(record, k * (rows - 1) / count)).collect();
     turns.sort_by(f64::total_cmp);
     turns[turns.len() / 2]
+}
+
+/// How far the body turns between the rows `row` and `row + 1`, rad.
+fn turn_between(record: &Trajectory, row: usize) -> f64 {
+    match &record.attitude {
+        Some(attitude) => attitude.turn(row),
+        None => record.rates.as_ref().or(record.momentum.as_ref()).map_or(0.0, |rates| {
+            // the direction of the angular velocity turns about as fast as the body
+            let (a, b) = (Vec3(rates[row]), Vec3(rates[row + 1]));
+            libm::atan2(a.cross(b).norm(), a.dot(b))
+        }),
+    }
 }
 
 impl Attitudes {
@@ -88,11 +99,12 @@ impl Attitudes {
                 };
                 Attitudes::Quaternions(vec![lift(a), lift(b)]).turn(0)
             }
-            // angles in rad stay below a turn and a half; those above are in degrees
-            Attitudes::Angles(rows) if rows.iter().flatten().any(|x| x.abs() > 10.0) => {
-                apart(a, b) * AngleUnit::Degrees.radians()
+            Attitudes::Angles(rows) => {
+                // angles in rad stay below a turn and a half; those above are in degrees
+                let some = rows.iter().step_by(rows.len().div_ceil(64)).flatten();
+                let degrees = some.clone().any(|x| x.abs() > 10.0);
+                apart(a, b) * if degrees { AngleUnit::Degrees.radians() } else { 1.0 }
             }
-            Attitudes::Angles(_) => apart(a, b),
         }
     }
 }
