@@ -66,6 +66,12 @@ const DEGREE: f64 = core::f64::consts::PI / 180.0;
 /// Steps of RK4 between two rows.
 const STEPS: u32 = 16;
 
+/// A motion is written until it is so many times as fast as at its start, or as its momentum there.
+const GROWTH: f64 = 8.0;
+
+/// Rows of a motion at least.
+const FEWEST: usize = 75;
+
 /// What is moved: the attitude, and ω in body axes, or for [`Mistake::Transposed`] L.
 type Moved = (Quat<f64>, Vec3<f64>);
 
@@ -81,20 +87,32 @@ pub(super) fn wrong(mistake: Mistake, random: &mut Random) -> Wrong {
     let start: Quat<f64> = attitude(random).into();
     let omega = Vec3::from(generic(random));
     let momentum = start.rotate_back(omega.times(Vec3(moments)));
-    let mut x = (start, if mistake == Mistake::Transposed { momentum } else { omega });
-    let interval = random.between(0.02, 0.2);
+    let mut interval = random.between(0.02, 0.2);
     let count = 150 + random.below(150);
-    let mut rows = Vec::new();
-    for k in 0..count {
-        let omega = match mistake {
-            Mistake::Transposed => over(x.0.rotate(x.1), moments),
-            _ => x.1,
-        };
-        rows.push(Row { t: k as f64 * interval, attitude: x.0, omega });
-        for _ in 0..STEPS {
-            x = step(mistake, axis, moments, interval / f64::from(STEPS), x);
+    let begin = (start, if mistake == Mistake::Transposed { momentum } else { omega });
+    let written = |(attitude, moved): Moved| match mistake {
+        Mistake::Transposed => over(attitude.rotate(moved), moments),
+        _ => moved,
+    };
+    let rows = loop {
+        let mut x = begin;
+        let mut rows = Vec::new();
+        for k in 0..count {
+            let omega = written(x);
+            // without |m| kept, some of these motions grow beyond all bounds
+            if omega.norm().is_nan() || omega.norm() > GROWTH * begin.1.norm() {
+                break;
+            }
+            rows.push(Row { t: k as f64 * interval, attitude: x.0, omega });
+            for _ in 0..STEPS {
+                x = step(mistake, axis, moments, interval / f64::from(STEPS), x);
+            }
         }
-    }
+        if rows.len() >= FEWEST {
+            break rows;
+        }
+        interval *= 0.5;
+    };
     Wrong { rows, moments: told }
 }
 
