@@ -39,7 +39,7 @@ fn one(outcome: &Outcome) -> Vec<Part> {
     if let Some(signature) = &verdict.signature {
         parts.extend(integrator(signature).into_iter().map(Part::Paragraph));
     }
-    let number = |x: f64| format!("{x:.1e}");
+    let number = |x: f64| format!("{x:.1e}").replace('-', "\u{2212}");
     let optional = |x: Option<f64>| x.map_or("–".into(), number);
     let head = ["quantity", "largest relative change", "slope (1/s)", "±", "resolution", "conserved"];
     let rows = verdict.conservation.iter().map(|line| {
@@ -59,6 +59,7 @@ fn one(outcome: &Outcome) -> Vec<Part> {
     if !remarks.is_empty() {
         parts.push(Part::List(remarks));
     }
+    parts.push(Part::Heading("Readings, the most likely first".into()));
     let head = ["reading", "log-likelihood ratio", "attitude defect (rad)", "rate defect"];
     let rows = verdict.ranking.iter().take(super::RANKED).map(|ranked| {
         vec![

@@ -78,26 +78,31 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
     let verdict = &outcome.verdict;
     let mut lines = Vec::new();
     if let Some(error) = verdict.attitude_error {
-        let start = if error.fitted_start { "the start that fits best" } else { "the first row" };
+        let start = if error.fitted_start { "as fits the record best" } else { "at the first row" };
         lines.push(format!(
-            "Attitude error: {:.1e} rad at t = {} s, from the motion with {start}; at the end {:.1e} rad along the motion (phase) and {:.1e} rad across (drift).",
-            error.largest, short(error.at), error.phase, error.drift
+            "Attitude error: {} rad at t = {} s, from the motion that starts {start}; at the end {} rad along the motion (phase) and {} rad across (drift).",
+            size(error.largest), short(error.at), size(error.phase), size(error.drift)
         ));
     }
     if let Some(difference) = &outcome.against {
         lines.push(format!(
-            "Against {}: {:.1e} rad at t = {} s, of {} rows at the same times; {:.1e} rad are allowed.",
+            "Against {}: {} rad at t = {} s, of {} rows at the same times; {} rad are allowed.",
             difference.name,
-            difference.largest,
+            size(difference.largest),
             short(difference.at),
             difference.rows,
-            difference.tolerance
+            size(difference.tolerance)
         ));
     }
     if let (Some(flips), Some(exact)) = (verdict.flips, verdict.flips_exact) {
         lines.push(format!("Flips: {flips}; the exact motion has {exact}."));
     }
     lines
+}
+
+/// A size with two digits.
+fn size(x: f64) -> String {
+    if x == 0.0 { "0".into() } else { format!("{x:.1e}") }
 }
 
 /// The integrator with what it predicts beside what was measured.

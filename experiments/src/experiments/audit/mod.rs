@@ -40,12 +40,20 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let named = named.into_iter().collect::<Result<Vec<Named>, Error>>()?;
     let mistakes = mistakes_table(&named, each as usize);
     let failures = demands(&found, &named);
-    Ok(Report { tables: vec![readings, mistakes], seed: Some(SEED), failures, ..Report::default() })
+    let views = vec![readings.clone(), mistakes.clone()];
+    let tables = vec![readings, mistakes, trials_table(&found)];
+    Ok(Report { tables, views, seed: Some(SEED), failures, ..Report::default() })
 }
 
 /// What the audit made of one trajectory.
 struct Found {
-    exact: bool,
+    /// `None` of the exact motion.
+    method: Option<String>,
+    form: Form,
+    how: Writing,
+    /// Of the numbers before they are written: the largest distance from the exact motion, rad or relative.
+    error: f64,
+    suspect: String,
     written: &'static str,
     /// The true reading is the first, or one of those that nobody can tell apart.
     first: bool,
@@ -84,7 +92,11 @@ fn one(random: &mut Random) -> Result<Found, Error> {
     let (error, allowed) = (motion.error(), TOLERANCE.max(how.resolution()));
     let judgement = verdict.judgement;
     Ok(Found {
-        exact: motion.method.is_none(),
+        error,
+        suspect: verdict.suspect.to_string(),
+        form,
+        how,
+        method: motion.method,
         written: match how {
             Writing { noise, .. } if noise > 0.0 => "noise",
             Writing { single: true, .. } => "float32",
@@ -124,8 +136,10 @@ fn readings(found: &[Found]) -> Table {
     );
     for exact in [true, false] {
         for written in ["12 to 17 digits", "6 to 11 digits", "float32", "noise"] {
-            let cell: Vec<&Found> =
-                found.iter().filter(|found| found.exact == exact && found.written == written).collect();
+            let cell: Vec<&Found> = found
+                .iter()
+                .filter(|found| found.method.is_none() == exact && found.written == written)
+                .collect();
             let number =
                 |which: &dyn Fn(&Found) -> bool| cell.iter().filter(|found| which(found)).count() as u64;
             table.push(row![
@@ -142,6 +156,49 @@ fn readings(found: &[Found]) -> Table {
                 number(&|found| found.false_wrong),
             ]);
         }
+    }
+    table
+}
+
+/// Every trajectory, for those who look for one.
+fn trials_table(found: &[Found]) -> Table {
+    let column = |name, meaning| Column::new(name, "", meaning);
+    let mut table = Table::new(
+        "trials",
+        "Trajectories of free bodies in random conventions, one by one.",
+        vec![
+            column("trial", "number of the stream of random numbers"),
+            column("source", "exact, or the method that computed it"),
+            column("form", "what the attitude is written as"),
+            column("digits", "significant digits that are written"),
+            column("single", "whether the numbers are of single precision"),
+            column("noise", "noise of each number, relative to its column"),
+            column("error", "largest distance from the exact motion before it is written, rad or relative"),
+            column("verdict", "right, wrong or undecided"),
+            column("suspect", "what is wrong"),
+            column("first", "whether the true reading is first, or in the set that nobody can tell apart"),
+            column("tied", "whether a tie is stated"),
+            column("tie_exact", "whether the tie is the set that nobody can tell apart"),
+            column("false_verdict", "right or wrong, where that is false"),
+        ],
+    );
+    let yes = |is: bool| if is { "yes" } else { "no" };
+    for (trial, found) in found.iter().enumerate() {
+        table.push(row![
+            trial as u64,
+            found.method.clone().unwrap_or_else(|| "exact".into()),
+            format!("{:?}", found.form).to_lowercase(),
+            found.how.digits as u64,
+            yes(found.how.single),
+            found.how.noise,
+            found.error,
+            found.judgement.to_string(),
+            found.suspect.clone(),
+            yes(found.first),
+            yes(found.tied),
+            yes(found.tie_exact),
+            (found.false_right || found.false_wrong).then(|| found.judgement.to_string()),
+        ]);
     }
     table
 }
