@@ -33,6 +33,7 @@
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
 //! | [`advise`] | which method with which step, from short runs on the body itself |
+//! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how wrong |
 //! | [`catalogue`] | named bodies with their sources |
 //! | `fit` | inertia from measured angular velocity; with the feature `fit` |
 //! | [`guide`] | a chapter for each kind of user; your own force, your own method; the exact motion |
@@ -71,6 +72,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod advise;
+pub mod audit;
 pub mod body;
 pub mod catalogue;
 #[cfg(feature = "fit")]

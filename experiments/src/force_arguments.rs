@@ -40,6 +40,15 @@ fn one_or_two(text: &str) -> Result<OneOrTwo, String> {
 }
 
 impl ForceArguments {
+    /// Whether a flag names a force.
+    pub(crate) fn is_any(&self) -> bool {
+        self.weight_moment.is_some()
+            || self.gravity_gradient.is_some()
+            || self.torque_body.is_some()
+            || self.torque_space.is_some()
+            || self.drag.is_some()
+    }
+
     /// `body` with the forces besides its weight.
     pub(crate) fn act_on(&self, mut body: Body) -> Result<Body, Error> {
         let refused = |flag: &str, error: ForceError| Error::Input(format!("{flag}: {error}"));

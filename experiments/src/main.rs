@@ -2,10 +2,12 @@
 
 mod advise;
 mod arguments;
+mod audit;
 mod bodies;
 mod body_arguments;
 mod body_file;
 mod compare;
+mod document;
 mod error;
 mod experiment;
 mod experiments;
@@ -63,6 +65,7 @@ enum Command {
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
     Plot(Box<plot::Plot>),
+    Audit(Box<audit::Audit>),
     Fit(Box<fit::Fit>),
     Simulate(Box<simulate::Simulate>),
     Methods(methods::Methods),
@@ -88,6 +91,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Advise(advise) => advise.run(),
         Command::Compare(compare) => compare.run(),
         Command::Plot(plot) => plot.run(),
+        Command::Audit(audit) => audit.run(),
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),

@@ -15,6 +15,7 @@ use polhode::fit::{FitError, Limit, RateUnit, Reading, Record, RecordError, Sett
 use report::Facts;
 
 use crate::arguments::{number, numbers, positive};
+use crate::document::Form;
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
 use crate::plot::Picture;
@@ -174,23 +175,6 @@ fn ends_in(path: &Path, endings: &[&str]) -> bool {
     endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
-/// How a page of this name is written.
-fn form(path: &Path) -> Result<page::Form, Error> {
-    if ends_in(path, &["html", "htm"]) {
-        Ok(page::Form::Html)
-    } else if ends_in(path, &["md"]) {
-        Ok(page::Form::Markdown)
-    } else {
-        let value = path.display().to_string();
-        Err(Error::input(
-            "--report",
-            &value,
-            "a page is HTML or Markdown",
-            "let the name end in .html or .md",
-        ))
-    }
-}
-
 /// Measured and fitted rates, and their difference.
 fn residual_rows(record: &Record, motion: &[motion::Fitted]) -> Table {
     let rate = |name, meaning| Column::new(name, "rad/s", meaning);
@@ -227,7 +211,7 @@ fn residual_rows(record: &Record, motion: &[motion::Fitted]) -> Table {
 impl Fit {
     pub(crate) fn run(&self) -> Result<(), Error> {
         self.check_paths()?;
-        let form = self.report.as_deref().map(form).transpose()?;
+        let form = self.report.as_deref().map(|path| Form::of("--report", path)).transpose()?;
         let output = Output::new(self.out.as_deref())?;
         let residuals = self.residuals.as_deref().map(|path| Output::to_file("--residuals", path));
         let residuals = residuals.transpose()?;

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod advise;
+mod audit;
 mod compare;
 mod compose;
 mod experiment;

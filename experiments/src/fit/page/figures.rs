@@ -5,8 +5,8 @@ use polhode::fit::{Estimate, Record};
 
 use super::super::motion::Fitted;
 use super::super::plot::{self, AXES, over_time, without_gaps};
-use super::document::Part;
 use super::noise;
+use crate::document::Part;
 use crate::error::Error;
 use crate::figure::{Canvas, Figure, Series, page_of};
 

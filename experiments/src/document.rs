@@ -1,11 +1,48 @@
 //! A document of a few kinds of parts, as HTML and as Markdown.
 
 use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::error::Error;
+
+/// How a document is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    Html,
+    Markdown,
+}
+
+impl Form {
+    /// By the ending of the file that `flag` names.
+    pub(crate) fn of(flag: &str, path: &Path) -> Result<Self, Error> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("html" | "htm") => Ok(Self::Html),
+            Some("md" | "markdown") => Ok(Self::Markdown),
+            _ => {
+                let value = path.display().to_string();
+                Err(Error::input(
+                    flag,
+                    &value,
+                    "a page is HTML or Markdown",
+                    "let the name end in .html or .md",
+                ))
+            }
+        }
+    }
+
+    pub(crate) fn write(self, title: &str, parts: &[Part]) -> String {
+        match self {
+            Self::Html => html(title, parts),
+            Self::Markdown => markdown(title, parts),
+        }
+    }
+}
 
 use crate::text::escaped_html as escaped;
 
 /// A part.
-pub(super) enum Part {
+pub(crate) enum Part {
     Heading(String),
     Paragraph(String),
     List(Vec<String>),
@@ -22,7 +59,7 @@ td:first-child,th:first-child{text-align:left}td{font-variant-numeric:tabular-nu
 figure{margin:1rem 0}figure svg{max-width:100%;height:auto}figcaption{font-size:.9rem;color:#444}\
 .warning{border-left:4px solid #d55e00;padding-left:.8rem}";
 
-pub(super) fn html(title: &str, parts: &[Part]) -> String {
+fn html(title: &str, parts: &[Part]) -> String {
     let title = escaped(title);
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -61,7 +98,7 @@ pub(super) fn html(title: &str, parts: &[Part]) -> String {
 }
 
 /// Drawings stand in it as SVG, which Markdown passes on.
-pub(super) fn markdown(title: &str, parts: &[Part]) -> String {
+fn markdown(title: &str, parts: &[Part]) -> String {
     let mut text = format!("# {title}\n");
     for part in parts {
         let _ = match part {
