@@ -25,6 +25,7 @@ mod start_arguments;
 mod table;
 mod text;
 mod times;
+mod toml_file;
 mod tumbling_arguments;
 
 use std::process::ExitCode;

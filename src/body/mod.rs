@@ -9,6 +9,8 @@ mod frame;
 mod gravity;
 mod gravity_gradient;
 mod point;
+#[cfg(any(test, feature = "random"))]
+mod population;
 mod rotor;
 mod state;
 mod time;
@@ -20,6 +22,8 @@ pub use force::{Conserved, Force, ForceError, Potential, Torque};
 pub use frame::{Body, Problem, StateError};
 pub use gravity::{Gravity, vertical};
 pub use point::{Phase, Point};
+#[cfg(any(test, feature = "random"))]
+pub use population::{Attitudes, Member, NoMember, Population, Tensors};
 pub use rotor::Rotor;
 pub(crate) use rotor::{Gyroscopic, kinetic_energy};
 pub use state::State;
