@@ -31,7 +31,7 @@
 //! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the top |
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
-//! | [`run`] | long propagation, schedules, checkpoints, orders of convergence |
+//! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
 //! | [`advise`] | which method with which step, from short runs on the body itself |
 //! | [`catalogue`] | named bodies with their sources |
 //! | `fit` | inertia from measured angular velocity; with the feature `fit` |
@@ -45,6 +45,8 @@
 //! | feature | what it adds |
 //! |---|---|
 //! | `fit` | the module `fit`, with the solvers clarabel and faer |
+//! | `parallel` | [ensembles](run::Ensemble) on several threads, by rayon |
+//! | `random` | seeded random numbers, and [populations](body) of bodies and starts drawn with them |
 //!
 //! None is on by default. The oldest compiler that builds the crate is Rust 1.89.
 //!

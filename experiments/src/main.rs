@@ -6,6 +6,7 @@ mod bodies;
 mod body_arguments;
 mod body_file;
 mod compare;
+mod ensemble;
 mod error;
 mod experiment;
 mod experiments;
@@ -62,6 +63,8 @@ enum Command {
     Motion(Box<motion::Motion>),
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
+    Ensemble(Box<ensemble::Ensemble>),
+    Gather(Box<ensemble::Gather>),
     Fit(Box<fit::Fit>),
     Simulate(Box<simulate::Simulate>),
     Methods(methods::Methods),
@@ -86,6 +89,8 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Motion(motion) => motion.run(),
         Command::Advise(advise) => advise.run(),
         Command::Compare(compare) => compare.run(),
+        Command::Ensemble(ensemble) => ensemble.run(),
+        Command::Gather(gather) => gather.run(),
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),

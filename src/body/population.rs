@@ -139,6 +139,14 @@ impl Population {
     }
 }
 
+impl Member {
+    /// A member that was not drawn but given.
+    #[must_use]
+    pub fn new(inertia: Inertia, attitude: Quat<f64>, omega_body: Vec3<f64>) -> Self {
+        Member { inertia, attitude, omega_body, draws: 1 }
+    }
+}
+
 impl Tensors {
     /// Normal moments about those of a body, with standard deviations that are shares of them.
     ///
