@@ -15,8 +15,8 @@ use crate::error::{Error, unexpected};
 use crate::files::{MARK, Output, unwritable};
 
 const EXAMPLES: &str = "Examples:
-  polhode gather survey
-  polhode gather survey --threads 4";
+  polhode gather shares
+  polhode gather shares --threads 1";
 
 /// Reduce the shards of an ensemble to the results of one run
 ///

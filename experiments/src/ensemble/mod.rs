@@ -30,34 +30,33 @@ const BYTES_OF_MEMBER: u64 = 264;
 /// Bytes that a thread takes for the rows in work.
 const BYTES_OF_THREAD: u64 = 3 * 21_000_000;
 
-const EXAMPLES: &str = "Examples:
-  polhode ensemble survey.toml --out survey
-  polhode ensemble survey.toml --out survey --shard 3/16
+const AFTER_HELP: &str = "SPEC.toml:
+  [body]    moments = [3], inertia = [6] (xx, yy, zz, xy, xz, yz), or body
+  [start]   omega = [3] rad/s, attitude = [4]
+  [spread]  omega, attitude (rad), moments (relative): standard deviations
+  [spread.covariance]  omega 3x3, attitude 3x3, inertia 6x6, or joint 12x12
+  [spread.range]       omega, attitude, moments: [[low, high], ...]; \"all\"
+  [run]     members, seed, method, step, times or until and every,
+            start_time, errors = false to leave energy and L unwatched
+  [force]   weight_moment, gravity_gradient, torque_body, torque_space, drag
+  [output]  arrays = [\"attitudes\", \"omegas\"]
 
-A specification:
-  [body]
-  moments = [1.0, 2.0, 2.5]      # or inertia = [Ixx, ..., Iyz], or body = \"NAME\"
-  [start]
-  omega = [0.4, 1.0, -0.3]       # rad/s; attitude = [w, x, y, z]
-  [spread]
-  omega = 0.01                   # standard deviations; attitude in rad
-  moments = 0.02                 # relative; or [spread.covariance], [spread.range]
-  [run]
-  members = 10000
-  until = \"1h\"
-  every = \"1min\"                 # or times = [...]; method and step [exact]";
+Examples:
+  polhode ensemble examples/ensemble.toml --out ensemble
+  polhode ensemble examples/ensemble.toml --out shares --shard 1/2
+  polhode ensemble examples/ensemble.toml --out shares --shard 2/2";
 
 /// Many bodies from uncertain starts: mean attitude and dispersion over time
 ///
-/// Members are drawn from standard deviations, covariances or ranges of start and inertia, or listed in a CSV (`[spread]
-/// members_file`). Tensors that no body has are drawn again, so the spread of the inertia ends at the triangle inequalities.
-/// Member k is the same in any share of the work. DIR gets summary.csv, dispersion.csv, dispersion.svg, failures.csv,
+/// Members are drawn from standard deviations, covariances or ranges of start and inertia, or listed in a CSV (members_file).
+/// Tensors that no body has are drawn again, so the spread of the inertia ends at the triangle inequalities. Member k is the
+/// same in any share of the work. DIR gets summary.csv, dispersion.csv, dispersion.svg, failures.csv,
 /// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml.
 ///
 /// A share of the members is named by --shard, or by the environment of a Slurm array or of an MPI launcher; it goes to
 /// DIR/shards, and `polhode gather DIR` makes the results of all. A share that is finished is not run again.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = AFTER_HELP)]
 pub(crate) struct Ensemble {
     /// What is drawn, propagated and kept: a TOML file
     #[arg(value_name = "SPEC.toml")]

@@ -7,6 +7,7 @@
 mod advise;
 mod compare;
 mod compose;
+mod ensemble;
 mod experiment;
 mod fit;
 mod forces;
