@@ -16,7 +16,7 @@ chmod 755 "$folder"
 
 # One run of all members, in $folder/whole.
 whole() {
-  sed 's/^members = .*/members = 20000/' "$root/examples/ensemble.toml" > "$folder/spec.toml"
+  sed 's/^members = .*/members = 4000/' "$root/examples/ensemble.toml" > "$folder/spec.toml"
   "$POLHODE" ensemble "$folder/spec.toml" --out "$folder/whole" --shard 1/1
 }
 

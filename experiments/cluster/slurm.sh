@@ -28,12 +28,14 @@ munged --foreground --force --key-file="$slurm/munge.key" --socket="$slurm/munge
   --pid-file="$slurm/munge.pid" --log-file="$slurm/munge.log" --seed-file="$slurm/munge.seed" > "$slurm/munge.out" 2>&1 &
 pids+=($!)
 
+# two runs on one machine do not meet
+port=$((20000 + 2 * ($$ % 10000)))
 export SLURM_CONF=$slurm/slurm.conf
 cat > "$SLURM_CONF" << CONF
 ClusterName=loopback
 SlurmctldHost=$(hostname -s)(127.0.0.1)
-SlurmctldPort=26817
-SlurmdPort=26818
+SlurmctldPort=$port
+SlurmdPort=$((port + 1))
 SlurmUser=root
 AuthType=auth/munge
 AuthInfo=socket=$slurm/munge.socket

@@ -53,6 +53,10 @@ impl Candidates {
         let place = |line: u64| format!("{}:{line}", path.display());
         let unreadable = |error: csv::Error| {
             let line = error.position().map_or(1, csv::Position::line);
+            if let csv::ErrorKind::UnequalLengths { expected_len, len, .. } = error.kind() {
+                let rule = format!("{len} cells, and the header has {expected_len}");
+                return Error::Input(format!("{}: {rule}; give every row as many", place(line)));
+            }
             Error::Input(format!("{}: {error}; needed is a CSV with a header", place(line)))
         };
         let header = reader.headers().map_err(unreadable)?.clone();
