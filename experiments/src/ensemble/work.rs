@@ -1,11 +1,12 @@
 //! The members of a shard, propagated and written as they come.
 
+use std::fmt;
 use std::io::{self, IsTerminal as _};
 use std::ops::Range;
 use std::path::Path;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::observe::Errors;
 use polhode::run::{Ensemble, EnsembleError, Observed, Rows};
@@ -179,9 +180,12 @@ fn progress(members: u64) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(members);
-    let template = "{bar:30} {pos}/{len} members, {per_sec} done, {eta} left";
+    let template = "{bar:30} {pos}/{len} members, {rate} a second, {eta} left";
     if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style);
+        let rate = |state: &ProgressState, text: &mut dyn fmt::Write| {
+            let _ = write!(text, "{:.0}", state.per_sec());
+        };
+        bar.set_style(style.with_key("rate", rate));
     }
     bar.enable_steady_tick(Duration::from_secs(1));
     bar
