@@ -19,5 +19,6 @@ mod interrupted;
 mod logs;
 mod motion;
 mod propagate;
+mod report;
 mod robots;
 mod times;
