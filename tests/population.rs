@@ -183,7 +183,9 @@ fn a_population_without_bodies_says_so() {
     let error = with_inertia(Tensors::Moments { axes: body, moments }).member(1, 0).unwrap_err();
     assert_eq!(error.draws, 10_000);
     assert!(
-        error.to_string().contains("of 10000 tensors drawn no body has any; the last: principal moments 1.0"),
+        error
+            .to_string()
+            .contains("no body has any of 10000 tensors that were drawn; the last: principal moments 1.0"),
         "{error}"
     );
 }

@@ -209,7 +209,7 @@ fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
 
 /// A member that could not be drawn.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("of {draws} tensors drawn no body has any; the last: {last}")]
+#[error("no body has any of {draws} tensors that were drawn; the last: {last}")]
 #[non_exhaustive]
 pub struct NoMember {
     /// How many were drawn.
