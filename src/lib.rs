@@ -47,6 +47,7 @@
 //! |---|---|
 //! | `fit` | the module `fit`, with the solvers clarabel and faer |
 //! | `parallel` | [ensembles](run::Ensemble) on several threads, by rayon |
+//! | `random` | seeded random numbers, and [populations](body) of bodies and starts drawn with them |
 //!
 //! None is on by default. The oldest compiler that builds the crate is Rust 1.89.
 //!

@@ -42,7 +42,7 @@ fn tensor(text: &str) -> Result<Matrix3<f64>, String> {
 pub(crate) struct Described {
     pub(crate) inertia: Inertia,
     /// N m, body axes; zero of a body without a fixed point.
-    weight_moment: [f64; 3],
+    pub(crate) weight_moment: [f64; 3],
 }
 
 impl Described {

@@ -8,6 +8,7 @@ mod body_arguments;
 mod body_file;
 mod compare;
 mod document;
+mod ensemble;
 mod error;
 mod experiment;
 mod experiments;
@@ -28,6 +29,7 @@ mod start_arguments;
 mod table;
 mod text;
 mod times;
+mod toml_file;
 mod tumbling_arguments;
 
 use std::process::ExitCode;
@@ -66,6 +68,8 @@ enum Command {
     Compare(Box<compare::Compare>),
     Plot(Box<plot::Plot>),
     Audit(Box<audit::Audit>),
+    Ensemble(Box<ensemble::Ensemble>),
+    Gather(Box<ensemble::Gather>),
     Fit(Box<fit::Fit>),
     Simulate(Box<simulate::Simulate>),
     Methods(methods::Methods),
@@ -92,6 +96,8 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Compare(compare) => compare.run(),
         Command::Plot(plot) => plot.run(),
         Command::Audit(audit) => audit.run(),
+        Command::Ensemble(ensemble) => ensemble.run(),
+        Command::Gather(gather) => gather.run(),
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),

@@ -10,6 +10,8 @@ mod frame;
 mod gravity;
 mod gravity_gradient;
 mod point;
+#[cfg(any(test, feature = "random"))]
+mod population;
 mod rotor;
 mod state;
 mod time;
@@ -23,6 +25,8 @@ pub use frame::{Body, Problem, StateError};
 pub use gravity::{Gravity, vertical};
 pub(crate) use point::RENORMALIZE_EVERY;
 pub use point::{Phase, Point};
+#[cfg(any(test, feature = "random"))]
+pub use population::{Attitudes, Member, NoMember, Population, Tensors};
 pub use rotor::Rotor;
 pub(crate) use rotor::{Gyroscopic, kinetic_energy};
 pub use state::State;

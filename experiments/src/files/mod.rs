@@ -45,7 +45,8 @@ impl Output {
         self.write_bytes(text.as_bytes())
     }
 
-    fn write_bytes(&mut self, bytes: &[u8]) -> Result<(), Error> {
+    /// The same for what is no text.
+    pub(crate) fn write_bytes(&mut self, bytes: &[u8]) -> Result<(), Error> {
         match self {
             Self::File { file, flag, path } => {
                 file.write(bytes).map_err(|reason| unwritable(flag, path, &reason))
@@ -91,7 +92,7 @@ fn unprinted(reason: &io::Error) -> Error {
 }
 
 /// Why `path` cannot be written, and what helps.
-fn unwritable(flag: &str, path: &Path, reason: &io::Error) -> Error {
+pub(crate) fn unwritable(flag: &str, path: &Path, reason: &io::Error) -> Error {
     let other = reason.to_string();
     let (cause, remedy) = match reason.kind() {
         ErrorKind::NotFound => ("the folder does not exist", "make it first"),

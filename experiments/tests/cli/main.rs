@@ -8,6 +8,7 @@ mod advise;
 mod audit;
 mod compare;
 mod compose;
+mod ensemble;
 mod experiment;
 mod fit;
 mod forces;
