@@ -9,6 +9,7 @@ mod compare;
 mod compose;
 mod experiment;
 mod fit;
+mod flights;
 mod forces;
 mod general;
 mod harness;

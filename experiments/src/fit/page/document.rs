@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 /// A part.
-pub(super) enum Part {
+pub(in crate::fit) enum Part {
     Heading(String),
     Paragraph(String),
     List(Vec<String>),

@@ -6,10 +6,11 @@ mod noise;
 
 use polhode::fit::{Estimate, Nuisance, Record};
 
+use super::flights::Spans;
 use super::motion::Fitted;
 use super::report::{Facts, SURE, digits, sizes, systematic, torque, with_error};
 use crate::error::Error;
-use document::Part;
+pub(super) use document::Part;
 
 /// How the page is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +33,7 @@ pub(super) fn estimated(
     e: &Estimate,
     record: &Record,
     motion: &[Fitted],
+    spans: &Spans,
     names: &str,
     form: Form,
 ) -> Result<String, Error> {
@@ -40,6 +42,7 @@ pub(super) fn estimated(
         parts.push(Part::Heading("What speaks against it".into()));
         parts.push(Part::List(e.warnings.iter().map(ToString::to_string).collect()));
     }
+    parts.extend(spans.parts());
     parts.extend(torques(e));
     parts.extend(sensor(e));
     parts.push(Part::Heading("Segments".into()));
@@ -56,6 +59,7 @@ pub(super) fn refused(
     reason: &str,
     facts: Option<&Facts>,
     record: &Record,
+    spans: &Spans,
     names: &str,
     form: Form,
 ) -> Result<String, Error> {
@@ -67,6 +71,7 @@ pub(super) fn refused(
         parts.push(Part::Heading("Undetermined".into()));
         parts.push(Part::List(facts.open.clone()));
     }
+    parts.extend(spans.parts());
     parts.push(Part::Heading("Readings".into()));
     parts.extend(figures::readings(record)?);
     Ok(form.write(&format!("No inertia from {names}"), &parts))
