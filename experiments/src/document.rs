@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::error::Error;
+use crate::text::escaped_html as escaped;
 
 /// How a document is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +39,6 @@ impl Form {
         }
     }
 }
-
-use crate::text::escaped_html as escaped;
 
 /// A part.
 pub(crate) enum Part {

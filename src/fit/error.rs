@@ -75,6 +75,20 @@ pub enum FitError {
         /// Relative rate at which the rotation slows, 1/s, where it does and no torque was to be fitted.
         fall: Option<f64>,
     },
+    /// Nowhere in the record does the body rotate freely.
+    #[error(
+        "the body rotates freely nowhere in the record: torques beyond 0.3 tr(J) |w|^2 act in {:.0} per cent of the time in \
+         which it turns, and {}; throw the body, or fit a window of your own choice",
+        100.0 * share, nearest(*torque, *most)
+    )]
+    NoFlight {
+        /// Share of the time with a turning body in which large torques act.
+        share: f64,
+        /// Least torque of a window that drag does not explain, over the trace times |ω|²; `None` without a window.
+        torque: Option<f64>,
+        /// Largest of a flight.
+        most: f64,
+    },
     /// Another unit of the rates or times explains the record far better.
     #[error(
         "the units look mistaken: with rate x time {factor:.4e} times as large ({}) the misfit per equation falls from \
@@ -162,6 +176,12 @@ fn demand(constraint: &Constraint) -> String {
         Constraint::Triangle => "the law I1 + I2 >= I3, by which a moment is at most half the trace".into(),
         limit => limit.to_string(),
     }
+}
+
+fn nearest(torque: Option<f64>, most: f64) -> String {
+    torque.filter(|torque| *torque > most).map_or("no stretch of free rotation is long enough for a fit".into(), |torque| {
+        format!("the stretch nearest to a free rotation with drag leaves {torque:.3} tr(J) |w|^2, at most {most} is allowed")
+    })
 }
 
 fn slowed(fall: Option<f64>) -> String {

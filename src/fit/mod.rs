@@ -34,6 +34,7 @@
 mod cramer_rao;
 mod error;
 mod estimator;
+mod flights;
 mod physical;
 mod record;
 mod report;
@@ -44,6 +45,7 @@ mod weak;
 pub use cramer_rao::foreseen_bound;
 pub use error::{Clash, FitError};
 pub use estimator::fit;
+pub use flights::{Flight, FlightLimit, Flights, flights};
 pub use physical::certificate::Certificate;
 pub use physical::constraint::{ActiveConstraint, Constraint};
 pub use physical::failure::SolverFailure;

@@ -1,80 +1,72 @@
 //! Symmetric positive matrices with a narrow band: Cholesky factor, substitutions, and the band of the inverse.
+//!
+//! Columns are padded with zeros to whole registers, so that a column is added to another without a test of its length.
 
-/// The lower band of a symmetric matrix, or of its factor: row i holds columns i − band … i.
+use multiversion::multiversion;
+
+/// Numbers in a register of the widest processors.
+const LANES: usize = 8;
+
+/// The lower band of a symmetric matrix, or of its factor: column j holds rows j … j + band.
 #[derive(Clone, Debug)]
 pub(crate) struct Banded {
     size: usize,
     band: usize,
-    rows: Vec<f64>,
+    /// Room of a column.
+    pitch: usize,
+    columns: Vec<f64>,
 }
 
 impl Banded {
     pub(crate) fn zeros(size: usize, band: usize) -> Self {
-        Banded { size, band, rows: vec![0.0; size * (band + 1)] }
+        let pitch = pitch(band);
+        Banded { size, band, pitch, columns: vec![0.0; size * pitch] }
     }
 
-    /// Where entry (i, j) stands; i − band ≤ j ≤ i.
+    /// Where entry (i, j) stands; j ≤ i ≤ j + band.
     #[inline]
     fn at(&self, i: usize, j: usize) -> usize {
-        i * (self.band + 1) + self.band + j - i
+        j * self.pitch + i - j
     }
 
     #[inline]
     pub(crate) fn get(&self, i: usize, j: usize) -> f64 {
         let (i, j) = if i < j { (j, i) } else { (i, j) };
-        if i - j > self.band { 0.0 } else { self.rows[self.at(i, j)] }
+        if i - j > self.band { 0.0 } else { self.columns[self.at(i, j)] }
     }
 
     #[inline]
     pub(crate) fn add(&mut self, i: usize, j: usize, value: f64) {
         let at = self.at(i, j);
-        self.rows[at] += value;
+        self.columns[at] += value;
     }
 
-    /// Row i from column `from` up to column `to`, exclusive.
+    /// Column j from its diagonal down to the end of the band, where rows beyond the last are zero.
     #[inline]
-    pub(crate) fn row_mut(&mut self, i: usize, from: usize, to: usize) -> &mut [f64] {
-        let at = self.at(i, from);
-        &mut self.rows[at..at + (to - from)]
+    pub(crate) fn column(&self, j: usize) -> &[f64] {
+        &self.columns[j * self.pitch..][..self.band + 1]
     }
 
-    /// The same to read.
+    /// Column j from its diagonal down, padded with zeros.
     #[inline]
-    pub(crate) fn row(&self, i: usize, from: usize, to: usize) -> &[f64] {
-        &self.rows[self.at(i, from)..self.at(i, from) + (to - from)]
+    pub(crate) fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.columns[j * self.pitch..][..self.pitch]
     }
 
     /// Replaces the matrix by its Cholesky factor; false where it is not positive.
     pub(crate) fn factor(&mut self) -> bool {
-        for i in 0..self.size {
-            let first = i.saturating_sub(self.band);
-            for j in first..=i {
-                let from = first.max(j.saturating_sub(self.band));
-                let sum = self.get(i, j) - dot(self.row(i, from, j), self.row(j, from, j));
-                let at = self.at(i, j);
-                if j < i {
-                    self.rows[at] = sum / self.get(j, j);
-                } else if sum > 0.0 {
-                    self.rows[at] = sum.sqrt();
-                } else {
-                    return false;
-                }
-            }
-        }
-        true
+        factor(&mut self.columns, self.pitch, self.band)
     }
 
     /// L⁻¹ b, of a factor, in place; b has rows of `width` numbers, one for each right-hand side.
     pub(crate) fn forward(&self, b: &mut [f64], width: usize) {
-        for i in 0..self.size {
-            let first = i.saturating_sub(self.band);
-            let (known, rest) = b.split_at_mut(i * width);
-            let own = &mut rest[..width];
-            for (l, row) in self.row(i, first, i).iter().zip(known[first * width..].chunks_exact(width)) {
-                own.iter_mut().zip(row).for_each(|(sum, value)| *sum -= l * value);
+        for j in 0..self.size {
+            let (known, rest) = b[j * width..].split_at_mut(width);
+            let column = self.column(j);
+            known.iter_mut().for_each(|value| *value /= column[0]);
+            for (l, row) in column[1..].iter().zip(rest.chunks_exact_mut(width)) {
+                row.iter_mut().zip(&*known).for_each(|(sum, value)| *sum -= l * value);
             }
-            let pivot = self.get(i, i);
-            own.iter_mut().for_each(|sum| *sum /= pivot);
         }
     }
 
@@ -83,20 +75,12 @@ impl Banded {
         2.0 * (0..self.size).map(|i| libm::log(self.get(i, i))).sum::<f64>()
     }
 
-    /// Every entry times `factor`.
-    pub(crate) fn scale(&mut self, factor: f64) {
-        self.rows.iter_mut().for_each(|entry| *entry *= factor);
-    }
-
     /// L⁻ᵀ b, of a factor, in place.
     pub(crate) fn backward(&self, b: &mut [f64]) {
-        for i in (0..self.size).rev() {
-            let first = i.saturating_sub(self.band);
-            b[i] /= self.get(i, i);
-            let x = b[i];
-            for (value, l) in b[first..i].iter_mut().zip(self.row(i, first, i)) {
-                *value -= l * x;
-            }
+        for j in (0..self.size).rev() {
+            let column = self.column(j);
+            let known: f64 = column[1..].iter().zip(&b[j + 1..]).map(|(l, value)| l * value).sum();
+            b[j] = (b[j] - known) / column[0];
         }
     }
 
@@ -107,29 +91,98 @@ impl Banded {
         let mut z = Banded::zeros(self.size, self.band);
         for j in (0..self.size).rev() {
             let last = (j + self.band).min(self.size - 1);
-            let diagonal = self.get(j, j);
-            let column: Vec<f64> = (j + 1..=last).map(|k| self.get(k, j)).collect();
+            let column = self.column(j);
             for i in (j..=last).rev() {
-                let sum: f64 = column.iter().zip(j + 1..).map(|(l, k)| l * z.get(i, k)).sum();
-                let own = if i == j { 1.0 / diagonal } else { 0.0 };
-                z.add(i, j, (own - sum) / diagonal);
+                let sum: f64 = column[1..].iter().zip(j + 1..=last).map(|(l, k)| l * z.get(i, k)).sum();
+                let own = if i == j { 1.0 / column[0] } else { 0.0 };
+                z.add(i, j, (own - sum) / column[0]);
             }
         }
         z
     }
 }
 
-#[inline]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // two accumulators: one chain of additions would wait for itself
-    let (mut even, mut odd) = (0.0, 0.0);
-    let (pairs, rest) = a.split_at(a.len() & !1);
-    for (x, y) in pairs.chunks_exact(2).zip(b.chunks_exact(2)) {
-        even += x[0] * y[0];
-        odd += x[1] * y[1];
-    }
-    even + odd + rest.first().zip(b.get(pairs.len())).map_or(0.0, |(x, y)| x * y)
+/// Room for a column: the band in whole registers.
+const fn pitch(band: usize) -> usize {
+    (band + 1).div_ceil(LANES) * LANES
 }
+
+/// log |A| and eᵀ A⁻¹ e of a matrix whose columns are asked for once each, in their order; `None` where it is not positive.
+///
+/// What is at work is as long as the band, so that nothing of the size of the matrix is kept.
+pub(crate) fn likelihood(band: usize, e: &[f64], column: impl Fn(usize, &mut [f64])) -> Option<(f64, f64)> {
+    let pitch = pitch(band);
+    // as many columns as a pivot reaches are at work; they move to the front when the room behind them is used up
+    let room = 8 * (band + 1);
+    let mut columns = vec![0.0; room * pitch];
+    let mut rest: Vec<f64> = e.to_vec();
+    let (mut determinant, mut squares) = (0.0, 0.0);
+    let (mut first, mut loaded) = (0, 0);
+    for j in 0..e.len() {
+        if j - first + band >= room {
+            columns.copy_within((j - first) * pitch..(loaded - first) * pitch, 0);
+            first = j;
+        }
+        while loaded < e.len() && loaded <= j + band {
+            let own = &mut columns[(loaded - first) * pitch..][..pitch];
+            own.fill(0.0);
+            column(loaded, own);
+            loaded += 1;
+        }
+        let (own, others) = columns[(j - first) * pitch..(loaded - first) * pitch].split_at_mut(pitch);
+        if !eliminate(own, others, band) {
+            return None;
+        }
+        let value = rest[j] / own[0];
+        for (sum, l) in rest[j + 1..].iter_mut().zip(&own[1..=band]) {
+            *sum -= l * value;
+        }
+        squares += value * value;
+        determinant += libm::log(own[0]);
+    }
+    Some((2.0 * determinant, squares))
+}
+
+fn factor(columns: &mut [f64], pitch: usize, band: usize) -> bool {
+    let size = columns.len() / pitch;
+    for j in 0..size {
+        let end = (j + band + 1).min(size);
+        let (own, others) = columns[j * pitch..end * pitch].split_at_mut(pitch);
+        if !eliminate(own, others, band) {
+            return false;
+        }
+    }
+    true
+}
+
+/// Makes a column one of the factor, and takes its part off the columns after it; false where the pivot is not positive.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn eliminate(own: &mut [f64], others: &mut [f64], band: usize) -> bool {
+    let pitch = own.len();
+    let pivot = own[0];
+    if !(pivot > 0.0) {
+        return false;
+    }
+    let root = pivot.sqrt();
+    own[0] = root;
+    own[1..].iter_mut().for_each(|entry| *entry /= root);
+    // the column with zeros behind it
+    let mut padded = [0.0; WIDEST + LANES];
+    padded[..pitch].copy_from_slice(own);
+    for (k, other) in others.chunks_exact_mut(pitch).enumerate() {
+        let (l, used) = (padded[k + 1], (band - k).div_ceil(LANES) * LANES);
+        let sources = padded[k + 1..k + 1 + used].chunks_exact(LANES);
+        for (sums, source) in other[..used].chunks_exact_mut(LANES).zip(sources) {
+            for lane in 0..LANES {
+                sums[lane] -= l * source[lane];
+            }
+        }
+    }
+    true
+}
+
+/// Widest column.
+const WIDEST: usize = 64;
 
 #[cfg(test)]
 mod tests {
@@ -169,6 +222,30 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_likelihood_is_that_of_the_factor() {
+        for (size, band) in [(9, 2), (200, 2), (60, 23), (7, 9)] {
+            let entry =
+                |i: usize, j: usize| if i == j { 2.5 } else { 0.4 / (1 + i * j + i.abs_diff(j)) as f64 };
+            let mut factor = Banded::zeros(size, band);
+            for j in 0..size {
+                (j..size.min(j + band + 1)).for_each(|i| factor.add(i, j, entry(i, j)));
+            }
+            let e: Vec<f64> = (0..size).map(|i| 1.0 + (i % 5) as f64).collect();
+            let column = |j: usize, into: &mut [f64]| {
+                (j..size.min(j + band + 1)).for_each(|i| into[i - j] = entry(i, j));
+            };
+            let (determinant, squares) = likelihood(band, &e, column).unwrap_or_default();
+            assert!(factor.factor());
+            let mut white = e.clone();
+            factor.forward(&mut white, 1);
+            let expected: f64 = white.iter().map(|w| w * w).sum();
+            assert!((determinant / factor.log_determinant() - 1.0).abs() < 1e-14, "{size} {band}");
+            assert!((squares / expected - 1.0).abs() < 1e-14, "{size} {band}");
+        }
+        assert!(likelihood(2, &[1.0; 4], |j, into| into[0] = 2.0 - j as f64).is_none());
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `polhode fit`: inertia from measured angular velocity.
 
 mod arguments;
+mod flights;
 mod motion;
 mod page;
 mod plot;
@@ -10,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use arguments::{KnownArguments, SensorArguments, Torque};
 use clap::Args;
+use flights::Spans;
 use nalgebra::Vector3;
 use polhode::fit::{FitError, Limit, RateUnit, Reading, Record, RecordError, Settings, TimeUnit, fit};
 use report::Facts;
@@ -50,7 +52,8 @@ pub(crate) struct Fit {
     /// Unit of the rates where the header names none: rad/s, deg/s, rpm [default: rad/s]
     #[arg(long, value_name = "UNIT", value_parser = rate_unit)]
     rate_unit: Option<RateUnit>,
-    /// Use only samples from t0 to t1, s; repeatable. With N: of the N-th file only
+    /// Use only samples from t0 to t1, s; repeatable. With N: of the N-th file only [default: all samples if the body
+    /// rotates freely from the first to the last, else the flights, which are found and listed]
     #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true)]
     window: Vec<Window>,
     /// Half width of the test functions, s [default: that of the smallest covariance]
@@ -222,7 +225,7 @@ impl Fit {
             Ok((Output::to_file("--figure", path)?, picture))
         });
         let figure = figure.transpose()?;
-        let record = self.record()?;
+        let mut record = self.record()?;
         let limit = |axis: &[f64; 4]| Limit {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
             at_least: None,
@@ -241,21 +244,41 @@ impl Fit {
             ..Settings::default()
         };
         let format = Format::of(self.format, self.out.as_deref())?;
-        let estimate = match fit(&record, &settings) {
+        let mut spans = Spans::default();
+        let fitted = match self.window.is_empty() {
+            true => Spans::find(&mut record, &settings).and_then(|found| {
+                spans = found;
+                fit(&record, &settings)
+            }),
+            false => fit(&record, &settings),
+        };
+        spans.remark().into_iter().for_each(warn);
+        let estimate = match fitted {
             Ok(estimate) => estimate,
             Err(error) => {
-                let reason = error.to_string();
+                let reason = match &error {
+                    FitError::NoFlight { .. } => format!("{error} (--window t0,t1)"),
+                    _ => error.to_string(),
+                };
                 let (facts, failed) = match &error {
                     FitError::Unidentifiable(what) => (Some(Facts::unidentified(what)), true),
                     FitError::Unsettled { axes, .. } => (Some(Facts::unsettled(axes)), true),
+                    FitError::NoFlight { .. } => (Some(Facts::not_free()), true),
                     FitError::NoRotation { .. } | FitError::Solver(_) => (None, true),
                     _ => (None, false),
                 };
                 if let Some((file, form)) = page {
-                    file.write_whole(&page::refused(&reason, facts.as_ref(), &record, &self.names(), form)?)?;
+                    file.write_whole(&page::refused(
+                        &reason,
+                        facts.as_ref(),
+                        &record,
+                        &spans,
+                        &self.names(),
+                        form,
+                    )?)?;
                 }
                 if let Some(facts) = facts {
-                    output.write_whole(&facts.report(&record, format))?;
+                    output.write_whole(&facts.report(&record, &spans, format))?;
                 }
                 let message = format!("{}: {reason}", self.names());
                 return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
@@ -269,11 +292,11 @@ impl Fit {
         };
         let page = match page {
             Some((file, form)) => {
-                Some((file, page::estimated(&estimate, &record, &motion, &self.names(), form)?))
+                Some((file, page::estimated(&estimate, &record, &motion, &spans, &self.names(), form)?))
             }
             None => None,
         };
-        output.write_whole(&report::identified(&estimate, format))?;
+        output.write_whole(&report::identified(&estimate, &spans, format))?;
         // the JSON holds them too; a file of rows does not
         estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
         for (file, text) in residuals.zip(left).into_iter().chain(page) {

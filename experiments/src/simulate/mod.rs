@@ -17,7 +17,7 @@ use crate::table::{Cell, Column, Format, Rows, Table};
 use crate::times::{Regular, regular};
 use arguments::{DisturbanceArguments, GyroscopeArguments};
 
-const USAGE: &str = "polhode simulate <BODY> --omega <wx,wy,wz> --until <T> --every <DT>
+const USAGE: &str = "polhode simulate <BODY> [--omega <wx,wy,wz>] --until <T> --every <DT>
   BODY: --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
 
 const EXAMPLES: &str = "Examples:
@@ -36,9 +36,9 @@ const EXAMPLES: &str = "Examples:
 pub(crate) struct Simulate {
     #[command(flatten)]
     body: BodyArguments,
-    /// Angular velocity at the start, body axes, rad/s
+    /// Angular velocity at the start, body axes, rad/s [default: that of the catalogue's body]
     #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]
-    omega: [f64; 3],
+    omega: Option<[f64; 3]>,
     /// Duration, s
     #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true)]
     until: f64,
@@ -89,6 +89,12 @@ fn jitter(text: &str) -> Result<f64, String> {
 impl Simulate {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let body = self.body.free()?;
+        let published = self.body.published_start().map(|start| start.omega);
+        let Some(start) = self.omega.or(published) else {
+            return Err(Error::Input(
+                "--omega: missing; give --omega wx,wy,wz; bodies of the catalogue have one".into(),
+            ));
+        };
         let (disturbances, gyroscope) = (self.disturbances.disturbances(), self.gyroscope.gyroscope());
         let mut random = Random::new(self.seed);
         let grid: Vec<f64> =
@@ -110,16 +116,16 @@ impl Simulate {
             } else {
                 written.clone()
             };
-            let mut omega = Vector3::from(self.omega);
+            let mut omega = Vector3::from(start);
             if toss > 0 {
                 omega += random.normal_vector() * self.scatter;
             }
             let rates =
                 simulate_with(body.inertia(), omega, &sampled, &disturbances, &gyroscope, &mut random)
                     .map_err(|error| Error::Input(error.to_string()))?;
-            let start = toss as f64 * (self.until + pause);
+            let thrown = toss as f64 * (self.until + pause);
             for (t, w) in written.iter().zip(&rates) {
-                let mut cells = vec![start + t, w.x, w.y, w.z];
+                let mut cells = vec![thrown + t, w.x, w.y, w.z];
                 if self.disturbances.has_wheel() {
                     cells.extend(disturbances.wheel_at(*t).iter());
                 }

@@ -11,6 +11,7 @@ mod compose;
 mod ensemble;
 mod experiment;
 mod fit;
+mod flights;
 mod forces;
 mod general;
 mod harness;

@@ -13,6 +13,7 @@ mod units;
 
 use nalgebra::Vector3;
 
+use super::flights::Flight;
 use super::report::nuisance::Spike;
 
 use clean::{Cleaned, Finding, cleaned};
@@ -166,13 +167,7 @@ impl Record {
                 let (a, b) =
                     (s.times.partition_point(|&t| t < start), s.times.partition_point(|&t| t <= end));
                 if a < b {
-                    cut.segments.push(Segment {
-                        source: s.source.clone(),
-                        times: s.times[a..b].to_vec(),
-                        rates: s.rates[a..b].to_vec(),
-                        lines: s.lines[a..b].to_vec(),
-                        inputs: s.inputs.as_ref().map(|inputs| inputs.of(a..b)),
-                    });
+                    cut.segments.push(s.part(a..b));
                 }
             }
             if cut.segments.len() == before {
@@ -183,6 +178,23 @@ impl Record {
             }
         }
         Ok(cut)
+    }
+
+    /// The parts in which [flights](crate::fit::flights) of this record were found, one segment each.
+    #[must_use]
+    pub fn during(&self, flights: &[Flight]) -> Record {
+        let mut cut = Record { skipped: self.skipped.clone(), ..Record::default() };
+        for flight in flights {
+            let Some(s) = self.segments.get(flight.segment) else { continue };
+            let inside = |t: &f64| (flight.start..=flight.end).contains(t);
+            let low = s.times.partition_point(|&t| t < flight.start);
+            let high = s.times.partition_point(|&t| t <= flight.end);
+            if low < high {
+                cut.segments.push(s.part(low..high));
+            }
+            cut.findings.extend(self.findings.iter().filter(|(t, _)| inside(t)));
+        }
+        cut
     }
 
     /// This record and another of the same body.

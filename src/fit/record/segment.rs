@@ -1,5 +1,7 @@
 //! Samples without a gap.
 
+use core::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::error::RecordError;
@@ -152,6 +154,17 @@ impl Segment {
             inputs: self.inputs.as_ref().map(|inputs| inputs.of(kept.iter().copied())),
         };
         (spikes, segment)
+    }
+
+    /// Some of its samples, next to each other.
+    pub(super) fn part(&self, range: Range<usize>) -> Segment {
+        Segment {
+            source: self.source.clone(),
+            times: self.times[range.clone()].to_vec(),
+            rates: self.rates[range.clone()].to_vec(),
+            lines: self.lines[range.clone()].to_vec(),
+            inputs: self.inputs.as_ref().map(|inputs| inputs.of(range)),
+        }
     }
 
     /// The line of each sample in its source, from 1; of a segment that was not read from a text its place.

@@ -4,9 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::model::{Column, Kind, Terms, Unknowns, distortion, symmetric};
 use super::moments::{Group, Inputs, Moments, Sums, groups};
-use super::test_functions::{Seen, Stretch, TestFunctions};
+use super::test_functions::{MOST, Seen, Stretch, TestFunctions};
 use crate::fit::physical::coordinates::{ENTRIES, Form, basis};
-use crate::num::banded::Banded;
+use crate::num::banded::{Banded, likelihood};
 
 /// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
 pub(crate) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
@@ -128,22 +128,29 @@ impl Linearised {
     }
 
     fn factor(&self, levels: Levels) -> Option<Banded> {
-        let mut covariance = self.noise.clone();
-        covariance.scale(levels.white);
-        if levels.torque > 0.0 {
-            for (apart, overlap) in self.tests.overlaps().into_iter().enumerate() {
-                let shape = self.covariance_of(levels.shape) * (levels.torque * overlap);
-                for m in apart..self.tests.count {
-                    let n = m - apart;
-                    for p in 0..3 {
-                        for q in 0..if apart == 0 { p + 1 } else { 3 } {
-                            covariance.add(3 * m + p, 3 * n + q, shape[(p, q)]);
-                        }
-                    }
+        let mut covariance = Banded::zeros(3 * self.tests.count, 3 * self.tests.reach + 2);
+        let fill = self.covariance_at(levels);
+        for j in 0..3 * self.tests.count {
+            fill(j, covariance.column_mut(j));
+        }
+        covariance.factor().then_some(covariance)
+    }
+
+    /// Writes columns of the covariance of the residuals, from their diagonals down.
+    fn covariance_at(&self, levels: Levels) -> impl Fn(usize, &mut [f64]) {
+        let torque = if levels.torque > 0.0 { self.tests.overlaps() } else { Vec::new() };
+        let shape = self.covariance_of(levels.shape) * levels.torque;
+        move |column, into| {
+            for (entry, noise) in into.iter_mut().zip(self.noise.column(column)) {
+                *entry = noise * levels.white;
+            }
+            let (n, q) = (column / 3, column % 3);
+            for (apart, overlap) in torque.iter().take(self.tests.count - n).enumerate() {
+                for p in if apart == 0 { q } else { 0 }..3 {
+                    into[3 * apart + p - q] += shape[(p, q)] * overlap;
                 }
             }
         }
-        covariance.factor().then_some(covariance)
     }
 
     /// Covariance of torque noise of level 1.
@@ -161,10 +168,7 @@ impl Linearised {
 
     /// log |C| and eᵀ C⁻¹ e of residuals `e`.
     pub(crate) fn likelihood(&self, e: &[f64], levels: Levels) -> Option<(f64, f64)> {
-        let factor = self.factor(levels)?;
-        let mut white = e.to_vec();
-        factor.forward(&mut white, 1);
-        Some((factor.log_determinant(), white.iter().map(|e| e * e).sum()))
+        likelihood(3 * self.tests.reach + 2, e, self.covariance_at(levels))
     }
 
     /// Mean variances of the residuals by noise of the rates and by torque noise of level 1.
@@ -254,6 +258,9 @@ fn residuals(rows: &[f64], width: usize, origin: &Unknowns, at: &Unknowns) -> Ve
         .collect()
 }
 
+/// Rows of all tests that overlap at one time.
+const BLOCKS: usize = 3 * MOST;
+
 /// Σ A Aᵀ with A = −φ' J + φ K by pairs of tests.
 fn covariance(groups: &[Group], terms: &Terms, tests: &TestFunctions) -> Banded {
     let mut sum = Banded::zeros(3 * tests.count, 3 * tests.reach + 2);
@@ -275,15 +282,24 @@ fn covariance(groups: &[Group], terms: &Terms, tests: &TestFunctions) -> Banded 
         }
         let (jk, kk) = (terms.j * k.transpose() * group.square, kk * group.square);
         let (jj, kj) = (jj * group.square, jk.transpose());
-        for (row, (m, a, b)) in seen.each().enumerate() {
+        // the blocks of all tests in a column of this one: one multiplies its φ', the other its φ
+        let (mut by_slope, mut by_value) = ([[0.0; BLOCKS]; 3], [[0.0; BLOCKS]; 3]);
+        for (row, (_, a, b)) in seen.each().enumerate() {
             let (left, right) = (kj * b - jj * a, kk * b - jk * a);
-            for (n, c, d) in seen.each().take(row + 1) {
+            for q in 0..3 {
                 for p in 0..3 {
-                    let most = if m == n { p + 1 } else { 3 };
-                    let entries = sum.row_mut(3 * m + p, 3 * n, 3 * n + most);
-                    for (q, entry) in entries.iter_mut().enumerate() {
-                        *entry += right[(p, q)] * d - left[(p, q)] * c;
-                    }
+                    by_slope[q][3 * row + p] = left[(p, q)];
+                    by_value[q][3 * row + p] = right[(p, q)];
+                }
+            }
+        }
+        for (row, (n, c, d)) in seen.each().enumerate() {
+            for q in 0..3 {
+                let from = 3 * row + q;
+                let used = 3 * (seen.count - row) - q;
+                let blocks = by_value[q][from..from + used].iter().zip(&by_slope[q][from..from + used]);
+                for (entry, (value, slope)) in sum.column_mut(3 * n + q).iter_mut().zip(blocks) {
+                    *entry += value * d - slope * c;
                 }
             }
         }

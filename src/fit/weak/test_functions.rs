@@ -146,7 +146,7 @@ impl TestFunctions {
 }
 
 /// Most tests that overlap at one time.
-const MOST: usize = 10;
+pub(crate) const MOST: usize = 10;
 
 /// The tests that are not zero at one time, with their φ' and φ.
 pub(crate) struct Seen {

@@ -5,6 +5,7 @@ mod noise;
 
 use polhode::fit::{Estimate, Nuisance, Record};
 
+use super::flights::Spans;
 use super::motion::Fitted;
 use super::report::{Facts, SURE, digits, sizes, systematic, torque, with_error};
 use crate::document::{Form, Part};
@@ -15,6 +16,7 @@ pub(super) fn estimated(
     e: &Estimate,
     record: &Record,
     motion: &[Fitted],
+    spans: &Spans,
     names: &str,
     form: Form,
 ) -> Result<String, Error> {
@@ -23,6 +25,7 @@ pub(super) fn estimated(
         parts.push(Part::Heading("What speaks against it".into()));
         parts.push(Part::List(e.warnings.iter().map(ToString::to_string).collect()));
     }
+    parts.extend(spans.parts());
     parts.extend(torques(e));
     parts.extend(sensor(e));
     parts.push(Part::Heading("Segments".into()));
@@ -39,6 +42,7 @@ pub(super) fn refused(
     reason: &str,
     facts: Option<&Facts>,
     record: &Record,
+    spans: &Spans,
     names: &str,
     form: Form,
 ) -> Result<String, Error> {
@@ -50,6 +54,7 @@ pub(super) fn refused(
         parts.push(Part::Heading("Undetermined".into()));
         parts.push(Part::List(facts.open.clone()));
     }
+    parts.extend(spans.parts());
     parts.push(Part::Heading("Readings".into()));
     parts.extend(figures::readings(record)?);
     Ok(form.write(&format!("No inertia from {names}"), &parts))

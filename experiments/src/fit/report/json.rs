@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, SMatrix};
 use polhode::fit::{Estimate, Nuisance};
 use serde_json::{Map, Value, json};
 
+use super::super::flights::Spans;
 use super::{METHOD, torque};
 
 fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
@@ -14,7 +15,7 @@ fn matrix(m: &SMatrix<f64, 6, 6>) -> Vec<Vec<f64>> {
     (0..6).map(|i| (0..6).map(|j| m[(i, j)]).collect()).collect()
 }
 
-pub(super) fn object(e: &Estimate) -> Value {
+pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
     let axes = e.axes.quaternion();
     json!({
         "shape": square(&e.shape.tensor()),
@@ -69,7 +70,10 @@ pub(super) fn object(e: &Estimate) -> Value {
         "spikes": e.spikes.iter().map(|s| json!({
             "segment": s.segment + 1, "line": s.line, "time": s.time,
         })).collect::<Vec<_>>(),
-        "warnings": e.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "flights": spans.json(),
+        "flight_limits": spans.limits(),
+        "warnings": e.warnings.iter().map(ToString::to_string).chain(spans.remark().map(String::from))
+            .collect::<Vec<_>>(),
     })
 }
 

@@ -7,6 +7,7 @@ mod text;
 use polhode::fit::{AverageAxis, Estimate, Identifiability, Record, TorqueModel};
 use serde_json::{Value, json};
 
+use super::flights::Spans;
 use crate::table::{Column, Format, Table, row};
 
 pub(super) const METHOD: &str = "weak form, generalised least squares on denoised samples";
@@ -14,11 +15,11 @@ pub(super) const ENTRIES: [(&str, usize, usize); 6] =
     [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
 
 /// A tensor in full.
-pub(super) fn identified(e: &Estimate, format: Format) -> String {
+pub(super) fn identified(e: &Estimate, spans: &Spans, format: Format) -> String {
     match format {
-        Format::Table => text::text(e),
+        Format::Table => text::text(e, spans),
         Format::Csv => rows::rows(e).csv(),
-        Format::Json => pretty(&json::object(e)),
+        Format::Json => pretty(&json::object(e, spans)),
     }
 }
 
@@ -49,7 +50,12 @@ impl Facts {
         }
     }
 
-    pub(super) fn report(&self, record: &Record, format: Format) -> String {
+    pub(super) fn not_free() -> Self {
+        let open = "the tensor: nowhere in the record does the body rotate freely";
+        Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
+    }
+
+    pub(super) fn report(&self, record: &Record, spans: &Spans, format: Format) -> String {
         match format {
             Format::Json => pretty(&json!({
                 "shape": null, "principal": null, "axes": null, "covariance": null, "sigma_principal": null,
@@ -57,6 +63,7 @@ impl Facts {
                 "samples": record.samples(), "segments": record.segments.len(), "method": METHOD,
                 "identifiable": false, "rank": self.rank, "null_directions": self.open, "known": self.known,
                 "triangle_slack": null, "active_constraints": [], "chi2_per_dof": null, "warnings": [],
+                "flights": spans.json(), "flight_limits": spans.limits(),
             })),
             Format::Csv => {
                 let columns = vec![
@@ -72,10 +79,11 @@ impl Facts {
                 let list = |facts: &[String]| facts.iter().map(|f| format!("  {f}\n")).collect::<String>();
                 let counted = self.rank.map(|rank| format!("{rank} of 5 numbers of the tensor are known.\n"));
                 format!(
-                    "{}Known:\n{}Undetermined:\n{}",
+                    "{}Known:\n{}Undetermined:\n{}{}",
                     counted.unwrap_or_default(),
                     if self.known.is_empty() { "  nothing\n".into() } else { list(&self.known) },
-                    list(&self.open)
+                    list(&self.open),
+                    spans.lines().iter().map(|line| format!("{line}\n")).collect::<String>()
                 )
             }
         }

@@ -3,10 +3,11 @@
 use nalgebra::Matrix3;
 use polhode::fit::{Estimate, InvariantTrend, Nuisance};
 
+use super::super::flights::Spans;
 use super::{METHOD, SURE, digits, sizes, systematic, torque, with_error};
 
 /// The answer first, then what it rests on.
-pub(super) fn text(e: &Estimate) -> String {
+pub(super) fn text(e: &Estimate, spans: &Spans) -> String {
     let mut lines = answer(e);
     lines.push(String::new());
     lines.extend(axes(e));
@@ -16,6 +17,7 @@ pub(super) fn text(e: &Estimate) -> String {
     }
     lines.extend(torques(e));
     lines.extend(sensor(e));
+    lines.extend(spans.lines());
     lines.extend(segments(e));
     lines.push(String::new());
     lines.extend(quality(e));
