@@ -4,6 +4,7 @@ mod check;
 mod provenance;
 mod publish;
 mod run;
+mod which;
 
 use std::path::PathBuf;
 

@@ -160,7 +160,7 @@ const TURN: f64 = 2.0 * std::f64::consts::PI;
 /// `members` starts, each from random numbers of its own.
 fn drawn(case: usize, members: u64, mut draw: impl FnMut(&mut Random) -> Start) -> Vec<Start> {
     let random = Random::new(SEED);
-    (0..members).map(|member| draw(&mut random.stream((case as u64) << 32 | member))).collect()
+    (0..members).map(|member| draw(&mut random.stream(((case as u64) << 32) | member))).collect()
 }
 
 fn anywhere(random: &mut Random, speed: f64) -> [f64; 3] {
