@@ -1,12 +1,13 @@
 //! Imports obey the order of the layers: num ← rotation ← inertia ← body ← flow ← observe ← method ← run ←
-//! advise.
+//! advise ← audit.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const ORDER: [&str; 9] = ["num", "rotation", "inertia", "body", "flow", "observe", "method", "run", "advise"];
+const ORDER: [&str; 10] =
+    ["num", "rotation", "inertia", "body", "flow", "observe", "method", "run", "advise", "audit"];
 
 /// The layers that code in `layer` may name.
 fn allowed(layer: &str) -> Vec<&'static str> {

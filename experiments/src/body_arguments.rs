@@ -9,6 +9,7 @@ use polhode::inertia::Inertia;
 use crate::arguments::{list, numbers};
 use crate::body_file;
 use crate::error::Error;
+use crate::text::visible;
 
 /// A body: exactly one of three flags.
 #[derive(Args, Clone, Debug)]
@@ -41,7 +42,7 @@ fn tensor(text: &str) -> Result<Matrix3<f64>, String> {
 pub(crate) struct Described {
     pub(crate) inertia: Inertia,
     /// N m, body axes; zero of a body without a fixed point.
-    weight_moment: [f64; 3],
+    pub(crate) weight_moment: [f64; 3],
 }
 
 impl Described {
@@ -91,6 +92,20 @@ impl BodyArguments {
             ));
         }
         Ok(Body::free(inertia))
+    }
+
+    /// What a title calls the body.
+    pub(crate) fn label(&self) -> String {
+        match (self.moments, &self.body) {
+            (Some(moments), _) => {
+                format!("moments {}", moments.map(crate::text::rounded).join(", "))
+            }
+            (None, Some(name)) => {
+                let file = std::path::Path::new(name).file_name();
+                visible(&file.map_or(name.clone(), |file| file.to_string_lossy().into_owned())).into_owned()
+            }
+            (None, None) => "a typed tensor".into(),
+        }
     }
 
     /// The spin and attitude that the catalogue has with its body.

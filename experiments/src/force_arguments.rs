@@ -39,30 +39,68 @@ fn one_or_two(text: &str) -> Result<OneOrTwo, String> {
     }
 }
 
-impl ForceArguments {
-    /// `body` with the forces besides its weight.
-    pub(crate) fn act_on(&self, mut body: Body) -> Result<Body, Error> {
-        let refused = |flag: &str, error: ForceError| Error::Input(format!("{flag}: {error}"));
-        if let Some(OneOrTwo([mean_motion, eccentricity])) = self.gravity_gradient {
+/// Forces besides weight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Forces {
+    /// Mean motion, rad/s, and eccentricity.
+    pub(crate) gravity_gradient: Option<[f64; 2]>,
+    /// N m, body axes.
+    pub(crate) torque_body: Option<[f64; 3]>,
+    /// N m, axes of space.
+    pub(crate) torque_space: Option<[f64; 3]>,
+    /// N m s and N m s^2.
+    pub(crate) drag: Option<[f64; 2]>,
+}
+
+impl Forces {
+    /// `body` with these forces.
+    ///
+    /// # Errors
+    /// What is wrong with one of them, and its name.
+    pub(crate) fn act_on(&self, mut body: Body) -> Result<Body, (&'static str, ForceError)> {
+        if let Some([mean_motion, eccentricity]) = self.gravity_gradient {
             let force = Force::gravity_gradient(body.inertia(), mean_motion, eccentricity)
-                .map_err(|error| refused("--gravity-gradient", error))?;
+                .map_err(|error| ("gravity-gradient", error))?;
             body = body.with(force);
         }
-        for (flag, torque, make) in [
+        for (name, torque, make) in [
             (
-                "--torque-body",
+                "torque-body",
                 self.torque_body,
                 Force::constant_torque_body as fn(Vector3<f64>) -> Result<Force, ForceError>,
             ),
-            ("--torque-space", self.torque_space, Force::constant_torque_space),
+            ("torque-space", self.torque_space, Force::constant_torque_space),
         ] {
             if let Some(torque) = torque {
-                body = body.with(make(torque.into()).map_err(|error| refused(flag, error))?);
+                body = body.with(make(torque.into()).map_err(|error| (name, error))?);
             }
         }
-        if let Some(OneOrTwo([linear, quadratic])) = self.drag {
-            body = body.with(Force::drag(linear, quadratic).map_err(|error| refused("--drag", error))?);
+        if let Some([linear, quadratic]) = self.drag {
+            body = body.with(Force::drag(linear, quadratic).map_err(|error| ("drag", error))?);
         }
         Ok(body)
+    }
+}
+
+impl ForceArguments {
+    /// Whether a flag names a force.
+    pub(crate) fn is_any(&self) -> bool {
+        self.weight_moment.is_some()
+            || self.gravity_gradient.is_some()
+            || self.torque_body.is_some()
+            || self.torque_space.is_some()
+            || self.drag.is_some()
+    }
+
+    /// `body` with the forces besides its weight.
+    pub(crate) fn act_on(&self, body: Body) -> Result<Body, Error> {
+        let pair = |typed: Option<OneOrTwo>| typed.map(|OneOrTwo(pair)| pair);
+        let forces = Forces {
+            gravity_gradient: pair(self.gravity_gradient),
+            torque_body: self.torque_body,
+            torque_space: self.torque_space,
+            drag: pair(self.drag),
+        };
+        forces.act_on(body).map_err(|(name, error)| Error::Input(format!("--{name}: {error}")))
     }
 }

@@ -2,10 +2,13 @@
 
 mod advise;
 mod arguments;
+mod audit;
 mod bodies;
 mod body_arguments;
 mod body_file;
 mod compare;
+mod document;
+mod ensemble;
 mod error;
 mod experiment;
 mod experiments;
@@ -18,6 +21,7 @@ mod measured;
 mod methods;
 mod motion;
 mod parallel;
+mod plot;
 mod propagate;
 mod results;
 mod simulate;
@@ -25,6 +29,7 @@ mod start_arguments;
 mod table;
 mod text;
 mod times;
+mod toml_file;
 mod tumbling_arguments;
 
 use std::process::ExitCode;
@@ -61,6 +66,10 @@ enum Command {
     Motion(Box<motion::Motion>),
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
+    Plot(Box<plot::Plot>),
+    Audit(Box<audit::Audit>),
+    Ensemble(Box<ensemble::Ensemble>),
+    Gather(Box<ensemble::Gather>),
     Fit(Box<fit::Fit>),
     Simulate(Box<simulate::Simulate>),
     Methods(methods::Methods),
@@ -85,6 +94,10 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Motion(motion) => motion.run(),
         Command::Advise(advise) => advise.run(),
         Command::Compare(compare) => compare.run(),
+        Command::Plot(plot) => plot.run(),
+        Command::Audit(audit) => audit.run(),
+        Command::Ensemble(ensemble) => ensemble.run(),
+        Command::Gather(gather) => gather.run(),
         Command::Fit(fit) => fit.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),

@@ -167,6 +167,29 @@ impl Inertia {
         self.tensor * omega_body
     }
 
+    /// The moments along the kernel's axes: as typed, or ascending along those of a tensor.
+    #[cfg(any(test, feature = "random"))]
+    pub(crate) fn moments_along_axes(&self) -> [f64; 3] {
+        self.moments.map(|i| i.hi() * self.scale)
+    }
+
+    /// A body with the same principal axes and these moments along them, in the order of
+    /// [`moments_along_axes`](Self::moments_along_axes).
+    ///
+    /// # Errors
+    /// As [`from_moments`](Self::from_moments).
+    #[cfg(any(test, feature = "random"))]
+    pub(crate) fn with_moments(&self, moments: [f64; 3]) -> Result<Self, InertiaError> {
+        let along = Self::from_moments(moments)?;
+        if self.is_along_principal_axes() {
+            return Ok(along);
+        }
+        let frame = UnitQuaternion::from(Quat::from_components(self.frame.components().map(Dd::hi)));
+        let axes = frame.to_rotation_matrix();
+        let turned = axes.matrix() * along.tensor * axes.matrix().transpose();
+        Self::from_tensor((turned + turned.transpose()) * 0.5)
+    }
+
     /// The power of two by which the kernels divide moments and momenta.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
@@ -189,8 +212,18 @@ impl Inertia {
 
     /// `I ω` along the kernel's axes, divided by the scale: exact products of the given doubles, in double-double.
     pub(crate) fn scaled_momentum(&self, omega_body: Vec3<f64>) -> Vec3<Dd> {
-        let omega = self.frame.rotate_back(Vec3::of(omega_body));
-        omega.times(Vec3(self.moments))
+        self.along_axes(Vec3::of(omega_body)).times(Vec3(self.moments))
+    }
+
+    /// The vector `v` of body axes along the kernel's axes.
+    pub(crate) fn along_axes(&self, v: Vec3<Dd>) -> Vec3<Dd> {
+        // adding zero leaves none that is negative, as the products do
+        if self.is_along_principal_axes() { v.map(|x| x + 0.0) } else { self.frame.rotate_back(v) }
+    }
+
+    /// The attitude of the kernel's axes, of body axes with the attitude `q`.
+    pub(crate) fn attitude_of_axes(&self, q: Quat<Dd>) -> Quat<Dd> {
+        if self.is_along_principal_axes() { q.map(|x| x + 0.0) } else { q * self.frame }
     }
 }
 

@@ -7,7 +7,7 @@
 //! * [`sum`]: compensated sums;
 //! * [`expansion`]: exact sums and products of a few numbers;
 //! * [`elliptic`]: elliptic integrals and functions;
-//! * `random`: seeded random numbers (feature `fit`).
+//! * `random`, `distribution`: seeded random numbers and vectors (feature `random`).
 //!
 //! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
 //! same input gives the same bits on every CPU and at every optimisation level.
@@ -16,13 +16,17 @@
 pub(crate) mod banded;
 pub(crate) mod complex;
 pub mod dd;
+#[cfg(any(test, feature = "random"))]
+pub mod distribution;
 pub(crate) mod eigen;
 pub mod elliptic;
 pub(crate) mod error_free;
 pub mod expansion;
+pub(crate) mod exponential;
+mod lanes;
 #[cfg(feature = "fit")]
 pub(crate) mod quadrature;
-#[cfg(any(test, feature = "fit"))]
+#[cfg(any(test, feature = "random"))]
 pub mod random;
 pub mod real;
 pub mod series;
@@ -31,8 +35,12 @@ pub mod sum;
 pub mod trig;
 
 pub use dd::Dd;
+#[cfg(any(test, feature = "random"))]
+pub use distribution::{Covariance, Distribution, DistributionError};
 pub use expansion::Expansion;
-#[cfg(any(test, feature = "fit"))]
+pub use lanes::Instructions;
+pub(crate) use lanes::{LANES, Lane};
+#[cfg(any(test, feature = "random"))]
 pub use random::Random;
 pub use real::{Precise, Real};
 pub use series::Series;

@@ -1,4 +1,4 @@
-//! Random numbers, the same from the same seed on every machine. Needs the feature `fit`.
+//! Random numbers, the same from the same seed on every machine. Needs the feature `random`.
 
 use core::f64::consts::TAU;
 

@@ -3,11 +3,13 @@
 //! Attitudes are unit quaternions, **scalar first, active, body → space**: `v_space = q v_body q*`.
 //! Increments multiply on the right: `q ← q ∘ p`.
 
+mod dispersion;
 mod distance;
 mod euler;
 mod quaternion;
 mod vec3;
 
+pub use dispersion::Dispersion;
 pub use distance::rotation_angle;
 pub use euler::{EulerAngles, EulerSequence, EulerSequenceError};
 pub use quaternion::Quat;

@@ -17,6 +17,7 @@ use crate::files::{Output, emit};
 use crate::force_arguments::ForceArguments;
 use crate::measured::{Care, Ending, Measured, Motion, StepTime, is_adaptive};
 use crate::methods::named;
+use crate::plot::Picture;
 use crate::start_arguments::StartArguments;
 use crate::table::{Cell, Column, Format, Table, row};
 use crate::text::short;
@@ -76,7 +77,7 @@ pub(crate) struct Compare {
     #[arg(long, value_name = "FILE.csv")]
     trajectory: Vec<PathBuf>,
     /// Draw attitude error against processor time to this file
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg|.png")]
     figure: Option<PathBuf>,
     /// How rows are printed: table on a terminal, csv otherwise
     #[arg(long, value_enum)]
@@ -118,7 +119,11 @@ impl Compare {
             .map(|path| Trajectory::read(path, (self.start_time, self.until)))
             .collect::<Result<_, _>>()?;
         // a place that cannot be written is found out before the work
-        let figure_file = self.figure.as_deref().map(|path| Output::to_file("--figure", path)).transpose()?;
+        let figure_file = self.figure.as_deref().map(|path| {
+            let picture = Picture::of("--figure", path, &[Picture::Svg, Picture::Png])?;
+            Ok((Output::to_file("--figure", path)?, picture))
+        });
+        let figure_file = figure_file.transpose()?;
         let motion = Motion::evenly(&body, &start, self.start_time, span, LOOKS)?;
         let known = motion.reference().known_until();
         if known < span {
@@ -130,7 +135,7 @@ impl Compare {
         let mut table = Table::new("comparison", "Methods on one body.", columns(&body));
         let mut figure = Figure::log_log(
             "comparison",
-            "Attitude error against processor time",
+            format!("Attitude error against processor time: {}, {} s", self.body.label(), short(span)),
             "processor time (steps of rk4)",
             "attitude error (rad)",
         );
@@ -152,13 +157,13 @@ impl Compare {
         for series in &mut figure.series {
             series.points.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
-        if let Some(file) = figure_file {
+        if let Some((file, picture)) = figure_file {
             if figure.series.is_empty() {
                 return Err(Error::Failed(
                     "--figure: every attitude is lost, and nothing is left to draw; take smaller steps or an earlier end".into(),
                 ));
             }
-            file.write_whole(&figure.svg()?)?;
+            crate::plot::write(file, picture, &figure.page())?;
         }
         emit(&Format::of(self.format, self.out.as_deref())?.write(&table), self.out.as_deref())
     }

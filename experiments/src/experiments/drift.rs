@@ -9,7 +9,7 @@ use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, catalo
 use polhode::observe::secular_drift;
 use polhode::run::Run;
 
-use super::followed::{Effort, Followed, follow, scatter};
+use super::followed::{Effort, Followed, follow, rows_of_methods};
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::table::{Cell, Column, Table, row};
@@ -51,8 +51,13 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             timing.push(row![method.name(), step_time(&textbook, method.as_ref())?]);
         }
     }
-    let title = "Every body at two steps; runs that diverged are left out";
-    report.figures.push(scatter("drift", &drift, title, Problem::Free));
+    let title = format!(
+        "Errors of {steps} free steps: a dot for each of {} bodies ({}), the mark is the median",
+        BODIES.len(),
+        BODIES.join(", ")
+    );
+    let kinds = ["steps of about 0.1 rad", "about 0.01 rad"];
+    report.drawings.push(rows_of_methods("drift", &drift, "body", title, kinds));
     report.tables.push(drift);
     report.timing = Some(timing);
     Ok(report)

@@ -148,7 +148,7 @@ fn fixtures(report: &mut Report) -> Result<(), Error> {
     report.tables.extend([regimes, times]);
     let mut figure = Figure::log_log(
         "times",
-        "Largest attitude error of the exact motion, by the arithmetic of its constants",
+        "Largest attitude error of the closed form over all regimes, by the arithmetic of its constants",
         "turned (rad)",
         "attitude error (rad)",
     );

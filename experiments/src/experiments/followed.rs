@@ -3,13 +3,14 @@
 use std::fmt;
 
 use polhode::body::{Point, Problem};
-use polhode::method::{Claimed, catalogue};
+use polhode::method::Claimed;
 use polhode::num::Dd;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Sample, Schedule};
 
 use crate::error::{Error, unexpected};
-use crate::figure::{Figure, Series};
+use crate::experiment::Drawing;
+use crate::figure::{Group, RowPlot, Values};
 use crate::table::{Cell, Column, Table};
 
 /// Looks at the energy for its secular slope.
@@ -160,27 +161,57 @@ pub(super) fn attitude_error(sample: &Sample, exact: &Point<Dd>) -> f64 {
     rotation_angle(sample.point.to_dd().attitude, exact.attitude).hi()
 }
 
-/// Energy error against attitude error, of each method of the catalogue that claims something for `problem`: a point for each
-/// row of `table` that has both: runs that were lost or failed have no attitude.
-pub(super) fn scatter(name: &'static str, table: &Table, title: &str, problem: Problem) -> Figure {
-    let mut figure =
-        Figure::log_log(name, title, "attitude error at the end (rad)", "largest relative energy error")
-            .scatter();
-    let columns = ["method", "attitude_error", "energy_error"];
-    let [Some(method), Some(attitude), Some(energy)] = columns.map(|name| table.place(name)) else {
-        return figure;
-    };
-    for method_name in catalogue().iter().filter(|method| method.claims(problem).is_some()).map(|m| m.name())
-    {
-        let of_it = |row: &&Vec<Cell>| row[method].exact() == method_name;
-        let point = |row: &Vec<Cell>| match (&row[attitude], &row[energy]) {
-            (Cell::Number(attitude), Cell::Number(energy)) => Some((*attitude, *energy)),
-            _ => None,
+/// A row for each method with the errors on all bodies at a coarse and a fine step, of a table with the columns `body`, `method`,
+/// `h`, `attitude_error`, `energy_error` and `status`; the method of the least attitude errors comes first.
+pub(super) fn rows_of_methods(
+    name: &'static str,
+    table: &Table,
+    body: &str,
+    title: String,
+    kinds: [&str; 2],
+) -> Drawing {
+    let columns = [body, "method", "h", "attitude_error", "energy_error", "status"];
+    let [body, method, h, attitude, energy, status] = columns.map(|name| table.place(name).unwrap_or(0));
+    let number = |cell: &Cell| if let Cell::Number(x) = cell { Some(*x) } else { None };
+    let mut rows: Vec<(f64, Group)> = Vec::new();
+    let mut names: Vec<String> = table.rows().iter().map(|row| row[method].exact()).collect();
+    names.dedup();
+    let mut seen = std::collections::HashSet::new();
+    names.retain(|name| seen.insert(name.clone()));
+    for name in names {
+        let of_it: Vec<&Vec<Cell>> = table.rows().iter().filter(|row| row[method].exact() == name).collect();
+        let is_coarse = |row: &Vec<Cell>| {
+            let steps =
+                of_it.iter().filter(|other| other[body] == row[body]).filter_map(|other| number(&other[h]));
+            number(&row[h]) == steps.reduce(f64::max)
         };
-        let points: Vec<_> = table.rows().iter().filter(of_it).filter_map(point).collect();
-        if !points.is_empty() {
-            figure.series.push(Series::new(method_name, points));
-        }
+        let values = |column: usize, coarse: bool| {
+            let rows = || of_it.iter().filter(|row| is_coarse(row) == coarse);
+            let seen: Vec<f64> = rows().filter_map(|row| number(&row[column])).collect();
+            let lost = rows().filter(|row| row[column] == Cell::Empty && row[status].exact() != "ok").count();
+            Values { seen, lost }
+        };
+        let values: Vec<Vec<Values>> =
+            [attitude, energy].map(|column| vec![values(column, true), values(column, false)]).to_vec();
+        let mut fine = values[0][1].seen.clone();
+        fine.extend(std::iter::repeat_n(f64::MAX, values[0][1].lost));
+        fine.sort_by(f64::total_cmp);
+        let rank = fine.get(fine.len().saturating_sub(1) / 2).copied().unwrap_or(f64::MAX);
+        // where most attitudes are lost, the best one decides
+        let rank = if rank == f64::MAX {
+            fine.first().map_or(f64::MAX, |least| 1.0 + least.min(1e300))
+        } else {
+            rank
+        };
+        rows.push((rank, Group { name, values }));
     }
-    figure
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let plot = RowPlot {
+        title,
+        kinds: kinds.map(String::from).to_vec(),
+        panels: vec!["attitude error (rad)".into(), "relative energy error".into()],
+        lost: "lost".into(),
+        rows: rows.into_iter().map(|(_, group)| group).collect(),
+    };
+    Drawing { name, svg: plot.page().svg() }
 }

@@ -69,16 +69,17 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     );
     let mut energy = Figure::log_log(
         "energy",
-        format!("Energy over {counted} steps"),
+        format!("Energy error over {counted} steps of 1/64 s, body 5/8 : 3/4 : 1"),
         "steps",
         "largest relative energy error so far",
     );
     let mut attitude = Figure::log_log(
         "attitude",
-        format!("Attitude over {counted} steps"),
+        format!("Attitude error over {counted} steps of 1/64 s, body 5/8 : 3/4 : 1"),
         "steps",
         "attitude error (rad)",
     );
+    attitude.level("lost beyond 1 rad", 1.0);
     for (name, found) in METHODS.into_iter().zip(found) {
         let (rows, seconds) = found?;
         let curve = |column: &str| {

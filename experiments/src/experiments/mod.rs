@@ -1,5 +1,6 @@
 //! The experiments, one file each, and what two of them share.
 
+mod audit;
 mod chaos;
 mod conservation;
 mod drift;
@@ -107,5 +108,10 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "chaos",
         question: "what each method says of a chaotic top: energy, L_z, Lyapunov exponent, and how long the attitude holds",
         run: chaos::run,
+    },
+    Experiment {
+        name: "audit",
+        question: "whether an audit finds the convention of a trajectory, its mistakes, and whether it is right",
+        run: audit::run,
     },
 ];

@@ -1,30 +1,52 @@
-//! Figures as SVG, for a column of an article: curves over common axes, readable in grey.
+//! Figures for a column of an article, readable in grey, as SVG and PNG: one style, a page, plots and views of the sphere.
 //!
-//! Log axes span the data; what is zero there is drawn on a marked floor, never dropped. Up to five curves have a legend, more
-//! have their names beside their ends; a scatter of points always has a legend.
+//! Log axes span the data; what is zero there is drawn on a marked floor, never dropped. Curves have their names beside their
+//! ends; a scatter of points has a legend above the plot.
 
 mod axis;
-mod draw;
+mod canvas;
+mod font;
 mod labels;
-
-use plotters::prelude::*;
+mod marks;
+mod plot;
+mod png;
+mod rows;
+pub(crate) mod sphere;
+pub(crate) mod style;
+mod svg;
 
 pub(crate) use axis::{Scale, ten_to};
+pub(crate) use canvas::{Anchor, Canvas, Fill, Stroke};
+pub(crate) use rows::{Group, RowPlot, Values};
 
 use crate::error::Error;
 use crate::experiment::Drawing;
 
+/// How a curve is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Look {
+    /// A line with marks.
+    Marked,
+    /// A line.
+    Plain,
+    /// A line twice as wide.
+    Wide,
+    /// A dot for each point.
+    Dots,
+}
+
 /// A named curve.
 #[derive(Clone, Debug)]
 pub(crate) struct Series {
-    /// Its name, in the legend or beside its end.
+    /// Its name, in the legend or beside its end; nothing for a curve that another one names.
     pub(crate) name: String,
     /// Points, ascending in x.
     pub(crate) points: Vec<(f64, f64)>,
     /// Of each point the lowest and the highest value, drawn as a bar; none where it is empty.
     spread: Vec<(f64, f64)>,
-    /// Whether it is drawn twice as wide, without marks.
-    wide: bool,
+    look: Look,
+    /// Its number among the colours, where it is not its place in the figure.
+    colour: Option<usize>,
 }
 
 /// A line that readers compare curves with.
@@ -39,6 +61,15 @@ struct Guide {
     ends: Option<[f64; 2]>,
 }
 
+/// Moments that are marked above the plot.
+#[derive(Clone, Debug)]
+struct Events {
+    label: String,
+    /// What they are, for those who read the SVG.
+    class: &'static str,
+    at: Vec<f64>,
+}
+
 /// Curves over common axes.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure {
@@ -47,20 +78,27 @@ pub(crate) struct Figure {
     /// Above the plot: what is seen, of which bodies, with which steps.
     pub(crate) title: String,
     /// Below the plot, with unit.
-    pub(crate) x: &'static str,
+    pub(crate) x: String,
     /// Beside the plot, with unit.
-    pub(crate) y: &'static str,
+    pub(crate) y: String,
     scales: [Scale; 2],
     /// Whether lines join the points of a series.
     joined: bool,
+    /// Whether both axes have the same scale.
+    equal: bool,
+    /// Width and height, pixels, where they are not those of a column.
+    size: Option<[f64; 2]>,
+    /// Half width of a grey band about zero.
+    band: Option<f64>,
     /// The curves.
     pub(crate) series: Vec<Series>,
     guides: Vec<Guide>,
+    events: Vec<Events>,
 }
 
 impl Series {
     pub(crate) fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { name: name.into(), points, spread: Vec::new(), wide: false }
+        Self { name: name.into(), points, spread: Vec::new(), look: Look::Marked, colour: None }
     }
 
     /// With a bar from the lowest to the highest value at each point.
@@ -70,7 +108,22 @@ impl Series {
 
     /// Drawn twice as wide and without marks, as an envelope is.
     pub(crate) fn wide(self) -> Self {
-        Self { wide: true, ..self }
+        Self { look: Look::Wide, ..self }
+    }
+
+    /// Drawn without marks.
+    pub(crate) fn plain(self) -> Self {
+        Self { look: Look::Plain, ..self }
+    }
+
+    /// Drawn as a dot for each point, as measurements are.
+    pub(crate) fn dots(self) -> Self {
+        Self { look: Look::Dots, ..self }
+    }
+
+    /// In the k-th colour.
+    pub(crate) fn coloured(self, k: usize) -> Self {
+        Self { colour: Some(k), ..self }
     }
 }
 
@@ -79,19 +132,31 @@ impl Figure {
     pub(crate) fn new(
         name: &'static str,
         title: impl Into<String>,
-        (x, x_scale): (&'static str, Scale),
-        (y, y_scale): (&'static str, Scale),
+        (x, x_scale): (impl Into<String>, Scale),
+        (y, y_scale): (impl Into<String>, Scale),
     ) -> Self {
-        let scales = [x_scale, y_scale];
-        Self { name, title: title.into(), x, y, scales, joined: true, series: Vec::new(), guides: Vec::new() }
+        Self {
+            name,
+            title: title.into(),
+            x: x.into(),
+            y: y.into(),
+            scales: [x_scale, y_scale],
+            joined: true,
+            equal: false,
+            size: None,
+            band: None,
+            series: Vec::new(),
+            guides: Vec::new(),
+            events: Vec::new(),
+        }
     }
 
     /// A figure without curves, both axes logarithmic.
     pub(crate) fn log_log(
         name: &'static str,
         title: impl Into<String>,
-        x: &'static str,
-        y: &'static str,
+        x: impl Into<String>,
+        y: impl Into<String>,
     ) -> Self {
         Self::new(name, title, (x, Scale::Log), (y, Scale::Log))
     }
@@ -99,6 +164,21 @@ impl Figure {
     /// The same, with points that are not joined by lines.
     pub(crate) fn scatter(self) -> Self {
         Self { joined: false, ..self }
+    }
+
+    /// The same, with one scale for both axes.
+    pub(crate) fn equal(self) -> Self {
+        Self { equal: true, ..self }
+    }
+
+    /// The same, of a width and a height, pixels.
+    pub(crate) fn sized(self, width: f64, height: f64) -> Self {
+        Self { size: Some([width, height]), ..self }
+    }
+
+    /// A grey band from `-half` to `half`.
+    pub(crate) fn band(&mut self, half: f64) {
+        self.band = Some(half);
     }
 
     /// A dotted line of the slope `slope` through a point, of a figure with two logarithmic axes; `ends` are the abscissas
@@ -118,38 +198,42 @@ impl Figure {
         self.guides.push(Guide { label: label.into(), slope: 0.0, through: (1.0, y), ends: None });
     }
 
+    /// Marks moments; `class` names them in the SVG.
+    pub(crate) fn events(&mut self, label: impl Into<String>, class: &'static str, at: Vec<f64>) {
+        self.events.push(Events { label: label.into(), class, at });
+    }
+
+    /// The figure on its page.
+    pub(crate) fn page(&self) -> Canvas {
+        plot::sheet("", 1, &[self])
+    }
+
     /// The figure as SVG.
+    ///
+    /// # Errors
+    /// None: a figure of any points can be drawn.
     pub(crate) fn svg(&self) -> Result<String, Error> {
-        draw::svg(self.name, "", 1, &[self])
+        Ok(self.page().svg())
     }
 }
 
 /// Several figures as one, `columns` side by side, with `title` above them.
 ///
 /// # Errors
-/// A figure that cannot be drawn.
+/// None: figures of any points can be drawn.
 pub(crate) fn sheet(
     name: &'static str,
     title: &str,
     columns: usize,
     panels: &[Figure],
 ) -> Result<Drawing, Error> {
-    let svg = draw::svg(name, title, columns, &panels.iter().collect::<Vec<_>>())?;
-    Ok(Drawing { name, svg })
+    Ok(Drawing { name, svg: page_of(title, columns, panels).svg() })
 }
 
-/// Distinct in colour, and next to each other also in grey.
-const COLOURS: [RGBColor; 9] = [
-    RGBColor(0, 0, 0),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 114, 178),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(150, 110, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(120, 120, 120),
-    RGBColor(170, 30, 60),
-];
+/// The page of several figures, `columns` side by side, with `title` above them.
+pub(crate) fn page_of(title: &str, columns: usize, panels: &[Figure]) -> Canvas {
+    plot::sheet(title, columns, &panels.iter().collect::<Vec<_>>())
+}
 
 #[cfg(test)]
 mod tests {
@@ -192,6 +276,21 @@ mod tests {
         heights.sort_by(f64::total_cmp);
         assert_eq!(heights.len(), 24);
         assert!(heights.windows(2).all(|pair| pair[1] - pair[0] >= 12.0), "{heights:?}");
+    }
+
+    #[test]
+    fn nothing_reaches_beyond_the_page() {
+        let mut crowded = figure(24);
+        crowded.title = "A title that is longer than a line and has to be broken ".repeat(3);
+        crowded.events("flips", "flip", vec![2.0, 3.0]);
+        crowded.guide("slope 1", 1.0, (2.0, 1.0), [1.0, 8.0]);
+        let mut square = figure(1).equal().sized(640.0, 300.0);
+        square.scales = [Scale::Linear; 2];
+        for page in [figure(2).page(), crowded.page(), square.page(), figure(3).scatter().page()] {
+            let [[left, top], [right, bottom]] = page.bounds();
+            let inside = left >= 0.0 && top >= 0.0 && right <= page.width && bottom <= page.height;
+            assert!(inside, "{left} {top} {right} {bottom} of {} x {}", page.width, page.height);
+        }
     }
 
     #[test]

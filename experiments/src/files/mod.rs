@@ -42,11 +42,16 @@ impl Output {
     /// # Errors
     /// [`Error::Unread`] where the reader of standard output has seen enough: `polhode … | head`.
     pub(crate) fn write(&mut self, text: &str) -> Result<(), Error> {
+        self.write_bytes(text.as_bytes())
+    }
+
+    /// The same for what is no text.
+    pub(crate) fn write_bytes(&mut self, bytes: &[u8]) -> Result<(), Error> {
         match self {
             Self::File { file, flag, path } => {
-                file.write(text.as_bytes()).map_err(|reason| unwritable(flag, path, &reason))
+                file.write(bytes).map_err(|reason| unwritable(flag, path, &reason))
             }
-            Self::Standard(stdout) => stdout.write_all(text.as_bytes()).map_err(|reason| unprinted(&reason)),
+            Self::Standard(stdout) => stdout.write_all(bytes).map_err(|reason| unprinted(&reason)),
         }
     }
 
@@ -61,8 +66,13 @@ impl Output {
     }
 
     /// The whole of a text that is short.
-    pub(crate) fn write_whole(mut self, text: &str) -> Result<(), Error> {
-        match self.write(text).and_then(|()| self.finish()) {
+    pub(crate) fn write_whole(self, text: &str) -> Result<(), Error> {
+        self.write_whole_bytes(text.as_bytes())
+    }
+
+    /// The whole of a picture.
+    pub(crate) fn write_whole_bytes(mut self, bytes: &[u8]) -> Result<(), Error> {
+        match self.write_bytes(bytes).and_then(|()| self.finish()) {
             Err(Error::Unread) => Ok(()),
             other => other,
         }
@@ -82,7 +92,7 @@ fn unprinted(reason: &io::Error) -> Error {
 }
 
 /// Why `path` cannot be written, and what helps.
-fn unwritable(flag: &str, path: &Path, reason: &io::Error) -> Error {
+pub(crate) fn unwritable(flag: &str, path: &Path, reason: &io::Error) -> Error {
     let other = reason.to_string();
     let (cause, remedy) = match reason.kind() {
         ErrorKind::NotFound => ("the folder does not exist", "make it first"),

@@ -65,6 +65,20 @@ impl Staging {
         write().map_err(|reason: io::Error| unwritable("--out", &self.target.join(name), &reason))
     }
 
+    /// Makes one file of the folder, to be written and read piece by piece before the commit.
+    pub(crate) fn file(&self, name: &str) -> Result<File, Error> {
+        let _paused = pause();
+        let path = self.temporary.path().join(name);
+        let made = OpenOptions::new().read(true).write(true).create_new(true).open(&path);
+        made.map_err(|reason| unwritable("--out", &self.target.join(name), &reason))
+    }
+
+    /// Removes one file of the folder.
+    pub(crate) fn remove(&self, name: &str) -> Result<(), Error> {
+        let removed = fs::remove_file(self.temporary.path().join(name));
+        removed.map_err(|reason| unwritable("--out", &self.target.join(name), &reason))
+    }
+
     /// Puts the folder in place of the one that stood there, which is then removed.
     pub(crate) fn commit(self) -> Result<(), Error> {
         if let Ok(old) = fs::metadata(&self.target) {

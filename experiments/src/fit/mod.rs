@@ -15,15 +15,18 @@ use polhode::fit::{FitError, Limit, RateUnit, Reading, Record, RecordError, Sett
 use report::Facts;
 
 use crate::arguments::{number, numbers, positive};
+use crate::document::Form;
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
+use crate::plot::Picture;
 use crate::table::{Cell, Column, Format, Table};
 
 const EXAMPLES: &str = "Examples:
   polhode fit record.csv
   polhode fit record.csv --window 0,2.5 --trace 0.0007
   polhode fit record.csv --report fit.html --residuals residuals.csv
-  polhode fit record.csv --residuals residuals.svg --format json";
+  polhode fit record.csv --residuals residuals.svg --format json
+  polhode fit record.csv --figure fit.svg";
 
 /// Inertia tensor of a torque-free body from its measured angular velocity
 ///
@@ -75,6 +78,9 @@ pub(crate) struct Fit {
     /// Write the residuals to this file: a plot, or rows where it ends in .csv
     #[arg(long, value_name = "FILE.svg|.csv")]
     residuals: Option<PathBuf>,
+    /// Draw measured and fitted rates, and |L| and T along the record, to this file
+    #[arg(long, value_name = "FILE.svg|.png")]
+    figure: Option<PathBuf>,
     /// Write one page with the answer, its tables and plots to this file, also where the fit is refused
     #[arg(long, value_name = "FILE.html|.md")]
     report: Option<PathBuf>,
@@ -169,23 +175,6 @@ fn ends_in(path: &Path, endings: &[&str]) -> bool {
     endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
-/// How a page of this name is written.
-fn form(path: &Path) -> Result<page::Form, Error> {
-    if ends_in(path, &["html", "htm"]) {
-        Ok(page::Form::Html)
-    } else if ends_in(path, &["md"]) {
-        Ok(page::Form::Markdown)
-    } else {
-        let value = path.display().to_string();
-        Err(Error::input(
-            "--report",
-            &value,
-            "a page is HTML or Markdown",
-            "let the name end in .html or .md",
-        ))
-    }
-}
-
 /// Measured and fitted rates, and their difference.
 fn residual_rows(record: &Record, motion: &[motion::Fitted]) -> Table {
     let rate = |name, meaning| Column::new(name, "rad/s", meaning);
@@ -222,12 +211,17 @@ fn residual_rows(record: &Record, motion: &[motion::Fitted]) -> Table {
 impl Fit {
     pub(crate) fn run(&self) -> Result<(), Error> {
         self.check_paths()?;
-        let form = self.report.as_deref().map(form).transpose()?;
+        let form = self.report.as_deref().map(|path| Form::of("--report", path)).transpose()?;
         let output = Output::new(self.out.as_deref())?;
         let residuals = self.residuals.as_deref().map(|path| Output::to_file("--residuals", path));
         let residuals = residuals.transpose()?;
         let page = self.report.as_deref().map(|path| Output::to_file("--report", path)).transpose()?;
         let page = page.zip(form);
+        let figure = self.figure.as_deref().map(|path| {
+            let picture = Picture::of("--figure", path, &[Picture::Svg, Picture::Png])?;
+            Ok((Output::to_file("--figure", path)?, picture))
+        });
+        let figure = figure.transpose()?;
         let record = self.record()?;
         let limit = |axis: &[f64; 4]| Limit {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
@@ -285,6 +279,9 @@ impl Fit {
         for (file, text) in residuals.zip(left).into_iter().chain(page) {
             file.write_whole(&text)?;
         }
+        if let Some((file, picture)) = figure {
+            crate::plot::write(file, picture, &page::figures::overview(&estimate, &motion, &record))?;
+        }
         Ok(())
     }
 
@@ -305,7 +302,12 @@ impl Fit {
                 ));
             }
         }
-        let written = [("--out", &self.out), ("--residuals", &self.residuals), ("--report", &self.report)];
+        let written = [
+            ("--out", &self.out),
+            ("--residuals", &self.residuals),
+            ("--report", &self.report),
+            ("--figure", &self.figure),
+        ];
         for (k, (flag, out)) in written.iter().enumerate() {
             let Some(out) = out else { continue };
             let twice = written[..k].iter().find(|(_, other)| other.as_ref().is_some_and(|o| same(o, out)));

@@ -43,8 +43,11 @@ fn help_is_everywhere_and_fits_into_80_columns() {
 /// What the experiments read and write, in a folder of its own.
 fn project(scratch: &Scratch) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let copied = ["README.md", "paper", "experiments/results", "experiments/tests/golden"];
-    fs::create_dir_all(scratch.0.join("experiments/tests")).unwrap();
+    let copied =
+        ["README.md", "paper", "experiments/results", "experiments/tests/golden", "examples/ensemble.toml"];
+    for folder in ["experiments/tests", "examples"] {
+        fs::create_dir_all(scratch.0.join(folder)).unwrap();
+    }
     for name in copied {
         copy(&root.join(name), &scratch.0.join(name));
     }

@@ -5,8 +5,10 @@
 #![allow(clippy::unwrap_used)]
 
 mod advise;
+mod audit;
 mod compare;
 mod compose;
+mod ensemble;
 mod experiment;
 mod fit;
 mod forces;
@@ -17,6 +19,8 @@ mod inertia;
 mod interrupted;
 mod logs;
 mod motion;
+mod plot;
 mod propagate;
+mod report;
 mod robots;
 mod times;

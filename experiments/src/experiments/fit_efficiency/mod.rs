@@ -62,7 +62,9 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     );
     let mut figure = Figure::log_log(
         "efficiency",
-        "Error over the Cramér–Rao bound, asymmetric body",
+        format!(
+            "Error over the Cramér–Rao bound: {trials} records of {seconds} s at 100 Hz, asymmetric body"
+        ),
         "noise over rate",
         "error over bound",
     );

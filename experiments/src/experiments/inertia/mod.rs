@@ -144,7 +144,15 @@ fn spheres(finest: usize, failures: &mut Vec<String>) -> Result<(Table, Figure),
         table.push(row![mesh.triangles() as u64, h, last(&volumes), orders.0, last(&moments), orders.1]);
         n *= 2;
     }
-    let mut figure = Figure::log_log("spheres", "Meshes of a ball", "edge h (m)", "relative error");
+    let mut figure = Figure::log_log(
+        "spheres",
+        "Mass properties of a ball by its mesh, relative to the closed form",
+        "length of an edge over the radius",
+        "relative error",
+    );
+    if let Some(&(h, error)) = volumes.last() {
+        figure.guide("slope 2", 2.0, (h, 0.5 * error), [h, 4.0 * h]);
+    }
     figure.series = vec![Series::new("volume", volumes), Series::new("moments", moments)];
     Ok((table, figure))
 }

@@ -4,59 +4,74 @@ use nalgebra::Vector3;
 use polhode::fit::{Estimate, Record};
 
 use super::super::motion::Fitted;
-use super::super::plot::{self, AXES, Curve, Plot, Style, without_gaps};
-use super::document::Part;
+use super::super::plot::{self, AXES, over_time, without_gaps};
 use super::noise;
+use crate::document::Part;
 use crate::error::Error;
-use crate::figure::{Figure, Series};
+use crate::figure::{Canvas, Figure, Series, page_of};
 
 /// Segments that are drawn one by one.
 const DRAWN: usize = 8;
 
-const SMALL: (u32, u32) = (860, 260);
+/// Height of a plot of many on a page, pixels.
+const SMALL: f64 = 260.0;
 
 /// Measured and fitted rates of each segment, or of those that fit worst.
 pub(super) fn motions(motion: &[Fitted], record: &Record) -> Result<Vec<Part>, Error> {
     let mut chosen: Vec<&Fitted> = motion.iter().collect();
-    if chosen.len() > DRAWN {
-        chosen.sort_by(|a, b| b.rms().unwrap_or(f64::MAX).total_cmp(&a.rms().unwrap_or(f64::MAX)));
-        chosen.truncate(DRAWN);
-    }
+    worst_first(&mut chosen);
     let mut parts = vec![Part::Heading("Measured and fitted rates".into())];
     if motion.len() > DRAWN {
         parts.push(Part::Paragraph(format!("The {DRAWN} segments of {} that fit worst.", motion.len())));
     }
-    for m in chosen {
-        let Some(s) = record.segments.get(m.segment) else { continue };
-        let mut curves = rates(s.times(), &m.measured, Style::Dots, "");
-        if let Some(fitted) = &m.fitted {
-            curves.extend(rates(s.times(), fitted, Style::Line, " fitted"));
-        }
-        let title = format!("Segment {}", m.segment + 1);
-        let plot = Plot {
-            title: &title,
-            x: "time (s)",
-            y: "angular velocity (rad/s)",
-            band: None,
-            size: SMALL,
-            curves,
-        };
-        let caption = match m.rms() {
-            Some(rms) => format!("Segment {}: rms of the difference {rms:.2e} rad/s.", m.segment + 1),
-            None => format!("Segment {}: no motion of the fitted body follows it.", m.segment + 1),
-        };
-        parts.push(Part::Figure(plot.svg()?, caption));
+    for (figure, caption) in chosen.into_iter().filter_map(|m| followed(m, record)) {
+        parts.push(Part::Figure(figure.svg()?, caption));
     }
     Ok(parts)
 }
 
-fn rates(times: &[f64], rates: &[Vector3<f64>], style: Style, which: &str) -> Vec<Curve> {
+/// Measured and fitted rates of a segment, with a caption.
+fn followed(m: &Fitted, record: &Record) -> Option<(Figure, String)> {
+    let s = record.segments.get(m.segment)?;
+    let title = format!("Segment {}: measured (dots) and fitted (lines)", m.segment + 1);
+    let mut figure = over_time(title, "angular velocity (rad/s)", true, SMALL);
+    let lines = m.fitted.as_deref();
+    let dots = rates(s.times(), &m.measured, lines.is_none());
+    figure.series.extend(dots.into_iter().map(Series::dots));
+    if let Some(fitted) = lines {
+        figure.series.extend(rates(s.times(), fitted, true).into_iter().map(Series::plain));
+    }
+    let caption = match m.rms() {
+        Some(rms) => format!("Segment {}: rms of the difference {rms:.2e} rad/s.", m.segment + 1),
+        None => format!("Segment {}: no motion of the fitted body follows it.", m.segment + 1),
+    };
+    Some((figure, caption))
+}
+
+/// Measured and fitted rates of the segments, and |L| and 2T along them, on one page.
+pub(in super::super) fn overview(e: &Estimate, motion: &[Fitted], record: &Record) -> Canvas {
+    let mut chosen: Vec<&Fitted> = motion.iter().collect();
+    worst_first(&mut chosen);
+    let mut figures: Vec<Figure> =
+        chosen.into_iter().filter_map(|m| followed(m, record)).map(|(figure, _)| figure).collect();
+    figures.push(kept(e, motion, record));
+    page_of("", 1, &figures)
+}
+
+/// The segments that fit worst, where there are too many to draw.
+fn worst_first(chosen: &mut Vec<&Fitted>) {
+    if chosen.len() > DRAWN {
+        chosen.sort_by(|a, b| b.rms().unwrap_or(f64::MAX).total_cmp(&a.rms().unwrap_or(f64::MAX)));
+        chosen.truncate(DRAWN);
+    }
+}
+
+/// The three components of rates, each with its colour, named or not.
+fn rates(times: &[f64], rates: &[Vector3<f64>], named: bool) -> Vec<Series> {
     (0..3)
-        .map(|axis| Curve {
-            name: format!("{}{which}", AXES[axis]),
-            colour: axis,
-            style,
-            points: times.iter().zip(rates).map(|(t, w)| (*t, w[axis])).collect(),
+        .map(|axis| {
+            let points = times.iter().zip(rates).map(|(t, w)| (*t, w[axis])).collect();
+            Series::new(if named { AXES[axis] } else { "" }, points).coloured(axis)
         })
         .collect()
 }
@@ -113,6 +128,11 @@ fn interval<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
 
 /// |J ω| and ω·J ω of the samples over their means.
 pub(super) fn invariants(e: &Estimate, motion: &[Fitted], record: &Record) -> Result<Part, Error> {
+    let caption = "Angular momentum |Jω| and twice the energy, 2T = ω·Jω, which a free body keeps.";
+    Ok(Part::Figure(kept(e, motion, record).svg()?, caption.into()))
+}
+
+fn kept(e: &Estimate, motion: &[Fitted], record: &Record) -> Figure {
     let j = e.shape.tensor();
     let segments: Vec<&Fitted> = motion.iter().collect();
     let source = |m: &Fitted| record.segments.get(m.segment).map_or(&[][..], |s| s.times());
@@ -122,7 +142,7 @@ pub(super) fn invariants(e: &Estimate, motion: &[Fitted], record: &Record) -> Re
     } else {
         without_gaps(segments.iter().map(|m| source(m)))
     };
-    let curve = |name: &str, colour: usize, of: &dyn Fn(&Vector3<f64>) -> f64| {
+    let curve = |name: &str, of: &dyn Fn(&Vector3<f64>) -> f64| {
         let mut points = Vec::new();
         for (m, times) in segments.iter().zip(&times) {
             let used = || m.measured.iter().zip(times).zip(&m.used).filter(|(_, used)| **used);
@@ -130,18 +150,12 @@ pub(super) fn invariants(e: &Estimate, motion: &[Fitted], record: &Record) -> Re
             let mean = used().map(|((w, _), _)| of(w)).sum::<f64>() / count;
             points.extend(used().map(|((w, t), _)| (*t, of(w) / mean)));
         }
-        Curve { name: name.into(), colour, style: Style::Dots, points }
+        Series::new(name, points).dots()
     };
-    let plot = Plot {
-        title: "Angular momentum and energy along the record",
-        x: if single { "time (s)" } else { "time without the gaps between segments (s)" },
-        y: "value over the mean of the segment",
-        band: None,
-        size: (860, 320),
-        curves: vec![curve("|Jω|", 0, &|w| (j * w).norm()), curve("2T", 1, &|w| w.dot(&(j * w)))],
-    };
-    let caption = "Angular momentum |Jω| and twice the energy, 2T = ω·Jω, which a free body keeps.";
-    Ok(Part::Figure(plot.svg()?, caption.into()))
+    let title = "Angular momentum and energy along the record";
+    let mut figure = over_time(title, "over the segment's mean", single, 320.0);
+    figure.series = vec![curve("|Jω|", &|w| (j * w).norm()), curve("2T", &|w| w.dot(&(j * w)))];
+    figure
 }
 
 /// The readings of a record that was refused.
@@ -149,16 +163,9 @@ pub(super) fn readings(record: &Record) -> Result<Vec<Part>, Error> {
     let shown = record.segments.iter().enumerate().take(DRAWN);
     let mut parts = Vec::new();
     for (k, s) in shown {
-        let title = format!("Segment {}", k + 1);
-        let plot = Plot {
-            title: &title,
-            x: "time (s)",
-            y: "angular velocity (rad/s)",
-            band: None,
-            size: SMALL,
-            curves: rates(s.times(), s.rates(), Style::Dots, ""),
-        };
-        parts.push(Part::Figure(plot.svg()?, format!("Segment {} of {}.", k + 1, s.source())));
+        let mut figure = over_time(format!("Segment {}", k + 1), "angular velocity (rad/s)", true, SMALL);
+        figure.series = rates(s.times(), s.rates(), true).into_iter().map(Series::dots).collect();
+        parts.push(Part::Figure(figure.svg()?, format!("Segment {} of {}.", k + 1, s.source())));
     }
     if record.segments.len() > DRAWN {
         parts.push(Part::Paragraph(format!("The first {DRAWN} segments of {}.", record.segments.len())));
@@ -171,16 +178,10 @@ pub(super) fn readings(record: &Record) -> Result<Vec<Part>, Error> {
     } else {
         times.into_iter().flatten().zip(lengths).map(|(t, (_, w))| (t, w.norm())).collect()
     };
-    let plot = Plot {
-        title: "Size of the rate along the record",
-        x: if single { "time (s)" } else { "time without the gaps between segments (s)" },
-        y: "|ω| (rad/s)",
-        band: None,
-        size: SMALL,
-        curves: vec![Curve { name: "|ω|".into(), colour: 0, style: Style::Dots, points }],
-    };
+    let mut figure = over_time("Size of the rate along the record", "|ω| (rad/s)", single, SMALL);
+    figure.series = vec![Series::new("|ω|", points).dots()];
     parts.push(Part::Figure(
-        plot.svg()?,
+        figure.svg()?,
         "Size of the rate: jumps are blows or catches, a fall is drag.".into(),
     ));
     Ok(parts)

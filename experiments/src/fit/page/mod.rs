@@ -1,31 +1,14 @@
 //! A fit, or a refusal, as one page that needs no other file.
 
-mod document;
-mod figures;
+pub(super) mod figures;
 mod noise;
 
 use polhode::fit::{Estimate, Nuisance, Record};
 
 use super::motion::Fitted;
 use super::report::{Facts, SURE, digits, sizes, systematic, torque, with_error};
+use crate::document::{Form, Part};
 use crate::error::Error;
-use document::Part;
-
-/// How the page is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
-    Html,
-    Markdown,
-}
-
-impl Form {
-    fn write(self, title: &str, parts: &[Part]) -> String {
-        match self {
-            Self::Html => document::html(title, parts),
-            Self::Markdown => document::markdown(title, parts),
-        }
-    }
-}
 
 /// The page of an estimate from the files `names`.
 pub(super) fn estimated(

@@ -1,0 +1,62 @@
+//! The style of every figure: sizes, widths of lines, colours, dashes.
+//!
+//! The palette is that of Okabe and Ito, distinct to readers of any colour vision; curves that follow each other also differ
+//! in grey, in their dashes and in their marks.
+
+/// A colour of the screen, red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Colour(pub(crate) u8, pub(crate) u8, pub(crate) u8);
+
+pub(crate) const BLACK: Colour = Colour(0, 0, 0);
+pub(crate) const WHITE: Colour = Colour(255, 255, 255);
+pub(crate) const BLUE: Colour = Colour(0, 114, 178);
+pub(crate) const GREEN: Colour = Colour(0, 158, 115);
+pub(crate) const ORANGE: Colour = Colour(213, 94, 0);
+/// Of guides, leaders and what lies behind.
+pub(crate) const GREY: Colour = Colour(95, 95, 95);
+/// Of the lines of a grid.
+pub(crate) const FAINT: Colour = Colour(222, 222, 222);
+
+/// Colours of the curves, in their order.
+pub(crate) const COLOURS: [Colour; 9] = [
+    BLACK,
+    ORANGE,
+    BLUE,
+    GREEN,
+    Colour(204, 121, 167),
+    Colour(150, 110, 0),
+    Colour(86, 180, 233),
+    Colour(120, 120, 120),
+    Colour(170, 30, 60),
+];
+
+/// Width of a figure for a column of an article, pixels; in print it is reduced to a half.
+pub(crate) const COLUMN: f64 = 500.0;
+/// Height of a plot with its title and axes.
+pub(crate) const HEIGHT: f64 = 400.0;
+
+/// Sizes of letters, pixels.
+pub(crate) const TITLE: f64 = 15.0;
+pub(crate) const AXIS: f64 = 14.0;
+pub(crate) const LABEL: f64 = 13.0;
+pub(crate) const NAME: f64 = 13.0;
+
+/// Distance of the lines of a text, and of names beside curves.
+pub(crate) const LINE: f64 = 19.0;
+pub(crate) const NAMES: f64 = 15.0;
+
+/// Widths of lines, pixels.
+pub(crate) const CURVE: f64 = 1.8;
+pub(crate) const WIDE: f64 = 3.6;
+pub(crate) const THIN: f64 = 1.0;
+
+/// Dash and gap of every second curve, of guides, and of what lies behind a sphere.
+pub(crate) const DASHED: [f64; 2] = [7.0, 4.0];
+pub(crate) const DOTTED: [f64; 2] = [1.5, 3.5];
+pub(crate) const HIDDEN: [f64; 2] = [4.0, 4.0];
+
+/// The family of letters where the font of the program is not installed: others that are not wider.
+pub(crate) const FAMILY: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
+
+/// Pixels of a PNG for each of the drawing.
+pub(crate) const PNG_SCALE: f32 = 2.0;

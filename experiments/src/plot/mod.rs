@@ -1,0 +1,258 @@
+//! `polhode plot`: pictures of one body's motion.
+
+mod animation;
+mod looks;
+mod over_time;
+mod paths;
+mod poinsot;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use crate::arguments::{number, numbers, positive};
+use crate::body_arguments::BodyArguments;
+use crate::error::{Error, warn};
+use crate::figure::Canvas;
+use crate::files::Output;
+use crate::force_arguments::ForceArguments;
+use crate::start_arguments::StartArguments;
+use crate::times::positive_duration;
+use looks::Looks;
+
+const USAGE: &str = "polhode plot <KIND> <BODY> [START] --until <T> --out <FILE> [OPTIONS]
+  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
+  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ... and an attitude";
+
+const EXAMPLES: &str = "Examples:
+  polhode plot omega --body t-handle --until 60 --out flips.svg
+  polhode plot polhode --moments 1,2,3 --omega 0.4,1,-0.3 --until 20 --out p.png
+  polhode plot poinsot --moments 1,2,3 --omega 0.4,1,-0.3 --until 60 --out p.html
+  polhode plot angles --body gyroscope --until 1 --out angles.svg
+  polhode plot conserved --moments 1,2,3 --omega 0.4,1,-0.3 --until 1000 \\
+    --method rk4 --step 0.05 --out rk4.svg";
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// Path of the angular momentum in the body, on the sphere of its directions
+    Polhode,
+    /// Path of omega in the plane across the angular momentum
+    Herpolhode,
+    /// Components of omega against time, with the flips marked
+    Omega,
+    /// Euler angles against time; for a symmetric top with the potential of its tilt
+    Angles,
+    /// Path of an axis of the body in space, on the sphere of its directions
+    Trace,
+    /// The ellipsoid of inertia that rolls on a plane; with the ending .html it moves
+    Poinsot,
+    /// Errors of energy and angular momentum against time
+    Conserved,
+}
+
+/// How large a picture is, pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Size(Option<[f64; 2]>);
+
+const SIZES: [(&str, [f64; 2]); 3] =
+    [("column", [500.0, 400.0]), ("wide", [860.0, 400.0]), ("slide", [960.0, 540.0])];
+/// The smallest and the largest side of a picture, pixels.
+const SIDES: [f64; 2] = [240.0, 4000.0];
+
+fn size(text: &str) -> Result<Size, String> {
+    if let Some((_, size)) = SIZES.iter().find(|(name, _)| *name == text) {
+        return Ok(Size(Some(*size)));
+    }
+    let names: Vec<&str> = SIZES.iter().map(|(name, _)| *name).collect();
+    let unknown =
+        || format!("no such size; known: {}, and WIDTHxHEIGHT in pixels as in 640x480", names.join(", "));
+    let (width, height) = text.split_once(['x', '×']).ok_or_else(unknown)?;
+    let sides = [width, height].map(positive);
+    let [Ok(width), Ok(height)] = sides else { return Err(unknown()) };
+    let [least, most] = SIDES;
+    if [width, height].iter().all(|side| (least..=most).contains(side)) {
+        Ok(Size(Some([width, height])))
+    } else {
+        Err(format!("each side must lie between {least} and {most} pixels"))
+    }
+}
+
+/// An axis of the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum BodyAxis {
+    X,
+    Y,
+    Z,
+}
+
+fn angle(text: &str) -> Result<[f64; 2], String> {
+    numbers::<2>(text)
+}
+
+/// Pictures of a motion: polhode, herpolhode, angular velocity, angles, trace, Poinsot's construction, conserved quantities
+///
+/// The ending of FILE names the format: .svg, .png, and .html for the animation of poinsot, a page that needs no network. With
+/// --method exact the curves are those of the closed form, else those of the method; the title names body, start and step.
+#[derive(Args, Clone, Debug)]
+#[command(override_usage = USAGE, after_help = EXAMPLES)]
+pub(crate) struct Plot {
+    /// What is drawn
+    #[arg(value_enum, value_name = "KIND", hide_possible_values = true)]
+    kind: Kind,
+    #[command(flatten)]
+    body: BodyArguments,
+    #[command(flatten)]
+    start: StartArguments,
+    #[command(flatten)]
+    forces: ForceArguments,
+    /// End of the motion: s, or with a unit (ms, min, h, d)
+    #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true)]
+    until: f64,
+    /// Time of the start, s; forces may depend on it
+    #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
+    start_time: f64,
+    /// Method: exact, or BASE[:ARGUMENT][@SCHEME]; see `polhode methods`
+    #[arg(long, value_name = "NAME", default_value = "exact")]
+    method: String,
+    /// Step, s; every method but exact needs one, methods that choose their steps do not
+    #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true)]
+    step: Option<f64>,
+    /// Tolerance of methods that choose their steps (taylor, dop853, tsit5), relative to the state
+    #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// Axis whose path trace draws [default: that of the weight of a top, else z]
+    #[arg(long, value_enum, value_name = "AXIS")]
+    axis: Option<BodyAxis>,
+    /// Direction that spheres are seen from: azimuth and elevation, deg [default: one that shows the path]
+    #[arg(long, value_name = "AZ,EL", value_parser = angle, allow_hyphen_values = true)]
+    view: Option<[f64; 2]>,
+    /// Size: column, wide, slide or WIDTHxHEIGHT in pixels; a PNG has twice as many [default: column]
+    #[arg(long, value_name = "SIZE", value_parser = size, default_value = "column", hide_default_value = true)]
+    size: Size,
+    /// The picture; its ending names the format: .svg, .png or .html
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// Format of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Picture {
+    Svg,
+    Png,
+    Html,
+}
+
+impl Picture {
+    /// By the ending of the file that `flag` names; one of `known`.
+    pub(crate) fn of(flag: &str, path: &Path, known: &[Picture]) -> Result<Self, Error> {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_ascii_lowercase();
+        if let Some(found) = known.iter().find(|picture| picture.ending() == ending) {
+            return Ok(*found);
+        }
+        let endings: Vec<String> = known.iter().map(|picture| format!(".{}", picture.ending())).collect();
+        let remedy = format!("known here: {}", endings.join(", "));
+        let rule = if ending == "html" {
+            "only poinsot is a page that moves"
+        } else {
+            "its ending names no format of pictures"
+        };
+        Err(Error::input(flag, &path.display().to_string(), rule, &remedy))
+    }
+
+    fn ending(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Html => "html",
+        }
+    }
+}
+
+/// Writes a page as SVG or PNG.
+pub(crate) fn write(file: Output, picture: Picture, page: &Canvas) -> Result<(), Error> {
+    match picture {
+        Picture::Png => file.write_whole_bytes(&page.png()?),
+        Picture::Svg | Picture::Html => file.write_whole(&page.svg()),
+    }
+}
+
+impl Plot {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        let known: &[Picture] = match self.kind {
+            Kind::Poinsot => &[Picture::Svg, Picture::Png, Picture::Html],
+            _ => &[Picture::Svg, Picture::Png],
+        };
+        let picture = Picture::of("--out", &self.out, known)?;
+        if self.axis.is_some() && self.kind != Kind::Trace {
+            return Err(Error::Input("--axis: only trace draws the path of one axis; leave it out".into()));
+        }
+        let file = Output::to_file("--out", &self.out)?;
+        let looks = Looks::of(self)?;
+        if !looks.is_resolved() {
+            warn(&format!(
+                "--until: '{}': the body turns by {:.2} rad from one of {} points to the next, and they are not joined; an earlier end shows the curve",
+                crate::text::short(self.until),
+                looks.turn(),
+                looks.times.len()
+            ));
+        }
+        if picture == Picture::Html {
+            return file.write_whole(&animation::page(self, &looks)?);
+        }
+        let page = match self.kind {
+            Kind::Polhode => paths::polhode(self, &looks)?,
+            Kind::Herpolhode => paths::herpolhode(self, &looks)?,
+            Kind::Trace => paths::trace(self, &looks)?,
+            Kind::Omega => over_time::omega(self, &looks),
+            Kind::Angles => over_time::angles(self, &looks),
+            Kind::Conserved => over_time::conserved(self, &looks)?,
+            Kind::Poinsot => poinsot::still(self, &looks)?,
+        };
+        write(file, picture, &page)
+    }
+
+    /// Width and height, pixels.
+    fn size(&self) -> [f64; 2] {
+        self.size.0.unwrap_or(SIZES[0].1)
+    }
+
+    /// What is seen, of which body, from which start on, by which method.
+    fn title(&self, what: &str, looks: &Looks) -> String {
+        let method = match (self.step.filter(|_| self.method != "exact"), self.tolerance) {
+            (Some(h), _) => format!("{}, h = {} s", self.method, crate::text::short(h)),
+            (None, Some(tolerance)) => format!("{}, tolerance {tolerance:e}", self.method),
+            (None, None) => self.method.clone(),
+        };
+        let omega = looks.omegas.first().copied().unwrap_or_default();
+        // what is rounding beside the others was a zero
+        let rounded = |w: &f64| if w.abs() < 1e-15 * omega.norm() { 0.0 } else { *w };
+        let omega: Vec<String> = omega.iter().map(|w| short(rounded(w))).collect();
+        format!("{what}: {}, ω = ({}) rad/s at the start, {method}", self.body.label(), omega.join(", "))
+    }
+}
+
+/// To four digits, with a true minus.
+fn short(x: f64) -> String {
+    let four = format!("{x:.3e}").parse().unwrap_or(x);
+    crate::text::short(four + 0.0).replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_have_names_or_pixels_within_bounds() {
+        assert_eq!(size("wide"), Ok(Size(Some([860.0, 400.0]))));
+        assert_eq!(size("640x480"), Ok(Size(Some([640.0, 480.0]))));
+        assert!(size("10x480").unwrap_err().contains("between 240 and 4000"));
+        assert!(size("huge").unwrap_err().contains("known: column, wide, slide"));
+        assert!(size("axb").unwrap_err().contains("WIDTHxHEIGHT"));
+    }
+
+    #[test]
+    fn titles_have_short_numbers() {
+        assert_eq!([0.1 + 0.2, -1e-9, -0.0].map(short), ["0.3", "−1e−9", "0"]);
+    }
+}

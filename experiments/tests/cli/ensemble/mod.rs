@@ -1,0 +1,219 @@
+//! Ensembles: rows, reductions, and what is refused.
+
+#[cfg(unix)]
+mod cluster;
+#[cfg(unix)]
+mod killed;
+mod refusals;
+mod shards;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use crate::harness::{Scratch, polhode, words};
+
+/// Everything is spread, and the motion is exact.
+pub(super) const EXACT: &str = "[body]
+moments = [1.0, 2.0, 2.5]
+[start]
+omega = [0.4, 1.0, -0.3]
+[spread]
+attitude = 0.05
+omega = [0.01, 0.02, 0.03]
+moments = 0.05
+[run]
+members = 301
+seed = 7
+times = [0.0, 1.0, 100.0]
+";
+
+/// Two columns of numbers by steps.
+pub(super) const STEPPED: &str = "[body]
+inertia = [2.0, 3.0, 4.0, -0.3, 0.1, 0.2]
+[start]
+omega = [0.4, 1.0, -0.3]
+[spread.covariance]
+omega = [[1e-4, 5e-5, 0.0], [5e-5, 1e-4, 0.0], [0.0, 0.0, 1e-6]]
+[run]
+members = 200
+method = \"two-turn\"
+step = 0.01
+until = 5
+every = 2.5
+";
+
+/// Runs in `scratch`, silently on standard error.
+pub(super) fn done(line: &str, scratch: &Scratch) -> String {
+    polhode(&words(line), &scratch.0).silent(line)
+}
+
+/// Names and contents of the files in a folder, without folders.
+pub(super) fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(Result::unwrap).filter(|entry| entry.path().is_file());
+    entries.map(|entry| (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())).collect()
+}
+
+/// The numbers of an array, and its shape as it is written.
+pub(super) fn array(path: &Path) -> (String, Vec<f64>) {
+    let bytes = fs::read(path).unwrap();
+    let (head, numbers) = bytes.split_at(128);
+    let head = String::from_utf8_lossy(head);
+    let shape = head.split_once("'shape': ").unwrap().1.split_once(')').unwrap().0;
+    let numbers = numbers.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap()));
+    (format!("{shape})"), numbers.collect())
+}
+
+/// A column of a CSV.
+pub(super) fn column(folder: &Path, file: &str, name: &str) -> Vec<f64> {
+    let mut reader = csv::Reader::from_path(folder.join(file)).unwrap();
+    let place = reader.headers().unwrap().iter().position(|found| found == name).unwrap();
+    reader.records().map(|row| row.unwrap()[place].parse().unwrap()).collect()
+}
+
+#[test]
+fn every_member_moves_as_propagate_moves_it_alone() {
+    let scratch = Scratch::new("ensemble-alone");
+    let rows = [
+        ("1,2,3", "0.4,1,-0.3", "1,0,0,0"),
+        ("1,2,2.5", "0.4,1,-0.3", "0.5,0.5,-0.5,0.5"),
+        ("2,2,1", "1e-9,0,5", "0,0,0,1"),
+        ("3,1,2.5", "0,0,0", "1,0,0,0"),
+    ];
+    let mut csv = "name,i1,i2,i3,omega_x,omega_y,omega_z,q_w,q_x,q_y,q_z\n".to_string();
+    for (k, (moments, omega, attitude)) in rows.iter().enumerate() {
+        csv += &format!("candidate {k},{moments},{omega},{attitude}\n");
+    }
+    scratch.file("candidates.csv", csv);
+    for (method, flags) in [
+        ("\"exact\"", "--method exact"),
+        ("\"rk4\"\nstep = 0.125", "--method rk4 --step 0.125"),
+        ("\"implicit-midpoint\"\nstep = 0.125", "--method implicit-midpoint --step 0.125"),
+    ] {
+        let spec = format!(
+            "[spread]\nmembers_file = \"candidates.csv\"\n[run]\nmethod = {method}\ntimes = [1, \"3s\", 70]\n"
+        );
+        scratch.file("spec.toml", spec);
+        done("ensemble spec.toml --out out", &scratch);
+        let out = scratch.0.join("out");
+        let (shape, attitudes) = array(&out.join("attitudes.npy"));
+        assert_eq!(shape, "(3, 4, 4)");
+        let (shape, omegas) = array(&out.join("omegas.npy"));
+        assert_eq!(shape, "(3, 4, 3)");
+        let mut largest = [0.0_f64; 3];
+        for (k, (moments, omega, attitude)) in rows.iter().enumerate() {
+            let line = format!(
+                "propagate --moments {moments} --omega {omega} --attitude {attitude} --times 1,3,70 {flags} --fields q,omega,errors --out alone.csv"
+            );
+            done(&line, &scratch);
+            for (name, numbers, width, place) in [
+                ("q_w", &attitudes, 4, 0),
+                ("q_z", &attitudes, 4, 3),
+                ("omega_body_x", &omegas, 3, 0),
+                ("omega_body_z", &omegas, 3, 2),
+            ] {
+                let alone = column(&scratch.0, "alone.csv", name);
+                let here = [0, 1, 2].map(|time| numbers[(time * rows.len() + k) * width + place]);
+                assert_eq!(here.to_vec(), alone, "{method}: {name} of member {k}");
+            }
+            for (largest, error) in largest.iter_mut().zip(column(&scratch.0, "alone.csv", "energy_error")) {
+                *largest = largest.max(error);
+            }
+        }
+        // those of propagate are the largest up to the row, these are of the row
+        let errors = column(&out, "summary.csv", "energy_error_max");
+        assert!(
+            errors.iter().zip(largest).all(|(here, alone)| *here <= alone),
+            "{method}: {errors:?} {largest:?}"
+        );
+        assert!(method.contains("exact") || errors[2] > 0.0, "{method}: {errors:?}");
+    }
+}
+
+#[test]
+fn a_spread_rate_about_one_axis_spreads_the_angle_about_it() {
+    // a ball turns about a fixed axis: angles at t are uniform between 5 t and 5.01 t
+    let scratch = Scratch::new("ensemble-ball");
+    let spec = "[body]\nmoments = [1, 1, 1]\n[start]\nomega = [0, 0, 5]\n[spread.range]\n\
+                omega = [[0, 0], [0, 0], [5, 5.01]]\n[run]\nmembers = 4000\ntimes = [0, 10, 40]\n";
+    scratch.file("spec.toml", spec);
+    done("ensemble spec.toml --out out", &scratch);
+    let out = scratch.0.join("out");
+    let of = |name| column(&out, "summary.csv", name);
+    for (t, (k, half)) in [(0.0, (0, 0.0)), (10.0, (1, 0.05)), (40.0, (2, 0.2))] {
+        // five standard deviations of an estimate from 4000 numbers
+        let near = |found: f64, truth: f64, deviation: f64| {
+            assert!(
+                (found - truth).abs() <= 5.0 * deviation / 4000_f64.sqrt() + 1e-15,
+                "t = {t}: {found} for {truth}"
+            );
+        };
+        near(of("angle_rms")[k], half / 3_f64.sqrt(), half * 0.26);
+        near(of("angle_p50")[k], 0.5 * half, half * 0.5);
+        near(of("angle_p95")[k], 0.95 * half, half * 0.22);
+        near(of("angle_max")[k], half, half * 0.6);
+        assert_eq!(of("members")[k], 4000.0);
+        let mean = 2.0 * libm::atan2(of("q_z")[k], of("q_w")[k]);
+        let turned = (mean - 5.005 * t) / core::f64::consts::TAU;
+        near((turned - turned.round()) * core::f64::consts::TAU, 0.0, half / 3_f64.sqrt());
+    }
+    let of = |name| column(&out, "dispersion.csv", name)[2];
+    assert_eq!((of("axis_1_z"), of("axis_1_x")), (1.0, 0.0));
+    assert!((of("sigma_1") / (0.2 / 3_f64.sqrt()) - 1.0).abs() < 0.05 && of("sigma_2") < 1e-8);
+    let figure = fs::read_to_string(out.join("dispersion.svg")).unwrap();
+    assert!(figure.contains("4000 members") && figure.contains("95 %"));
+}
+
+#[test]
+fn a_member_that_fails_is_a_row_of_its_own() {
+    let scratch = Scratch::new("ensemble-fails");
+    // the energy of explicit Euler grows with spin and step: the faster members leave the range of a double
+    let spec = "[body]\nmoments = [1, 2, 3]\n[start]\nomega = [1, 1, 1]\n[spread.range]\n\
+                omega = [[0.01, 1], [0.01, 1], [0.01, 1]]\n[run]\nmembers = 40\nmethod = \"explicit-euler\"\n\
+                step = 0.5\ntimes = [0, 1, 20]\n";
+    scratch.file("spec.toml", spec);
+    let answer = polhode(&words("ensemble spec.toml --out out"), &scratch.0);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    assert!(answer.err.contains("of 40 members failed"), "{}", answer.err);
+    let out = scratch.0.join("out");
+    let failed = column(&out, "failures.csv", "member");
+    assert!(!failed.is_empty() && failed.len() < 40, "{failed:?}");
+    let left = column(&out, "summary.csv", "members");
+    assert_eq!((left[0], left[2]), (40.0, 40.0 - failed.len() as f64));
+    let (_, attitudes) = array(&out.join("attitudes.npy"));
+    assert!(attitudes.iter().all(|x| x.is_finite()));
+    for k in 0..40 {
+        let is_zero = attitudes[(2 * 40 + k) * 4..][..4] == [0.0; 4];
+        assert_eq!(is_zero, failed.contains(&(k as f64 + 1.0)), "member {}", k + 1);
+    }
+    let reasons = fs::read_to_string(out.join("failures.csv")).unwrap();
+    assert!(reasons.contains(",20.0,"), "{reasons}");
+}
+
+#[test]
+fn forces_act_on_every_member() {
+    let scratch = Scratch::new("ensemble-forces");
+    let line = |body: &str| {
+        format!(
+            "propagate {body} --omega 0.1,0.2,5 --times 2 --method rk4 --step 0.01 --weight-moment 0,0,0.5 --drag 0.01,0.02 --torque-space 0,0,0.1 --gravity-gradient 0.3,0.1 --fields q,omega --out alone.csv"
+        )
+    };
+    scratch.file("members.csv", "i1,i2,i3\n1,1.1,0.5\n1,1.2,0.5\n");
+    let spec = "[start]\nomega = [0.1, 0.2, 5]\n[spread]\nmembers_file = \"members.csv\"\n\
+                [run]\nmethod = \"rk4\"\nstep = 0.01\ntimes = [2]\n\
+                [force]\nweight_moment = [0, 0, 0.5]\ndrag = [0.01, 0.02]\ntorque_space = [0, 0, 0.1]\n\
+                gravity_gradient = [0.3, 0.1]\n[output]\narrays = [\"omegas\"]\n";
+    scratch.file("spec.toml", spec);
+    done("ensemble spec.toml --out out", &scratch);
+    let out = scratch.0.join("out");
+    assert!(!out.join("attitudes.npy").exists());
+    let (_, omegas) = array(&out.join("omegas.npy"));
+    for (k, moments) in ["1,1.1,0.5", "1,1.2,0.5"].into_iter().enumerate() {
+        done(&line(&format!("--moments {moments}")), &scratch);
+        assert_eq!(column(&scratch.0, "alone.csv", "omega_body_x"), [omegas[3 * k]]);
+        assert_eq!(column(&scratch.0, "alone.csv", "omega_body_z"), [omegas[3 * k + 2]]);
+    }
+    // nothing is conserved, so that no error is told
+    let summary = fs::read_to_string(out.join("summary.csv")).unwrap();
+    assert!(summary.lines().nth(1).unwrap().contains(",,,2"), "{summary}");
+}

@@ -1,0 +1,196 @@
+//! What an ensemble refuses: place, value, law and remedy.
+
+use std::fs;
+
+use super::{EXACT, done};
+use crate::harness::{Scratch, golden, polhode, words};
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The refusal of a specification, without the name of the folder.
+fn refusal(scratch: &Scratch, line: &str) -> String {
+    let answer = polhode(&words(line), &scratch.0);
+    assert_eq!((answer.code, answer.out.as_str()), (2, ""), "{line}: {}", answer.err);
+    format!("$ polhode {line}\n{}\n", answer.err)
+}
+
+#[test]
+fn specifications_are_refused_with_line_value_and_law() {
+    let scratch = Scratch::new("ensemble-refusals");
+    let mut told = String::new();
+    let matrix = "[[1e-4, 2e-4, 0.0], [2e-4, 1e-4, 0.0], [0.0, 0.0, 1e-4]]";
+    for (what, from, to) in [
+        ("an unknown table", "[spread]", "[spred]"),
+        ("an unknown key", "omega = [0.4", "omga = [0.4"),
+        ("an unknown key of the spread", "attitude = 0.05", "atitude = 0.05"),
+        ("not TOML", "members = 301", "members = "),
+        ("a body that no mass distribution has", "[1.0, 2.0, 2.5]", "[1.0, 2.0, 3.5]"),
+        ("a body twice", "[start]", "body = \"phone\"\n[start]"),
+        ("an unknown body", "moments = [1.0, 2.0, 2.5]", "body = \"racked\""),
+        ("two components", "[0.4, 1.0, -0.3]", "[0.4, 1.0]"),
+        ("a text for a number", "[0.4, 1.0, -0.3]", "[\"fast\", 1.0, 0.0]"),
+        ("a start that is missing", "omega = [0.4, 1.0, -0.3]", ""),
+        ("a zero quaternion", "[spread]", "attitude = [0, 0, 0, 0]\n[spread]"),
+        ("a negative deviation", "attitude = 0.05", "attitude = -0.05"),
+        ("a spread twice", "[run]", "[spread.range]\nmoments = [[1, 2], [1, 2], [1, 2]]\n[run]"),
+        (
+            "a range the wrong way round",
+            "[spread]\nattitude = 0.05\nomega = [0.01, 0.02, 0.03]\nmoments = 0.05",
+            "[spread.range]\nomega = [[0, 1], [2, 1], [0, 1]]",
+        ),
+        (
+            "an indefinite covariance",
+            "omega = [0.01, 0.02, 0.03]\nmoments = 0.05",
+            &format!("moments = 0.05\n[spread.covariance]\nomega = {matrix}"),
+        ),
+        (
+            "a covariance of two rows",
+            "omega = [0.01, 0.02, 0.03]\nmoments = 0.05",
+            "[spread.covariance]\nomega = [[1, 0], [0, 1]]",
+        ),
+        (
+            "no tensor that a body has",
+            "[spread]\nattitude = 0.05\nomega = [0.01, 0.02, 0.03]\nmoments = 0.05",
+            "[spread.range]\nmoments = [[1, 1], [1, 1], [3, 3]]",
+        ),
+        ("no members", "members = 301", "members = 0"),
+        ("half a member", "members = 301", "members = 1.5"),
+        ("members that are missing", "members = 301", ""),
+        ("an unknown method", "seed = 7", "method = \"rk5\"\nstep = 0.1"),
+        ("a step that is missing", "seed = 7", "method = \"rk4\""),
+        ("a step that leads past a time", "seed = 7", "method = \"rk4\"\nstep = 0.3"),
+        ("times that descend", "times = [0.0, 1.0, 100.0]", "method = \"rk4\"\nstep = 0.5\ntimes = [1, 0.5]"),
+        ("a time out of reach", "times = [0.0, 1.0, 100.0]", "times = [1e30]"),
+        ("times twice", "seed = 7", "until = 5\nevery = 1"),
+        ("a unit of time that is none", "times = [0.0, 1.0, 100.0]", "times = [\"5 fortnights\"]"),
+        (
+            "a method that is not for a force",
+            "[run]",
+            "[force]\ndrag = 0.1\n[run]\nmethod = \"two-turn\"\nstep = 0.5",
+        ),
+        ("no closed form", "[run]", "[force]\nweight_moment = [0, 0.1, 0]\n[run]"),
+        (
+            "a force that is none",
+            "[run]",
+            "[force]\ngravity_gradient = [0.1, 1.5]\n[run]\nmethod = \"rk4\"\nstep = 0.5",
+        ),
+        ("an unknown array", "[run]", "[output]\narrays = [\"attitude\"]\n[run]"),
+        ("members from a file too", "attitude = 0.05", "members_file = \"members.csv\""),
+    ] {
+        assert!(EXACT.contains(from), "{what}");
+        scratch.file("spec.toml", EXACT.replace(from, to));
+        told += &format!("# {what}\n{}", refusal(&scratch, "ensemble spec.toml --out out"));
+    }
+    golden("ensemble/specifications.txt", &told);
+    assert_eq!(scratch.names(), ["spec.toml"]);
+}
+
+#[test]
+fn files_of_members_are_refused_with_line_and_law() {
+    let scratch = Scratch::new("ensemble-members");
+    scratch.file("spec.toml", "[spread]\nmembers_file = \"members.csv\"\n[run]\ntimes = [1]\n");
+    let head = "i1,i2,i3,omega_x,omega_y,omega_z";
+    let mut told = String::new();
+    for content in [
+        format!("{head}\n1,2,2.5,0,1,0\n1,2,4,0,1,0\n"),
+        format!("{head}\n1,2,2.5,0,1,x\n"),
+        format!("{head}\n1,2,2.5,0,1,inf\n"),
+        format!("{head}\n1,2,2.5,0,1\n"),
+        format!("{head},q_w,q_x,q_y,q_z\n1,2,2.5,0,1,0,0,0,0,0\n"),
+        "i1,i2,omega_x,omega_y,omega_z\n1,2,0,1,0\n".into(),
+        "i1,i2,i3,omga_x,omega_y,omega_z\n1,2,2.5,0,1,0\n".into(),
+        "omega_x,omega_y,omega_z\n0,1,0\n".into(),
+        "i1,i2,i3\n1,2,2.5\n".into(),
+        format!("{head}\n"),
+    ] {
+        scratch.file("members.csv", &content);
+        told += &format!(
+            "# {}\n{}",
+            content.trim_end().replace('\n', " | "),
+            refusal(&scratch, "ensemble spec.toml --out out")
+        );
+    }
+    scratch.file("members.csv", format!("{head}\n1,2,2.5,0,1,0\n"));
+    scratch.file("spec.toml", "[spread]\nmembers_file = \"members.csv\"\n[run]\nmembers = 2\ntimes = [1]\n");
+    told += &refusal(&scratch, "ensemble spec.toml --out out");
+    golden("ensemble/members.txt", &told);
+}
+
+#[test]
+fn shards_that_do_not_belong_together_are_refused_by_name() {
+    let scratch = Scratch::new("ensemble-gather");
+    scratch.file("spec.toml", EXACT);
+    scratch.file("other.toml", EXACT.replace("seed = 7", "seed = 8"));
+    let mut told = refusal(&scratch, "gather nowhere");
+    for k in [1, 3] {
+        done(&format!("ensemble spec.toml --out out --shard {k}/4"), &scratch);
+    }
+    told += &refusal(&scratch, "gather out");
+    told += &refusal(&scratch, "ensemble other.toml --out out --shard 2/4");
+    told += &refusal(&scratch, "ensemble spec.toml --out out --shard 2/3");
+    told += &refusal(&scratch, "ensemble spec.toml --out out");
+    told += &refusal(&scratch, "ensemble spec.toml --out out --shard 5/4");
+    told += &refusal(&scratch, "ensemble spec.toml --out many --shard 1/302");
+    // a shard of another run among them
+    for k in [2, 4] {
+        done(&format!("ensemble other.toml --out other --shard {k}/4"), &scratch);
+    }
+    done("ensemble spec.toml --out out --shard 2/4", &scratch);
+    fs::rename(scratch.0.join("other/shards/4-of-4"), scratch.0.join("out/shards/4-of-4")).unwrap();
+    told += &refusal(&scratch, "gather out");
+    // a version that is another
+    let shard = scratch.0.join("out/shards/4-of-4");
+    fs::remove_dir_all(&shard).unwrap();
+    done("ensemble spec.toml --out out --shard 4/4", &scratch);
+    let mark = shard.join("run.toml");
+    let record = fs::read_to_string(&mark).unwrap();
+    fs::write(&mark, record.replace(&format!("version = \"{VERSION}\""), "version = \"0.0.0\"")).unwrap();
+    told += &refusal(&scratch, "gather out");
+    fs::write(&mark, &record).unwrap();
+    // a damaged one
+    let attitudes = shard.join("attitudes.npy");
+    let bytes = fs::read(&attitudes).unwrap();
+    fs::write(&attitudes, &bytes[..bytes.len() - 8]).unwrap();
+    told += &refusal(&scratch, "gather out");
+    // shards of two numbers
+    fs::write(&attitudes, &bytes).unwrap();
+    done("ensemble spec.toml --out thirds --shard 1/3", &scratch);
+    fs::rename(scratch.0.join("thirds/shards/1-of-3"), scratch.0.join("out/shards/1-of-3")).unwrap();
+    told += &refusal(&scratch, "gather out");
+    fs::remove_dir_all(scratch.0.join("out/shards/1-of-3")).unwrap();
+    fs::create_dir(scratch.0.join("out/shards/mine")).unwrap();
+    told += &refusal(&scratch, "gather out");
+    fs::remove_dir(scratch.0.join("out/shards/mine")).unwrap();
+    // the digests depend on how a version writes numbers down, which is not what is tested
+    let words = told.split_inclusive([' ', ';', '\n']);
+    let is_digest =
+        |word: &str| word.trim_end_matches([' ', ';', '\n', ',']).len() == 32 && !word.contains('/');
+    let told: String =
+        words
+            .map(|word| {
+                if is_digest(word) { word.replace(|c: char| c.is_ascii_hexdigit(), "0") } else { word.into() }
+            })
+            .collect();
+    golden("ensemble/gather.txt", &told.replace(VERSION, "VERSION"));
+    done("gather out", &scratch);
+}
+
+#[test]
+fn more_memory_or_disk_than_there_is_is_refused_before_the_work() {
+    let scratch = Scratch::new("ensemble-memory");
+    scratch.file("spec.toml", EXACT.replace("members = 301", "members = 1000000000000"));
+    let told = refusal(&scratch, "ensemble spec.toml --out out");
+    for part in ["spec.toml:10: 1000000000000 members take about ", "TB of memory, and ", "--shard K/N"] {
+        assert!(told.contains(part), "{told}");
+    }
+    // little memory, and an array larger than any disk
+    scratch.file(
+        "spec.toml",
+        EXACT
+            .replace("times = [0.0, 1.0, 100.0]", "until = 1e9\nevery = 1e3")
+            .replace("members = 301", "members = 100000000"),
+    );
+    let told = refusal(&scratch, "ensemble spec.toml --out out --shard 1/10000");
+    assert!(told.contains("on the disk of --out") || told.contains("of memory"), "{told}");
+    assert_eq!(scratch.names(), ["spec.toml"]);
+}

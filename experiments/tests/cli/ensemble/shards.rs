@@ -1,0 +1,116 @@
+//! Shares of an ensemble: the same bits in any number, on any threads, by whichever launcher.
+
+use std::fs;
+use std::process::Command;
+
+use super::{EXACT, STEPPED, contents, done};
+use crate::harness::{Scratch, names, polhode, words};
+
+#[test]
+fn any_number_of_shards_and_threads_gives_the_bits_of_one_run() {
+    let scratch = Scratch::new("ensemble-shards");
+    for (name, spec) in [("exact", EXACT), ("stepped", STEPPED)] {
+        scratch.file("spec.toml", spec);
+        done(&format!("ensemble spec.toml --out {name}"), &scratch);
+        let whole = contents(&scratch.0.join(name));
+        let files = [
+            "attitudes.npy",
+            "dispersion.csv",
+            "dispersion.svg",
+            "failures.csv",
+            "omegas.npy",
+            "run.toml",
+            "summary.csv",
+        ];
+        assert_eq!(whole.keys().collect::<Vec<_>>(), files);
+        for threads in [1, 2, 5] {
+            done(&format!("ensemble spec.toml --out {name}-{threads} --threads {threads}"), &scratch);
+            assert!(
+                contents(&scratch.0.join(format!("{name}-{threads}"))) == whole,
+                "{name}: {threads} threads"
+            );
+        }
+        for count in [3, 16] {
+            let out = format!("{name}-of-{count}");
+            // in an order that is not theirs
+            for k in (1..=count).rev() {
+                let threads = 1 + k % 3;
+                done(
+                    &format!("ensemble spec.toml --out {out} --shard {k}/{count} --threads {threads}"),
+                    &scratch,
+                );
+            }
+            done(&format!("gather {out}"), &scratch);
+            assert!(contents(&scratch.0.join(&out)) == whole, "{name}: {count} shards");
+            // gathered again, on one thread
+            done(&format!("gather {out} --threads 1"), &scratch);
+            assert!(contents(&scratch.0.join(&out)) == whole, "{name}: {count} shards again");
+        }
+    }
+}
+
+#[test]
+fn comments_and_the_order_of_keys_make_no_other_run() {
+    let scratch = Scratch::new("ensemble-hash");
+    scratch.file("one.toml", EXACT);
+    let other = EXACT.replace("members = 301\nseed = 7", "seed = 7  # the same\nmembers = 301");
+    scratch.file("other.toml", format!("# with a comment\n{other}"));
+    scratch.file("third.toml", EXACT.replace("seed = 7", "seed = 8"));
+    done("ensemble one.toml --out out --shard 1/2", &scratch);
+    done("ensemble other.toml --out out --shard 2/2", &scratch);
+    done("gather out", &scratch);
+    let answer = polhode(&words("ensemble third.toml --out out --shard 2/2"), &scratch.0);
+    assert_eq!(answer.code, 2);
+    assert!(answer.err.contains("is a shard of another run"), "{}", answer.err);
+}
+
+#[test]
+fn what_is_finished_is_not_run_again() {
+    let scratch = Scratch::new("ensemble-finished");
+    scratch.file("spec.toml", EXACT);
+    for (line, file) in [
+        ("ensemble spec.toml --out out --shard 2/3", "out/shards/2-of-3/attitudes.npy"),
+        ("ensemble spec.toml --out whole", "whole/attitudes.npy"),
+    ] {
+        done(line, &scratch);
+        let written = || fs::metadata(scratch.0.join(file)).unwrap().modified().unwrap();
+        let first = written();
+        let again = polhode(&words(line), &scratch.0);
+        assert_eq!((again.code, again.out.as_str()), (0, ""));
+        assert!(again.err.starts_with("note: ") && again.err.contains("already"), "{}", again.err);
+        assert_eq!(written(), first);
+    }
+    assert_eq!(names(&scratch.0.join("out/shards")), ["2-of-3"]);
+}
+
+#[test]
+fn launchers_name_the_shard() {
+    let scratch = Scratch::new("ensemble-launchers");
+    scratch.file("spec.toml", EXACT);
+    let run = |variables: &[(&str, String)], out: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_polhode"));
+        for (name, value) in variables {
+            command.env(name, value);
+        }
+        let done =
+            command.args(["ensemble", "spec.toml", "--out", out]).current_dir(&scratch.0).output().unwrap();
+        let told = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(0), "{told}");
+        assert!(told.contains("note: shard "), "{told}");
+    };
+    done("ensemble spec.toml --out whole", &scratch);
+    for k in 0..3 {
+        let slurm = [("ID", k + 4), ("MIN", 4), ("MAX", 6), ("COUNT", 3)];
+        let names =
+            ["SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MIN", "SLURM_ARRAY_TASK_MAX", "SLURM_ARRAY_TASK_COUNT"];
+        let slurm: Vec<_> = names.into_iter().zip(slurm.map(|(_, value)| value.to_string())).collect();
+        run(&slurm, "slurm");
+        run(&[("OMPI_COMM_WORLD_RANK", k.to_string()), ("OMPI_COMM_WORLD_SIZE", "3".into())], "mpi");
+        run(&[("PMI_RANK", k.to_string()), ("PMI_SIZE", "3".into())], "pmi");
+    }
+    let whole = contents(&scratch.0.join("whole"));
+    for out in ["slurm", "mpi", "pmi"] {
+        done(&format!("gather {out}"), &scratch);
+        assert!(contents(&scratch.0.join(out)) == whole, "{out}");
+    }
+}

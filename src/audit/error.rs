@@ -1,0 +1,76 @@
+//! Why there is no verdict.
+
+use thiserror::Error;
+
+use crate::num::Shown;
+
+/// Why a record cannot be audited. Rows count from 0.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum AuditError {
+    /// Too few rows.
+    #[error("the record has {rows} rows; a verdict needs at least {needed}")]
+    TooFewRows {
+        /// How many there are.
+        rows: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// Times alone.
+    #[error("the record has times alone; a verdict needs attitudes, angular velocities or angular momenta")]
+    NoColumns,
+    /// Columns of different lengths.
+    #[error("the {column} has {found} rows beside {rows} times; every column needs one row for each time")]
+    Lengths {
+        /// Which column.
+        column: &'static str,
+        /// Its rows.
+        found: usize,
+        /// The number of times.
+        rows: usize,
+    },
+    /// Times that do not ascend.
+    #[error("row {row}: the time {} s does not come after {} s; times must ascend", Shown(*time), Shown(*previous))]
+    TimesNotAscending {
+        /// The row, from 0.
+        row: usize,
+        /// Its time, s.
+        time: f64,
+        /// The time before, s.
+        previous: f64,
+    },
+    /// A number that is not finite.
+    #[error("row {row}: the {column} has the value {value}; every number must be finite")]
+    NotFinite {
+        /// Which column.
+        column: &'static str,
+        /// The row, from 0.
+        row: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A quaternion or a matrix of zeros.
+    #[error("row {row}: the attitude is zero in every component, which is no attitude")]
+    NoAttitude {
+        /// The row, from 0.
+        row: usize,
+    },
+    /// The tolerance is not usable.
+    #[error("the tolerance is {}; it must be a finite number above 0", Shown(*value))]
+    Tolerance {
+        /// What was given.
+        value: f64,
+    },
+    /// Angular momentum alone, which tells nothing without a body.
+    #[error("a record of angular momenta needs the body, whose moments turn them into angular velocities")]
+    MomentumNeedsBody,
+    /// Nothing turns.
+    #[error("nothing turns in the record: every reading of it is the same")]
+    AtRest,
+    /// What is claimed leaves no reading.
+    #[error("no reading of the record is left: what is claimed does not go with its columns")]
+    NoReading,
+    /// The moments cannot be found from the record.
+    #[error("no body moves as the record does, and none is given; give the moments of inertia")]
+    NoBody,
+}

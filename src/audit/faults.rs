@@ -1,0 +1,146 @@
+//! What is odd about the sampling and the writing of a record.
+
+use core::f64::consts::PI;
+
+use super::columns::rotation_vector;
+use super::resolution::Writing;
+use super::{Attitudes, Fault, Reading, Trajectory};
+use crate::rotation::Vec3;
+
+/// An interval this many times the usual one is a jump.
+const JUMP: f64 = 1.5;
+
+/// Rows with the same angular velocity that make a plateau.
+const PLATEAU: usize = 5;
+
+/// Fewer digits than this are worth a word.
+const FEW_DIGITS: u32 = 10;
+
+/// A change of state this many times what nearly all rows show is a discontinuity.
+const DISCONTINUITY: f64 = 25.0;
+
+/// What is odd about `record`, read by `reading`. `resolution`: what noise and digits make of a change, rad or relative.
+pub(super) fn faults(
+    record: &Trajectory,
+    reading: &Reading,
+    writing: &Writing,
+    tolerance: f64,
+    resolution: f64,
+) -> Vec<Fault> {
+    let mut found = Vec::new();
+    let usual = usual_interval(record);
+    let intervals = record.times.windows(2).map(|pair| pair[1] - pair[0]);
+    let jumps: Vec<(usize, f64)> = intervals
+        .enumerate()
+        .filter(|(_, interval)| *interval > JUMP * usual)
+        .map(|(k, dt)| (k + 1, dt))
+        .collect();
+    // of a record whose intervals differ anyhow, no one is a jump
+    if let Some(&(row, interval)) = jumps.first().filter(|_| 20 * jumps.len() < record.times.len()) {
+        found.push(Fault::TimeJump { row, interval, usual, count: jumps.len() });
+    }
+    found.extend(too_coarse(record, reading, usual));
+    if let Some(Attitudes::Quaternions(rows)) = &record.attitude {
+        let flips: Vec<usize> = rows
+            .windows(2)
+            .enumerate()
+            .filter(|(_, pair)| pair[0].iter().zip(&pair[1]).map(|(a, b)| a * b).sum::<f64>() < 0.0)
+            .map(|(k, _)| k + 1)
+            .collect();
+        if let Some(&row) = flips.first() {
+            found.push(Fault::SignFlips { row, count: flips.len() });
+        }
+    }
+    found.extend(not_normalized(record, tolerance.max(20.0 * resolution)));
+    found.extend(plateau(record));
+    if writing.single_precision {
+        found.push(Fault::SinglePrecision);
+    } else if writing.digits < FEW_DIGITS {
+        found.push(Fault::FewDigits { digits: writing.digits });
+    }
+    found.extend(discontinuity(record, reading, usual, resolution));
+    found
+}
+
+/// The middle interval.
+fn usual_interval(record: &Trajectory) -> f64 {
+    let mut intervals: Vec<f64> = record.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = intervals.len() / 2;
+    *intervals.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+fn too_coarse(record: &Trajectory, reading: &Reading, usual: f64) -> Option<Fault> {
+    let unit = reading.rate_unit.map_or(1.0, super::RateUnit::radians_per_second);
+    let rates = record.rates.as_ref()?;
+    let squares = rates.iter().map(|w| Vec3(*w).norm_squared()).sum::<f64>() / rates.len() as f64;
+    let angle = squares.sqrt() * unit * usual;
+    (angle > PI).then_some(Fault::TooCoarse { angle })
+}
+
+fn not_normalized(record: &Trajectory, threshold: f64) -> Option<Fault> {
+    let norm = |row: &[f64], of_one: f64| (row.iter().map(|x| x * x).sum::<f64>() / of_one).sqrt();
+    let (of_one, attitude) = match record.attitude.as_ref()? {
+        attitude @ Attitudes::Quaternions(_) => (1.0, attitude),
+        attitude @ Attitudes::Matrices(_) => (3.0, attitude),
+        _ => return None,
+    };
+    let errors = (0..attitude.len()).map(|row| (row, (norm(attitude.row(row), of_one) - 1.0).abs()));
+    let (row, error) = errors.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
+    (error > threshold).then_some(Fault::NotNormalized { error, row })
+}
+
+/// The longest run of rows with the same angular velocity, of a record in which it changes elsewhere.
+fn plateau(record: &Trajectory) -> Option<Fault> {
+    let rates = record.rates.as_ref()?;
+    let (mut longest, mut at, mut from) = (1, 0, 0);
+    for row in 1..=rates.len() {
+        if row == rates.len() || rates[row] != rates[from] {
+            if row - from > longest {
+                (longest, at) = (row - from, from);
+            }
+            from = row;
+        }
+    }
+    let elsewhere = rates.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    (longest >= PLATEAU && elsewhere >= longest).then_some(Fault::Plateau { row: at, rows: longest })
+}
+
+/// Where attitude or angular velocity change by far more than between other rows.
+fn discontinuity(record: &Trajectory, reading: &Reading, usual: f64, resolution: f64) -> Option<Fault> {
+    let rows = record.times.len();
+    let mut size = 0.0_f64;
+    let mut before = (reading.attitude(record, 0), reading.omega_body(record, 0));
+    let mut changes = Vec::with_capacity(rows);
+    for row in 1..rows {
+        let now = (reading.attitude(record, row), reading.omega_body(record, row));
+        let dt = record.times[row] - record.times[row - 1];
+        if let (Some(a), Some(b)) = (before.1, now.1) {
+            size = size.max(b.norm());
+            let mean = (a + b) * 0.5;
+            let turned = match (before.0, now.0) {
+                (Some(p), Some(q)) => (rotation_vector(p.conjugate() * q) - mean * dt).norm(),
+                _ => 0.0,
+            };
+            changes.push((row, turned, (b - a).norm(), dt));
+        } else if let (Some(p), Some(q)) = (before.0, now.0) {
+            changes.push((row, rotation_vector(p.conjugate() * q).norm(), 0.0, dt));
+        }
+        before = now;
+    }
+    let relative = if size > 0.0 { 1.0 / size } else { 0.0 };
+    let sizes: Vec<(usize, f64)> = changes
+        .iter()
+        .filter(|(_, _, _, dt)| *dt <= JUMP * usual)
+        .map(|(row, turned, rates, _)| (*row, turned.max(rates * relative)))
+        .collect();
+    let mut sorted: Vec<f64> = sizes.iter().map(|(_, size)| *size).collect();
+    if sorted.len() < 20 {
+        return None;
+    }
+    let at = sorted.len() * 95 / 100;
+    let common = *sorted.select_nth_unstable_by(at, f64::total_cmp).1;
+    let threshold = DISCONTINUITY * common.max(resolution);
+    let jumps = sizes.iter().filter(|(_, size)| *size > threshold);
+    let largest = jumps.clone().fold((0, 0.0), |most, next| if next.1 > most.1 { *next } else { most });
+    (largest.1 > 0.0).then(|| Fault::Discontinuity { row: largest.0, size: largest.1, count: jumps.count() })
+}

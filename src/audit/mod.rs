@@ -1,0 +1,70 @@
+//! Is this rotation right, in which convention, and how wrong?
+//!
+//! A [`Trajectory`] from elsewhere, in whatever convention, is read in every [`Reading`] that its columns allow; the reading by
+//! which the equations of motion lead from row to row is the convention of the record. What is left then are the errors of the
+//! program that wrote it: which quantities it keeps, how far its attitudes are from the exact motion, and which integrator or
+//! which mistake leaves such errors.
+
+mod bodies;
+mod candidates;
+mod canonical;
+mod columns;
+mod conservation;
+mod detective;
+mod deviation;
+mod error;
+mod faults;
+mod judge;
+mod motion;
+mod program;
+mod question;
+mod reading;
+mod resolution;
+mod rows;
+mod shape;
+mod signature;
+mod start;
+mod states;
+mod trajectory;
+mod verdict;
+
+pub use error::AuditError;
+pub use question::{Claims, Question};
+pub use reading::{AngleUnit, Angles, Direction, Frame, Product, QuaternionOrder, RateUnit, Reading, Turns};
+pub use trajectory::{Attitudes, FEWEST_ROWS, Trajectory};
+pub use verdict::{
+    AttitudeError, Conservation, Fault, Judgement, Missing, Ranked, Resolution, Signature, Suspect, Tie,
+    TieReason, Traces, Verdict,
+};
+
+/// The verdict on `record`.
+///
+/// # Errors
+/// Too few rows, times that do not ascend, numbers that are not finite, columns of different lengths, or a body that is needed
+/// and not given.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::audit::{Attitudes, Direction, Judgement, Question, Trajectory, audit};
+/// use polhode::{Body, FreeMotion, Inertia};
+///
+/// let inertia = Inertia::from_moments([1.0, 2.0, 3.0])?;
+/// let motion = FreeMotion::from_omega(&inertia, UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let times: Vec<f64> = (0..400).map(|k| 0.05 * f64::from(k)).collect();
+/// let body = Body::free(inertia);
+/// let states = motion.at_many(&times)?;
+/// // written by somebody who keeps the inverse attitude
+/// let inverses = states.iter().map(|x| x.attitude.conjugate().components()).collect();
+/// let rates = states.iter().map(|x| body.omega_body(x).into()).collect();
+/// let record = Trajectory::new(times).with_attitude(Attitudes::Quaternions(inverses)).with_rates(rates);
+/// let verdict = audit(&record, &Question::new(Some(body)))?;
+/// assert_eq!(verdict.judgement, Judgement::Right);
+/// assert_eq!(verdict.reading.attitude, Some(Direction::SpaceToBody));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn audit(record: &Trajectory, question: &Question) -> Result<Verdict, AuditError> {
+    question.check()?;
+    record.check()?;
+    let finding = detective::investigate(record, question)?;
+    judge::judge(record, question, finding)
+}

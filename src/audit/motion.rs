@@ -1,0 +1,83 @@
+//! The motion that a record is compared with: the closed form where there is one, else steps of a power series.
+
+use super::states::Row;
+use crate::body::{Body, Clock, Point};
+use crate::flow::ExactMotion;
+use crate::method::{AdaptiveTaylor, AnyMethod, Rk8, Step};
+use crate::num::{Dd, Precise};
+use crate::rotation::{Quat, Vec3};
+
+/// Longest way, rad, that is run in double-double.
+const FAR: f64 = 2000.0;
+
+/// The turn of a step where no power series takes the forces, rad.
+const STEP: f64 = 0.05;
+
+/// Attitude, body → space, and angular velocity, body axes, of the motion from `start` at the times of `rows`, not before its
+/// own; `None` where it cannot be followed. `precise`: in double-double, where it has to be run and is not too long.
+pub(super) fn motion(
+    body: &Body,
+    start: &Row,
+    times: impl Iterator<Item = f64>,
+    precise: bool,
+) -> Option<Vec<(Quat<f64>, Vec3<f64>)>> {
+    let attitude = start.attitude.unwrap_or(Quat::identity());
+    let inside = body.enter_omega(attitude, start.omega).ok()?;
+    let read = |point: Point<f64>| {
+        let state = body.leave(&point);
+        (state.attitude, Vec3::from(body.omega_of(&point)))
+    };
+    if let Ok(exact) = ExactMotion::from_point(body, inside) {
+        return Some(times.map(|t| read(exact.point_at(Dd::from(t) - Dd::from(start.time)))).collect());
+    }
+    let times: Vec<f64> = times.collect();
+    let rate = start.omega.norm();
+    let way = rate * (times.last()? - start.time);
+    let series = AdaptiveTaylor::to_rounding();
+    if precise && way < FAR {
+        let prepare = |clock| prepared(&series, |method| method.prepare_dd(clock, body).ok());
+        let points = stepped(prepare, inside, start.time, rate, &times)?;
+        return Some(points.iter().map(|point| read(point.to_f64())).collect());
+    }
+    let prepare = |clock| prepared(&series, |method| method.prepare_f64(clock, body).ok());
+    Some(stepped(prepare, inside.to_f64(), start.time, rate, &times)?.into_iter().map(read).collect())
+}
+
+/// A step of `series`, or of a Runge-Kutta method where a force is a closure; and whether it chooses its own substeps.
+fn prepared<S: Precise>(
+    series: &AdaptiveTaylor,
+    prepare: impl Fn(&dyn AnyMethod) -> Option<Box<dyn Step<S>>>,
+) -> Option<(Box<dyn Step<S>>, bool)> {
+    prepare(series).map(|step| (step, true)).or_else(|| Some((prepare(&Rk8)?, false)))
+}
+
+fn stepped<S: Precise>(
+    prepare: impl Fn(Clock) -> Option<(Box<dyn Step<S>>, bool)>,
+    start: Point<S>,
+    start_time: f64,
+    rate: f64,
+    times: &[f64],
+) -> Option<Vec<Point<S>>> {
+    let (mut x, mut t) = (start, start_time);
+    let mut points = Vec::with_capacity(times.len());
+    for &time in times {
+        if time > t {
+            let (mut step, adaptive) = prepare(Clock { start: t, step: time - t })?;
+            let mut n = 1;
+            if !adaptive {
+                n = ((time - t) * rate / STEP).ceil().clamp(1.0, 1e6) as u64;
+                step = prepare(Clock { start: t, step: (time - t) / n as f64 })?.0;
+            }
+            step.open(&mut x);
+            step.advance(&mut x, n);
+            let reached = step.reading(&x);
+            x = Point::new(reached.attitude, reached.momentum_body);
+            t = time;
+        }
+        if !x.is_finite() {
+            return None;
+        }
+        points.push(x);
+    }
+    Some(points)
+}

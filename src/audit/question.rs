@@ -1,0 +1,93 @@
+//! What is asked of a record, and what is claimed of it.
+
+use super::{AngleUnit, Angles, AuditError, Direction, Frame, QuaternionOrder, RateUnit, Reading};
+use crate::body::Body;
+
+/// What is asked of a record.
+///
+/// ```
+/// use polhode::audit::Question;
+/// use polhode::{Body, Inertia};
+/// let of_this_body = Question::new(Some(Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?)));
+/// assert_eq!((of_this_body.tolerance, of_this_body.claims.moments), (1e-6, Some([0, 1, 2])));
+/// # Ok::<(), polhode::inertia::InertiaError>(())
+/// ```
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Question {
+    /// The body with what acts on it; `None`: a free body whose shape is found from the record.
+    pub body: Option<Body>,
+    /// Largest error of a record that is right, rad and relative.
+    pub tolerance: f64,
+    /// What is claimed of the convention.
+    pub claims: Claims,
+}
+
+/// What is claimed of the convention of a record; `None` is to be told from the record.
+///
+/// The place of the scalar, the Euler sequence and the unit of angles are taken as given. A direction, a frame, a unit of rates
+/// or an order of moments that the record contradicts makes it wrong, with the claim as the suspect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Claims {
+    /// Place of the scalar.
+    pub quaternion: Option<QuaternionOrder>,
+    /// Direction of the attitude, by Hamilton's product.
+    pub attitude: Option<Direction>,
+    /// Convention of Euler angles.
+    pub angles: Option<Angles>,
+    /// Unit of Euler angles, where the rest is to be told.
+    pub angle_unit: Option<AngleUnit>,
+    /// Axes of the angular velocity.
+    pub omega_frame: Option<Frame>,
+    /// Unit of the angular velocity.
+    pub rate_unit: Option<RateUnit>,
+    /// Axes of the angular momentum.
+    pub momentum_frame: Option<Frame>,
+    /// Order of the moments; the default claims that they belong to the axes as they were given.
+    pub moments: Option<[usize; 3]>,
+}
+
+impl Default for Claims {
+    /// Nothing but the order of the moments.
+    fn default() -> Self {
+        Claims {
+            quaternion: None,
+            attitude: None,
+            angles: None,
+            angle_unit: None,
+            omega_frame: None,
+            rate_unit: None,
+            momentum_frame: None,
+            moments: Some([0, 1, 2]),
+        }
+    }
+}
+
+impl Question {
+    /// Is the record right, to 1e-6, for this body, in whatever convention?
+    #[must_use]
+    pub fn new(body: Option<Body>) -> Self {
+        Question { body, tolerance: 1e-6, claims: Claims::default() }
+    }
+
+    pub(super) fn check(&self) -> Result<(), AuditError> {
+        if self.tolerance.is_finite() && self.tolerance > 0.0 {
+            Ok(())
+        } else {
+            Err(AuditError::Tolerance { value: self.tolerance })
+        }
+    }
+}
+
+impl Claims {
+    /// Whether `reading` is one of those that are looked at: what is taken as given holds.
+    pub(super) fn admit(&self, reading: &Reading) -> bool {
+        let agrees = |claimed: Option<QuaternionOrder>, read| claimed.is_none() || read == claimed;
+        (reading.quaternion.is_none() || agrees(self.quaternion, reading.quaternion))
+            && reading.angles.is_none_or(|read| {
+                self.angles.is_none_or(|claimed| claimed == read)
+                    && self.angle_unit.is_none_or(|unit| unit == read.unit)
+            })
+    }
+}

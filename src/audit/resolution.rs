@@ -1,0 +1,104 @@
+//! What the writing of a record leaves open: digits, single precision, noise.
+
+use super::{Attitudes, Trajectory};
+
+/// Most rows whose digits are counted.
+const MOST: usize = 2000;
+
+/// Digits of a double.
+const ALL_DIGITS: u32 = 17;
+
+/// How the numbers were written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Writing {
+    pub(super) digits: u32,
+    pub(super) single_precision: bool,
+}
+
+impl Writing {
+    pub(super) fn of(record: &Trajectory) -> Self {
+        let rows = record.times.len();
+        let step = rows.div_ceil(MOST);
+        let mut values = Vec::new();
+        for row in (0..rows).step_by(step) {
+            if let Some(attitude) = &record.attitude {
+                values.extend_from_slice(attitude.row(row));
+            }
+            for vectors in [&record.rates, &record.momentum].into_iter().flatten() {
+                values.extend_from_slice(&vectors[row]);
+            }
+        }
+        let mut counts: Vec<u32> = values.iter().map(|&x| significant_digits(x)).collect();
+        counts.sort_unstable();
+        // trailing zeros shorten a tenth of the numbers and more
+        let longest = counts.get(counts.len() * 98 / 100).copied().unwrap_or(ALL_DIGITS);
+        let exact = values.iter().all(|&x| f64::from(x as f32) == x);
+        let printed = || values.iter().all(|&x| (x as f32).to_string().parse() == Ok(x));
+        let single_precision = (exact && longest > 9) || ((7..=9).contains(&longest) && printed());
+        let seen = if longest >= 16 { ALL_DIGITS } else { longest.max(1) };
+        let digits = record.digits.unwrap_or(if single_precision { 7 } else { seen });
+        Writing { digits, single_precision }
+    }
+
+    /// Half a unit of the last digit, relative to the largest number with that exponent.
+    pub(super) fn rounding(&self) -> f64 {
+        if self.single_precision {
+            return f64::from(f32::EPSILON) / 2.0;
+        }
+        (0..self.digits.min(ALL_DIGITS) - 1).fold(0.5_f64, |unit, _| unit / 10.0).max(f64::EPSILON / 2.0)
+    }
+}
+
+/// Significant decimal digits of the shortest number that reads as `x`.
+fn significant_digits(x: f64) -> u32 {
+    let text = format!("{:e}", x.abs());
+    let mantissa = text.split('e').next().unwrap_or_default();
+    mantissa.chars().filter(char::is_ascii_digit).count() as u32
+}
+
+/// Rows of the record in groups of three neighbours, or all where there are few.
+pub(super) fn triples(rows: usize, most: usize) -> Vec<usize> {
+    if rows <= 3 * most {
+        return (0..rows).collect();
+    }
+    (0..most)
+        .flat_map(|k| {
+            let first = k * (rows - 3) / (most - 1);
+            first..first + 3
+        })
+        .collect()
+}
+
+/// Noise of `values` at `rows`, root mean square: of neighbours the second difference, which a smooth error leaves out.
+pub(super) fn noise(rows: &[usize], values: &[f64]) -> f64 {
+    let mut squares: Vec<f64> = rows
+        .windows(3)
+        .zip(values.windows(3))
+        .filter(|(rows, _)| rows[2] == rows[0] + 2)
+        .map(|(_, v)| {
+            let second = v[2] - 2.0 * v[1] + v[0];
+            second * second / 6.0
+        })
+        .collect();
+    squares.sort_by(f64::total_cmp);
+    // without the largest tenth, jumps, which leaves 1/1.267² of the variance of normal deviates
+    let kept = &squares[..(squares.len() * 9).div_ceil(10)];
+    if kept.is_empty() { 0.0 } else { 1.267 * (kept.iter().sum::<f64>() / kept.len() as f64).sqrt() }
+}
+
+impl Attitudes {
+    /// The turn that half a unit in the last place of its numbers makes at most, rad, if the unit is `rounding` relative.
+    pub(super) fn rounding_angle(&self, rounding: f64) -> f64 {
+        match self {
+            // components up to 1, and twice their change is an angle
+            Attitudes::Quaternions(_) => 4.0 * rounding,
+            Attitudes::Matrices(_) => 3.0 * rounding,
+            Attitudes::Rodrigues(_) => 8.0 * rounding,
+            Attitudes::Angles(rows) => {
+                let largest = rows.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+                let unit = if largest > 10.0 { super::AngleUnit::Degrees.radians() } else { 1.0 };
+                3.0 * rounding * largest * unit
+            }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Rows that are looked at: windows over which the body turns by part of a radian, spread over the record.
+
+use super::{AngleUnit, Attitudes, Trajectory};
+use crate::rotation::Vec3;
+
+/// The turn of a window, rad, where rows are close enough.
+const TURN: f64 = 0.7;
+
+/// Most windows.
+const MOST: usize = 96;
+
+/// Most rows between the ends of a window that the kinematics are integrated over.
+const NODES: usize = 8;
+
+/// The windows of a record.
+#[derive(Clone, Debug)]
+pub(super) struct Windows {
+    /// First rows.
+    pub(super) starts: Vec<usize>,
+    /// Rows of a window.
+    pub(super) stride: usize,
+    /// Rows between the nodes of a window: a divisor of the stride.
+    pub(super) node: usize,
+}
+
+impl Windows {
+    /// `pieces`: how many windows in a row are looked at together.
+    pub(super) fn of(record: &Trajectory, pieces: usize) -> Self {
+        let rows = record.times.len();
+        let turn = typical_turn(record);
+        let longest = ((rows - 1) / (4 * pieces)).max(1);
+        let wanted = if turn > 0.0 { (TURN / turn).min(longest as f64) } else { longest as f64 };
+        let stride = (wanted as usize).clamp(1, longest);
+        let node = stride.div_ceil(NODES);
+        let stride = (stride / node).max(1) * node;
+        let last = rows - 1 - pieces * stride;
+        let count = MOST.min(last + 1);
+        let spread = |count: usize, k: usize| if count > 1 { k * last / (count - 1) } else { 0 };
+        // where a program has run away, the body turns too fast for its rows to tell
+        let wide = (4 * MOST).min(last + 1);
+        let mut turns: Vec<(f64, usize)> =
+            (0..wide).map(|k| spread(wide, k)).map(|row| (turn_between(record, row), row)).collect();
+        turns.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let slow = turns[turns.len() / 4].0.max(1.0);
+        let mut kept: Vec<usize> =
+            turns.iter().filter(|(turn, _)| *turn <= slow).map(|(_, row)| *row).collect();
+        kept.sort_unstable();
+        let starts =
+            (0..count.min(kept.len())).map(|k| kept[k * kept.len() / count.min(kept.len())]).collect();
+        Windows { starts, stride, node }
+    }
+}
+
+/// How far the body turns between neighbouring rows, typically, rad: the same by every reading of a column but that of
+/// Euler angles, of which it is the middle of the changes.
+fn typical_turn(record: &Trajectory) -> f64 {
+    let rows = record.times.len();
+    let count = 256.min(rows - 1);
+    let mut turns: Vec<f64> = (0..count).map(|k| turn_between(record, k * (rows - 1) / count)).collect();
+    turns.sort_by(f64::total_cmp);
+    turns[turns.len() / 2]
+}
+
+/// How far the body turns between the rows `row` and `row + 1`, rad.
+fn turn_between(record: &Trajectory, row: usize) -> f64 {
+    match &record.attitude {
+        Some(attitude) => attitude.turn(row),
+        None => record.rates.as_ref().or(record.momentum.as_ref()).map_or(0.0, |rates| {
+            // the direction of the angular velocity turns about as fast as the body
+            let (a, b) = (Vec3(rates[row]), Vec3(rates[row + 1]));
+            libm::atan2(a.cross(b).norm(), a.dot(b))
+        }),
+    }
+}
+
+impl Attitudes {
+    /// The angle between the rows `row` and `row + 1`, rad.
+    pub(super) fn turn(&self, row: usize) -> f64 {
+        let (a, b) = (self.row(row), self.row(row + 1));
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let apart =
+            |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+        match self {
+            Attitudes::Quaternions(_) => {
+                let norm = dot(a, a).sqrt();
+                // of q and −q the nearer; the chord keeps the digits of a small angle
+                let chord =
+                    apart(a, b).min(a.iter().zip(b).map(|(a, b)| (a + b) * (a + b)).sum::<f64>().sqrt());
+                4.0 * libm::asin((0.5 * chord / norm).min(1.0))
+            }
+            Attitudes::Matrices(_) => {
+                let norm = (dot(a, a) / 3.0).sqrt();
+                2.0 * libm::asin((apart(a, b) / norm / 8_f64.sqrt()).min(1.0))
+            }
+            Attitudes::Rodrigues(_) => {
+                let lift = |s: &[f64]| {
+                    let square = dot(s, s);
+                    [1.0 - square, 2.0 * s[0], 2.0 * s[1], 2.0 * s[2]].map(|x| x / (1.0 + square))
+                };
+                Attitudes::Quaternions(vec![lift(a), lift(b)]).turn(0)
+            }
+            Attitudes::Angles(rows) => {
+                // angles in rad stay below a turn and a half; those above are in degrees
+                let some = rows.iter().step_by(rows.len().div_ceil(64)).flatten();
+                let degrees = some.clone().any(|x| x.abs() > 10.0);
+                apart(a, b) * if degrees { AngleUnit::Degrees.radians() } else { 1.0 }
+            }
+        }
+    }
+}

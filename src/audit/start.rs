@@ -1,0 +1,153 @@
+//! The start, and where it is not given the body, with which the exact motion comes nearest to a record.
+
+use nalgebra::Matrix3;
+
+use super::columns::{rotation_vector, turn_by};
+use super::motion::motion;
+use super::states::Row;
+use crate::body::Body;
+use crate::inertia::Inertia;
+use crate::num::eigen::eigen;
+use crate::rotation::Vec3;
+
+/// Three turns of the start, three components of its angular velocity, six entries of the tensor.
+const UNKNOWNS: usize = 12;
+
+/// Iterations on one horizon.
+const ITERATIONS: usize = 6;
+
+/// Relative change by which derivatives are taken.
+const CHANGE: f64 = 1e-6;
+
+/// Directions that the record bounds less than this, beside the best bounded, are left alone.
+const UNBOUNDED: f64 = 1e-13;
+
+/// What the distance is weighed by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Weights {
+    /// rad.
+    pub(super) attitude: f64,
+    /// Relative to the size of ω.
+    pub(super) rates: f64,
+    /// rad/s.
+    pub(super) size: f64,
+}
+
+/// A start and a body.
+#[derive(Clone, Debug)]
+pub(super) struct Start {
+    pub(super) row: Row,
+    pub(super) body: Body,
+}
+
+/// The distances of `rows` from the motion from `start`: a rotation vector in space, rad, and a difference of ω.
+pub(super) fn distances(start: &Start, rows: &[Row], precise: bool) -> Option<Vec<(Vec3<f64>, Vec3<f64>)>> {
+    let exact = motion(&start.body, &start.row, rows.iter().map(|row| row.time), precise)?;
+    let pairs = rows.iter().zip(exact);
+    Some(
+        pairs
+            .map(|(row, (q, omega))| {
+                let turn = row
+                    .attitude
+                    .map_or(Vec3::zero(), |measured| q.rotate(rotation_vector(q.conjugate() * measured)));
+                (turn, row.omega - omega)
+            })
+            .collect(),
+    )
+}
+
+/// The start that fits `rows` best, by Gauss's and Newton's iteration over a horizon that grows: on a short one the start of the
+/// record is near enough, and a fit over it is near enough on the next. With `rates`, ω is compared too; with `shape`, the tensor
+/// is fitted as well.
+pub(super) fn fitted(
+    first: &Start,
+    rows: &[Row],
+    weights: Weights,
+    rates: bool,
+    shape: bool,
+) -> Option<Start> {
+    let mut best = first.clone();
+    let growth = weights.rates.max(weights.attitude) * weights.size;
+    let mut reach = (0.1 / growth).max(3.0 / weights.size);
+    loop {
+        let within = rows.iter().take_while(|row| row.time - first.row.time <= reach).count().max(8);
+        let within = &rows[..within.min(rows.len())];
+        for _ in 0..ITERATIONS {
+            let (next, moved) = improved(&best, within, weights, rates, shape)?;
+            best = next;
+            if moved < 1e-4 {
+                break;
+            }
+        }
+        if within.len() == rows.len() {
+            return Some(best);
+        }
+        reach *= 4.0;
+    }
+}
+
+/// One iteration, and how far it moved the start, in units of its uncertainty.
+fn improved(start: &Start, rows: &[Row], weights: Weights, rates: bool, shape: bool) -> Option<(Start, f64)> {
+    let residual = |start: &Start| -> Option<Vec<f64>> {
+        let all = distances(start, rows, false)?;
+        Some(
+            all.into_iter()
+                .flat_map(|(turn, omega)| {
+                    let of_rates = if rates { 1.0 / (weights.rates * weights.size) } else { 0.0 };
+                    let (turn, omega) = (turn * (1.0 / weights.attitude), omega * of_rates);
+                    [turn[0], turn[1], turn[2], omega[0], omega[1], omega[2]]
+                })
+                .collect(),
+        )
+    };
+    let here = residual(start)?;
+    let unknowns = if shape { UNKNOWNS } else { 6 };
+    let mut slopes = Vec::new();
+    for n in 0..unknowns {
+        let mut change = [0.0; UNKNOWNS];
+        change[n] = CHANGE;
+        let there = residual(&changed(start, change, weights.size)?)?;
+        slopes.push(there.iter().zip(&here).map(|(a, b)| (a - b) / CHANGE).collect::<Vec<f64>>());
+    }
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (mut normal, mut right) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
+    for (i, a) in slopes.iter().enumerate() {
+        right[i] = -dot(a, &here);
+        for (j, b) in slopes.iter().enumerate() {
+            normal[i][j] = dot(a, b);
+        }
+    }
+    let (values, vectors) = eigen(normal);
+    let mut step = [0.0; UNKNOWNS];
+    let mut moved = 0.0;
+    for (value, vector) in
+        values.iter().zip(&vectors).filter(|(value, _)| **value > UNBOUNDED * values[UNKNOWNS - 1])
+    {
+        let along = dot(vector, &right) / value;
+        moved += along * along * value;
+        for (entry, component) in step.iter_mut().zip(vector) {
+            *entry += along * component;
+        }
+    }
+    // a long way is no linear problem
+    let longest = step.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let part = if longest > 0.2 { 0.2 / longest } else { 1.0 };
+    Some((changed(start, step.map(|x| x * part), weights.size)?, moved.sqrt()))
+}
+
+/// The start with a turn, rad, and an angular velocity, in units of `size`, added in body axes, and entries of the tensor in units
+/// of its trace.
+fn changed(start: &Start, change: [f64; UNKNOWNS], size: f64) -> Option<Start> {
+    let [a, b, c, x, y, z, tensor @ ..] = change;
+    let mut row = start.row;
+    row.attitude = row.attitude.map(|q| q * turn_by(Vec3([a, b, c])));
+    row.omega = row.omega + Vec3([x, y, z]) * size;
+    if tensor == [0.0; 6] {
+        return Some(Start { row, body: start.body.clone() });
+    }
+    let old = start.body.inertia().tensor();
+    let [xx, yy, zz, xy, xz, yz] = tensor.map(|entry| entry * old.trace());
+    let new = old + Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let inertia = Inertia::from_tensor(new / new.trace()).ok()?;
+    Some(Start { row, body: Body::free(inertia) })
+}

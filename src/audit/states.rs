@@ -1,0 +1,72 @@
+//! States of a record by its reading, in body axes.
+
+use super::columns::{Columns, Source};
+use super::program::Dynamics;
+use super::{Reading, Trajectory};
+use crate::body::{Body, Point, Problem, Time};
+use crate::rotation::{Quat, Vec3};
+
+/// One row in this library's convention.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) row: usize,
+    pub(super) time: f64,
+    /// Body → space.
+    pub(super) attitude: Option<Quat<f64>>,
+    /// Body axes, rad/s.
+    pub(super) omega: Vec3<f64>,
+}
+
+/// The rows `rows` by `reading`; of a record of attitudes alone with the angular velocity that leads to a later row, without the
+/// rows that have none.
+pub(super) fn states(record: &Trajectory, reading: &Reading, body: &Body, rows: &[usize]) -> Vec<Row> {
+    let columns = Columns::new(record);
+    let dynamics = Dynamics::new(body);
+    let stride = columns.windows().stride;
+    let at = |row: usize| -> Option<Row> {
+        let attitude = reading.attitude(record, row);
+        let omega = match columns.source {
+            Source::Rates => reading.omega_body(record, row)?,
+            Source::Momentum => dynamics.omega(reading.momentum_body(record, row)?),
+            Source::Attitude => columns.shot(reading, &dynamics, row, stride)?,
+        };
+        Some(Row { row, time: record.times[row], attitude, omega })
+    };
+    rows.iter().filter_map(|&row| at(row)).collect()
+}
+
+/// Energy, angular momentum in body axes and in space, in units of the solver frame.
+pub(super) struct Quantities<'a> {
+    body: &'a Body,
+    dynamics: Dynamics,
+    free: bool,
+}
+
+impl<'a> Quantities<'a> {
+    pub(super) fn new(body: &'a Body) -> Self {
+        Quantities { body, dynamics: Dynamics::new(body), free: body.problem() == Problem::Free }
+    }
+
+    /// I ω in body axes.
+    pub(super) fn momentum(&self, row: &Row) -> Vec3<f64> {
+        self.dynamics.momentum(row.omega)
+    }
+
+    pub(super) fn kinetic(&self, row: &Row) -> f64 {
+        0.5 * self.momentum(row).dot(row.omega)
+    }
+
+    /// Kinetic and potential; kinetic alone of a row without attitude.
+    pub(super) fn energy(&self, row: &Row) -> f64 {
+        match row.attitude {
+            Some(attitude) if !self.free => {
+                let point: Point<f64> = match self.body.enter_omega(attitude, row.omega) {
+                    Ok(point) => point.to_f64(),
+                    Err(_) => return self.kinetic(row),
+                };
+                self.body.energy_of(Time::from_seconds(row.time), &point).hi() / self.body.scale()
+            }
+            _ => self.kinetic(row),
+        }
+    }
+}
