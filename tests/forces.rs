@@ -366,6 +366,25 @@ fn a_force_that_is_not_finite_ends_the_run_with_its_name_and_time() {
 }
 
 #[test]
+fn a_run_that_diverges_is_not_blamed_on_its_force() {
+    // steps of several radians: what overflows is the state, and the forces with it
+    let inertia = inertia([10.0, 20.0, 30.0]);
+    let gradient = Force::gravity_gradient(&inertia, 0.5, 0.0).unwrap();
+    for force in [gradient, Force::drag(0.1, 2.0).unwrap()] {
+        let body = Body::free(inertia.clone()).with(force);
+        for name in ["explicit-euler", "rk4", "rk8"] {
+            for watch in [Watch::EveryStep, Watch::AtSamples, Watch::Never] {
+                let error =
+                    run(name, &body, [4.0, 10.0, -3.0], 8.0).watching(watch).advance_to(10_000).unwrap_err();
+                // the last state may be finite in the solver frame only
+                let diverged = matches!(error, RunError::Diverged { .. } | RunError::OutOfRange { .. });
+                assert!(diverged, "{name}, {watch}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_potential_whose_energy_alone_is_not_finite_is_named() {
     let hole = Force::potential_fn("hole", |q| (0.5 - q.w.abs()).sqrt(), |_| Vector3::zeros());
     let body = Body::free(inertia([10.0, 20.0, 30.0])).with(hole);

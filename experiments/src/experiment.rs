@@ -61,6 +61,8 @@ pub(crate) struct Report {
     pub(crate) drawings: Vec<Drawing>,
     /// Times, which depend on the machine.
     pub(crate) timing: Option<Table>,
+    /// Rows of times that only programs read.
+    pub(crate) times: Vec<Table>,
     /// Of the random numbers, if there were any.
     pub(crate) seed: Option<u64>,
     /// Claims that did not hold: the results are written all the same, and the command fails.

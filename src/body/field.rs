@@ -87,6 +87,10 @@ pub(crate) struct Forces<S> {
     witness: Option<Witness>,
 }
 
+/// Attitudes and angular velocities beyond this are those of a run that diverges: products of several of them overflow, and no
+/// force is to blame.
+const OUT_OF_RANGE: f64 = 1e60;
+
 /// The first evaluation of a force that was not finite.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Failure {
@@ -96,7 +100,7 @@ pub(crate) struct Failure {
     pub(crate) time: f64,
 }
 
-/// Takes note of the first force that is not finite.
+/// Takes note of the first force that is not finite at a state of a body.
 pub(crate) type Witness = Arc<OnceLock<Failure>>;
 
 /// The scalars in which every force can be evaluated.
@@ -175,11 +179,12 @@ impl<S: Evaluated> Forces<S> {
         energy * S::of(1.0 / self.scale)
     }
 
-    /// The sum of what `evaluate` gives of each force, in SI units and body axes.
+    /// The sum of what `evaluate` gives of each force, in SI units and body axes. The witness takes note where attitude and
+    /// angular velocity are at most `most`.
     #[inline]
     fn sum<T: Real>(
         &self,
-        at: Time,
+        (at, most): (Time, f64),
         frame: Option<Quat<T>>,
         attitude: Quat<T>,
         omega_body: Vec3<T>,
@@ -194,8 +199,8 @@ impl<S: Evaluated> Forces<S> {
             let one = evaluate(force, attitude, omega_body)?;
             if let Some(witness) = &self.witness
                 && !one.magnitude().is_finite()
-                && attitude.magnitude().is_finite()
-                && omega_body.magnitude().is_finite()
+                && attitude.magnitude() <= most
+                && omega_body.magnitude() <= most
             {
                 witness.get_or_init(|| Failure { force: force.name().into(), time: at.seconds() });
             }
@@ -215,7 +220,7 @@ impl<S: Evaluated> Field<S> for Forces<S> {
     #[inline(never)]
     fn torque_besides_gravity(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
         let evaluate = |force: &Force, attitude, omega| Some(S::torque(&force.law, at, attitude, omega));
-        self.sum(at, self.frame, attitude, omega_body, evaluate).unwrap_or(Vec3::zero())
+        self.sum((at, OUT_OF_RANGE), self.frame, attitude, omega_body, evaluate).unwrap_or(Vec3::zero())
     }
 
     fn series_besides_gravity(
@@ -228,6 +233,7 @@ impl<S: Evaluated> Field<S> for Forces<S> {
         let evaluate = |force: &Force, attitude, omega| {
             force.series.as_ref().map(|law| S::series(law, at, attitude, omega))
         };
-        self.sum(at, frame, attitude, omega_body, evaluate)
+        // coefficients of higher order may be of any size
+        self.sum((at, f64::MAX), frame, attitude, omega_body, evaluate)
     }
 }

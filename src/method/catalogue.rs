@@ -271,7 +271,12 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         "buss-2" => plain(Buss { augmented: false }, asked.scheme_alone()?),
         "buss-2-augmented" => plain(Buss { augmented: true }, asked.scheme_alone()?),
         "mujoco-rk4" => plain(MujocoRk4, asked.scheme_alone()?),
-        "lie-newmark" => plain(LieNewmark, asked.scheme_alone()?),
+        "lie-newmark" => match asked.scheme_alone()? {
+            None => Ok(Box::new(LieNewmark)),
+            Some(scheme) => {
+                Err(SchemeError::Foretells { scheme: scheme.name, base: LieNewmark.name() }.into())
+            }
+        },
         "lie-poisson-projected" => {
             composed(SymmetricProjection::new(AxisSplit { axes: None }), asked.scheme_alone()?)
         }

@@ -84,6 +84,18 @@ pub enum SchemeError {
         /// Shares listed of the other.
         inner: usize,
     },
+    /// A composition needs a base that is symmetric under every force.
+    #[error(
+        "{base} foretells ω at the end of a step, so that it is symmetric only where the torque does not depend on ω, and scheme \
+         {scheme:?} raises the order of methods that are symmetric under every force; take implicit-midpoint, rattle, lie-poisson \
+         or kick-drift"
+    )]
+    Foretells {
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Name of the base.
+        base: String,
+    },
     /// A composition is of higher order only over a symmetric base.
     #[error(
         "{base} is not symmetric, and scheme {scheme:?} raises the order of symmetric methods only; take implicit-midpoint, \

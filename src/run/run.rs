@@ -290,7 +290,9 @@ impl Run {
                 return RunError::Force { force: failure.force.clone(), time: failure.time, last };
             }
             let at = self.clock.at(next.steps());
-            if let Some(force) = self.body.force_without_energy(at, &next.to_dd()) {
+            // where the attitude is none, no force has an energy, and none is to blame
+            let is_attitude = next.is_finite() && next.attitude.magnitude() <= 2.0;
+            if let Some(force) = self.body.force_without_energy(at, &next.to_dd()).filter(|_| is_attitude) {
                 return RunError::Force { force: force.into(), time: at.seconds(), last };
             }
         }

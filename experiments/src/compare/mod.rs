@@ -71,7 +71,9 @@ pub(crate) struct Compare {
     /// Time of the start, s
     #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0")]
     start_time: f64,
-    /// A trajectory of another program as one more row: CSV with t and the attitude q_w, q_x, q_y, q_z, body to space; repeatable
+    /// A trajectory of another program as one more row: CSV with t and the attitude q_w, q_x, q_y, q_z, body to space; with
+    /// omega_body_x, omega_body_y, omega_body_z (rad/s, body axes) also its errors of energy and momentum and its flips, at the
+    /// rows of the file; repeatable
     #[arg(long, value_name = "FILE.csv")]
     trajectory: Vec<PathBuf>,
     /// Draw attitude error against processor time to this file
@@ -305,6 +307,16 @@ impl Compare {
         };
         set("method", trajectory.name.clone().into());
         set("status", found.ending.words(self.start_time).into());
+        if let Some((worst, flips, exact)) = found.invariants {
+            set("energy_error", worst.energy.into());
+            set("exchanged_energy_error", motion.exchanged_energy_error(&worst).into());
+            set("momentum_error", worst.momentum_norm.into());
+            set("momentum_vector_error", worst.momentum_vector.into());
+            set("momentum_z_error", worst.momentum_z.into());
+            set("flips", flips.into());
+            set("flips_exact", exact.into());
+            set("flips_right", exact.map(|exact| if flips == exact { "right" } else { "wrong" }).into());
+        }
         if found.ending == Ending::Held {
             set("attitude_error", found.attitude_error.into());
             set("attitude_time", found.at.map(|at| self.start_time + at).into());

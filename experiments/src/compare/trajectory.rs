@@ -1,9 +1,10 @@
-//! The trajectory of another program: times and attitudes.
+//! The trajectory of another program: times and attitudes, and angular velocities where it has them.
 
 use std::path::Path;
 
-use polhode::body::State;
+use polhode::body::{Clock, State};
 use polhode::num::Dd;
+use polhode::observe::{Errors, Monitor};
 use polhode::rotation::{Quat, Vec3};
 
 use crate::arguments::number;
@@ -21,12 +22,26 @@ const COLUMNS: [&[&str]; 5] = [
     &["q_z", "qz", "q3", "z"],
 ];
 
+/// Spellings of the columns of the angular velocity in body axes, rad/s: all three or none.
+const OMEGA: [&[&str]; 3] = [
+    &["omega_body_x", "omega_x", "wx"],
+    &["omega_body_y", "omega_y", "wy"],
+    &["omega_body_z", "omega_z", "wz"],
+];
+
 const REMEDY: &str = "name a CSV file with the columns t, q_w, q_x, q_y, q_z";
 
 /// Rows of a file.
 pub(super) struct Trajectory {
     pub(super) name: String,
-    rows: Vec<(f64, [f64; 4])>,
+    rows: Vec<Row>,
+}
+
+/// One row of a file.
+struct Row {
+    t: f64,
+    attitude: [f64; 4],
+    omega_body: Option<[f64; 3]>,
 }
 
 /// How far a trajectory is off.
@@ -36,6 +51,9 @@ pub(super) struct Off {
     /// When that is, s since the start; `None` where the true motion is not known so far.
     pub(super) at: Option<f64>,
     pub(super) ending: Ending,
+    /// Where it has angular velocities: largest errors of the invariants at its rows, the changes of sign of the momentum along
+    /// the middle axis from row to row, and the flips of the true motion until its last row.
+    pub(super) invariants: Option<(Errors, u64, Option<u64>)>,
 }
 
 impl Trajectory {
@@ -54,15 +72,36 @@ impl Trajectory {
         for (slot, spellings) in places.iter_mut().zip(COLUMNS) {
             *slot = place(spellings)?;
         }
-        let mut rows: Vec<(f64, [f64; 4])> = Vec::new();
+        let omega: Vec<Option<usize>> = OMEGA
+            .iter()
+            .map(|spellings| header.iter().position(|column| spellings.contains(&column)))
+            .collect();
+        let omega: Option<Vec<usize>> = match omega.iter().flatten().count() {
+            0 => None,
+            3 => omega.into_iter().collect(),
+            _ => {
+                let missing = omega.iter().position(Option::is_none).unwrap_or(0);
+                let remedy =
+                    "give omega_body_x, omega_body_y and omega_body_z, rad/s in body axes, or none of them";
+                return Err(Error::input(&name, OMEGA[missing][0], "no such column", remedy));
+            }
+        };
+        let mut rows: Vec<Row> = Vec::new();
         for record in reader.records() {
             let record = record.map_err(refused)?;
             let line = record.position().map_or(0, csv::Position::line);
             let at = format!("{name}:{line}");
+            let value = |place: usize| {
+                number(record.get(place).unwrap_or(""))
+                    .map_err(|error| Error::Input(format!("{at}: {error}")))
+            };
             let mut values = [0.0; 5];
-            for (value, place) in values.iter_mut().zip(places) {
-                let cell = record.get(place).unwrap_or("");
-                *value = number(cell).map_err(|error| Error::Input(format!("{at}: {error}")))?;
+            for (slot, place) in values.iter_mut().zip(places) {
+                *slot = value(place)?;
+            }
+            let mut omega_body = omega.as_ref().map(|_| [0.0; 3]);
+            for (slot, place) in omega_body.iter_mut().flatten().zip(omega.iter().flatten()) {
+                *slot = value(*place)?;
             }
             let [t, w, x, y, z] = values;
             let rule = |rule: &str, remedy: &str| Err(Error::input(&at, &short(t), rule, remedy));
@@ -70,13 +109,13 @@ impl Trajectory {
                 let span = format!("lies outside of the run, t from {} to {}", short(start), short(end));
                 return rule(&span, "give another --until or --start-time, or fewer rows");
             }
-            if rows.last().is_some_and(|(before, _)| *before >= t) {
+            if rows.last().is_some_and(|before| before.t >= t) {
                 return rule("does not come after the time before it", "sort the rows by time");
             }
             if [w, x, y, z] == [0.0; 4] {
                 return rule("has the zero quaternion, which has no direction", "leave the row out");
             }
-            rows.push((t, [w, x, y, z]));
+            rows.push(Row { t, attitude: [w, x, y, z], omega_body });
         }
         if rows.is_empty() {
             return Err(Error::input(&name, "", "has no rows", REMEDY));
@@ -87,13 +126,15 @@ impl Trajectory {
     /// How far it is from the true motion, whose clock starts at `start_time`.
     pub(super) fn against(&self, motion: &Motion, start_time: f64) -> Result<Off, Error> {
         let known = motion.reference().known_until();
-        let mut off = Off { attitude_error: 0.0, at: None, ending: Ending::Held };
-        for &(t, attitude) in &self.rows {
-            let elapsed = Dd::from(t) - Dd::from(start_time);
+        let invariants = self.invariants(motion, start_time)?;
+        let mut off = Off { attitude_error: 0.0, at: None, ending: Ending::Held, invariants };
+        for row in &self.rows {
+            let elapsed = Dd::from(row.t) - Dd::from(start_time);
             if elapsed.hi() > known {
                 break;
             }
-            let state = State { attitude: Quat::from_components(attitude), momentum_body: Vec3::zero() };
+            let attitude = Quat::from_components(row.attitude);
+            let state = State { attitude, momentum_body: Vec3::zero() };
             let point = motion.body().enter(&state).map_err(unexpected)?;
             off.attitude_error = motion.attitude_error(&point, elapsed).map_err(unexpected)?;
             off.at = Some(elapsed.hi());
@@ -103,5 +144,25 @@ impl Trajectory {
             }
         }
         Ok(off)
+    }
+
+    /// Invariants and flips at the rows, against the start of the motion.
+    fn invariants(
+        &self,
+        motion: &Motion,
+        start_time: f64,
+    ) -> Result<Option<(Errors, u64, Option<u64>)>, Error> {
+        // what is conserved here does not depend on time
+        let clock = Clock { start: start_time, step: 1.0 };
+        let mut monitor = Monitor::new(motion.body(), clock, motion.start());
+        for row in &self.rows {
+            let Some(omega) = row.omega_body else { return Ok(None) };
+            let refused = |error| Error::Input(format!("{}: t = {}: {error}", self.name, short(row.t)));
+            let attitude = Quat::from_components(row.attitude);
+            let point = motion.body().enter_omega(attitude, Vec3(omega)).map_err(refused)?;
+            monitor.observe(&[point.to_f64()]);
+        }
+        let last = self.rows.last().map_or(0.0, |row| row.t - start_time);
+        Ok(Some((monitor.worst(), monitor.flips(), motion.reference().flips_at(last))))
     }
 }

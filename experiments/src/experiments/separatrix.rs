@@ -23,7 +23,10 @@ use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series, ten_to};
 use crate::table::{Column, Table, row};
 
-const BODY: &str = "textbook";
+/// Bodies of the catalogue: of three quite different moments, a needle, and a body that is nearly a ball.
+const BODIES: [&str; 3] = ["textbook", "racket", "spacecraft"];
+/// Rate of turning about the middle axis, rad/s.
+const RATE: f64 = 2.0;
 const SEED: u64 = 1850;
 const METHODS: [&str; 10] = [
     "rk4",
@@ -43,33 +46,36 @@ const STEPS: [f64; 4] = [1.0 / 2.0, 1.0 / 4.0, 1.0 / 8.0, 1.0 / 16.0];
 const BUDGET: f64 = STEPS[2];
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let horizon = context.scale.pick(500.0, 10_000.0, 50_000.0);
-    let members = context.scale.pick(4, 10, 32);
-    let decades: &[i32] =
-        context.scale.pick(&[-2, -6], &[-2, -4, -6, -8, -10], &[-1, -2, -3, -4, -5, -6, -7, -8, -9, -10]);
+    let horizon = context.scale.pick(500.0, 10_000.0, 20_000.0);
+    let members = context.scale.pick(4, 10, 24);
+    let decades: &[i32] = context.scale.pick(&[-2, -6], &[-2, -4, -6, -8, -10], &[-2, -4, -6, -8, -10]);
     let steps = context.scale.pick(&STEPS[1..3], &STEPS[..], &STEPS[..]);
+    let bodies = &BODIES[..context.scale.pick(1, 1, BODIES.len())];
     let mut parts = Vec::new();
-    for name in METHODS {
-        for h in steps {
-            for decade in decades {
-                parts.push((name, *h, *decade));
+    for body in bodies {
+        for name in METHODS {
+            for h in steps {
+                for decade in decades {
+                    parts.push((*body, name, *h, *decade));
+                }
             }
         }
     }
     let found = context
-        .in_parallel(parts.clone(), |(name, h, decade)| {
-            (0..members).map(|member| first_wrong(name, h, decade, member, horizon)).collect()
+        .in_parallel(parts.clone(), |(body, name, h, decade)| {
+            let body = named(body)?;
+            (0..members).map(|member| first_wrong(&body, name, h, decade, member, horizon)).collect()
         })
         .into_iter()
         .collect::<Result<Vec<Vec<Outcome>>, Error>>()?;
 
     let caption = format!(
-        "Time until the first wrong flip next to the separatrix, {BODY} body (moments 1, 2, 3; |L| = 2), {members} random starts \
-         on both sides for each distance, up to {horizon} s."
+        "Time until the first wrong flip next to the separatrix, at {RATE} rad/s about the middle axis, {members} random starts on \
+         both sides for each distance, up to {horizon} s."
     );
     let mut table = Table::new("separatrix", caption, columns());
     let mut medians = Vec::new();
-    for ((name, h, decade), mut outcomes) in parts.into_iter().zip(found) {
+    for ((body, name, h, decade), mut outcomes) in parts.into_iter().zip(found) {
         outcomes.sort_by(|a, b| a.time.total_cmp(&b.time));
         let quantile = |share: f64| outcomes[(share * (members - 1) as f64 + 0.5) as usize];
         let right = outcomes.iter().filter(|outcome| outcome.right).count() as u64;
@@ -78,6 +84,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let order =
             method(name).map_err(unexpected)?.claims(polhode::body::Problem::Free).and_then(|c| c.order);
         table.push(row![
+            body,
             name,
             order.map(u64::from),
             h,
@@ -90,7 +97,9 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             high.time,
             median.flips,
         ]);
-        medians.push((name, h, decade, low.time, median.time, high.time));
+        if body == BODIES[0] {
+            medians.push((name, h, decade, low.time, median.time, high.time));
+        }
     }
     let caption = format!("The same at k'² = {}.", ten_to(-6));
     let view = table.view("separatrix-1e-6", caption, &["k'2"], ("complement", "1e-6"));
@@ -100,7 +109,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let rk4 = costs.first().map_or(1.0, |cost| cost.1);
     let mut timing = Table::new(
         "timing",
-        "Time of a step, and the step at which a method costs nearest to what rk4 costs at 1/8 s.",
+        "Time of a step, and the step at which a method costs nearest to what rk4 costs at 1/8 s; textbook body.",
         vec![
             Column::new("method", "", "name in the catalogue"),
             Column::new("step_ns", "ns", "least time of a step over several bursts").heading("ns/step"),
@@ -109,8 +118,9 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         ],
     );
     let title = format!(
-        "Time until the first wrong flip at nearly equal cost (of four steps the one nearest to rk4 with 1/8 s), {BODY} body: medians of {members} \
-         starts, bars from 10 to 90 %, runs of {horizon} s"
+        "Time until the first wrong flip at nearly equal cost (of four steps the one nearest to rk4 with 1/8 s), {} body: medians of {members} \
+         starts, bars from 10 to 90 %, runs of {horizon} s",
+        BODIES[0]
     );
     let mut figure = Figure::log_log("separatrix", title, "distance to the separatrix, k'²", "time (s)");
     figure.level("end of the runs", horizon);
@@ -134,6 +144,13 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     })
 }
 
+/// The axes of the least, the middle and the largest moment.
+fn ascending(moments: Vec3<f64>) -> [usize; 3] {
+    let mut axes = [0, 1, 2];
+    axes.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
+    axes
+}
+
 fn ten(power: i32) -> f64 {
     // the nearest double, as a reader writes it
     format!("1e{power}").parse().unwrap_or(0.0)
@@ -141,6 +158,7 @@ fn ten(power: i32) -> f64 {
 
 fn columns() -> Vec<Column> {
     vec![
+        Column::new("body", "", "name in the catalogue of bodies"),
         Column::new("method", "", "name in the catalogue"),
         Column::new("order", "", "order of convergence; empty where the steps are exact"),
         Column::new("h", "s", "step").latex("$h$").digits(3),
@@ -168,6 +186,12 @@ fn columns() -> Vec<Column> {
     ]
 }
 
+/// The body called `name`, free.
+fn named(name: &str) -> Result<Body, Error> {
+    let named = catalogue::body(name).ok_or_else(|| unexpected("no such body in the catalogue"))?;
+    Ok(Body::free(named.inertia))
+}
+
 /// What became of one start.
 #[derive(Clone, Copy, Debug)]
 struct Outcome {
@@ -184,14 +208,16 @@ struct Outcome {
 fn start(body: &Body, decade: i32, member: u64) -> Result<(Point<f64>, f64), Error> {
     let mut random = Random::new(SEED).stream(member);
     let moments: Vec3<f64> = body.rotor().moments();
-    let [a, b, c] = if member.is_multiple_of(2) { [2, 1, 0] } else { [0, 1, 2] };
+    let [least, b, largest] = ascending(moments);
+    let [a, c] = if member.is_multiple_of(2) { [largest, least] } else { [least, largest] };
     let (ia, ib, ic) = (moments[a], moments[b], moments[c]);
-    // where m_c = 0 the momentum is next to the middle axis, and dn = k'; worked out for |m| = 1, and doubled
+    // where m_c = 0 the momentum is next to the middle axis, and dn = k'; worked out for |m| = 1
     let complement = ten(decade);
     let square = (1.0 - complement) * (ib - ia);
     let twice_energy = (square + (ic - ib)) / (square * ic + ia * (ic - ib));
     let along = (complement * ia * (1.0 - twice_energy * ic) / (ia - ic)).sqrt();
-    let sign = |x: f64| if x < 0.5 { -2.0 } else { 2.0 };
+    let norm = RATE * ib;
+    let sign = |x: f64| if x < 0.5 { -norm } else { norm };
     let mut m = Vec3::zero();
     (m[a], m[b]) = (sign(random.uniform()) * along, sign(random.uniform()) * (1.0 - along * along).sqrt());
     let saddle = Point::new(Quat::identity(), m);
@@ -201,16 +227,23 @@ fn start(body: &Body, decade: i32, member: u64) -> Result<(Point<f64>, f64), Err
     Ok((motion.point_at_dd(Dd::of(begun)).to_f64(), begun))
 }
 
-fn first_wrong(name: &str, h: f64, decade: i32, member: u64, horizon: f64) -> Result<Outcome, Error> {
-    let named = catalogue::body(BODY).ok_or_else(|| unexpected("no such body in the catalogue"))?;
-    let body = Body::free(named.inertia);
-    let (point, begun) = start(&body, decade, member)?;
+fn first_wrong(
+    body: &Body,
+    name: &str,
+    h: f64,
+    decade: i32,
+    member: u64,
+    horizon: f64,
+) -> Result<Outcome, Error> {
+    let (point, begun) = start(body, decade, member)?;
     let motion = FreeMotion::from_point(body.inertia(), point.to_dd());
     let half = motion.character().map_err(unexpected)?.nutation_period.unwrap_or(horizon);
     let method = method(name).map_err(unexpected)?;
-    let mut run = Run::from_point(method.as_ref(), &body, point, Clock::new(h)).map_err(unexpected)?;
+    let mut run = Run::from_point(method.as_ref(), body, point, Clock::new(h)).map_err(unexpected)?;
     // the axis that the momentum circulates about, which it never leaves
-    let axis = if member.is_multiple_of(2) { 2 } else { 0 };
+    let moments: Vec3<f64> = body.rotor().moments();
+    let [least, _, largest] = ascending(moments);
+    let axis = if member.is_multiple_of(2) { largest } else { least };
     for k in 1_u64.. {
         // every flip, and half-way between two
         let t = 0.5 * half * k as f64 - begun;
@@ -246,10 +279,8 @@ fn first_wrong(name: &str, h: f64, decade: i32, member: u64, horizon: f64) -> Re
 /// The least time of a step over short bursts, ns.
 fn step_time(name: &str) -> Result<f64, Error> {
     const BURST: u64 = 2_000;
-    let named = catalogue::body(BODY).ok_or_else(|| unexpected("no such body in the catalogue"))?;
-    let body = Body::free(named.inertia);
-    let start = body.state(Default::default(), named.omega_body.into()).map_err(unexpected)?;
-    let start = body.enter(&start).map_err(unexpected)?.to_f64();
+    let body = named(BODIES[0])?;
+    let (start, _) = start(&body, -2, 0)?;
     let method: Box<dyn AnyMethod> = method(name).map_err(unexpected)?;
     let mut step = method.prepare_f64(Clock::new(BUDGET), &body).map_err(unexpected)?;
     let mut best = f64::INFINITY;
@@ -268,32 +299,35 @@ mod tests {
 
     #[test]
     fn starts_have_the_distance_that_was_asked_for_and_lie_on_both_sides() {
-        let body = Body::free(catalogue::body(BODY).unwrap().inertia);
-        for decade in [-1, -4, -8] {
+        for (name, decade) in BODIES.iter().flat_map(|name| [-1, -4, -8].map(|decade| (*name, decade))) {
+            let body = named(name).unwrap();
+            let moments: Vec3<f64> = body.rotor().moments();
+            let norm = RATE * moments[ascending(moments)[1]];
             for member in 0..4 {
                 let (point, begun) = start(&body, decade, member).unwrap();
                 let character = FreeMotion::from_point(body.inertia(), point.to_dd()).character().unwrap();
                 let ratio = character.complement.unwrap() / ten(decade);
-                assert!((ratio - 1.0).abs() < 1e-6, "{decade} {member}: {ratio}");
+                assert!((ratio - 1.0).abs() < 1e-6, "{name} {decade} {member}: {ratio}");
                 assert_eq!(character.separatrix_distance > 0.0, member % 2 == 0);
-                assert!((point.momentum_body.norm() - 2.0).abs() < 1e-12 && begun > 0.0);
+                assert!((point.momentum_body.norm() / norm - 1.0).abs() < 1e-12 && begun > 0.0);
             }
         }
     }
 
     #[test]
     fn a_splitting_crosses_a_runge_kutta_method_is_late_and_the_exact_step_is_right() {
-        let first = |name, h, member| first_wrong(name, h, -6, member, 2000.0).unwrap();
+        let body = named(BODIES[0]).unwrap();
+        let first = |name, h, member| first_wrong(&body, name, h, -6, member, 2000.0).unwrap();
         assert!(first("exact-step", 0.5, 0).right);
         assert!((0..4).any(|member| first("two-turn", 0.5, member).other_way));
-        let late = first_wrong("rk4", 0.5, -6, 0, 4000.0).unwrap();
+        let late = first_wrong(&body, "rk4", 0.5, -6, 0, 4000.0).unwrap();
         assert!(!late.right && !late.other_way && (2000.0..4000.0).contains(&late.time), "{late:?}");
     }
 
     #[test]
     fn a_runge_kutta_method_keeps_the_plane_of_the_separatrix() {
         // I_l (I_h − I_μ) m_h² = I_h (I_μ − I_l) m_l²: of the moments 1, 2, 3 the planes m_3 = ±√3 m_1
-        let body = Body::free(catalogue::body(BODY).unwrap().inertia);
+        let body = named(BODIES[0]).unwrap();
         let root = Dd::of(3.0).sqrt();
         for (name, keeps) in [("rk4", true), ("rk8", true), ("two-turn", false), ("lie-poisson", false)] {
             let mut x = Point::new(Quat::identity(), Vec3([Dd::of(0.3), Dd::of(1.0), root * 0.3]));

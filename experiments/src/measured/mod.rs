@@ -107,6 +107,10 @@ impl Motion {
         &self.body
     }
 
+    pub(crate) fn start(&self) -> &Point<f64> {
+        &self.start
+    }
+
     /// The motion that runs are compared with.
     pub(crate) fn reference(&self) -> &Reference {
         &self.reference
@@ -141,9 +145,9 @@ impl Motion {
             let failed = |last: &Sample| last.elapsed.hi();
             let (sample, ending) = match run.advance_to(steps) {
                 Ok(sample) => (sample, None),
-                // the forces here are finite at every attitude: one that is not was asked at none
-                Err(RunError::Diverged { last } | RunError::Force { last, .. }) => {
-                    (*last, Some(Ending::Diverged(failed(&last))))
+                Err(RunError::Diverged { last }) => (*last, Some(Ending::Diverged(failed(&last)))),
+                Err(RunError::OutOfRange { steps }) => {
+                    (measured.last, Some(Ending::Diverged(step * steps as f64)))
                 }
                 Err(RunError::Unsolved { last, .. }) => (*last, Some(Ending::Unsolved(failed(&last)))),
                 Err(RunError::Stuck { last, .. }) => (*last, Some(Ending::Stuck(failed(&last)))),

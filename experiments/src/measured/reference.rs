@@ -179,6 +179,14 @@ impl Reference {
         self.looks.iter().rev().find(|look| look.elapsed <= elapsed).and_then(|look| look.flips)
     }
 
+    /// How often the body has flipped until `elapsed` s after the start: at any time of a closed form, else at looks alone.
+    pub(crate) fn flips_at(&self, elapsed: f64) -> Option<u64> {
+        match &self.closed {
+            Some(ExactMotion::Free(free)) => Some(free.flips(Dd::from(elapsed))),
+            _ => self.looks.iter().find(|look| look.elapsed == elapsed).and_then(|look| look.flips),
+        }
+    }
+
     /// The largest less the smallest potential energy over the looks, J.
     pub(crate) fn exchanged_energy(&self) -> Option<f64> {
         let gravity = self.body.gravity::<Dd>().filter(|_| self.body.forces().is_empty())?;

@@ -5,6 +5,7 @@ mod page;
 mod provenance;
 mod publish;
 mod run;
+mod which;
 
 use std::path::PathBuf;
 

@@ -46,7 +46,12 @@ pub(super) fn describe<'a>(experiment: &'a str, scale: Scale, report: &'a Report
         (format!("{}.csv", table.name), Columns { caption: table.caption.clone(), columns, shown })
     };
     let rounded = report.tables.iter().map(|table| described(table, table.layout()));
-    let others = report.data.iter().chain(&report.timing).map(|table| described(table, Vec::new()));
+    let others = report
+        .data
+        .iter()
+        .chain(&report.timing)
+        .chain(&report.times)
+        .map(|table| described(table, Vec::new()));
     let views = report.views.iter().filter_map(|view| Some((view.name.as_str(), view.part.as_ref()?)));
     let provenance = Provenance {
         experiment,

@@ -3,7 +3,8 @@
 //! The committed results are CSVs with a `run.toml` beside them. A block in README.md between
 //! `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced by that table in Markdown, and
 //! every `generated/experiment-table` that the article names is made: a LaTeX table, a CSV, or the experiment, commit and
-//! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both.
+//! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both, `work-precision/which` the quickest
+//! methods by kind of problem, and `work-precision/claim` whether any is quicker than the general-purpose ones everywhere.
 //! Nothing is read or written outside of the root, whatever the results and the markers say.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,6 +14,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::RESULTS;
+use super::which::Which;
 use crate::error::Error;
 use crate::files::{MARK, Staging, emit, read};
 use crate::methods;
@@ -21,6 +23,10 @@ use crate::table::{Part, Shown, Table};
 const GENERATED: &str = "generated/";
 const METHODS: &str = "methods";
 const ORIGIN: &str = "origin";
+/// What is made of the costs that the experiment `COSTED` measured.
+const COSTED: &str = "work-precision";
+const WHICH: &str = "which";
+const CLAIM: &str = "claim";
 const NAMES: &str = "names have small letters, digits and hyphens";
 const REMEDY: &str =
     "run `polhode experiment run all --scale paper`, then `polhode experiment publish --from results/paper`";
@@ -74,8 +80,23 @@ impl Results {
         read(&within(&self.folder, self.folder.join(format!("{table}.csv")))?, REMEDY)
     }
 
+    /// The quickest methods, of the costs of `work-precision`.
+    fn which(&self) -> Result<Which, Error> {
+        Which::of(&self.csv("costs")?).map_err(|reason| {
+            Error::Input(format!("{}/costs.csv: {reason}; {REMEDY}", self.folder.display()))
+        })
+    }
+
+    /// Whether `name` is the claim about the costs of `work-precision`.
+    fn is_claim(&self, name: &str) -> bool {
+        self.origin.experiment == COSTED && name == CLAIM
+    }
+
     /// The table or view of that name, to be rounded.
     fn table(&self, name: &str) -> Result<Table, Error> {
+        if self.origin.experiment == COSTED && name == WHICH {
+            return Ok(self.which()?.table());
+        }
         let part = self.origin.views.get(name);
         let whole = part.map_or(name, |part| &part.table);
         let described = self.origin.tables.get(&format!("{whole}.csv"));
@@ -184,6 +205,9 @@ fn for_article(name: &str, results: &[Results]) -> Result<(String, String), Erro
     let head = found.origin.to_string();
     match (table, is_csv) {
         (_, true) => Ok((format!("{stem}.csv"), found.csv(table)?)),
+        (name, false) if found.is_claim(name) => {
+            Ok((format!("{stem}.tex"), format!("% {head}\n{}", found.which()?.claim())))
+        }
         (ORIGIN, false) => Ok((format!("{stem}.tex"), format!("% {head}\n{head}%\n"))),
         (_, false) => Ok((format!("{stem}.tex"), format!("% {head}\n{}", found.table(table)?.latex()))),
     }
@@ -238,17 +262,17 @@ fn with_blocks_filled(text: &str, results: &[Results]) -> Result<String, Error> 
         let name = marker.trim_start_matches(BEGIN).trim_end_matches("-->").trim();
         let end = block.find(END).ok_or_else(unclosed)?;
         let refused = |rule, remedy| Error::input("README.md: begin generated", name, rule, remedy);
-        let table = match name.split_once('/') {
-            None if name == METHODS => methods::table(),
+        let text = match name.split_once('/') {
+            None if name == METHODS => methods::table().markdown(),
             Some((experiment, table)) if is_name(experiment) && is_name(table) => {
                 let found = results.iter().find(|found| found.origin.experiment == experiment);
-                found
-                    .ok_or_else(|| refused("no such experiment has committed results", REMEDY))?
-                    .table(table)?
+                let found =
+                    found.ok_or_else(|| refused("no such experiment has committed results", REMEDY))?;
+                if found.is_claim(table) { found.which()?.claim() } else { found.table(table)?.markdown() }
             }
             _ => return Err(refused(NAMES, "write <!-- begin generated: experiment/table -->")),
         };
-        out += &format!("{before}{marker}\n{}{END}", table.markdown());
+        out += &format!("{before}{marker}\n{text}{END}");
         rest = &block[end + END.len()..];
     }
     Ok(out + rest)

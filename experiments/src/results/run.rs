@@ -36,7 +36,7 @@ pub(super) fn run(names: &[String], scale: Scale, out: &Path, page: Option<&Path
 
 fn write(experiment: &Experiment, scale: Scale, report: &Report, folder: &Path) -> Result<(), Error> {
     let staging = Staging::new(folder)?;
-    for table in report.tables.iter().chain(&report.data).chain(&report.timing) {
+    for table in report.tables.iter().chain(&report.data).chain(&report.timing).chain(&report.times) {
         staging.write(&format!("{}.csv", table.name), table.csv().as_bytes())?;
     }
     // a view may be one of the tables, shown alone

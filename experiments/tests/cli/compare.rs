@@ -90,10 +90,40 @@ fn a_trajectory_of_another_program_is_a_row() {
     assert_eq!(cell(&found[1], "method"), right);
     assert!(number(&found[1], "attitude_error") < 1e-14);
     assert_eq!(number(&found[1], "attitude_time"), 20.0);
+    for name in ["energy_error", "momentum_error", "momentum_vector_error"] {
+        assert!(number(&found[1], name) < 1e-14, "{name}");
+    }
+    let flips = |row| ["flips", "flips_exact", "flips_right"].map(|name| cell(row, name).to_owned());
+    assert_eq!(flips(&found[0]), flips(&found[1]));
     assert!(cell(&found[2], "status").starts_with("lost at t = "));
 
     let flags = |file: &str| format!("{TEXTBOOK} --until 20 --methods rk4 --steps 0.5 --trajectory {file}");
     let bad = |name: &str, text: &str| scratch.file(name, text);
+    // half the angular velocity is a quarter of the energy, and half of L in the right direction
+    let half: Vec<String> = exact
+        .lines()
+        .enumerate()
+        .map(|(k, line)| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let scaled =
+                |x: &str| if k == 0 { x.into() } else { (0.5 * x.parse::<f64>().unwrap()).to_string() };
+            let omega = cells[5..8].iter().map(|cell| scaled(cell));
+            cells[..5].iter().map(ToString::to_string).chain(omega).collect::<Vec<_>>().join(",")
+        })
+        .collect();
+    let found = rows(&output(&flags(&bad("half.csv", &half.join("\n")))));
+    assert!((number(&found[1], "energy_error") - 0.75).abs() < 1e-12);
+    assert!((number(&found[1], "momentum_vector_error") - 0.5).abs() < 1e-12);
+    // without angular velocities there is the attitude alone
+    let attitudes: Vec<String> =
+        exact.lines().map(|line| line.split(',').take(5).collect::<Vec<_>>().join(",")).collect();
+    let found = rows(&output(&flags(&bad("attitudes.csv", &attitudes.join("\n")))));
+    assert!(number(&found[1], "attitude_error") < 1e-14);
+    assert_eq!((cell(&found[1], "energy_error"), cell(&found[1], "flips")), ("", ""));
+    refused(
+        &flags(&bad("g.csv", "t,w,x,y,z,wx,wy\n1,1,0,0,0,0,0\n")),
+        &["g.csv: 'omega_body_z': no such column", "or none of them"],
+    );
     refused(&flags("missing.csv"), &["missing.csv", "cannot be read", "t, q_w, q_x, q_y, q_z"]);
     refused(&flags(&bad("a.csv", "t,q_w,q_x,q_y\n0,1,0,0\n")), &["a.csv: 'q_z': no such column"]);
     refused(&flags(&bad("b.csv", "t,w,x,y,z\n1,1,0,0,0\n1,1,0,0,0\n")), &["b.csv:3: '1'", "sort the rows"]);

@@ -3,37 +3,82 @@
 use polhode::body::{Body, Force, Point};
 use polhode::catalogue;
 use polhode::inertia::Inertia;
-use polhode::num::Dd;
+use polhode::num::{Dd, Random};
 use polhode::rotation::{Quat, Vec3};
 
 use crate::error::{Error, unexpected};
 use crate::experiment::Scale;
 use crate::text::short;
 
-/// One panel of the figure.
+pub(super) const SEED: u64 = 1967;
+
+/// A body with an ensemble of starts: one panel of the figure.
 pub(super) struct Case {
     pub(super) name: String,
-    /// Moments, forces and start, for readers.
+    pub(super) kind: Kind,
+    /// Moments, forces and starts, for readers.
     pub(super) what: String,
     pub(super) body: Body,
-    pub(super) start: Point<Dd>,
+    pub(super) starts: Vec<Point<Dd>>,
     /// About the time of one radian, s, a power of two.
     pub(super) unit: f64,
     /// Times of comparison, in units.
     pub(super) horizons: &'static [f64],
 }
 
-/// Moments and a generic angular velocity of about 1 rad/s.
-const FREE: [(&str, [f64; 3], [f64; 3]); 5] = [
-    ("textbook", [1.0, 2.0, 3.0], [0.4, 1.0, -0.3]),
-    ("dyadic", [0.625, 0.75, 1.0], [0.875, 0.25, -0.375]),
-    ("toutatis", [1.0, 3.0836, 3.235], [-0.875, 0.125, 0.375]),
-    ("racket", [0.0389, 0.4619, 0.4993], [0.25, 1.0, 0.125]),
-    ("spacecraft", [0.0241, 0.0234, 0.0201], [0.25, 0.875, 0.375]),
+/// What is asked of a method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Free,
+    Separatrix,
+    FastTop,
+    Upright,
+    AsymmetricTop,
+    Orbit,
+}
+
+impl Kind {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Kind::Free => "free body",
+            Kind::Separatrix => "free body near the separatrix",
+            Kind::FastTop => "fast symmetric top",
+            Kind::Upright => "symmetric top near upright",
+            Kind::AsymmetricTop => "asymmetric top",
+            Kind::Orbit => "body in orbit",
+        }
+    }
+}
+
+/// Angular velocity in the body, rad/s, and attitude of a start.
+type Start = ([f64; 3], [f64; 4]);
+
+const FREE: [(&str, [f64; 3]); 5] = [
+    ("textbook", [1.0, 2.0, 3.0]),
+    ("dyadic", [0.625, 0.75, 1.0]),
+    ("toutatis", [1.0, 3.0836, 3.235]),
+    ("racket", [0.0389, 0.4619, 0.4993]),
+    ("spacecraft", [0.0241, 0.0234, 0.0201]),
 ];
 
-/// Share of the angular velocity across the middle axis of a start next to the separatrix.
+/// Figure VII.5.3 of Hairer, Lubich and Wanner, and Kovalevskaya's top: moments, weight moment, rad/s.
+const HEAVY: [(&str, [f64; 3], [f64; 3], f64); 2] = [
+    ("asymmetric top", [0.5, 0.85, 1.0], [0.0, 0.0, 1.0], 1.3),
+    ("Kovalevskaya top", [2.0, 2.0, 1.0], [1.3, 0.0, 0.0], 1.0),
+];
+
+/// Share of the angular velocity across the middle axis of a start next to the separatrix; and the tilt in rad of a top that
+/// is nearly upright.
 const NEAR: f64 = 1e-3;
+
+/// Across its axis a fast top turns at about this share of its spin.
+const ACROSS: f64 = 0.03;
+
+/// Spin of the nearly upright top over the least that holds it upright.
+const SPIN: f64 = 0.9;
+
+/// Mean motion of the bodies in orbit, rad/s.
+const MEAN_MOTION: f64 = 0.125;
 
 const WHOLE: &[f64] = &[1e2, 1e4, 1e6];
 
@@ -42,76 +87,123 @@ pub(super) fn all(scale: Scale) -> Result<Vec<Case>, Error> {
     // a closed form is known at any time, a run in double-double costs its time
     let closed = &WHOLE[..scale.pick(1, 2, 3)];
     let followed: &[f64] = scale.pick(&[1e2], &[1e2, 1e3], &[1e2, 1e3, 1e4]);
-    let orbiting: &[f64] = scale.pick(&[], &[1e2], &[1e2, 1e3]);
-    let mut cases = Vec::new();
-    let bodies = scale.pick(1, FREE.len(), FREE.len());
-    for (name, moments, omega) in &FREE[..bodies] {
+    let members = scale.pick(2, 3, 11);
+    let mut cases: Vec<Case> = Vec::new();
+    for (name, moments) in &FREE[..scale.pick(1, 3, FREE.len())] {
         let body = Body::free(Inertia::from_moments(*moments).map_err(unexpected)?);
-        cases.push(Case::new(format!("{name}, generic"), body.clone(), *omega, UPRIGHT, closed)?);
+        let starts = drawn(cases.len(), members, |random| (anywhere(random, 1.0), UPRIGHT));
+        let how = "ω = 1 rad/s in all directions";
+        let name_here = format!("{name}, generic");
+        cases.push(Case::new(name_here, Kind::Free, body.clone(), (starts, how.into()), closed)?);
         let mut axes = [0, 1, 2];
         axes.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
-        let mut near = [0.0; 3];
-        (near[axes[0]], near[axes[1]], near[axes[2]]) = (NEAR, 1.0, NEAR);
-        cases.push(Case::new(format!("{name}, separatrix"), body, near, UPRIGHT, closed)?);
+        let starts = drawn(cases.len(), members, |random| {
+            let (sin, cos) = libm::sincos(random.between(0.0, TURN));
+            let mut near = [0.0; 3];
+            (near[axes[0]], near[axes[1]], near[axes[2]]) = (NEAR * cos, 1.0, NEAR * sin);
+            (near, UPRIGHT)
+        });
+        let how = format!("ω = 1 rad/s within {NEAR} rad of the middle axis");
+        cases.push(Case::new(format!("{name}, separatrix"), Kind::Separatrix, body, (starts, how), closed)?);
     }
-    let tops = scale.pick(1, 2, 2);
-    for name in &["simo-wong", "bruls-cardona"][..tops] {
+    for name in &["simo-wong", "bruls-cardona"][..scale.pick(1, 2, 2)] {
         let top = catalogue::top(name).ok_or_else(|| unexpected("a top of the catalogue is missing"))?;
         let body = top.body().map_err(unexpected)?;
-        cases.push(Case::new(format!("{name} top"), body, top.omega_body, top.attitude, closed)?);
+        let speed = Vec3(top.omega_body).norm();
+        let starts = drawn(cases.len(), members, |random| {
+            let off = random.normal_vector() * (ACROSS * speed);
+            ([0, 1, 2].map(|k| top.omega_body[k] + off[k]), any_attitude(random))
+        });
+        let how = format!("ω about {} rad/s along the axis, every tilt", short(rounded(speed)));
+        cases.push(Case::new(format!("{name} top"), Kind::FastTop, body, (starts, how), closed)?);
     }
-    // figure VII.5.3 of Hairer, Lubich and Wanner; and Kovalevskaya's top
-    let heavy = [
-        ("asymmetric top", [0.5, 0.85, 1.0], [0.0, 0.0, 1.0], [0.4, 1.0 / 0.85, 0.4], [0.4, 0.2, 0.4, 0.8]),
-        ("Kovalevskaya top", [2.0, 2.0, 1.0], [1.3, 0.0, 0.0], [0.35, -0.2, 0.9], [0.9, 0.2, -0.3, 0.4]),
-    ];
-    for (name, moments, weight, omega, attitude) in heavy.into_iter().take(tops) {
+    cases.push(nearly_upright(cases.len(), members, closed)?);
+    for (name, moments, weight, speed) in HEAVY.into_iter().take(scale.pick(1, 2, 2)) {
         let inertia = Inertia::from_moments(moments).map_err(unexpected)?;
         let body = Body::heavy(inertia, weight.into()).map_err(unexpected)?;
-        cases.push(Case::new(name.into(), body, omega, attitude, followed)?);
+        let starts = drawn(cases.len(), members, |random| (anywhere(random, speed), any_attitude(random)));
+        let how = format!("ω = {speed} rad/s in all directions, every attitude");
+        cases.push(Case::new(name.into(), Kind::AsymmetricTop, body, (starts, how), followed)?);
     }
-    if !orbiting.is_empty() {
-        let (_, moments, omega) = FREE[4];
-        let inertia = Inertia::from_moments(moments).map_err(unexpected)?;
-        let force = Force::gravity_gradient(&inertia, 0.125, 0.0).map_err(unexpected)?;
+    let orbiting: &[f64] = scale.pick(&[], &[1e2], &[1e2, 1e3]);
+    let in_orbit = [FREE[4], FREE[2]];
+    for (name, moments) in &in_orbit[..if orbiting.is_empty() { 0 } else { scale.pick(0, 1, 2) }] {
+        let inertia = Inertia::from_moments(*moments).map_err(unexpected)?;
+        let force = Force::gravity_gradient(&inertia, MEAN_MOTION, 0.0).map_err(unexpected)?;
         let body = Body::free(inertia).with(force);
-        cases.push(Case::new("spacecraft in orbit".into(), body, omega, UPRIGHT, orbiting)?);
+        let starts = drawn(cases.len(), members, |random| (anywhere(random, 1.0), any_attitude(random)));
+        let how = format!("circular orbit at {MEAN_MOTION} rad/s, ω = 1 rad/s in all directions");
+        cases.push(Case::new(format!("{name} in orbit"), Kind::Orbit, body, (starts, how), orbiting)?);
     }
     Ok(cases)
 }
 
+/// A symmetric top that spins too slowly to stay upright, and begins next to the motion that leaves the vertical and comes
+/// back to it in infinite time.
+fn nearly_upright(case: usize, members: u64, horizons: &'static [f64]) -> Result<Case, Error> {
+    let (across, along, weight) = (1.0, 0.5, 1.0);
+    let inertia = Inertia::from_moments([across, across, along]).map_err(unexpected)?;
+    let body = Body::heavy(inertia, [0.0, 0.0, weight].into()).map_err(unexpected)?;
+    // Klein and Sommerfeld: it stays upright where (C ω)² ≥ 4 A M g l
+    let spin = SPIN * 2.0 * libm::sqrt(across * weight) / along;
+    let starts = drawn(case, members, |random| {
+        let (sin, cos) = libm::sincos(random.between(0.0, TURN));
+        ([0.0, 0.0, spin], [1.0, 0.5 * NEAR * cos, 0.5 * NEAR * sin, 0.0])
+    });
+    let how = format!("{SPIN} of the spin that holds it upright, tilted by {NEAR} rad");
+    Case::new("upright top".into(), Kind::Upright, body, (starts, how), horizons)
+}
+
 const UPRIGHT: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
+const TURN: f64 = 2.0 * std::f64::consts::PI;
+
+/// `members` starts, each from random numbers of its own.
+fn drawn(case: usize, members: u64, mut draw: impl FnMut(&mut Random) -> Start) -> Vec<Start> {
+    let random = Random::new(SEED);
+    (0..members).map(|member| draw(&mut random.stream(((case as u64) << 32) | member))).collect()
+}
+
+fn anywhere(random: &mut Random, speed: f64) -> [f64; 3] {
+    (random.normal_vector().normalize() * speed).into()
+}
+
+fn any_attitude(random: &mut Random) -> [f64; 4] {
+    [(); 4].map(|()| random.normal())
+}
+
+/// To four digits.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
 
 impl Case {
     fn new(
         name: String,
+        kind: Kind,
         body: Body,
-        omega: [f64; 3],
-        attitude: [f64; 4],
+        (starts, how): (Vec<Start>, String),
         horizons: &'static [f64],
     ) -> Result<Case, Error> {
-        let start = body.enter_omega(Quat::from_components(attitude), Vec3(omega)).map_err(unexpected)?;
-        let least = body.rotor().moments::<f64>().0.into_iter().fold(f64::INFINITY, f64::min);
+        let speed = starts.first().map_or(0.0, |start| Vec3(start.0).norm());
+        let point = |(omega, attitude): Start| {
+            body.enter_omega(Quat::from_components(attitude), Vec3(omega)).map_err(unexpected)
+        };
+        let starts = starts.into_iter().map(point).collect::<Result<_, _>>()?;
+        let moments = body.rotor().moments::<f64>();
+        let least = moments.0.into_iter().fold(f64::INFINITY, f64::min);
         let weight = body.gravity::<f64>().map_or(0.0, |gravity| gravity.weight_moment.norm());
         // a top at rest moves at the rate of a pendulum
-        let rate = Vec3(omega).norm() + libm::sqrt(weight / least);
+        let rate = speed + libm::sqrt(weight / least);
         let unit = libm::exp2(libm::round(-libm::log2(rate)));
-        let force = match (weight > 0.0, body.forces().is_empty()) {
-            (true, _) => ", heavy",
-            (false, false) => ", gravity gradient of a circular orbit at 0.125 rad/s",
-            (false, true) => "",
-        };
-        let list = |numbers: [f64; 3]| {
-            numbers.map(|x| format!("{:.4e}", x).parse().map_or(String::new(), short)).join(", ")
-        };
-        let moments = body.rotor().moments::<f64>().0.map(|moment| moment * body.scale());
-        let what = format!("moments {} kg m²{force}; ω = {} rad/s at the start", list(moments), list(omega));
-        Ok(Case { name, what, body, start, unit, horizons })
+        let list = moments.0.map(|moment| short(rounded(moment * body.scale()))).join(", ");
+        let heavy = if weight > 0.0 { ", heavy" } else { "" };
+        let what = format!("moments {list} kg m²{heavy}; {how}");
+        Ok(Case { name, kind, what, body, starts, unit, horizons })
     }
 
-    /// The end, in units.
-    pub(super) fn end(&self) -> f64 {
-        self.horizons.last().copied().unwrap_or(0.0)
+    /// Whether nothing acts on the body.
+    pub(super) fn is_free(&self) -> bool {
+        self.body.forces().is_empty() && self.body.gravity::<f64>().is_none()
     }
 
     /// Times of the looks, s: 32 up to each horizon.

@@ -1,0 +1,200 @@
+//! Which methods run at which steps, and what a run from every start of a case shows.
+
+use polhode::body::Clock;
+use polhode::method::{AnyMethod, catalogue, method};
+use polhode::run::Watch;
+
+use super::cases::Case;
+use super::contest::{Contestant, Quantiles, Run};
+use crate::error::{Error, unexpected};
+use crate::measured::{Care, Ending, LOST, Measured, Motion, StepTime, evaluations, is_adaptive};
+
+/// Schemes beside the catalogue; those that a force does not admit are left out there.
+const SCHEMES: [&str; 19] = [
+    "dmv:4",
+    "dmv:6",
+    "rattle@suzuki-4",
+    "lie-poisson@suzuki-4",
+    "lie-poisson@kahan-li-6",
+    "two-turn@suzuki-4",
+    "two-turn@blanes-moan-s6",
+    "two-turn@blanes-moan-s10",
+    "two-turn@kahan-li-8",
+    "two-turn@sofroniou-spaletta-10",
+    "kick-drift@srkn-6b",
+    "kick-drift@srkn-11b",
+    "kick-drift@srkn-14a",
+    "kick-drift@bce-22",
+    "kick-drift@omelyan-mryglod-folk-4",
+    "kick-drift@aba-10-6-4",
+    "dmv:6@srkn-11b",
+    "dmv:10@srkn-11b",
+    "rk4-projected",
+];
+
+/// Tolerances of methods that choose their steps.
+const TOLERANCES: [&str; 7] = ["1e-3", "1e-5", "1e-7", "1e-9", "1e-11", "1e-13", "1e-15"];
+
+/// Steps are 100 units over 2^k, from this k on.
+const COARSEST: i32 = 5;
+
+/// An implicit solution counts as so many evaluations: the sweeps that it takes where a step turns the body by about 15°.
+const SOLUTION: u32 = 6;
+
+/// Beyond this horizon, in units, a run goes only from the first `FEW` starts, where it costs at most `AFFORDABLE` evaluations
+/// per unit and its median error up to here is at most `WORTH_WHILE` rad.
+const LONG: f64 = 1e4;
+pub(super) const FEW: usize = 5;
+const AFFORDABLE: f64 = 40.0;
+const WORTH_WHILE: f64 = 1e-3;
+
+/// How far a scale goes.
+#[derive(Clone, Copy)]
+pub(super) struct Budget {
+    /// Evaluations per unit of time that the finest step takes at most.
+    pub(super) evaluations: f64,
+    /// Of the tolerances every so many are taken.
+    pub(super) tolerances: usize,
+}
+
+/// A method at one step or tolerance.
+pub(super) struct Entry {
+    pub(super) method: Box<dyn AnyMethod>,
+    /// In s; `None` where the method chooses it.
+    pub(super) step: Option<f64>,
+}
+
+/// What the runs of an entry showed.
+pub(super) struct Found {
+    pub(super) run: Run,
+    /// Largest relative error of the energy or of Jacobi's constant at the looks, of the start in the middle.
+    pub(super) energy: Option<f64>,
+    /// Starts from which the attitude is held to the last horizon that was tried, of how many.
+    pub(super) held: (u64, u64),
+    /// What became of the first run that did not come to its end.
+    pub(super) ending: Ending,
+}
+
+/// Every method that takes the case, each from coarse to fine.
+pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, Error> {
+    let mut names: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
+    names.extend(SCHEMES.map(String::from));
+    // without torque kick-drift is exact-step, whatever its scheme
+    names.retain(|name| !(case.is_free() && name.starts_with("kick-drift")));
+    let mut families = Vec::new();
+    for name in names {
+        let of_name = method(&name).map_err(unexpected)?;
+        let Some(claims) = of_name.claims(case.body.problem()) else { continue };
+        let mut family = Vec::new();
+        if is_adaptive(&name) {
+            for tolerance in TOLERANCES.iter().step_by(budget.tolerances) {
+                // the tightest ones are not those of every method
+                if let Ok(method) = method(&format!("{name}:{tolerance}")) {
+                    family.push(Entry { method, step: None });
+                }
+            }
+        } else {
+            let of_step = evaluations(of_name.as_ref(), &case.body) as f64;
+            let cost = of_step + f64::from((SOLUTION - 1) * claims.cost.solves);
+            for k in COARSEST.. {
+                let step = 100.0 * libm::exp2(-f64::from(k));
+                if cost / step > budget.evaluations && k > COARSEST {
+                    break;
+                }
+                let method = method(&name).map_err(unexpected)?;
+                family.push(Entry { method, step: Some(step * case.unit) });
+            }
+        }
+        let taken = |entry: &Entry| {
+            entry.method.prepare_f64(Clock::new(entry.step.unwrap_or(1.0)), &case.body).is_ok()
+        };
+        if family.first().is_some_and(taken) {
+            families.push(family);
+        }
+    }
+    Ok(families)
+}
+
+/// The runs of one family.
+pub(super) fn contestant(family: &[Entry], found: &[Found]) -> Option<Contestant> {
+    // one name for all tolerances
+    let name = family.first()?.method.name();
+    let base = name.split(':').next().unwrap_or(&name).to_owned();
+    let name = if is_adaptive(&name) { base } else { name };
+    Some(Contestant { name, runs: found.iter().map(|found| found.run.clone()).collect() })
+}
+
+impl Entry {
+    /// `known_time` is that of a step at another step of the same method.
+    pub(super) fn measure(
+        &self,
+        case: &Case,
+        motions: &[Motion],
+        known_time: &mut Option<StepTime>,
+    ) -> Result<Found, Error> {
+        let (unit, horizons) = (case.unit, case.horizons);
+        // one that chooses its steps is read at the looks of the first horizon
+        let step = self.step.unwrap_or(horizons[0] * unit / 32.0);
+        let run = |motion: &Motion, horizon: f64| {
+            let until = horizon * unit * (1.0 + 1e-9);
+            let care = Care { watch: Watch::AtSamples, until_lost: true, until };
+            motion.measure(self.method.as_ref(), step, care).map_err(unexpected)
+        };
+        let common = horizons.iter().copied().filter(|horizon| *horizon <= LONG).fold(0.0, f64::max);
+        let mut all = motions.iter().map(|motion| run(motion, common)).collect::<Result<Vec<_>, _>>()?;
+        let evaluations: Vec<f64> = all.iter().map(|measured| self.per_unit(case, measured)).collect();
+        let mut errors: Vec<Vec<Option<f64>>> =
+            horizons.iter().map(|horizon| errors_of(&all, horizon * unit, common * unit)).collect();
+        let end = horizons.last().copied().unwrap_or(common);
+        let before = horizons.iter().rposition(|horizon| *horizon <= LONG).unwrap_or(0);
+        let middle = |values: Vec<f64>| Quantiles::of(values).map_or(f64::INFINITY, |found| found.median);
+        let error = middle(errors[before].iter().copied().flatten().collect());
+        if end > LONG && error <= WORTH_WHILE && middle(evaluations.clone()) <= AFFORDABLE {
+            all = motions.iter().take(FEW).map(|motion| run(motion, end)).collect::<Result<Vec<_>, _>>()?;
+            let last = horizons.len() - 1;
+            errors[last] = errors_of(&all, end * unit, end * unit);
+            errors[last].resize(motions.len(), None);
+        }
+        let claims = self.method.claims(case.body.problem());
+        let varies = self.step.is_none() || claims.is_some_and(|claims| claims.cost.solves > 0);
+        let time = match (*known_time, motions.first()) {
+            (Some(time), _) if !varies => time,
+            (_, Some(motion)) => motion.step_time(self.method.as_ref(), step)?,
+            (_, None) => return Err(unexpected("a case has no starts")),
+        };
+        *known_time = Some(time);
+        let of_first = time.seconds / time.rk4 / (step / unit);
+        // one that chooses its steps takes as much time as it takes evaluations
+        let time = evaluations.iter().map(|count| match self.step {
+            Some(_) => of_first,
+            None => of_first * count / evaluations[0],
+        });
+        let energies = all.iter().filter_map(|one| one.last.worst.energy.or(one.last.worst.jacobi));
+        let ending = all.iter().map(|measured| measured.ending).find(|ending| *ending != Ending::Held);
+        let held = all.iter().filter(|measured| measured.ending == Ending::Held).count();
+        Ok(Found {
+            run: Run { time: time.collect(), evaluations, errors },
+            energy: Quantiles::of(energies.collect()).map(|energy| energy.median),
+            held: (held as u64, all.len() as u64),
+            ending: ending.unwrap_or(Ending::Held),
+        })
+    }
+
+    /// Evaluations per unit of time.
+    fn per_unit(&self, case: &Case, measured: &Measured) -> f64 {
+        let of_step = evaluations(self.method.as_ref(), &case.body) as f64;
+        let solves = self.method.claims(case.body.problem()).map_or(0, |claims| claims.cost.solves);
+        let weighed = 1.0 + f64::from((SOLUTION - 1) * solves) / of_step;
+        let last = measured.looks.last().map(|look| look.evaluations as f64 / (look.elapsed / case.unit));
+        last.map(|cost| cost * weighed).filter(|cost| *cost > 0.0).unwrap_or(f64::INFINITY)
+    }
+}
+
+/// The largest attitude error of each run up to `horizon` s; `None` where the runs end before.
+fn errors_of(runs: &[Measured], horizon: f64, end: f64) -> Vec<Option<f64>> {
+    let error = |measured: &Measured| {
+        let seen = measured.largest_attitude_error(horizon).filter(|error| *error <= LOST);
+        (horizon <= end).then(|| seen.unwrap_or(f64::INFINITY))
+    };
+    runs.iter().map(error).collect()
+}
