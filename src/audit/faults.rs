@@ -10,7 +10,7 @@ use crate::rotation::Vec3;
 /// An interval this many times the usual one is a jump.
 const JUMP: f64 = 1.5;
 
-/// Rows with the same angular velocity that make a plateau.
+/// Rows with the same component of the angular velocity that make a plateau.
 const PLATEAU: usize = 5;
 
 /// Fewer digits than this are worth a word.
@@ -89,20 +89,34 @@ fn not_normalized(record: &Trajectory, threshold: f64) -> Option<Fault> {
     (error > threshold).then_some(Fault::NotNormalized { error, row })
 }
 
-/// The longest run of rows with the same angular velocity, of a record in which it changes elsewhere.
+/// The longest run of rows in which a component of the angular velocity stays the same although it changes elsewhere. Rounded
+/// peaks stay the same too, but are entered and left by small changes.
 fn plateau(record: &Trajectory) -> Option<Fault> {
     let rates = record.rates.as_ref()?;
-    let (mut longest, mut at, mut from) = (1, 0, 0);
-    for row in 1..=rates.len() {
-        if row == rates.len() || rates[row] != rates[from] {
-            if row - from > longest {
-                (longest, at) = (row - from, from);
+    let mut longest = (0, 0);
+    for axis in 0..3 {
+        let change = |row: usize| (rates[row][axis] - rates[row - 1][axis]).abs();
+        let mut changes: Vec<f64> = (1..rates.len()).map(change).filter(|change| *change > 0.0).collect();
+        if changes.len() < PLATEAU {
+            continue;
+        }
+        let middle = changes.len() / 2;
+        let usual = *changes.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let mut from = 0;
+        for row in 1..=rates.len() {
+            if row < rates.len() && rates[row][axis] == rates[from][axis] {
+                continue;
+            }
+            let entered = from > 0 && change(from) > 0.3 * usual;
+            let left = row < rates.len() && change(row) > 0.3 * usual;
+            if (entered || left) && row - from > longest.0 {
+                longest = (row - from, from);
             }
             from = row;
         }
     }
-    let elsewhere = rates.windows(2).filter(|pair| pair[0] != pair[1]).count();
-    (longest >= PLATEAU && elsewhere >= longest).then_some(Fault::Plateau { row: at, rows: longest })
+    let (rows, row) = longest;
+    (rows >= PLATEAU).then_some(Fault::Plateau { row, rows })
 }
 
 /// Where attitude or angular velocity change by far more than between other rows.
