@@ -10,7 +10,7 @@ use crate::rotation::Vec3;
 /// An interval this many times the usual one is a jump.
 const JUMP: f64 = 1.5;
 
-/// Rows with the same angular velocity that make a plateau.
+/// Rows with the same component of the angular velocity that make a plateau.
 const PLATEAU: usize = 5;
 
 /// Fewer digits than this are worth a word.
@@ -19,13 +19,13 @@ const FEW_DIGITS: u32 = 10;
 /// A change of state this many times what nearly all rows show is a discontinuity.
 const DISCONTINUITY: f64 = 25.0;
 
-/// What is odd about `record`, read by `reading`. `resolution`: what noise and digits make of a change, rad or relative.
+/// What is odd about `record`, read by `reading`. `rounding`: of the numbers, relative.
 pub(super) fn faults(
     record: &Trajectory,
     reading: &Reading,
     writing: &Writing,
     tolerance: f64,
-    resolution: f64,
+    rounding: f64,
 ) -> Vec<Fault> {
     let mut found = Vec::new();
     let usual = usual_interval(record);
@@ -51,14 +51,14 @@ pub(super) fn faults(
             found.push(Fault::SignFlips { row, count: flips.len() });
         }
     }
-    found.extend(not_normalized(record, tolerance.max(20.0 * resolution)));
+    found.extend(not_normalized(record, tolerance.max(20.0 * rounding)));
     found.extend(plateau(record));
     if writing.single_precision {
         found.push(Fault::SinglePrecision);
     } else if writing.digits < FEW_DIGITS {
         found.push(Fault::FewDigits { digits: writing.digits });
     }
-    found.extend(discontinuity(record, reading, usual, resolution));
+    found.extend(discontinuity(record, reading, usual, rounding));
     found
 }
 
@@ -89,24 +89,38 @@ fn not_normalized(record: &Trajectory, threshold: f64) -> Option<Fault> {
     (error > threshold).then_some(Fault::NotNormalized { error, row })
 }
 
-/// The longest run of rows with the same angular velocity, of a record in which it changes elsewhere.
+/// The longest run of rows in which a component of the angular velocity stays the same although it changes elsewhere. Rounded
+/// peaks stay the same too, but are entered and left by small changes.
 fn plateau(record: &Trajectory) -> Option<Fault> {
     let rates = record.rates.as_ref()?;
-    let (mut longest, mut at, mut from) = (1, 0, 0);
-    for row in 1..=rates.len() {
-        if row == rates.len() || rates[row] != rates[from] {
-            if row - from > longest {
-                (longest, at) = (row - from, from);
+    let mut longest = (0, 0);
+    for axis in 0..3 {
+        let change = |row: usize| (rates[row][axis] - rates[row - 1][axis]).abs();
+        let mut changes: Vec<f64> = (1..rates.len()).map(change).filter(|change| *change > 0.0).collect();
+        if changes.len() < PLATEAU {
+            continue;
+        }
+        let middle = changes.len() / 2;
+        let usual = *changes.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let mut from = 0;
+        for row in 1..=rates.len() {
+            if row < rates.len() && rates[row][axis] == rates[from][axis] {
+                continue;
+            }
+            let entered = from > 0 && change(from) > 0.3 * usual;
+            let left = row < rates.len() && change(row) > 0.3 * usual;
+            if (entered || left) && row - from > longest.0 {
+                longest = (row - from, from);
             }
             from = row;
         }
     }
-    let elsewhere = rates.windows(2).filter(|pair| pair[0] != pair[1]).count();
-    (longest >= PLATEAU && elsewhere >= longest).then_some(Fault::Plateau { row: at, rows: longest })
+    let (rows, row) = longest;
+    (rows >= PLATEAU).then_some(Fault::Plateau { row, rows })
 }
 
 /// Where attitude or angular velocity change by far more than between other rows.
-fn discontinuity(record: &Trajectory, reading: &Reading, usual: f64, resolution: f64) -> Option<Fault> {
+fn discontinuity(record: &Trajectory, reading: &Reading, usual: f64, rounding: f64) -> Option<Fault> {
     let rows = record.times.len();
     let mut size = 0.0_f64;
     let mut before = (reading.attitude(record, 0), reading.omega_body(record, 0));
@@ -139,7 +153,7 @@ fn discontinuity(record: &Trajectory, reading: &Reading, usual: f64, resolution:
     }
     let at = sorted.len() * 95 / 100;
     let common = *sorted.select_nth_unstable_by(at, f64::total_cmp).1;
-    let threshold = DISCONTINUITY * common.max(resolution);
+    let threshold = DISCONTINUITY * common.max(rounding);
     let jumps = sizes.iter().filter(|(_, size)| *size > threshold);
     let largest = jumps.clone().fold((0, 0.0), |most, next| if next.1 > most.1 { *next } else { most });
     (largest.1 > 0.0).then(|| Fault::Discontinuity { row: largest.0, size: largest.1, count: jumps.count() })

@@ -189,7 +189,7 @@ pub enum Fault {
         /// The row, from 0.
         row: usize,
     },
-    /// Angular velocities that stay the same over rows while the body accelerates, as clamped rates do.
+    /// A component of the angular velocity that stays the same over rows, as clamped or held rates do.
     Plateau {
         /// The first row.
         row: usize,
@@ -354,7 +354,7 @@ impl fmt::Display for Fault {
             }
             Fault::Plateau { row, rows } => write!(
                 f,
-                "row {row}: the angular velocity stays the same over {rows} rows; are rates clamped or held?"
+                "row {row}: a component of the angular velocity stays the same over {rows} rows; are rates clamped or held?"
             ),
             Fault::SinglePrecision => f.write_str("every number is one of single precision; write doubles"),
             Fault::FewDigits { digits } => {
