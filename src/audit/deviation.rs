@@ -16,6 +16,9 @@ const IS_NOISE: f64 = 1.25;
 /// Those above are not.
 const IS_NONE: f64 = 1.6;
 
+/// Distances from the motion that are small, rad or relative; larger ones are no noise.
+const SMALL: f64 = 0.3;
+
 /// The turn between rows, rad, above which an error that swings with the motion looks like noise.
 const COARSE: f64 = 0.8;
 
@@ -62,11 +65,13 @@ impl Distance {
     }
 }
 
-/// Noise of a component of `vectors` at `rows`.
+/// Noise of a component of `vectors` at `rows`, of which only the small are looked at: a rotation vector of half a turn jumps.
 fn noise_of(rows: &[usize], vectors: &[Vec3<f64>]) -> f64 {
+    let (rows, vectors): (Vec<usize>, Vec<Vec3<f64>>) =
+        rows.iter().zip(vectors).filter(|(_, v)| v.norm() < SMALL).unzip();
     let squares = [0, 1, 2].map(|axis| {
         let values: Vec<f64> = vectors.iter().map(|v| v[axis]).collect();
-        let of_axis = noise(rows, &values);
+        let of_axis = noise(&rows, &values);
         of_axis * of_axis
     });
     (squares.iter().sum::<f64>() / 3.0).sqrt()
@@ -98,6 +103,8 @@ pub(super) fn deviation(
             let (largest, spread) = (Distance::largest(vectors).0, Distance::spread(vectors));
             let judgement = if largest <= tolerance.max(1.5 * rounding) {
                 Judgement::Right
+            } else if largest > 1.0 {
+                Judgement::Wrong
             } else if spread <= IS_NOISE * noise {
                 let coarse = rows.windows(2).any(|pair| {
                     pair[1].row == pair[0].row + 1 && (pair[1].time - pair[0].time) * size > COARSE

@@ -19,13 +19,13 @@ const FEW_DIGITS: u32 = 10;
 /// A change of state this many times what nearly all rows show is a discontinuity.
 const DISCONTINUITY: f64 = 25.0;
 
-/// What is odd about `record`, read by `reading`. `resolution`: what noise and digits make of a change, rad or relative.
+/// What is odd about `record`, read by `reading`. `rounding`: of the numbers, relative.
 pub(super) fn faults(
     record: &Trajectory,
     reading: &Reading,
     writing: &Writing,
     tolerance: f64,
-    resolution: f64,
+    rounding: f64,
 ) -> Vec<Fault> {
     let mut found = Vec::new();
     let usual = usual_interval(record);
@@ -51,14 +51,14 @@ pub(super) fn faults(
             found.push(Fault::SignFlips { row, count: flips.len() });
         }
     }
-    found.extend(not_normalized(record, tolerance.max(20.0 * resolution)));
+    found.extend(not_normalized(record, tolerance.max(20.0 * rounding)));
     found.extend(plateau(record));
     if writing.single_precision {
         found.push(Fault::SinglePrecision);
     } else if writing.digits < FEW_DIGITS {
         found.push(Fault::FewDigits { digits: writing.digits });
     }
-    found.extend(discontinuity(record, reading, usual, resolution));
+    found.extend(discontinuity(record, reading, usual, rounding));
     found
 }
 
@@ -106,7 +106,7 @@ fn plateau(record: &Trajectory) -> Option<Fault> {
 }
 
 /// Where attitude or angular velocity change by far more than between other rows.
-fn discontinuity(record: &Trajectory, reading: &Reading, usual: f64, resolution: f64) -> Option<Fault> {
+fn discontinuity(record: &Trajectory, reading: &Reading, usual: f64, rounding: f64) -> Option<Fault> {
     let rows = record.times.len();
     let mut size = 0.0_f64;
     let mut before = (reading.attitude(record, 0), reading.omega_body(record, 0));
@@ -139,7 +139,7 @@ fn discontinuity(record: &Trajectory, reading: &Reading, usual: f64, resolution:
     }
     let at = sorted.len() * 95 / 100;
     let common = *sorted.select_nth_unstable_by(at, f64::total_cmp).1;
-    let threshold = DISCONTINUITY * common.max(resolution);
+    let threshold = DISCONTINUITY * common.max(rounding);
     let jumps = sizes.iter().filter(|(_, size)| *size > threshold);
     let largest = jumps.clone().fold((0, 0.0), |most, next| if next.1 > most.1 { *next } else { most });
     (largest.1 > 0.0).then(|| Fault::Discontinuity { row: largest.0, size: largest.1, count: jumps.count() })

@@ -41,7 +41,7 @@ pub(super) fn judge(
     let has_omega = Columns::new(record).source != Source::Attitude;
     let every = if free && has_omega { states(record, &reading, &body, &numbers) } else { Vec::new() };
     let (conservation, mut traces) = conservation(record, &reading, &body, tolerance, rounding, &every);
-    let faults = faults(record, &reading, &writing, tolerance, noise.max(rounding));
+    let faults = faults(record, &reading, &writing, tolerance, rounding);
     let by_motion = deviation.as_ref().map_or(Judgement::Undecided, |found| found.judgement);
     let claim = broken_claim(&reading, &finding, question);
     let mut signature = None;

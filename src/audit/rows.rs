@@ -9,6 +9,15 @@ const TURN: f64 = 0.7;
 /// Most windows.
 const MOST: usize = 96;
 
+/// Windows of which a row turns by less than this, rad, are never left out.
+const CALM: f64 = 0.1;
+
+/// Nor are those that turn by less than this many times what the slowest tenth does.
+const STEADY: f64 = 3.0;
+
+/// Fewest that are kept.
+const FEWEST: usize = 10;
+
 /// Most rows between the ends of a window that the kinematics are integrated over.
 const NODES: usize = 8;
 
@@ -38,15 +47,17 @@ impl Windows {
         let spread = |count: usize, k: usize| if count > 1 { k * last / (count - 1) } else { 0 };
         // where a program has run away, the body turns too fast for its rows to tell
         let wide = (4 * MOST).min(last + 1);
+        let of_window =
+            |row: usize| (row..row + 3.min(stride)).map(|row| turn_between(record, row)).fold(0.0, f64::max);
         let mut turns: Vec<(f64, usize)> =
-            (0..wide).map(|k| spread(wide, k)).map(|row| (turn_between(record, row), row)).collect();
+            (0..wide).map(|k| spread(wide, k)).map(|row| (of_window(row), row)).collect();
         turns.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let slow = turns[turns.len() / 4].0.max(1.0);
-        let mut kept: Vec<usize> =
-            turns.iter().filter(|(turn, _)| *turn <= slow).map(|(_, row)| *row).collect();
+        let calm = CALM.max(STEADY * turns[turns.len() / 10].0);
+        let calm = turns.partition_point(|(turn, _)| *turn <= calm).max(FEWEST.min(turns.len()));
+        let mut kept: Vec<usize> = turns[..calm].iter().map(|(_, row)| *row).collect();
         kept.sort_unstable();
-        let starts =
-            (0..count.min(kept.len())).map(|k| kept[k * kept.len() / count.min(kept.len())]).collect();
+        let count = count.min(kept.len());
+        let starts = (0..count).map(|k| kept[k * kept.len() / count]).collect();
         Windows { starts, stride, node }
     }
 }
@@ -61,16 +72,14 @@ fn typical_turn(record: &Trajectory) -> f64 {
     turns[turns.len() / 2]
 }
 
-/// How far the body turns between the rows `row` and `row + 1`, rad.
+/// How far the body turns between the rows `row` and `row + 1`, rad, or its angular velocity turns, whichever is more: a wrong
+/// unit parts the two.
 fn turn_between(record: &Trajectory, row: usize) -> f64 {
-    match &record.attitude {
-        Some(attitude) => attitude.turn(row),
-        None => record.rates.as_ref().or(record.momentum.as_ref()).map_or(0.0, |rates| {
-            // the direction of the angular velocity turns about as fast as the body
-            let (a, b) = (Vec3(rates[row]), Vec3(rates[row + 1]));
-            libm::atan2(a.cross(b).norm(), a.dot(b))
-        }),
-    }
+    let by_rates = record.rates.as_ref().or(record.momentum.as_ref()).map_or(0.0, |rates| {
+        let (a, b) = (Vec3(rates[row]), Vec3(rates[row + 1]));
+        libm::atan2(a.cross(b).norm(), a.dot(b))
+    });
+    record.attitude.as_ref().map_or(0.0, |attitude| attitude.turn(row)).max(by_rates)
 }
 
 impl Attitudes {

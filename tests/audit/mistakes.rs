@@ -106,6 +106,9 @@ fn named(mistake: Mistake, name: &str, number: u64) -> u64 {
                 Transposed => Vec3::from(inverse * Vector3::from(x.0.rotate(x.1))),
                 _ => x.1,
             };
+            if omega.norm() > 30.0 * spin {
+                break; // a wrong sign may spin it up without end
+            }
             states.push((dt * k as f64, x.0, omega));
             for _ in 0..20 {
                 x = step(mistake, axis, i, dt / 20.0, x);

@@ -177,7 +177,8 @@ pub(crate) fn record(
                 triples.push(angles.map(|x| writing.write(random, x / unit.radians(), 1.0 / unit.radians())));
             }
         }
-        let shown = if reading.omega_frame == Some(Frame::Space) { q.rotate(*omega) } else { *omega };
+        let shown =
+            if reading.omega_frame == Some(Frame::Space) { q.normalized().rotate(*omega) } else { *omega };
         rates.push(shown.0.map(|x| writing.write(random, x / unit, size)));
     }
     let attitude = match form {
