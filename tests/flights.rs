@@ -28,7 +28,7 @@ impl Hand {
 
     fn rate(&self, t: f64) -> Vector3<f64> {
         Vector3::from_fn(|k, _| {
-            self.sines[k].iter().map(|(size, frequency, phase)| size * (frequency * t + phase).sin()).sum()
+            self.sines[k].iter().map(|(size, frequency, phase)| size * libm::sin(frequency * t + phase)).sum()
         })
     }
 }
@@ -40,37 +40,41 @@ enum Part {
     Thrown(f64, Vector3<f64>),
 }
 
-/// A recording of these parts, and the spans of the throws, s.
-fn recording(
-    parts: &[Part],
-    drag: f64,
-    gyroscope: &Gyroscope,
-    seed: u64,
-) -> (Vec<f64>, Vec<Vector3<f64>>, Vec<(f64, f64)>) {
-    let body = Inertia::from_moments(BODY).unwrap();
-    let mut random = Random::new(seed);
-    let hand = Hand::new(1.5, &mut random);
-    let (mut times, mut rates, mut throws): (Vec<f64>, Vec<Vector3<f64>>, Vec<(f64, f64)>) =
-        Default::default();
-    for part in parts {
-        let start = times.len() as f64 * STEP;
-        let (Part::Still(span) | Part::Held(span) | Part::Thrown(span, _)) = part;
-        let own: Vec<f64> = (0..(span / STEP) as usize).map(|i| i as f64 * STEP).collect();
-        let read = match part {
-            Part::Thrown(_, omega) => {
-                throws.push((start, start + span));
-                let air = Disturbances { relative_drag: drag, ..Disturbances::default() };
-                simulate_with(&body, *omega, &own, &air, gyroscope, &mut random).unwrap()
-            }
-            Part::Still(_) => own.iter().map(|_| random.normal_vector() * gyroscope.noise).collect(),
-            Part::Held(_) => {
-                own.iter().map(|t| hand.rate(start + t) + random.normal_vector() * gyroscope.noise).collect()
-            }
-        };
-        times.extend(own.iter().map(|t| start + t));
-        rates.extend(read);
+/// Times, rates, and the spans of the throws, s.
+#[derive(Default)]
+struct Recording {
+    times: Vec<f64>,
+    rates: Vec<Vector3<f64>>,
+    throws: Vec<(f64, f64)>,
+}
+
+impl Recording {
+    fn new(parts: &[Part], drag: f64, gyroscope: &Gyroscope, seed: u64) -> Recording {
+        let body = Inertia::from_moments(BODY).unwrap();
+        let mut random = Random::new(seed);
+        let hand = Hand::new(1.5, &mut random);
+        let mut all = Recording::default();
+        for part in parts {
+            let start = all.times.len() as f64 * STEP;
+            let (Part::Still(span) | Part::Held(span) | Part::Thrown(span, _)) = part;
+            let own: Vec<f64> = (0..(span / STEP) as usize).map(|i| i as f64 * STEP).collect();
+            let read = match part {
+                Part::Thrown(_, omega) => {
+                    all.throws.push((start, start + span));
+                    let air = Disturbances { relative_drag: drag, ..Disturbances::default() };
+                    simulate_with(&body, *omega, &own, &air, gyroscope, &mut random).unwrap()
+                }
+                Part::Still(_) => own.iter().map(|_| random.normal_vector() * gyroscope.noise).collect(),
+                Part::Held(_) => own
+                    .iter()
+                    .map(|t| hand.rate(start + t) + random.normal_vector() * gyroscope.noise)
+                    .collect(),
+            };
+            all.times.extend(own.iter().map(|t| start + t));
+            all.rates.extend(read);
+        }
+        all
     }
-    (times, rates, throws)
 }
 
 fn throw(k: usize) -> Vector3<f64> {
@@ -98,7 +102,7 @@ fn each_throw_of_a_recording_is_found_and_nothing_else() {
         ("with spikes", 0.1, spiky),
     ] {
         for seed in 1..=3 {
-            let (times, rates, throws) = recording(&tosses(5), drag, &gyroscope, seed);
+            let Recording { times, rates, throws } = Recording::new(&tosses(5), drag, &gyroscope, seed);
             let record = Record::from_samples(&times, &rates).unwrap();
             let found = flights(&record, &Settings::default()).unwrap();
             assert!(!found.whole);
@@ -169,7 +173,7 @@ fn a_free_record_is_one_flight_and_stays_as_it_is() {
 fn flights_reach_the_ends_of_segments() {
     // thrown before the sensor was switched on, and a gap within the second throw
     let parts = [Part::Thrown(0.8, throw(0)), Part::Held(1.0), Part::Thrown(1.6, throw(1)), Part::Held(1.0)];
-    let (mut times, mut rates, _) = recording(&parts, 0.0, &noise(2e-3), 11);
+    let Recording { mut times, mut rates, .. } = Recording::new(&parts, 0.0, &noise(2e-3), 11);
     times.drain(260..280);
     rates.drain(260..280);
     let record = Record::from_samples(&times, &rates).unwrap();
@@ -192,7 +196,7 @@ fn flights_reach_the_ends_of_segments() {
 fn a_body_that_is_never_let_go_has_no_flight() {
     for seed in 1..=5 {
         let parts = [Part::Still(1.0), Part::Held(9.0), Part::Still(2.0), Part::Held(5.0)];
-        let (times, rates, _) = recording(&parts, 0.0, &noise(2e-3), seed);
+        let Recording { times, rates, .. } = Recording::new(&parts, 0.0, &noise(2e-3), seed);
         let record = Record::from_samples(&times, &rates).unwrap();
         let error = flights(&record, &Settings::default()).unwrap_err();
         let FitError::NoFlight { share, torque, most } = error.clone() else { panic!("{error:?}") };
@@ -205,7 +209,7 @@ fn a_body_that_is_never_let_go_has_no_flight() {
 
 #[test]
 fn neither_units_nor_the_axes_of_the_sensor_change_the_flights() {
-    let (times, rates, throws) = recording(&tosses(3), 0.1, &noise(5e-3), 4);
+    let Recording { times, rates, throws } = Recording::new(&tosses(3), 0.1, &noise(5e-3), 4);
     let found = |times: &[f64], rates: &[Vector3<f64>]| {
         flights(&Record::from_samples(times, rates).unwrap(), &Settings::default()).unwrap().list
     };

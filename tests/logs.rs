@@ -101,6 +101,8 @@ fn flight_controllers() {
     check("Betaflight", betaflight, DEGREE);
     // sixteen steps to a degree per second: 0.0625 as the bits of a float
     check("Betaflight with its scale", &format!("H gyro_scale:0x3d800000\n{betaflight}"), DEGREE / 16.0);
+    let explored = betaflight.replace("time (us)", "time");
+    check("blackbox explorer, bare time", &format!("\"gyro_scale\",\"1.0\"\n{explored}"), DEGREE);
     check("blackbox explorer", &format!("\"gyro_scale\",\"1.7453292519943295e-8\"\n{betaflight}"), DEGREE);
     check(
         "Betaflight in rad/s",

@@ -28,6 +28,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`flights()`] finds the spans of free rotation in a recording that also shows how the body was held and caught.
+//!
 //! The tensor comes from rounds of linear least squares with one small semidefinite program at their end, which is solved
 //! by outer approximation; it is not refined by maximum likelihood.
 

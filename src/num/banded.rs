@@ -160,7 +160,9 @@ fn factor(columns: &mut [f64], pitch: usize, band: usize) -> bool {
 fn eliminate(own: &mut [f64], others: &mut [f64], band: usize) -> bool {
     let pitch = own.len();
     let pivot = own[0];
-    if !(pivot > 0.0) {
+    // nor is one that is no number
+    let is_positive = pivot > 0.0;
+    if !is_positive {
         return false;
     }
     let root = pivot.sqrt();

@@ -8,7 +8,7 @@ use crate::harness::{Scratch, output, run};
 fn held(start: f64, rows: usize) -> String {
     let row = |i: usize| {
         let t = start + 0.01 * i as f64;
-        let w = |a: f64, b: f64, c: f64| 2.0 * (a * t).sin() + 1.5 * (b * t + c).cos();
+        let w = |a: f64, b: f64, c: f64| 2.0 * libm::sin(a * t) + 1.5 * libm::cos(b * t + c);
         format!("{t:.2},{},{},{}\n", w(7.0, 13.1, 0.3), w(9.3, 5.7, 1.9), w(11.9, 6.1, 4.0))
     };
     (0..rows).map(row).collect()

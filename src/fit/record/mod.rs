@@ -180,7 +180,7 @@ impl Record {
         Ok(cut)
     }
 
-    /// The parts in which [flights](crate::fit::flights) of this record were found, one segment each.
+    /// The parts in which [flights](crate::fit::flights()) of this record were found, one segment each.
     #[must_use]
     pub fn during(&self, flights: &[Flight]) -> Record {
         let mut cut = Record { skipped: self.skipped.clone(), ..Record::default() };

@@ -225,6 +225,8 @@ pub(super) fn find_columns(names: &[String]) -> Result<Found, &'static str> {
             Some(TimeUnit::Microseconds)
         }
         "time" | "fieldheaderstamp" if first == "fieldangularvelocity" => Some(TimeUnit::Nanoseconds),
+        // the explorer of Betaflight's logs
+        "time" if first == "gyroadc" => Some(TimeUnit::Microseconds),
         _ => None,
     };
     let rate_unit = match first {
