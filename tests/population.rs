@@ -12,7 +12,7 @@ const COUNT: u64 = 20_000;
 
 fn with_inertia(inertia: Tensors) -> Population {
     let (attitude, omega_body) = (Attitudes::Fixed(Quat::identity()), Distribution::Fixed([0.4, 1.0, -0.3]));
-    Population::Independent { attitude, omega_body, inertia }
+    Population::Independent { attitude, omega_body, inertia: Box::new(inertia) }
 }
 
 fn members(population: &Population) -> Vec<Member> {
@@ -87,7 +87,7 @@ fn attitudes_are_spread_as_stated() {
     let body = Tensors::Fixed(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap());
     let of = |attitude| {
         let omega_body = Distribution::Fixed([0.0; 3]);
-        members(&Population::Independent { attitude, omega_body, inertia: body.clone() })
+        members(&Population::Independent { attitude, omega_body, inertia: Box::new(body.clone()) })
     };
     let pi = core::f64::consts::PI;
     // the angle of a uniform rotation has the density (1 − cos θ)/π: mean π/2 + 2/π, mean square π²/3 + 2
@@ -165,7 +165,7 @@ fn a_member_is_the_same_whichever_were_drawn_before() {
     let spread = |inertia| Population::Independent {
         attitude: Attitudes::Uniform,
         omega_body: Distribution::uniform([[0.0, 1.0]; 3]).unwrap(),
-        inertia,
+        inertia: Box::new(inertia),
     };
     let body = Inertia::from_moments([1.0, 2.0, 2.5]).unwrap();
     let (wide, fixed) =

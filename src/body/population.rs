@@ -25,7 +25,7 @@ const MOST_DRAWS: u32 = 10_000;
 ///     attitude: Attitudes::Near { mean: Quat::identity(), turn: Distribution::uniform([[-0.1, 0.1]; 3])? },
 ///     omega_body: Distribution::Normal { mean: [0.4, 1.0, -0.3], covariance: Covariance::independent([0.01; 3])? },
 ///     // 20 % of each moment: many a draw has no third side to its triangle
-///     inertia: Tensors::moments(Inertia::from_moments([1.0, 2.0, 2.5])?, [0.2; 3])?,
+///     inertia: Box::new(Tensors::moments(Inertia::from_moments([1.0, 2.0, 2.5])?, [0.2; 3])?),
 /// };
 /// let member = uncertain.member(2026, 17)?;
 /// let [a, b, c] = member.inertia.principal_moments();
@@ -43,7 +43,7 @@ pub enum Population {
         /// Angular velocity at the start, body axes, rad/s.
         omega_body: Distribution<3>,
         /// Inertia.
-        inertia: Tensors,
+        inertia: Box<Tensors>,
     },
     /// A normal distribution of all of them together.
     Joint {

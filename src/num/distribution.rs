@@ -93,13 +93,11 @@ impl<const N: usize> Covariance<N> {
         let deviations: [f64; N] = core::array::from_fn(|k| matrix[k][k].abs().sqrt());
         let over = |x: f64, deviation: f64| if deviation == 0.0 { x } else { x / deviation };
         let correlation = |i: usize, j: usize| over(over(matrix[i][j], deviations[i]), deviations[j]);
-        for i in 0..N {
-            for j in 0..i {
-                if (correlation(i, j) - correlation(j, i)).abs() > ROUNDING {
-                    let (upper, lower) = (matrix[j][i], matrix[i][j]);
-                    return Err(DistributionError::NotSymmetric { row: j, column: i, upper, lower });
-                }
-            }
+        let mut pairs = (0..N).flat_map(|i| (0..i).map(move |j| (j, i)));
+        let differs = |(j, i): &(usize, usize)| (correlation(*i, *j) - correlation(*j, *i)).abs() > ROUNDING;
+        if let Some((row, column)) = pairs.find(differs) {
+            let (upper, lower) = (matrix[row][column], matrix[column][row]);
+            return Err(DistributionError::NotSymmetric { row, column, upper, lower });
         }
         let mean = |i: usize, j: usize| 0.5 * (correlation(i, j) + correlation(j, i));
         let (values, axes) = eigen::<f64, N>(core::array::from_fn(|i| core::array::from_fn(|j| mean(i, j))));
@@ -223,12 +221,10 @@ mod tests {
                     row.iter_mut().zip(x).for_each(|(sum, other)| *sum += x[i] * other / COUNT as f64);
                 }
             }
-            for i in 0..3 {
-                for j in 0..3 {
-                    // five standard deviations of a product of two normal numbers
-                    let width = 5.0 * (2.0 * matrix[i][i] * matrix[j][j] / COUNT as f64).sqrt();
-                    assert!((sum[i][j] - matrix[i][j]).abs() < width, "{matrix:?}: {sum:?}");
-                }
+            for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
+                // five standard deviations of a product of two normal numbers
+                let width = 5.0 * (2.0 * matrix[i][i] * matrix[j][j] / COUNT as f64).sqrt();
+                assert!((sum[i][j] - matrix[i][j]).abs() < width, "{matrix:?}: {sum:?}");
             }
         }
     }

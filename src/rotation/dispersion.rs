@@ -76,7 +76,6 @@ impl Dispersion {
     }
 
     /// The mean attitude, of norm 1 and with w ≥ 0.
-    #[must_use]
     pub fn mean(&self) -> Quat<f64> {
         self.mean
     }
@@ -115,7 +114,6 @@ impl Dispersion {
 
     /// The principal directions of the rotation vectors, unit vectors in the axes of space; of each the largest component is
     /// positive.
-    #[must_use]
     pub fn axes(&self) -> [Vec3<f64>; 3] {
         self.axes
     }

@@ -149,7 +149,8 @@ fn figure(reduced: &[Option<Reduced>], shares: &Shares) -> Figure {
     let title = format!("Angles of {members} members to their mean attitude");
     let axes = (("time (s)", Scale::Linear), ("angle (rad)", Scale::Log));
     let mut figure = Figure::new("dispersion", title, axes.0, axes.1);
-    let curves: [(&str, fn(&Reduced) -> f64); 4] = [
+    type Angle = fn(&Reduced) -> f64;
+    let curves: [(&str, Angle); 4] = [
         ("largest", |row| row.largest),
         ("95 %", |row| row.p95),
         ("rms", |row| row.root_mean_square),

@@ -46,7 +46,7 @@ pub(super) struct Spec {
 #[derive(Debug)]
 enum Source {
     Drawn(Box<Population>),
-    Listed(Candidates),
+    Listed(Box<Candidates>),
 }
 
 /// What acts on every member.
@@ -102,7 +102,7 @@ impl Spec {
                     );
                     return Err(run.at("members", &rule));
                 }
-                (Source::Listed(candidates), members.unwrap_or(count))
+                (Source::Listed(Box::new(candidates)), members.unwrap_or(count))
             }
             None => {
                 let population = spread::population(&spread, &nominal)?;

@@ -68,7 +68,7 @@ pub(super) fn population(spread: &Section<'_>, nominal: &Nominal) -> Result<Popu
     Ok(Population::Independent {
         attitude: sources.attitude(nominal)?,
         omega_body,
-        inertia: sources.inertia(nominal, inertia)?,
+        inertia: Box::new(sources.inertia(nominal, inertia)?),
     })
 }
 
