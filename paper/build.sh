@@ -13,12 +13,12 @@ missing() {
 for tool in latexmk pdflatex bibtex; do
   command -v "$tool" >/dev/null || missing "$tool is not installed"
 done
-for file in lmodern.sty booktabs.sty microtype.sty pgfplots.sty; do
+for file in lmodern.sty booktabs.sty microtype.sty pgfplots.sty pgfplotstable.sty; do
   kpsewhich "$file" >/dev/null || missing "$file is not installed"
 done
-for file in drift-origin.tex order-origin.tex long-run-series.csv heavy-top-origin.tex fit-efficiency-origin.tex; do
-  if [ ! -f "generated/$file" ]; then
-    echo "generated/$file is missing; make it from the committed results, in the project's root:" >&2
+for file in $(grep -oh 'generated/[a-z0-9-]*' main.tex sections/*.tex | sort -u); do
+  if [ ! -f "$file.tex" ]; then
+    echo "$file.tex is missing; make it from the committed results, in the project's root:" >&2
     echo "  cargo run --release -- experiment publish" >&2
     exit 2
   fi

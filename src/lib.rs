@@ -31,11 +31,11 @@
 //! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the top |
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
-//! | [`run`] | long propagation, schedules, checkpoints, orders of convergence |
+//! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
 //! | [`advise`] | which method with which step, from short runs on the body itself |
 //! | [`catalogue`] | named bodies with their sources |
 //! | `fit` | inertia from measured angular velocity; with the feature `fit` |
-//! | [`guide`] | your own force, your own method |
+//! | [`guide`] | a chapter for each kind of user; your own force, your own method; the exact motion |
 //!
 //! Each of those that hold code uses only those above it. The types that most programs need are also at the root:
 //! [`Body`], [`Inertia`], [`State`], [`FreeMotion`], [`Run`], [`Schedule`] and [`method()`](method()).
@@ -45,6 +45,7 @@
 //! | feature | what it adds |
 //! |---|---|
 //! | `fit` | the module `fit`, with the solvers clarabel and faer |
+//! | `parallel` | [ensembles](run::Ensemble) on several threads, by rayon |
 //!
 //! None is on by default. The oldest compiler that builds the crate is Rust 1.89.
 //!
@@ -82,8 +83,24 @@ pub mod observe;
 pub mod rotation;
 pub mod run;
 
-#[doc = include_str!("../docs/own-force-and-method.md")]
-pub mod guide {}
+/// A chapter for each kind of user, and what stands behind the exact motion.
+pub mod guide {
+    #[doc = include_str!("../docs/exact-motion.md")]
+    pub mod exact_motion {}
+    #[doc = include_str!("../docs/inertia-tensors.md")]
+    pub mod inertia_tensors {}
+    #[doc = include_str!("../docs/own-force-and-method.md")]
+    pub mod own_force_and_method {}
+    #[cfg(feature = "fit")]
+    #[doc = include_str!("../docs/records.md")]
+    pub mod records {}
+    #[doc = include_str!("../docs/simulators.md")]
+    pub mod simulators {}
+    #[doc = include_str!("../docs/teaching.md")]
+    pub mod teaching {}
+    #[doc = include_str!("../docs/tumbling.md")]
+    pub mod tumbling {}
+}
 
 pub use body::{Body, State};
 pub use flow::FreeMotion;

@@ -24,6 +24,11 @@ pub(crate) fn visible_json(text: &str) -> Cow<'_, str> {
     escaped(text, |c| c != '\n' && is_obeyed(c), |c| format!("\\u{:04x}", u32::from(c)))
 }
 
+/// `text` for the contents and the attributes of HTML.
+pub(crate) fn escaped_html(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
 fn escaped(text: &str, which: impl Fn(char) -> bool, how: impl Fn(char) -> String) -> Cow<'_, str> {
     if !text.contains(&which) {
         return text.into();

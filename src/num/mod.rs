@@ -20,6 +20,8 @@ pub(crate) mod eigen;
 pub mod elliptic;
 pub(crate) mod error_free;
 pub mod expansion;
+pub(crate) mod exponential;
+mod lanes;
 #[cfg(feature = "fit")]
 pub(crate) mod quadrature;
 #[cfg(any(test, feature = "fit"))]
@@ -32,6 +34,8 @@ pub mod trig;
 
 pub use dd::Dd;
 pub use expansion::Expansion;
+pub use lanes::Instructions;
+pub(crate) use lanes::{LANES, Lane};
 #[cfg(any(test, feature = "fit"))]
 pub use random::Random;
 pub use real::{Precise, Real};

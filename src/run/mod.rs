@@ -1,8 +1,9 @@
 //! Long propagation: steps counted in `u64`, samples at scheduled steps or times, checkpoints, and typed errors for runs
-//! that diverge.
+//! that diverge; ensembles of many bodies.
 
 mod checkpoint;
 mod convergence;
+mod ensemble;
 mod error;
 #[allow(clippy::module_inception)]
 mod run;
@@ -11,6 +12,7 @@ mod schedule;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use convergence::{Halving, HalvingError, halvings, halvings_against, observed_order};
+pub use ensemble::{Ensemble, EnsembleError, MemberError, Observed, Rows, Spread, Tally};
 pub use error::RunError;
 pub(crate) use error::SOLVED;
 pub use run::Run;

@@ -23,7 +23,7 @@ struct Subject {
 const SUBJECTS: [Subject; 5] = [
     Subject { name: "1 : 2 : 3", moments: [1.0, 2.0, 3.0], omega_body: [0.4, 1.0, -0.3] },
     Subject { name: "5/8 : 3/4 : 1", moments: [0.625, 0.75, 1.0], omega_body: [0.875, 0.25, -0.375] },
-    Subject { name: "Fassò, 1 : 3/4 : 1/4", moments: [1.0, 0.75, 0.25], omega_body: [0.5, 0.75, 0.5] },
+    Subject { name: "Fassò 1 : 3/4 : 1/4", moments: [1.0, 0.75, 0.25], omega_body: [0.5, 0.75, 0.5] },
     Subject { name: "racket", moments: [0.0389, 0.4619, 0.4993], omega_body: [0.25, 1.0, 0.125] },
     Subject { name: "SPHERES", moments: [0.0241, 0.0234, 0.0201], omega_body: [0.25, 0.875, 0.375] },
 ];

@@ -1,6 +1,7 @@
 //! `polhode experiment`: the results of experiments, run, written, compared and published.
 
 mod check;
+mod page;
 mod provenance;
 mod publish;
 mod run;
@@ -32,7 +33,7 @@ const PUBLISH_EXAMPLES: &str = "Examples:
 
 const EXAMPLES: &str = "Examples:
   polhode experiment run order drift --scale smoke
-  polhode experiment run all --scale paper --out results";
+  polhode experiment run order drift --scale smoke --report results.html";
 
 #[derive(Subcommand)]
 pub(crate) enum ExperimentCommand {
@@ -55,6 +56,9 @@ pub(crate) enum ExperimentCommand {
         /// Folder for results
         #[arg(long, default_value = "results")]
         out: PathBuf,
+        /// Write all results as one page, which needs no network: a file that ends in .html
+        #[arg(long, value_name = "FILE")]
+        report: Option<PathBuf>,
     },
     /// Run experiments at smoke scale and compare every number with the
     /// committed ones
@@ -90,7 +94,7 @@ impl ExperimentCommand {
     pub(crate) fn run(self) -> Result<(), Error> {
         match self {
             Self::List { format } => list(format),
-            Self::Run { names, scale, out } => run::run(&names, scale, &out),
+            Self::Run { names, scale, out, report } => run::run(&names, scale, &out, report.as_deref()),
             Self::Check { names, root, accept } => check::run(&names, &root, accept),
             Self::Publish { root, from } => publish::run(&root, from.as_deref()),
         }

@@ -118,8 +118,10 @@ pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
     emit(&readme, Some(&readme_path))
 }
 
-/// Copies CSVs and `run.toml` of every experiment in `from`; the rest of what a run writes follows from them.
+/// Copies CSVs, `run.toml` and the figures that README.md shows of every experiment in `from`; the rest of what a run writes
+/// follows from them.
 fn take_over(root: &Path, from: &Path) -> Result<(), Error> {
+    let readme = read(&within(root, root.join("README.md"))?, "run this in the project's root")?;
     for folder in folders(from)? {
         let found = Results::open(folder)?;
         if found.origin.scale != "paper" {
@@ -129,7 +131,8 @@ fn take_over(root: &Path, from: &Path) -> Result<(), Error> {
         let staging = Staging::new(&within(root, root.join(RESULTS).join(&found.origin.experiment))?)?;
         for path in sorted_entries(&found.folder)? {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if name == MARK || name.ends_with(".csv") {
+            let figure = || readme.contains(&format!("({RESULTS}/{}/{name})", found.origin.experiment));
+            if name == MARK || name.ends_with(".csv") || (name.ends_with(".svg") && figure()) {
                 staging.write(&name, read(&path, REMEDY)?.as_bytes())?;
             }
         }
@@ -328,13 +331,16 @@ mod tests {
         let scratch = Scratch::new("publish-from");
         let (root, from) = (scratch.path().join("root"), scratch.path().join("from"));
         write_results(&from.join("drift"), "drift");
-        std::fs::write(from.join("drift/errors.md"), "").unwrap();
+        for other in ["errors.md", "shown.svg", "other.svg"] {
+            std::fs::write(from.join("drift").join(other), "").unwrap();
+        }
         std::fs::create_dir(&root).unwrap();
-        std::fs::write(root.join("README.md"), "text\n").unwrap();
+        let shown = "![errors](experiments/results/drift/shown.svg)\n";
+        std::fs::write(root.join("README.md"), shown).unwrap();
         run(&root, Some(&from)).unwrap();
         let committed = sorted_entries(&root.join(RESULTS).join("drift")).unwrap();
         let names = committed.iter().map(|path| path.file_name().unwrap());
-        assert_eq!(names.collect::<Vec<_>>(), ["errors.csv", "run.toml"]);
+        assert_eq!(names.collect::<Vec<_>>(), ["errors.csv", "run.toml", "shown.svg"]);
     }
 
     #[test]

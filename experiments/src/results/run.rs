@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use super::page::Page;
 use super::{chosen, provenance};
 use crate::error::Error;
 use crate::experiment::{Experiment, Report, Scale};
 use crate::files::{MARK, Staging, emit};
 
-/// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`.
-pub(super) fn run(names: &[String], scale: Scale, out: &Path) -> Result<(), Error> {
+/// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`, and the page `page` of all of them.
+pub(super) fn run(names: &[String], scale: Scale, out: &Path, page: Option<&Path>) -> Result<(), Error> {
     let with_folder =
         |experiment: &'static Experiment| (experiment, out.join(scale.to_string()).join(experiment.name));
     let chosen: Vec<_> = chosen("experiment run", names)?.into_iter().map(with_folder).collect();
@@ -16,12 +17,19 @@ pub(super) fn run(names: &[String], scale: Scale, out: &Path) -> Result<(), Erro
     for (_, folder) in &chosen {
         drop(Staging::new(folder)?);
     }
+    let mut page = page.map(|path| Page::new(path, scale)).transpose()?;
     let mut failures = Vec::new();
     for (experiment, folder) in chosen {
         let report = experiment.report(scale)?;
         write(experiment, scale, &report, &folder)?;
         show(experiment, &report, &folder)?;
+        if let Some(page) = &mut page {
+            page.add(experiment, &report)?;
+        }
         failures.extend(report.failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));
+    }
+    if let Some(page) = page {
+        page.finish()?;
     }
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.join("\n"))) }
 }

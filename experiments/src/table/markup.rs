@@ -1,8 +1,8 @@
-//! The rounded rows in Markdown and LaTeX.
+//! The rounded rows in Markdown, HTML and LaTeX.
 
 use super::rounded::rounded;
 use super::{Cell, Column, Table};
-use crate::text::visible;
+use crate::text::{escaped_html, visible};
 
 impl Table {
     pub(crate) fn markdown(&self) -> String {
@@ -19,6 +19,32 @@ impl Table {
             text += &line(shown.iter().map(cell).collect());
         }
         text
+    }
+
+    /// A table whose heads are buttons to sort by; numbers have all their digits in `data-value`.
+    pub(crate) fn html(&self) -> String {
+        let shown = self.shown();
+        let class = |k: usize| if self.is_numeric(k) { " class=\"number\"" } else { "" };
+        let head = |(k, column): &(usize, &Column)| {
+            let heading = escaped_html(&with_unit(column));
+            format!("<th scope=\"col\"{}><button>{heading}</button></th>", class(*k))
+        };
+        let cell = |row: &[Cell], (k, column): &(usize, &Column)| match &row[*k] {
+            Cell::Number(x) => {
+                let text = rounded(*x, column.digits).plain();
+                format!("<td{} data-value=\"{x:?}\">{text}</td>", class(*k))
+            }
+            other => format!("<td{}>{}</td>", class(*k), escaped_html(&visible(&other.exact()))),
+        };
+        let mut text = String::from("<table>\n<thead><tr>");
+        text.extend(shown.iter().map(head));
+        text += "</tr></thead>\n<tbody>\n";
+        for row in self.rows() {
+            text += "<tr>";
+            text.extend(shown.iter().map(|column| cell(row, column)));
+            text += "</tr>\n";
+        }
+        text + "</tbody>\n</table>\n"
     }
 
     /// A `tabular` in booktabs style, to be put into a `table` with its own caption.
@@ -104,6 +130,15 @@ mod tests {
         let expected = "| method | step [s] | max \\|ΔE/E\\| |\n| :--- | ---: | ---: |\n\
                         | rk4 | 0.01 | 4.3e-10 |\n| two, \"turns\" & 50 % | 0.3 |  |\n";
         assert_eq!(example().markdown(), expected);
+    }
+
+    #[test]
+    fn html_of_the_shown_columns_sorts_by_all_digits() {
+        let html = example().html();
+        let row = "<tr><td>two, &quot;turns&quot; &amp; 50 %</td><td class=\"number\" data-value=\"0.30000000000000004\">0.3</td>\
+                   <td class=\"number\"></td></tr>";
+        assert!(html.contains(row), "{html}");
+        assert!(html.contains("<th scope=\"col\" class=\"number\"><button>step [s]</button></th>"), "{html}");
     }
 
     #[test]

@@ -19,5 +19,6 @@ mod logs;
 mod motion;
 mod plot;
 mod propagate;
+mod report;
 mod robots;
 mod times;

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::text::escaped_html as escaped;
+
 /// A part.
 pub(super) enum Part {
     Heading(String),
@@ -86,10 +88,6 @@ pub(super) fn markdown(title: &str, parts: &[Part]) -> String {
         };
     }
     text
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

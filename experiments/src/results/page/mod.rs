@@ -1,0 +1,166 @@
+//! `polhode experiment run --report`: all that was found on one page, which needs no network.
+
+mod turning;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::provenance;
+use crate::error::Error;
+use crate::experiment::{Experiment, Report, Scale};
+use crate::files::Output;
+use crate::table::Table;
+use crate::text::escaped_html as escaped;
+use turning::{Turning, turning};
+
+const STYLE: &str = include_str!("style.css");
+const SCRIPT: &str = include_str!("script.js");
+
+/// The experiment whose winners are the verdict, and its table of them.
+const VERDICT: (&str, &str) = ("work-precision", "winners");
+
+/// A page under way.
+pub(super) struct Page {
+    /// Opened before the work, so that a place that cannot be written is found out first.
+    output: Output,
+    scale: Scale,
+    verdict: Option<String>,
+    contents: Vec<&'static str>,
+    sections: String,
+    failures: Vec<String>,
+    runs: String,
+}
+
+impl Page {
+    /// # Errors
+    /// A name that does not end in .html, and a place that cannot be written.
+    pub(super) fn new(path: &Path, scale: Scale) -> Result<Self, Error> {
+        if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("html")) {
+            let value = path.display().to_string();
+            return Err(Error::input("--report", &value, "the report is a page", "end its name in .html"));
+        }
+        Ok(Self {
+            output: Output::to_file("--report", path)?,
+            scale,
+            verdict: None,
+            contents: Vec::new(),
+            sections: String::new(),
+            failures: Vec::new(),
+            runs: String::new(),
+        })
+    }
+
+    /// Takes the results of one experiment.
+    pub(super) fn add(&mut self, experiment: &Experiment, report: &Report) -> Result<(), Error> {
+        let name = experiment.name;
+        let question = escaped(experiment.question);
+        let _ =
+            writeln!(self.sections, "<section id=\"{name}\">\n<h2>{name}</h2>\n<p>It asks {question}.</p>");
+        for failure in &report.failures {
+            let failure = escaped(failure);
+            let _ = writeln!(self.sections, "<p class=\"failed\">Failed: {failure}</p>");
+            self.failures.push(format!("<a href=\"#{name}\">{name}</a>: {failure}"));
+        }
+        for figure in &report.figures {
+            self.figure(&figure.title, &figure.svg()?);
+        }
+        for drawing in &report.drawings {
+            self.figure("", &drawing.svg);
+        }
+        let shown = if report.views.is_empty() { &report.tables } else { &report.views };
+        for table in shown.iter().chain(&report.timing) {
+            self.sections += &titled(table);
+        }
+        self.sections += "</section>\n";
+        let tables = report.tables.iter().chain(&report.views);
+        if let Some(table) = tables.clone().find(|table| (name, &*table.name) == VERDICT) {
+            self.verdict = Some(titled(table));
+        }
+        let _ = writeln!(
+            self.runs,
+            "<details><summary>{name}</summary><pre>{}</pre></details>",
+            escaped(&provenance::describe(name, self.scale, report))
+        );
+        self.contents.push(name);
+        Ok(())
+    }
+
+    fn figure(&mut self, caption: &str, svg: &str) {
+        // the head of a file is none of a page's
+        let svg = svg.find("<svg").map_or("", |at| &svg[at..]);
+        let caption = escaped(caption);
+        let _ = writeln!(self.sections, "<figure role=\"img\" aria-label=\"{caption}\">\n{svg}\n</figure>");
+    }
+
+    /// Writes the page in its place.
+    pub(super) fn finish(self) -> Result<(), Error> {
+        let links: String = ["verdict", "turn"]
+            .iter()
+            .chain(&self.contents)
+            .chain(&["provenance"])
+            .map(|name| format!("<a href=\"#{name}\">{name}</a>\n"))
+            .collect();
+        let verdict = self.verdict.unwrap_or_else(|| {
+            format!(
+                "<p>Which method needs least is asked by the experiment {}, which was not run.</p>\n",
+                VERDICT.0
+            )
+        });
+        let failures = match self.failures.as_slice() {
+            [] => "<p>Every claim that these experiments check held.</p>\n".to_string(),
+            failures => format!("<ul class=\"failed\"><li>{}</li></ul>\n", failures.join("</li><li>")),
+        };
+        let turning = turned(&turning()?);
+        let page = format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <title>polhode: results</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+             <h1>Integrators of rigid-body rotation: results</h1>\n\
+             <p class=\"quiet\">polhode {}, {} scale</p>\n<nav>\n{links}</nav>\n\
+             <section id=\"verdict\">\n<h2>Which method needs least</h2>\n{verdict}{failures}</section>\n{turning}{}\
+             <section id=\"provenance\">\n<h2>Provenance</h2>\n{}</section>\n\
+             <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
+            env!("CARGO_PKG_VERSION"),
+            self.scale,
+            self.sections,
+            self.runs,
+        );
+        self.output.write_whole(&page)
+    }
+}
+
+/// A table under its caption.
+fn titled(table: &Table) -> String {
+    format!("<h3>{}</h3>\n<div class=\"scroll\">\n{}</div>\n", escaped(&table.caption), table.html())
+}
+
+/// The polhode and the herpolhode, to turn.
+fn turned(turning: &Turning) -> String {
+    let numbers = |values: [f64; 3]| values.map(|x| x.to_string()).join(", ");
+    let canvas = |id: &str, caption: &str, curves: &[turning::Curve]| {
+        let curves = serde_json::to_string(curves).unwrap_or_default();
+        format!(
+            "<figure>\n<canvas tabindex=\"0\" data-curves=\"{id}-curves\" role=\"img\" aria-label=\"{caption}\"></canvas>\n\
+             <figcaption>{caption}</figcaption>\n\
+             <script type=\"application/json\" id=\"{id}-curves\">{curves}</script>\n</figure>\n"
+        )
+    };
+    format!(
+        "<section id=\"turn\">\n<h2>A polhode and a herpolhode to turn</h2>\n\
+         <p>The body {} of the catalogue, moments {}, angular velocity {} rad/s in the body. Drag, or use the arrow keys.</p>\n\
+         <div class=\"turning\">\n{}{}</div>\n</section>\n",
+        turning.name,
+        numbers(turning.moments),
+        numbers(turning.omega_body),
+        canvas(
+            "polhode",
+            "Directions of the angular momentum in the body: this motion, others with the same angular momentum, and the separatrix.",
+            &turning.polhode
+        ),
+        canvas(
+            "herpolhode",
+            "The tip of the angular velocity in space: it stays in a plane across the angular momentum L.",
+            &turning.herpolhode
+        ),
+    )
+}
