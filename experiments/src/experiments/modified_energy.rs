@@ -56,7 +56,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     );
     let mut swing = Figure::log_log(
         "swing",
-        format!("Body 5/8 : 3/4 : 1 over {span} s"),
+        format!("Swing of the energy H and of the modified energy: body 5/8 : 3/4 : 1 over {span} s"),
         "step h (s)",
         "largest relative change",
     );

@@ -79,6 +79,17 @@ impl Words {
     }
 }
 
+/// Numbers below zero with a true minus; names keep their hyphens.
+fn with_minus(text: &str) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    let is_sign = |k: usize| {
+        letters[k] == '-'
+            && (k == 0 || matches!(letters[k - 1], ' ' | '('))
+            && letters.get(k + 1).is_some_and(char::is_ascii_digit)
+    };
+    (0..letters.len()).map(|k| if is_sign(k) { '−' } else { letters[k] }).collect()
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Shape {
     Path { points: Vec<[f64; 2]>, closed: bool, stroke: Option<Stroke>, fill: Option<Fill> },
@@ -153,7 +164,7 @@ impl Canvas {
 
     /// A title in as many lines as it needs; what they take, pixels.
     pub(crate) fn heading(&mut self, title: &str) -> f64 {
-        let lines = lines(title, self.width - 20.0, TITLE);
+        let lines = lines(&with_minus(title), self.width - 20.0, TITLE);
         for (n, line) in lines.iter().enumerate() {
             self.text([10.0, 18.0 + LINE * n as f64], line, TITLE, Anchor::Start, BLACK);
         }
@@ -216,5 +227,18 @@ impl Canvas {
         corners.fold(start, |[low, high], at| {
             [[low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]]
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_below_zero_have_a_minus_and_names_a_hyphen() {
+        assert_eq!(
+            with_minus("-1, (-2) of rk4-normalized by 1e-3 -x"),
+            "−1, (−2) of rk4-normalized by 1e-3 -x"
+        );
     }
 }

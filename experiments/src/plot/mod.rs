@@ -27,7 +27,8 @@ const USAGE: &str = "polhode plot <KIND> <BODY> [START] --until <T> --out <FILE>
 const EXAMPLES: &str = "Examples:
   polhode plot omega --body t-handle --until 60 --out flips.svg
   polhode plot polhode --moments 1,2,3 --omega 0.4,1,-0.3 --until 20 --out p.png
-  polhode plot poinsot --moments 1,2,3 --omega 0.4,1,-0.3 --until 60 --out p.html
+  polhode plot poinsot --moments 1,2,3 --omega 0.4,1,-0.3 --until 60 \\
+    --out p.html
   polhode plot angles --body gyroscope --until 1 --out angles.svg
   polhode plot conserved --moments 1,2,3 --omega 0.4,1,-0.3 --until 1000 \\
     --method rk4 --step 0.05 --out rk4.svg";
