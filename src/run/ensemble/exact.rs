@@ -4,74 +4,94 @@ use core::ops::Range;
 
 use super::rows::Reading;
 use super::{Ensemble, MemberError, Rows};
-use crate::body::{Body, Clock, Phase, Point};
+use crate::body::{Clock, Phase, Point};
 use crate::flow::{ExactMotion, NoClosedForm, TimeError};
-use crate::num::Dd;
+use crate::num::{Dd, LANES};
 use crate::observe::Monitor;
+
+/// Members that are followed together through a block of times, so that neighbours in the rows are written while they are in
+/// the first cache.
+const TOGETHER: usize = 8;
 
 /// Of the members `part` at `times`, which are finite.
 pub(super) fn rows(ensemble: &Ensemble, part: Range<usize>, times: &[f64]) -> Rows {
     let mut rows = Rows::new(part.start, part.len(), times.len(), ensemble.observed);
-    for (n, k) in part.enumerate() {
-        let follow = ensemble.member(k).and_then(|(body, start)| {
-            let motion = ExactMotion::from_point(&body, start).map_err(reason)?;
-            Ok((body, start, motion))
-        });
-        match follow {
-            Ok((body, start, motion)) => {
-                if let Err((time, error)) = fill(ensemble, n, &body, start, &motion, times, &mut rows) {
-                    rows.fail(n, time, error);
-                }
+    let first = part.start;
+    for group in part.clone().step_by(TOGETHER) {
+        let mut followed = Vec::with_capacity(TOGETHER);
+        for k in group..part.end.min(group + TOGETHER) {
+            match Followed::new(ensemble, k, k - first, times) {
+                Ok(member) => followed.push(member),
+                Err(error) => rows.fail(k - first, 0, error),
             }
-            Err(error) => rows.fail(n, 0, error),
+        }
+        for (block, times) in times.chunks(LANES).enumerate() {
+            for member in &mut followed {
+                member.fill(ensemble, block * LANES, times, &mut rows);
+            }
+        }
+        for member in followed {
+            if let Some((time, error)) = member.failure {
+                rows.fail(member.number, time, error.into());
+            }
         }
     }
-    rows
+    rows.sorted()
 }
 
-fn reason(error: NoClosedForm) -> MemberError {
-    match error {
-        NoClosedForm::State(error) => error.into(),
-        error => error.into(),
-    }
+/// A member on its way through the times.
+struct Followed {
+    /// Among the members of the part.
+    number: usize,
+    motion: ExactMotion,
+    reading: Reading,
+    monitor: Option<Box<Monitor>>,
+    /// The first time without a state.
+    failure: Option<(usize, TimeError)>,
 }
 
-/// Writes the rows of the member `n` of the part, up to the first time that has none.
-fn fill(
-    ensemble: &Ensemble,
-    n: usize,
-    body: &Body,
-    start: Point<Dd>,
-    motion: &ExactMotion,
-    times: &[f64],
-    rows: &mut Rows,
-) -> Result<(), (usize, MemberError)> {
-    let monitor = ensemble.observed.invariants.then(|| Monitor::new(body, Clock::new(1.0), &start.to_f64()));
-    let reading = Reading::of(body);
-    let refused = times.iter().enumerate().find_map(|(time, &t)| Some((time, motion.check_time(t).err()?)));
-    let times = &times[..refused.map_or(times.len(), |(time, _)| time)];
-    let mut first_infinite = None;
-    let mut see = |time: usize, x: Phase<f64>| {
-        if !rows.set(n, time, &reading, x) {
-            first_infinite = first_infinite.or(Some(time));
-        } else if let Some(monitor) = &monitor {
-            rows.set_errors(n, time, monitor.errors(&Point::new(x.attitude, x.momentum_body)));
-        }
-        if ensemble.observed.attitude {
-            rows.set_attitude_error(n, time, 0.0);
-        }
-    };
-    match motion {
-        ExactMotion::Free(motion) => motion.phases_at(times, ensemble.instructions, see),
-        other => {
-            times.iter().enumerate().for_each(|(time, &t)| see(time, other.point_at(Dd::from(t)).phase()))
-        }
+impl Followed {
+    fn new(ensemble: &Ensemble, k: usize, number: usize, times: &[f64]) -> Result<Self, MemberError> {
+        let (body, start) = ensemble.member(k)?;
+        let motion = ExactMotion::from_point(&body, start).map_err(|error| match error {
+            NoClosedForm::State(error) => MemberError::from(error),
+            error => error.into(),
+        })?;
+        let observed = ensemble.observed.invariants;
+        let monitor = observed.then(|| Box::new(Monitor::new(&body, Clock::new(1.0), &start.to_f64())));
+        let failure = times.iter().enumerate().find_map(|(n, &t)| Some((n, motion.check_time(t).err()?)));
+        Ok(Followed { number, motion, reading: Reading::of(&body), monitor, failure })
     }
-    match (first_infinite, refused) {
-        (Some(time), _) => {
-            Err((time, TimeError::OutOfReach { t: times[time], reach: motion.reach() }.into()))
+
+    /// Writes the rows at `times`, before which there are `before`.
+    fn fill(&mut self, ensemble: &Ensemble, before: usize, times: &[f64], rows: &mut Rows) {
+        let Followed { number, motion, reading, monitor, failure } = self;
+        let last = failure.as_ref().map_or(times.len(), |(time, _)| time.saturating_sub(before));
+        let times = &times[..last.min(times.len())];
+        let mut infinite = None;
+        let see = |n: usize, x: Phase<f64>| {
+            if !rows.set(*number, before + n, reading, x) {
+                infinite = infinite.or(Some(n));
+                return;
+            }
+            if let Some(monitor) = monitor {
+                let errors = monitor.errors(&Point::new(x.attitude, x.momentum_body));
+                rows.set_errors(*number, before + n, errors);
+            }
+            if ensemble.observed.attitude {
+                rows.set_attitude_error(*number, before + n, 0.0);
+            }
+        };
+        match &*motion {
+            ExactMotion::Free(motion) => motion.phases_at(times, ensemble.instructions, see),
+            other => {
+                let mut see = see;
+                let each = times.iter().enumerate();
+                each.for_each(|(n, &t)| see(n, other.point_at(Dd::from(t)).phase()));
+            }
         }
-        (None, Some((time, error))) => Err((time, error.into())),
-        (None, None) => Ok(()),
+        if let Some(n) = infinite {
+            *failure = Some((before + n, TimeError::OutOfReach { t: times[n], reach: motion.reach() }));
+        }
     }
 }

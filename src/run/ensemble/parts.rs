@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::{Ensemble, EnsembleError, Rows};
+use super::{Ensemble, Rows};
 
 /// Most members of a part. Enough to fill blocks of lanes although members are sorted into kinds first.
 const MOST: usize = 8192;
@@ -31,7 +31,7 @@ fn divided(members: usize, size: usize) -> Vec<Range<usize>> {
 impl Ensemble {
     /// Takes `rows` of every part to `each`, in order.
     #[cfg(not(feature = "parallel"))]
-    pub(super) fn in_parts<E: From<EnsembleError>>(
+    pub(super) fn in_parts<E>(
         &self,
         parts: Vec<Range<usize>>,
         rows: impl Fn(Range<usize>) -> Rows + Sync,
@@ -42,7 +42,7 @@ impl Ensemble {
 
     /// Takes `rows` of every part to `each`, in order. Where the system refuses so many threads the calling one does all.
     #[cfg(feature = "parallel")]
-    pub(super) fn in_parts<E: From<EnsembleError>>(
+    pub(super) fn in_parts<E>(
         &self,
         parts: Vec<Range<usize>>,
         rows: impl Fn(Range<usize>) -> Rows + Sync,

@@ -120,19 +120,16 @@ impl Rows {
         self.times
     }
 
-    /// States of the members at the `time`-th time, body axes; zeros where a member has [failed](Self::failures).
-    ///
-    /// # Panics
-    /// If there are not so many times; so do the others.
-    #[must_use]
+    /// States of the members at the `time`-th time, body axes; zeros where a member has [failed](Self::failures), and nothing
+    /// where there are not so many times.
     pub fn states(&self, time: usize) -> &[State] {
-        &self.states[self.place(time)]
+        self.states.get(self.place(time)).unwrap_or_default()
     }
 
     /// Angular velocities in body axes, rad/s; zeros where a member has failed.
     #[must_use]
     pub fn omegas(&self, time: usize) -> &[Vector3<f64>] {
-        &self.omegas[self.place(time)]
+        self.omegas.get(self.place(time)).unwrap_or_default()
     }
 
     /// Relative errors of the invariants; `None` where they were not [observed](super::Ensemble::observing). All empty where a

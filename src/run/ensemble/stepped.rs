@@ -43,7 +43,7 @@ impl Course<'_> {
                     members.push(*member);
                     Ok(())
                 }
-                Ok(Entered::Alone(body, start)) => self.alone(number, &body, start, &mut rows),
+                Ok(Entered::Alone(member)) => self.alone(number, &member.0, member.1, &mut rows),
                 Err(error) => Err((0, error)),
             };
             if let Err((time, error)) = outcome {
@@ -77,7 +77,7 @@ impl Course<'_> {
                 let observer = Observer::new(self, &body, start);
                 Entered::Lane(Box::new(Member { number, step, point, side_by_side, observer }))
             }
-            None => Entered::Alone(body, start),
+            None => Entered::Alone(Box::new((body, start))),
         })
     }
 
@@ -135,7 +135,7 @@ impl Course<'_> {
 /// How a member goes on.
 enum Entered {
     Lane(Box<Member>),
-    Alone(Body, Point<Dd>),
+    Alone(Box<(Body, Point<Dd>)>),
 }
 
 /// What writes the rows of one member.
