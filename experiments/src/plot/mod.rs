@@ -235,8 +235,13 @@ impl Plot {
 
 /// To four digits, with a true minus.
 fn short(x: f64) -> String {
-    let four = format!("{x:.3e}").parse().unwrap_or(x);
-    crate::text::short(four + 0.0).replace('-', "−")
+    let four: f64 = format!("{x:.3e}").parse().unwrap_or(x) + 0.0;
+    let text = if (1e-3..1e6).contains(&four.abs()) || four == 0.0 {
+        format!("{four}")
+    } else {
+        format!("{four:e}")
+    };
+    text.replace('-', "−")
 }
 
 #[cfg(test)]
@@ -254,6 +259,6 @@ mod tests {
 
     #[test]
     fn titles_have_short_numbers() {
-        assert_eq!([0.1 + 0.2, -1e-9, -0.0].map(short), ["0.3", "−1e−9", "0"]);
+        assert_eq!([0.1 + 0.2, -1e-9, -0.0, 2e-5].map(short), ["0.3", "−1e−9", "0", "2e−5"]);
     }
 }
