@@ -75,11 +75,11 @@ pub enum FitError {
         /// Relative rate at which the rotation slows, 1/s, where it does and no torque was to be fitted.
         fall: Option<f64>,
     },
-    /// Another unit of the rates or times explains the record far better.
+    /// Another unit of the rates or times explains the record far better, or as well by a body that is no sphere.
     #[error(
-        "the units look mistaken: with rate x time {factor:.4e} times as large ({}) the misfit per equation falls from \
-         {misfit:.3e} to {better:.3e}; name the units, or switch this check off",
-        alternatives(mistakes)
+        "the units look mistaken: with rate x time {factor:.4e} times as large ({}) {}; name the units, or switch this \
+         check off",
+        alternatives(mistakes), improvement(*misfit, *better, *sphere)
     )]
     Units {
         /// Factor on rate × time.
@@ -90,6 +90,9 @@ pub enum FitError {
         misfit: f64,
         /// The same with the factor.
         better: f64,
+        /// Distance from the sphere, as a share of the trace, of the tensor that explains the record as given, where the
+        /// misfits do not tell the units apart.
+        sphere: Option<f64>,
     },
     /// Limits that exclude each other.
     #[error("{} and {} exclude each other: each would have to be relaxed by {:.3e} of the trace", demand(&.0.first), demand(&.0.second), .0.gap)]
@@ -161,6 +164,15 @@ fn demand(constraint: &Constraint) -> String {
     match constraint {
         Constraint::Triangle => "the law I1 + I2 >= I3, by which a moment is at most half the trace".into(),
         limit => limit.to_string(),
+    }
+}
+
+fn improvement(misfit: f64, better: f64, sphere: Option<f64>) -> String {
+    match sphere {
+        Some(distance) => format!(
+            "an ordinary body moves like this; as given only one whose moments agree to {distance:.1e} of their sum does"
+        ),
+        None => format!("the misfit per equation falls from {misfit:.3e} to {better:.3e}"),
     }
 }
 
