@@ -90,10 +90,11 @@ pub enum FitError {
         most: f64,
     },
     /// Another unit of the rates or times explains the record far better.
+    /// Another unit of the rates or times explains the record far better, or as well by a body that is no sphere.
     #[error(
-        "the units look mistaken: with rate x time {factor:.4e} times as large ({}) the misfit per equation falls from \
-         {misfit:.3e} to {better:.3e}; name the units, or switch this check off",
-        alternatives(mistakes)
+        "the units look mistaken: with rate x time {factor:.4e} times as large ({}) {}; name the units, or switch this \
+         check off",
+        alternatives(mistakes), improvement(*misfit, *better, *sphere)
     )]
     Units {
         /// Factor on rate × time.
@@ -104,6 +105,9 @@ pub enum FitError {
         misfit: f64,
         /// The same with the factor.
         better: f64,
+        /// Distance from the sphere, as a share of the trace, of the tensor that explains the record as given, where the
+        /// misfits do not tell the units apart.
+        sphere: Option<f64>,
     },
     /// Limits that exclude each other.
     #[error("{} and {} exclude each other: each would have to be relaxed by {:.3e} of the trace", demand(&.0.first), demand(&.0.second), .0.gap)]
@@ -182,6 +186,15 @@ fn nearest(torque: Option<f64>, most: f64) -> String {
     torque.filter(|torque| *torque > most).map_or("no stretch of free rotation is long enough for a fit".into(), |torque| {
         format!("the stretch nearest to a free rotation with drag leaves {torque:.3} tr(J) |w|^2, at most {most} is allowed")
     })
+}
+
+fn improvement(misfit: f64, better: f64, sphere: Option<f64>) -> String {
+    match sphere {
+        Some(distance) => format!(
+            "an ordinary body moves like this; as given only one whose moments agree to {distance:.1e} of their sum does"
+        ),
+        None => format!("the misfit per equation falls from {misfit:.3e} to {better:.3e}"),
+    }
 }
 
 fn slowed(fall: Option<f64>) -> String {

@@ -15,13 +15,14 @@ use super::report::nuisance::Spike;
 use super::report::torque_free::trends;
 use super::settings::{Settings, TorqueModel, TorqueNoise};
 use super::weak::ladder::{Demand, climb};
-use super::weak::mistaken_units::better_unit;
+use super::weak::mistaken_units::{Better, better_unit, suspicious};
 use super::weak::model::{Column, Kind, sensor_columns};
 use super::weak::noise;
 use super::weak::normalised::{Normalised, normalised};
 use super::weak::radius::Failure;
-use super::weak::rounds::{Noise, ROUNDS, WeakEstimate};
+use super::weak::rounds::{Noise, ROUNDS};
 use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
+use super::weak::weak_estimate::WeakEstimate;
 
 /// Fits one tensor to all segments of a record.
 ///
@@ -92,33 +93,30 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
             TorqueNoise::Fitted => Noise::Fitted,
         },
         columns: &columns,
+        units: settings.check_units && input.is_none(),
     };
     let chosen = climb(&stretches, demand, variance).map_err(|failure| match failure {
         Failure::Dense => settings.radius.map_or_else(singular, |radius| FitError::Dense { radius }),
         Failure::TooShort => too_short(record, settings, &stretches, rms),
         Failure::Singular => singular(),
+        Failure::Units(misfit, better) => mistaken(misfit, &better),
     })?;
     let weak = &chosen.weak;
     let misfit = weak.misfit(variance);
     // torque noise may hide a mistaken unit, which must then explain the record without any
     let noisy = weak.levels().iter().any(|levels| levels.torque > 0.0);
-    let scaled = stretches.iter().any(|s| s.inputs.is_some());
-    let better = if settings.check_units && !scaled && (misfit > 4.0 || noisy || !weak.settled()) {
-        better_unit(&stretches, &weak.columns, variance)
+    let doubtful = misfit > 4.0 || noisy || !weak.settled();
+    let better = if demand.units && suspicious(weak, variance) && !doubtful {
+        better_unit(&stretches, Some(weak), variance)
     } else {
-        None
+        chosen.better.clone().filter(|_| doubtful)
     };
     // a unit of any size must not convince: there is a tensor next to the sphere for any small wobble in large enough a unit
-    if let Some(b) = better.as_ref().filter(|b| b.credible && !b.vague) {
-        return Err(FitError::Units {
-            factor: b.factor,
-            mistakes: b.mistakes.clone(),
-            misfit,
-            better: b.misfit,
-        });
+    if let Some(better) = better.as_ref().filter(|b| b.credible && !b.vague) {
+        return Err(mistaken(misfit, better));
     }
     // torque noise that explains what a unit would explain without any explains nothing
-    let hidden = noisy && better.as_ref().is_some_and(|b| b.vague);
+    let hidden = noisy && better.as_ref().is_some_and(|b| b.vague && b.far);
     // what the noise does not explain enlarges the deviations
     let identifiability = identify(weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
     if hidden || (!weak.settled() && misfit > weak.expected_misfit()) {
@@ -149,6 +147,16 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         input,
     };
     facts.report(answer, free, identifiability, better.as_ref().filter(|b| b.credible))
+}
+
+fn mistaken(misfit: f64, b: &Better) -> FitError {
+    FitError::Units {
+        factor: b.factor,
+        mistakes: b.mistakes.clone(),
+        misfit,
+        better: b.misfit,
+        sphere: b.sphere,
+    }
 }
 
 fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f64) -> FitError {

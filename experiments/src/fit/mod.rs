@@ -2,16 +2,19 @@
 
 mod arguments;
 mod flights;
+mod inputs;
 mod motion;
 mod page;
 mod plot;
 mod report;
+mod residuals;
 
 use std::path::{Path, PathBuf};
 
 use arguments::{KnownArguments, SensorArguments, Torque};
 use clap::Args;
 use flights::Spans;
+use inputs::WheelArguments;
 use nalgebra::Vector3;
 use polhode::fit::{FitError, Limit, RateUnit, Reading, Record, RecordError, Settings, TimeUnit, fit};
 use report::Facts;
@@ -21,7 +24,7 @@ use crate::document::Form;
 use crate::error::{Error, warn};
 use crate::files::{Output, read};
 use crate::plot::Picture;
-use crate::table::{Cell, Column, Format, Table};
+use crate::table::Format;
 
 const EXAMPLES: &str = "Examples:
   polhode fit record.csv
@@ -33,7 +36,7 @@ const EXAMPLES: &str = "Examples:
 /// Inertia tensor of a torque-free body from its measured angular velocity
 ///
 /// Without one of --trace, --momentum, --twice-energy or --moment the tensor is known up to a factor, and its trace is
-/// set to 1. Exit code 1: the record does not determine the tensor; what it does determine is printed.
+/// set to 1; columns hx, hy, hz (momentum of wheels, N m s) and tx, ty, tz (known torque, N m) make it absolute, too. Exit code 1: the record does not determine the tensor; what it does determine is printed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Fit {
@@ -70,6 +73,8 @@ pub(crate) struct Fit {
     at_most: Vec<[f64; 4]>,
     #[command(flatten)]
     known: KnownArguments,
+    #[command(flatten)]
+    wheel: WheelArguments,
     /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, constant in body axes
     #[arg(long, value_enum, default_value_t = Torque::Auto)]
     torque: Torque,
@@ -178,39 +183,6 @@ fn ends_in(path: &Path, endings: &[&str]) -> bool {
     endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
-/// Measured and fitted rates, and their difference.
-fn residual_rows(record: &Record, motion: &[motion::Fitted]) -> Table {
-    let rate = |name, meaning| Column::new(name, "rad/s", meaning);
-    let columns = vec![
-        Column::new("segment", "", "number of the segment"),
-        Column::new("t", "s", "time"),
-        rate("wx", "measured rate about x, less what was found of the sensor"),
-        rate("wy", "the same about y"),
-        rate("wz", "the same about z"),
-        rate("fitted_x", "rate of the fitted motion about x"),
-        rate("fitted_y", "the same about y"),
-        rate("fitted_z", "the same about z"),
-        rate("residual_x", "measured less fitted about x; empty where the sample was left out"),
-        rate("residual_y", "the same about y"),
-        rate("residual_z", "the same about z"),
-    ];
-    let mut table = Table::new("residuals", "Measured less fitted rates.", columns);
-    for m in motion {
-        let times = record.segments.get(m.segment).map_or(&[][..], |s| s.times());
-        for (i, (t, w)) in times.iter().zip(&m.measured).enumerate() {
-            let fitted = m.fitted.as_ref().map(|rates| rates[i]);
-            let left = fitted.filter(|_| m.used[i]).map(|fitted| w - fitted);
-            let mut cells = vec![Cell::from(m.segment as u64 + 1), Cell::from(*t)];
-            cells.extend(w.iter().map(|x| Cell::from(*x)));
-            for of in [fitted, left] {
-                cells.extend((0..3).map(|k| Cell::from(of.map(|v| v[k]))));
-            }
-            table.push(cells);
-        }
-    }
-    table
-}
-
 impl Fit {
     pub(crate) fn run(&self) -> Result<(), Error> {
         self.check_paths()?;
@@ -286,7 +258,7 @@ impl Fit {
         };
         let motion = motion::fitted(&estimate, &record);
         let left = match self.residuals.as_deref() {
-            Some(path) if ends_in(path, &["csv"]) => Some(residual_rows(&record, &motion).csv()),
+            Some(path) if ends_in(path, &["csv"]) => Some(residuals::rows(&record, &motion).csv()),
             Some(_) => Some(plot::residuals(&estimate)?),
             None => None,
         };
@@ -419,7 +391,7 @@ impl Fit {
             };
             warn(&format!("{rows} left out beside {} that are read; the first: {first}", record.samples()));
         }
-        Ok(record)
+        self.wheel.complete(record, &text, &path.display().to_string())
     }
 }
 

@@ -347,3 +347,51 @@ fn help_names_every_flag_in_80_columns() {
         assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
     }
 }
+
+/// Columns of wheels and torques give the tensor its size; what cannot be used of them is told by file and line.
+#[test]
+fn wheels_and_torques_are_columns() {
+    let scratch = Scratch::new("wheels");
+    let path = |name: &str| scratch.0.join(name).display().to_string();
+    let trace = |answer: &Value| {
+        let inertia = answer["inertia"].as_array().unwrap_or_else(|| panic!("{answer:#}"));
+        (0..3).map(|k| inertia[k][k].as_f64().unwrap()).sum::<f64>()
+    };
+    let record = path("momenta.csv");
+    output(&format!("{SIMULATE} --until 30 --noise 1e-3 --wheel 0.2,-0.3,0.4 --out {record}"));
+    let by_momenta = trace(&json(&format!("fit {record}")));
+    assert!((by_momenta - 5.6).abs() < 0.05, "{by_momenta}");
+    output(&format!("{SIMULATE} --until 30 --noise 1e-3 --known-torque 0.05,0.02,-0.03 --out {record}"));
+    let by_torques = trace(&json(&format!("fit {record}")));
+    assert!((by_torques - 5.6).abs() < 0.1, "{by_torques}");
+
+    // the speed of one wheel about z: 0.4 N m s are 40 rad/s of 0.01 kg m²
+    output(&format!("{SIMULATE} --until 30 --noise 1e-3 --wheel 0,0,0.4 --out {record}"));
+    let text = fs::read_to_string(&record).unwrap();
+    let with_speed = |header: &str, speed: &str| {
+        let rows = text.lines().skip(1).map(|row| {
+            let cells: Vec<&str> = row.split(',').take(4).collect();
+            format!("{},{speed}\n", cells.join(","))
+        });
+        format!("t,wx,wy,wz,{header}\n{}", rows.collect::<String>())
+    };
+    let speed = path("speed.csv");
+    for (header, value) in [("wheel (rad/s)", "40"), ("Wheel [rpm]", "381.9718634205488")] {
+        fs::write(&speed, with_speed(header, value)).unwrap();
+        let by_speed = trace(&json(&format!("fit {speed} --wheel 0,0,2,0.01")));
+        assert!((by_speed - 5.6).abs() < 0.05, "{header}: {by_speed}");
+    }
+    let unused = run(&format!("fit {speed}"));
+    assert!(unused.err.contains("(Wheel): the column is not used; --wheel nx,ny,nz,I"), "{}", unused.err);
+    fs::write(&speed, with_speed("wheel", "40")).unwrap();
+    let says = ["speed.csv, line 1 (wheel)", "no unit that is known", "write wheel (rad/s)"];
+    refused(2, &format!("fit {speed} --wheel 0,0,1,0.01"), &says);
+    fs::write(&speed, with_speed("wheel (rad/s)", "40").replacen(",40\n", ",fast\n", 1)).unwrap();
+    refused(2, &format!("fit {speed} --wheel 0,0,1,0.01"), &["line 2, column 5 (wheel)", "'fast'"]);
+    refused(2, &format!("fit {record} --wheel 0,0,1,0.01"), &["no column of its speed"]);
+    refused(2, &format!("fit {record} --wheel 0,0,1,-1"), &["--wheel", "must be positive"]);
+    fs::write(&speed, with_speed("hx (N m s)", "40")).unwrap();
+    refused(2, &format!("fit {speed}"), &["line 1 (hx)", "two columns more"]);
+    fs::write(&record, text.replacen("hx,hy,hz", "hx (g m),hy (g m),hz (g m)", 1)).unwrap();
+    refused(2, &format!("fit {record}"), &["line 1 (hx)", "the unit here is N m s"]);
+}

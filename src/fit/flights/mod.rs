@@ -139,13 +139,14 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
     let none = |torque: Option<f64>| {
         // in a wrong unit of rate or time nothing is free
         let suspect = settings.check_units && contradiction.share() > ALMOST_ALL;
-        let better = if suspect { better_unit(&stretches, &[], variance) } else { None };
+        let better = if suspect { better_unit(&stretches, None, variance) } else { None };
         match better.filter(|b| b.credible && !b.vague) {
             Some(b) => FitError::Units {
                 factor: b.factor,
                 mistakes: b.mistakes,
                 misfit: contradiction.misfit(&all, variance),
                 better: b.misfit,
+                sphere: None,
             },
             None => FitError::NoFlight { share: contradiction.share(), torque, most: MOST_TORQUE },
         }

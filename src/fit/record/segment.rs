@@ -168,7 +168,7 @@ impl Segment {
     }
 
     /// The line of each sample in its source, from 1; of a segment that was not read from a text its place.
-    pub(crate) fn lines(&self) -> &[usize] {
+    pub fn lines(&self) -> &[usize] {
         &self.lines
     }
 

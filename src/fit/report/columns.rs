@@ -2,7 +2,7 @@
 
 use super::nuisance::Nuisance;
 use crate::fit::weak::model::{Column, Kind};
-use crate::fit::weak::rounds::WeakEstimate;
+use crate::fit::weak::weak_estimate::WeakEstimate;
 
 /// Name and unit of an unknown, and the power of the unit rate that it goes with.
 pub(crate) fn named(kind: Kind) -> (&'static str, &'static str, i32) {

@@ -4,8 +4,8 @@ use super::nuisance::SegmentSummary;
 use crate::fit::physical::coordinates::Form;
 use crate::fit::record::Record;
 use crate::fit::weak::linearised::Shape;
-use crate::fit::weak::rounds::{Part, WeakEstimate};
 use crate::fit::weak::stacked::Stacked;
+use crate::fit::weak::weak_estimate::{Part, WeakEstimate};
 
 /// One summary for each stretch of a weak estimate; `variance` is that of the noise in units of the rate `rms`.
 pub(crate) fn summaries(

@@ -6,9 +6,9 @@ use super::columns::{named, unit};
 use super::nuisance::Systematic;
 use crate::fit::physical::coordinates::{Coordinates, pair};
 use crate::fit::weak::model::{Column, Kind, Unknowns};
-use crate::fit::weak::rounds::WeakEstimate;
 use crate::fit::weak::stacked::Stacked;
 use crate::fit::weak::test_functions::Stretch;
+use crate::fit::weak::weak_estimate::WeakEstimate;
 
 /// Each error with its size: an offset of 0.01 rad/s, 1 per cent of scale, 0.01 rad of alignment, 1 ms of delay.
 const ERRORS: [(Kind, f64); 12] = [

@@ -5,7 +5,7 @@ use super::warning::Warning;
 use crate::fit::record::Record;
 use crate::fit::settings::TorqueModel;
 use crate::fit::weak::mistaken_units::Better;
-use crate::fit::weak::rounds::WeakEstimate;
+use crate::fit::weak::weak_estimate::WeakEstimate;
 
 /// Standard deviations by which noise alone does not carry five numbers off the physical tensors.
 const FAR: f64 = 6.0;

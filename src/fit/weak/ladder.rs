@@ -2,11 +2,13 @@
 
 use super::levels::{Choice, likeliest};
 use super::linearised::Levels;
+use super::mistaken_units::{Better, better_unit};
 use super::model::{Column, Kind};
 use super::radius::{Failure, descended, estimate};
-use super::rounds::{Noise, WeakEstimate};
+use super::rounds::Noise;
 use super::stacked::Stacked;
 use super::test_functions::Stretch;
+use super::weak_estimate::WeakEstimate;
 use crate::fit::physical::coordinates::Coordinates;
 use crate::fit::settings::TorqueModel;
 
@@ -23,6 +25,8 @@ pub(crate) struct Chosen {
     pub(crate) gain: Option<f64>,
     /// Coordinates without the torque.
     pub(crate) without: Option<Coordinates>,
+    /// Units that explain better what has no explanation without torques.
+    pub(crate) better: Option<Better>,
 }
 
 /// The columns of a torque.
@@ -45,6 +49,8 @@ pub(crate) struct Demand<'a> {
     pub(crate) noise: Noise,
     /// Columns that every model has.
     pub(crate) columns: &'a [Column],
+    /// Whether to ask for mistaken units.
+    pub(crate) units: bool,
 }
 
 impl Demand<'_> {
@@ -55,7 +61,20 @@ impl Demand<'_> {
 
 /// The weak estimate that the demand asks for.
 pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) -> Result<Chosen, Failure> {
-    let plain = |weak, model| Chosen { weak, model, gain: None, without: None };
+    let mut better = None;
+    let mut chosen = choose(stretches, demand, variance, &mut better)?;
+    chosen.better = better;
+    Ok(chosen)
+}
+
+/// The weak estimate alone; `better` are units that explain the record where nothing but torques does in its own.
+fn choose(
+    stretches: &[Stretch],
+    demand: Demand<'_>,
+    variance: f64,
+    better: &mut Option<Better>,
+) -> Result<Chosen, Failure> {
+    let plain = |weak, model| Chosen { weak, model, gain: None, without: None, better: None };
     let free = matches!(demand.torque, TorqueModel::None | TorqueModel::Auto);
     let descent = |model: TorqueModel, radius: Option<f64>| {
         descended(stretches, radius, &demand.columns(model), variance, demand.noise)
@@ -69,6 +88,15 @@ pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) ->
     let base = if free { TorqueModel::None } else { demand.torque };
     let first = estimate(stretches, demand.radius, &demand.columns(base), variance)?;
     let explained = first.misfit(variance) <= first.expected_misfit();
+    if demand.units && (!explained || !first.settled()) {
+        *better = better_unit(stretches, Some(&first), variance);
+        // before the descents, which would not end soon either
+        if better.as_ref().is_some_and(|b| b.credible && !b.vague && b.far)
+            && let Some(better) = better.take()
+        {
+            return Err(Failure::Units(first.misfit(variance), Box::new(better)));
+        }
+    }
     if explained {
         let restless = demand.noise == Noise::Fitted && has_torque_noise(&first, variance);
         let asks = demand.torque == TorqueModel::Auto
@@ -95,7 +123,7 @@ pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) ->
     let none = descent(TorqueModel::None, radius)?;
     let floor = likelihood(&none, variance);
     let without = none.settled().then(|| none.x());
-    let mut best = Chosen { weak: none, model: TorqueModel::None, gain: None, without: None };
+    let mut best = plain(none, TorqueModel::None);
     let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
         let gain = likelihood(&weak, variance) - floor;
         let more = columns_of(model).len().saturating_sub(columns_of(best.model).len()).max(1);
@@ -103,7 +131,7 @@ pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) ->
         let before = likelihood(&best.weak, variance) - floor;
         let better = weak.settled() && (!best.weak.settled() || gain - before > asked);
         let gain = Some(gain).filter(|gain| gain.is_finite());
-        if better { Chosen { weak, model, gain, without } } else { best }
+        if better { Chosen { weak, model, gain, without, better: None } } else { best }
     };
     best = climb(best, TorqueModel::Drag, drag);
     if let Ok(constant) = descent(TorqueModel::Constant, radius) {
@@ -168,15 +196,21 @@ fn gain_of(
     model: TorqueModel,
     variance: f64,
 ) -> f64 {
-    let columns = demand.columns(model);
+    let with = with_columns(stretches, weak, &demand.columns(model), variance);
+    with.map_or(0.0, |with| 0.5 * (weak.squares - with.squares) / variance)
+}
+
+/// The equations of an estimate with further columns, which come first and are zero where it stands.
+fn with_columns(
+    stretches: &[Stretch],
+    weak: &WeakEstimate,
+    columns: &[Column],
+    variance: f64,
+) -> Option<Stacked> {
     let mut at = weak.at.clone();
     at.c = vec![0.0; columns.len() - at.c.len()].into_iter().chain(at.c).collect();
-    let mut rows = Vec::new();
-    for part in &weak.parts {
-        let Some(whitened) = part.with_columns(&stretches[part.stretch], &columns, &at) else { return 0.0 };
-        rows.push(whitened.rows);
-    }
-    let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
-    let with = Stacked::new(&rows, &columns, &at, variance.sqrt());
-    0.5 * (weak.squares - with.squares) / variance
+    let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], columns, &at));
+    let whitened: Vec<_> = parts.collect::<Option<_>>()?;
+    let rows: Vec<&[f64]> = whitened.iter().map(|part| part.rows.as_slice()).collect();
+    Some(Stacked::new(&rows, columns, &at, variance.sqrt()))
 }

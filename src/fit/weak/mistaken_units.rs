@@ -6,8 +6,9 @@ use core::fmt;
 use super::ladder::columns_of;
 use super::model::Column;
 use super::radius;
-use super::rounds::{Noise, WeakEstimate};
+use super::rounds::Noise;
 use super::test_functions::Stretch;
+use super::weak_estimate::WeakEstimate;
 use crate::fit::record::RateUnit::{self, DegreesPerSecond, RadiansPerSecond, RevolutionsPerMinute};
 use crate::fit::record::TimeUnit::{self, Microseconds, Milliseconds, Nanoseconds, Seconds};
 use crate::fit::settings::TorqueModel;
@@ -71,6 +72,7 @@ const MISTAKES: [(f64, MistakenUnit); 12] = [
 ];
 
 /// Units that explain the record better than the one it was read in.
+#[derive(Clone, Debug)]
 pub(crate) struct Better {
     /// The smallest factor on rate × time.
     pub(crate) factor: f64,
@@ -82,6 +84,11 @@ pub(crate) struct Better {
     pub(crate) credible: bool,
     /// Whether many do, or one of any size: a small wobble then is that of a body next to a sphere.
     pub(crate) vague: bool,
+    /// Whether the misfit in the unit that was read is so much larger that no torque noise is likely to be its cause.
+    pub(crate) far: bool,
+    /// Distance from the sphere, as a share of the trace, of the tensor in the unit that was read, where it is that which
+    /// speaks against the unit.
+    pub(crate) sphere: Option<f64>,
 }
 
 /// Differences of χ² up to which units explain a record equally well.
@@ -96,48 +103,100 @@ const LISTED: usize = 3;
 /// Largest misfit of a unit that explains a record.
 const EXPLAINED: f64 = 2.0;
 
+/// Fall of the misfit below which another unit is no better.
+const BETTER: f64 = 2.0;
+
+/// Fall of the misfit that torque noise is not likely to hide.
+const FAR: f64 = 20.0;
+
+/// Distance from the sphere, as a share of the trace, below which another unit is asked for: rates that are read too large
+/// by a factor make a body nearer to a sphere by the same factor.
+const SPHERICAL: f64 = 0.01;
+
+/// How much farther from the sphere the body must be in the other unit.
+const FARTHER: f64 = 20.0;
+
+/// Samples on which units are tried; one that explains them is tried on those of a pilot.
+const SAMPLES: usize = 1_500;
+
+/// Whether an estimate explains its record by a tensor so near to a sphere that a mistaken unit is more likely.
+pub(crate) fn suspicious(weak: &WeakEstimate, variance: f64) -> bool {
+    weak.settled() && weak.misfit(variance) < EXPLAINED && weak.x().norm() < SPHERICAL
+}
+
 /// The units that explain the record, where there are such and the unit that it was read in is none of them: with the
-/// columns that were fitted in that unit, and with drag, which slows a body in any, but without torque noise.
-pub(crate) fn better_unit(stretches: &[Stretch], columns: &[Column], variance: f64) -> Option<Better> {
+/// columns of `weak`, where it was fitted, and with drag, which slows a body in any, but without torque noise. Where that unit explains it by a
+/// body next to a sphere, those in which it is an ordinary body.
+pub(crate) fn better_unit(
+    stretches: &[Stretch],
+    weak: Option<&WeakEstimate>,
+    variance: f64,
+) -> Option<Better> {
     let pilot = radius::pilot(stretches);
     let drag = columns_of(TorqueModel::Drag);
-    let as_read = [columns, &drag[..]].into_iter().any(|columns| {
-        let weak = radius::descended(&pilot, None, columns, variance, Noise::White);
-        weak.is_ok_and(|weak| weak.settled() && weak.misfit(variance) < EXPLAINED)
-    });
-    if as_read {
+    let sphere = weak.filter(|weak| suspicious(weak, variance)).map(|weak| weak.x().norm());
+    let quick = || radius::tried(&pilot, &drag, variance).map(|weak| weak.misfit(variance));
+    if sphere.is_none() && quick().is_some_and(|misfit| misfit < EXPLAINED) {
         return None;
     }
-    let mut found = Vec::new();
-    let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
-    for (factor, mistake) in candidates.chain([(ANY, None)]) {
-        let scaled: Vec<Stretch> = pilot
+    let short = radius::longest(stretches, SAMPLES);
+    let is_whole = samples(&short) == samples(&pilot);
+    let explains = |stretches: &[Stretch], factor: f64| {
+        let scaled: Vec<Stretch> = stretches
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
-        let weak = radius::descended(&scaled, None, &drag, variance, Noise::White);
-        let settled = weak.ok().filter(WeakEstimate::settled);
-        found.extend(settled.map(|weak| Found {
-            factor,
-            mistake,
-            misfit: weak.misfit(variance),
-            dof: weak.dof() as f64,
-            credible: credible(&weak, variance),
-        }));
+        radius::tried(&scaled, &drag, variance).filter(|weak| weak.misfit(variance) < EXPLAINED)
+    };
+    let mut found: Vec<Found> = Vec::new();
+    let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
+    for (factor, mistake) in candidates.chain([(ANY, None)]) {
+        if sphere.is_some() && factor >= 1.0 {
+            continue;
+        }
+        let tried = explains(&short, factor);
+        let whole = if is_whole { tried } else { tried.and_then(|_| explains(&pilot, factor)) };
+        let Some(other) = whole else { continue };
+        let (misfit, credible) = (other.misfit(variance), credible(&other, variance));
+        // next to a sphere the misfits are alike, and the shapes must tell
+        if sphere.is_none_or(|distance| credible && other.x().norm() >= FARTHER * distance) {
+            found.push(Found { factor, mistake, misfit, dof: other.dof() as f64, credible });
+        }
     }
     found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-    let best = found.first().filter(|best| best.misfit < EXPLAINED)?;
+    let best = found.first()?;
+    let as_read = if sphere.is_some() { best.misfit } else { as_read(&pilot, weak, &drag, variance)? };
+    if sphere.is_none() && as_read < (BETTER * best.misfit).max(EXPLAINED) {
+        return None;
+    }
     let equal = |f: &Found| (f.misfit - best.misfit) * best.dof <= EQUAL * best.misfit.max(1.0);
-    let mut units: Vec<&Found> = found.iter().filter(|f| equal(f)).collect();
+    let mut units: Vec<&Found> = found.iter().filter(|f| sphere.is_some() || equal(f)).collect();
     units.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    let vague = units.pop_if(|f| f.mistake.is_none()).is_some() || units.len() > LISTED;
+    let any = units.pop_if(|f| f.mistake.is_none()).is_some();
+    let vague = sphere.is_none() && (any || units.len() > LISTED);
     units.first().map(|first| Better {
         factor: first.factor,
         mistakes: units.iter().take(LISTED).filter_map(|f| f.mistake).collect(),
         misfit: first.misfit,
         credible: best.credible,
         vague,
+        far: FAR * best.misfit < as_read,
+        sphere,
     })
+}
+
+/// The least misfit in the unit that was read; `None` where it can not be told.
+fn as_read(pilot: &[Stretch], weak: Option<&WeakEstimate>, drag: &[Column], variance: f64) -> Option<f64> {
+    let own = weak.map(|weak| weak.columns.as_slice()).filter(|own| *own != drag);
+    let misfits = own.into_iter().chain([drag]).filter_map(|columns| {
+        let weak = radius::descended(pilot, None, columns, variance, Noise::White).ok()?;
+        Some(weak.misfit(variance))
+    });
+    misfits.min_by(f64::total_cmp)
+}
+
+fn samples(stretches: &[Stretch]) -> usize {
+    stretches.iter().map(|s| s.times.len()).sum()
 }
 
 /// A unit at which a tensor settled.

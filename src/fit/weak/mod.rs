@@ -31,3 +31,4 @@ pub(crate) mod radius;
 pub(crate) mod rounds;
 pub(crate) mod stacked;
 pub(crate) mod test_functions;
+pub(crate) mod weak_estimate;

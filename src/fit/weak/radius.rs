@@ -1,8 +1,10 @@
 //! The half width of the test functions: chosen by least predicted covariance, doubled where the rounds do not settle.
 
+use super::mistaken_units::Better;
 use super::model::{Column, Unknowns};
-use super::rounds::{Noise, RESTLESS, Rounds, TORQUES, WeakEstimate};
+use super::rounds::{Noise, RESTLESS, Rounds, TORQUES};
 use super::test_functions::{SAMPLES_PER_TEST, Stretch, TestFunctions};
+use super::weak_estimate::WeakEstimate;
 use crate::fit::physical::coordinates::{Coordinates, Form};
 
 /// Test functions per sample beyond which the covariance of their noise is all but singular.
@@ -16,6 +18,8 @@ pub(crate) enum Failure {
     Dense,
     /// A covariance has no factor.
     Singular,
+    /// Another unit explains what this one does not: the misfit in the unit that was read, and the other.
+    Units(f64, Box<Better>),
 }
 
 /// The covariance (H/σ² − V)⁻¹ (H/σ²) (H/σ² − V)⁻¹ of an estimate at raw samples.
@@ -178,11 +182,33 @@ pub(crate) fn descended(
     best.or_else(sphere).ok_or(Failure::Singular)
 }
 
-/// The longest stretches, up to a number of samples, in their order.
+/// Radii at which a question is tried before it is dropped: the chosen one, and twice it.
+const TRIED: usize = 2;
+
+/// The weak estimate without torque noise, where rounds at one of two radii settle: enough to tell whether some unit
+/// explains a record.
+pub(crate) fn tried(stretches: &[Stretch], columns: &[Column], variance: f64) -> Option<WeakEstimate> {
+    let (first, start) = choose_radius(stretches, columns, variance, None)?;
+    let radii = core::iter::successors(Some(first), |radius| Some(2.0 * radius)).take(TRIED);
+    radii
+        .filter_map(|radius| {
+            let mut rounds = Rounds::new(stretches, radius, columns, start.clone())?;
+            let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS)?;
+            rounds.finish(variance, moved).filter(|weak| weak.possible(variance))
+        })
+        .next()
+}
+
+/// The longest stretches, up to the samples of a pilot, in their order.
 pub(crate) fn pilot(stretches: &[Stretch]) -> Vec<Stretch> {
+    longest(stretches, PILOT_SAMPLES)
+}
+
+/// The longest stretches, up to a number of samples, in their order.
+pub(crate) fn longest(stretches: &[Stretch], samples: usize) -> Vec<Stretch> {
     let mut longest: Vec<usize> = (0..stretches.len()).collect();
     longest.sort_by_key(|&k| core::cmp::Reverse(stretches[k].times.len()));
-    let mut left = PILOT_SAMPLES;
+    let mut left = samples;
     let mut counts = vec![0; stretches.len()];
     for k in longest {
         counts[k] = left.min(stretches[k].times.len());

@@ -1,6 +1,5 @@
 //! Rounds of the weak equations at samples that each round moves further onto them.
 
-use faer::Mat;
 use nalgebra::Vector3;
 
 use super::levels::{Choice, likeliest};
@@ -9,8 +8,8 @@ use super::model::{Column, Unknowns};
 use super::noise::SURE;
 use super::stacked::Stacked;
 use super::test_functions::{Stretch, TestFunctions};
-use crate::fit::physical::coordinates::{Coordinates, Form, eigen, pair, tensor};
-use crate::fit::physical::law::LARGEST_SHARE;
+use super::weak_estimate::{Part, WeakEstimate};
+use crate::fit::physical::coordinates::{Coordinates, Form, eigen, tensor};
 
 /// Most rounds at one radius; at low noise two or three do.
 pub(crate) const ROUNDS: usize = 12;
@@ -19,7 +18,7 @@ const FULL_ROUNDS: usize = 6;
 /// Shares of a step that are tried.
 const SHARES: usize = 30;
 /// Standard deviations by which the last round may still move the tensor.
-const STILL: f64 = 0.01;
+pub(crate) const STILL: f64 = 0.01;
 /// The same beyond which there is no answer.
 pub(crate) const RESTLESS: f64 = 0.5;
 /// Misfit that noise does not explain.
@@ -28,8 +27,6 @@ pub(crate) const TORQUES: f64 = 4.0;
 const SIGNIFICANT_GAIN: f64 = 50.0;
 /// What a round may leave of the smallest moment: at none at all the covariance of the equations has no inverse.
 const KEPT: f64 = 0.1;
-/// How far beyond the law, as a share of the trace, torques may carry an estimate that the law is to bring back.
-const BEYOND: f64 = 0.05;
 
 /// Share of its torque noise that a round may take off at most.
 const FALL: f64 = 0.03;
@@ -41,122 +38,6 @@ const SAME: f64 = 0.05;
 const BOUNDLESS: f64 = 1e5;
 /// Share below which torque noise counts as none.
 const NEGLIGIBLE: f64 = 1e-3;
-
-/// The weak estimate of a record: where its rounds ended.
-pub(crate) struct WeakEstimate {
-    pub(crate) radius: f64,
-    pub(crate) columns: Vec<Column>,
-    pub(crate) at: Unknowns,
-    /// Standard deviations by which a further round would move x; infinite where no round could be made, and this is
-    /// good for one question only: what is undetermined.
-    pub(crate) moved: f64,
-    /// Upper triangular, Rᵀ R = H at a motion free of noise.
-    pub(crate) root: Form,
-    /// The equations of all stretches; `None` where no round could be made.
-    pub(crate) stacked: Option<Stacked>,
-    /// D of the mean rates; zero where R is taken at a motion that stands out of the noise.
-    doubt: Form,
-    /// Sum of squares of the whitened residuals.
-    pub(crate) squares: f64,
-    /// Equations beyond the columns without a prior.
-    pub(crate) rows: usize,
-    /// Each stretch that is long enough.
-    pub(crate) parts: Vec<Part>,
-}
-
-/// The equations of one stretch.
-pub(crate) struct Part {
-    pub(crate) stretch: usize,
-    pub(crate) linearised: Linearised,
-    pub(crate) whitened: Whitened,
-    /// The noise of the samples so far.
-    noise: Vec<Vector3<f64>>,
-}
-
-impl Part {
-    /// The equations at the same samples with other columns.
-    pub(crate) fn with_columns(
-        &self,
-        stretch: &Stretch,
-        columns: &[Column],
-        at: &Unknowns,
-    ) -> Option<Whitened> {
-        let tests = self.linearised.tests.clone();
-        Linearised::new(stretch, &self.noise, columns, at.clone(), tests).whitened(self.whitened.levels)
-    }
-
-    /// Three for each centre, whitened.
-    pub(crate) fn residuals(&self, at: &Unknowns) -> Vec<f64> {
-        self.whitened.residuals(&self.linearised.origin, at)
-    }
-
-    /// Centres of the test functions.
-    pub(crate) fn centres(&self) -> Vec<f64> {
-        self.linearised.tests.centres()
-    }
-}
-
-impl WeakEstimate {
-    /// The coordinates of the tensor.
-    pub(crate) fn x(&self) -> Coordinates {
-        self.at.x
-    }
-
-    /// Whether the rounds ended near enough to a fixed point.
-    pub(crate) fn settled(&self) -> bool {
-        self.moved <= RESTLESS
-    }
-
-    /// Whether they stood still there.
-    pub(crate) fn still(&self) -> bool {
-        self.moved <= STILL
-    }
-
-    /// Whether a body may have this tensor, or one near it: J = n nᵀ solves the equations of any spin about n, with
-    /// residuals and covariance that vanish together, and rounds may end there.
-    pub(crate) fn possible(&self, variance: f64) -> bool {
-        let (moments, axes) = eigen(tensor(&self.at.x));
-        let top = axes.column(2).into_owned();
-        let share = self.root.transpose().solve_lower_triangular(&pair(&top, &top));
-        let excess = variance * self.misfit(variance).max(1.0);
-        let deviation = share.map_or(f64::INFINITY, |g| g.norm() * excess.sqrt());
-        moments[2] - LARGEST_SHARE <= (SURE * deviation).max(BEYOND)
-    }
-
-    /// Equations beyond the unknowns.
-    pub(crate) fn dof(&self) -> usize {
-        self.rows.saturating_sub(5)
-    }
-
-    /// Mean square of the residuals over the noise.
-    pub(crate) fn misfit(&self, variance: f64) -> f64 {
-        self.squares / variance / self.dof().max(1) as f64
-    }
-
-    /// Misfit beyond which noise alone does not carry it.
-    pub(crate) fn expected_misfit(&self) -> f64 {
-        1.0 + 5.0 * (2.0 / self.dof().max(1) as f64).sqrt()
-    }
-
-    /// Levels of the noise of each stretch that is long enough.
-    pub(crate) fn levels(&self) -> Vec<Levels> {
-        self.parts.iter().map(|part| part.whitened.levels).collect()
-    }
-
-    /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
-    /// without its squares.
-    pub(crate) fn spectrum(&self) -> Option<(Coordinates, Form)> {
-        let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
-        let (values, directions) = (svd.S().column_vector(), svd.V());
-        let mut pairs: [(f64, Coordinates); 5] = core::array::from_fn(|k| {
-            let direction = Coordinates::from_fn(|i, _| directions[(i, k)]);
-            let sure = values[k] * values[k] - (self.doubt * direction).norm_squared();
-            (sure.max(0.0).sqrt(), direction)
-        });
-        pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
-        Some((Coordinates::from_fn(|k, _| pairs[k].0), Form::from_fn(|i, k| pairs[k].1[i])))
-    }
-}
 
 /// What of its noise a descent fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
