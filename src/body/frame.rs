@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::field::{Evaluated, Field, Forces, Witness};
-use super::{Conserved, Force, Gravity, Point, Rotor, State, Time};
+use super::{Conserved, Exit, Force, Gravity, Point, Rotor, State, Time};
 use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real, Shown};
 use crate::rotation::{Quat, Vec3};
@@ -266,7 +266,8 @@ impl Body {
     pub fn enter_omega(&self, attitude: Quat<f64>, omega_body: Vec3<f64>) -> Result<Point<Dd>, StateError> {
         let attitude = unit(attitude)?;
         check("angular velocity", &omega_body.0)?;
-        let inside = Point::new(attitude * self.inertia.frame(), self.inertia.scaled_momentum(omega_body));
+        let inside =
+            Point::new(self.inertia.attitude_of_axes(attitude), self.inertia.scaled_momentum(omega_body));
         let value = omega_body.magnitude();
         let error = StateError::OutOfRange { quantity: "angular velocity", value, unit: "rad/s" };
         if self.is_in_range(&inside) { Ok(inside) } else { Err(error) }
@@ -280,7 +281,7 @@ impl Body {
     pub fn enter(&self, x: &State) -> Result<Point<Dd>, StateError> {
         let attitude = unit(x.attitude)?;
         check("momentum", &x.momentum_body.0)?;
-        let inside = Point::new(attitude * self.inertia.frame(), self.inside(x).momentum_body);
+        let inside = Point::new(self.inertia.attitude_of_axes(attitude), self.momentum_inside(x));
         let value = x.momentum_body.magnitude();
         let error = StateError::OutOfRange { quantity: "momentum", value, unit: "kg m^2/s" };
         if self.is_in_range(&inside) { Ok(inside) } else { Err(error) }
@@ -288,22 +289,19 @@ impl Body {
 
     /// The state `x` in the solver frame, with an attitude of norm 1 where it has a direction.
     fn inside(&self, x: &State) -> Point<Dd> {
-        let (frame, scale) = (self.inertia.frame(), self.inertia.scale());
-        let momentum = x.momentum_body.map(|m| Dd::of(m / scale));
         let attitude = unit(x.attitude).unwrap_or(Quat::of(x.attitude));
-        Point::new(attitude * frame, frame.rotate_back(momentum))
+        Point::new(self.inertia.attitude_of_axes(attitude), self.momentum_inside(x))
+    }
+
+    /// The momentum of `x` in the solver frame.
+    fn momentum_inside(&self, x: &State) -> Vec3<Dd> {
+        let scale = self.inertia.scale();
+        self.inertia.along_axes(x.momentum_body.map(|m| Dd::of(m / scale)))
     }
 
     /// The point `x` of the solver frame as a state in body axes.
     pub fn leave<S: Precise>(&self, x: &Point<S>) -> State {
-        let (mut attitude, mut momentum) = (x.attitude, x.momentum_body);
-        if !self.inertia.is_along_principal_axes() {
-            let frame = self.inertia.frame().map(S::from_dd);
-            attitude = attitude * frame.conjugate();
-            momentum = frame.rotate(momentum);
-        }
-        let scale = self.inertia.scale();
-        State { attitude: attitude.map(S::to_f64), momentum_body: momentum.map(|m| m.to_f64() * scale) }
+        Exit::of(self).state(x.phase())
     }
 
     /// Angular velocity ω = I⁻¹ m in body axes, rad/s.
@@ -314,11 +312,7 @@ impl Body {
 
     /// Angular velocity in body axes, rad/s, of a point of the solver frame.
     pub fn omega_of<S: Precise>(&self, x: &Point<S>) -> Vector3<f64> {
-        let mut omega = x.momentum_body.times(self.rotor().inverse_moments());
-        if !self.inertia.is_along_principal_axes() {
-            omega = self.inertia.frame().map(S::from_dd).rotate(omega);
-        }
-        omega.map(S::to_f64).into()
+        Exit::of(self).omega(self.rotor().inverse_moments(), x.momentum_body)
     }
 
     /// Moments, momenta and energies of the solver frame times this power of two are those in the user's units.

@@ -3,6 +3,7 @@
 mod constant_torque;
 mod date;
 mod drag;
+mod exit;
 mod field;
 mod force;
 mod frame;
@@ -16,11 +17,13 @@ mod state;
 mod time;
 
 pub use date::{Date, DateError};
+pub(crate) use exit::Exit;
 pub(crate) use field::{Evaluated, Forces, Witness};
 pub use field::{Field, Free};
 pub use force::{Conserved, Force, ForceError, Potential, Torque};
 pub use frame::{Body, Problem, StateError};
 pub use gravity::{Gravity, vertical};
+pub(crate) use point::RENORMALIZE_EVERY;
 pub use point::{Phase, Point};
 #[cfg(any(test, feature = "random"))]
 pub use population::{Attitudes, Member, NoMember, Population, Tensors};

@@ -50,7 +50,7 @@ pub struct Phase<S> {
 }
 
 /// Steps between renormalisations: meanwhile |q| walks by a few units of rounding.
-const RENORMALIZE_EVERY: u64 = 8;
+pub(crate) const RENORMALIZE_EVERY: u64 = 8;
 
 impl<S: Real> Point<S> {
     /// A point at which no step has been taken.
@@ -108,9 +108,10 @@ impl<S: Real> Point<S> {
     #[inline]
     pub fn add_attitude(&mut self, delta: Quat<S>) {
         add_carried(&mut self.attitude.w, &mut self.carried.attitude.w, delta.w);
-        for k in 0..3 {
-            add_carried(&mut self.attitude.v[k], &mut self.carried.attitude.v[k], delta.v[k]);
-        }
+        // no loop, as in `renormalize`
+        add_carried(&mut self.attitude.v[0], &mut self.carried.attitude.v[0], delta.v[0]);
+        add_carried(&mut self.attitude.v[1], &mut self.carried.attitude.v[1], delta.v[1]);
+        add_carried(&mut self.attitude.v[2], &mut self.carried.attitude.v[2], delta.v[2]);
     }
 
     /// Attitude and momentum alone.
@@ -137,14 +138,20 @@ impl<S: Real> Point<S> {
     ///
     /// |q|² includes what is carried, to twice the digits: a defect of the rounded q alone is noise that the carry
     /// already holds, and feeding it back turns L steadily, by 1e-20 of it a step.
+    #[inline]
     pub fn renormalize(&mut self) {
-        let (q, low) = (self.attitude, self.carried.attitude.components());
+        let (q, low) = (self.attitude, self.carried.attitude);
         let mut excess = Compensated::new(S::of(-1.0));
-        for (q, low) in q.components().into_iter().zip(low) {
+        let mut add = |q: S, low: S| {
             let (square, rest) = q.two_prod(q);
             excess.add(square);
             excess.add(rest + (q + q) * low);
-        }
+        };
+        // no loop: of several bodies side by side the loop over the bodies is the innermost
+        add(q.w, low.w);
+        add(q.v[0], low.v[0]);
+        add(q.v[1], low.v[1]);
+        add(q.v[2], low.v[2]);
         self.add_attitude(q * (excess.value() * S::of(-0.5)));
     }
 }
@@ -161,20 +168,17 @@ impl<S: Precise> Point<S> {
     }
 }
 
-/// The parts of a `Point<f64>`, for checkpoints.
+/// The parts of a `Point<f64>`, for checkpoints and for lanes.
 impl Point<f64> {
     /// Attitude, momentum, and what is carried of each, fourteen doubles.
+    #[inline(always)]
     pub(crate) fn parts(&self) -> [f64; 14] {
-        let mut parts = [0.0; 14];
-        let Phase { attitude, momentum_body } = self.carried;
-        let all = [self.attitude, attitude].into_iter().zip([self.momentum_body, momentum_body]);
-        for (slots, (q, m)) in parts.chunks_exact_mut(7).zip(all) {
-            slots[..4].copy_from_slice(&q.components());
-            slots[4..].copy_from_slice(&m.0);
-        }
-        parts
+        let (q, m) = (self.attitude, self.momentum_body);
+        let Phase { attitude: r, momentum_body: n } = self.carried;
+        [q.w, q.v[0], q.v[1], q.v[2], m[0], m[1], m[2], r.w, r.v[0], r.v[1], r.v[2], n[0], n[1], n[2]]
     }
 
+    #[inline(always)]
     pub(crate) fn from_parts(p: [f64; 14], steps: u64) -> Self {
         let phase = |k: usize| Phase {
             attitude: Quat::from_components([p[k], p[k + 1], p[k + 2], p[k + 3]]),

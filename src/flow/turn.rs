@@ -2,6 +2,7 @@
 
 use crate::body::Point;
 use crate::num::Real;
+use crate::num::trig::sin_cos_moderate;
 use crate::rotation::{Quat, Vec3};
 
 /// As [`turn_about`], about an axis that is known at run time only.
@@ -30,6 +31,12 @@ pub(crate) fn turn_about<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate
 #[inline(always)]
 pub(crate) fn turn_a_little_about<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
     turn_by::<AXIS, S>(x, (x.momentum_body[AXIS] * half_rate_time).sin_cos_small());
+}
+
+/// The same by an angle of which half is at most π/4.
+#[inline(always)]
+pub(crate) fn turn_moderately_about<const AXIS: usize>(x: &mut Point<f64>, half_rate_time: f64) {
+    turn_by::<AXIS, f64>(x, sin_cos_moderate(x.momentum_body[AXIS] * half_rate_time));
 }
 
 /// By sine and cosine of half the angle.

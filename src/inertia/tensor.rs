@@ -212,8 +212,18 @@ impl Inertia {
 
     /// `I ω` along the kernel's axes, divided by the scale: exact products of the given doubles, in double-double.
     pub(crate) fn scaled_momentum(&self, omega_body: Vec3<f64>) -> Vec3<Dd> {
-        let omega = self.frame.rotate_back(Vec3::of(omega_body));
-        omega.times(Vec3(self.moments))
+        self.along_axes(Vec3::of(omega_body)).times(Vec3(self.moments))
+    }
+
+    /// The vector `v` of body axes along the kernel's axes.
+    pub(crate) fn along_axes(&self, v: Vec3<Dd>) -> Vec3<Dd> {
+        // adding zero leaves none that is negative, as the products do
+        if self.is_along_principal_axes() { v.map(|x| x + 0.0) } else { self.frame.rotate_back(v) }
+    }
+
+    /// The attitude of the kernel's axes, of body axes with the attitude `q`.
+    pub(crate) fn attitude_of_axes(&self, q: Quat<Dd>) -> Quat<Dd> {
+        if self.is_along_principal_axes() { q.map(|x| x + 0.0) } else { q * self.frame }
     }
 }
 

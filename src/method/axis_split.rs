@@ -2,7 +2,7 @@
 
 use super::schemes::{STRANG, Scheme, Stages};
 use super::turns::Turns;
-use super::{AxisOrder, Cost, Energy, FreePart, Map, Method, Symmetric};
+use super::{AxisOrder, Cost, Energy, FreePart, Map, Method, SideBySide, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
 use crate::num::{Dd, Precise};
 
@@ -113,6 +113,10 @@ impl<S: Precise> Map<S> for AxisSplitMap<S> {
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
         self.turns.advance(x);
+    }
+
+    fn side_by_side(&self) -> Option<SideBySide<S>> {
+        self.turns.side_by_side()
     }
 
     #[inline]

@@ -1,5 +1,6 @@
 //! One step of size h as a map: prepared once for a body and a step, then applied many times.
 
+use super::SideBySide;
 use super::schemes::Scheme;
 use crate::body::{Clock, Field, Point, Rotor, Time};
 use crate::num::{Dd, Real};
@@ -121,6 +122,12 @@ pub trait Map<S: Real>: Send + 'static {
     /// Takes the map back, or on, to where its [`memory`](Self::memory) was `memory`; the point has to be the one of then.
     fn remember(&mut self, _memory: &[f64]) {}
 
+    /// How many bodies take the steps of [`advance`](Self::advance) side by side, of a map that has been opened; `None` where
+    /// each takes them alone.
+    fn side_by_side(&self) -> Option<SideBySide<S>> {
+        None
+    }
+
     /// The worst relative residual at which an implicit solve ended; 0 for explicit maps.
     fn worst_residual(&self) -> f64 {
         0.0
@@ -184,6 +191,9 @@ pub trait Step<S: Real>: Send {
 
     /// As [`Map::remember`].
     fn remember(&mut self, memory: &[f64]);
+
+    /// As [`Map::side_by_side`].
+    fn side_by_side(&self) -> Option<SideBySide<S>>;
 
     /// As [`Map::worst_residual`].
     fn worst_residual(&self) -> f64;
@@ -252,6 +262,10 @@ impl<S: Real, M: Map<S>> Step<S> for Stepper<M> {
 
     fn remember(&mut self, memory: &[f64]) {
         self.map.remember(memory);
+    }
+
+    fn side_by_side(&self) -> Option<SideBySide<S>> {
+        self.map.side_by_side()
     }
 
     fn worst_residual(&self) -> f64 {

@@ -63,6 +63,10 @@ impl<A, B> Processor<A, B> {
         Processor { stages, inverse, duration }
     }
 
+    pub(super) fn is_empty(&self) -> bool {
+        self.stages.is_empty()
+    }
+
     pub(super) fn apply<S: Real>(&mut self, at: Time, x: &mut Point<S>)
     where
         A: Map<S>,

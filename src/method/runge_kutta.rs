@@ -2,7 +2,8 @@
 //!
 //! The right-hand side is Euler's equation and the kinematic one, `m' = m × I⁻¹m + τ(t, q, ω)`, `q' = ½ q ∘ (0, I⁻¹m)`.
 
-use super::{Claimed, Claims, Cost, Kept, Map, Method};
+use super::lanes::Kernel;
+use super::{Claimed, Claims, Cost, Kept, Map, Method, SideBySide};
 use crate::body::{Field, Phase, Point, Problem, Rotor, Time};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
@@ -21,7 +22,12 @@ pub(super) struct Equations<S, F> {
 
 impl<S: Real, F: Field<S>> Equations<S, F> {
     pub(super) fn new(rotor: &Rotor, field: &F) -> Self {
-        Equations { inverse_moments: rotor.inverse_moments(), field: field.clone() }
+        Self::of(rotor.inverse_moments(), field.clone())
+    }
+
+    #[inline(always)]
+    pub(super) fn of(inverse_moments: Vec3<S>, field: F) -> Self {
+        Equations { inverse_moments, field }
     }
 
     /// q' and m'.
@@ -90,18 +96,40 @@ impl<S: Real> Method<S> for Rk4 {
 impl<S: Real, F: Field<S>> Map<S> for Rk4Map<S, F> {
     #[inline]
     fn apply(&mut self, at: Time, point: &mut Point<S>) {
-        let (h, half, two) = (self.h, self.h * S::of(0.5), S::of(2.0));
-        let (x, [middle, end]) = (point.phase(), self.later.map(|duration| at.later(duration)));
-        let k1 = self.equations.rate(at, &x);
-        let k2 = self.equations.rate(middle, &(x + k1 * half));
-        let k3 = self.equations.rate(middle, &(x + k2 * half));
-        let k4 = self.equations.rate(end, &(x + k3 * h));
-        let mut x = x + (k1 + (k2 + k3) * two + k4) * (h / S::of(6.0));
-        if self.normalized {
-            x.attitude = x.attitude.normalized();
-        }
-        point.set_phase(x);
+        let [middle, end] = self.later.map(|duration| at.later(duration));
+        let (times, x) = ([at, middle, end], point.phase());
+        point.set_phase(if self.normalized {
+            rk4_step::<true, S, F>(self.h, times, &self.equations, x)
+        } else {
+            rk4_step::<false, S, F>(self.h, times, &self.equations, x)
+        });
     }
+
+    fn side_by_side(&self) -> Option<SideBySide<S>> {
+        let Vec3([a, b, c]) = self.equations.inverse_moments;
+        let kernel = Kernel::Rk4(self.normalized);
+        (!F::ACTS).then(|| SideBySide { kernel, constants: vec![self.h, a, b, c] })
+    }
+}
+
+/// One step of `h` between the first and the last of `times`, with its middle between them.
+#[inline(always)]
+pub(super) fn rk4_step<const NORMALIZED: bool, S: Real, F: Field<S>>(
+    h: S,
+    [begin, middle, end]: [Time; 3],
+    equations: &Equations<S, F>,
+    x: Phase<S>,
+) -> Phase<S> {
+    let (half, two) = (h * S::of(0.5), S::of(2.0));
+    let k1 = equations.rate(begin, &x);
+    let k2 = equations.rate(middle, &(x + k1 * half));
+    let k3 = equations.rate(middle, &(x + k2 * half));
+    let k4 = equations.rate(end, &(x + k3 * h));
+    let mut x = x + (k1 + (k2 + k3) * two + k4) * (h / S::of(6.0));
+    if NORMALIZED {
+        x.attitude = x.attitude.normalized();
+    }
+    x
 }
 
 /// Explicit Euler: `x + h k₁`. Spirals outwards at every step.

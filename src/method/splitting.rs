@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::kicks::KickMap;
 use super::processor::{Processor, Timed};
 use super::schemes::{Part, STRANG, Scheme, Stages};
-use super::{Claimed, Claims, Cost, Energy, Kept, Kicks, Map, Method, Symmetric};
+use super::{Claimed, Claims, Cost, Energy, Kept, Kicks, Map, Method, SideBySide, Symmetric};
 use crate::body::{Field, Point, Problem, Rotor, Time};
 use crate::num::{Dd, Real};
 
@@ -372,6 +372,13 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
     fn synchronize(&self, elapsed: Dd, x: &mut Point<S>) {
         if let (Ends::OfA, [(a, _)]) = (&self.ends, &self.pairs[..]) {
             a.map.synchronize(elapsed, x);
+        }
+    }
+
+    fn side_by_side(&self) -> Option<SideBySide<S>> {
+        match (&self.ends, &self.pairs[..]) {
+            (Ends::OfA, [(a, _)]) if self.processor.is_empty() => a.map.side_by_side(),
+            _ => None,
         }
     }
 

@@ -1,5 +1,9 @@
 //! Turns about principal axes, one after another: what splittings of the kinetic energy are made of.
 
+use core::f64::consts::FRAC_PI_4;
+
+use super::SideBySide;
+use super::lanes::{Kernel, Width};
 use super::schemes::{Part, Scheme};
 use super::splitting::lengths;
 use crate::body::Point;
@@ -19,7 +23,9 @@ pub(super) struct Turns<S> {
     /// The same with both ends merged.
     cycle: Vec<S>,
     first: S,
-    /// Whether half of each angle of an opened motion is at most [`SMALL`].
+    /// Half of the largest angle of an opened motion at most, rad.
+    reach: f64,
+    /// Whether that is at most [`SMALL`].
     small: bool,
 }
 
@@ -67,7 +73,7 @@ impl<S: Precise> Turns<S> {
         if let Some(last) = cycle.last_mut() {
             *last = *last + first;
         }
-        Turns { axes, whole, cycle, first, small: false }
+        Turns { axes, whole, cycle, first, reach: f64::INFINITY, small: false }
     }
 
     /// Takes all turns of a step.
@@ -82,7 +88,8 @@ impl<S: Precise> Turns<S> {
     pub(super) fn open(&mut self, x: &mut Point<S>) {
         let largest = self.cycle.iter().map(|rate| rate.magnitude()).fold(0.0, f64::max);
         // |m| walks by rounding
-        self.small = 1.01 * largest * x.momentum_body.norm().magnitude() <= SMALL;
+        self.reach = 1.01 * largest * x.momentum_body.norm().magnitude();
+        self.small = self.reach <= SMALL;
         turn_about_axis(self.outer(), x, self.first);
     }
 
@@ -99,6 +106,23 @@ impl<S: Precise> Turns<S> {
     #[inline]
     pub(super) fn close(&self, x: &mut Point<S>) {
         turn_about_axis(self.outer(), x, -self.first);
+    }
+
+    /// The steps of an opened motion side by side with others; `None` where a turn goes so far that its angle is reduced.
+    pub(super) fn side_by_side(&self) -> Option<SideBySide<S>> {
+        let width = if self.small {
+            Width::Small
+        } else if self.reach <= FRAC_PI_4 {
+            Width::Moderate
+        } else {
+            return None;
+        };
+        let axes: &[usize] = match &self.axes {
+            Axes::Two([outer, inner]) => &[*inner, *outer],
+            Axes::Three([outer, middle, inner]) => &[*middle, *inner, *middle, *outer],
+        };
+        let axes = axes.iter().copied().cycle().take(self.cycle.len()).collect();
+        Some(SideBySide { kernel: Kernel::Turns(axes, width), constants: self.cycle.clone() })
     }
 
     fn outer(&self) -> usize {

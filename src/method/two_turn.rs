@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
 use super::schemes::{Pairs, STRANG, Scheme, Stages};
 use super::turns::Turns;
-use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
+use super::{Cost, Energy, FreePart, Map, Method, SideBySide, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
 use crate::flow::{Casimir, Flow};
 use crate::num::{Dd, Precise, Real};
@@ -239,6 +239,10 @@ impl<S: Precise> Map<S> for TwoTurnMap<S> {
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
         self.turns.advance(x);
+    }
+
+    fn side_by_side(&self) -> Option<SideBySide<S>> {
+        self.turns.side_by_side()
     }
 
     #[inline]

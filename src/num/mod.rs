@@ -22,6 +22,8 @@ pub(crate) mod eigen;
 pub mod elliptic;
 pub(crate) mod error_free;
 pub mod expansion;
+pub(crate) mod exponential;
+mod lanes;
 #[cfg(feature = "fit")]
 pub(crate) mod quadrature;
 #[cfg(any(test, feature = "random"))]
@@ -36,6 +38,8 @@ pub use dd::Dd;
 #[cfg(any(test, feature = "random"))]
 pub use distribution::{Covariance, Distribution, DistributionError};
 pub use expansion::Expansion;
+pub use lanes::Instructions;
+pub(crate) use lanes::{LANES, Lane};
 #[cfg(any(test, feature = "random"))]
 pub use random::Random;
 pub use real::{Precise, Real};

@@ -42,6 +42,12 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() <= FRAC_PI_4 { kernel::<false>(x, 0.0) } else { reduced(x) }
 }
 
+/// Sine and cosine of `x` radians, |x| ≤ π/4: as [`sin_cos`], without a branch.
+#[inline(always)]
+pub(crate) fn sin_cos_moderate(x: f64) -> (f64, f64) {
+    kernel::<false>(x, 0.0)
+}
+
 /// The largest angle of [`sin_cos_small`], rad.
 pub const SMALL: f64 = 0.03125;
 
@@ -115,7 +121,7 @@ fn polynomial(z: f64, z2: f64, c: [f64; 6]) -> f64 {
 /// Sine and cosine of 2π (x + low), |x| ≤ ½, |low| ≤ 2⁻¹⁰: only x is reduced.
 ///
 /// Quarter turns are taken off exactly, so a phase counted in turns meets no rounded π before it is small.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn sin_cos_turns(x: f64, low: f64) -> (f64, f64) {
     let shifted = 4.0 * x + ROUNDER;
@@ -130,7 +136,7 @@ pub fn sin_cos_turns(x: f64, low: f64) -> (f64, f64) {
 }
 
 /// The integer nearest to `x`, |x| < 2⁵¹; ties to even.
-#[inline]
+#[inline(always)]
 pub(crate) fn nearest(x: f64) -> f64 {
     (x + ROUNDER) - ROUNDER
 }

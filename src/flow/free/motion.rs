@@ -5,10 +5,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::character::{AtRest, Character, Mode};
 use super::orbit::FreeOrbit;
 use super::pure_spin::PureSpin;
-use crate::body::{Body, Point, State, StateError};
+use crate::body::{Body, Exit, Phase, Point, State, StateError};
 use crate::flow::reach::{MOST_RADIANS, TimeError};
 use crate::inertia::Inertia;
-use crate::num::{Dd, Precise};
+use crate::num::{Dd, Instructions, Precise};
 use crate::rotation::Vec3;
 
 /// The motion of one free body from one start: constants worked out once, then any time in O(1).
@@ -86,12 +86,31 @@ impl FreeMotion {
         self.reach
     }
 
-    /// The states at many `times`, body axes.
+    /// The states at many `times`, body axes: the bits of [`at`](Self::at), several times as fast.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::flow::FreeMotion;
+    /// use polhode::inertia::Inertia;
+    /// let racket = Inertia::from_moments([1.0, 2.0, 3.0])?;
+    /// let motion = FreeMotion::from_omega(&racket, UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+    /// let states = motion.at_many(&[-2.0, 0.0, 1e6])?;
+    /// assert_eq!(states[2], motion.at(1e6)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// As [`at`](Self::at), of the first time that has no state.
     pub fn at_many(&self, times: &[f64]) -> Result<Vec<State>, TimeError> {
-        times.iter().map(|&t| self.at(t)).collect()
+        times.iter().try_for_each(|&t| TimeError::check(t, self.reach))?;
+        let (mut states, exit) = (Vec::with_capacity(times.len()), Exit::of(&self.body));
+        self.phases_at(times, Instructions::Widest, |_, x| states.push(exit.state(x)));
+        Ok(states)
+    }
+
+    /// Gives `each` attitude and momentum in the solver frame at `times`, with their numbers; times are finite and within reach.
+    pub(crate) fn phases_at(&self, times: &[f64], by: Instructions, each: impl FnMut(usize, Phase<f64>)) {
+        self.orbit.at_many(times, by, each);
     }
 
     /// The angular velocity at time `t`, body axes, rad/s.

@@ -7,9 +7,9 @@ use super::character::{AtRest, Character};
 use super::circulation::Circulation;
 use super::phase::{Spin, pair, steady};
 use super::polhode::{Polhode, exact_separation};
-use super::theta::Theta;
-use crate::body::Point;
-use crate::num::{Dd, Precise};
+use super::theta::{Points, Theta};
+use crate::body::{Phase, Point};
+use crate::num::{Dd, Instructions, LANES, Precise};
 use crate::rotation::{Quat, Vec3};
 
 /// Constants of one motion, worked out once; then any time in O(1).
@@ -84,6 +84,31 @@ impl FreeOrbit {
         match quick {
             Some((attitude, momentum_body)) => Point::new(attitude, momentum_body),
             None => self.at_dd(t).to_f64(),
+        }
+    }
+
+    /// Gives `each` attitude and momentum at the `times` (s), with their numbers.
+    pub(crate) fn at_many(&self, times: &[f64], by: Instructions, mut each: impl FnMut(usize, Phase<f64>)) {
+        let mut lanes = Points::new();
+        for (block, times) in times.chunks(LANES).enumerate() {
+            let together = match &self.kind {
+                Kind::Circulating(orbit) => {
+                    let mut t = [0.0; LANES];
+                    t[..times.len()].copy_from_slice(times);
+                    orbit.quick.at_all(&t, &mut lanes, by)
+                }
+                Kind::Steady(_) | Kind::Rest => false,
+            };
+            if together {
+                lanes.each(times.len(), |n, x| {
+                    let x = if times[n] == 0.0 { self.start.to_f64().phase() } else { x };
+                    each(block * LANES + n, x);
+                });
+            } else {
+                for (n, &t) in times.iter().enumerate() {
+                    each(block * LANES + n, self.at(Dd::from(t)).phase());
+                }
+            }
         }
     }
 

@@ -29,7 +29,7 @@ impl Phase {
     }
 
     /// The value at the time `t`, as a sum of two numbers.
-    #[inline]
+    #[inline(always)]
     pub(in crate::flow) fn at(&self, [t, low]: Pair) -> (f64, f64) {
         let (product, rest) = two_prod(self.rate[0], t);
         let (sum, error) = two_sum(product, self.start[0]);

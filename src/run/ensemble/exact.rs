@@ -2,8 +2,9 @@
 
 use core::ops::Range;
 
+use super::rows::Reading;
 use super::{Ensemble, MemberError, Rows};
-use crate::body::{Body, Clock, Point};
+use crate::body::{Body, Clock, Phase, Point};
 use crate::flow::{ExactMotion, NoClosedForm, TimeError};
 use crate::num::Dd;
 use crate::observe::Monitor;
@@ -46,18 +47,31 @@ fn fill(
     rows: &mut Rows,
 ) -> Result<(), (usize, MemberError)> {
     let monitor = ensemble.observed.invariants.then(|| Monitor::new(body, Clock::new(1.0), &start.to_f64()));
-    for (time, &t) in times.iter().enumerate() {
-        motion.check_time(t).map_err(|error| (time, error.into()))?;
-        let x = motion.point_at(Dd::from(t));
-        if !rows.set(n, time, body, &x) {
-            return Err((time, TimeError::OutOfReach { t, reach: motion.reach() }.into()));
-        }
-        if let Some(monitor) = &monitor {
-            rows.set_errors(n, time, monitor.errors(&x));
+    let reading = Reading::of(body);
+    let refused = times.iter().enumerate().find_map(|(time, &t)| Some((time, motion.check_time(t).err()?)));
+    let times = &times[..refused.map_or(times.len(), |(time, _)| time)];
+    let mut first_infinite = None;
+    let mut see = |time: usize, x: Phase<f64>| {
+        if !rows.set(n, time, &reading, x) {
+            first_infinite = first_infinite.or(Some(time));
+        } else if let Some(monitor) = &monitor {
+            rows.set_errors(n, time, monitor.errors(&Point::new(x.attitude, x.momentum_body)));
         }
         if ensemble.observed.attitude {
             rows.set_attitude_error(n, time, 0.0);
         }
+    };
+    match motion {
+        ExactMotion::Free(motion) => motion.phases_at(times, ensemble.instructions, see),
+        other => {
+            times.iter().enumerate().for_each(|(time, &t)| see(time, other.point_at(Dd::from(t)).phase()))
+        }
     }
-    Ok(())
+    match (first_infinite, refused) {
+        (Some(time), _) => {
+            Err((time, TimeError::OutOfReach { t: times[time], reach: motion.reach() }.into()))
+        }
+        (None, Some((time, error))) => Err((time, error.into())),
+        (None, None) => Ok(()),
+    }
 }

@@ -20,10 +20,11 @@ pub use self::error::{EnsembleError, MemberError};
 use self::members::{Inertias, Start};
 pub use self::rows::Rows;
 pub use self::spread::{Spread, Tally};
+use self::stepped::Course;
 use crate::body::{Body, Clock, Point, State, StateError};
 use crate::inertia::Inertia;
 use crate::method::AnyMethod;
-use crate::num::Dd;
+use crate::num::{Dd, Instructions};
 use crate::rotation::Vec3;
 
 /// Makes the body of a member from its inertia.
@@ -71,6 +72,7 @@ pub struct Ensemble {
     failed: Vec<(usize, MemberError)>,
     acting: Option<Acting>,
     observed: Observed,
+    instructions: Instructions,
     threads: usize,
 }
 
@@ -94,6 +96,7 @@ impl Ensemble {
             failed: Vec::new(),
             acting: None,
             observed: Observed::default(),
+            instructions: Instructions::default(),
             threads: 1,
         }
     }
@@ -142,6 +145,12 @@ impl Ensemble {
     /// The same members, with errors in every row.
     pub fn observing(mut self, observed: Observed) -> Self {
         self.observed = observed;
+        self
+    }
+
+    /// The same members, moved by no more than these instructions. The bits do not depend on it.
+    pub fn by(mut self, instructions: Instructions) -> Self {
+        self.instructions = instructions;
         self
     }
 
@@ -231,8 +240,8 @@ impl Ensemble {
         if let Some(body) = (0..self.len()).find_map(|k| self.body(k).ok()) {
             method.prepare_f64(clock, &body).map_err(EnsembleError::from)?;
         }
-        let parts = parts::of_stepped(self.len(), steps.len());
-        self.in_parts(parts, |part| stepped::rows(self, part, method, clock, steps), &mut each)
+        let course = Course { ensemble: self, method, clock, steps };
+        self.in_parts(parts::of_stepped(self.len(), steps.len()), |part| course.rows(part), &mut each)
     }
 
     /// The inertia of member `k`; `None` where there is no such member, or none that has one.

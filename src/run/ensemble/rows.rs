@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{MemberError, Observed};
-use crate::body::{Body, Point, State};
+use crate::body::{Body, Exit, Phase, State};
 use crate::observe::Errors;
 use crate::rotation::{Quat, Vec3};
 
@@ -30,16 +30,31 @@ struct Failure {
     error: MemberError,
 }
 
+/// In the place of a state.
+const NO_STATE: State = State { attitude: Quat { w: 0.0, v: Vec3([0.0; 3]) }, momentum_body: Vec3([0.0; 3]) };
+
+/// What reads points of one member.
+pub(super) struct Reading {
+    exit: Exit<f64>,
+    inverse_moments: Vec3<f64>,
+}
+
+impl Reading {
+    pub(super) fn of(body: &Body) -> Self {
+        Reading { exit: Exit::of(body), inverse_moments: body.rotor().inverse_moments() }
+    }
+}
+
 impl Rows {
     /// Empty ones of `members` members from number `first` on.
     pub(super) fn new(first: usize, members: usize, times: usize, observed: Observed) -> Self {
-        let (count, zero) = (members * times, Vec3::zero());
+        let count = members * times;
         let room = |observed: bool| if observed { count } else { 0 };
         Rows {
             first,
             members,
             times,
-            states: vec![State { attitude: Quat::zero(), momentum_body: zero }; count],
+            states: vec![NO_STATE; count],
             omegas: vec![Vector3::zeros(); count],
             errors: vec![Errors::NONE; room(observed.invariants)],
             attitude_errors: vec![f64::INFINITY; room(observed.attitude)],
@@ -48,9 +63,15 @@ impl Rows {
     }
 
     /// Writes the row of the `member`-th of these members at the `time`-th time; whether all of it is finite.
-    pub(super) fn set(&mut self, member: usize, time: usize, body: &Body, x: &Point<f64>) -> bool {
-        let (state, omega) = (body.leave(x), body.omega_of(x));
-        let finite = state.is_finite() && omega.iter().all(|w| w.is_finite());
+    #[inline]
+    pub(super) fn set(&mut self, member: usize, time: usize, reading: &Reading, x: Phase<f64>) -> bool {
+        let state = reading.exit.state(x);
+        let omega = reading.exit.omega(reading.inverse_moments, x.momentum_body);
+        let (q, m) = (state.attitude, state.momentum_body);
+        // without branches: zero times a number is zero, unless it is infinite or none
+        let zero = (0.0 * q.w + 0.0 * q.v[0]) + (0.0 * q.v[1] + 0.0 * q.v[2]);
+        let zero = zero + (0.0 * m[0] + 0.0 * m[1]) + (0.0 * m[2] + 0.0 * omega[0]);
+        let finite = zero + (0.0 * omega[1] + 0.0 * omega[2]) == 0.0;
         if finite {
             let place = time * self.members + member;
             (self.states[place], self.omegas[place]) = (state, omega);
@@ -68,6 +89,16 @@ impl Rows {
 
     /// The `member`-th of these members has no state from the `time`-th time on.
     pub(super) fn fail(&mut self, member: usize, time: usize, error: MemberError) {
+        for place in (time..self.times).map(|time| time * self.members + member) {
+            self.states[place] = NO_STATE;
+            self.omegas[place] = Vector3::zeros();
+            if let Some(errors) = self.errors.get_mut(place) {
+                *errors = Errors::NONE;
+            }
+            if let Some(angle) = self.attitude_errors.get_mut(place) {
+                *angle = f64::INFINITY;
+            }
+        }
         self.failures.push(Failure { member: self.first + member, time, error });
     }
 

@@ -2,64 +2,173 @@
 
 use core::ops::Range;
 
+use super::rows::Reading;
 use super::{Ensemble, MemberError, Rows};
 use crate::body::{Body, Clock, Point};
 use crate::flow::ExactMotion;
-use crate::method::AnyMethod;
-use crate::num::{Dd, Precise};
+use crate::method::{AnyMethod, Block, SideBySide, Step};
+use crate::num::{Dd, LANES, Precise};
+use crate::observe::Monitor;
 use crate::rotation::rotation_angle;
-use crate::run::{Run, Watch};
+use crate::run::{Run, RunError, Watch};
 
-/// Of the members `part` after the numbers of `steps`, ascending.
-pub(super) fn rows(
-    ensemble: &Ensemble,
-    part: Range<usize>,
-    method: &dyn AnyMethod,
-    clock: Clock,
-    steps: &[u64],
-) -> Rows {
-    let mut rows = Rows::new(part.start, part.len(), steps.len(), ensemble.observed);
-    for (n, k) in part.enumerate() {
-        match ensemble.member(k) {
-            Ok((body, start)) => {
-                if let Err((time, error)) = alone(ensemble, n, &body, start, method, clock, steps, &mut rows)
-                {
-                    rows.fail(n, time, error);
-                }
-            }
-            Err(error) => rows.fail(n, 0, error),
-        }
-    }
-    rows.sorted()
+/// What all members of a run have in common.
+pub(super) struct Course<'a> {
+    pub(super) ensemble: &'a Ensemble,
+    pub(super) method: &'a dyn AnyMethod,
+    pub(super) clock: Clock,
+    /// Numbers of steps at which it is read, ascending.
+    pub(super) steps: &'a [u64],
 }
 
-/// Runs the member `n` of the part by itself.
-#[expect(clippy::too_many_arguments, reason = "a member, its run and where its rows go")]
-fn alone(
-    ensemble: &Ensemble,
-    n: usize,
-    body: &Body,
-    start: Point<Dd>,
-    method: &dyn AnyMethod,
-    clock: Clock,
-    steps: &[u64],
-    rows: &mut Rows,
-) -> Result<(), (usize, MemberError)> {
-    let run = Run::from_point(method, body, start.to_f64(), clock).map_err(|error| (0, error.into()))?;
-    let mut run = run.watching(Watch::Never);
-    let exact = ensemble.observed.attitude.then(|| ExactMotion::from_point(body, start).ok()).flatten();
-    for (time, &steps) in steps.iter().enumerate() {
-        let sample = run.advance_to(steps).map_err(|error| (time, error.into()))?;
-        rows.set(n, time, body, &sample.point);
-        if ensemble.observed.invariants {
-            rows.set_errors(n, time, sample.errors);
+/// A member whose steps are taken side by side with those of others.
+struct Member {
+    /// Among the members of the part.
+    number: usize,
+    step: Box<dyn Step<f64>>,
+    /// Opened.
+    point: Point<f64>,
+    side_by_side: SideBySide<f64>,
+    observer: Observer,
+}
+
+impl Course<'_> {
+    /// Rows of the members `part`.
+    pub(super) fn rows(&self, part: Range<usize>) -> Rows {
+        let mut rows = Rows::new(part.start, part.len(), self.steps.len(), self.ensemble.observed);
+        let mut members = Vec::new();
+        for (number, k) in part.enumerate() {
+            let outcome = match self.enter(number, k) {
+                Ok(Entered::Lane(member)) => {
+                    members.push(*member);
+                    Ok(())
+                }
+                Ok(Entered::Alone(body, start)) => self.alone(number, &body, start, &mut rows),
+                Err(error) => Err((0, error)),
+            };
+            if let Err((time, error)) = outcome {
+                rows.fail(number, time, error);
+            }
         }
-        if let Some(exact) = &exact
-            && exact.check_time(sample.elapsed.to_f64()).is_ok()
-        {
-            let angle = rotation_angle(exact.point_at(sample.elapsed).attitude, sample.point.attitude);
-            rows.set_attitude_error(n, time, angle);
+        // those of one kind behind each other, in their order
+        let mut kinds: Vec<Vec<Member>> = Vec::new();
+        for member in members {
+            let kernel = &member.side_by_side.kernel;
+            match kinds.iter_mut().find(|kind| kind[0].side_by_side.kernel == *kernel) {
+                Some(kind) => kind.push(member),
+                None => kinds.push(vec![member]),
+            }
+        }
+        for kind in &mut kinds {
+            for members in kind.chunks_mut(LANES) {
+                self.together(members, &mut rows);
+            }
+        }
+        rows.sorted()
+    }
+
+    fn enter(&self, number: usize, k: usize) -> Result<Entered, MemberError> {
+        let (body, start) = self.ensemble.member(k)?;
+        let mut step = self.method.prepare_f64(self.clock, &body).map_err(RunError::from)?;
+        let mut point = start.to_f64();
+        step.open(&mut point);
+        Ok(match step.side_by_side() {
+            Some(side_by_side) => {
+                let observer = Observer::new(self, &body, start);
+                Entered::Lane(Box::new(Member { number, step, point, side_by_side, observer }))
+            }
+            None => Entered::Alone(body, start),
+        })
+    }
+
+    /// Takes the steps of at most [`LANES`] members of one kind.
+    fn together(&self, members: &mut [Member], rows: &mut Rows) {
+        let lanes: Vec<_> = members.iter().map(|member| (member.point, &member.side_by_side)).collect();
+        let Some(kernel) = lanes.first().map(|(_, side_by_side)| side_by_side.kernel.clone()) else { return };
+        let mut block = Block::new(&kernel, &lanes);
+        let mut alive = vec![true; members.len()];
+        for (time, &steps) in self.steps.iter().enumerate() {
+            block.advance(steps - block.steps(), self.ensemble.instructions);
+            for ((n, member), alive) in members.iter_mut().enumerate().zip(&mut alive) {
+                if !*alive {
+                    continue;
+                }
+                let x = member.step.reading(&block.point(n));
+                *alive = x.is_finite() && member.observer.see(self, member.number, time, &x, rows);
+                if *alive {
+                    continue;
+                }
+                // alone it runs into the same and says why
+                let again = self.ensemble.member(rows.first() + member.number);
+                let outcome = match again {
+                    Ok((body, start)) => self.alone(member.number, &body, start, rows),
+                    Err(error) => Err((time, error)),
+                };
+                if let Err((time, error)) = outcome {
+                    rows.fail(member.number, time, error);
+                }
+            }
         }
     }
-    Ok(())
+
+    /// Runs a member by itself.
+    fn alone(
+        &self,
+        number: usize,
+        body: &Body,
+        start: Point<Dd>,
+        rows: &mut Rows,
+    ) -> Result<(), (usize, MemberError)> {
+        let run = Run::from_point(self.method, body, start.to_f64(), self.clock);
+        let mut run = run.map_err(|error| (0, error.into()))?.watching(Watch::Never);
+        let observer = Observer::new(self, body, start);
+        for (time, &steps) in self.steps.iter().enumerate() {
+            let sample = run.advance_to(steps).map_err(|error| (time, error.into()))?;
+            if !observer.see(self, number, time, &sample.point, rows) {
+                return Err((time, RunError::OutOfRange { steps }.into()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How a member goes on.
+enum Entered {
+    Lane(Box<Member>),
+    Alone(Body, Point<Dd>),
+}
+
+/// What writes the rows of one member.
+struct Observer {
+    reading: Reading,
+    monitor: Option<Box<Monitor>>,
+    exact: Option<Box<ExactMotion>>,
+}
+
+impl Observer {
+    fn new(course: &Course<'_>, body: &Body, start: Point<Dd>) -> Self {
+        let observed = course.ensemble.observed;
+        let monitor =
+            observed.invariants.then(|| Box::new(Monitor::new(body, course.clock, &start.to_f64())));
+        let exact = observed.attitude.then(|| ExactMotion::from_point(body, start).ok().map(Box::new));
+        Observer { reading: Reading::of(body), monitor, exact: exact.flatten() }
+    }
+
+    /// Writes a row; whether all of it is finite.
+    fn see(&self, course: &Course<'_>, number: usize, time: usize, x: &Point<f64>, rows: &mut Rows) -> bool {
+        if !rows.set(number, time, &self.reading, x.phase()) {
+            return false;
+        }
+        if let Some(monitor) = &self.monitor {
+            rows.set_errors(number, time, monitor.errors(x));
+        }
+        let elapsed = course.clock.elapsed(x.steps());
+        if let Some(exact) = &self.exact
+            && exact.check_time(elapsed.to_f64()).is_ok()
+        {
+            let angle = rotation_angle(exact.point_at(elapsed).attitude, x.attitude);
+            rows.set_attitude_error(number, time, angle);
+        }
+        true
+    }
 }

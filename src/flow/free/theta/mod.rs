@@ -21,8 +21,10 @@
 
 mod direct;
 mod dual;
+mod lanes;
 mod series;
 
+pub(super) use self::lanes::Points;
 pub(in crate::flow) use self::series::{
     Family, LEAST_TERMS, T, U, V_MINUS, V_PLUS, least_value, polynomial, power,
 };
@@ -30,6 +32,7 @@ use self::series::{Form, TERMS, value};
 use super::phase::{Pair, Phase, TOO_FAR};
 use super::polhode::Polhode;
 use crate::num::error_free::{two_prod, two_sum};
+use crate::num::exponential::exp_of_positive;
 use crate::num::trig::{nearest, sin_cos_turns};
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
@@ -84,78 +87,157 @@ impl Theta {
     /// Attitude and momentum at `t`; `None` where so many turns have passed that `f64` pairs cannot reduce them.
     #[inline]
     pub(super) fn at(&self, t: Pair) -> Option<(Quat<f64>, Vec3<f64>)> {
-        let (phase, phase_low) = self.phase.at(t);
-        let (mut psi, mut psi_low) = self.twist.at(t);
-        if !(phase.abs() < TOO_FAR && psi.abs() < TOO_FAR) {
+        let phase = self.phase.at(t);
+        let (psi, psi_low) = self.twist.at(t);
+        if !(phase.0.abs() < TOO_FAR && psi.abs() < TOO_FAR) {
             return None;
         }
-        psi -= nearest(psi);
-        let (z, w, least);
-        if let Form::Direct = self.form {
-            let (s, c) = sin_cos_turns(phase - nearest(phase), phase_low);
-            let x = (c - s) * (c + s); // cos 2x
-            z = [value(&self.z[0], x), 2.0 * s * c * value(&self.z[1], x)];
-            w = [s * value(&self.w[0], x), c * value(&self.w[1], x)];
-            let sum = least_value(&self.least, x);
-            least = if self.about_smallest { sum } else { c * sum };
+        let psi = (psi - nearest(psi), psi_low);
+        Some(if self.about_smallest {
+            self.after::<true>(phase, psi)
         } else {
-            let (beta, sign) = match self.form {
-                Form::Dual { width, jump } | Form::Limit { width, jump } => {
-                    let n = nearest(phase);
-                    let (turns, rest) = two_prod(jump[0], n);
-                    let (sum, error) = two_sum(psi, turns - nearest(turns));
-                    psi = sum - nearest(sum);
-                    psi_low += error + (rest + jump[1] * n);
-                    let odd = nearest(0.5 * n) != 0.5 * n;
-                    (((phase - n) + phase_low) * width, if odd { -1.0 } else { 1.0 })
-                }
-                _ => (phase + phase_low, 1.0),
-            };
-            // e^{±350} is as good as infinity and its square still finite
-            let beta = beta.clamp(-350.0, 350.0);
-            let grown = libm::exp(beta.abs());
-            let shrunk = 1.0 / grown;
-            let cosh = 0.5 * (grown + shrunk);
-            let sinh = 0.5 * (grown - shrunk);
-            let sinh = if beta < 0.0 { -sinh } else { sinh };
-            // cosh 2β, except where all polynomials are constants and it might overflow
-            let x = if let Form::Dual { .. } = self.form { cosh * cosh + sinh * sinh } else { 1.0 };
-            z = [cosh * value(&self.z[0], x), sinh * value(&self.z[1], x)];
-            w = [sign * sinh * value(&self.w[0], x), sign * cosh * value(&self.w[1], x)];
-            let sum = match self.form {
-                // 1 ± 2q' cosh 4β with q' = e^{−2 width}, and no power of cosh
-                Form::Limit { width, .. } => {
-                    let end = libm::exp(4.0 * beta.abs() - 2.0 * width);
-                    self.least[0] * if self.about_smallest { 1.0 + end } else { 1.0 - end }
-                }
-                _ => least_value(&self.least, 2.0 * x * x - 1.0),
-            };
-            least = if self.about_smallest { sum } else { sign * sum };
-        }
-        Some(self.assemble(z, w, least, sin_cos_turns(psi, psi_low)))
+            self.after::<false>(phase, psi)
+        })
     }
 
-    /// Attitude and momentum from Z, W, the theta quotient times n₂, and sine and cosine of Ψ.
+    #[inline(always)]
+    fn after<const ABOUT_SMALLEST: bool>(
+        &self,
+        phase: (f64, f64),
+        psi: (f64, f64),
+    ) -> (Quat<f64>, Vec3<f64>) {
+        let (Sums { z, w, least }, (psi, psi_low)) = match self.form {
+            Form::Direct => (self.direct::<ABOUT_SMALLEST>(phase), psi),
+            Form::Dual { width, jump } => self.dual::<ABOUT_SMALLEST>(width, jump, phase, psi),
+            Form::Limit { width, jump } => self.limit::<ABOUT_SMALLEST>(width, jump, phase, psi),
+            Form::Separatrix => {
+                let beta = phase.0 + phase.1;
+                (self.hyperbolic::<false, ABOUT_SMALLEST>(beta, 1.0), psi)
+            }
+        };
+        let (turn, momentum) = self.assembled::<ABOUT_SMALLEST>(z, w, least, sin_cos_turns(psi, psi_low));
+        let (mut m, mut v) = (Vec3::zero(), Vec3::zero());
+        for (k, axis) in self.axes.into_iter().enumerate() {
+            (m[axis], v[axis]) = (momentum[k], turn[k + 1]);
+        }
+        (self.attitude * Quat::new(turn[0], v), m)
+    }
+
+    #[inline(always)]
+    fn direct<const ABOUT_SMALLEST: bool>(&self, (phase, phase_low): (f64, f64)) -> Sums {
+        let (s, c) = sin_cos_turns(phase - nearest(phase), phase_low);
+        let x = (c - s) * (c + s); // cos 2x
+        let sum = least_value(&self.least, x);
+        Sums {
+            z: [value(&self.z[0], x), 2.0 * s * c * value(&self.z[1], x)],
+            w: [s * value(&self.w[0], x), c * value(&self.w[1], x)],
+            least: if ABOUT_SMALLEST { sum } else { c * sum },
+        }
+    }
+
+    /// With Ψ after the jumps of whole half periods.
+    #[inline(always)]
+    fn dual<const ABOUT_SMALLEST: bool>(
+        &self,
+        width: f64,
+        jump: Pair,
+        phase: (f64, f64),
+        psi: (f64, f64),
+    ) -> (Sums, (f64, f64)) {
+        let (beta, sign, psi) = jumped(width, jump, phase, psi);
+        (self.hyperbolic::<true, ABOUT_SMALLEST>(beta, sign), psi)
+    }
+
     #[inline]
-    fn assemble(&self, z: Pair, w: Pair, least: f64, (sin, cos): (f64, f64)) -> (Quat<f64>, Vec3<f64>) {
-        let [a, b, c] = self.axes;
+    fn limit<const ABOUT_SMALLEST: bool>(
+        &self,
+        width: f64,
+        jump: Pair,
+        phase: (f64, f64),
+        psi: (f64, f64),
+    ) -> (Sums, (f64, f64)) {
+        let (beta, sign, psi) = jumped(width, jump, phase, psi);
+        let sums = self.hyperbolic::<false, ABOUT_SMALLEST>(beta, sign);
+        // 1 ± 2q' cosh 4β with q' = e^{−2 width}, and no power of cosh
+        let end = libm::exp(4.0 * bounded(beta).abs() - 2.0 * width);
+        let sum = self.least[0] * if ABOUT_SMALLEST { 1.0 + end } else { 1.0 - end };
+        (Sums { least: if ABOUT_SMALLEST { sum } else { sign * sum }, ..sums }, psi)
+    }
+
+    /// With `POWERS`, the polynomials are no constants.
+    #[inline(always)]
+    fn hyperbolic<const POWERS: bool, const ABOUT_SMALLEST: bool>(&self, beta: f64, sign: f64) -> Sums {
+        let beta = bounded(beta);
+        let grown = exp_of_positive(beta.abs());
+        let shrunk = 1.0 / grown;
+        let cosh = 0.5 * (grown + shrunk);
+        let sinh = 0.5 * (grown - shrunk);
+        let sinh = if beta < 0.0 { -sinh } else { sinh };
+        // cosh 2β, except where all polynomials are constants and it might overflow
+        let x = if POWERS { cosh * cosh + sinh * sinh } else { 1.0 };
+        let sum = least_value(&self.least, 2.0 * x * x - 1.0);
+        Sums {
+            z: [cosh * value(&self.z[0], x), sinh * value(&self.z[1], x)],
+            w: [sign * sinh * value(&self.w[0], x), sign * cosh * value(&self.w[1], x)],
+            least: if ABOUT_SMALLEST { sum } else { sign * sum },
+        }
+    }
+
+    /// The turn from P(0), along w, a, b, c, and the momentum, along a, b, c, from Z, W, the theta quotient times n₂, and sine
+    /// and cosine of Ψ.
+    #[inline(always)]
+    fn assembled<const ABOUT_SMALLEST: bool>(
+        &self,
+        z: Pair,
+        w: Pair,
+        least: f64,
+        (sin, cos): (f64, f64),
+    ) -> ([f64; 4], [f64; 3]) {
         let (zz, ww) = (z[0] * z[0] + z[1] * z[1], w[0] * w[0] + w[1] * w[1]);
         let r = 1.0 / (zz + ww).sqrt();
         let r2 = r * r;
         let twice = 2.0 * self.norm * r2;
-        let mut m = Vec3::zero();
-        m[b] = twice * (z[0] * w[0] + z[1] * w[1]);
-        if self.about_smallest {
-            m[a] = least * r2;
-            m[c] = twice * self.delta * (z[0] * w[1] - z[1] * w[0]);
+        let middle = twice * (z[0] * w[0] + z[1] * w[1]);
+        let momentum = if ABOUT_SMALLEST {
+            [least * r2, middle, twice * self.delta * (z[0] * w[1] - z[1] * w[0])]
         } else {
-            m[a] = self.norm * self.sigma * r2 * (zz - ww);
-            m[c] = least * r2;
-        }
-        let mut v = Vec3::zero();
-        v[a] = self.sigma * r * (cos * z[1] + sin * z[0]);
-        v[b] = r * (cos * w[1] + sin * w[0]);
-        v[c] = -self.delta * r * (cos * w[0] - sin * w[1]);
-        (self.attitude * Quat::new(r * (cos * z[0] - sin * z[1]), v), m)
+            [self.norm * self.sigma * r2 * (zz - ww), middle, least * r2]
+        };
+        let turn = [
+            r * (cos * z[0] - sin * z[1]),
+            self.sigma * r * (cos * z[1] + sin * z[0]),
+            r * (cos * w[1] + sin * w[0]),
+            -self.delta * r * (cos * w[0] - sin * w[1]),
+        ];
+        (turn, momentum)
     }
+}
+
+/// Z, W and the theta quotient along the smallest moment times n₂.
+struct Sums {
+    z: Pair,
+    w: Pair,
+    least: f64,
+}
+
+/// β of the rest after whole half periods, the sign that these leave, and Ψ after their jumps.
+#[inline(always)]
+fn jumped(
+    width: f64,
+    jump: Pair,
+    (phase, phase_low): (f64, f64),
+    (psi, psi_low): (f64, f64),
+) -> (f64, f64, (f64, f64)) {
+    let n = nearest(phase);
+    let (turns, rest) = two_prod(jump[0], n);
+    let (sum, error) = two_sum(psi, turns - nearest(turns));
+    let psi = (sum - nearest(sum), psi_low + (error + (rest + jump[1] * n)));
+    let sign = if nearest(0.5 * n) != 0.5 * n { -1.0 } else { 1.0 };
+    (((phase - n) + phase_low) * width, sign, psi)
+}
+
+/// e^{±350} is as good as infinity and its square still finite.
+#[inline(always)]
+fn bounded(beta: f64) -> f64 {
+    beta.clamp(-350.0, 350.0)
 }

@@ -1,0 +1,183 @@
+//! Bodies side by side against the scalar rk4 of the crate, bursts in turn in one run: `cargo bench --bench ensemble --features
+//! parallel`. Ends with 1 if a ratio is less than half of what it was when it was last looked at.
+
+#![allow(clippy::expect_used)]
+
+use std::hint::black_box;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::body::{Body, Clock, Point};
+use polhode::flow::FreeMotion;
+use polhode::inertia::Inertia;
+use polhode::method::{Step, method};
+use polhode::num::Instructions;
+use polhode::run::{Ensemble, EnsembleError};
+
+const STEP: f64 = 0.01;
+const BURSTS: usize = 60;
+/// Of a burst. It is short, so that some run without another program between.
+const MEMBERS: u64 = 64;
+const FEW: u64 = 1000;
+const MANY: u64 = 6000;
+/// Steps of a burst of the scalar rk4.
+const REFERENCE: u64 = 10_000;
+
+/// Instructions, method, and how many times as fast as the scalar rk4 it was.
+const ROWS: [(Instructions, &str, f64); 9] = [
+    (Instructions::Widest, "two-turn:31", 16.0),
+    (Instructions::Widest, "lie-poisson:321", 8.0),
+    (Instructions::Widest, "rk4", 9.0),
+    (Instructions::Avx2, "two-turn:31", 8.0),
+    (Instructions::Avx2, "lie-poisson:321", 4.0),
+    (Instructions::Avx2, "rk4", 4.5),
+    (Instructions::Baseline, "two-turn:31", 3.5),
+    (Instructions::Baseline, "lie-poisson:321", 1.5),
+    (Instructions::Baseline, "rk4", 2.5),
+];
+
+/// Different bodies and starts.
+fn members(count: u64) -> Ensemble {
+    let mut ensemble = Ensemble::with_capacity(count as usize);
+    for k in 0..count {
+        let part = |ratio: f64| (k as f64 * ratio).fract();
+        let (a, b) = (part(0.618_033_988_749_895), part(0.754_877_666_246_693));
+        let inertia = Inertia::from_moments([1.0, 1.6 + 0.4 * a, 2.2 + 0.4 * b]).expect("valid moments");
+        let omega = Vector3::new(0.4 + 0.2 * b, 1.0, -0.3 - 0.2 * a);
+        ensemble.push_omega(&inertia, UnitQuaternion::identity(), omega);
+    }
+    ensemble
+}
+
+fn advance(ensemble: &Ensemble, name: &str, steps: u64) {
+    let method = method(name).expect("a method");
+    let done = ensemble.advance(&method, Clock::new(STEP), &[steps], |rows| {
+        black_box(rows.states(0));
+        Ok::<(), EnsembleError>(())
+    });
+    done.expect("a step that is usable");
+}
+
+/// Least time of `job`, s, over some bursts that take turns with those of the others.
+fn least<const N: usize>(mut jobs: [&mut dyn FnMut(); N], bursts: usize) -> [f64; N] {
+    let mut least = [f64::INFINITY; N];
+    for _ in 0..bursts {
+        for (job, least) in jobs.iter_mut().zip(&mut least) {
+            let begun = Instant::now();
+            job();
+            *least = least.min(begun.elapsed().as_secs_f64());
+        }
+    }
+    least
+}
+
+fn main() -> ExitCode {
+    let mut lost = false;
+    let mut judge = |ratio: f64, known: f64| {
+        lost |= ratio < 0.5 * known;
+        if ratio < 0.5 * known { "  less than half of what it was" } else { "" }
+    };
+
+    let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).expect("valid moments"));
+    let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3)).expect("a valid start");
+    let rk4 = method("rk4").expect("a method");
+    let mut step: Box<dyn Step<f64>> = rk4.prepare_f64(Clock::new(STEP), &body).expect("a valid step");
+    let mut x: Point<f64> = body.enter(&start).expect("a valid start").to_f64();
+    step.open(&mut x);
+    let mut alone = || step.advance(black_box(&mut x), REFERENCE);
+
+    println!(
+        "{:10} {:16} {:>14} {:>12} {:>8} {:>20}",
+        "", "", "ns/body-step", "million/s", "ratio", "us to prepare, read"
+    );
+    let mut scalar = f64::INFINITY;
+    for (instructions, name, known) in ROWS {
+        let ensemble = members(MEMBERS).by(instructions);
+        let [reference, few, many] = least(
+            [&mut alone, &mut || advance(&ensemble, name, FEW), &mut || advance(&ensemble, name, MANY)],
+            BURSTS,
+        );
+        let reference = reference / REFERENCE as f64;
+        scalar = scalar.min(reference);
+        // what preparing the members takes is no part of a step
+        let each = (many - few) / ((MANY - FEW) * MEMBERS) as f64;
+        let rest = few / MEMBERS as f64 - FEW as f64 * each;
+        let ratio = reference / each;
+        let set = format!("{instructions:?}").to_lowercase();
+        println!(
+            "{set:10} {name:16} {:14.2} {:12.0} {ratio:8.1} {:20.2}{}",
+            1e9 * each,
+            1e-6 / each,
+            1e6 * rest,
+            judge(ratio, known)
+        );
+    }
+    println!("{:10} {:16} {:14.2} {:12.0} {:8.1}", "scalar", "rk4", 1e9 * scalar, 1e-6 / scalar, 1.0);
+
+    let inertia = Inertia::from_moments([1.0, 2.0, 3.0]).expect("valid moments");
+    for (what, omega) in
+        [("tumbling", Vector3::new(0.4, 1.0, -0.3)), ("near the separatrix", Vector3::new(0.02, 1.0, -0.01))]
+    {
+        let motion = FreeMotion::from_omega(&inertia, UnitQuaternion::identity(), omega).expect("a start");
+        let times: Vec<f64> = (0..4096).map(|n| 0.37 * f64::from(n)).collect();
+        let mut states = Vec::new();
+        let [one, many] = least(
+            [
+                &mut || {
+                    states.clear();
+                    states.extend(times.iter().map(|&t| motion.at(black_box(t)).expect("a finite time")));
+                    black_box(&states);
+                },
+                &mut || drop(black_box(motion.at_many(black_box(&times)).expect("finite times"))),
+            ],
+            200,
+        );
+        let each = |total: f64| 1e9 * total / times.len() as f64;
+        let ratio = one / many;
+        println!(
+            "at_many over at, {what}: {:.1} / {:.1} ns = {:.2}{}",
+            each(many),
+            each(one),
+            many / one,
+            judge(ratio, 2.5)
+        );
+    }
+
+    let some = members(64);
+    let times: Vec<f64> = (0..500).map(|n| 7.0 * f64::from(n + 1)).collect();
+    let at = |ensemble: &Ensemble, times: &[f64]| {
+        let done = ensemble.at(times, |rows| {
+            black_box(rows.states(0));
+            Ok::<(), EnsembleError>(())
+        });
+        done.expect("finite times");
+    };
+    let [once, all] = least([&mut || at(&some, &times[..1]), &mut || at(&some, &times)], BURSTS);
+    println!(
+        "exact motion: {:.2} us a body to prepare, {:.1} ns a time; 100,000 bodies at 500 times so {:.2} s",
+        1e6 * once / 64.0,
+        1e9 * (all - once) / (64.0 * 499.0),
+        100_000.0 * all / 64.0
+    );
+    let begun = Instant::now();
+    at(&members(100_000), &times);
+    println!("all of them in one go: {:.2} s", begun.elapsed().as_secs_f64());
+
+    #[cfg(feature = "parallel")]
+    {
+        let (one, two) = (members(16 * 8192), members(16 * 8192).threads(2));
+        let [alone, shared] =
+            least([&mut || advance(&one, "two-turn:31", 500), &mut || advance(&two, "two-turn:31", 500)], 7);
+        println!("two threads over one: {:.2}", alone / shared);
+        drop((one, two));
+        let begun = Instant::now();
+        let ensemble = members(1_000_000).threads(2);
+        advance(&ensemble, "two-turn:31", 1000);
+        println!(
+            "1,000,000 bodies, 1000 two-turn steps on two threads: {:.2} s",
+            begun.elapsed().as_secs_f64()
+        );
+    }
+    if lost { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
