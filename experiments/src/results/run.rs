@@ -14,10 +14,10 @@ pub(super) fn run(names: &[String], scale: Scale, out: &Path, page: Option<&Path
         |experiment: &'static Experiment| (experiment, out.join(scale.to_string()).join(experiment.name));
     let chosen: Vec<_> = chosen("experiment run", names)?.into_iter().map(with_folder).collect();
     // a place that cannot be written is found out before the work, not after it
+    let mut page = page.map(|path| Page::new(path, scale)).transpose()?;
     for (_, folder) in &chosen {
         drop(Staging::new(folder)?);
     }
-    let mut page = page.map(|path| Page::new(path, scale)).transpose()?;
     let mut failures = Vec::new();
     for (experiment, folder) in chosen {
         let report = experiment.report(scale)?;
