@@ -9,6 +9,7 @@ use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode::run::{Run, Watch};
 
+use super::nearest::distance;
 use crate::error::{Error, unexpected};
 
 /// A row before it is written: time, attitude from body to space, angular velocity in body axes.
@@ -30,12 +31,18 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// The largest distance from the exact motion: rad, or relative to the angular velocity.
+    /// The largest distance from the exact motion with the same start: rad, or relative to the angular velocity.
     pub(super) fn error(&self) -> f64 {
         let distance = |(a, b): (&Row, &Row)| {
             rotation_angle(a.attitude, b.attitude).max((a.omega - b.omega).norm() / b.omega.norm())
         };
         self.rows.iter().zip(&self.exact).map(distance).fold(0.0, f64::max)
+    }
+
+    /// The largest distance from the nearest exact motion, where that is less than the distance `error` from the same start.
+    pub(super) fn least_error(&self, error: f64) -> Result<f64, Error> {
+        let body = Body::free(Inertia::from_moments(self.moments).map_err(unexpected)?);
+        Ok(distance(&body, &self.rows).map_or(error, |nearest| nearest.min(error)))
     }
 
     /// A body of one of three kinds in a random motion; half of them exact, half by a random method.
