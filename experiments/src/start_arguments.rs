@@ -38,7 +38,7 @@ pub(crate) struct StartArguments {
     #[arg(long, value_name = "r11,r12,...,r33", value_parser = rotation, allow_hyphen_values = true,
           conflicts_with_all = ["attitude", "angles"])]
     rotation: Option<TypedRotation>,
-    /// Sequence of Euler angles, such as zyx [default: zxz]; where rows are printed it adds columns phi, theta, psi, rad
+    /// Sequence of intrinsic Euler angles, each about an axis already turned, such as zyx [default: zxz]; propagate also prints them: phi, theta, psi, rad
     #[arg(long, value_name = "SEQUENCE", value_parser = sequence)]
     pub(crate) euler: Option<EulerSequence>,
     /// Unit of angles that are typed: rad or deg [default: rad]

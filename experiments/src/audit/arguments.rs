@@ -16,22 +16,22 @@ pub(super) struct ReadingArguments {
     /// Unit of time: s, ms, us, ns, or a number of seconds, such as the step of a dump that counts steps [default: that of the header, else s]
     #[arg(long, value_name = "UNIT", value_parser = time_unit)]
     pub(super) time_unit: Option<f64>,
-    /// Claim the place of the scalar
+    /// State the place of the scalar [default: found from the rows]
     #[arg(long, value_enum)]
     quaternion: Option<Order>,
-    /// Claim the direction of the attitude
+    /// State the direction of the attitude [default: found from the rows]
     #[arg(long, value_enum)]
     attitude: Option<To>,
     /// Product of the quaternions for which --attitude is meant [default: hamilton]
     #[arg(long, value_enum, requires = "attitude")]
     product: Option<Product>,
-    /// Claim the axes of the angular velocity
+    /// State the axes of the angular velocity [default: found from the rows]
     #[arg(long, value_enum)]
     omega_frame: Option<Axes>,
-    /// Claim the axes of the angular momentum
+    /// State the axes of the angular momentum [default: found from the rows]
     #[arg(long, value_enum)]
     momentum_frame: Option<Axes>,
-    /// Claim the unit of the angular velocity: rad/s, deg/s or rpm
+    /// State the unit of the angular velocity: rad/s, deg/s or rpm
     #[arg(long, value_name = "UNIT", value_parser = rate)]
     rate_unit: Option<RateUnit>,
     /// Sequence of the Euler angles in the order of their columns, about turned axes, as zyx; about fixed axes with :extrinsic

@@ -49,10 +49,10 @@ const RANKED: usize = 5;
 ///
 /// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
 /// angular momentum in columns of any common names, the qpos and qvel of MuJoCo, and LAMMPS dumps; several bodies by a column
-/// id. Of every convention that the columns allow the one is found in which the rows move like the body. Without a body its
-/// moments are fitted up to a factor. right: within --tolerance of a motion of the body, or within the digits and the noise of
-/// the record. What names or flags claim of a direction, a frame, a unit or the order of the moments makes a record wrong that
-/// contradicts it. suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, gyroscopic-term-missing,
+/// id. Every convention that the columns allow is tried; the one in which the rows obey the equations of motion is kept. Without
+/// a body its moments are fitted up to a factor. right: within --tolerance of a motion of the body, or within the digits and
+/// the noise of the record. Where a name or an option states a direction, a frame, a unit or the order of the moments, and the
+/// rows contradict it, the record is wrong. suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, gyroscopic-term-missing,
 /// gyroscopic-sign, integrator:NAME, discontinuity or none. Exit code 0: right; 1: wrong or undecided.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]

@@ -59,7 +59,7 @@ pub(crate) struct Fit {
     /// rotates freely from the first to the last, else the flights, which are found and listed]
     #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true)]
     window: Vec<Window>,
-    /// Half width of the test functions, s [default: that of the smallest covariance]
+    /// Half width of the window that smooths the equations, s; rarely needed [default: that of the smallest uncertainty]
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     radius: Option<f64>,
     /// Standard deviation of the noise, rad/s [default: from the samples]

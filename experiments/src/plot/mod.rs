@@ -99,7 +99,7 @@ fn angle(text: &str) -> Result<[f64; 2], String> {
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Plot {
     /// What is drawn
-    #[arg(value_enum, value_name = "KIND", hide_possible_values = true)]
+    #[arg(value_enum, value_name = "KIND")]
     kind: Kind,
     #[command(flatten)]
     body: BodyArguments,
@@ -116,10 +116,10 @@ pub(crate) struct Plot {
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME]; see `polhode methods`
     #[arg(long, value_name = "NAME", default_value = "exact")]
     method: String,
-    /// Step, s; every method but exact needs one, methods that choose their steps do not
+    /// Step of a method with fixed steps, s; exact, taylor, dop853 and tsit5 need none
     #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true)]
     step: Option<f64>,
-    /// Tolerance of methods that choose their steps (taylor, dop853, tsit5), relative to the state
+    /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
     #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Axis whose path trace draws [default: that of the weight of a top, else z]

@@ -54,10 +54,10 @@ pub(crate) struct Propagate {
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
     #[arg(long, value_name = "NAME", default_value = "exact")]
     method: String,
-    /// Step, s; every method but exact needs one; of methods that choose their steps the interval of output, by default DT
+    /// Step of a method with fixed steps, s, a whole number of which leads to every time; exact, taylor, dop853 and tsit5 need none
     #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true)]
     step: Option<f64>,
-    /// Tolerance of methods that choose their steps (taylor, dop853, tsit5), relative to the state
+    /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
     #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Columns of the rows, by commas: t, q, omega, energy, momentum, errors, euler, or names of columns [default: all]

@@ -78,13 +78,13 @@ pub(super) struct GyroscopeArguments {
     /// Scale error of each axis
     #[arg(long, value_name = "ax,ay,az", value_parser = numbers::<3>, allow_hyphen_values = true)]
     axis_scale_errors: Option<[f64; 3]>,
-    /// Angles by which pairs of axes are not orthogonal, shared by both, rad
+    /// Angles by which the pairs of axes xy, xz, yz are not orthogonal, half of it on each axis, rad
     #[arg(long, value_name = "xy,xz,yz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     misalignment: Option<[f64; 3]>,
     /// Step of the digital output, rad/s
     #[arg(long, value_name = "Q", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     quantum: f64,
-    /// How much later than the time says each axis is read, s
+    /// Delay of the reading of each axis after the time of the row, s
     #[arg(long, value_name = "sx,sy,sz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     skew: Option<[f64; 3]>,
     /// Share of the samples with a spike on one component, and its size, rad/s

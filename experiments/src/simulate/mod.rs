@@ -48,7 +48,7 @@ pub(crate) struct Simulate {
     /// Scatter of the sample times, as a share of the time between samples; below 1
     #[arg(long, value_name = "SHARE", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     jitter: f64,
-    /// The same where the times are written as if there were none
+    /// Scatter of the true times, as a fraction of DT, where the record has the regular times
     #[arg(long, value_name = "SHARE", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     hidden_jitter: f64,
     /// Number of tosses, each a motion of its own of duration T

@@ -60,6 +60,9 @@ pub(super) fn rounded(x: f64) -> Option<f64> {
     format!("{x:.3e}").parse().ok().filter(|x: &f64| x.is_finite())
 }
 
+/// Records of which a share of 95 % is asked.
+const MANY: u64 = 50;
+
 impl Tally {
     /// Of tensors with `numbers` unknowns, five or six.
     pub(super) fn new(trials: &[Trial], numbers: u64) -> Self {
@@ -128,7 +131,7 @@ impl Tally {
         middle(&self.seconds, share)
     }
 
-    /// What this row should show and does not, by more than chance.
+    /// What this row should show and does not, by more than chance; a share of mistakes that are caught is asked of many records.
     pub(super) fn demands(&self, case: &Case, noise: f64) -> Vec<String> {
         let records = self.records();
         let mut failed = Vec::new();
@@ -136,7 +139,7 @@ impl Tally {
         // five standard deviations of chance
         let surely = |count: u64, of: u64| Interval::wide(count, of, 5.0);
         if case.model == Model::WrongUnit {
-            if surely(self.units, records).is_some_and(|i| i.high < 0.95) {
+            if records >= MANY && surely(self.units, records).is_some_and(|i| i.high < 0.95) {
                 say(format!("{} of {records} mistaken units caught", self.units));
             }
             return failed;
