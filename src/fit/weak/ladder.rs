@@ -91,7 +91,7 @@ fn choose(
     if demand.units && (!explained || !first.settled()) {
         *better = better_unit(stretches, Some(&first), variance);
         // before the descents, which would not end soon either
-        if better.as_ref().is_some_and(|b| b.credible && !b.vague && b.far)
+        if better.as_ref().is_some_and(|b| b.credible && !b.vague && (b.far || b.sure))
             && let Some(better) = better.take()
         {
             return Err(Failure::Units(first.misfit(variance), Box::new(better)));
