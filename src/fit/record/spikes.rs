@@ -7,6 +7,14 @@ use nalgebra::Vector3;
 
 /// Sets of neighbours that foresee a sample: how many before it, and how many after.
 const SETS: [(usize, usize); 5] = [(2, 2), (3, 1), (1, 3), (3, 0), (0, 3)];
+/// The weights of the neighbours in each set where none is missing: how far from the sample, and its weight.
+const NEXT: [[(isize, f64); 4]; 5] = [
+    [(-1, 2.0 / 3.0), (-2, -1.0 / 6.0), (1, 2.0 / 3.0), (2, -1.0 / 6.0)],
+    [(-1, 1.5), (-2, -1.0), (-3, 0.25), (1, 0.25)],
+    [(-1, 0.25), (1, 1.5), (2, -1.0), (3, 0.25)],
+    [(-1, 3.0), (-2, -3.0), (-3, 1.0), (0, 0.0)],
+    [(1, 3.0), (2, -3.0), (3, 1.0), (0, 0.0)],
+];
 /// Samples on each side among which the usual deviation is sought, and whose deviations a spike changes.
 const NEIGHBOURS: usize = 25;
 /// Usual deviations that a spike exceeds by the median of its predictions: normal noise does so once in 1e17 samples.
@@ -26,11 +34,15 @@ pub(super) fn spikes(rates: &[Vector3<f64>]) -> Vec<usize> {
         median(&mut all).unwrap_or(0.0)
     });
     let score = |of_sets: &[f64; 5]| {
-        let mut each: Vec<f64> =
-            of_sets.iter().zip(usual).map(|(d, u)| d / u).filter(|s| s.is_finite()).collect();
+        let (mut each, mut count) = ([0.0; 5], 0);
+        for score in of_sets.iter().zip(usual).map(|(d, u)| d / u).filter(|s| s.is_finite()) {
+            each[count] = score;
+            count += 1;
+        }
+        let each = &mut each[..count];
         let first = each.first().copied().unwrap_or(0.0);
         let least = each.iter().copied().fold(f64::INFINITY, f64::min);
-        Score { first, least, middle: median(&mut each).unwrap_or(0.0) }
+        Score { first, least, middle: median(each).unwrap_or(0.0) }
     };
     let mut scores: Vec<Score> = of_sets.iter().map(score).collect();
     // where the motion is too fast for the sampling, all samples deviate
@@ -76,6 +88,17 @@ struct Score {
 
 /// The deviation of a sample from each of its predictions, in units of their noise; infinite where neighbours are missing.
 fn deviations(rates: &[Vector3<f64>], left: &[bool], i: usize) -> [f64; 5] {
+    // the usual case, whose weights are constants
+    if i >= 3 && i + 3 < rates.len() && left[i - 3..=i + 3].iter().all(|left| *left) {
+        return NEXT.map(|weights| {
+            let (mut rest, mut noise) = (rates[i], 1.0);
+            for (node, weight) in weights.into_iter().filter(|(node, _)| *node != 0) {
+                rest -= rates[i.wrapping_add_signed(node)] * weight;
+                noise += weight * weight;
+            }
+            rest.norm() / noise.sqrt()
+        });
+    }
     let before = (0..i).rev().filter(|&k| left[k]).take(3);
     let after = (i + 1..rates.len()).filter(|&k| left[k]).take(3);
     let (mut low, mut high) = ([None; 3], [None; 3]);
