@@ -55,11 +55,9 @@ use super::weak::weak_estimate::WeakEstimate;
 /// look mistaken; limits that contradict each other or the physical law; a program without a certified answer.
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
-    if settings.leave_out_spikes {
-        let (spikes, rest) = record.without_spikes();
-        fit_to(&rest, settings, spikes)
-    } else {
-        fit_to(record, settings, Vec::new())
+    match if settings.leave_out_spikes { record.without_spikes() } else { None } {
+        Some((spikes, rest)) => fit_to(&rest, settings, spikes),
+        None => fit_to(record, settings, Vec::new()),
     }
 }
 

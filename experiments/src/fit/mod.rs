@@ -256,7 +256,9 @@ impl Fit {
                 return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
             }
         };
-        let motion = motion::fitted(&estimate, &record);
+        // as long a computation as the fit itself, for those outputs alone that show it
+        let shown = residuals.is_some() || page.is_some() || figure.is_some();
+        let motion = if shown { motion::fitted(&estimate, &record) } else { Vec::new() };
         let left = match self.residuals.as_deref() {
             Some(path) if ends_in(path, &["csv"]) => Some(residuals::rows(&record, &motion).csv()),
             Some(_) => Some(plot::residuals(&estimate)?),

@@ -22,6 +22,7 @@ pub use read::Reading;
 use read::{Rows, rows};
 use segment::NAMES;
 pub use segment::Segment;
+use spikes::spikes;
 pub use units::{RateUnit, TimeUnit};
 
 /// Measured angular velocities of one body: segments that share one tensor, each with a motion of its own.
@@ -112,21 +113,25 @@ impl Record {
         self.segments.iter().map(|s| s.times.len()).sum()
     }
 
-    /// The spikes of all segments, and the record without them.
-    pub(crate) fn without_spikes(&self) -> (Vec<Spike>, Record) {
+    /// The spikes of all segments, and the record without them, where there are any.
+    pub(crate) fn without_spikes(&self) -> Option<(Vec<Spike>, Record)> {
+        let each: Vec<Vec<usize>> = self.segments.iter().map(|segment| spikes(segment.rates())).collect();
+        if each.iter().all(Vec::is_empty) {
+            return None;
+        }
         let mut all = Vec::new();
-        let mut record = Record { segments: Vec::new(), ..self.clone() };
-        for (k, segment) in self.segments.iter().enumerate() {
-            let (spikes, rest) = segment.without_spikes();
+        let mut record =
+            Record { segments: Vec::new(), findings: self.findings.clone(), skipped: self.skipped.clone() };
+        for (k, (segment, spikes)) in self.segments.iter().zip(each).enumerate() {
+            record.segments.push(segment.without(&spikes));
             all.extend(spikes.into_iter().map(|sample| Spike {
                 segment: k,
                 sample,
                 time: segment.times[sample],
                 line: segment.lines()[sample],
             }));
-            record.segments.push(rest);
         }
-        (all, record)
+        Some((all, record))
     }
 
     /// Number of samples that were merged into one of the same time.

@@ -7,6 +7,16 @@ use nalgebra::Vector3;
 
 /// Sets of neighbours that foresee a sample: how many before it, and how many after.
 const SETS: [(usize, usize); 7] = [(2, 2), (3, 1), (1, 3), (3, 0), (0, 3), (2, 0), (0, 2)];
+/// The weights of the neighbours in each set where none is missing: how far from the sample, and its weight.
+const NEXT: [[(isize, f64); 4]; 7] = [
+    [(-1, 2.0 / 3.0), (-2, -1.0 / 6.0), (1, 2.0 / 3.0), (2, -1.0 / 6.0)],
+    [(-1, 1.5), (-2, -1.0), (-3, 0.25), (1, 0.25)],
+    [(-1, 0.25), (1, 1.5), (2, -1.0), (3, 0.25)],
+    [(-1, 3.0), (-2, -3.0), (-3, 1.0), (0, 0.0)],
+    [(1, 3.0), (2, -3.0), (3, 1.0), (0, 0.0)],
+    [(-1, 2.0), (-2, -1.0), (0, 0.0), (0, 0.0)],
+    [(1, 2.0), (2, -1.0), (0, 0.0), (0, 0.0)],
+];
 /// Sets on one side of a sample, those before and those after it; of two the worse counts, as a second spike may be such that
 /// one of them foresees the first.
 const SIDES: [[usize; 2]; 2] = [[3, 5], [4, 6]];
@@ -32,13 +42,16 @@ pub(super) fn spikes(rates: &[Vector3<f64>]) -> Vec<usize> {
     });
     let score = |of_sets: &Deviations| {
         let relative = |k: usize| Some(of_sets[k] / usual[k]).filter(|s| s.is_finite());
-        let worse = |sets: [usize; 2]| sets.into_iter().filter_map(relative).reduce(f64::max);
-        let sides = SIDES.into_iter().filter_map(worse);
-        let across = (0..3).filter_map(relative);
-        let mut each: Vec<f64> = across.chain(sides.clone()).collect();
+        let sides = SIDES.map(|sets| sets.into_iter().filter_map(relative).reduce(f64::max));
+        let (mut each, mut count) = ([0.0; 5], 0);
+        for score in (0..3).map(relative).chain(sides).flatten() {
+            each[count] = score;
+            count += 1;
+        }
+        let each = &mut each[..count];
         let first = each.first().copied().unwrap_or(0.0);
-        let least = sides.fold(f64::INFINITY, f64::min);
-        Score { first, least, middle: median(&mut each).unwrap_or(0.0) }
+        let least = sides.into_iter().flatten().fold(f64::INFINITY, f64::min);
+        Score { first, least, middle: median(each).unwrap_or(0.0) }
     };
     let mut scores: Vec<Score> = of_sets.iter().map(score).collect();
     // where the motion is too fast for the sampling, all samples deviate
@@ -96,6 +109,17 @@ type Deviations = [f64; SETS.len()];
 
 /// The deviation of a sample from each of its predictions, in units of their noise; infinite where neighbours are missing.
 fn deviations(rates: &[Vector3<f64>], left: &[bool], i: usize) -> Deviations {
+    // the usual case, whose weights are constants
+    if i >= 3 && i + 3 < rates.len() && left[i - 3..=i + 3].iter().all(|left| *left) {
+        return NEXT.map(|weights| {
+            let (mut rest, mut noise) = (rates[i], 1.0);
+            for (node, weight) in weights.into_iter().filter(|(node, _)| *node != 0) {
+                rest -= rates[i.wrapping_add_signed(node)] * weight;
+                noise += weight * weight;
+            }
+            rest.norm() / noise.sqrt()
+        });
+    }
     let before = (0..i).rev().filter(|&k| left[k]).take(3);
     let after = (i + 1..rates.len()).filter(|&k| left[k]).take(3);
     let (mut low, mut high) = ([None; 3], [None; 3]);

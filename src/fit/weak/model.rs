@@ -87,6 +87,11 @@ pub(crate) fn distortion(kind: Kind) -> Option<Matrix3<f64>> {
     }
 }
 
+/// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
+pub(crate) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
+    w.cross_matrix() * b - (b * w).cross_matrix()
+}
+
 /// What the unknowns make of torque and sensor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
@@ -138,5 +143,10 @@ impl Terms {
     /// ω of a reading.
     pub(crate) fn rate(&self, reading: &Vector3<f64>) -> Vector3<f64> {
         self.sensor * reading - self.offset
+    }
+
+    /// The derivative of ω × (J ω + u h) + D ω.
+    pub(crate) fn by_rate(&self, w: &Vector3<f64>, wheel: &Vector3<f64>) -> Matrix3<f64> {
+        cross_derivative(&self.j, w) + self.viscous - wheel.cross_matrix() * self.input
     }
 }
