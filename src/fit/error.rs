@@ -115,6 +115,61 @@ pub enum FitError {
     /// Limits that leave less than a millionth of the trace between them.
     #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", demand(&.0.first), demand(&.0.second))]
     NoRoom(Box<Clash>),
+    /// The covariance of a prior tensor is not one.
+    #[error(
+        "{}; give one that is symmetric and positive, as standard deviations that are not zero do",
+        if *symmetric { format!("the covariance of the prior tensor is not positive: its smallest eigenvalue is {least:.3e} (kg m^2)^2") }
+        else { "the covariance of the prior tensor is not symmetric".into() }
+    )]
+    PriorCovariance {
+        /// Its smallest eigenvalue, (kg m²)²; NaN where an entry is not finite.
+        least: f64,
+        /// Whether it is symmetric.
+        symmetric: bool,
+    },
+    /// The prior tensor and a limit, or the physical law, exclude each other.
+    #[error(
+        "the prior tensor and {} exclude each other: it lies {pull:.1} of its standard deviations outside; check the \
+         signs of its products, widen its deviations, or leave one of the two out",
+        demand(constraint)
+    )]
+    PriorOutside {
+        /// The limit or the law.
+        constraint: Constraint,
+        /// Distance, in standard deviations of the prior.
+        pull: f64,
+    },
+    /// The prior tensor and the record exclude each other.
+    #[error(
+        "the prior tensor and the record exclude each other: (xx, yy, zz, xy, xz, yz) over the trace is {} by the prior \
+         and {} by the record, chi squared {chi2:.1} of {dof} degrees of freedom; check the axes of the prior, the signs \
+         of its products and its unit, widen its deviations, or leave it out",
+        six(prior),
+        six(record)
+    )]
+    PriorContradicted {
+        /// Entries xx, yy, zz, xy, xz, yz of the prior, over its trace.
+        prior: [f64; 6],
+        /// The same of what the record says.
+        record: [f64; 6],
+        /// Square of their distance in standard deviations of it.
+        chi2: f64,
+        /// Its degrees of freedom.
+        dof: usize,
+    },
+    /// The prior tensor has another size than the known quantity says.
+    #[error(
+        "the prior tensor has the trace {prior:.4e} +- {sigma:.1e} kg m^2, and the known quantity gives {known:.4e}: they \
+         exclude each other; correct one of them, or give the prior as a shape"
+    )]
+    PriorSize {
+        /// Trace of the prior, kg m².
+        prior: f64,
+        /// Its standard deviation, kg m².
+        sigma: f64,
+        /// Trace by the known quantity, kg m².
+        known: f64,
+    },
     /// The axis of a limit has no direction.
     #[error("limit {limit} has the axis {axis:?}; it must be a finite vector that is not zero")]
     LimitAxis {
@@ -180,6 +235,10 @@ fn demand(constraint: &Constraint) -> String {
         Constraint::Triangle => "the law I1 + I2 >= I3, by which a moment is at most half the trace".into(),
         limit => limit.to_string(),
     }
+}
+
+fn six(entries: &[f64; 6]) -> String {
+    format!("({})", entries.map(|entry| format!("{entry:.4}")).join(", "))
 }
 
 fn nearest(torque: Option<f64>, most: f64) -> String {

@@ -3,17 +3,20 @@
 use nalgebra::Matrix3;
 
 use super::error::FitError;
-use super::physical::coordinates::tensor;
+use super::physical::constraint::ActiveConstraint;
+use super::physical::coordinates::{Coordinates, ENTRIES, tensor};
 use super::physical::failure::SolverFailure;
-use super::physical::nearest::nearest;
+use super::physical::nearest::{Normal, nearest};
 use super::record::Record;
 use super::report::averages;
+use super::report::columns::{dissipation, is_drag};
 use super::report::estimate::Estimate;
 use super::report::facts::Facts;
 use super::report::identifiability::Identifiability;
-use super::report::nuisance::Spike;
+use super::report::nuisance::{Agreement, Spike};
 use super::report::torque_free::trends;
 use super::settings::{Settings, TorqueModel, TorqueNoise};
+use super::weak::joint::Joint;
 use super::weak::ladder::{Demand, climb};
 use super::weak::mistaken_units::{Better, better_unit, suspicious};
 use super::weak::model::{Column, Kind, sensor_columns};
@@ -131,10 +134,12 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
     }
-    let root = weak.root / (variance * misfit.max(1.0)).sqrt();
-    // R⁻¹, a factor of the covariance
-    let free = root.try_inverse().ok_or(FitError::Solver(SolverFailure::Information))?;
-    let answer = nearest(weak.x(), root, &settings.limits)?;
+    let information = || FitError::Solver(SolverFailure::Information);
+    let kept = |column: &Column| is_drag(column) || column.kind == Kind::Input;
+    let joint = Joint::new(weak, kept, (variance * misfit.max(1.0)).sqrt()).ok_or_else(information)?;
+    let dissipation = dissipation(&weak.columns, &joint.kept);
+    let (told, prior) = with_prior(&joint, weak, settings, input)?;
+    let answer = nearest(&told, &settings.limits, &dissipation)?;
     let facts = Facts {
         record,
         settings,
@@ -145,8 +150,44 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         misfit,
         spikes,
         input,
+        joint: &joint,
+        told: &told,
+        prior,
+        dissipation: &dissipation,
     };
-    facts.report(answer, free, identifiability, better.as_ref().filter(|b| b.credible))
+    facts.report(answer, identifiability, better.as_ref().filter(|b| b.credible))
+}
+
+/// Chance of a distance between prior and record by which they exclude each other: χ² of 5 and of 6 degrees of freedom.
+const EXCLUDED: [f64; 2] = [35.888_186_879_672_87, 38.258_336_377_209_686]; // one in a million
+
+/// Standard deviations of a prior by which it may lie outside limits and law.
+const OUTSIDE: f64 = 6.0;
+
+/// What the record tells, joined with the prior, and how they agree.
+fn with_prior(
+    joint: &Joint,
+    weak: &WeakEstimate,
+    settings: &Settings,
+    input: Option<f64>,
+) -> Result<(Normal, Option<Agreement>), FitError> {
+    let Some(prior) = &settings.prior else { return Ok((joint.told.clone(), None)) };
+    let prior = prior.told()?;
+    let alone = nearest(&prior.shape(), &settings.limits, &[])?;
+    let pulls = |c: &&ActiveConstraint| c.multiplier;
+    if let Some(active) = alone.active.iter().max_by(|a, b| pulls(a).total_cmp(&pulls(b)))
+        && alone.pull > OUTSIDE
+    {
+        return Err(FitError::PriorOutside { constraint: active.constraint, pull: alone.pull });
+    }
+    let place = joint.kept.iter().position(|&k| weak.columns[k].kind == Kind::Input);
+    let (told, chi2, dof) =
+        prior.join(&joint.told, place.zip(input)).ok_or(FitError::Solver(SolverFailure::Information))?;
+    if chi2 > EXCLUDED[dof.clamp(5, 6) - 5] {
+        let six = |x: &Coordinates| ENTRIES.map(|entry| tensor(x)[entry]);
+        return Err(FitError::PriorContradicted { prior: six(&prior.x), record: six(&weak.x()), chi2, dof });
+    }
+    Ok((told, Some(Agreement { chi2, dof })))
 }
 
 fn mistaken(misfit: f64, b: &Better) -> FitError {

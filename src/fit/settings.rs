@@ -2,6 +2,7 @@
 
 use super::error::FitError;
 use super::physical::limits::Limit;
+use super::physical::prior::Prior;
 use super::report::scale::Known;
 
 /// A torque that acts on the body besides what the record measures. Coefficients are per trace of the tensor, so that
@@ -99,6 +100,8 @@ pub struct Settings {
     pub noise: Option<f64>,
     /// What is known of the moments beforehand.
     pub limits: Vec<Limit>,
+    /// A tensor that is known beforehand.
+    pub prior: Option<Prior>,
     /// What gives the absolute size.
     pub known: Option<Known>,
     /// Whether a unit that explains the record better is an error.
@@ -119,6 +122,7 @@ impl Default for Settings {
             radius: None,
             noise: None,
             limits: Vec::new(),
+            prior: None,
             known: None,
             check_units: true,
             torque: TorqueModel::default(),
@@ -147,6 +151,9 @@ impl Settings {
             if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
                 return Err(FitError::Setting { name, value });
             }
+        }
+        if let Some(prior) = &self.prior {
+            prior.check()?;
         }
         if let Some(Known::Moment { axis, .. }) = self.known {
             let size = axis.norm();

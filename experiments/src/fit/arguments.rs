@@ -1,10 +1,10 @@
 //! The flags of what the fit reckons with: torques, the sensor, and what gives the absolute size.
 
 use clap::{Args, ValueEnum};
-use nalgebra::Vector3;
-use polhode::fit::{Known, SensorPriors, TorqueModel};
+use nalgebra::{Matrix3, Vector3};
+use polhode::fit::{Known, Prior, SensorPriors, TorqueModel};
 
-use crate::arguments::{number, numbers, positive};
+use crate::arguments::{list, number, numbers, positive};
 use crate::body_arguments::described;
 use crate::error::Error;
 
@@ -103,5 +103,44 @@ impl KnownArguments {
             .or(self.momentum.map(Known::Momentum))
             .or(self.twice_energy.map(Known::TwiceEnergy))
             .or(self.moment.map(moment)))
+    }
+}
+
+/// A tensor that is known beforehand.
+#[derive(Args, Clone, Debug)]
+#[group(multiple = false)]
+pub(super) struct PriorArguments {
+    /// Inertia tensor that is known beforehand, as from CAD, kg m^2, sensor axes: three moments or six entries, then the
+    /// relative standard deviation s of its entries, s sqrt(Iii Ijj); it is joined with what the record tells
+    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true)]
+    prior_inertia: Option<Prior>,
+    /// The same in any unit: only the shape is known, not the size
+    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true)]
+    prior_shape: Option<Prior>,
+}
+
+fn prior(text: &str) -> Result<Prior, String> {
+    let values = list(text)?;
+    let (tensor, sigma) = match values[..] {
+        [x, y, z, sigma] => (Matrix3::from_diagonal(&Vector3::new(x, y, z)), sigma),
+        [xx, yy, zz, xy, xz, yz, sigma] => (Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz), sigma),
+        _ => {
+            let rule = "needed are 3 moments or 6 entries, and their relative standard deviation";
+            return Err(format!("{} numbers; {rule}", values.len()));
+        }
+    };
+    if !(sigma > 0.0) {
+        return Err(format!("the relative standard deviation is {sigma:?}; it must be positive"));
+    }
+    if let Some(moment) = tensor.diagonal().iter().find(|moment| !(**moment > 0.0)) {
+        return Err(format!("the moment {moment:?} is not positive"));
+    }
+    Ok(Prior::relative(tensor, sigma))
+}
+
+impl PriorArguments {
+    pub(super) fn prior(&self) -> Option<Prior> {
+        let shape = self.prior_shape.clone().map(Prior::shape_only);
+        self.prior_inertia.clone().or(shape)
     }
 }

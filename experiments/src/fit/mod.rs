@@ -11,7 +11,7 @@ mod residuals;
 
 use std::path::{Path, PathBuf};
 
-use arguments::{KnownArguments, SensorArguments, Torque};
+use arguments::{KnownArguments, PriorArguments, SensorArguments, Torque};
 use clap::Args;
 use flights::Spans;
 use inputs::WheelArguments;
@@ -35,7 +35,7 @@ const EXAMPLES: &str = "Examples:
 
 /// Inertia tensor of a torque-free body from its measured angular velocity
 ///
-/// Without one of --trace, --momentum, --twice-energy or --moment the tensor is known up to a factor, and its trace is
+/// Without one of --trace, --momentum, --twice-energy, --moment or --prior-inertia the tensor is known up to a factor, and its trace is
 /// set to 1; columns hx, hy, hz (momentum of wheels, N m s) and tx, ty, tz (known torque, N m) make it absolute, too. Exit code 1: the record does not determine the tensor; what it does determine is printed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -73,6 +73,8 @@ pub(crate) struct Fit {
     at_most: Vec<[f64; 4]>,
     #[command(flatten)]
     known: KnownArguments,
+    #[command(flatten)]
+    prior: PriorArguments,
     #[command(flatten)]
     wheel: WheelArguments,
     /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, constant in body axes
@@ -209,6 +211,7 @@ impl Fit {
             radius: self.radius,
             noise: self.noise,
             limits: least.chain(most).collect(),
+            prior: self.prior.prior(),
             known: self.known.known()?,
             check_units: !self.trust_units,
             torque: self.torque.into(),

@@ -1,6 +1,7 @@
 //! Names, units and values of what was estimated beside the tensor.
 
 use super::nuisance::Nuisance;
+use crate::fit::physical::dissipation::Dissipation;
 use crate::fit::weak::model::{Column, Kind};
 use crate::fit::weak::weak_estimate::WeakEstimate;
 
@@ -29,6 +30,26 @@ pub(crate) fn is_torque(column: &Column) -> bool {
     matches!(column.kind, Kind::Drag | Kind::Viscous(_) | Kind::Constant(_))
 }
 
+/// Whether it is a coefficient of drag, which takes energy.
+pub(crate) fn is_drag(column: &Column) -> bool {
+    matches!(column.kind, Kind::Drag | Kind::Viscous(_))
+}
+
+/// The conditions by which the columns `kept` take energy, as far as they are drag.
+pub(crate) fn dissipation(columns: &[Column], kept: &[usize]) -> Vec<Dissipation> {
+    let matrix: Vec<usize> =
+        (0..kept.len()).filter(|&place| matches!(columns[kept[place]].kind, Kind::Viscous(_))).collect();
+    if let Ok(places) = <[usize; 6]>::try_from(matrix) {
+        return vec![Dissipation::Matrix { places, segment: None }];
+    }
+    let drags = (0..kept.len()).filter(|&place| is_drag(&columns[kept[place]]));
+    let alone = |place: usize| {
+        let name = named(columns[kept[place]].kind).0;
+        Dissipation::Coefficient { place, name, segment: None }
+    };
+    drags.map(alone).collect()
+}
+
 /// The factor from the fit's units to SI of an unknown; `rms` is the unit rate, rad/s.
 pub(crate) fn unit(kind: Kind, rms: f64) -> f64 {
     match named(kind).2 {
@@ -39,12 +60,13 @@ pub(crate) fn unit(kind: Kind, rms: f64) -> f64 {
     }
 }
 
-/// The unknowns beside the tensor at `values`, with deviations for residuals of `variance`.
+/// The unknowns beside the tensor at `values`, with deviations for residuals of `variance`, or those of `held` by number.
 pub(crate) fn nuisances(
     weak: &WeakEstimate,
     values: &[f64],
     variance: f64,
     rms: f64,
+    held: &[(usize, f64)],
 ) -> Vec<(Column, Nuisance)> {
     let Some(factor) = weak.stacked.as_ref().and_then(|stacked| stacked.joint_factor()) else {
         return Vec::new();
@@ -53,11 +75,13 @@ pub(crate) fn nuisances(
     each.map(|(k, (column, value))| {
         let (name, unit_name, _) = named(column.kind);
         let unit = unit(column.kind, rms);
+        let own = held.iter().find(|(place, _)| *place == k).map(|(_, sigma)| *sigma);
+        let sigma = own.unwrap_or_else(|| factor.row(k).norm() * variance.sqrt());
         let nuisance = Nuisance {
             name,
             unit: unit_name,
             value: value * unit,
-            sigma: factor.row(k).norm() * variance.sqrt() * unit,
+            sigma: sigma * unit,
             prior: column.prior.map(|prior| prior * unit),
         };
         (*column, nuisance)

@@ -48,6 +48,16 @@ pub struct Systematic {
     pub ratios: [f64; 2],
 }
 
+/// How a prior tensor and a record agree.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Agreement {
+    /// Square of their distance in standard deviations of it: χ² where both are right.
+    pub chi2: f64,
+    /// Its degrees of freedom.
+    pub dof: usize,
+}
+
 /// One segment of a record in a fit.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]

@@ -16,8 +16,8 @@ pub(crate) struct Stacked {
     pub(crate) root: Form,
     z: Coordinates,
     /// Rows of the columns: their own triangle, their part in x, and their right-hand side.
-    own: DMatrix<f64>,
-    shared: DMatrix<f64>,
+    pub(super) own: DMatrix<f64>,
+    pub(super) shared: DMatrix<f64>,
     right: DVector<f64>,
     /// Sum of squares of the whitened residuals that no x removes.
     pub(crate) squares: f64,

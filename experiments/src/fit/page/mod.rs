@@ -85,6 +85,12 @@ fn answer(e: &Estimate) -> Vec<Part> {
     if off.is_some() {
         parts.push(Part::Paragraph(format!("Systematic: if the sensor is off by {}.", sizes(e))));
     }
+    if let Some(prior) = e.prior {
+        parts.push(Part::Paragraph(format!(
+            "With a prior tensor; χ² of its distance from the record is {:.1} at {} degrees of freedom.",
+            prior.chi2, prior.dof
+        )));
+    }
     let axes = e.axes.to_rotation_matrix();
     let head = ["axis", "x", "y", "z", "turn about it"].map(String::from).to_vec();
     let rows = (0..3).map(|k| {

@@ -16,6 +16,15 @@ fn matrix(m: &SMatrix<f64, 6, 6>) -> Vec<Vec<f64>> {
 }
 
 pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
+    let mut whole = answer(e);
+    if let (Value::Object(all), Value::Object(more)) = (&mut whole, grounds(e, spans)) {
+        all.extend(more);
+    }
+    whole
+}
+
+/// The tensor, and how far to trust it.
+fn answer(e: &Estimate) -> Value {
     let axes = e.axes.quaternion();
     json!({
         "shape": square(&e.shape.tensor()),
@@ -51,6 +60,12 @@ pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
         "momentum_drift": { "rate": e.momentum_trend.rate, "sigma": e.momentum_trend.sigma },
         "energy_drift": { "rate": e.energy_trend.rate, "sigma": e.energy_trend.sigma },
         "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
+    })
+}
+
+/// What it rests on.
+fn grounds(e: &Estimate, spans: &Spans) -> Value {
+    json!({
         "torque": {
             "model": torque(e.torque.model),
             "coefficients": nuisances(&e.torque.coefficients),
@@ -58,6 +73,7 @@ pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
             "ratios_without": e.torque.ratios_without,
         },
         "nuisances": nuisances(&e.nuisances),
+        "prior": e.prior.map(|p| json!({ "chi2": p.chi2, "dof": p.dof })),
         "systematic": e.systematic.iter().map(|line| json!({
             "name": line.name, "size": line.size, "unit": line.unit,
             "principal": line.principal, "ratios": line.ratios,

@@ -20,6 +20,7 @@ pub(super) fn text(e: &Estimate, spans: &Spans) -> String {
     lines.extend(spans.lines());
     lines.extend(segments(e));
     lines.push(String::new());
+    lines.extend(prior(e));
     lines.extend(quality(e));
     lines.join("\n") + "\n"
 }
@@ -140,6 +141,13 @@ fn segments(e: &Estimate) -> Vec<String> {
         ));
     }
     lines
+}
+
+fn prior(e: &Estimate) -> Option<String> {
+    let line = |p: polhode::fit::Agreement| {
+        format!("record against prior tensor: chi^2 {:.1} of {} degrees of freedom", p.chi2, p.dof)
+    };
+    e.prior.map(line)
 }
 
 fn quality(e: &Estimate) -> Vec<String> {
