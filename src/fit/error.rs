@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::physical::constraint::Constraint;
 use super::physical::failure::SolverFailure;
+use super::record::RateUnit;
 use super::report::averages::AverageAxis;
 use super::report::identifiability::Identifiability;
 use super::weak::mistaken_units::{MistakenUnit, alternatives};
@@ -115,6 +116,40 @@ pub enum FitError {
     /// Limits that leave less than a millionth of the trace between them.
     #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", demand(&.0.first), demand(&.0.second))]
     NoRoom(Box<Clash>),
+    /// A wheel is to be calibrated from a record that does not tell its speed.
+    #[error(
+        "no wheel turns in the record: each segment must hold the speed of the wheel, somewhere not zero"
+    )]
+    NoWheelSpeed,
+    /// A wheel is to be calibrated from a record that has torques.
+    #[error("the record has torques: calibrate a wheel from records in which none acts but that of air")]
+    WheelWithTorques,
+    /// Segments that hold different quantities.
+    #[error(
+        "{with} has {what} and {without} has none: give both what their sensors read, zeros where nothing turns or \
+         pushes, or fit them apart"
+    )]
+    Sensors {
+        /// The quantity.
+        what: &'static str,
+        /// The first segment that has it.
+        with: String,
+        /// The first that has not.
+        without: String,
+    },
+    /// A segment whose rates have a unit beside one whose unit is a guess.
+    #[error(
+        "{named} is in {unit} by its header, and {unnamed} names no unit and would be taken for rad/s: name the unit of \
+         both"
+    )]
+    MixedUnits {
+        /// The segment whose unit is named.
+        named: String,
+        /// Its unit.
+        unit: RateUnit,
+        /// The first segment whose unit is not.
+        unnamed: String,
+    },
     /// The covariance of a prior tensor is not one.
     #[error(
         "{}; give one that is symmetric and positive, as standard deviations that are not zero do",

@@ -72,29 +72,14 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     if input.is_some() && settings.known.is_some() {
         return Err(FitError::TwoScales);
     }
-    let variance = match settings.noise {
-        Some(sigma) => Some((sigma / rms) * (sigma / rms))
-            .filter(|v| v.is_normal())
-            .ok_or(FitError::Setting { name: "the noise", value: sigma })?,
-        None => noise::variance(&stretches),
-    };
-    // readings of a noiseless record carry at least the quadrature's error
-    let variance = variance.max(1e-20);
-    // the mean square is 1, of which the noise of three components is 3 σ²: a quarter is too much to fit
-    if 3.0 * variance > 0.25 {
-        return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
-    }
+    let variance = read_variance(settings, &stretches, rms)?;
     let singular = || FitError::Solver(SolverFailure::Covariance);
     let mut columns = sensor_columns(&settings.sensor, rms);
     columns.extend(input.map(|_| Column { kind: Kind::Input, prior: None }));
     let demand = Demand {
         radius: settings.radius.map(|r| r * rms),
         torque: settings.torque,
-        noise: match settings.torque_noise {
-            TorqueNoise::None => Noise::White,
-            TorqueNoise::Given(density) => Noise::Given(density / (rms * rms * rms) / variance),
-            TorqueNoise::Fitted => Noise::Fitted,
-        },
+        noise: noise_of(settings, rms, variance),
         columns: &columns,
         units: settings.check_units && input.is_none(),
     };
@@ -156,6 +141,32 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         dissipation: &dissipation,
     };
     facts.report(answer, identifiability, better.as_ref().filter(|b| b.credible))
+}
+
+/// Variance of the noise of a component of the rates, in units of the mean square rate.
+pub(super) fn read_variance(settings: &Settings, stretches: &[Stretch], rms: f64) -> Result<f64, FitError> {
+    let variance = match settings.noise {
+        Some(sigma) => Some((sigma / rms) * (sigma / rms))
+            .filter(|v| v.is_normal())
+            .ok_or(FitError::Setting { name: "the noise", value: sigma })?,
+        None => noise::variance(stretches),
+    };
+    // readings of a noiseless record carry at least the quadrature's error
+    let variance = variance.max(1e-20);
+    // the mean square is 1, of which the noise of three components is 3 σ²: a quarter is too much to fit
+    if 3.0 * variance > 0.25 {
+        return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
+    }
+    Ok(variance)
+}
+
+/// The torque noise that is asked for, in units of the rate and of the noise of its readings.
+pub(super) fn noise_of(settings: &Settings, rms: f64, variance: f64) -> Noise {
+    match settings.torque_noise {
+        TorqueNoise::None => Noise::White,
+        TorqueNoise::Given(density) => Noise::Given(density / (rms * rms * rms) / variance),
+        TorqueNoise::Fitted => Noise::Fitted,
+    }
 }
 
 /// Chance of a distance between prior and record by which they exclude each other: χ² of 5 and of 6 degrees of freedom.

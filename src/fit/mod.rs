@@ -43,6 +43,7 @@ mod report;
 mod settings;
 mod simulate;
 mod weak;
+mod wheel;
 
 pub use cramer_rao::foreseen_bound;
 pub use error::{Clash, FitError};
@@ -64,3 +65,4 @@ pub use report::warning::Warning;
 pub use settings::{SensorPriors, Settings, TorqueModel, TorqueNoise};
 pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_with};
 pub use weak::mistaken_units::MistakenUnit;
+pub use wheel::{WheelCalibration, calibrate_wheel};

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
 use polhode::fit::{Known, Prior, SensorPriors, TorqueModel};
+use polhode::inertia::Inertia;
 
 use crate::arguments::{list, number, numbers, positive};
 use crate::body_arguments::described;
@@ -92,6 +93,11 @@ pub(super) struct KnownArguments {
 }
 
 impl KnownArguments {
+    /// The body that `--body` names.
+    pub(super) fn body(&self) -> Result<Option<Inertia>, Error> {
+        self.body.as_deref().map(|text| Ok(described(text)?.inertia)).transpose()
+    }
+
     pub(super) fn known(&self) -> Result<Option<Known>, Error> {
         if let Some(text) = &self.body {
             return Ok(Some(Known::Trace(described(text)?.inertia.tensor().trace())));

@@ -1,6 +1,7 @@
 //! `polhode fit`: inertia from measured angular velocity.
 
 mod arguments;
+mod calibrate;
 mod flights;
 mod inputs;
 mod motion;
@@ -219,6 +220,21 @@ impl Fit {
             ..Settings::default()
         };
         let format = Format::of(self.format, self.out.as_deref())?;
+        let names = report::unused(&record);
+        if !names.is_empty() {
+            warn(&format!("columns not used: {}", names.join(", ")));
+        }
+        if let (Some(axis), Some(body)) = (self.wheel.calibrated(), self.known.body()?) {
+            let settings = Settings { known: None, ..settings };
+            return output.write_whole(&calibrate::report(
+                &record,
+                &body,
+                &axis,
+                &settings,
+                &self.names(),
+                format,
+            )?);
+        }
         let mut spans = Spans::default();
         let fitted = match self.window.is_empty() {
             true => Spans::find(&mut record, &settings).and_then(|found| {
@@ -271,7 +287,7 @@ impl Fit {
             }
             None => None,
         };
-        output.write_whole(&report::identified(&estimate, &spans, format))?;
+        output.write_whole(&report::identified(&estimate, &record, &spans, format))?;
         // the JSON holds them too; a file of rows does not
         estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
         for (file, text) in residuals.zip(left).into_iter().chain(page) {

@@ -23,7 +23,7 @@ fn a_prior_tensor_is_joined_or_contradicted() {
     let record = scratch.0.join("record.csv").display().to_string();
     output(&format!("{SIMULATE} --until 20 --noise 1e-2 --out {record}"));
     let alone = json(&format!("fit {record}"));
-    let joined = json(&format!("fit {record} --prior-inertia 1.001,2.001,2.601,0.003"));
+    let joined = json(&format!("fit {record} --prior-inertia 1.001,2.001,2.601,0.001"));
     assert!(number(&joined, "/sigma_principal/0") < 0.9 * number(&alone, "/sigma_principal/0"));
     assert!((number(&joined, "/inertia/1/1") - 2.0).abs() < 0.02, "{joined:#}");
     assert!(number(&joined, "/prior/chi2") < 20.5 && number(&joined, "/prior/dof") == 5.0);
@@ -40,4 +40,64 @@ fn a_prior_tensor_is_joined_or_contradicted() {
     refused(&format!("fit {record} --prior-inertia 1,2,2.6,-0.01"), &["--prior-inertia", "must be positive"]);
     refused(&format!("fit {record} --prior-inertia 1,2,2.6"), &["3 numbers", "3 moments or 6 entries"]);
     refused(&format!("fit {record} --prior-inertia 1,2,2.6,0.01 --trace 9"), &["gives 9.0000e0"]);
+}
+
+/// A wheel of 0.4 N m s about z at 40 rad/s has 0.01 kg m^2.
+#[test]
+fn a_wheel_is_calibrated_by_a_body_that_is_known() {
+    let scratch = Scratch::new("fit-calibrate");
+    let path = |name: &str| scratch.0.join(name).display().to_string();
+    let (momenta, record) = (path("momenta.csv"), path("proof.csv"));
+    let body = path("body.json");
+    output(&format!("inertia tensor 1,2,2.6,0,0,0 --mass 30 --format json --out {body}"));
+    output(&format!("{SIMULATE} --until 20 --noise 1e-3 --wheel 0,0,0.4 --out {momenta}"));
+    let text = std::fs::read_to_string(&momenta).unwrap();
+    let rows = text.lines().skip(1).map(|row| {
+        let cells: Vec<&str> = row.split(',').take(4).collect();
+        format!("{},40,21\n", cells.join(","))
+    });
+    let rows = rows.collect::<String>();
+    std::fs::write(&record, format!("t,wx,wy,wz,wheel (rad/s),temperature\n{rows}")).unwrap();
+    let line = format!("fit {record} --calibrate-wheel 0,0,1 --body {body}");
+    let answer = json(&line);
+    let (value, sigma) = (number(&answer, "/wheel_inertia"), number(&answer, "/sigma"));
+    assert!((value - 0.01).abs() < 5.0 * sigma && sigma < 2e-4, "{value} +- {sigma}");
+    assert_eq!(answer["unused_columns"], serde_json::json!(["temperature"]));
+    let told = run(&format!("{line} --format table"));
+    assert!(
+        told.out.starts_with("wheel inertia: (") && told.out.contains("e-2 kg m^2 (95 %)"),
+        "{}",
+        told.out
+    );
+    assert_eq!(told.err, "warning: columns not used: temperature\n");
+    assert!(run(&format!("{line} --format csv")).out.contains("\nwheel_inertia,0.0"));
+
+    refused(&format!("fit {record} --calibrate-wheel 0,0,1"), &["--body"]);
+    refused(&format!("fit {record} --calibrate-wheel 0,0,0 --body {body}"), &["no direction"]);
+    refused(
+        &format!("fit {momenta} --calibrate-wheel 0,0,1 --body {body}"),
+        &["--calibrate-wheel", "no column of its speed"],
+    );
+    // one file with a wheel, one without
+    let bare = path("bare.csv");
+    output(&format!("{SIMULATE} --until 20 --noise 1e-3 --out {bare}"));
+    refused(
+        &format!("fit {momenta} {bare}"),
+        &["segment 1", "momenta.csv", "has wheel momenta and segment 2", "bare.csv", "has none"],
+    );
+}
+
+#[test]
+fn columns_that_are_not_used_are_named() {
+    let scratch = Scratch::new("fit-unused");
+    let text = output(&format!("{SIMULATE} --until 20 --noise 1e-3"));
+    let rows = text.lines().skip(1).map(|row| format!("{row},20.5,a\n")).collect::<String>();
+    let record = scratch.file("record.csv", format!("t,wx,wy,wz,temperature,mark\n{rows}"));
+    let page = scratch.0.join("fit.html").display().to_string();
+    let told = run(&format!("fit {record} --format table --report {page}"));
+    assert!(told.out.contains("\ncolumns not used: temperature, mark\n"), "{}", told.out);
+    assert!(told.err.contains("warning: columns not used: temperature, mark"), "{}", told.err);
+    assert!(std::fs::read_to_string(page).unwrap().contains("Columns not used: temperature, mark."));
+    let answer = json(&format!("fit {record}"));
+    assert_eq!(answer["unused_columns"], serde_json::json!(["temperature", "mark"]));
 }

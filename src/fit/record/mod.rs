@@ -45,6 +45,8 @@ pub struct Record {
     /// What was found among the rows, and when, s.
     findings: Vec<(f64, Finding)>,
     skipped: Vec<RecordError>,
+    /// File and name of each column that was not read.
+    unused: Vec<(String, String)>,
 }
 impl Record {
     /// From times (s) and angular velocities (rad/s, sensor axes).
@@ -69,7 +71,14 @@ impl Record {
             times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
         Record::cleaned(
             "samples",
-            Rows { rows, names: NAMES.map(String::from), columns: [1, 2, 3, 4], skipped: Vec::new() },
+            Rows {
+                rows,
+                names: NAMES.map(String::from),
+                columns: [1, 2, 3, 4],
+                rate_unit: Some(RateUnit::default()),
+                unused: Vec::new(),
+                skipped: Vec::new(),
+            },
         )
     }
     /// From a text of rows: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas where
@@ -98,13 +107,34 @@ impl Record {
 
     fn cleaned(file: &str, mut rows: Rows) -> Result<Record, RecordError> {
         let skipped = core::mem::take(&mut rows.skipped);
+        let unused = core::mem::take(&mut rows.unused).into_iter().map(|name| (file.into(), name)).collect();
         let Cleaned { segments, findings } = cleaned(file, rows)?;
-        Ok(Record { segments, findings, skipped })
+        Ok(Record { segments, findings, skipped, unused })
     }
 
     /// Why rows of the text were left out, one by one.
     pub fn skipped(&self) -> &[RecordError] {
         &self.skipped
+    }
+
+    /// File and name of each column of a text that was not read.
+    ///
+    /// ```
+    /// use polhode::fit::{Reading, Record};
+    /// let text = "t,wx,wy,wz,temperature\n0,1,2,3,20\n0.1,1,2,3,20\n";
+    /// let record = Record::read(text, "toss.csv", Reading::default())?;
+    /// assert_eq!(record.unused_columns(), [("toss.csv".to_string(), "temperature".to_string())]);
+    /// # Ok::<(), polhode::fit::RecordError>(())
+    /// ```
+    pub fn unused_columns(&self) -> &[(String, String)] {
+        &self.unused
+    }
+
+    /// Takes columns that the caller has read by itself off the [list](Self::unused_columns) of those that were not.
+    #[must_use]
+    pub fn with_used(mut self, uses: impl Fn(&str) -> bool) -> Record {
+        self.unused.retain(|(_, name)| !uses(name));
+        self
     }
 
     /// Number of samples.
@@ -159,7 +189,8 @@ impl Record {
         {
             return Err(RecordError::Window { start, end });
         }
-        let mut cut = Record { skipped: self.skipped.clone(), ..Record::default() };
+        let mut cut =
+            Record { skipped: self.skipped.clone(), unused: self.unused.clone(), ..Record::default() };
         for (start, end) in joined(windows) {
             cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
             let before = cut.segments.len();
@@ -183,7 +214,8 @@ impl Record {
     /// The parts in which [flights](crate::fit::flights()) of this record were found, one segment each.
     #[must_use]
     pub fn during(&self, flights: &[Flight]) -> Record {
-        let mut cut = Record { skipped: self.skipped.clone(), ..Record::default() };
+        let mut cut =
+            Record { skipped: self.skipped.clone(), unused: self.unused.clone(), ..Record::default() };
         for flight in flights {
             let Some(s) = self.segments.get(flight.segment) else { continue };
             let inside = |t: &f64| (flight.start..=flight.end).contains(t);
@@ -203,6 +235,7 @@ impl Record {
         self.segments.extend(other.segments);
         self.findings.extend(other.findings);
         self.skipped.extend(other.skipped);
+        self.unused.extend(other.unused);
         self
     }
 }

@@ -7,7 +7,7 @@ use polhode::fit::{Estimate, Nuisance, Record};
 
 use super::flights::Spans;
 use super::motion::Fitted;
-use super::report::{Facts, SURE, digits, sizes, systematic, torque, with_error};
+use super::report::{Facts, SURE, digits, sizes, systematic, torque, unused, with_error};
 use crate::document::{Form, Part};
 use crate::error::Error;
 
@@ -34,6 +34,10 @@ pub(super) fn estimated(
     parts.extend(figures::residuals(e, motion, record)?);
     parts.push(figures::invariants(e, motion, record)?);
     parts.extend(spikes(e, record));
+    let columns = unused(record);
+    if !columns.is_empty() {
+        parts.push(Part::Paragraph(format!("Columns not used: {}.", columns.join(", "))));
+    }
     Ok(form.write(&format!("Inertia from {names}"), &parts))
 }
 

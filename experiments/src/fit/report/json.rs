@@ -1,11 +1,11 @@
 //! A fit as JSON.
 
 use nalgebra::{Matrix3, SMatrix};
-use polhode::fit::{Estimate, Nuisance};
+use polhode::fit::{Estimate, Nuisance, Record};
 use serde_json::{Map, Value, json};
 
 use super::super::flights::Spans;
-use super::{METHOD, torque};
+use super::{METHOD, torque, unused};
 
 fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
     (0..3).map(|i| (0..3).map(|j| m[(i, j)]).collect()).collect()
@@ -15,9 +15,9 @@ fn matrix(m: &SMatrix<f64, 6, 6>) -> Vec<Vec<f64>> {
     (0..6).map(|i| (0..6).map(|j| m[(i, j)]).collect()).collect()
 }
 
-pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
+pub(super) fn object(e: &Estimate, record: &Record, spans: &Spans) -> Value {
     let mut whole = answer(e);
-    if let (Value::Object(all), Value::Object(more)) = (&mut whole, grounds(e, spans)) {
+    if let (Value::Object(all), Value::Object(more)) = (&mut whole, grounds(e, record, spans)) {
         all.extend(more);
     }
     whole
@@ -64,7 +64,7 @@ fn answer(e: &Estimate) -> Value {
 }
 
 /// What it rests on.
-fn grounds(e: &Estimate, spans: &Spans) -> Value {
+fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
     json!({
         "torque": {
             "model": torque(e.torque.model),
@@ -86,6 +86,7 @@ fn grounds(e: &Estimate, spans: &Spans) -> Value {
         "spikes": e.spikes.iter().map(|s| json!({
             "segment": s.segment + 1, "line": s.line, "time": s.time,
         })).collect::<Vec<_>>(),
+        "unused_columns": unused(record),
         "flights": spans.json(),
         "flight_limits": spans.limits(),
         "warnings": e.warnings.iter().map(ToString::to_string).chain(spans.remark().map(String::from))

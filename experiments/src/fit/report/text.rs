@@ -1,13 +1,13 @@
 //! A fit as text for a terminal.
 
 use nalgebra::Matrix3;
-use polhode::fit::{Estimate, InvariantTrend, Nuisance};
+use polhode::fit::{Estimate, InvariantTrend, Nuisance, Record};
 
 use super::super::flights::Spans;
-use super::{METHOD, SURE, digits, sizes, systematic, torque, with_error};
+use super::{METHOD, SURE, digits, sizes, systematic, torque, unused, with_error};
 
 /// The answer first, then what it rests on.
-pub(super) fn text(e: &Estimate, spans: &Spans) -> String {
+pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans) -> String {
     let mut lines = answer(e);
     lines.push(String::new());
     lines.extend(axes(e));
@@ -20,6 +20,10 @@ pub(super) fn text(e: &Estimate, spans: &Spans) -> String {
     lines.extend(spans.lines());
     lines.extend(segments(e));
     lines.push(String::new());
+    let names = unused(record);
+    if !names.is_empty() {
+        lines.push(format!("columns not used: {}", names.join(", ")));
+    }
     lines.extend(prior(e));
     lines.extend(quality(e));
     lines.join("\n") + "\n"
