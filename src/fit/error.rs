@@ -116,6 +116,19 @@ pub enum FitError {
     /// Limits that leave less than a millionth of the trace between them.
     #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", demand(&.0.first), demand(&.0.second))]
     NoRoom(Box<Clash>),
+    /// Coefficients of a torque that the record cannot tell.
+    #[error(
+        "the record cannot tell {}{}: ask for a simpler torque, or record longer, with a larger wobble, or several throws \
+         about different axes", names.join(", "),
+        if *rank < 5 { format!(" from the tensor, of which it determines {rank} of 5 numbers with them, and 5 without") }
+        else { String::new() }
+    )]
+    Untold {
+        /// Their names.
+        names: Vec<&'static str>,
+        /// How many of the five numbers of the tensor are determined with them.
+        rank: usize,
+    },
     /// A wheel is to be calibrated from a record that does not tell its speed.
     #[error(
         "no wheel turns in the record: each segment must hold the speed of the wheel, somewhere not zero"

@@ -10,7 +10,7 @@ use super::report::nuisance::Nuisance;
 use super::settings::{Settings, TorqueModel};
 use super::weak::held::held;
 use super::weak::ladder::columns_of;
-use super::weak::model::{Column, Kind, sensor_columns};
+use super::weak::model::{Column, Kind, sensor_columns, walk_columns};
 use super::weak::normalised::{Normalised, normalised};
 use crate::inertia::Inertia;
 
@@ -81,12 +81,18 @@ pub fn calibrate_wheel(
     let Normalised { stretches, rms, input } = normalised(&rest)?;
     let scale = input.filter(|_| rest.segments.iter().all(|s| s.wheel().is_some()));
     let scale = scale.ok_or(FitError::NoWheelSpeed)?;
-    let variance = read_variance(settings, &stretches, rms)?;
-    let mut columns = vec![Column { kind: Kind::Input, prior: None }];
+    let variance = read_variance(settings, &rest, &stretches, rms)?;
+    let mut columns = vec![Column::new(Kind::Input, None)];
     if settings.torque != TorqueModel::Auto {
         columns.extend(columns_of(settings.torque));
     }
     columns.extend(sensor_columns(&settings.sensor, rms));
+    columns.extend(
+        settings
+            .offset_walk
+            .map(|walk| walk_columns(&stretches, walk / rms / rms.sqrt()))
+            .unwrap_or_default(),
+    );
     let trace = inertia.tensor().trace();
     let x = coordinates(&(inertia.tensor() / trace));
     let noise = noise_of(settings, rms, variance);
@@ -95,7 +101,8 @@ pub fn calibrate_wheel(
         .ok_or(FitError::Solver(SolverFailure::Covariance))?;
     let deviation = found.misfit.max(1.0).sqrt();
     let per_unit = trace / scale;
-    let nuisances = (1..columns.len()).map(|k| {
+    let listed = (1..columns.len()).filter(|&k| !matches!(columns[k].kind, Kind::Walk { .. }));
+    let nuisances = listed.map(|k| {
         let kind = columns[k].kind;
         let ((name, unit_name, _), unit) = (named(kind), unit(kind, rms));
         Nuisance {
@@ -104,6 +111,7 @@ pub fn calibrate_wheel(
             value: found.values[k] * unit,
             sigma: found.sigmas[k] * deviation * unit,
             prior: columns[k].prior.map(|prior| prior * unit),
+            segment: None,
         }
     });
     let used = |k: usize| rest.segments.get(k).map_or(0, |s: &Segment| s.times().len());

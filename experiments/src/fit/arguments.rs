@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
-use polhode::fit::{Known, Prior, SensorPriors, TorqueModel};
+use polhode::fit::{Known, Prior, SensorPriors, TorqueModel, TorqueScope};
 use polhode::inertia::Inertia;
 
 use crate::arguments::{list, number, numbers, positive};
@@ -20,6 +20,8 @@ pub(super) enum Torque {
     Drag3,
     /// -D w, D symmetric
     Drag6,
+    /// -c |w| J w
+    Quadratic,
     /// Constant in body axes
     Constant,
     /// The simplest that the record does not contradict
@@ -33,8 +35,27 @@ impl From<Torque> for TorqueModel {
             Torque::Drag => TorqueModel::Drag,
             Torque::Drag3 => TorqueModel::Drag3,
             Torque::Drag6 => TorqueModel::Drag6,
+            Torque::Quadratic => TorqueModel::Quadratic,
             Torque::Constant => TorqueModel::Constant,
             Torque::Auto => TorqueModel::Auto,
+        }
+    }
+}
+
+/// What shares the coefficients of a torque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Scope {
+    /// One set for all segments
+    Record,
+    /// One set for each segment
+    Segment,
+}
+
+impl From<Scope> for TorqueScope {
+    fn from(scope: Scope) -> Self {
+        match scope {
+            Scope::Record => TorqueScope::Record,
+            Scope::Segment => TorqueScope::Segment,
         }
     }
 }
@@ -57,9 +78,23 @@ pub(super) struct SensorArguments {
     /// Standard deviation of the delays of y and z behind x, s: estimated with this prior
     #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
     gyro_skew: Option<f64>,
+    /// Random walk of the offset of each axis: standard deviation after 1 s, rad/s per sqrt(s)
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_walk: Option<f64>,
+    /// Step of the digital readings, rad/s: its rounding is noise of variance Q^2/12 [default: found in the readings]
+    #[arg(long, value_name = "Q", value_parser = positive, allow_hyphen_values = true)]
+    quantum: Option<f64>,
 }
 
 impl SensorArguments {
+    pub(super) fn walk(&self) -> Option<f64> {
+        self.gyro_walk
+    }
+
+    pub(super) fn quantum(&self) -> Option<f64> {
+        self.quantum
+    }
+
     pub(super) fn priors(&self) -> SensorPriors {
         SensorPriors {
             offset: self.gyro_bias,

@@ -4,7 +4,6 @@ mod arguments;
 mod calibrate;
 mod flights;
 mod inputs;
-mod motion;
 mod page;
 mod plot;
 mod report;
@@ -12,7 +11,7 @@ mod residuals;
 
 use std::path::{Path, PathBuf};
 
-use arguments::{KnownArguments, PriorArguments, SensorArguments, Torque};
+use arguments::{KnownArguments, PriorArguments, Scope, SensorArguments, Torque};
 use clap::Args;
 use flights::Spans;
 use inputs::WheelArguments;
@@ -78,16 +77,19 @@ pub(crate) struct Fit {
     prior: PriorArguments,
     #[command(flatten)]
     wheel: WheelArguments,
-    /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, constant in body axes
+    /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, drag that grows with the square of the rate, constant in body axes
     #[arg(long, value_enum, default_value_t = Torque::Auto)]
     torque: Torque,
+    /// Whether the coefficients of the torque are those of the whole record, or each segment has its own
+    #[arg(long, value_enum, default_value_t = Scope::Record)]
+    torque_per: Scope,
     #[command(flatten)]
     sensor: SensorArguments,
     /// Fit even if the record agrees far better with other units than those named
     #[arg(long)]
     trust_units: bool,
     /// Write the residuals to this file: a plot, or rows where it ends in .csv
-    #[arg(long, value_name = "FILE.svg|.csv")]
+    #[arg(long, value_name = "FILE.svg|.png|.csv")]
     residuals: Option<PathBuf>,
     /// Draw measured and fitted rates, and |L| and T along the record, to this file
     #[arg(long, value_name = "FILE.svg|.png")]
@@ -216,6 +218,9 @@ impl Fit {
             known: self.known.known()?,
             check_units: !self.trust_units,
             torque: self.torque.into(),
+            torque_scope: self.torque_per.into(),
+            quantum: self.sensor.quantum(),
+            offset_walk: self.sensor.walk(),
             sensor: self.sensor.priors(),
             ..Settings::default()
         };
@@ -275,12 +280,7 @@ impl Fit {
                 return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
             }
         };
-        let motion = motion::fitted(&estimate, &record);
-        let left = match self.residuals.as_deref() {
-            Some(path) if ends_in(path, &["csv"]) => Some(residuals::rows(&record, &motion).csv()),
-            Some(_) => Some(plot::residuals(&estimate)?),
-            None => None,
-        };
+        let motion = estimate.fitted(&record);
         let page = match page {
             Some((file, form)) => {
                 Some((file, page::estimated(&estimate, &record, &motion, &spans, &self.names(), form)?))
@@ -290,8 +290,15 @@ impl Fit {
         output.write_whole(&report::identified(&estimate, &record, &spans, format))?;
         // the JSON holds them too; a file of rows does not
         estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
-        for (file, text) in residuals.zip(left).into_iter().chain(page) {
+        if let Some((file, text)) = page {
             file.write_whole(&text)?;
+        }
+        if let Some((file, path)) = residuals.zip(self.residuals.as_deref()) {
+            let picture = if ends_in(path, &["png"]) { Picture::Png } else { Picture::Svg };
+            match ends_in(path, &["csv"]) {
+                true => file.write_whole(&residuals::rows(&record, &motion).csv())?,
+                false => crate::plot::write(file, picture, &plot::residuals(&estimate).page())?,
+            }
         }
         if let Some((file, picture)) = figure {
             crate::plot::write(file, picture, &page::figures::overview(&estimate, &motion, &record))?;
@@ -347,11 +354,11 @@ impl Fit {
         if let Some(path) = self
             .residuals
             .as_deref()
-            .filter(|path| path.extension().is_some() && !ends_in(path, &["svg", "csv"]))
+            .filter(|path| path.extension().is_some() && !ends_in(path, &["svg", "png", "csv"]))
         {
             let value = path.display().to_string();
-            let rule = "residuals are written as SVG or CSV";
-            return Err(Error::input("--residuals", &value, rule, "let the name end in .svg or .csv"));
+            let rule = "residuals are written as SVG, PNG or CSV";
+            return Err(Error::input("--residuals", &value, rule, "let the name end in .svg, .png or .csv"));
         }
         Ok(())
     }

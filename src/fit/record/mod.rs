@@ -6,6 +6,7 @@ mod columns;
 mod echo;
 mod error;
 mod names;
+mod quantum;
 mod read;
 mod segment;
 mod spikes;
@@ -157,6 +158,25 @@ impl Record {
             record.segments.push(rest);
         }
         (all, record)
+    }
+
+    /// The step of each component of the readings, rad/s; 0 where they have none.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::fit::Record;
+    /// let times: Vec<f64> = (0..100).map(f64::from).collect();
+    /// let rates: Vec<_> = (0..100).map(|i| Vector3::new(0.25 * f64::from(i % 9), 1.0, 0.0)).collect();
+    /// assert_eq!(Record::from_samples(&times, &rates)?.quanta(), Vector3::new(0.25, 0.0, 0.0));
+    /// # Ok::<(), polhode::fit::RecordError>(())
+    /// ```
+    pub fn quanta(&self) -> Vector3<f64> {
+        quantum::quanta(self.segments.iter().flat_map(|s| &s.rates))
+    }
+
+    /// Variance of the rounding of a component of the readings to steps of `quanta`, (rad/s)².
+    pub(crate) fn rounding(&self, quanta: &Vector3<f64>) -> f64 {
+        quantum::rounding(&self.segments, quanta)
     }
 
     /// Number of samples that were merged into one of the same time.

@@ -74,6 +74,8 @@ pub struct Estimate {
     pub inertia: Option<Inertia>,
     /// Covariance of its entries xx, yy, zz, xy, xz, yz, (kg m²)².
     pub inertia_covariance: Option<SMatrix<f64, 6, 6>>,
+    /// Step of each component of the readings, rad/s, as found or given; 0 where there is none.
+    pub quanta: [f64; 3],
     /// Noise of one component of the rates, rad/s.
     pub noise_sigma: f64,
     /// Mean square of the residuals over the noise; the covariance is multiplied by it, before law and limits are

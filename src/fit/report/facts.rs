@@ -128,6 +128,7 @@ impl Facts<'_> {
             bound_ratio,
             inertia,
             inertia_covariance,
+            quanta: self.settings.quantum.map_or_else(|| self.record.quanta().into(), |quantum| [quantum; 3]),
             noise_sigma: self.variance.sqrt() * self.rms,
             chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / weak.dof().max(1) as f64,
             pull,
@@ -217,7 +218,7 @@ impl Facts<'_> {
         at: &Unknowns,
     ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
         let is_input = |&k: &usize| self.chosen.weak.columns[k].kind == Kind::Input;
-        let Some(place) = self.joint.kept.iter().position(|k| is_input(k)) else { return Ok((None, None)) };
+        let Some(place) = self.joint.kept.iter().position(is_input) else { return Ok((None, None)) };
         let u = at.c[self.joint.kept[place]];
         if u <= SURE * together[(place, place)].sqrt() {
             return Ok((None, None));

@@ -16,6 +16,8 @@ pub struct Nuisance {
     pub sigma: f64,
     /// The standard deviation of its prior, where it has one.
     pub prior: Option<f64>,
+    /// The segment that it is of, from 0, where each has its own.
+    pub segment: Option<usize>,
 }
 
 /// The torque that a fit reckons with.

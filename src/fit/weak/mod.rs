@@ -29,6 +29,7 @@ pub(crate) mod model;
 pub(crate) mod moments;
 pub(crate) mod noise;
 pub(crate) mod normalised;
+pub(crate) mod quadratic;
 pub(crate) mod radius;
 pub(crate) mod rounds;
 pub(crate) mod stacked;

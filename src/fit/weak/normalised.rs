@@ -38,11 +38,12 @@ pub(crate) fn normalised(record: &Record) -> Result<Normalised, FitError> {
         wheel.chain(inputs.torque.iter().map(|torque| torque.amax() / rms / rms))
     });
     let input = Some(sizes.fold(0.0, f64::max)).filter(|size| size.is_normal());
-    let segments = record.segments.iter();
-    let stretches = segments.map(|s| {
+    let segments = record.segments.iter().enumerate();
+    let stretches = segments.map(|(index, s)| {
         let start = s.times().first().copied().unwrap_or(0.0);
         let times = s.times().iter().map(|t| (t - start) * rms).collect();
         let mut stretch = Stretch::new(times, s.rates().iter().map(|w| w / rms).collect());
+        stretch.index = index;
         stretch.inputs = input.map(|unit| {
             let scaled = |list: Option<&Vec<Vector3<f64>>>, factor: f64| {
                 list.filter(|list| !list.is_empty()).map_or(vec![Vector3::zeros(); s.times().len()], |list| {

@@ -5,7 +5,7 @@ use polhode::fit::{Estimate, Nuisance, Record};
 use serde_json::{Map, Value, json};
 
 use super::super::flights::Spans;
-use super::{METHOD, torque, unused};
+use super::{METHOD, coefficients, torque, unused};
 
 fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
     (0..3).map(|i| (0..3).map(|j| m[(i, j)]).collect()).collect()
@@ -38,6 +38,7 @@ fn answer(e: &Estimate) -> Value {
         "inertia": e.inertia.as_ref().map(|i| square(&i.tensor())),
         "inertia_covariance": e.inertia_covariance.as_ref().map(matrix),
         "noise_sigma": e.noise_sigma,
+        "quanta": e.quanta,
         "samples": e.samples,
         "segments": e.segments,
         "radius": e.radius,
@@ -68,11 +69,11 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
     json!({
         "torque": {
             "model": torque(e.torque.model),
-            "coefficients": nuisances(&e.torque.coefficients),
+            "coefficients": nuisances(&coefficients(e, None)),
             "gain": e.torque.gain,
             "ratios_without": e.torque.ratios_without,
         },
-        "nuisances": nuisances(&e.nuisances),
+        "nuisances": nuisances(&e.nuisances.iter().collect::<Vec<_>>()),
         "prior": e.prior.map(|p| json!({ "chi2": p.chi2, "dof": p.dof })),
         "systematic": e.systematic.iter().map(|line| json!({
             "name": line.name, "size": line.size, "unit": line.unit,
@@ -82,6 +83,7 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
         "per_segment": e.per_segment.iter().map(|s| json!({
             "segment": s.segment + 1, "samples": s.samples, "noise_sigma": s.noise_sigma,
             "torque_noise": s.torque_noise, "weight": s.weight, "shift": s.shift,
+            "torque": nuisances(&coefficients(e, Some(s.segment))),
         })).collect::<Vec<_>>(),
         "spikes": e.spikes.iter().map(|s| json!({
             "segment": s.segment + 1, "line": s.line, "time": s.time,
@@ -95,8 +97,8 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
 }
 
 /// By name: value, standard deviation, unit, and the deviation of the prior where there is one.
-fn nuisances(of: &[Nuisance]) -> Map<String, Value> {
-    let entry = |n: &Nuisance| {
+fn nuisances(of: &[&Nuisance]) -> Map<String, Value> {
+    let entry = |n: &&Nuisance| {
         let value = json!({ "value": n.value, "sigma": n.sigma, "unit": n.unit, "prior": n.prior });
         (n.name.to_string(), value)
     };

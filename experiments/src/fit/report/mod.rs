@@ -4,7 +4,7 @@ mod json;
 mod rows;
 mod text;
 
-use polhode::fit::{AverageAxis, Estimate, Identifiability, Record, TorqueModel};
+use polhode::fit::{AverageAxis, Estimate, Identifiability, Nuisance, Record, TorqueModel};
 use serde_json::{Value, json};
 
 use super::flights::Spans;
@@ -148,6 +148,11 @@ pub(super) fn sizes(e: &Estimate) -> String {
     words.join(", ")
 }
 
+/// The coefficients of the torque of one segment, or without it those that all share.
+pub(super) fn coefficients(e: &Estimate, segment: Option<usize>) -> Vec<&Nuisance> {
+    e.torque.coefficients.iter().filter(|c| c.segment == segment).collect()
+}
+
 /// The model of a torque in words.
 pub(super) fn torque(model: TorqueModel) -> &'static str {
     match model {
@@ -155,6 +160,7 @@ pub(super) fn torque(model: TorqueModel) -> &'static str {
         TorqueModel::Drag => "drag",
         TorqueModel::Drag3 => "drag3",
         TorqueModel::Drag6 => "drag6",
+        TorqueModel::Quadratic => "quadratic",
         TorqueModel::Constant => "constant",
         _ => "auto",
     }

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use polhode::fit::{Estimate, InvariantTrend, Nuisance, Record};
 
 use super::super::flights::Spans;
-use super::{METHOD, SURE, digits, sizes, systematic, torque, unused, with_error};
+use super::{METHOD, SURE, coefficients, digits, sizes, systematic, torque, unused, with_error};
 
 /// The answer first, then what it rests on.
 pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans) -> String {
@@ -20,6 +20,10 @@ pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans) -> String {
     lines.extend(spans.lines());
     lines.extend(segments(e));
     lines.push(String::new());
+    if e.quanta.iter().any(|quantum| *quantum > 0.0) {
+        let [x, y, z] = e.quanta;
+        lines.push(format!("steps of the readings: {x:.3e}, {y:.3e}, {z:.3e} rad/s"));
+    }
     let names = unused(record);
     if !names.is_empty() {
         lines.push(format!("columns not used: {}", names.join(", ")));
@@ -100,7 +104,7 @@ fn torques(e: &Estimate) -> Vec<String> {
             None => format!("torque: {}", torque(e.torque.model)),
         },
     ];
-    lines.extend(e.torque.coefficients.iter().map(number));
+    lines.extend(coefficients(e, None).into_iter().map(number));
     if let Some([a, b]) = e.torque.ratios_without {
         lines.push(format!("  without it I1/I3 would be {a:.4} and I2/I3 {b:.4}"));
     }
@@ -143,6 +147,15 @@ fn segments(e: &Estimate) -> Vec<String> {
             s.weight,
             s.shift
         ));
+    }
+    if e.torque.coefficients.iter().any(|c| c.segment.is_some()) {
+        lines.extend([String::new(), "segment  torque".into()]);
+        for s in &e.per_segment {
+            let own = coefficients(e, Some(s.segment));
+            let values =
+                own.iter().map(|n| format!("{} {} {}", n.name, with_error(n.value, n.sigma), n.unit));
+            lines.push(format!("{:>7}  {}", s.segment + 1, values.collect::<Vec<_>>().join(", ")));
+        }
     }
     lines
 }
