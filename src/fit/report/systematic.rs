@@ -39,7 +39,7 @@ pub(crate) fn systematic(
 ) -> Vec<Systematic> {
     let estimated = |kind| weak.columns.iter().any(|column| column.kind == kind);
     let errors: Vec<(Kind, f64)> = ERRORS.into_iter().filter(|(kind, _)| !estimated(*kind)).collect();
-    let first = errors.iter().map(|&(kind, _)| Column { kind, prior: None });
+    let first = errors.iter().map(|&(kind, _)| Column::new(kind, None));
     let columns: Vec<Column> = first.chain(weak.columns.iter().copied()).collect();
     let mut at = weak.at.clone();
     at.c = vec![0.0; errors.len()].into_iter().chain(at.c).collect();
