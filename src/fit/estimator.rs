@@ -19,7 +19,7 @@ use super::settings::{Settings, TorqueModel, TorqueNoise, TorqueScope};
 use super::weak::joint::Joint;
 use super::weak::ladder::{Demand, climb};
 use super::weak::mistaken_units::{Better, better_unit, suspicious};
-use super::weak::model::{Column, Kind, sensor_columns, walk_columns};
+use super::weak::model::{Column, Kind, STEPS, sensor_columns, walk_columns};
 use super::weak::noise;
 use super::weak::normalised::{Normalised, normalised};
 use super::weak::radius::Failure;
@@ -76,7 +76,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     columns.extend(input.map(|_| Column::new(Kind::Input, None)));
     if let Some(walk) = settings.offset_walk {
         // per √(unit of time), which is one over the unit of rate
-        columns.extend(walk_columns(&stretches, walk / rms / rms.sqrt()));
+        columns.extend(walk_columns(&stretches, walk / rms / rms.sqrt(), STEPS));
     }
     let long = |s: &&Stretch| s.times.len() >= 2 * SAMPLES_PER_TEST as usize;
     let alone: Vec<usize> = match settings.torque_scope {

@@ -10,7 +10,7 @@ use super::report::nuisance::Nuisance;
 use super::settings::{Settings, TorqueModel};
 use super::weak::held::held;
 use super::weak::ladder::columns_of;
-use super::weak::model::{Column, Kind, sensor_columns, walk_columns};
+use super::weak::model::{Column, Kind, STEPS, sensor_columns, walk_columns};
 use super::weak::normalised::{Normalised, normalised};
 use crate::inertia::Inertia;
 
@@ -91,7 +91,7 @@ pub fn calibrate_wheel(
     columns.extend(
         settings
             .offset_walk
-            .map(|walk| walk_columns(&stretches, walk / rms / rms.sqrt()))
+            .map(|walk| walk_columns(&stretches, walk / rms / rms.sqrt(), STEPS))
             .unwrap_or_default(),
     );
     let trace = inertia.tensor().trace();

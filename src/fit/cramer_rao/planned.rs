@@ -7,7 +7,8 @@ use crate::fit::report::columns::unit;
 use crate::fit::settings::Settings;
 use crate::fit::weak::ladder::columns_of;
 use crate::fit::weak::model::{
-    Column, Kind, Terms, Unknowns, cross_derivative, distortion, sensor_columns, symmetric, walk_columns,
+    Column, Kind, STEPS, Terms, Unknowns, cross_derivative, distortion, sensor_columns, symmetric,
+    walk_columns,
 };
 use crate::fit::weak::quadratic::slope;
 use crate::fit::weak::test_functions::Stretch;
@@ -59,7 +60,7 @@ pub fn foreseen_bound_with(
         columns.iter().zip(coefficients).map(|(c, v)| v / unit(c.kind, rate)).collect();
     columns.extend(sensor_columns(&settings.sensor, rate));
     if let Some(walk) = settings.offset_walk {
-        columns.extend(walk_columns(core::slice::from_ref(&stretch), walk / rate / rate.sqrt()));
+        columns.extend(walk_columns(core::slice::from_ref(&stretch), walk / rate / rate.sqrt(), STEPS));
     }
     values.resize(columns.len(), 0.0);
     let shape = inertia.tensor() / inertia.tensor().trace();

@@ -15,6 +15,7 @@ pub(crate) fn named(kind: Kind) -> (&'static str, &'static str, i32) {
         }
         Kind::Quadratic => ("quadratic_drag", "1/rad", 0),
         Kind::Walk { axis, .. } => (of(["walk_x", "walk_y", "walk_z", "", "", ""], axis), "rad/s", 1),
+        Kind::Rotor(k) => (of(["wheel_x", "wheel_y", "wheel_z", "", "", ""], k), "of |L|", 0),
         Kind::Constant(k) => (of(["torque_x", "torque_y", "torque_z", "", "", ""], k), "rad/s^2", 2),
         Kind::Offset(k) => (of(["offset_x", "offset_y", "offset_z", "", "", ""], k), "rad/s", 1),
         Kind::Scale => ("scale", "", 0),

@@ -411,6 +411,7 @@ impl Corrected {
                 own - inputs.map_or(Vector3::zeros(), |i| wheel(e * i.value.transpose()))
             }
             Kind::Input => inputs.map_or(Vector3::zeros(), |i| self.input(terms, i)),
+            Kind::Rotor(k) => self.value.cross(&Vector3::ith(k, 1.0)),
             Kind::Skew(_) | Kind::Walk { .. } | Kind::Quadratic => Vector3::zeros(),
             Kind::Scale | Kind::AxisScale(_) | Kind::Misalignment(_) => {
                 let q = distortion(kind).unwrap_or_else(Matrix3::zeros);

@@ -32,6 +32,8 @@ pub(crate) enum Kind {
     Skew(usize),
     /// The change of the offset of an axis from one time to another, in proportion to the time between them.
     Walk { axis: usize, from: f64, until: f64 },
+    /// A component of a constant momentum inside the body, as of a wheel that nobody knows of.
+    Rotor(usize),
     /// One over the trace of the tensor: the factor of wheel momenta and known torques.
     Input,
 }
@@ -86,18 +88,18 @@ pub(crate) fn sensor_columns(priors: &SensorPriors, rms: f64) -> Vec<Column> {
     each.into_iter().flat_map(columns).collect()
 }
 
-/// Steps of the offset's walk in one stretch.
-const STEPS: usize = 20;
+/// Steps of the offset's walk in one stretch, where it is fitted.
+pub(crate) const STEPS: usize = 20;
 /// Shortest of them, in units of the rate: the body turns by less.
 const SHORTEST: f64 = 0.5;
 
 /// The columns of a random walk of the offsets, whose standard deviation after a unit of time is `walk`: in each stretch
-/// the steps of a line from knot to knot, which are independent.
-pub(crate) fn walk_columns(stretches: &[Stretch], walk: f64) -> Vec<Column> {
+/// at most `most` steps of a line from knot to knot, which are independent.
+pub(crate) fn walk_columns(stretches: &[Stretch], walk: f64, most: usize) -> Vec<Column> {
     let mut columns = Vec::new();
     for stretch in stretches {
         let (Some(first), duration) = (stretch.times.first(), stretch.duration()) else { continue };
-        let steps = ((duration / SHORTEST) as usize).clamp(1, STEPS);
+        let steps = ((duration / SHORTEST) as usize).clamp(1, most);
         let width = duration / steps as f64;
         for step in 0..steps {
             let from = first + step as f64 * width;

@@ -7,7 +7,9 @@ use polhode::fit::{Estimate, FittedMotion, Nuisance, Record};
 
 use super::flights::Spans;
 
-use super::report::{Facts, SURE, coefficients, digits, sizes, systematic, torque, unused, with_error};
+use super::report::{
+    Facts, SURE, coefficients, digits, sensor_lines, sizes, systematic, torque, unused, with_error,
+};
 use crate::document::{Form, Part};
 use crate::error::Error;
 
@@ -78,7 +80,7 @@ fn answer(e: &Estimate) -> Vec<Part> {
         .map(|k| row(format!("I{}", k + 1), e.principal[k], e.sigma_principal[k], off.map(|o| o[k])))
         .collect();
     for (k, name) in ["I1/I3", "I2/I3"].into_iter().enumerate() {
-        let squares = e.systematic.iter().map(|line| line.ratios[k] * line.ratios[k]);
+        let squares = sensor_lines(e).map(|line| line.ratios[k] * line.ratios[k]);
         let off = off.map(|_| squares.sum::<f64>().sqrt());
         rows.push(row(name.into(), e.ratios[k], e.sigma_ratios[k], off));
     }

@@ -4,7 +4,7 @@ mod json;
 mod rows;
 mod text;
 
-use polhode::fit::{AverageAxis, Estimate, Identifiability, Nuisance, Record, TorqueModel};
+use polhode::fit::{AverageAxis, Estimate, Identifiability, Nuisance, Record, Systematic, TorqueModel};
 use serde_json::{Value, json};
 
 use super::flights::Spans;
@@ -124,18 +124,23 @@ pub(super) fn digits(sigma: f64) -> usize {
 /// Half widths of 95 % intervals in standard deviations.
 pub(super) const SURE: f64 = 1.959_963_984_540_054;
 
+/// The systematic lines of the sensor: most bodies have no wheel.
+pub(super) fn sensor_lines(e: &Estimate) -> impl Iterator<Item = &Systematic> {
+    e.systematic.iter().filter(|line| !line.name.starts_with("wheel"))
+}
+
 /// What an error of each of the sizes of the systematic lines would make of the principal moments together, shares of
 /// the trace; `None` where there are no lines.
 pub(super) fn systematic(e: &Estimate) -> Option<[f64; 3]> {
     let sum =
-        |k: usize| e.systematic.iter().map(|line| line.principal[k] * line.principal[k]).sum::<f64>().sqrt();
+        |k: usize| sensor_lines(e).map(|line| line.principal[k] * line.principal[k]).sum::<f64>().sqrt();
     (!e.systematic.is_empty()).then(|| [0, 1, 2].map(sum))
 }
 
 /// The sizes of the systematic lines in words, one for each kind of error.
 pub(super) fn sizes(e: &Estimate) -> String {
     let mut words: Vec<String> = Vec::new();
-    for line in &e.systematic {
+    for line in sensor_lines(e) {
         let kind = line.name.split('_').next().unwrap_or_default();
         let word = match line.unit {
             "" => format!("{} % of {kind}", 100.0 * line.size),

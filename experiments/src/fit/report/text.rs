@@ -118,11 +118,14 @@ fn sensor(e: &Estimate) -> Vec<String> {
         lines.extend(e.nuisances.iter().map(number));
     }
     if !e.systematic.is_empty() {
-        lines.extend([String::new(), "change of (I1, I2, I3) with an error of the sensor:".into()]);
+        lines.extend([
+            String::new(),
+            "change of (I1, I2, I3) with an error of the sensor, or a wheel in the body:".into(),
+        ]);
         for line in &e.systematic {
             let [a, b, c] = line.principal;
             let size = format!("{} {}", line.size, line.unit);
-            lines.push(format!("  {:<16} {:<11} ({a:9.1e}, {b:9.1e}, {c:9.1e})", line.name, size.trim()));
+            lines.push(format!("  {:<16} {:<20} ({a:9.1e}, {b:9.1e}, {c:9.1e})", line.name, size.trim()));
         }
     }
     lines
