@@ -9,6 +9,9 @@ use crate::fit::physical::coordinates::{Coordinates, Form};
 /// Standard deviation of a column without a prior: so far beyond what a record can show that it says nothing.
 const FLAT: f64 = 1e3;
 
+/// Rows that are brought to a triangle together, on the triangle of those before.
+const TOGETHER: usize = 16_384;
+
 /// min |R (x − origin) + z|²: what all stretches say together, each column at its best for x.
 pub(crate) struct Stacked {
     pub(crate) origin: Unknowns,
@@ -31,20 +34,26 @@ impl Stacked {
         let count = columns.len();
         let width = count + 6;
         let equations: usize = rows.iter().map(|rows| rows.len() / width).sum();
-        let mut stack = Mat::<f64>::zeros((equations + count).max(width), width);
-        let each = rows.iter().flat_map(|rows| rows.chunks_exact(width));
-        for (i, row) in each.enumerate() {
-            for (k, value) in row.iter().enumerate() {
-                stack[(i, k)] = *value;
+        let mut each = rows.iter().flat_map(|rows| rows.chunks_exact(width));
+        let mut r = Mat::<f64>::zeros(0, width);
+        for part in 0..=equations / TOGETHER {
+            let first = r.nrows();
+            let own = TOGETHER.min(equations - part * TOGETHER);
+            let priors = if part == equations / TOGETHER { count } else { 0 };
+            let mut stack = Mat::<f64>::zeros((first + own + priors).max(width), width);
+            stack.as_mut().subrows_mut(0, first).copy_from(&r);
+            for (i, row) in each.by_ref().take(own).enumerate() {
+                for (k, value) in row.iter().enumerate() {
+                    stack[(first + i, k)] = *value;
+                }
             }
+            for (k, column) in columns.iter().enumerate().take(priors) {
+                let weight = deviation / column.prior.unwrap_or(FLAT);
+                stack[(first + own + k, k)] = weight;
+                stack[(first + own + k, width - 1)] = weight * origin.c[k];
+            }
+            r = stack.qr().thin_R().to_owned();
         }
-        for (k, column) in columns.iter().enumerate() {
-            let weight = deviation / column.prior.unwrap_or(FLAT);
-            stack[(equations + k, k)] = weight;
-            stack[(equations + k, width - 1)] = weight * origin.c[k];
-        }
-        let qr = stack.qr();
-        let r = qr.thin_R();
         let flat = columns.iter().filter(|column| column.prior.is_none()).count();
         let left = r[(width - 1, width - 1)];
         Stacked {
