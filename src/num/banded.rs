@@ -115,7 +115,7 @@ const fn pitch(band: usize) -> usize {
 pub(crate) fn likelihood(band: usize, e: &[f64], column: impl Fn(usize, &mut [f64])) -> Option<(f64, f64)> {
     let pitch = pitch(band);
     // as many columns as a pivot reaches are at work; they move to the front when the room behind them is used up
-    let room = 8 * (band + 1);
+    let room = (8 * (band + 1)).min(e.len().max(1));
     let mut columns = vec![0.0; room * pitch];
     let mut rest: Vec<f64> = e.to_vec();
     let (mut determinant, mut squares) = (Product::ONE, 0.0);

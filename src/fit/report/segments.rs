@@ -3,7 +3,7 @@
 use super::nuisance::SegmentSummary;
 use crate::fit::physical::coordinates::Form;
 use crate::fit::record::Record;
-use crate::fit::weak::linearised::Shape;
+use crate::fit::weak::covariance::Shape;
 use crate::fit::weak::stacked::Stacked;
 use crate::fit::weak::weak_estimate::{Part, WeakEstimate};
 
@@ -17,7 +17,7 @@ pub(crate) fn summaries(
     let Some(stacked) = &weak.stacked else { return Vec::new() };
     let total = stacked.information();
     let stack = |parts: &[&Part]| {
-        let rows: Vec<&[f64]> = parts.iter().map(|part| part.whitened.rows.as_slice()).collect();
+        let rows: Vec<&[f64]> = parts.iter().map(|part| part.rows.as_slice()).collect();
         Stacked::new(&rows, &weak.columns, &stacked.origin, variance.sqrt())
     };
     let each = weak.parts.iter().enumerate().map(|(k, part)| {
@@ -29,7 +29,7 @@ pub(crate) fn summaries(
         let weight = total.cholesky().map_or(0.0, |total| 1.0 - total.solve(&kept).trace() / 5.0);
         let without = others.and_then(|others| others.minimiser());
         let shift = without.map_or(0.0, |without| (stacked.root * (without.x - weak.x())).norm());
-        let levels = part.whitened.levels;
+        let levels = part.levels;
         let share = match levels.shape {
             Shape::Moments => 1.0,
             Shape::Alike => 1.0 / 9.0,

@@ -87,7 +87,7 @@ pub(crate) fn systematic(
     let mut at = weak.at.clone();
     at.c = vec![0.0; errors].into_iter().chain(at.c).collect();
     let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], &columns, &at));
-    let whitened: Vec<Vec<f64>> = parts.collect();
+    let Some(whitened) = parts.collect::<Option<Vec<Vec<f64>>>>() else { return Vec::new() };
     let origin = Unknowns::at(Coordinates::zeros(), &weak.columns);
     let (wide, own) = (columns.len() + 6, weak.columns.len() + 6);
     // of the principal moments and of the ratios, by a column of a given size

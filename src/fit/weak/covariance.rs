@@ -1,23 +1,122 @@
-//! What the noise of the rates makes of the weak equations of one stretch: the band of its covariance.
+//! The covariance of the weak equations of one stretch by the noise of the rates and by torque noise: a narrow band.
 
 use multiversion::multiversion;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::model::{Terms, cross_derivative};
-use super::moments::Group;
-use super::test_functions::{Seen, TestFunctions};
+use super::moments::{Group, groups};
+use super::test_functions::{Seen, Stretch, TestFunctions};
 use crate::fit::physical::coordinates::ENTRIES;
-use crate::num::banded::{Banded, REGISTER};
+use crate::num::banded::{Banded, REGISTER, likelihood};
+
+/// Variances of the noise of the rates and of the torque noise, over the variance of the noise of the record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Levels {
+    pub(crate) white: f64,
+    pub(crate) torque: f64,
+    pub(crate) shape: Shape,
+}
+
+/// Along which axes torque noise acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// As the moments of inertia: J ξ with white ξ, an angular acceleration that is alike along all axes.
+    Moments,
+    /// Alike along all axes, with the same mean square as the other at a sphere.
+    Alike,
+}
+
+impl Levels {
+    pub(crate) const WHITE: Levels = Levels { white: 1.0, torque: 0.0, shape: Shape::Moments };
+}
+
+/// The covariance of the equations of one stretch at any levels of noise.
+#[derive(Clone)]
+pub(crate) struct Covariance {
+    tests: TestFunctions,
+    j: Matrix3<f64>,
+    /// By the noise of the rates, per its variance.
+    noise: Banded,
+}
+
+impl Covariance {
+    /// Of equations that were linearised at the samples of `stretch` less their `noise`.
+    pub(crate) fn new(
+        stretch: &Stretch,
+        noise: &[Vector3<f64>],
+        terms: &Terms,
+        tests: &TestFunctions,
+    ) -> Self {
+        let noise = of_rates(groups(stretch, noise, tests.radius), terms, tests);
+        Covariance { tests: tests.clone(), j: terms.j, noise }
+    }
+
+    /// Its factor; `None` where it is not positive, as for a tensor far from physical.
+    pub(crate) fn factor(&self, levels: Levels) -> Option<Banded> {
+        self.clone().into_factor(levels)
+    }
+
+    /// The same, in the place of the covariance.
+    pub(crate) fn into_factor(mut self, levels: Levels) -> Option<Banded> {
+        if levels != Levels::WHITE {
+            let torque = self.of_torque(levels);
+            for j in 0..3 * self.tests.count {
+                let used = self.used(j);
+                let column = self.noise.column_mut(j);
+                for (entry, torque) in column[..used].iter_mut().zip(&torque[j % 3]) {
+                    *entry = *entry * levels.white + torque;
+                }
+            }
+        }
+        self.noise.factor().then_some(self.noise)
+    }
+
+    /// log |C| and eᵀ C⁻¹ e of residuals `e`.
+    pub(crate) fn likelihood(&self, e: &[f64], levels: Levels) -> Option<(f64, f64)> {
+        let torque = self.of_torque(levels);
+        likelihood(3 * self.tests.reach + 2, e, |j, into| {
+            let each = self.noise.column(j).iter().zip(&torque[j % 3]);
+            for (entry, (noise, torque)) in into[..self.used(j)].iter_mut().zip(each) {
+                *entry = noise * levels.white + torque;
+            }
+        })
+    }
+
+    /// Mean variances of the residuals by noise of the rates and by torque noise of level 1.
+    pub(crate) fn mean_variances(&self) -> (f64, f64) {
+        let size = 3 * self.tests.count;
+        let white = (0..size).map(|i| self.noise.get(i, i)).sum::<f64>() / size as f64;
+        (white, self.tests.overlaps().first().copied().unwrap_or(0.0) / 9.0)
+    }
+
+    /// How many entries of a column the matrix has.
+    fn used(&self, column: usize) -> usize {
+        (3 * self.tests.count - column).min(3 * self.tests.reach + 3)
+    }
+
+    /// What torque noise adds to the columns of each test, from their diagonals down.
+    fn of_torque(&self, levels: Levels) -> [Vec<f64>; 3] {
+        let shape = match levels.shape {
+            Shape::Moments => self.j * self.j,
+            Shape::Alike => Matrix3::identity() / 9.0,
+        };
+        [0, 1, 2].map(|q| {
+            let mut column = vec![0.0; 3 * self.tests.reach + 3];
+            for (row, overlap) in self.tests.overlaps().iter().enumerate() {
+                for p in if row == 0 { q } else { 0 }..3 {
+                    column[3 * row + p - q] = levels.torque * shape[(p, q)] * overlap;
+                }
+            }
+            column
+        })
+    }
+}
 
 /// Room for the rows of all tests that overlap at one time, and for a column from any of them on.
 const BLOCKS: usize = 64;
 
 /// Σ A Aᵀ with A = −φ' J + φ K by pairs of tests.
-pub(super) fn covariance(
-    groups: impl Iterator<Item = Group>,
-    terms: &Terms,
-    tests: &TestFunctions,
-) -> Banded {
+fn of_rates(groups: impl Iterator<Item = Group>, terms: &Terms, tests: &TestFunctions) -> Banded {
     let mut sum = Banded::zeros(3 * tests.count, 3 * tests.reach + 2);
     let jj = terms.j * terms.j;
     // K is linear in the rate

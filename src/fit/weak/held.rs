@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::covariance::{Covariance, Levels};
 use super::levels::{Choice, likeliest};
-use super::linearised::{Levels, Linearised, Whitened};
+use super::linearised::{Linearised, Whitened};
 use super::model::{Column, Unknowns};
 use super::radius::candidates;
 use super::rounds::{Noise, ROUNDS, STILL};
@@ -63,8 +64,13 @@ fn at(
         let parts: Vec<Linearised> = each
             .map(|((_, s, tests), noise)| Linearised::new(s, noise, columns, at.clone(), tests.clone()))
             .collect();
-        let whitened: Vec<Whitened> =
-            parts.iter().zip(&levels).map(|(part, levels)| part.whitened(*levels)).collect::<Option<_>>()?;
+        let each = parts.iter().zip(&used).zip(&samples);
+        let covariances: Vec<Covariance> =
+            each.map(|((part, (_, s, _)), noise)| part.covariance(s, noise)).collect();
+        let each = parts.iter().zip(&covariances).zip(&levels);
+        let whitened = each
+            .map(|((part, covariance), levels)| Some(part.whitened(covariance.factor(*levels)?, *levels)));
+        let whitened: Vec<Whitened> = whitened.collect::<Option<_>>()?;
         let rows: Vec<&[f64]> = whitened.iter().map(|part| part.rows.as_slice()).collect();
         let stacked = Stacked::new(&rows, columns, &at, variance.sqrt());
         let next = stacked.with_columns(x)?;
@@ -81,9 +87,9 @@ fn at(
         if moved <= STILL && !fitted && unexplained {
             // what noise of the rates does not explain is torque noise
             fitted = true;
-            for (part, levels) in parts.iter().zip(&mut levels) {
+            for ((part, covariance), levels) in parts.iter().zip(&covariances).zip(&mut levels) {
                 let choice = Choice { white: several };
-                *levels = likeliest(part, &part.residuals(&next), variance, 1.0, choice, None)?;
+                *levels = likeliest(covariance, &part.residuals(&next), variance, 1.0, choice, None)?;
             }
         } else if moved <= STILL {
             let levels = used.iter().zip(&levels).map(|((k, ..), levels)| (*k, *levels)).collect();

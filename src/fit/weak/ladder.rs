@@ -1,7 +1,7 @@
 //! The torque that a record asks for: one rung after the other, each on its gain of likelihood.
 
+use super::covariance::Levels;
 use super::levels::{Choice, likeliest};
-use super::linearised::Levels;
 use super::mistaken_units::{Better, better_unit};
 use super::model::{Column, Kind};
 use super::radius::{Failure, descended, estimate};
@@ -113,7 +113,7 @@ fn choose(
         }
     }
     if explained {
-        let restless = demand.noise == Noise::Fitted && has_torque_noise(&first, variance);
+        let restless = demand.noise == Noise::Fitted && has_torque_noise(stretches, &first, variance);
         let asks = demand.torque == TorqueModel::Auto
             && [TorqueModel::Drag, TorqueModel::Constant]
                 .into_iter()
@@ -136,14 +136,14 @@ fn choose(
     let drag = descent(TorqueModel::Drag, radius)?;
     let radius = Some(drag.radius);
     let none = descent(TorqueModel::None, radius)?;
-    let floor = likelihood(&none, variance);
+    let floor = likelihood(stretches, &none, variance);
     let without = none.settled().then(|| none.x());
     let mut best = plain(none, TorqueModel::None);
     let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
-        let gain = likelihood(&weak, variance) - floor;
+        let gain = likelihood(stretches, &weak, variance) - floor;
         let more = demand.torques(model).len().saturating_sub(demand.torques(best.model).len()).max(1);
         let asked = if best.model == TorqueModel::None { needed(&demand, model) } else { threshold(more) };
-        let before = likelihood(&best.weak, variance) - floor;
+        let before = likelihood(stretches, &best.weak, variance) - floor;
         let better = weak.settled() && (!best.weak.settled() || gain - before > asked);
         let gain = Some(gain).filter(|gain| gain.is_finite());
         if better { Chosen { weak, model, gain, without, better: None } } else { best }
@@ -183,22 +183,23 @@ fn needed(demand: &Demand<'_>, model: TorqueModel) -> f64 {
 ///
 /// It is that of the samples: the determinants are over those without torque noise, since residuals and covariance
 /// that both shrink with the tensor tell nothing.
-fn likelihood(weak: &WeakEstimate, variance: f64) -> f64 {
+fn likelihood(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> f64 {
     let mut sum = weak.squares / variance;
     for part in &weak.parts {
-        let Some(white) = part.linearised.whitened(Levels::WHITE) else { return f64::NEG_INFINITY };
-        sum += part.whitened.log_determinant() - white.log_determinant();
+        let white = part.covariance(&stretches[part.stretch]).into_factor(Levels::WHITE);
+        let Some(white) = white else { return f64::NEG_INFINITY };
+        sum += part.log_determinant - white.log_determinant();
     }
     if weak.parts.is_empty() { f64::NEG_INFINITY } else { -0.5 * sum }
 }
 
 /// Whether the residuals of an estimate without torque noise ask for some.
-fn has_torque_noise(weak: &WeakEstimate, variance: f64) -> bool {
+fn has_torque_noise(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> bool {
     let free = weak.dof().max(1) as f64 / weak.rows.max(1) as f64;
     let choice = Choice { white: false };
     weak.parts.iter().any(|part| {
         let e = part.linearised.residuals(&weak.at);
-        likeliest(&part.linearised, &e, variance, free, choice, None)
+        likeliest(&part.covariance(&stretches[part.stretch]), &e, variance, free, choice, None)
             .is_some_and(|levels| levels.torque > 0.0)
     })
 }
@@ -212,15 +213,20 @@ fn gain_of(
     variance: f64,
 ) -> f64 {
     let with = with_columns(stretches, weak, &demand.columns(model), variance);
-    0.5 * (weak.squares - with.squares) / variance
+    with.map_or(0.0, |with| 0.5 * (weak.squares - with.squares) / variance)
 }
 
 /// The equations of an estimate with further columns, which come first and are zero where it stands.
-fn with_columns(stretches: &[Stretch], weak: &WeakEstimate, columns: &[Column], variance: f64) -> Stacked {
+fn with_columns(
+    stretches: &[Stretch],
+    weak: &WeakEstimate,
+    columns: &[Column],
+    variance: f64,
+) -> Option<Stacked> {
     let mut at = weak.at.clone();
     at.c = vec![0.0; columns.len() - at.c.len()].into_iter().chain(at.c).collect();
     let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], columns, &at));
-    let whitened: Vec<Vec<f64>> = parts.collect();
+    let whitened: Vec<Vec<f64>> = parts.collect::<Option<_>>()?;
     let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
-    Stacked::new(&rows, columns, &at, variance.sqrt())
+    Some(Stacked::new(&rows, columns, &at, variance.sqrt()))
 }

@@ -1,6 +1,6 @@
 //! The torque noise of a stretch, and the noise of its rates, by restricted likelihood.
 
-use super::linearised::{Levels, Linearised, Shape};
+use super::covariance::{Covariance, Levels, Shape};
 
 /// Gain of twice the log-likelihood up to which there is no torque noise: noise alone surpasses it once in forty records.
 const GAIN: f64 = 4.0;
@@ -24,7 +24,7 @@ pub(crate) struct Choice {
 /// The likeliest levels for residuals `e` (not whitened) of variance `variance`; `free` is the share of the residuals
 /// that the estimate has not fitted away, `last` what the search begins at.
 pub(crate) fn likeliest(
-    part: &Linearised,
+    part: &Covariance,
     e: &[f64],
     variance: f64,
     free: f64,
@@ -60,7 +60,7 @@ struct Found {
 }
 
 struct Search<'a> {
-    part: &'a Linearised,
+    part: &'a Covariance,
     e: &'a [f64],
     variance: f64,
     free: f64,

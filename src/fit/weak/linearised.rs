@@ -3,39 +3,18 @@
 use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
 
-use super::covariance::covariance;
+use super::covariance::{Covariance, Levels};
 use super::model::{Column, Kind, Terms, Unknowns, cross_derivative, distortion, symmetric};
 use super::moments::{Group, Inputs, Moments, Sums, groups};
 use super::quadratic::{Quadratic, slope};
 use super::test_functions::{Seen, Stretch, TestFunctions};
 use crate::fit::physical::coordinates::{Form, basis};
-use crate::num::banded::{Banded, likelihood};
+use crate::num::banded::Banded;
 
 /// Σ v × B v from S = Σ v vᵀ; of an S that is not symmetric, Σ v × B u from Σ v uᵀ.
 fn crossed(s: &Matrix3<f64>, b: &Matrix3<f64>) -> Vector3<f64> {
     let p = s * b.transpose();
     Vector3::new(p[(1, 2)] - p[(2, 1)], p[(2, 0)] - p[(0, 2)], p[(0, 1)] - p[(1, 0)])
-}
-
-/// Variances of the noise of the rates and of the torque noise, over the variance of the noise of the record.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Levels {
-    pub(crate) white: f64,
-    pub(crate) torque: f64,
-    pub(crate) shape: Shape,
-}
-
-/// Along which axes torque noise acts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shape {
-    /// As the moments of inertia: J ξ with white ξ, an angular acceleration that is alike along all axes.
-    Moments,
-    /// Alike along all axes, with the same mean square as the other at a sphere.
-    Alike,
-}
-
-impl Levels {
-    pub(crate) const WHITE: Levels = Levels { white: 1.0, torque: 0.0, shape: Shape::Moments };
 }
 
 /// The weak equations of one stretch, linearised at samples `rates` − `noise`, a tensor and values of the columns.
@@ -47,8 +26,6 @@ pub(crate) struct Linearised {
     pub(crate) width: usize,
     /// Row by row, not whitened.
     pub(crate) rows: Vec<f64>,
-    /// Covariance of the residuals by the noise of the rates, per its variance.
-    noise: Banded,
     /// What the unknowns make of torque and sensor.
     terms: Terms,
     /// Where it was linearised.
@@ -72,74 +49,25 @@ impl Linearised {
         tests: TestFunctions,
     ) -> Self {
         let terms = Terms::new(columns, &origin, stretch);
-        let covariance = covariance(groups(stretch, noise, tests.radius), &terms, &tests);
         let rows = rows(stretch, noise, columns, &origin, &tests);
-        Linearised { tests, width: columns.len() + 6, rows, noise: covariance, terms, origin }
+        Linearised { tests, width: columns.len() + 6, rows, terms, origin }
     }
 
-    /// The equations whitened; `None` where the covariance is not positive, as for a tensor far from physical.
-    pub(crate) fn whitened(&self, levels: Levels) -> Option<Whitened> {
-        let factor = self.factor(levels)?;
+    /// The covariance of the equations, which were linearised at the samples of `stretch` less their `noise`.
+    pub(crate) fn covariance(&self, stretch: &Stretch, noise: &[Vector3<f64>]) -> Covariance {
+        Covariance::new(stretch, noise, &self.terms, &self.tests)
+    }
+
+    /// The equations whitened by the factor of the covariance of their residuals at `levels`.
+    pub(crate) fn whitened(&self, factor: Banded, levels: Levels) -> Whitened {
         let mut rows = self.rows.clone();
         factor.forward(&mut rows, self.width);
-        Some(Whitened { factor, levels, width: self.width, rows })
-    }
-
-    fn factor(&self, levels: Levels) -> Option<Banded> {
-        let mut covariance = Banded::zeros(3 * self.tests.count, 3 * self.tests.reach + 2);
-        let fill = self.covariance_at(levels);
-        for j in 0..3 * self.tests.count {
-            fill(j, covariance.column_mut(j));
-        }
-        covariance.factor().then_some(covariance)
-    }
-
-    /// Writes columns of the covariance of the residuals, from their diagonals down.
-    fn covariance_at(&self, levels: Levels) -> impl Fn(usize, &mut [f64]) {
-        let overlaps = if levels.torque > 0.0 { self.tests.overlaps() } else { Vec::new() };
-        let shape = self.covariance_of(levels.shape) * levels.torque;
-        // what torque noise adds is the same for each test
-        let torque = [0, 1, 2].map(|q| {
-            let mut column = vec![0.0; 3 * self.tests.reach + 3];
-            for (row, overlap) in overlaps.iter().enumerate() {
-                for p in if row == 0 { q } else { 0 }..3 {
-                    column[3 * row + p - q] = shape[(p, q)] * overlap;
-                }
-            }
-            column
-        });
-        move |column, into| {
-            let used = (3 * self.tests.count - column).min(3 * self.tests.reach + 3);
-            let each = self.noise.column(column).iter().zip(&torque[column % 3]);
-            for (entry, (noise, torque)) in into[..used].iter_mut().zip(each) {
-                *entry = noise * levels.white + torque;
-            }
-        }
-    }
-
-    /// Covariance of torque noise of level 1.
-    fn covariance_of(&self, shape: Shape) -> Matrix3<f64> {
-        match shape {
-            Shape::Moments => self.terms.j * self.terms.j,
-            Shape::Alike => Matrix3::identity() / 9.0,
-        }
+        Whitened { factor, levels, width: self.width, rows }
     }
 
     /// Residuals at other unknowns, not whitened.
     pub(crate) fn residuals(&self, at: &Unknowns) -> Vec<f64> {
         residuals(&self.rows, self.width, &self.origin, at)
-    }
-
-    /// log |C| and eᵀ C⁻¹ e of residuals `e`.
-    pub(crate) fn likelihood(&self, e: &[f64], levels: Levels) -> Option<(f64, f64)> {
-        likelihood(3 * self.tests.reach + 2, e, self.covariance_at(levels))
-    }
-
-    /// Mean variances of the residuals by noise of the rates and by torque noise of level 1.
-    pub(crate) fn mean_variances(&self) -> (f64, f64) {
-        let size = 3 * self.tests.count;
-        let white = (0..size).map(|i| self.noise.get(i, i)).sum::<f64>() / size as f64;
-        (white, self.tests.overlaps().first().copied().unwrap_or(0.0) / 9.0)
     }
 
     /// V of this stretch, at the samples that the equations were linearised at.
@@ -200,9 +128,9 @@ pub(crate) fn rows(
     let quadratic = Quadratic::new(stretch, noise, &terms, tests, columns);
     for m in 0..tests.count {
         let inputs = moments.inputs.get(m);
-        let area = moments.area[m];
-        let motion = Corrected::new(&terms, &moments.motion[m], area);
-        let readings = Corrected::new(&terms, &moments.readings[m], area);
+        let area = moments.area(m);
+        let motion = Corrected::new(&terms, &moments.motion(m), area);
+        let readings = Corrected::new(&terms, &moments.readings(m), area);
         let mut residual = readings.residual(&terms, inputs);
         let by_square = quadratic.as_ref().map_or(Vector3::zeros(), |sums| sums.motion[m]);
         if let Some(sums) = &quadratic {
@@ -241,11 +169,6 @@ pub(crate) fn rows(
 }
 
 impl Whitened {
-    /// Other rows of the same equations, whitened alike.
-    pub(crate) fn whiten(&self, rows: &mut [f64], width: usize) {
-        self.factor.forward(rows, width);
-    }
-
     /// log |C|.
     pub(crate) fn log_determinant(&self) -> f64 {
         self.factor.log_determinant()
@@ -305,7 +228,7 @@ fn carry(
     }
 }
 
-fn residuals(rows: &[f64], width: usize, origin: &Unknowns, at: &Unknowns) -> Vec<f64> {
+pub(super) fn residuals(rows: &[f64], width: usize, origin: &Unknowns, at: &Unknowns) -> Vec<f64> {
     let columns = origin.c.len();
     let mut step: Vec<f64> = at.c.iter().zip(&origin.c).map(|(a, b)| a - b).collect();
     step.extend((at.x - origin.x).iter());

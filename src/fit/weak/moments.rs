@@ -34,14 +34,11 @@ pub(crate) struct Inputs {
 
 /// Sums against each test function.
 pub(crate) struct Moments {
-    /// Σ w φ.
-    pub(crate) area: Vec<f64>,
-    /// At the readings; in the squares n nᵀ is taken off, which makes the equations linear in the noise n.
-    pub(crate) readings: Vec<Sums>,
-    /// At the readings less the noise.
-    pub(crate) motion: Vec<Sums>,
+    sums: Running,
     /// Of wheel momenta and known torques, where the record has them.
     pub(crate) inputs: Vec<Inputs>,
+    /// Σ w φ y hᵀ and Σ w φ ω hᵀ, where the record has wheel momenta.
+    mixed: Vec<[Matrix3<f64>; 2]>,
 }
 
 /// The six different entries of v vᵀ.
@@ -118,33 +115,42 @@ impl Moments {
     pub(crate) fn new(stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions) -> Moments {
         let mut sums: Running = core::array::from_fn(|_| tests.room());
         add(stretch, noise, tests, &mut sums);
-        let (with_slope, with_value) = sums.split_at(WITH_SLOPE);
-        let three = |of: &[Vec<f64>], first: usize, m: usize| {
-            Vector3::new(of[first][m], of[first + 1][m], of[first + 2][m])
-        };
-        let of = |slope: usize, value: usize, square: usize| {
-            let each = (0..tests.count).map(move |m| Sums {
-                slope: three(with_slope, slope, m),
-                value: three(with_value, value, m),
-                square: full(&core::array::from_fn(|k| with_value[square + k][m])),
-                mixed: Matrix3::zeros(),
-            });
-            each.collect()
-        };
-        let mut moments = Moments {
-            area: with_value[0][..tests.count].to_vec(),
-            readings: of(0, 1, 7),
-            motion: of(3, 4, 13),
-            inputs: Vec::new(),
-        };
+        let mut moments = Moments { sums, inputs: Vec::new(), mixed: Vec::new() };
         moments.add_inputs(stretch, noise, tests);
         moments
+    }
+
+    /// Σ w φ.
+    pub(crate) fn area(&self, m: usize) -> f64 {
+        self.sums[WITH_SLOPE][m]
+    }
+
+    /// At the readings; in the squares n nᵀ is taken off, which makes the equations linear in the noise n.
+    pub(crate) fn readings(&self, m: usize) -> Sums {
+        self.of(m, [0, 1, 7], 0)
+    }
+
+    /// At the readings less the noise.
+    pub(crate) fn motion(&self, m: usize) -> Sums {
+        self.of(m, [3, 4, 13], 1)
+    }
+
+    /// The sums of one kind, of which the slopes, the values and the squares begin at these places.
+    fn of(&self, m: usize, [slope, value, square]: [usize; 3], mixed: usize) -> Sums {
+        let three = |first: usize| Vector3::from([0, 1, 2].map(|k| self.sums[first + k][m]));
+        Sums {
+            slope: three(slope),
+            value: three(WITH_SLOPE + value),
+            square: full(&core::array::from_fn(|k| self.sums[WITH_SLOPE + square + k][m])),
+            mixed: self.mixed.get(m).map_or(Matrix3::zeros(), |both| both[mixed]),
+        }
     }
 
     fn add_inputs(&mut self, stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions) {
         let Some(inputs) = &stretch.inputs else { return };
         let none = Inputs { slope: Vector3::zeros(), value: Vector3::zeros(), torque: Vector3::zeros() };
         self.inputs = vec![none; tests.count];
+        self.mixed = vec![[Matrix3::zeros(); 2]; tests.count];
         for (i, n) in noise.iter().enumerate() {
             let (y, weight) = (stretch.rates[i], stretch.weights[i]);
             let (h, torque) = (inputs.wheel[i], inputs.torque[i]);
@@ -153,8 +159,8 @@ impl Moments {
                 self.inputs[m].slope += h * slope;
                 self.inputs[m].value += h * value;
                 self.inputs[m].torque += torque * value;
-                self.readings[m].mixed += y * h.transpose() * value;
-                self.motion[m].mixed += (y - n) * h.transpose() * value;
+                self.mixed[m][0] += y * h.transpose() * value;
+                self.mixed[m][1] += (y - n) * h.transpose() * value;
             }
         }
     }

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::covariance::{Covariance, Levels};
 use super::levels::{Choice, likeliest};
-use super::linearised::{Levels, Linearised, Whitened};
+use super::linearised::{Linearised, Whitened};
 use super::model::{Column, Unknowns};
 use super::noise::SURE;
 use super::stacked::Stacked;
@@ -50,6 +51,19 @@ pub(crate) enum Noise {
     Fitted,
 }
 
+/// The rows of the equations of one stretch whitened, and nothing else of them.
+fn whitened_rows(
+    stretch: &Stretch,
+    noise: &[Vector3<f64>],
+    part: Linearised,
+    levels: Levels,
+) -> Option<Vec<f64>> {
+    let factor = part.covariance(stretch, noise).into_factor(levels)?;
+    let mut rows = part.rows;
+    factor.forward(&mut rows, part.width);
+    Some(rows)
+}
+
 pub(crate) struct Rounds<'a> {
     used: Vec<(usize, &'a Stretch, TestFunctions)>,
     columns: &'a [Column],
@@ -86,9 +100,19 @@ impl<'a> Rounds<'a> {
             .collect()
     }
 
-    /// The same whitened.
+    /// The covariances of these equations.
+    fn covariances(&self, parts: &[Linearised]) -> Vec<Covariance> {
+        let each = self.used.iter().zip(&self.noise).zip(parts);
+        each.map(|(((_, s, _), noise), part)| part.covariance(s, noise)).collect()
+    }
+
+    /// These equations whitened.
     pub(crate) fn whiten(&self, parts: &[Linearised]) -> Option<Vec<Whitened>> {
-        parts.iter().zip(&self.levels).map(|(part, levels)| part.whitened(*levels)).collect()
+        let each = self.used.iter().zip(&self.noise).zip(parts).zip(&self.levels);
+        let whitened = each.map(|((((_, s, _), noise), part), levels)| {
+            Some(part.whitened(part.covariance(s, noise).into_factor(*levels)?, *levels))
+        });
+        whitened.collect()
     }
 
     pub(crate) fn stack(&self, whitened: &[Whitened], variance: f64) -> Stacked {
@@ -161,21 +185,26 @@ impl<'a> Rounds<'a> {
         let mut moved = f64::INFINITY;
         for round in 0..DESCENT {
             let parts = self.linearise();
+            let covariances = self.covariances(&parts);
             if round == 0 {
-                let boundless = |part: &Linearised| {
+                let boundless = |part: &Covariance| {
                     let (noise, torque) = part.mean_variances();
                     Levels { torque: BOUNDLESS * noise / torque, ..Levels::WHITE }
                 };
-                self.levels = parts.iter().map(boundless).collect();
+                self.levels = covariances.iter().map(boundless).collect();
             }
-            let whitened = self.whiten(&parts)?;
+            let each = parts.iter().zip(&covariances).zip(&self.levels);
+            let whitened = each.map(|((part, covariance), levels)| {
+                Some(part.whitened(covariance.factor(*levels)?, *levels))
+            });
+            let whitened: Vec<Whitened> = whitened.collect::<Option<_>>()?;
             let stacked = self.stack(&whitened, variance);
             let next = stacked.ridge(variance)?;
             moved = self.advance(&parts, &whitened, &stacked, &next, 1.0, variance);
             let fitted = (stacked.rows.saturating_sub(5).max(1)) as f64 / stacked.rows.max(1) as f64;
             let mut changed = false;
-            for (part, levels) in parts.iter().zip(&mut self.levels) {
-                let (own, torque) = part.mean_variances();
+            for ((part, covariance), levels) in parts.iter().zip(&covariances).zip(&mut self.levels) {
+                let (own, torque) = covariance.mean_variances();
                 let floor = FALL * levels.torque;
                 let target = match noise {
                     Noise::White => Levels::WHITE,
@@ -183,7 +212,7 @@ impl<'a> Rounds<'a> {
                     Noise::Fitted => {
                         let choice = Choice { white: several };
                         let last = (round > 0).then_some(*levels);
-                        likeliest(part, &part.residuals(&next), variance, fitted, choice, last)?
+                        likeliest(covariance, &part.residuals(&next), variance, fitted, choice, last)?
                     }
                 };
                 let mut new = Levels { torque: target.torque.max(floor), ..target };
@@ -241,7 +270,9 @@ impl<'a> Rounds<'a> {
                 .map(|((((k, _, _), linearised), whitened), noise)| Part {
                     stretch: k,
                     linearised,
-                    whitened,
+                    levels: whitened.levels,
+                    log_determinant: whitened.log_determinant(),
+                    rows: whitened.rows,
                     noise,
                 })
                 .collect(),
@@ -274,9 +305,9 @@ impl<'a> Rounds<'a> {
         for ((_, s, tests), levels) in self.used.iter().zip(&self.levels) {
             let raw = vec![Vector3::zeros(); s.times.len()];
             let part = Linearised::new(s, &raw, self.columns, origin.clone(), tests.clone());
-            all.push(part.whitened(*levels)?);
+            all.push(whitened_rows(s, &raw, part, *levels)?);
         }
-        let rows: Vec<&[f64]> = all.iter().map(|w| w.rows.as_slice()).collect();
+        let rows: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
         Some(Stacked::new(&rows, self.columns, &origin, variance.sqrt()).squares_at(&origin.x))
     }
 
@@ -290,7 +321,7 @@ impl<'a> Rounds<'a> {
             let at = |rate: Vector3<f64>| {
                 let noise: Vec<_> = s.rates.iter().map(|w| w - rate).collect();
                 let part = Linearised::new(s, &noise, self.columns, self.at.clone(), tests.clone());
-                part.whitened(*levels).map(|w| w.rows)
+                whitened_rows(s, &noise, part, *levels)
             };
             at_means.push(at(mean)?);
             let sure = SURE * (variance / count).sqrt();

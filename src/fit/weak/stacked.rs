@@ -9,6 +9,9 @@ use crate::fit::physical::coordinates::{Coordinates, Form};
 /// Standard deviation of a column without a prior: so far beyond what a record can show that it says nothing.
 const FLAT: f64 = 1e3;
 
+/// Rows that are brought to a triangle together, on the triangle of those before.
+const TOGETHER: usize = 16_384;
+
 /// min |R (x − origin) + z|²: what all stretches say together, each column at its best for x.
 pub(crate) struct Stacked {
     pub(crate) origin: Unknowns,
@@ -35,23 +38,28 @@ impl Stacked {
         let alone = columns.iter().any(|column| column.segment.is_some()) && rows.len() > 1;
         let small: Vec<Vec<f64>> =
             if alone { rows.iter().map(|rows| triangle(rows, width)).collect() } else { Vec::new() };
-        let of_stretch = |rows: &[f64]| rows.len() / width;
         let all: Vec<&[f64]> = if alone { small.iter().map(Vec::as_slice).collect() } else { rows.to_vec() };
-        let height: usize = all.iter().map(|rows| of_stretch(rows)).sum();
-        let mut stack = Mat::<f64>::zeros((height + count).max(width), width);
-        let each = all.iter().flat_map(|rows| rows.chunks_exact(width));
-        for (i, row) in each.enumerate() {
-            for (k, value) in row.iter().enumerate() {
-                stack[(i, k)] = *value;
+        let height: usize = all.iter().map(|rows| rows.len() / width).sum();
+        let mut each = all.iter().flat_map(|rows| rows.chunks_exact(width));
+        let mut r = Mat::<f64>::zeros(0, width);
+        for part in 0..=height / TOGETHER {
+            let first = r.nrows();
+            let own = TOGETHER.min(height - part * TOGETHER);
+            let priors = if part == height / TOGETHER { count } else { 0 };
+            let mut stack = Mat::<f64>::zeros((first + own + priors).max(width), width);
+            stack.as_mut().subrows_mut(0, first).copy_from(&r);
+            for (i, row) in each.by_ref().take(own).enumerate() {
+                for (k, value) in row.iter().enumerate() {
+                    stack[(first + i, k)] = *value;
+                }
             }
+            for (k, column) in columns.iter().enumerate().take(priors) {
+                let weight = deviation / column.prior.unwrap_or(FLAT);
+                stack[(first + own + k, k)] = weight;
+                stack[(first + own + k, width - 1)] = weight * origin.c[k];
+            }
+            r = stack.qr().thin_R().to_owned();
         }
-        for (k, column) in columns.iter().enumerate() {
-            let weight = deviation / column.prior.unwrap_or(FLAT);
-            stack[(height + k, k)] = weight;
-            stack[(height + k, width - 1)] = weight * origin.c[k];
-        }
-        let qr = stack.qr();
-        let r = qr.thin_R();
         let flat = columns.iter().filter(|column| column.prior.is_none()).count();
         let left = r[(width - 1, width - 1)];
         Stacked {

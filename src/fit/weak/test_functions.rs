@@ -65,6 +65,8 @@ pub(crate) struct TestFunctions {
     pub(crate) reach: usize,
     /// Cubics q(u) of each test, with which φ' + φ q/radius sums by parts exactly: see [`by_parts`].
     corrections: Arc<Corrections>,
+    /// ∫ φ_m φ_n dt of tests that are 0, 1, … `reach` apart.
+    overlaps: Arc<[f64]>,
 }
 
 /// Coefficients of cubics, those of one power side by side and as many zeros behind them as are read together.
@@ -99,7 +101,9 @@ impl TestFunctions {
             count,
             reach: overlap.min(count - 1),
             corrections: Arc::new(Corrections::zeros(count)),
+            overlaps: Arc::new([]),
         };
+        tests.overlaps = overlaps(&tests);
         tests.corrections = Arc::new(by_parts(&tests, stretch));
         Some(tests)
     }
@@ -138,23 +142,27 @@ impl TestFunctions {
     }
 
     /// ∫ φ_m φ_n dt of tests that are 0, 1, … `reach` apart.
-    pub(crate) fn overlaps(&self) -> Vec<f64> {
-        // the integrand vanishes with its first seven derivatives at both ends, so that a plain sum is exact to rounding
-        const PARTS: usize = 64;
-        let step = 2.0 * self.radius / PARTS as f64;
-        let overlap = |apart: usize| {
-            let at = |i: usize| self.first - self.radius + (i as f64 + 0.5) * step;
-            (0..PARTS).map(|i| self.value(0, at(i)).0 * self.value(apart, at(i)).0).sum::<f64>() * step
-        };
-        (0..=self.reach).map(overlap).collect()
+    pub(crate) fn overlaps(&self) -> &[f64] {
+        &self.overlaps
     }
 
-    /// φ_m and φ'_m at `t`.
-    fn value(&self, m: usize, t: f64) -> (f64, f64) {
+    /// φ_m at `t`.
+    fn value(&self, m: usize, t: f64) -> f64 {
         let u = self.position(m, t);
         let v = (1.0 - u * u).max(0.0);
-        (v * v * v * v, -8.0 * u * v * v * v / self.radius)
+        v * v * v * v
     }
+}
+
+fn overlaps(tests: &TestFunctions) -> Arc<[f64]> {
+    // the integrand vanishes with its first seven derivatives at both ends, so that a plain sum is exact to rounding
+    const PARTS: usize = 64;
+    let step = 2.0 * tests.radius / PARTS as f64;
+    let overlap = |apart: usize| {
+        let at = |i: usize| tests.first - tests.radius + (i as f64 + 0.5) * step;
+        (0..PARTS).map(|i| tests.value(0, at(i)) * tests.value(apart, at(i))).sum::<f64>() * step
+    };
+    (0..=tests.reach).map(overlap).collect()
 }
 
 /// Numbers of Σ w φ u^j, j from 0 to 6, and of Σ w (φ' radius u^j + φ j u^(j−1)), j from 0 to 3.

@@ -3,7 +3,8 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
-use super::linearised::{Levels, Linearised, Whitened, rows};
+use super::covariance::{Covariance, Levels};
+use super::linearised::{Linearised, residuals, rows};
 use super::model::{Column, Unknowns};
 use super::noise::SURE;
 use super::rounds::{RESTLESS, STILL};
@@ -41,22 +42,37 @@ pub(crate) struct WeakEstimate {
 pub(crate) struct Part {
     pub(crate) stretch: usize,
     pub(crate) linearised: Linearised,
-    pub(crate) whitened: Whitened,
+    /// Its rows whitened.
+    pub(crate) rows: Vec<f64>,
+    pub(crate) levels: Levels,
+    /// log |C|.
+    pub(crate) log_determinant: f64,
     /// The noise of the samples so far.
     pub(super) noise: Vec<Vector3<f64>>,
 }
 
 impl Part {
     /// The rows of the same samples with other columns, whitened alike.
-    pub(crate) fn with_columns(&self, stretch: &Stretch, columns: &[Column], at: &Unknowns) -> Vec<f64> {
+    pub(crate) fn with_columns(
+        &self,
+        stretch: &Stretch,
+        columns: &[Column],
+        at: &Unknowns,
+    ) -> Option<Vec<f64>> {
+        let factor = self.covariance(stretch).into_factor(self.levels)?;
         let mut rows = rows(stretch, &self.noise, columns, at, &self.linearised.tests);
-        self.whitened.whiten(&mut rows, columns.len() + 6);
-        rows
+        factor.forward(&mut rows, columns.len() + 6);
+        Some(rows)
+    }
+
+    /// The covariance of its equations, which is not kept.
+    pub(crate) fn covariance(&self, stretch: &Stretch) -> Covariance {
+        self.linearised.covariance(stretch, &self.noise)
     }
 
     /// Three for each centre, whitened.
     pub(crate) fn residuals(&self, at: &Unknowns) -> Vec<f64> {
-        self.whitened.residuals(&self.linearised.origin, at)
+        residuals(&self.rows, self.linearised.width, &self.linearised.origin, at)
     }
 
     /// Centres of the test functions.
@@ -109,7 +125,7 @@ impl WeakEstimate {
 
     /// Levels of the noise of each stretch that is long enough.
     pub(crate) fn levels(&self) -> Vec<Levels> {
-        self.parts.iter().map(|part| part.whitened.levels).collect()
+        self.parts.iter().map(|part| part.levels).collect()
     }
 
     /// R as it would be without some of the columns.
@@ -123,7 +139,7 @@ impl WeakEstimate {
             .parts
             .iter()
             .map(|part| {
-                let each = part.whitened.rows.chunks_exact(width);
+                let each = part.rows.chunks_exact(width);
                 let kept = |row: &[f64]| {
                     let own = kept.iter().map(|&k| row[k]);
                     own.chain(row[width - 6..].iter().copied()).collect::<Vec<f64>>()
