@@ -58,11 +58,9 @@ use super::weak::weak_estimate::WeakEstimate;
 /// look mistaken; limits that contradict each other or the physical law; a program without a certified answer.
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
-    if settings.leave_out_spikes {
-        let (spikes, rest) = record.without_spikes();
-        fit_to(&rest, settings, spikes)
-    } else {
-        fit_to(record, settings, Vec::new())
+    match if settings.leave_out_spikes { record.without_spikes() } else { None } {
+        Some((spikes, rest)) => fit_to(&rest, settings, spikes),
+        None => fit_to(record, settings, Vec::new()),
     }
 }
 
@@ -104,11 +102,10 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     // torque noise may hide a mistaken unit, which must then explain the record without any
     let noisy = weak.levels().iter().any(|levels| levels.torque > 0.0);
     let doubtful = misfit > 4.0 || noisy || !weak.settled();
-    let better = if demand.units && suspicious(weak, variance) && !doubtful {
-        better_unit(&stretches, Some(weak), variance)
-    } else {
-        chosen.better.clone().filter(|_| doubtful)
-    };
+    let better = chosen.better.clone().filter(|_| doubtful).or_else(|| {
+        let asks = demand.units && suspicious(weak, variance);
+        asks.then(|| better_unit(&stretches, Some(weak), variance)).flatten()
+    });
     // a unit of any size must not convince: there is a tensor next to the sphere for any small wobble in large enough a unit
     if let Some(better) = better.as_ref().filter(|b| b.credible && !b.vague) {
         return Err(mistaken(misfit, better));

@@ -74,7 +74,8 @@ pub fn calibrate_wheel(
     settings: &Settings,
 ) -> Result<WheelCalibration, FitError> {
     settings.check()?;
-    let rest = if settings.leave_out_spikes { record.without_spikes().1 } else { record.clone() };
+    let rest = if settings.leave_out_spikes { record.without_spikes() } else { None };
+    let rest = rest.map_or_else(|| record.clone(), |(_, rest)| rest);
     if rest.segments.iter().any(|s| s.torque().is_some()) {
         return Err(FitError::WheelWithTorques);
     }

@@ -280,7 +280,9 @@ impl Fit {
                 return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
             }
         };
-        let motion = estimate.fitted(&record);
+        // as long a computation as the fit itself, for those outputs alone that show it
+        let shown = residuals.is_some() || page.is_some() || figure.is_some();
+        let motion = if shown { estimate.fitted(&record) } else { Vec::new() };
         let page = match page {
             Some((file, form)) => {
                 Some((file, page::estimated(&estimate, &record, &motion, &spans, &self.names(), form)?))

@@ -6,9 +6,8 @@ use crate::fit::physical::coordinates::{Form, basis, coordinates, eigen, entries
 use crate::fit::report::columns::unit;
 use crate::fit::settings::Settings;
 use crate::fit::weak::ladder::columns_of;
-use crate::fit::weak::linearised::cross_derivative;
 use crate::fit::weak::model::{
-    Column, Kind, Terms, Unknowns, distortion, sensor_columns, symmetric, walk_columns,
+    Column, Kind, Terms, Unknowns, cross_derivative, distortion, sensor_columns, symmetric, walk_columns,
 };
 use crate::fit::weak::quadratic::slope;
 use crate::fit::weak::test_functions::Stretch;

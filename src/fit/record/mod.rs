@@ -23,6 +23,7 @@ pub use read::Reading;
 use read::{Rows, rows};
 use segment::NAMES;
 pub use segment::Segment;
+use spikes::spikes;
 pub use units::{RateUnit, TimeUnit};
 
 /// Measured angular velocities of one body: segments that share one tensor, each with a motion of its own.
@@ -143,21 +144,29 @@ impl Record {
         self.segments.iter().map(|s| s.times.len()).sum()
     }
 
-    /// The spikes of all segments, and the record without them.
-    pub(crate) fn without_spikes(&self) -> (Vec<Spike>, Record) {
+    /// What is known of its files, without samples.
+    fn of_none(&self) -> Record {
+        Record { skipped: self.skipped.clone(), unused: self.unused.clone(), ..Record::default() }
+    }
+
+    /// The spikes of all segments, and the record without them, where there are any.
+    pub(crate) fn without_spikes(&self) -> Option<(Vec<Spike>, Record)> {
+        let each: Vec<Vec<usize>> = self.segments.iter().map(|segment| spikes(segment.rates())).collect();
+        if each.iter().all(Vec::is_empty) {
+            return None;
+        }
         let mut all = Vec::new();
-        let mut record = Record { segments: Vec::new(), ..self.clone() };
-        for (k, segment) in self.segments.iter().enumerate() {
-            let (spikes, rest) = segment.without_spikes();
+        let mut record = Record { findings: self.findings.clone(), ..self.of_none() };
+        for (k, (segment, spikes)) in self.segments.iter().zip(each).enumerate() {
+            record.segments.push(segment.without(&spikes));
             all.extend(spikes.into_iter().map(|sample| Spike {
                 segment: k,
                 sample,
                 time: segment.times[sample],
                 line: segment.lines()[sample],
             }));
-            record.segments.push(rest);
         }
-        (all, record)
+        Some((all, record))
     }
 
     /// The step of each component of the readings, rad/s; 0 where they have none.
@@ -209,8 +218,7 @@ impl Record {
         {
             return Err(RecordError::Window { start, end });
         }
-        let mut cut =
-            Record { skipped: self.skipped.clone(), unused: self.unused.clone(), ..Record::default() };
+        let mut cut = self.of_none();
         for (start, end) in joined(windows) {
             cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
             let before = cut.segments.len();
@@ -234,8 +242,7 @@ impl Record {
     /// The parts in which [flights](crate::fit::flights()) of this record were found, one segment each.
     #[must_use]
     pub fn during(&self, flights: &[Flight]) -> Record {
-        let mut cut =
-            Record { skipped: self.skipped.clone(), unused: self.unused.clone(), ..Record::default() };
+        let mut cut = self.of_none();
         for flight in flights {
             let Some(s) = self.segments.get(flight.segment) else { continue };
             let inside = |t: &f64| (flight.start..=flight.end).contains(t);

@@ -5,7 +5,6 @@ use core::ops::Range;
 use nalgebra::Vector3;
 
 use super::error::RecordError;
-use super::spikes::spikes;
 use super::units::RateUnit;
 
 /// Samples without a gap between them: finite, at ascending times.
@@ -151,20 +150,18 @@ impl Segment {
         self.inputs.as_ref()
     }
 
-    /// Samples that stand out of their neighbours by far, and the segment without them.
-    pub(crate) fn without_spikes(&self) -> (Vec<usize>, Segment) {
-        let spikes = spikes(&self.rates);
-        let mut left = spikes.iter().copied().peekable();
+    /// The segment without some of its samples; ascending.
+    pub(super) fn without(&self, left_out: &[usize]) -> Segment {
+        let mut left = left_out.iter().copied().peekable();
         let kept: Vec<usize> = (0..self.times.len()).filter(|i| left.next_if_eq(i).is_none()).collect();
-        let segment = Segment {
+        Segment {
             source: self.source.clone(),
             times: kept.iter().map(|&i| self.times[i]).collect(),
             rates: kept.iter().map(|&i| self.rates[i]).collect(),
             lines: kept.iter().map(|&i| self.lines[i]).collect(),
             inputs: self.inputs.as_ref().map(|inputs| inputs.of(kept.iter().copied())),
             rate_unit: self.rate_unit,
-        };
-        (spikes, segment)
+        }
     }
 
     /// Some of its samples, next to each other.

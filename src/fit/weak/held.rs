@@ -73,7 +73,7 @@ fn at(
         let sigmas: Vec<f64> = (0..columns.len()).map(|k| inverse.row(k).norm() * variance.sqrt()).collect();
         let moved = steps.map(|(k, (new, old))| ((new - old) / sigmas[k]).abs()).fold(0.0, f64::max);
         for (((part, white), (_, s, _)), old) in parts.iter().zip(&whitened).zip(&used).zip(&mut samples) {
-            *old = white.noise(part, s, old, &next);
+            white.carry(part, s, old, &next, 1.0);
         }
         let misfit = stacked.squares_at(&x) / variance / stacked.rows.max(1) as f64;
         let (dof, several) = (stacked.rows, used.len() > 1);

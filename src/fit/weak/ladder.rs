@@ -106,7 +106,7 @@ fn choose(
     if demand.units && (!explained || !first.settled()) {
         *better = better_unit(stretches, Some(&first), variance);
         // before the descents, which would not end soon either
-        if better.as_ref().is_some_and(|b| b.credible && !b.vague && b.far)
+        if better.as_ref().is_some_and(|b| b.credible && !b.vague && (b.far || b.sure))
             && let Some(better) = better.take()
         {
             return Err(Failure::Units(first.misfit(variance), Box::new(better)));
@@ -212,20 +212,15 @@ fn gain_of(
     variance: f64,
 ) -> f64 {
     let with = with_columns(stretches, weak, &demand.columns(model), variance);
-    with.map_or(0.0, |with| 0.5 * (weak.squares - with.squares) / variance)
+    0.5 * (weak.squares - with.squares) / variance
 }
 
 /// The equations of an estimate with further columns, which come first and are zero where it stands.
-fn with_columns(
-    stretches: &[Stretch],
-    weak: &WeakEstimate,
-    columns: &[Column],
-    variance: f64,
-) -> Option<Stacked> {
+fn with_columns(stretches: &[Stretch], weak: &WeakEstimate, columns: &[Column], variance: f64) -> Stacked {
     let mut at = weak.at.clone();
     at.c = vec![0.0; columns.len() - at.c.len()].into_iter().chain(at.c).collect();
     let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], columns, &at));
-    let whitened: Vec<_> = parts.collect::<Option<_>>()?;
-    let rows: Vec<&[f64]> = whitened.iter().map(|part| part.rows.as_slice()).collect();
-    Some(Stacked::new(&rows, columns, &at, variance.sqrt()))
+    let whitened: Vec<Vec<f64>> = parts.collect();
+    let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
+    Stacked::new(&rows, columns, &at, variance.sqrt())
 }

@@ -4,6 +4,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::quadratic::slope;
 use super::test_functions::Stretch;
 use crate::fit::physical::coordinates::{Coordinates, ENTRIES, tensor};
 use crate::fit::settings::SensorPriors;
@@ -128,6 +129,11 @@ pub(crate) fn distortion(kind: Kind) -> Option<Matrix3<f64>> {
     }
 }
 
+/// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
+pub(crate) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
+    w.cross_matrix() * b - (b * w).cross_matrix()
+}
+
 /// What the unknowns make of torque and sensor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
@@ -187,5 +193,11 @@ impl Terms {
     /// ω of a reading.
     pub(crate) fn rate(&self, reading: &Vector3<f64>) -> Vector3<f64> {
         self.sensor * reading - self.offset
+    }
+
+    /// The derivative of ω × (J ω + u h) + D ω + c |ω| J ω.
+    pub(crate) fn by_rate(&self, w: &Vector3<f64>, wheel: &Vector3<f64>) -> Matrix3<f64> {
+        let own = cross_derivative(&self.j, w) + self.viscous - wheel.cross_matrix() * self.input;
+        if self.quadratic == 0.0 { own } else { own + self.j * slope(w) * self.quadratic }
     }
 }

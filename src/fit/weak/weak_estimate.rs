@@ -3,7 +3,7 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
-use super::linearised::{Levels, Linearised, Whitened};
+use super::linearised::{Levels, Linearised, Whitened, rows};
 use super::model::{Column, Unknowns};
 use super::noise::SURE;
 use super::rounds::{RESTLESS, STILL};
@@ -47,15 +47,11 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// The equations at the same samples with other columns.
-    pub(crate) fn with_columns(
-        &self,
-        stretch: &Stretch,
-        columns: &[Column],
-        at: &Unknowns,
-    ) -> Option<Whitened> {
-        let tests = self.linearised.tests.clone();
-        Linearised::new(stretch, &self.noise, columns, at.clone(), tests).whitened(self.whitened.levels)
+    /// The rows of the same samples with other columns, whitened alike.
+    pub(crate) fn with_columns(&self, stretch: &Stretch, columns: &[Column], at: &Unknowns) -> Vec<f64> {
+        let mut rows = rows(stretch, &self.noise, columns, at, &self.linearised.tests);
+        self.whitened.whiten(&mut rows, columns.len() + 6);
+        rows
     }
 
     /// Three for each centre, whitened.
