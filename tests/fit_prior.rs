@@ -132,7 +132,7 @@ fn a_wheel_and_a_prior_share_the_size() {
     let of_prior = 0.0101 * j.diagonal().norm();
     let joined = Settings { prior: Some(prior), ..Settings::default() };
     let of_wheel = sigma(&alone);
-    let expected = of_wheel * of_prior / f64::hypot(of_wheel, of_prior);
+    let expected = of_wheel * of_prior / (of_wheel * of_wheel + of_prior * of_prior).sqrt();
     println!("{} {} {expected}", trace(&joined), sigma(&joined));
     // the shape tells of the size, too, so that the deviation may fall below that of two numbers alone
     assert!(sigma(&joined) < 1.05 * expected && sigma(&joined) > 0.5 * expected);

@@ -124,7 +124,8 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall });
     }
     let untold = untold(weak, &stretches, variance * misfit.max(1.0), &identifiability);
-    if !untold.is_empty() {
+    // of a torque that was not asked for the message could ask for nothing simpler
+    if settings.torque != TorqueModel::Auto && !untold.is_empty() {
         return Err(FitError::Untold { names: untold, rank: identifiability.rank });
     }
     if !identifiability.complete() {

@@ -170,10 +170,10 @@ fn prior(text: &str) -> Result<Prior, String> {
             return Err(format!("{} numbers; {rule}", values.len()));
         }
     };
-    if !(sigma > 0.0) {
+    if sigma <= 0.0 {
         return Err(format!("the relative standard deviation is {sigma:?}; it must be positive"));
     }
-    if let Some(moment) = tensor.diagonal().iter().find(|moment| !(**moment > 0.0)) {
+    if let Some(moment) = tensor.diagonal().iter().find(|moment| **moment <= 0.0) {
         return Err(format!("the moment {moment:?} is not positive"));
     }
     Ok(Prior::relative(tensor, sigma))
