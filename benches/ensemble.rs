@@ -3,6 +3,8 @@
 
 #![allow(clippy::expect_used)]
 
+mod fused;
+
 use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -134,6 +136,8 @@ fn main() -> ExitCode {
         );
     }
     println!("{:10} {:16} {:14.2} {:12.0} {:8.1}", "scalar", "rk4", 1e9 * scalar, 1e-6 / scalar, 1.0);
+
+    fused::table(BURSTS);
 
     let inertia = Inertia::from_moments([1.0, 2.0, 3.0]).expect("valid moments");
     for (what, omega) in
