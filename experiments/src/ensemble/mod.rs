@@ -14,7 +14,8 @@ mod work;
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+use polhode::num::Instructions;
 
 use crate::error::{Error, tell, unexpected, warn};
 use crate::files::{Staging, emit};
@@ -32,12 +33,14 @@ const BYTES_OF_THREAD: u64 = 3 * 21_000_000;
 
 const AFTER_HELP: &str = "SPEC.toml:
   [body]    moments = [3], inertia = [6] (xx, yy, zz, xy, xz, yz), or body
-  [start]   omega = [3] rad/s, attitude = [4]
+  [start]   omega = [3] rad/s, attitude = [4]; rate_unit and angle_unit,
+            such as \"deg/s\" and \"deg\", hold for [spread] and members too
   [spread]  omega, attitude (rad), moments (relative): standard deviations
   [spread.covariance]  omega 3x3, attitude 3x3, inertia 6x6, or joint 12x12
   [spread.range]       omega, attitude, moments: [[low, high], ...]; \"all\"
-  [run]     members, seed, method, step, times or until and every,
-            start_time, errors = false to leave energy and L unwatched
+  [run]     members, seed, method, step, tolerance, start_time, times,
+            times_file and times_column, or until and every;
+            errors = false leaves energy and L unwatched
   [force]   weight_moment, gravity_gradient, torque_body, torque_space, drag
   [output]  arrays = [\"attitudes\", \"omegas\"]
 
@@ -70,6 +73,38 @@ pub(crate) struct Ensemble {
     /// Threads [default: as many as there are cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Vector instructions at most; the results do not depend on it
+    #[arg(long, value_name = "SET", value_enum, default_value_t, hide_default_value = true)]
+    instructions: Set,
+}
+
+/// Sets of vector instructions.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum Set {
+    /// All that the processor has (default)
+    #[default]
+    Widest,
+    /// Nothing beyond AVX2
+    Avx2,
+    /// What the program was compiled for
+    Baseline,
+}
+
+impl From<Set> for Instructions {
+    fn from(set: Set) -> Self {
+        match set {
+            Set::Widest => Self::Widest,
+            Set::Avx2 => Self::Avx2,
+            Set::Baseline => Self::Baseline,
+        }
+    }
+}
+
+/// What the members are propagated by; results depend on none of it.
+#[derive(Clone, Copy, Debug)]
+struct Means {
+    threads: usize,
+    instructions: Instructions,
 }
 
 /// The threads asked for, or one for each core.
@@ -85,6 +120,10 @@ impl Ensemble {
             None => self.whole(&spec),
             Some(shard) => self.part(&spec, shard),
         }
+    }
+
+    fn means(&self) -> Means {
+        Means { threads: threads_of(self.threads), instructions: self.instructions.into() }
     }
 
     /// The share of the members; `None` for all, as one run.
@@ -120,12 +159,12 @@ impl Ensemble {
             return Ok(());
         }
         self.check_room(spec, Shard::WHOLE)?;
-        let threads = threads_of(self.threads);
+        let means = self.means();
         let staging = Staging::new(&self.out)?;
         let range = Shard::WHOLE.range(spec.members);
-        let (arrays, shares) = work::propagate(spec, range, threads, &staging, &self.out)?;
+        let (arrays, shares) = work::propagate(spec, range, means, &staging, &self.out)?;
         let mut attitudes = [arrays.attitudes];
-        let reduced = reduce::reduce(&mut attitudes, spec.members, threads)
+        let reduced = reduce::reduce(&mut attitudes, spec.members, means.threads)
             .map_err(|error| Error::Input(format!("{}: {error}", self.out.display())))?;
         let record = Record::new(spec, None, shares.draws, shares.failures.len() as u64);
         let results = Results::new(&reduced, &shares, record);
@@ -170,7 +209,7 @@ impl Ensemble {
         let range = shard.range(spec.members);
         let folder = self.out.join(folder::SHARDS).join(shard.folder());
         let staging = Staging::new(&folder)?;
-        let (_, shares) = work::propagate(spec, range.clone(), threads_of(self.threads), &staging, &folder)?;
+        let (_, shares) = work::propagate(spec, range.clone(), self.means(), &staging, &folder)?;
         let record = Record::new(spec, Some(shard), shares.draws, shares.failures.len() as u64);
         folder::commit(staging, &shares, &record)?;
         warn_of(&shares, range.end - range.start);

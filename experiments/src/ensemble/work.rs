@@ -11,6 +11,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use polhode::observe::Errors;
 use polhode::run::{Ensemble, EnsembleError, Observed, Rows};
 
+use super::Means;
 use super::npy::Array;
 use super::spec::{Motion, Spec};
 use crate::error::Error;
@@ -90,7 +91,7 @@ pub(super) struct Arrays {
 pub(super) fn propagate(
     spec: &Spec,
     range: Range<u64>,
-    threads: usize,
+    means: Means,
     staging: &Staging,
     folder: &Path,
 ) -> Result<(Arrays, Shares), Error> {
@@ -109,7 +110,7 @@ pub(super) fn propagate(
         ..Shares::default()
     };
     let first = range.start;
-    let ensemble = members(spec, range, threads, &mut shares)?;
+    let ensemble = members(spec, range, means, &mut shares)?;
     let bar = progress(count);
     let each = |rows: &Rows| -> Result<(), Stop> {
         take(rows, &mut arrays, &mut shares, first)?;
@@ -137,12 +138,13 @@ pub(super) fn propagate(
 }
 
 /// The members as an ensemble of the library.
-fn members(spec: &Spec, range: Range<u64>, threads: usize, shares: &mut Shares) -> Result<Ensemble, Error> {
+fn members(spec: &Spec, range: Range<u64>, means: Means, shares: &mut Shares) -> Result<Ensemble, Error> {
     let acting = spec.acting();
     let mut ensemble = Ensemble::with_capacity((range.end - range.start) as usize)
         .acted_on(move |inertia| acting.on(inertia))
         .observing(Observed { invariants: spec.plan.errors, attitude: false })
-        .threads(threads);
+        .by(means.instructions)
+        .threads(means.threads);
     for k in range {
         let member = spec.member(k).map_err(|error| {
             Error::Input(format!("{}: member {}: {error}; give it less spread", spec.path.display(), k + 1))

@@ -37,6 +37,14 @@ pub(crate) struct Column {
     /// Its name or its number, from 1.
     pub(super) wanted: Option<String>,
     pub(super) epoch: Option<Date>,
+    pub(super) asked: Asked,
+}
+
+/// By which flags or keys a file and its column are named.
+#[derive(Clone, Debug)]
+pub(super) struct Asked {
+    pub(super) file: String,
+    pub(super) column: &'static str,
 }
 
 impl Column {
@@ -61,7 +69,7 @@ impl Column {
 
     fn unread(&self, reason: &dyn std::fmt::Display) -> Error {
         let rule = format!("cannot be read: {reason}");
-        Error::input("--times", &self.source.name(), &rule, "name a text file of times")
+        Error::input(&self.asked.file, &self.source.name(), &rule, "name a text file of times")
     }
 }
 
@@ -112,7 +120,7 @@ impl Iterator for Lines<'_> {
                 continue;
             }
             if self.place.is_none() {
-                match place(text, self.column.wanted.as_deref()) {
+                match place(text, self.column.wanted.as_deref(), self.column.asked.column) {
                     Ok((place, is_header)) => {
                         self.place = Some(place);
                         if is_header {
@@ -153,7 +161,7 @@ fn cells(line: &str) -> Box<dyn Iterator<Item = &str> + '_> {
 }
 
 /// From the first line: where the times stand, and whether the line is a header. Else a rule and a remedy.
-fn place(line: &str, wanted: Option<&str>) -> Result<(Place, bool), (String, String)> {
+fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), (String, String)> {
     if wanted.is_none() && is_moment(line).is_ok() {
         return Ok((Place { column: 0, name: "t".into(), alone: true }, false));
     }
@@ -170,12 +178,15 @@ fn place(line: &str, wanted: Option<&str>) -> Result<(Place, bool), (String, Str
     let (found, remedy) = match wanted {
         Some(text) => {
             let named = names.iter().position(|name| is_header && *name == text);
-            (named.or_else(|| by_number(text)), "name one of them by --times-column")
+            (named.or_else(|| by_number(text)), format!("name one of them by {flag}"))
         }
-        None if names.len() == 1 => (Some(0), ""),
+        None if names.len() == 1 => (Some(0), String::new()),
         None => {
             let named = |known: &&str| names.iter().position(|name| name.eq_ignore_ascii_case(known));
-            (NAMES.iter().find_map(named).filter(|_| is_header), "name the column of times by --times-column")
+            (
+                NAMES.iter().find_map(named).filter(|_| is_header),
+                format!("name the column of times by {flag}"),
+            )
         }
     };
     match found {
@@ -189,7 +200,7 @@ fn place(line: &str, wanted: Option<&str>) -> Result<(Place, bool), (String, Str
                 None if is_header => format!("no column 't'; the line has {}", listed()),
                 None => format!("{} columns without a header: {}", names.len(), listed()),
             };
-            Err((rule, remedy.into()))
+            Err((rule, remedy))
         }
     }
 }
@@ -210,6 +221,7 @@ mod tests {
             source: Source::File(path),
             wanted: wanted.map(String::from),
             epoch: epoch.map(|date| date.parse().unwrap()),
+            asked: Asked { file: "--times".into(), column: "--times-column" },
         };
         let times: Result<Vec<f64>, Error> = column.read().unwrap().collect();
         times.map_err(|error| error.to_string().rsplit("epochs.txt").next().unwrap().to_string())

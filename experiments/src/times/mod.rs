@@ -10,7 +10,7 @@ use clap::Args;
 use polhode::body::Date;
 
 use crate::error::Error;
-use column::{Column, Source};
+use column::{Asked, Column, Source};
 pub(crate) use moment::{duration, positive_duration, seconds_in};
 use moment::{epoch, is_moment, seconds};
 pub(crate) use regular::{Regular, regular};
@@ -133,13 +133,20 @@ impl TimeArguments {
     }
 
     fn column(&self, source: Source) -> Column {
-        Column { source, wanted: self.times_column.clone(), epoch: self.epoch }
+        let asked = Asked { file: "--times".into(), column: "--times-column" };
+        Column { source, wanted: self.times_column.clone(), epoch: self.epoch, asked }
     }
 
     fn moment(&self, flag: &str, text: &str) -> Result<f64, Error> {
         seconds(text, self.epoch.as_ref())
             .map_err(|error| Error::Input(format!("{flag}: '{}': {error}", crate::text::visible(text))))
     }
+}
+
+/// The times in the file `path`, s, that is named at `place` of a specification, its column by the key `times_column`.
+pub(crate) fn of_file(path: PathBuf, column: Option<String>, place: String) -> Result<Vec<f64>, Error> {
+    let asked = Asked { file: place, column: "times_column" };
+    Column { source: Source::File(path), wanted: column, epoch: None, asked }.read()?.collect()
 }
 
 /// Output times, s, in the order in which they were given.

@@ -99,15 +99,17 @@ impl FreeOrbit {
                 }
                 Kind::Steady(_) | Kind::Rest => false,
             };
-            if together {
-                lanes.each(times.len(), |n, x| {
-                    let x = if times[n] == 0.0 { self.start.to_f64().phase() } else { x };
-                    each(block * LANES + n, x);
-                });
-            } else {
-                for (n, &t) in times.iter().enumerate() {
-                    each(block * LANES + n, self.at(Dd::from(t)).phase());
-                }
+            // one call of `each`, so that it is inlined and no point waits to be read from memory
+            let point = lanes.by_lane();
+            for (n, &t) in times.iter().enumerate() {
+                let x = if !together {
+                    self.at(Dd::from(t)).phase()
+                } else if t == 0.0 {
+                    self.start.to_f64().phase()
+                } else {
+                    point(n)
+                };
+                each(block * LANES + n, x);
             }
         }
     }

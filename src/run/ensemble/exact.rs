@@ -68,30 +68,49 @@ impl Followed {
         let Followed { number, motion, reading, monitor, failure } = self;
         let last = failure.as_ref().map_or(times.len(), |(time, _)| time.saturating_sub(before));
         let times = &times[..last.min(times.len())];
-        let mut infinite = None;
-        let see = |n: usize, x: Phase<f64>| {
-            if !rows.set(*number, before + n, reading, x) {
-                infinite = infinite.or(Some(n));
-                return;
-            }
-            if let Some(monitor) = monitor {
-                let errors = monitor.errors(&Point::new(x.attitude, x.momentum_body));
-                rows.set_errors(*number, before + n, errors);
-            }
-            if ensemble.observed.attitude {
-                rows.set_attitude_error(*number, before + n, 0.0);
-            }
-        };
+        let mut writer = Writer { number: *number, before, reading, monitor, infinite: None, rows };
         match &*motion {
-            ExactMotion::Free(motion) => motion.phases_at(times, ensemble.instructions, see),
+            ExactMotion::Free(motion) => {
+                motion.phases_at(times, ensemble.instructions, |n, x| writer.write(n, x, ensemble));
+            }
             other => {
-                let mut see = see;
-                let each = times.iter().enumerate();
-                each.for_each(|(n, &t)| see(n, other.point_at(Dd::from(t)).phase()));
+                for (n, &t) in times.iter().enumerate() {
+                    writer.write(n, other.point_at(Dd::from(t)).phase(), ensemble);
+                }
             }
         }
+        let infinite = writer.infinite;
         if let Some(n) = infinite {
             *failure = Some((before + n, TimeError::OutOfReach { t: times[n], reach: motion.reach() }));
+        }
+    }
+}
+
+/// What writes rows of one member, of which there are `before` already.
+struct Writer<'a> {
+    number: usize,
+    before: usize,
+    reading: &'a Reading,
+    monitor: &'a Option<Box<Monitor>>,
+    /// The first row that is not finite.
+    infinite: Option<usize>,
+    rows: &'a mut Rows,
+}
+
+impl Writer<'_> {
+    #[inline(always)]
+    fn write(&mut self, n: usize, x: Phase<f64>, ensemble: &Ensemble) {
+        let (number, time) = (self.number, self.before + n);
+        if !self.rows.set(number, time, self.reading, x) {
+            self.infinite = self.infinite.or(Some(n));
+            return;
+        }
+        if let Some(monitor) = self.monitor {
+            let errors = monitor.errors(&Point::new(x.attitude, x.momentum_body));
+            self.rows.set_errors(number, time, errors);
+        }
+        if ensemble.observed.attitude {
+            self.rows.set_attitude_error(number, time, 0.0);
         }
     }
 }

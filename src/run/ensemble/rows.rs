@@ -63,7 +63,9 @@ impl Rows {
     }
 
     /// Writes the row of the `member`-th of these members at the `time`-th time; whether all of it is finite.
-    #[inline]
+    ///
+    /// Inline so that the point stays in registers: written to memory number by number and read in pairs it would wait.
+    #[inline(always)]
     pub(super) fn set(&mut self, member: usize, time: usize, reading: &Reading, x: Phase<f64>) -> bool {
         let state = reading.exit.state(x);
         let omega = reading.exit.omega(reading.inverse_moments, x.momentum_body);

@@ -71,11 +71,13 @@ impl Candidates {
         for row in reader.records() {
             let row = row.map_err(unreadable)?;
             let line = row.position().map_or(0, csv::Position::line);
-            for source in &sources {
+            for (place_in_row, source) in sources.iter().enumerate() {
                 let value = number(&row[*source]).map_err(|error| {
                     Error::Input(format!("{}: column {}: {error}", place(line), &header[*source]))
                 })?;
-                found.numbers.push(value);
+                let is_rate =
+                    found.columns.omega.is_some_and(|omega| (omega..omega + 3).contains(&place_in_row));
+                found.numbers.push(if is_rate { value * nominal.units.rate } else { value });
             }
             let k = found.len() - 1;
             found

@@ -12,6 +12,7 @@ use super::Acting;
 use crate::body_arguments::{Described, described};
 use crate::error::Error;
 use crate::force_arguments::Forces;
+use crate::start_arguments::{Factor, angle_unit, rate_unit};
 use crate::toml_file::Section;
 
 /// What `[body]`, `[start]` and `[force]` say.
@@ -23,6 +24,26 @@ pub(super) struct Nominal {
     /// `None` where a file of members states it row by row.
     pub(super) omega: Option<Vec3<f64>>,
     pub(super) acting: Acting,
+    pub(super) units: Units,
+}
+
+/// In which units angles and rates are typed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Units {
+    /// rad/s.
+    pub(super) rate: f64,
+    /// rad.
+    pub(super) angle: f64,
+}
+
+impl Units {
+    fn read(start: &Section<'_>) -> Result<Self, Error> {
+        let unit = |key: &str, of: fn(&str) -> Result<Factor, String>| match start.text(key)? {
+            None => Ok(1.0),
+            Some(name) => of(name).map(|Factor(unit)| unit).map_err(|error| start.at(key, &error)),
+        };
+        Ok(Self { rate: unit("rate_unit", rate_unit)?, angle: unit("angle_unit", angle_unit)? })
+    }
 }
 
 impl Nominal {
@@ -34,7 +55,8 @@ impl Nominal {
         listed: bool,
     ) -> Result<Self, Error> {
         body.only("[body]", &["moments", "inertia", "body"])?;
-        start.only("[start]", &["omega", "attitude"])?;
+        start.only("[start]", &["omega", "attitude", "rate_unit", "angle_unit"])?;
+        let units = Units::read(start)?;
         let given: Vec<&str> = body.keys.keys().map(|key| key.get_ref().as_ref()).collect();
         let found = match given[..] {
             [] if listed => None,
@@ -50,13 +72,15 @@ impl Nominal {
         if typed == Some([0.0; 4]) {
             return Err(start.at("attitude", "the zero quaternion has no direction; any other norm is fine"));
         }
-        let omega = start.numbers::<3>("omega")?;
+        let omega = start.numbers::<3>("omega")?.map(|omega| omega.map(|rate| rate * units.rate));
         let published = published.filter(|_| omega.is_none());
         let attitude =
             typed.or(published.as_ref().map(|found| found.attitude)).unwrap_or([1.0, 0.0, 0.0, 0.0]);
         let omega = omega.or(published.map(|found| found.omega_body));
         if omega.is_none() && !listed {
-            return Err(start.at("omega", "missing in [start]; give [wx, wy, wz] in rad/s"));
+            return Err(
+                start.at("omega", "missing in [start]; give [wx, wy, wz] in rad/s, or another rate_unit")
+            );
         }
         let own = found.as_ref().map_or([0.0; 3], |found| found.weight_moment);
         let nominal = Self {
@@ -64,6 +88,7 @@ impl Nominal {
             attitude: Quat::from_components(attitude),
             omega: omega.map(Vec3),
             acting: acting(force, own)?,
+            units,
         };
         if let Some(inertia) = &nominal.inertia {
             nominal.check(force, start, inertia)?;

@@ -1,18 +1,34 @@
 //! What is done with the members: times, and the method by which they get there.
 
+use std::path::Path;
+
 use polhode::body::{Body, Clock};
 use polhode::flow::ExactMotion;
-use polhode::method::{ADAPTIVE, AnyMethod, method};
+use polhode::method::{ADAPTIVE, AnyMethod, UnknownMethod, method};
 use polhode::run::Schedule;
+use toml::Spanned;
+use toml::de::DeValue;
 
 use super::nominal::Nominal;
 use crate::error::{Error, unexpected};
 use crate::methods::unknown;
-use crate::times::{Regular, regular};
+use crate::times::{Regular, of_file, regular};
 use crate::toml_file::Section;
 
-const KEYS: [&str; 9] =
-    ["members", "seed", "method", "step", "times", "until", "every", "start_time", "errors"];
+const KEYS: [&str; 12] = [
+    "members",
+    "seed",
+    "method",
+    "step",
+    "tolerance",
+    "times",
+    "times_file",
+    "times_column",
+    "until",
+    "every",
+    "start_time",
+    "errors",
+];
 
 /// Times of the rows and how members get there.
 #[derive(Clone, Debug)]
@@ -38,7 +54,8 @@ impl Plan {
         let start = run.seconds("start_time")?.unwrap_or(0.0);
         let every = run.seconds("every")?;
         let times = times(run, start, every)?;
-        let name = run.text("method")?.unwrap_or("exact");
+        let name = method_of(run)?;
+        let name = name.as_str();
         let step = run.seconds("step")?;
         let motion = if name == "exact" {
             if step.is_some() {
@@ -51,8 +68,7 @@ impl Plan {
         } else {
             let found =
                 method(name).map_err(|error| unknown(&run.file.line(run.place_of("method")), error))?;
-            let base = name.split(':').next().unwrap_or(name);
-            let regular = every.filter(|every| ADAPTIVE.contains(&base) && *every > 0.0);
+            let regular = every.filter(|every| is_adaptive(name) && *every > 0.0);
             let missing = || run.at("step", &format!("missing; method {name} needs a step in seconds"));
             let clock = Clock { start, step: step.or(regular).ok_or_else(missing)? };
             if let Some(inertia) = &nominal.inertia {
@@ -72,7 +88,8 @@ impl Plan {
                     times[k],
                     times[k - 1]
                 );
-                return Err(run.at("times", &format!("{rule}; sort them, or use method exact")));
+                let key = if run.value("times_file").is_some() { "times_file" } else { "times" };
+                return Err(run.at(key, &format!("{rule}; sort them, or use method exact")));
             }
             Motion::Stepped { method: name.into(), clock, steps }
         };
@@ -129,17 +146,70 @@ impl Plan {
     }
 }
 
+/// The name of the method, with the tolerance where one is given.
+fn method_of(run: &Section<'_>) -> Result<String, Error> {
+    let name = run.text("method")?.unwrap_or("exact");
+    let Some(tolerance) = run.positive("tolerance")? else { return Ok(name.into()) };
+    if ADAPTIVE.contains(&name) {
+        let named = format!("{name}:{tolerance:e}");
+        return match method(&named) {
+            Err(UnknownMethod::Argument { rule, .. }) => {
+                let refused = format!("method {name} cannot take {tolerance:e}; allowed: {rule}");
+                Err(run.at("tolerance", &refused))
+            }
+            _ => Ok(named),
+        };
+    }
+    let rule = if is_adaptive(name) {
+        format!("method {name} has one already; give one of the two")
+    } else {
+        let adaptive = ADAPTIVE.join(", ");
+        format!("method {name} does not choose its steps; leave it out, or take one of {adaptive}")
+    };
+    Err(run.at("tolerance", &rule))
+}
+
+/// Whether a method chooses its steps: an order, as of taylor:20, is of steps as given.
+fn is_adaptive(name: &str) -> bool {
+    let (base, argument) = name.split_once(':').unwrap_or((name, ""));
+    ADAPTIVE.contains(&base) && argument.parse::<u32>().is_err()
+}
+
+/// The times in a file that stands beside the specification.
+fn times_of_file(run: &Section<'_>) -> Result<Option<Vec<f64>>, Error> {
+    let column = match run.value("times_column").map(Spanned::get_ref) {
+        Some(DeValue::Integer(number)) => Some(number.to_string()),
+        _ => run.text("times_column")?.map(String::from),
+    };
+    let Some(name) = run.text("times_file")? else {
+        return match column {
+            Some(_) => Err(run.at("times_column", "names a column of a file; give times_file too")),
+            None => Ok(None),
+        };
+    };
+    let path = run.file.path.parent().unwrap_or(Path::new("")).join(name);
+    let place = format!("{}: key 'times_file'", run.file.line(run.place_of("times_file")));
+    of_file(path, column, place).map(Some)
+}
+
 fn times(run: &Section<'_>, start: f64, every: Option<f64>) -> Result<Vec<f64>, Error> {
     let until = run.seconds("until")?;
     let list = run.times("times")?;
-    let found = match (list, until, every) {
+    let key = if run.value("times_file").is_some() { "times_file" } else { "times" };
+    if list.is_some() && key == "times_file" {
+        return Err(run.at(key, "given beside times; leave one of them out"));
+    }
+    let file = times_of_file(run)?;
+    let found = match (list.or(file), until, every) {
         (Some(list), None, None) => list,
-        (Some(_), ..) => return Err(run.at("times", "given beside until and every; leave one of them out")),
+        (Some(_), ..) => return Err(run.at(key, "given beside until and every; leave one of them out")),
         (None, Some(until), Some(every)) => {
             let found = regular(start, until, every).and_then(Regular::kept);
             found.map_err(|error| run.at("every", error.strip_prefix("--every: ").unwrap_or(&error)))?
         }
-        (None, None, None) => return Err(run.at("times", "missing; give times, or until and every")),
+        (None, None, None) => {
+            return Err(run.at("times", "missing; give times, times_file, or until and every"));
+        }
         (None, None, Some(_)) => return Err(run.at("every", "needs the last time; give until too")),
         (None, Some(_), None) => return Err(run.at("until", "needs the time between rows; give every too")),
     };

@@ -7,7 +7,7 @@ use polhode::num::{Covariance, Distribution, DistributionError};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::nominal::Nominal;
+use super::nominal::{Nominal, Units};
 use crate::error::Error;
 use crate::toml_file::Section;
 
@@ -60,10 +60,20 @@ pub(super) fn population(spread: &Section<'_>, nominal: &Nominal) -> Result<Popu
             return Err(covariance
                 .at("joint", "says everything about the spread; leave the other keys of [spread] out"));
         }
-        let covariance = Box::new(matrix_of(covariance, "joint", matrix)?);
+        let Units { rate, angle } = nominal.units;
+        let unit = |k: usize| {
+            if k < 3 {
+                angle
+            } else if k < 6 {
+                rate
+            } else {
+                1.0
+            }
+        };
+        let covariance = Box::new(matrix_of(covariance, "joint", unit, matrix)?);
         return Ok(Population::Joint { attitude: nominal.attitude, omega_body: omega, inertia, covariance });
     }
-    let sources = Sources { spread, covariance, range };
+    let sources = Sources { spread, covariance, range, units: nominal.units };
     let omega_body = sources.vector("omega", omega.0)?.unwrap_or(Distribution::Fixed(omega.0));
     Ok(Population::Independent {
         attitude: sources.attitude(nominal)?,
@@ -77,6 +87,7 @@ struct Sources<'t> {
     spread: &'t Section<'t>,
     covariance: Option<Section<'t>>,
     range: Option<Section<'t>>,
+    units: Units,
 }
 
 impl Sources<'_> {
@@ -99,6 +110,15 @@ impl Sources<'_> {
         }
     }
 
+    /// The unit of a quantity.
+    fn unit(&self, key: &str) -> f64 {
+        match key {
+            "omega" => self.units.rate,
+            "attitude" => self.units.angle,
+            _ => 1.0,
+        }
+    }
+
     /// Standard deviations of three components, a covariance, or ranges.
     fn vector(&self, key: &str, mean: [f64; 3]) -> Result<Option<Distribution<3>>, Error> {
         self.once([key; 3])?;
@@ -112,14 +132,15 @@ impl Sources<'_> {
                         .at(key, &format!("{} given, 1 or 3 standard deviations needed", list.len())));
                 }
             };
-            let covariance = Covariance::independent(deviations);
+            let covariance = Covariance::independent(deviations.map(|x| x * self.unit(key)));
             let covariance = covariance.map_err(|error| self.spread.at(key, &error.to_string()))?;
             return Ok(Some(Distribution::Normal { mean, covariance }));
         }
         if let Some(covariance) = &self.covariance
             && let Some(matrix) = covariance.rows::<3, 3>(key)?
         {
-            return Ok(Some(Distribution::Normal { mean, covariance: matrix_of(covariance, key, matrix)? }));
+            let covariance = matrix_of(covariance, key, |_| self.unit(key), matrix)?;
+            return Ok(Some(Distribution::Normal { mean, covariance }));
         }
         self.range(key)
     }
@@ -127,6 +148,7 @@ impl Sources<'_> {
     fn range(&self, key: &str) -> Result<Option<Distribution<3>>, Error> {
         let Some(range) = &self.range else { return Ok(None) };
         let Some(ranges) = range.rows::<3, 2>(key)? else { return Ok(None) };
+        let ranges = ranges.map(|range| range.map(|x| x * self.unit(key)));
         Distribution::uniform(ranges).map(Some).map_err(|error| range.at(key, &error.to_string()))
     }
 
@@ -167,7 +189,7 @@ impl Sources<'_> {
         {
             let t = inertia.tensor();
             let mean = [t[(0, 0)], t[(1, 1)], t[(2, 2)], t[(0, 1)], t[(0, 2)], t[(1, 2)]];
-            let covariance = matrix_of(covariance, "inertia", matrix)?;
+            let covariance = matrix_of(covariance, "inertia", |_| 1.0, matrix)?;
             return Ok(Tensors::Entries(Distribution::Normal { mean, covariance }));
         }
         let axes = nominal.inertia.clone().unwrap_or(inertia);
@@ -178,11 +200,18 @@ impl Sources<'_> {
     }
 }
 
+/// The covariance of numbers that are typed in the units `unit`.
 fn matrix_of<const N: usize>(
     table: &Section<'_>,
     key: &str,
-    matrix: [[f64; N]; N],
+    unit: impl Fn(usize) -> f64,
+    mut matrix: [[f64; N]; N],
 ) -> Result<Covariance<N>, Error> {
+    for (j, row) in matrix.iter_mut().enumerate() {
+        for (k, entry) in row.iter_mut().enumerate() {
+            *entry *= unit(j) * unit(k);
+        }
+    }
     Covariance::new(matrix)
         .map_err(|error: DistributionError| table.at(key, &format!("the covariance {error}")))
 }

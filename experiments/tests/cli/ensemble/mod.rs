@@ -72,6 +72,84 @@ pub(super) fn column(folder: &Path, file: &str, name: &str) -> Vec<f64> {
 }
 
 #[test]
+fn times_come_from_a_file_as_from_a_list() {
+    let scratch = Scratch::new("ensemble-times");
+    std::fs::create_dir(scratch.0.join("specs")).unwrap();
+    scratch.file("specs/epochs.csv", "night,jd,mag\n1,0.0,9\n1,1.0,9\n2,100.0,8\n");
+    scratch.file("list.toml", EXACT);
+    done("ensemble list.toml --out list", &scratch);
+    let list = contents(&scratch.0.join("list"));
+    // without the key of the column it is found by its name, and the file beside the specification
+    for (name, keys) in [
+        ("named", "times_file = \"epochs.csv\"\ntimes_column = \"jd\""),
+        ("numbered", "times_file = \"epochs.csv\"\ntimes_column = 2"),
+        ("found", "times_file = \"epochs.csv\""),
+    ] {
+        scratch.file("specs/spec.toml", EXACT.replace("times = [0.0, 1.0, 100.0]", keys));
+        done(&format!("ensemble specs/spec.toml --out {name}"), &scratch);
+        assert!(contents(&scratch.0.join(name)) == list, "{name}");
+    }
+}
+
+#[test]
+fn rates_and_angles_are_read_in_their_units() {
+    let scratch = Scratch::new("ensemble-units");
+    let spread = "[spread.covariance]\nomega = [[1e-4, 5e-5, 0.0], [5e-5, 1e-4, 0.0], [0.0, 0.0, 1e-6]]\n\
+                  attitude = [[1e-4, 0.0, 0.0], [0.0, 2e-4, 0.0], [0.0, 0.0, 1e-6]]\n";
+    let unit = std::f64::consts::PI / 180.0;
+    let mean_of = |name: &str, spec: &str| {
+        scratch.file("spec.toml", spec);
+        done(&format!("ensemble spec.toml --out {name}"), &scratch);
+        let rows = ["angle_rms", "angle_max"].map(|of| column(&scratch.0.join(name), "summary.csv", of));
+        (rows, array(&scratch.0.join(name).join("omegas.npy")).1)
+    };
+    let start = |omega: [f64; 3], units: &str| {
+        format!(
+            "[body]\nmoments = [1.0, 2.0, 2.5]\n[start]\nomega = {omega:?}\n{units}\n{}[run]\nmembers = 20\ntimes = [0.0, 1.0]\n",
+            if units.is_empty() { scaled(spread, unit * unit) } else { spread.into() }
+        )
+    };
+    let degrees =
+        mean_of("degrees", &start([20.0, 50.0, -15.0], "rate_unit = \"deg/s\"\nangle_unit = \"deg\""));
+    let radians = mean_of("radians", &start([20.0 * unit, 50.0 * unit, -15.0 * unit], ""));
+    let close = |a: &[f64], b: &[f64]| {
+        assert_eq!(a.len(), b.len());
+        a.iter().zip(b).for_each(|(a, b)| assert!((a - b).abs() < 1e-12, "{a} {b}"));
+    };
+    close(&degrees.1, &radians.1);
+    degrees.0.iter().zip(&radians.0).for_each(|(a, b)| close(a, b));
+    // the start of the first member lies near that of the body
+    assert!((degrees.1[0] - 20.0 * unit).abs() < 0.01 && degrees.1[0] != 20.0 * unit);
+}
+
+/// The numbers of a table times a factor.
+fn scaled(table: &str, factor: f64) -> String {
+    let number = |text: &str| text.parse::<f64>().map_or(text.into(), |x| format!("{:e}", x * factor));
+    table
+        .split_inclusive([' ', ',', '[', ']', '\n'])
+        .map(|word| {
+            let end = word.len() - 1;
+            number(&word[..end]) + &word[end..]
+        })
+        .collect()
+}
+
+#[test]
+fn a_tolerance_is_that_of_the_method() {
+    let scratch = Scratch::new("ensemble-tolerance");
+    let named = STEPPED.replace("\"two-turn\"\nstep = 0.01", "\"dop853:1e-10\"");
+    let keyed = STEPPED.replace("\"two-turn\"\nstep = 0.01", "\"dop853\"\ntolerance = 1e-10");
+    let other = keyed.replace("1e-10", "1e-6");
+    let [named, keyed, other] = [("named", named), ("keyed", keyed), ("other", other)].map(|(name, spec)| {
+        scratch.file("spec.toml", spec);
+        done(&format!("ensemble spec.toml --out {name}"), &scratch);
+        contents(&scratch.0.join(name))
+    });
+    assert!(named == keyed);
+    assert!(named["attitudes.npy"] != other["attitudes.npy"]);
+}
+
+#[test]
 fn every_member_moves_as_propagate_moves_it_alone() {
     let scratch = Scratch::new("ensemble-alone");
     let rows = [

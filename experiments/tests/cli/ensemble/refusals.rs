@@ -31,6 +31,8 @@ fn specifications_are_refused_with_line_value_and_law() {
         ("a text for a number", "[0.4, 1.0, -0.3]", "[\"fast\", 1.0, 0.0]"),
         ("a start that is missing", "omega = [0.4, 1.0, -0.3]", ""),
         ("a zero quaternion", "[spread]", "attitude = [0, 0, 0, 0]\n[spread]"),
+        ("a unit of rates that is none", "[spread]", "rate_unit = \"deg\"\n[spread]"),
+        ("a unit of angles that is none", "[spread]", "angle_unit = \"deg/s\"\n[spread]"),
         ("a negative deviation", "attitude = 0.05", "attitude = -0.05"),
         ("a spread twice", "[run]", "[spread.range]\nmoments = [[1, 2], [1, 2], [1, 2]]\n[run]"),
         (
@@ -62,6 +64,18 @@ fn specifications_are_refused_with_line_value_and_law() {
         ("times that descend", "times = [0.0, 1.0, 100.0]", "method = \"rk4\"\nstep = 0.5\ntimes = [1, 0.5]"),
         ("a time out of reach", "times = [0.0, 1.0, 100.0]", "times = [1e30]"),
         ("times twice", "seed = 7", "until = 5\nevery = 1"),
+        ("a list of times beside a file", "seed = 7", "times_file = \"epochs.csv\""),
+        ("a file of times that is missing", "times = [0.0, 1.0, 100.0]", "times_file = \"epochs.csv\""),
+        (
+            "a file of times without such a column",
+            "times = [0.0, 1.0, 100.0]",
+            "times_file = \"spec.toml\"\ntimes_column = \"jd\"",
+        ),
+        ("a column of no file", "seed = 7", "times_column = \"t\""),
+        ("a tolerance of a method without one", "seed = 7", "method = \"rk4\"\nstep = 0.5\ntolerance = 1e-9"),
+        ("a tolerance twice", "seed = 7", "method = \"dop853:1e-9\"\nstep = 0.5\ntolerance = 1e-9"),
+        ("a tolerance below rounding", "seed = 7", "method = \"dop853\"\nstep = 0.5\ntolerance = 1e-20"),
+        ("a negative tolerance", "seed = 7", "method = \"dop853\"\nstep = 0.5\ntolerance = -1e-9"),
         ("a unit of time that is none", "times = [0.0, 1.0, 100.0]", "times = [\"5 fortnights\"]"),
         (
             "a method that is not for a force",

@@ -50,6 +50,35 @@ fn any_number_of_shards_and_threads_gives_the_bits_of_one_run() {
 }
 
 #[test]
+fn every_set_of_instructions_gives_the_same_bytes() {
+    let scratch = Scratch::new("ensemble-sets");
+    let near_the_separatrix = EXACT.replace("[0.4, 1.0, -0.3]", "[0.02, 1.0, -0.01]");
+    let stepped = |method: &str, step: f64| {
+        let step = format!("method = \"{method}\"\nstep = {step}");
+        STEPPED.replace("method = \"two-turn\"\nstep = 0.01", &step)
+    };
+    for (name, spec) in [
+        ("exact", EXACT.to_string()),
+        ("dual", near_the_separatrix),
+        ("two", stepped("two-turn", 0.01)),
+        ("wide", stepped("two-turn:31", 0.25)),
+        ("three", stepped("lie-poisson@suzuki-4", 0.01)),
+        ("rk4", stepped("rk4", 0.05)),
+        ("unit", stepped("rk4-normalized", 0.05)),
+    ] {
+        scratch.file("spec.toml", &spec);
+        let [widest, avx2, baseline] = ["widest", "avx2", "baseline"].map(|set| {
+            let out = format!("{name}-{set}");
+            done(&format!("ensemble spec.toml --out {out} --instructions {set}"), &scratch);
+            contents(&scratch.0.join(out))
+        });
+        assert_eq!(widest.len(), 7, "{name}");
+        assert!(widest == avx2, "{name}: avx2");
+        assert!(widest == baseline, "{name}: baseline");
+    }
+}
+
+#[test]
 fn comments_and_the_order_of_keys_make_no_other_run() {
     let scratch = Scratch::new("ensemble-hash");
     scratch.file("one.toml", EXACT);

@@ -29,14 +29,14 @@ impl Points {
         Points { attitude: [zero; 4], momentum: [zero; 3], axes: [0, 1, 2], turns: zero, turn: [zero; 4] }
     }
 
-    /// Gives `each` those of the first `count` lanes, with their numbers.
+    /// Attitude and momentum of each lane by its number.
     #[inline(always)]
-    pub(in crate::flow::free) fn each(&self, count: usize, mut each: impl FnMut(usize, Phase<f64>)) {
+    pub(in crate::flow::free) fn by_lane(&self) -> impl Fn(usize) -> Phase<f64> {
         let [w, x, y, z] = &self.attitude;
         let [a, b, c] = places(self.axes).map(|place| &self.momentum[place]);
-        for n in 0..count.min(LANES) {
-            let attitude = Quat::new(w[n], Vec3([x[n], y[n], z[n]]));
-            each(n, Phase { attitude, momentum_body: Vec3([a[n], b[n], c[n]]) });
+        |n| Phase {
+            attitude: Quat::new(w[n], Vec3([x[n], y[n], z[n]])),
+            momentum_body: Vec3([a[n], b[n], c[n]]),
         }
     }
 }
