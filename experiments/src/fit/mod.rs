@@ -27,6 +27,8 @@ use crate::plot::Picture;
 use crate::table::Format;
 
 const EXAMPLES: &str = "Examples:
+  polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
+    --noise 0.01 --out record.csv
   polhode fit record.csv
   polhode fit record.csv --window 0,2.5 --trace 0.0007
   polhode fit record.csv --report fit.html --residuals residuals.csv
@@ -75,7 +77,7 @@ pub(crate) struct Fit {
     known: KnownArguments,
     #[command(flatten)]
     wheel: WheelArguments,
-    /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, constant in body axes
+    /// Torque on the body besides those of the record: a model, relative drag, drag along each sensor axis or constant in body axes, whose values are estimated
     #[arg(long, value_enum, default_value_t = Torque::Auto)]
     torque: Torque,
     #[command(flatten)]
