@@ -40,7 +40,7 @@ impl Summary {
             both.fold((0.0, 0.0), |(own, other), (a, b)| (own + a.over_bound, other + b.over_bound));
         let over_bound =
             (answers.iter().map(|o| o.over_bound).sum::<f64>() / (5 * answers.len()) as f64).sqrt();
-        let spread = half_width(&answers, 5.0 * over_bound * over_bound).exp();
+        let spread = libm::exp(half_width(&answers, 5.0 * over_bound * over_bound));
         Summary {
             answered: answers.len(),
             over_bound,
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!((s.answered, s.median, s.coverage), (3, Some(2.0), Some(0.5)));
         assert_eq!(s.over_bound, (70.0_f64 / 15.0).sqrt());
         // of 5, 20 and 45: mean 70/3, standard deviation 20.2
-        let relative = (s.interval.1 / s.over_bound).ln();
+        let relative = libm::log(s.interval.1 / s.over_bound);
         assert!((relative - 1.96 * 20.207_259_421_636_9 / 3.0_f64.sqrt() / (140.0 / 3.0)).abs() < 1e-12);
         assert!((s.interval.0 * s.interval.1 - s.over_bound * s.over_bound).abs() < 1e-12);
         assert_eq!(s.over_likelihood, Some(2.5_f64.sqrt()));
