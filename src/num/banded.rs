@@ -5,7 +5,7 @@
 use multiversion::multiversion;
 
 /// Numbers in a register of the widest processors.
-const LANES: usize = 8;
+pub(crate) const REGISTER: usize = 8;
 
 /// The lower band of a symmetric matrix, or of its factor: column j holds rows j … j + band.
 #[derive(Clone, Debug)]
@@ -72,7 +72,9 @@ impl Banded {
 
     /// log |L Lᵀ| of a factor L.
     pub(crate) fn log_determinant(&self) -> f64 {
-        2.0 * (0..self.size).map(|i| libm::log(self.get(i, i))).sum::<f64>()
+        let mut product = Product::ONE;
+        (0..self.size).for_each(|i| product.multiply(self.get(i, i)));
+        2.0 * product.log()
     }
 
     /// L⁻ᵀ b, of a factor, in place.
@@ -104,7 +106,7 @@ impl Banded {
 
 /// Room for a column: the band in whole registers.
 const fn pitch(band: usize) -> usize {
-    (band + 1).div_ceil(LANES) * LANES
+    (band + 1).div_ceil(REGISTER) * REGISTER
 }
 
 /// log |A| and eᵀ A⁻¹ e of a matrix whose columns are asked for once each, in their order; `None` where it is not positive.
@@ -116,7 +118,7 @@ pub(crate) fn likelihood(band: usize, e: &[f64], column: impl Fn(usize, &mut [f6
     let room = 8 * (band + 1);
     let mut columns = vec![0.0; room * pitch];
     let mut rest: Vec<f64> = e.to_vec();
-    let (mut determinant, mut squares) = (0.0, 0.0);
+    let (mut determinant, mut squares) = (Product::ONE, 0.0);
     let (mut first, mut loaded) = (0, 0);
     for j in 0..e.len() {
         if j - first + band >= room {
@@ -138,9 +140,33 @@ pub(crate) fn likelihood(band: usize, e: &[f64], column: impl Fn(usize, &mut [f6
             *sum -= l * value;
         }
         squares += value * value;
-        determinant += libm::log(own[0]);
+        determinant.multiply(own[0]);
     }
-    Some((2.0 * determinant, squares))
+    Some((2.0 * determinant.log(), squares))
+}
+
+/// The logarithm of a product, of which few are taken.
+struct Product {
+    log: f64,
+    rest: f64,
+}
+
+impl Product {
+    const ONE: Product = Product { log: 0.0, rest: 1.0 };
+
+    /// By the root of a positive number.
+    fn multiply(&mut self, factor: f64) {
+        self.rest *= factor;
+        // any such root times any number in between is neither zero nor infinite, and exact to rounding
+        if !(1e-100..1e100).contains(&self.rest) {
+            self.log += libm::log(self.rest);
+            self.rest = 1.0;
+        }
+    }
+
+    fn log(&self) -> f64 {
+        self.log + libm::log(self.rest)
+    }
 }
 
 fn factor(columns: &mut [f64], pitch: usize, band: usize) -> bool {
@@ -166,16 +192,19 @@ fn eliminate(own: &mut [f64], others: &mut [f64], band: usize) -> bool {
         return false;
     }
     let root = pivot.sqrt();
-    own[0] = root;
-    own[1..].iter_mut().for_each(|entry| *entry /= root);
+    let inverse = 1.0 / root;
     // the column with zeros behind it
-    let mut padded = [0.0; WIDEST + LANES];
-    padded[..pitch].copy_from_slice(own);
+    let mut padded = [0.0; WIDEST + REGISTER];
+    for (entry, padded) in own.iter_mut().zip(&mut padded) {
+        *entry *= inverse;
+        *padded = *entry;
+    }
+    own[0] = root;
     for (k, other) in others.chunks_exact_mut(pitch).enumerate() {
-        let (l, used) = (padded[k + 1], (band - k).div_ceil(LANES) * LANES);
-        let sources = padded[k + 1..k + 1 + used].chunks_exact(LANES);
-        for (sums, source) in other[..used].chunks_exact_mut(LANES).zip(sources) {
-            for lane in 0..LANES {
+        let (l, used) = (padded[k + 1], (band - k).div_ceil(REGISTER) * REGISTER);
+        let sources = padded[k + 1..k + 1 + used].chunks_exact(REGISTER);
+        for (sums, source) in other[..used].chunks_exact_mut(REGISTER).zip(sources) {
+            for lane in 0..REGISTER {
                 sums[lane] -= l * source[lane];
             }
         }

@@ -24,10 +24,18 @@ pub(crate) fn weights(times: &[f64]) -> Vec<f64> {
             (None, Some(q)) => (Some(q), second(q, true)),
             (None, None) => (None, None),
         };
-        let nodes: Vec<usize> = [Some(i), Some(i + 1), p, q].into_iter().flatten().collect();
-        for &k in &nodes {
-            let others: Vec<f64> = nodes.iter().filter(|&&o| o != k).map(|&o| times[o]).collect();
-            weights[k] += lagrange_integral(times[k], &others, a, b);
+        let (mut nodes, mut count) = ([i, i + 1, 0, 0], 2);
+        for node in [p, q].into_iter().flatten() {
+            nodes[count] = node;
+            count += 1;
+        }
+        for (k, &node) in nodes[..count].iter().enumerate() {
+            let (mut zeros, mut found) = ([0.0; 3], 0);
+            for (_, &other) in nodes[..count].iter().enumerate().filter(|(l, _)| *l != k) {
+                zeros[found] = times[other];
+                found += 1;
+            }
+            weights[node] += lagrange_integral(times[node], &zeros[..found], a, b);
         }
     }
     weights

@@ -1,9 +1,9 @@
 //! How a free motion depends on its tensor and its start, by the variational equations.
 
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::fit::physical::coordinates::{Form, basis};
-use crate::fit::weak::linearised::cross_derivative;
+use crate::fit::weak::model::cross_derivative;
 
 /// ∂ω/∂(x, ω₀), or ∂ω/∂ω₀ alone where N is 3.
 pub(super) type Sensitivity<const N: usize> = SMatrix<f64, 3, N>;
@@ -14,11 +14,12 @@ const STEP: f64 = 0.1;
 pub(super) struct Euler {
     j: Matrix3<f64>,
     inverse: Matrix3<f64>,
+    bases: [Matrix3<f64>; 5],
 }
 
 impl Euler {
     pub(super) fn new(j: Matrix3<f64>) -> Option<Euler> {
-        Some(Euler { j, inverse: j.try_inverse()? })
+        Some(Euler { j, inverse: j.try_inverse()?, bases: core::array::from_fn(basis) })
     }
 
     /// ω' and S'.
@@ -28,9 +29,8 @@ impl Euler {
         s: &Sensitivity<N>,
     ) -> (Vector3<f64>, Sensitivity<N>) {
         let rate = -self.inverse * w.cross(&(self.j * w));
-        let mut ds = self.inverse * cross_derivative(&self.j, w) * -s;
-        for k in 0..N - 3 {
-            let b = basis(k);
+        let mut ds = (self.inverse * -cross_derivative(&self.j, w)) * s;
+        for (k, b) in self.bases.iter().enumerate().take(N - 3) {
             let own = self.inverse * (w.cross(&(b * w)) + b * rate);
             ds.set_column(k, &(ds.column(k) - own));
         }
@@ -73,11 +73,57 @@ impl Euler {
     }
 
     /// Σ Sᵀ S.
+    ///
+    /// Among samples within a step of the integrator, S is the cubic through the first and the last of them with their
+    /// slopes, which is as near to it as the integrator is.
     pub(super) fn information(&self, times: &[f64], start: &Start) -> SMatrix<f64, 8, 8> {
         let mut sum = SMatrix::zeros();
-        self.sweep(times, start, |_, _, s: &Sensitivity<8>| sum += s.transpose() * s);
+        let speed = (self.inverse * cross_derivative(&self.j, &start.rate)).norm();
+        let nodes = nodes(times, STEP / speed);
+        let at: Vec<f64> = nodes.iter().map(|&node| times[node]).collect();
+        let (mut first, mut last): (Option<Node>, Option<Node>) = (None, None);
+        self.sweep(&at, start, |i, w, s: &Sensitivity<8>| {
+            sum += s.transpose() * s;
+            let slope = self.derivative(w, s).1;
+            // the sweep goes forth from the start, and then back from it
+            let before = last.replace((i, *s, slope)).filter(|(k, ..)| k.abs_diff(i) == 1);
+            let origin = first.get_or_insert((i, *s, slope));
+            if let Some((k, from, from_slope)) = before.or((origin.0 == i + 1).then_some(*origin)) {
+                let (low, high) = (nodes[i.min(k)], nodes[i.max(k)]);
+                let length = at[i] - at[k];
+                let parts = [from, from_slope * length, *s, slope * length];
+                let weights = times[low + 1..high].iter().map(|t| hermite((t - at[k]) / length));
+                let mut squares = SMatrix::<f64, 4, 4>::zeros();
+                weights.for_each(|h| squares += h * h.transpose());
+                for (a, first) in parts.iter().enumerate() {
+                    let own = (0..4).map(|b| parts[b] * squares[(a, b)]).sum::<Sensitivity<8>>();
+                    sum += first.transpose() * own;
+                }
+            }
+        });
         sum
     }
+}
+
+/// Index of a node, S there, and its slope.
+type Node = (usize, Sensitivity<8>, Sensitivity<8>);
+
+/// Samples of which the first and the last are two, each at most `width` from the one before, or the next sample.
+fn nodes(times: &[f64], width: f64) -> Vec<usize> {
+    let mut nodes = Vec::new();
+    let mut node = 0;
+    while node < times.len() {
+        nodes.push(node);
+        let within = times[node + 1..].iter().take_while(|t| **t <= times[node] + width).count();
+        node += within.max(1);
+    }
+    nodes
+}
+
+/// Weights of the first value, its slope, the last value and its slope, in the cubic through both.
+fn hermite(u: f64) -> SVector<f64, 4> {
+    let v = 1.0 - u;
+    SVector::from([(1.0 + 2.0 * u) * v * v, u * v * v, u * u * (3.0 - 2.0 * u), -u * u * v])
 }
 
 /// Where a motion is at one time.

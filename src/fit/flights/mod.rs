@@ -122,8 +122,8 @@ pub struct Flights {
 /// because of mistaken units, where such explain it.
 pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError> {
     settings.check()?;
-    let cleaned = settings.leave_out_spikes.then(|| record.without_spikes().1);
-    let Normalised { stretches, rms, .. } = normalised(cleaned.as_ref().unwrap_or(record))?;
+    let cleaned = if settings.leave_out_spikes { record.without_spikes() } else { None };
+    let Normalised { stretches, rms, .. } = normalised(cleaned.as_ref().map_or(record, |(_, rest)| rest))?;
     let variance = match settings.noise {
         Some(sigma) => (sigma / rms) * (sigma / rms),
         None => noise::variance(&stretches),

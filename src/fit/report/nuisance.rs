@@ -16,6 +16,8 @@ pub struct Nuisance {
     pub sigma: f64,
     /// The standard deviation of its prior, where it has one.
     pub prior: Option<f64>,
+    /// The segment that it is of, from 0, where each has its own.
+    pub segment: Option<usize>,
 }
 
 /// The torque that a fit reckons with.
@@ -46,6 +48,16 @@ pub struct Systematic {
     pub principal: [f64; 3],
     /// The same of I₁/I₃ and I₂/I₃.
     pub ratios: [f64; 2],
+}
+
+/// How a prior tensor and a record agree.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Agreement {
+    /// Square of their distance in standard deviations of it: χ² where both are right.
+    pub chi2: f64,
+    /// Its degrees of freedom.
+    pub dof: usize,
 }
 
 /// One segment of a record in a fit.

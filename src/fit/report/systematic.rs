@@ -39,12 +39,12 @@ pub(crate) fn systematic(
 ) -> Vec<Systematic> {
     let estimated = |kind| weak.columns.iter().any(|column| column.kind == kind);
     let errors: Vec<(Kind, f64)> = ERRORS.into_iter().filter(|(kind, _)| !estimated(*kind)).collect();
-    let first = errors.iter().map(|&(kind, _)| Column { kind, prior: None });
+    let first = errors.iter().map(|&(kind, _)| Column::new(kind, None));
     let columns: Vec<Column> = first.chain(weak.columns.iter().copied()).collect();
     let mut at = weak.at.clone();
     at.c = vec![0.0; errors.len()].into_iter().chain(at.c).collect();
     let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], &columns, &at));
-    let Some(whitened) = parts.collect::<Option<Vec<_>>>() else { return Vec::new() };
+    let whitened: Vec<Vec<f64>> = parts.collect();
     let origin = Unknowns::at(Coordinates::zeros(), &weak.columns);
     let (wide, own) = (columns.len() + 6, weak.columns.len() + 6);
     let each = errors.iter().enumerate().filter_map(|(k, &(kind, size))| {
@@ -56,7 +56,7 @@ pub(crate) fn systematic(
                     kept[own - 1] = -row[k];
                     kept
                 };
-                part.rows.chunks_exact(wide).flat_map(row).collect()
+                part.chunks_exact(wide).flat_map(row).collect()
             })
             .collect();
         let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();

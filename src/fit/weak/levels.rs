@@ -6,6 +6,9 @@ use super::linearised::{Levels, Linearised, Shape};
 const GAIN: f64 = 4.0;
 /// Decades of torque noise that are tried, from that whose share in the residuals is a thousandth of the noise's.
 const DECADES: usize = 12;
+/// Share of [`GAIN`] that one of these brings at least, if the likeliest torque noise between two of them brings all of it:
+/// a third while twice the log-likelihood is a parabola, more beyond.
+const BETWEEN: f64 = 0.25;
 /// Steps of the golden section within two decades: to a tenth of the torque noise.
 const SECTIONS: usize = 6;
 /// Gain of twice the log-likelihood for which the shape of the torque noise changes.
@@ -36,7 +39,7 @@ pub(crate) fn likeliest(
     let first = near.map_or(Shape::Moments, |last| last.shape);
     let second = if first == Shape::Moments { Shape::Alike } else { Shape::Moments };
     for shape in [first, second] {
-        let Some(found) = search(shape).most_likely(near) else { continue };
+        let Some(found) = search(shape).most_likely(near, none.as_ref()) else { continue };
         if best.as_ref().is_none_or(|b| found.cost < b.cost - RESHAPED) {
             best = Some(found);
         }
@@ -52,6 +55,8 @@ pub(crate) fn likeliest(
 struct Found {
     levels: Levels,
     cost: f64,
+    /// What more torque noise costs at least.
+    floor: f64,
 }
 
 struct Search<'a> {
@@ -64,8 +69,9 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The likeliest torque noise of this shape; within a decade of `near`, where that is given.
-    fn most_likely(&self, near: Option<Levels>) -> Option<Found> {
+    /// The likeliest torque noise of this shape; within a decade of `near`, where that is given, and else `None` where it
+    /// does not bring the gain over `none` that is asked for.
+    fn most_likely(&self, near: Option<Levels>, none: Option<&Found>) -> Option<Found> {
         let (noise, torque) = self.part.mean_variances();
         // per level of the noise of the rates
         let unit = noise / torque;
@@ -74,8 +80,20 @@ impl Search<'_> {
         let middle = match near {
             Some(near) => libm::log10(near.torque / near.white / unit),
             None => {
-                let tried = (0..=DECADES).map(|k| k as f64 - 3.0).map(|exponent| (cost(exponent), exponent));
-                tried.min_by(|a, b| a.0.total_cmp(&b.0))?.1
+                let mut best = (f64::INFINITY, 0.0);
+                for exponent in (0..=DECADES).map(|k| k as f64 - 3.0) {
+                    let Some(found) = at(exponent) else { continue };
+                    if found.cost < best.0 {
+                        best = (found.cost, exponent);
+                    }
+                    if found.floor > best.0 {
+                        break;
+                    }
+                }
+                if none.is_some_and(|none| none.cost - best.0 <= BETWEEN * GAIN) {
+                    return None;
+                }
+                best.1
             }
         };
         at(golden(cost, middle - 1.0, middle + 1.0))
@@ -92,7 +110,9 @@ impl Search<'_> {
             if self.white { ((squares + count) / (2.0 * count), 2.0 * count) } else { (1.0, count) };
         let own = if self.white { count } else { 0.0 };
         let cost = determinant + equations * libm::log(white) + (squares + own) / white;
-        Some(Found { levels: Levels { white, torque: white * ratio, shape: self.shape }, cost })
+        // the determinant grows with the torque noise; squares are not negative, nor is the noise of the rates below half
+        let floor = determinant + own * 2.0 * (1.0 - core::f64::consts::LN_2);
+        Some(Found { levels: Levels { white, torque: white * ratio, shape: self.shape }, cost, floor })
     }
 }
 

@@ -1,17 +1,15 @@
 //! The weak equations of one stretch, linearised.
 
+use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
 
-use super::model::{Column, Kind, Terms, Unknowns, distortion, symmetric};
+use super::covariance::covariance;
+use super::model::{Column, Kind, Terms, Unknowns, cross_derivative, distortion, symmetric};
 use super::moments::{Group, Inputs, Moments, Sums, groups};
-use super::test_functions::{MOST, Seen, Stretch, TestFunctions};
-use crate::fit::physical::coordinates::{ENTRIES, Form, basis};
+use super::quadratic::{Quadratic, slope};
+use super::test_functions::{Seen, Stretch, TestFunctions};
+use crate::fit::physical::coordinates::{Form, basis};
 use crate::num::banded::{Banded, likelihood};
-
-/// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
-pub(crate) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
-    w.cross_matrix() * b - (b * w).cross_matrix()
-}
 
 /// Σ v × B v from S = Σ v vᵀ; of an S that is not symmetric, Σ v × B u from Σ v uᵀ.
 fn crossed(s: &Matrix3<f64>, b: &Matrix3<f64>) -> Vector3<f64> {
@@ -51,8 +49,6 @@ pub(crate) struct Linearised {
     pub(crate) rows: Vec<f64>,
     /// Covariance of the residuals by the noise of the rates, per its variance.
     noise: Banded,
-    /// Groups of samples.
-    groups: Vec<Group>,
     /// What the unknowns make of torque and sensor.
     terms: Terms,
     /// Where it was linearised.
@@ -75,48 +71,10 @@ impl Linearised {
         origin: Unknowns,
         tests: TestFunctions,
     ) -> Self {
-        let terms = Terms::new(columns, &origin);
-        let groups = groups(stretch, noise, tests.radius);
-        let covariance = covariance(&groups, &terms, &tests);
-        let moments = Moments::new(stretch, noise, &tests);
-        let width = columns.len() + 6;
-        let mut rows = vec![0.0; 3 * tests.count * width];
-        let skewed: Vec<Option<Vec<Vector3<f64>>>> = columns
-            .iter()
-            .map(|column| match column.kind {
-                Kind::Skew(axis) => Some(skewed(&groups, &terms, &tests, axis)),
-                _ => None,
-            })
-            .collect();
-        for m in 0..tests.count {
-            let inputs = moments.inputs.get(m);
-            let area = moments.area[m];
-            let motion = Corrected::new(&terms, &moments.motion[m], area);
-            let readings = Corrected::new(&terms, &moments.readings[m], area);
-            let mut residual = readings.residual(&terms, inputs);
-            let mut put = |column: usize, values: Vector3<f64>| {
-                for p in 0..3 {
-                    rows[(3 * m + p) * width + column] = values[p];
-                }
-            };
-            for (k, (column, skewed)) in columns.iter().zip(&skewed).enumerate() {
-                let derivative = match skewed {
-                    Some(skewed) => {
-                        residual += skewed[m] * origin.c[k];
-                        skewed[m]
-                    }
-                    None => motion.derivative(column.kind, &terms, inputs),
-                };
-                put(k, derivative);
-            }
-            for k in 0..5 {
-                let b = basis(k);
-                let own = b * (motion.value * terms.drag - motion.slope) + crossed(&motion.square, &b);
-                put(columns.len() + k, own);
-            }
-            put(columns.len() + 5, residual);
-        }
-        Linearised { tests, width, rows, noise: covariance, groups, terms, origin }
+        let terms = Terms::new(columns, &origin, stretch);
+        let covariance = covariance(groups(stretch, noise, tests.radius), &terms, &tests);
+        let rows = rows(stretch, noise, columns, &origin, &tests);
+        Linearised { tests, width: columns.len() + 6, rows, noise: covariance, terms, origin }
     }
 
     /// The equations whitened; `None` where the covariance is not positive, as for a tensor far from physical.
@@ -138,17 +96,23 @@ impl Linearised {
 
     /// Writes columns of the covariance of the residuals, from their diagonals down.
     fn covariance_at(&self, levels: Levels) -> impl Fn(usize, &mut [f64]) {
-        let torque = if levels.torque > 0.0 { self.tests.overlaps() } else { Vec::new() };
+        let overlaps = if levels.torque > 0.0 { self.tests.overlaps() } else { Vec::new() };
         let shape = self.covariance_of(levels.shape) * levels.torque;
-        move |column, into| {
-            for (entry, noise) in into.iter_mut().zip(self.noise.column(column)) {
-                *entry = noise * levels.white;
-            }
-            let (n, q) = (column / 3, column % 3);
-            for (apart, overlap) in torque.iter().take(self.tests.count - n).enumerate() {
-                for p in if apart == 0 { q } else { 0 }..3 {
-                    into[3 * apart + p - q] += shape[(p, q)] * overlap;
+        // what torque noise adds is the same for each test
+        let torque = [0, 1, 2].map(|q| {
+            let mut column = vec![0.0; 3 * self.tests.reach + 3];
+            for (row, overlap) in overlaps.iter().enumerate() {
+                for p in if row == 0 { q } else { 0 }..3 {
+                    column[3 * row + p - q] = shape[(p, q)] * overlap;
                 }
+            }
+            column
+        });
+        move |column, into| {
+            let used = (3 * self.tests.count - column).min(3 * self.tests.reach + 3);
+            let each = self.noise.column(column).iter().zip(&torque[column % 3]);
+            for (entry, (noise, torque)) in into[..used].iter_mut().zip(each) {
+                *entry = noise * levels.white + torque;
             }
         }
     }
@@ -178,17 +142,18 @@ impl Linearised {
         (white, self.tests.overlaps().first().copied().unwrap_or(0.0) / 9.0)
     }
 
-    /// V of this stretch.
-    pub(crate) fn inflation(&self, whitened: &Whitened) -> Form {
+    /// V of this stretch, at the samples that the equations were linearised at.
+    pub(crate) fn inflation(&self, whitened: &Whitened, stretch: &Stretch, noise: &[Vector3<f64>]) -> Form {
         let inverse = whitened.factor.inverse_band();
         let bases: [Matrix3<f64>; 5] = core::array::from_fn(basis);
         let mut sum = Form::zeros();
-        for group in &self.groups {
+        for group in groups(stretch, noise, self.tests.radius) {
             let seen = Seen::new(&self.tests, group.time);
             let [aa, ba, bb] = seen.sums(&inverse);
             let ab = ba.transpose();
             let w = self.terms.rate(&group.reading);
-            let k = bases.map(|b| cross_derivative(&b, &w) + b * self.terms.drag);
+            let drag = Matrix3::identity() * self.terms.drag + slope(&w) * self.terms.quadratic;
+            let k = bases.map(|b| cross_derivative(&b, &w) + b * drag);
             // Σ tr Z D_l D_kᵀ with D_k = −φ' B_k + φ K_k
             for l in 0..5 {
                 let from_slope = bases[l] * aa - k[l] * ba;
@@ -204,7 +169,83 @@ impl Linearised {
     }
 }
 
+/// The equations of a stretch row by row, linearised at samples `rates` − `noise`: derivatives with respect to the columns
+/// and to the coordinates of the tensor, and residuals, not whitened.
+pub(crate) fn rows(
+    stretch: &Stretch,
+    noise: &[Vector3<f64>],
+    columns: &[Column],
+    origin: &Unknowns,
+    tests: &TestFunctions,
+) -> Vec<f64> {
+    let terms = Terms::new(columns, origin, stretch);
+    let moments = Moments::new(stretch, noise, tests);
+    let width = columns.len() + 6;
+    let mut rows = vec![0.0; 3 * tests.count * width];
+    // columns that act on the samples one by one
+    let groups = || groups(stretch, noise, tests.radius);
+    let changed: Vec<Option<Vec<Vector3<f64>>>> = columns
+        .iter()
+        .map(|column| match column.kind {
+            _ if !column.acts_on(stretch) => Some(Vec::new()),
+            Kind::Skew(axis) => Some(skewed(groups(), &terms, tests, axis)),
+            Kind::Walk { axis, from, until } => {
+                let share = |time: f64| ((time - from) / (until - from)).clamp(0.0, 1.0);
+                let change = |group: &Group, _: &Vector3<f64>| Vector3::ith(axis, -share(group.time));
+                Some(self::changed(groups(), &terms, tests, change))
+            }
+            _ => None,
+        })
+        .collect();
+    let quadratic = Quadratic::new(stretch, noise, &terms, tests, columns);
+    for m in 0..tests.count {
+        let inputs = moments.inputs.get(m);
+        let area = moments.area[m];
+        let motion = Corrected::new(&terms, &moments.motion[m], area);
+        let readings = Corrected::new(&terms, &moments.readings[m], area);
+        let mut residual = readings.residual(&terms, inputs);
+        let by_square = quadratic.as_ref().map_or(Vector3::zeros(), |sums| sums.motion[m]);
+        if let Some(sums) = &quadratic {
+            residual += terms.j * sums.readings[m] * terms.quadratic;
+        }
+        let mut put = |column: usize, values: Vector3<f64>| {
+            for p in 0..3 {
+                rows[(3 * m + p) * width + column] = values[p];
+            }
+        };
+        for (k, (column, changed)) in columns.iter().zip(&changed).enumerate() {
+            let derivative = match (changed, &quadratic) {
+                (Some(changed), _) => {
+                    let Some(change) = changed.get(m) else { continue };
+                    residual += change * origin.c[k];
+                    *change
+                }
+                (None, Some(_)) if column.kind == Kind::Quadratic => terms.j * by_square,
+                (None, sums) => {
+                    let own = sums.as_ref().and_then(|sums| sums.sensor[k].get(m));
+                    let by_sensor = own.map_or(Vector3::zeros(), |sum| terms.j * sum * terms.quadratic);
+                    motion.derivative(column.kind, &terms, inputs) + by_sensor
+                }
+            };
+            put(k, derivative);
+        }
+        for k in 0..5 {
+            let b = basis(k);
+            let drag = motion.value * terms.drag + by_square * terms.quadratic;
+            let own = b * (drag - motion.slope) + crossed(&motion.square, &b);
+            put(columns.len() + k, own);
+        }
+        put(columns.len() + 5, residual);
+    }
+    rows
+}
+
 impl Whitened {
+    /// Other rows of the same equations, whitened alike.
+    pub(crate) fn whiten(&self, rows: &mut [f64], width: usize) {
+        self.factor.forward(rows, width);
+    }
+
     /// log |C|.
     pub(crate) fn log_determinant(&self) -> f64 {
         self.factor.log_determinant()
@@ -215,38 +256,53 @@ impl Whitened {
         residuals(&self.rows, self.width, origin, at)
     }
 
-    /// The noise n̂ = Aᵀ C⁻¹ r that carries the samples onto the weak equations at `at`.
-    pub(crate) fn noise(
+    /// Moves `noise` by a share of the way to n̂ = Aᵀ C⁻¹ r, which carries the samples onto the weak equations at `at`.
+    pub(crate) fn carry(
         &self,
         part: &Linearised,
         stretch: &Stretch,
-        old: &[Vector3<f64>],
+        noise: &mut [Vector3<f64>],
         at: &Unknowns,
-    ) -> Vec<Vector3<f64>> {
+        share: f64,
+    ) {
         let mut multipliers = self.residuals(&part.origin, at);
         self.factor.backward(&mut multipliers);
-        let terms = &part.terms;
-        let each = stretch.times.iter().zip(&stretch.weights).zip(&stretch.rates).zip(old).enumerate();
-        each.map(|(i, (((&t, &weight), y), n))| {
-            let seen = Seen::new(&part.tests, t);
-            let (mut slopes, mut values) = (Vector3::<f64>::zeros(), Vector3::<f64>::zeros());
-            for (m, slope, value) in seen.each() {
-                for p in 0..3 {
-                    slopes[p] += multipliers[3 * m + p] * slope;
-                    values[p] += multipliers[3 * m + p] * value;
-                }
-            }
-            let wheel = stretch.inputs.as_ref().map_or(Vector3::zeros(), |inputs| inputs.wheel[i]);
-            let k = by_rate(terms, &terms.rate(&(y - n)), &wheel);
-            (k.tr_mul(&values) - terms.j * slopes) * (weight * self.levels.white)
-        })
-        .collect()
+        let by_axis = [0, 1, 2].map(|axis| {
+            let mut own = part.tests.room();
+            own.iter_mut().zip(multipliers.iter().skip(axis).step_by(3)).for_each(|(own, l)| *own = *l);
+            own
+        });
+        carry(part, stretch, noise, &by_axis, self.levels.white * share, 1.0 - share);
     }
 }
 
-/// The derivative of ω × (J ω + u h) + D ω.
-fn by_rate(terms: &Terms, w: &Vector3<f64>, wheel: &Vector3<f64>) -> Matrix3<f64> {
-    cross_derivative(&terms.j, w) + terms.viscous - wheel.cross_matrix() * terms.input
+/// The noise times `kept` and w Aᵀ λ times `share`, λ being the multipliers about each axis.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn carry(
+    part: &Linearised,
+    stretch: &Stretch,
+    noise: &mut [Vector3<f64>],
+    multipliers: &[Vec<f64>; 3],
+    share: f64,
+    kept: f64,
+) {
+    let terms = &part.terms;
+    for (i, n) in noise.iter_mut().enumerate() {
+        let seen = Seen::new(&part.tests, stretch.times[i]);
+        let [x, y, z] = [0, 1, 2].map(|axis| seen.dot(&multipliers[axis]));
+        let (slopes, values) = (Vector3::new(x.0, y.0, z.0), Vector3::new(x.1, y.1, z.1));
+        let w = terms.rate(&(stretch.rates[i] - *n));
+        // Kᵀ of the values
+        let mut own = terms.j * (values.cross(&w) - slopes) - values.cross(&(terms.j * w))
+            + terms.viscous.tr_mul(&values);
+        if let Some(inputs) = &stretch.inputs {
+            own -= values.cross(&(inputs.wheel[i] * terms.input));
+        }
+        if terms.quadratic != 0.0 {
+            own += slope(&w) * (terms.j * values) * terms.quadratic;
+        }
+        *n = *n * kept + own * (stretch.weights[i] * share);
+    }
 }
 
 fn residuals(rows: &[f64], width: usize, origin: &Unknowns, at: &Unknowns) -> Vec<f64> {
@@ -258,65 +314,34 @@ fn residuals(rows: &[f64], width: usize, origin: &Unknowns, at: &Unknowns) -> Ve
         .collect()
 }
 
-/// Rows of all tests that overlap at one time.
-const BLOCKS: usize = 3 * MOST;
-
-/// Σ A Aᵀ with A = −φ' J + φ K by pairs of tests.
-fn covariance(groups: &[Group], terms: &Terms, tests: &TestFunctions) -> Banded {
-    let mut sum = Banded::zeros(3 * tests.count, 3 * tests.reach + 2);
-    let jj = terms.j * terms.j;
-    // K is linear in the rate
-    let per_rate: [Matrix3<f64>; 3] =
-        core::array::from_fn(|a| cross_derivative(&terms.j, &terms.sensor.column(a).into_owned()));
-    let pairs: [Matrix3<f64>; 6] = core::array::from_fn(|entry| {
-        let (a, b) = ENTRIES[entry];
-        let product = per_rate[a] * per_rate[b].transpose();
-        if a == b { product } else { product + product.transpose() }
-    });
-    for group in groups {
-        let seen = Seen::new(tests, group.time);
-        let k = by_rate(terms, &terms.rate(&group.reading), &group.wheel);
-        let mut kk = k * k.transpose();
-        for (pair, (a, b)) in pairs.iter().zip(ENTRIES) {
-            kk += pair * group.scatter[(a, b)];
-        }
-        let (jk, kk) = (terms.j * k.transpose() * group.square, kk * group.square);
-        let (jj, kj) = (jj * group.square, jk.transpose());
-        // the blocks of all tests in a column of this one: one multiplies its φ', the other its φ
-        let (mut by_slope, mut by_value) = ([[0.0; BLOCKS]; 3], [[0.0; BLOCKS]; 3]);
-        for (row, (_, a, b)) in seen.each().enumerate() {
-            let (left, right) = (kj * b - jj * a, kk * b - jk * a);
-            for q in 0..3 {
-                for p in 0..3 {
-                    by_slope[q][3 * row + p] = left[(p, q)];
-                    by_value[q][3 * row + p] = right[(p, q)];
-                }
-            }
-        }
-        for (row, (n, c, d)) in seen.each().enumerate() {
-            for q in 0..3 {
-                let from = 3 * row + q;
-                let used = 3 * (seen.count - row) - q;
-                let blocks = by_value[q][from..from + used].iter().zip(&by_slope[q][from..from + used]);
-                for (entry, (value, slope)) in sum.column_mut(3 * n + q).iter_mut().zip(blocks) {
-                    *entry += value * d - slope * c;
-                }
-            }
-        }
-    }
-    sum
+/// The derivative of the equations of each test with respect to the delay of an axis.
+fn skewed(
+    groups: impl Iterator<Item = Group>,
+    terms: &Terms,
+    tests: &TestFunctions,
+    axis: usize,
+) -> Vec<Vector3<f64>> {
+    let Some(inverse) = terms.j.try_inverse() else { return vec![Vector3::zeros(); tests.count] };
+    changed(groups, terms, tests, |group, w| {
+        let momentum = terms.j * w + group.wheel * terms.input;
+        let drag = terms.viscous * w + terms.j * w * (w.norm() * terms.quadratic);
+        let slope = inverse * (terms.constant - w.cross(&momentum) - drag);
+        Vector3::ith(axis, slope[axis])
+    })
 }
 
-/// The derivative of the equations of each test with respect to the delay of an axis.
-fn skewed(groups: &[Group], terms: &Terms, tests: &TestFunctions, axis: usize) -> Vec<Vector3<f64>> {
+/// What the equations of each test change with a change of the rates, given at a group of samples and its rate.
+fn changed(
+    groups: impl Iterator<Item = Group>,
+    terms: &Terms,
+    tests: &TestFunctions,
+    change: impl Fn(&Group, &Vector3<f64>) -> Vector3<f64>,
+) -> Vec<Vector3<f64>> {
     let mut sums = vec![Vector3::zeros(); tests.count];
-    let Some(inverse) = terms.j.try_inverse() else { return sums };
     for group in groups {
         let w = terms.rate(&group.reading);
-        let momentum = terms.j * w + group.wheel * terms.input;
-        let slope = inverse * (terms.constant - w.cross(&momentum) - terms.viscous * w);
-        let change = Vector3::ith(axis, slope[axis]) * group.weight;
-        let (by_slope, by_value) = (terms.j * change, by_rate(terms, &w, &group.wheel) * change);
+        let change = change(&group, &w) * group.weight;
+        let (by_slope, by_value) = (terms.j * change, terms.by_rate(&w, &group.wheel) * change);
         for (m, slope, value) in Seen::new(tests, group.time).each() {
             sums[m] += by_value * value - by_slope * slope;
         }
@@ -386,7 +411,7 @@ impl Corrected {
                 own - inputs.map_or(Vector3::zeros(), |i| wheel(e * i.value.transpose()))
             }
             Kind::Input => inputs.map_or(Vector3::zeros(), |i| self.input(terms, i)),
-            Kind::Skew(_) => Vector3::zeros(),
+            Kind::Skew(_) | Kind::Walk { .. } | Kind::Quadratic => Vector3::zeros(),
             Kind::Scale | Kind::AxisScale(_) | Kind::Misalignment(_) => {
                 let q = distortion(kind).unwrap_or_else(Matrix3::zeros);
                 let square = q * self.with_readings;

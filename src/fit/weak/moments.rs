@@ -1,9 +1,12 @@
 //! Sums of a stretch against its test functions. They hold all that the weak equations ask of the samples, whatever the
 //! tensor, the torque and the errors of the sensor are.
 
+use core::ops::Range;
+
+use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
 
-use super::test_functions::{Seen, Stretch, TestFunctions};
+use super::test_functions::{KnownInputs, LANES, Seen, Stretch, TestFunctions};
 
 /// Sums against one test function φ with the weights w of the samples.
 #[derive(Clone, Copy, Debug)]
@@ -46,50 +49,92 @@ fn products(v: &Vector3<f64>) -> [f64; 6] {
     [v.x * v.x, v.y * v.y, v.z * v.z, v.x * v.y, v.x * v.z, v.y * v.z]
 }
 
-fn full(s: &[f64]) -> Matrix3<f64> {
+fn full(s: &[f64; 6]) -> Matrix3<f64> {
     Matrix3::new(s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2])
+}
+
+/// Numbers of a sample that are summed with φ': y, ω; and with φ: 1, y, ω, y yᵀ − n nᵀ, ω ωᵀ.
+const WITH_SLOPE: usize = 6;
+const WITH_VALUE: usize = 19;
+
+/// Sums over samples, those of one kind side by side for all tests, and room behind them.
+type Running = [Vec<f64>; WITH_SLOPE + WITH_VALUE];
+
+/// The same of the tests that are seen together, in whole registers.
+#[repr(align(64))]
+struct Near([f64; LANES]);
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn add(stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions, sums: &mut Running) {
+    // each at a place of its own, so that the compiler adds test to test and not kind to kind
+    let mut near: [Box<Near>; WITH_SLOPE + WITH_VALUE] =
+        core::array::from_fn(|_| Box::new(Near([0.0; LANES])));
+    let mut first = 0;
+    for (i, n) in noise.iter().enumerate() {
+        let (y, weight) = (stretch.rates[i], stretch.weights[i]);
+        let w = y - n;
+        let seen = Seen::new(tests, stretch.times[i]);
+        if seen.first != first {
+            hand_over(&mut near, first, sums);
+            first = seen.first;
+        }
+        let (of_readings, of_noise, of_motion) = (products(&y), products(n), products(&w));
+        let mut slope = [0.0; WITH_SLOPE];
+        let mut value = [weight; WITH_VALUE];
+        for k in 0..3 {
+            slope[k] = weight * y[k];
+            slope[3 + k] = weight * w[k];
+        }
+        value[1..7].copy_from_slice(&slope);
+        for k in 0..6 {
+            value[7 + k] *= of_readings[k] - of_noise[k];
+            value[13 + k] *= of_motion[k];
+        }
+        for (near, number) in near[..WITH_SLOPE].iter_mut().zip(&slope) {
+            for k in 0..LANES {
+                near.0[k] += seen.slope[k] * number;
+            }
+        }
+        for (near, number) in near[WITH_SLOPE..].iter_mut().zip(&value) {
+            for k in 0..LANES {
+                near.0[k] += seen.value[k] * number;
+            }
+        }
+    }
+    hand_over(&mut near, first, sums);
+}
+
+/// Moves the sums of the tests from `first` on to those of all.
+fn hand_over(near: &mut [Box<Near>], first: usize, sums: &mut Running) {
+    for (near, sums) in near.iter_mut().zip(sums) {
+        for (near, sum) in near.0.iter_mut().zip(&mut sums[first..first + LANES]) {
+            *sum += *near;
+            *near = 0.0;
+        }
+    }
 }
 
 impl Moments {
     pub(crate) fn new(stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions) -> Moments {
-        let mut slopes = vec![[0.0; 6]; tests.count];
-        let mut values = vec![[0.0; 19]; tests.count];
-        for (i, n) in noise.iter().enumerate() {
-            let (y, weight) = (stretch.rates[i], stretch.weights[i]);
-            let w = y - n;
-            let seen = Seen::new(tests, stretch.times[i]);
-            let (of_readings, of_noise, of_motion) = (products(&y), products(n), products(&w));
-            let slope = [y.x, y.y, y.z, w.x, w.y, w.z].map(|v| weight * v);
-            let mut value = [weight; 19];
-            for k in 0..3 {
-                value[1 + k] *= y[k];
-                value[4 + k] *= w[k];
-            }
-            for k in 0..6 {
-                value[7 + k] *= of_readings[k] - of_noise[k];
-                value[13 + k] *= of_motion[k];
-            }
-            let last = seen.first + seen.count;
-            for (k, sums) in slopes[seen.first..last].iter_mut().enumerate() {
-                let by = seen.slope[k];
-                sums.iter_mut().zip(&slope).for_each(|(sum, s)| *sum += by * s);
-            }
-            for (k, sums) in values[seen.first..last].iter_mut().enumerate() {
-                let by = seen.value[k];
-                sums.iter_mut().zip(&value).for_each(|(sum, v)| *sum += by * v);
-            }
-        }
-        let sums = |slope: &[f64], value: &[f64], square: &[f64]| Sums {
-            slope: Vector3::from_column_slice(slope),
-            value: Vector3::from_column_slice(value),
-            square: full(square),
-            mixed: Matrix3::zeros(),
+        let mut sums: Running = core::array::from_fn(|_| tests.room());
+        add(stretch, noise, tests, &mut sums);
+        let (with_slope, with_value) = sums.split_at(WITH_SLOPE);
+        let three = |of: &[Vec<f64>], first: usize, m: usize| {
+            Vector3::new(of[first][m], of[first + 1][m], of[first + 2][m])
         };
-        let each = || slopes.iter().zip(&values);
+        let of = |slope: usize, value: usize, square: usize| {
+            let each = (0..tests.count).map(move |m| Sums {
+                slope: three(with_slope, slope, m),
+                value: three(with_value, value, m),
+                square: full(&core::array::from_fn(|k| with_value[square + k][m])),
+                mixed: Matrix3::zeros(),
+            });
+            each.collect()
+        };
         let mut moments = Moments {
-            area: values.iter().map(|v| v[0]).collect(),
-            readings: each().map(|(s, v)| sums(&s[..3], &v[1..4], &v[7..13])).collect(),
-            motion: each().map(|(s, v)| sums(&s[3..], &v[4..7], &v[13..])).collect(),
+            area: with_value[0][..tests.count].to_vec(),
+            readings: of(0, 1, 7),
+            motion: of(3, 4, 13),
             inputs: Vec::new(),
         };
         moments.add_inputs(stretch, noise, tests);
@@ -137,40 +182,40 @@ const GROUPS: f64 = 12.0;
 const LONGEST: f64 = 0.15;
 
 /// Groups of a stretch for test functions of half width `radius`.
-pub(crate) fn groups(stretch: &Stretch, noise: &[Vector3<f64>], radius: f64) -> Vec<Group> {
+pub(crate) fn groups(stretch: &Stretch, noise: &[Vector3<f64>], radius: f64) -> impl Iterator<Item = Group> {
     let width = (radius / GROUPS).min(LONGEST);
-    let motion = |i: usize| stretch.rates[i] - noise[i];
-    let mut groups = Vec::new();
     let mut low = 0;
-    while low < stretch.times.len() {
-        let end = stretch.times[low] + width;
-        let high = low + stretch.times[low..].iter().take_while(|t| **t < end).count().max(1);
-        let count = (high - low) as f64;
-        let mut group = Group {
-            time: 0.0,
-            reading: Vector3::zeros(),
-            scatter: Matrix3::zeros(),
-            wheel: Vector3::zeros(),
-            weight: 0.0,
-            square: 0.0,
-        };
-        for ((t, weight), i) in
-            stretch.times[low..high].iter().zip(&stretch.weights[low..high]).zip(low..high)
-        {
-            group.time += (t - stretch.times[low]) / count;
-            group.reading += motion(i) / count;
-            if let Some(inputs) = &stretch.inputs {
-                group.wheel += inputs.wheel[i] / count;
-            }
-            group.weight += weight;
-            group.square += weight * weight;
-        }
-        group.time += stretch.times[low];
-        for apart in (low..high).map(|i| motion(i) - group.reading) {
-            group.scatter += apart * apart.transpose() / count;
-        }
-        groups.push(group);
-        low = high;
+    core::iter::from_fn(move || {
+        let end = stretch.times.get(low)? + width;
+        let range = low..low + stretch.times[low..].iter().take_while(|t| **t < end).count().max(1);
+        low = range.end;
+        Some(group(stretch, noise, range))
+    })
+}
+
+/// The samples of a range as one.
+fn group(stretch: &Stretch, noise: &[Vector3<f64>], range: Range<usize>) -> Group {
+    let share = 1.0 / range.len() as f64;
+    let first = stretch.times[range.start];
+    let (mut time, mut weight, mut square) = (0.0, 0.0, 0.0);
+    for (t, w) in stretch.times[range.clone()].iter().zip(&stretch.weights[range.clone()]) {
+        time += t - first;
+        weight += w;
+        square += w * w;
     }
-    groups
+    let motion = || stretch.rates[range.clone()].iter().zip(&noise[range.clone()]).map(|(y, n)| y - n);
+    let reading = motion().sum::<Vector3<f64>>() * share;
+    let mut scatter = [0.0; 6];
+    for w in motion() {
+        scatter.iter_mut().zip(products(&(w - reading))).for_each(|(sum, product)| *sum += product);
+    }
+    let wheel = |inputs: &KnownInputs| inputs.wheel[range.clone()].iter().sum::<Vector3<f64>>() * share;
+    Group {
+        time: first + time * share,
+        reading,
+        scatter: full(&scatter) * share,
+        wheel: stretch.inputs.as_ref().map_or(Vector3::zeros(), wheel),
+        weight,
+        square,
+    }
 }

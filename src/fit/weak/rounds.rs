@@ -122,10 +122,7 @@ impl<'a> Rounds<'a> {
         let relax = relax * self.room(&step);
         let used = self.used.iter().map(|(_, s, _)| *s);
         for (((part, white), s), noise) in parts.iter().zip(whitened).zip(used).zip(&mut self.noise) {
-            let new = white.noise(part, s, noise, next);
-            for (old, new) in noise.iter_mut().zip(new) {
-                *old += (new - *old) * relax;
-            }
+            white.carry(part, s, noise, next, relax);
         }
         self.at.x += step * relax;
         for (c, next) in self.at.c.iter_mut().zip(&next.c) {
@@ -214,23 +211,24 @@ impl<'a> Rounds<'a> {
         self
     }
 
-    pub(crate) fn finish(&self, variance: f64, moved: f64) -> Option<WeakEstimate> {
+    pub(crate) fn finish(self, variance: f64, moved: f64) -> Option<WeakEstimate> {
+        let of_sphere = self.squares_of_sphere(variance)?;
         let parts = self.linearise();
         let whitened = self.whiten(&parts)?;
         let stacked = self.stack(&whitened, variance);
         let at = stacked.minimiser().unwrap_or_else(|| self.at.clone());
         // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
         // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
-        let gain =
-            (self.squares_of_sphere(variance)? - stacked.squares) / (variance * stacked.excess(variance));
+        let gain = (of_sphere - stacked.squares) / (variance * stacked.excess(variance));
         let (root, doubt) = if gain > SIGNIFICANT_GAIN {
             (stacked.root, Form::zeros())
         } else {
             self.constant_rates(variance)?
         };
-        let each = self.used.iter().zip(parts).zip(whitened).zip(&self.noise);
+        let radius = self.used.first()?.2.radius;
+        let each = self.used.into_iter().zip(parts).zip(whitened).zip(self.noise);
         Some(WeakEstimate {
-            radius: self.used.first()?.2.radius,
+            radius,
             columns: self.columns.to_vec(),
             at,
             moved,
@@ -241,10 +239,10 @@ impl<'a> Rounds<'a> {
             stacked: Some(stacked),
             parts: each
                 .map(|((((k, _, _), linearised), whitened), noise)| Part {
-                    stretch: *k,
+                    stretch: k,
                     linearised,
                     whitened,
-                    noise: noise.clone(),
+                    noise,
                 })
                 .collect(),
         })
@@ -318,6 +316,8 @@ impl<'a> Rounds<'a> {
 
     /// V.
     pub(crate) fn inflation(&self, parts: &[Linearised], whitened: &[Whitened]) -> Form {
-        parts.iter().zip(whitened).map(|(p, w)| p.inflation(w)).sum()
+        let samples = self.used.iter().map(|(_, s, _)| *s).zip(&self.noise);
+        let each = parts.iter().zip(whitened).zip(samples);
+        each.map(|((p, w), (s, noise))| p.inflation(w, s, noise)).sum()
     }
 }

@@ -3,7 +3,7 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
-use super::linearised::{Levels, Linearised, Whitened};
+use super::linearised::{Levels, Linearised, Whitened, rows};
 use super::model::{Column, Unknowns};
 use super::noise::SURE;
 use super::rounds::{RESTLESS, STILL};
@@ -47,15 +47,11 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// The equations at the same samples with other columns.
-    pub(crate) fn with_columns(
-        &self,
-        stretch: &Stretch,
-        columns: &[Column],
-        at: &Unknowns,
-    ) -> Option<Whitened> {
-        let tests = self.linearised.tests.clone();
-        Linearised::new(stretch, &self.noise, columns, at.clone(), tests).whitened(self.whitened.levels)
+    /// The rows of the same samples with other columns, whitened alike.
+    pub(crate) fn with_columns(&self, stretch: &Stretch, columns: &[Column], at: &Unknowns) -> Vec<f64> {
+        let mut rows = rows(stretch, &self.noise, columns, at, &self.linearised.tests);
+        self.whitened.whiten(&mut rows, columns.len() + 6);
+        rows
     }
 
     /// Three for each centre, whitened.
@@ -114,6 +110,29 @@ impl WeakEstimate {
     /// Levels of the noise of each stretch that is long enough.
     pub(crate) fn levels(&self) -> Vec<Levels> {
         self.parts.iter().map(|part| part.whitened.levels).collect()
+    }
+
+    /// R as it would be without some of the columns.
+    pub(crate) fn without(&self, left_out: &[usize], deviation: f64) -> Option<Form> {
+        let stacked = self.stacked.as_ref()?;
+        let kept: Vec<usize> = (0..self.columns.len()).filter(|k| !left_out.contains(k)).collect();
+        let columns: Vec<Column> = kept.iter().map(|&k| self.columns[k]).collect();
+        let origin = Unknowns { x: stacked.origin.x, c: kept.iter().map(|&k| stacked.origin.c[k]).collect() };
+        let width = self.columns.len() + 6;
+        let rows: Vec<Vec<f64>> = self
+            .parts
+            .iter()
+            .map(|part| {
+                let each = part.whitened.rows.chunks_exact(width);
+                let kept = |row: &[f64]| {
+                    let own = kept.iter().map(|&k| row[k]);
+                    own.chain(row[width - 6..].iter().copied()).collect::<Vec<f64>>()
+                };
+                each.flat_map(kept).collect()
+            })
+            .collect();
+        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        Some(Stacked::new(&rows, &columns, &origin, deviation).root)
     }
 
     /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H

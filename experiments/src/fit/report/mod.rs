@@ -4,7 +4,7 @@ mod json;
 mod rows;
 mod text;
 
-use polhode::fit::{AverageAxis, Estimate, Identifiability, Record, TorqueModel};
+use polhode::fit::{AverageAxis, Estimate, Identifiability, Nuisance, Record, TorqueModel};
 use serde_json::{Value, json};
 
 use super::flights::Spans;
@@ -15,12 +15,23 @@ pub(super) const ENTRIES: [(&str, usize, usize); 6] =
     [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
 
 /// A tensor in full.
-pub(super) fn identified(e: &Estimate, spans: &Spans, format: Format) -> String {
+pub(super) fn identified(e: &Estimate, record: &Record, spans: &Spans, format: Format) -> String {
     match format {
-        Format::Table => text::text(e, spans),
+        Format::Table => text::text(e, record, spans),
         Format::Csv => rows::rows(e).csv(),
-        Format::Json => pretty(&json::object(e, spans)),
+        Format::Json => pretty(&json::object(e, record, spans)),
     }
+}
+
+/// Names of the columns that are not used, each once.
+pub(super) fn unused(record: &Record) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for (_, name) in record.unused_columns() {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    names
 }
 
 /// What a record tells that does not determine the tensor.
@@ -63,6 +74,7 @@ impl Facts {
                 "samples": record.samples(), "segments": record.segments.len(), "method": METHOD,
                 "identifiable": false, "rank": self.rank, "null_directions": self.open, "known": self.known,
                 "triangle_slack": null, "active_constraints": [], "chi2_per_dof": null, "warnings": [],
+                "unused_columns": unused(record),
                 "flights": spans.json(), "flight_limits": spans.limits(),
             })),
             Format::Csv => {
@@ -136,6 +148,11 @@ pub(super) fn sizes(e: &Estimate) -> String {
     words.join(", ")
 }
 
+/// The coefficients of the torque of one segment, or without it those that all share.
+pub(super) fn coefficients(e: &Estimate, segment: Option<usize>) -> Vec<&Nuisance> {
+    e.torque.coefficients.iter().filter(|c| c.segment == segment).collect()
+}
+
 /// The model of a torque in words.
 pub(super) fn torque(model: TorqueModel) -> &'static str {
     match model {
@@ -143,6 +160,7 @@ pub(super) fn torque(model: TorqueModel) -> &'static str {
         TorqueModel::Drag => "drag",
         TorqueModel::Drag3 => "drag3",
         TorqueModel::Drag6 => "drag6",
+        TorqueModel::Quadratic => "quadratic",
         TorqueModel::Constant => "constant",
         _ => "auto",
     }
