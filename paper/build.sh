@@ -16,9 +16,9 @@ done
 for file in lmodern.sty rotating.sty booktabs.sty microtype.sty pgfplots.sty pgfplotstable.sty; do
   kpsewhich "$file" >/dev/null || missing "$file is not installed"
 done
-for file in $(grep -oh 'generated/[a-z0-9-]*' main.tex sections/*.tex | sort -u); do
-  if [ ! -f "$file.tex" ]; then
-    echo "$file.tex is missing; make it from the committed results, in the project's root:" >&2
+for file in $(grep -oh 'generated/[a-z0-9.-]*' main.tex style.tex sections/*.tex | sort -u); do
+  if [ ! -f "$file" ] && [ ! -f "$file.tex" ]; then
+    echo "$file is missing; make it from the committed results, in the project's root:" >&2
     echo "  cargo run --release -- experiment publish" >&2
     exit 2
   fi

@@ -7,14 +7,14 @@ use polhode::advise::{Advice, AdviseError, Choice, Demand, Setting, advise, chec
 use polhode::method::method;
 use serde_json::json;
 
-use crate::arguments::{number, positive};
+use crate::arguments::positive;
 use crate::body_arguments::BodyArguments;
 use crate::error::{Error, warn};
 use crate::files::emit;
 use crate::force_arguments::ForceArguments;
 use crate::start_arguments::StartArguments;
 use crate::table::{Cell, Column, Format, Table, row};
-use crate::times::positive_duration;
+use crate::times::{duration, positive_duration};
 
 const USAGE: &str = "polhode advise <BODY> [START] --until <T> --attitude-error <E> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
@@ -31,6 +31,10 @@ const EXAMPLES: &str = "Examples:
 /// Every method runs on the body itself for a short time, in shorter and shorter steps, and is compared with the exact motion. Those
 /// that would be quickest run longer. The first row is the advice; `propagate` takes its method, step and tolerance as they
 /// stand. Times are of this machine.
+///
+/// Columns: predicted_error and predicted_energy_error, the largest errors up to T; factor, by which predicted_error may be wrong;
+/// predicted_cost, processor time, s; times_longer, that time over the least; whole_time (csv and json), whether the runs behind the
+/// prediction went as far as T; actual_error, with --check.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Advise {
@@ -41,34 +45,34 @@ pub(crate) struct Advise {
     #[command(flatten)]
     forces: ForceArguments,
     /// Duration of the motion, s, or with a unit, as 30d
-    #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Demand")]
     until: f64,
     /// Largest attitude error allowed up to then, rad
-    #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true, help_heading = "Demand")]
     attitude_error: f64,
     /// Largest relative energy error allowed
-    #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true, help_heading = "Demand")]
     energy_error: Option<f64>,
     /// Largest processor time allowed, s
-    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true, help_heading = "Demand")]
     budget: Option<f64>,
     /// Method to leave out, repeatable; `exact` stands for the closed form and the methods that step along it
-    #[arg(long, value_name = "METHOD")]
+    #[arg(long, value_name = "METHOD", help_heading = "Demand")]
     exclude: Vec<String>,
-    /// Time of the start, s, for forces that depend on time
-    #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0")]
+    /// Time of the start, s, or with a unit, for forces that depend on time
+    #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", help_heading = "Demand")]
     start_time: f64,
     /// Run the advice to T and compare with the exact motion; exit code 1 if the error is larger than asked for
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     check: bool,
     /// Show every method that meets the demand, not only the quickest ten
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     all: bool,
     /// How rows are printed: table on a terminal, csv otherwise
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
     /// Write to this file instead of standard output
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
 }
 

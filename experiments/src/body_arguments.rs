@@ -13,6 +13,7 @@ use crate::text::visible;
 
 /// A body: exactly one of three flags.
 #[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Body")]
 #[group(required = true, multiple = false)]
 pub(crate) struct BodyArguments {
     /// Principal moments in the order of the body axes, in any consistent unit

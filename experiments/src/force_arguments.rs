@@ -9,6 +9,7 @@ use crate::error::Error;
 
 /// What acts on the body; several forces add.
 #[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Forces")]
 pub(crate) struct ForceArguments {
     /// Weight M g times the centre of mass, body axes, N m: the body then has a fixed point, and gravity acts along -Z of space
     #[arg(long, value_name = "cx,cy,cz", value_parser = numbers::<3>, allow_hyphen_values = true)]
@@ -22,7 +23,7 @@ pub(crate) struct ForceArguments {
     /// Constant torque in the axes of space, N m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     torque_space: Option<[f64; 3]>,
-    /// Drag -c1 w - c2 |w| w: linear coefficient, N m s, and quadratic one, N m s^2 (default 0)
+    /// Drag torque -c1 w - c2 |w| w, equal about all axes: linear coefficient, N m s, and quadratic one, N m s^2 (default 0)
     #[arg(long, value_name = "c1[,c2]", value_parser = one_or_two, allow_hyphen_values = true)]
     drag: Option<OneOrTwo>,
 }

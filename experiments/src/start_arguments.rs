@@ -14,6 +14,7 @@ use crate::tumbling_arguments::TumblingArguments;
 
 /// Attitude and spin at the start.
 #[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Start")]
 pub(crate) struct StartArguments {
     /// Angular velocity at the start, body axes, rad/s or --rate-unit [default: that of the catalogue's body]
     #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]

@@ -9,18 +9,19 @@ use crate::times::positive_duration;
 
 /// Periods, mode and angles of a tumbling body.
 #[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Start of a tumbling body")]
 pub(crate) struct TumblingArguments {
-    /// Start of a tumbling body by its periods P_phi (precession) and P_psi (rotation), s or with a unit: 27.38h,263h
+    /// Start by periods in place of --omega: P_phi of the precession about the angular momentum and P_psi of the rotation about the body axis of --mode, s or with a unit: 27.38h,263h
     #[arg(long, value_name = "P_phi,P_psi", value_parser = periods, requires = "mode",
           conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation"])]
     periods: Option<Periods>,
-    /// Mode of the tumbling body: lam (about its long axis) or sam (about its short axis)
+    /// Axis of the rotation: lam (long-axis mode, the axis of the smallest moment) or sam (short-axis mode, of the largest)
     #[arg(long, value_enum, requires = "periods")]
     mode: Option<ModeArgument>,
-    /// Longitude and latitude of its angular momentum, ecliptic if space is, rad or --angle-unit [default: along z]
+    /// Direction of the angular momentum in space: longitude from x towards y and latitude from the x-y plane, rad or --angle-unit [default: along z]
     #[arg(long, value_name = "lambda,beta", value_parser = numbers::<2>, allow_hyphen_values = true, requires = "periods")]
     pole: Option<[f64; 2]>,
-    /// Its Euler angles phi and psi at the start, rad or --angle-unit [default: 0,0]
+    /// Angles of precession phi and rotation psi at the start (z-x-z, z along the angular momentum and along the axis of --mode), rad or --angle-unit [default: 0,0]
     #[arg(long, value_name = "phi,psi", value_parser = numbers::<2>, allow_hyphen_values = true, requires = "periods")]
     phases: Option<[f64; 2]>,
     /// The axis of the mode points away from the angular momentum: theta is above 90 degrees

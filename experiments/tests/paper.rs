@@ -137,7 +137,13 @@ fn generated_files_name_what_made_them() {
             let text = fs::read_to_string(&path).unwrap();
             let first = text.lines().next().unwrap_or_default();
             let origin = first.contains(", commit ") && first.ends_with("scale paper");
-            assert!(origin || first.starts_with("% catalogue of methods"), "{}: {first}", path.display());
+            assert!(
+                origin
+                    || first.starts_with("% catalogue of methods")
+                    || first.starts_with("% style of figures"),
+                "{}: {first}",
+                path.display()
+            );
         }
     }
 }

@@ -9,7 +9,7 @@ use polhode::body::{Body, Clock};
 use polhode::method::{ADAPTIVE, AnyMethod};
 use polhode::run::{RunError, Schedule, ScheduleError};
 
-use crate::arguments::{list, number, positive};
+use crate::arguments::{list, positive};
 use crate::body_arguments::BodyArguments;
 use crate::error::{Error, warn};
 use crate::figure::{Figure, Series};
@@ -21,6 +21,7 @@ use crate::plot::Picture;
 use crate::start_arguments::StartArguments;
 use crate::table::{Cell, Column, Format, Table, row};
 use crate::text::short;
+use crate::times::duration;
 use trajectory::Trajectory;
 
 const USAGE: &str = "polhode compare <BODY> <START> --methods <A,...> --until <T> [OPTIONS]
@@ -58,33 +59,33 @@ pub(crate) struct Compare {
     #[command(flatten)]
     forces: ForceArguments,
     /// Methods, separated by commas: BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods`
-    #[arg(long, value_name = "A,B,...", value_delimiter = ',', required = true)]
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', required = true, help_heading = "Methods")]
     methods: Vec<String>,
     /// Steps of the methods, s, separated by commas; a whole number of each leads to T
-    #[arg(long, value_name = "h1,h2,...", value_parser = positives, allow_hyphen_values = true)]
+    #[arg(long, value_name = "h1,h2,...", value_parser = positives, allow_hyphen_values = true, help_heading = "Methods")]
     steps: Option<Positives>,
     /// Tolerances of the methods that choose their steps (taylor, dop853, tsit5) [default: that of the method]
-    #[arg(long, value_name = "TOL1,TOL2,...", value_parser = positives, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TOL1,TOL2,...", value_parser = positives, allow_hyphen_values = true, help_heading = "Methods")]
     tolerances: Option<Positives>,
-    /// The end, s
-    #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true)]
+    /// The end: s, or with a unit, as 30d
+    #[arg(long, value_name = "T", value_parser = duration, allow_hyphen_values = true, help_heading = "Times")]
     until: f64,
-    /// Time of the start, s
-    #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0")]
+    /// Time of the start: s, or with a unit
+    #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", help_heading = "Times")]
     start_time: f64,
     /// A trajectory of another program as one more row: CSV with t and the attitude q_w, q_x, q_y, q_z, body to space; with
     /// omega_body_x, omega_body_y, omega_body_z (rad/s, body axes) also its errors of energy and momentum and its flips, at the
     /// rows of the file; repeatable
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, value_name = "FILE.csv", help_heading = "Methods")]
     trajectory: Vec<PathBuf>,
     /// Draw attitude error against processor time to this file
-    #[arg(long, value_name = "FILE.svg|.png")]
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
     figure: Option<PathBuf>,
     /// How rows are printed: table on a terminal, csv otherwise
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
     /// Write to this file instead of standard output
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
 }
 

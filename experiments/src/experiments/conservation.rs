@@ -66,7 +66,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         ("norm", "(|m| − |m₀|) / |m₀|", Scale::Signed),
         ("direction", "angle of L (rad)", Scale::Log),
     ]
-    .map(|(name, y, scale)| Figure::new(name, "", ("time (s)", Scale::Log), (y, scale)));
+    .map(|(name, y, scale)| Figure::new(name, "", ("time (s)", Scale::Log), (y, scale)).sized(500.0, 280.0));
     for ((name, family), found) in METHODS.into_iter().zip(found) {
         let Followed { intervals, order, lost } = found?;
         for (k, panel) in panels.iter_mut().enumerate() {
@@ -99,7 +99,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         "What each family of methods conserves over {counted} steps of 1/32 s, {BODY} body (moments 1, 2, 3): of each interval \
          of the time the change that is furthest from zero; order in brackets"
     );
-    let drawing = sheet("conservation", &title, 1, &panels)?;
+    let drawing = sheet("conservation", &title, 2, &panels)?;
     Ok(Report { tables: vec![series], views: vec![summary], drawings: vec![drawing], ..Report::default() })
 }
 

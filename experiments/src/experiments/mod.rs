@@ -15,6 +15,7 @@ mod long_run;
 mod modified_energy;
 mod order;
 mod phase;
+mod programs;
 mod round_off;
 mod separatrix;
 mod splitting_order;
@@ -108,6 +109,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "chaos",
         question: "what each method says of a chaotic top: energy, L_z, Lyapunov exponent, and how long the attitude holds",
         run: chaos::run,
+    },
+    Experiment {
+        name: "programs",
+        question: "how programs that people run compare with the methods here, at equal step and at equal error",
+        run: programs::run,
     },
     Experiment {
         name: "audit",

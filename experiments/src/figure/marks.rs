@@ -1,7 +1,7 @@
 //! The marks of curves: filled ones are small and the others hollow, so that one is seen within the other.
 
 use super::canvas::{Canvas, Fill, Stroke};
-use super::style::{Colour, WHITE};
+use super::style::{Colour, MARKS, Shape, WHITE};
 
 /// Whether the mark of the k-th curve is hollow.
 pub(super) fn is_hollow(k: usize) -> bool {
@@ -15,17 +15,14 @@ pub(super) fn mark(page: &mut Canvas, k: usize, [x, y]: [f64; 2], colour: Colour
     } else {
         (Some(Fill::Flat(colour, 1.0)), None)
     };
-    let polygon = |points: &[[f64; 2]]| points.iter().map(|[u, v]| [x + size * u, y + size * v]).collect();
-    let square = |r: f64| polygon(&[[-r, -r], [r, -r], [r, r], [-r, r]]);
-    let diamond = |r: f64| polygon(&[[0.0, -r], [r, 0.0], [0.0, r], [-r, 0.0]]);
-    match k % 8 {
-        0 => page.circle([x, y], 3.2 * size, inside, thin),
-        1 => page.area(square(4.6), inside, thin),
-        2 => page.area(polygon(&[[0.0, -4.6], [4.2, 3.0], [-4.2, 3.0]]), inside, thin),
-        3 => page.circle([x, y], 5.4 * size, inside, thin),
-        4 => page.area(square(3.0), inside, thin),
-        5 => page.area(polygon(&[[0.0, 6.0], [5.6, -4.0], [-5.6, -4.0]]), inside, thin),
-        6 => page.area(diamond(4.2), inside, thin),
-        _ => page.area(diamond(6.6), inside, thin),
-    }
+    let (shape, radius) = MARKS[k % MARKS.len()];
+    let r = size * radius;
+    let corners: &[[f64; 2]] = match shape {
+        Shape::Circle => return page.circle([x, y], r, inside, thin),
+        Shape::Square => &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
+        Shape::Triangle => &[[0.0, -1.0], [0.92, 0.66], [-0.92, 0.66]],
+        Shape::Falling => &[[0.0, 1.0], [0.92, -0.66], [-0.92, -0.66]],
+        Shape::Diamond => &[[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]],
+    };
+    page.area(corners.iter().map(|[u, v]| [x + r * u, y + r * v]).collect(), inside, thin);
 }

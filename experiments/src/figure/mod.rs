@@ -7,7 +7,9 @@ mod axis;
 mod canvas;
 mod font;
 mod labels;
+mod latex;
 mod marks;
+mod names;
 mod plot;
 mod png;
 mod rows;
@@ -17,6 +19,7 @@ mod svg;
 
 pub(crate) use axis::{Scale, ten_to};
 pub(crate) use canvas::{Anchor, Canvas, Fill, Stroke};
+pub(crate) use latex::latex;
 pub(crate) use rows::{Group, RowPlot, Values};
 
 use crate::error::Error;
@@ -104,6 +107,12 @@ impl Series {
     /// With a bar from the lowest to the highest value at each point.
     pub(crate) fn with_spread(self, spread: Vec<(f64, f64)>) -> Self {
         Self { spread, ..self }
+    }
+
+    /// One more point, with a bar from the lowest to the highest value.
+    pub(crate) fn push(&mut self, point: (f64, f64), bar: (f64, f64)) {
+        self.points.push(point);
+        self.spread.push(bar);
     }
 
     /// Drawn twice as wide and without marks, as an envelope is.

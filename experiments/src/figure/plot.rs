@@ -2,18 +2,17 @@
 
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Fill, Stroke};
-use super::labels::{lines, spread};
+use super::labels::lines;
 use super::marks::{is_hollow, mark};
+use super::names::arrow_down;
 use super::style::{
     AXIS, BLACK, COLOURS, COLUMN, CURVE, Colour, DASHED, DOTTED, FAINT, GREY, HEIGHT, LABEL, LINE, NAME,
-    NAMES, THIN, TITLE, WIDE,
+    NAMES, THIN, TITLE, WIDE, is_dashed,
 };
 use super::{Figure, Guide, Look, Series, font};
 
 /// A curve has about so many marks.
 const MARKS: f64 = 9.0;
-/// Length of a line in a legend.
-const SAMPLE: f64 = 28.0;
 /// Room below a plot for labels and the name of the axis, and at the left besides the labels.
 const BELOW: f64 = 46.0;
 const BESIDE: f64 = 34.0;
@@ -24,12 +23,6 @@ struct Margins {
     top: f64,
     left: f64,
     right: f64,
-}
-
-/// What a line of a legend shows.
-enum Entry<'a> {
-    Curve(usize, &'a Series),
-    Events(&'a str),
 }
 
 /// `panels` in rows of `columns` below the lines of `title`.
@@ -68,13 +61,13 @@ pub(super) fn sheet(title: &str, columns: usize, panels: &[&Figure]) -> Canvas {
 }
 
 impl Figure {
-    fn width(&self) -> f64 {
+    pub(super) fn width(&self) -> f64 {
         self.size.map_or(COLUMN, |size| size[0])
     }
 
     fn height(&self) -> f64 {
         let least = self.size.map_or(HEIGHT, |size| size[1]);
-        let named = if self.is_direct() { NAMES * self.series.len() as f64 } else { 0.0 };
+        let named = if self.is_direct() { NAMES * self.labels() as f64 } else { 0.0 };
         let square = if self.equal { self.width() - self.names() - 70.0 } else { 0.0 };
         least.max(named.max(square) + BELOW + self.head() + 6.0)
     }
@@ -96,28 +89,8 @@ impl Figure {
         [x, y]
     }
 
-    /// Whether the curves are named beside their ends.
-    fn is_direct(&self) -> bool {
-        self.joined && self.named().count() > 1
-    }
-
-    fn named(&self) -> impl Iterator<Item = (usize, &Series)> {
-        self.series.iter().enumerate().filter(|(_, series)| !series.name.is_empty())
-    }
-
-    fn title_lines(&self) -> Vec<String> {
+    pub(super) fn title_lines(&self) -> Vec<String> {
         lines(&self.title, self.width() - 20.0, TITLE)
-    }
-
-    /// Room at the right for names.
-    fn names(&self) -> f64 {
-        let longest = self.named().map(|(_, series)| font::width(&series.name, NAME)).fold(0.0, f64::max);
-        let levels = self.levels().map(|level| font::width(&level.label, NAME)).fold(0.0, f64::max);
-        if self.is_direct() { longest + 40.0 } else { 16.0_f64.max(levels + 14.0) }
-    }
-
-    fn levels(&self) -> impl Iterator<Item = &Guide> {
-        self.guides.iter().filter(|guide| guide.ends.is_none())
     }
 
     /// Room at the left for labels and the name of the axis.
@@ -127,28 +100,6 @@ impl Figure {
         let widths =
             labels.iter().filter_map(|tick| tick.label.as_deref()).map(|label| font::width(label, LABEL));
         BESIDE + widths.fold(20.0, f64::max)
-    }
-
-    /// Lines of the legend below the title.
-    fn legend(&self) -> Vec<Vec<Entry<'_>>> {
-        let mut entries: Vec<Entry<'_>> = Vec::new();
-        if !self.joined && self.named().count() > 1 {
-            entries.extend(self.named().map(|(k, series)| Entry::Curve(k, series)));
-        }
-        entries.extend(self.events.iter().map(|events| Entry::Events(&events.label)));
-        let mut rows: Vec<Vec<Entry<'_>>> = Vec::new();
-        let mut used = f64::INFINITY;
-        for entry in entries {
-            let width = entry.width();
-            if used + width > self.width() - 20.0 {
-                (used, rows) = (0.0, rows.into_iter().chain([Vec::new()]).collect());
-            }
-            used += width;
-            if let Some(row) = rows.last_mut() {
-                row.push(entry);
-            }
-        }
-        rows
     }
 
     fn head(&self) -> f64 {
@@ -239,21 +190,13 @@ impl Figure {
             };
             let line = line.map(share);
             page.line(line.to_vec(), Stroke::new(GREY, 1.2).dashed(Some(DOTTED)));
-            // beside the plot where no names stand
-            if self.is_direct() || guide.ends.is_some() {
+            if guide.ends.is_some() {
                 let above = [line[1][0] - 3.0, line[1][1] - 5.0];
                 page.note(above, &guide.label, NAME, Anchor::End);
             }
         }
-        if !self.is_direct() {
-            let levels: Vec<&Guide> = self.levels().collect();
-            let wanted: Vec<f64> =
-                levels.iter().map(|level| down(y.share(level.through.1)).clamp(top, bottom)).collect();
-            for (at, level) in spread(&wanted, NAMES, [top + 4.0, bottom]).into_iter().zip(levels) {
-                page.text([right + 6.0, at + 0.36 * NAME], &level.label, NAME, Anchor::Start, GREY);
-            }
-        }
-        self.draw_names(&mut page, &ends, [left, right], [top, bottom]);
+        let heights: Vec<f64> = self.levels().map(|level| down(y.share(level.through.1))).collect();
+        self.draw_names(&mut page, &ends, &heights, [[left, right], [top, bottom]]);
         page
     }
 
@@ -294,85 +237,12 @@ impl Figure {
         page.text([0.5 * (left + right), bottom + 39.0], &self.x, AXIS, Anchor::Middle, BLACK);
         page.text_upwards([16.0, 0.5 * (top + bottom)], &self.y, AXIS);
     }
-
-    /// Names beside the ends of the curves, and the legend.
-    fn draw_names(
-        &self,
-        page: &mut Canvas,
-        ends: &[Option<[f64; 2]>],
-        [left, right]: [f64; 2],
-        [top, bottom]: [f64; 2],
-    ) {
-        if self.is_direct() {
-            let named: Vec<(usize, &Series)> = self.named().collect();
-            let wanted: Vec<f64> =
-                named.iter().map(|(k, _)| ends[*k].map_or(bottom, |end| end[1].clamp(top, bottom))).collect();
-            for (y, (k, series)) in spread(&wanted, NAMES, [top + 4.0, bottom - 2.0]).into_iter().zip(named) {
-                let colour = series.colour(k);
-                if let Some(end) = ends[k] {
-                    let leader = vec![end, [right + 12.0, y]];
-                    page.line(leader, Stroke::new(GREY, 0.8).opacity(0.7));
-                }
-                self.sample(page, k, [right + 14.0, y], 14.0, colour);
-                page.text([right + 33.0, y + 0.36 * NAME], &series.name, NAME, Anchor::Start, BLACK);
-            }
-        }
-        let first = 18.0 + LINE * self.title_lines().len() as f64;
-        for (n, row) in self.legend().into_iter().enumerate() {
-            let (mut x, y) = (left.min(40.0), first + LINE * n as f64);
-            for entry in row {
-                let text = match entry {
-                    Entry::Curve(k, series) => {
-                        mark(page, k, [x + 8.0, y - 4.0], series.colour(k), 1.0);
-                        x += 20.0;
-                        &series.name
-                    }
-                    Entry::Events(label) => {
-                        arrow_down(page, [x + 8.0, y - 0.5]);
-                        x += 20.0;
-                        label
-                    }
-                };
-                page.text([x, y], text, NAME, Anchor::Start, BLACK);
-                x += font::width(text, NAME) + 22.0;
-            }
-        }
-    }
-
-    /// A piece of the k-th curve, `length` pixels from `at` on.
-    fn sample(&self, page: &mut Canvas, k: usize, at: [f64; 2], length: f64, colour: Colour) {
-        let series = &self.series[k];
-        let [x, y] = at;
-        match series.look {
-            Look::Marked => mark(page, k, [x + 0.5 * length, y], colour, 1.0),
-            Look::Dots => page.circle([x + 0.5 * length, y], 2.0, Some(Fill::Flat(colour, 0.7)), None),
-            Look::Plain | Look::Wide => {
-                let width = if series.look == Look::Wide { WIDE } else { CURVE };
-                let dash = series.dash(k).then_some([5.0, 3.0]);
-                page.line(vec![[x, y], [x + length, y]], Stroke::new(colour, width).dashed(dash));
-            }
-        }
-    }
 }
 
 /// Events beyond which no lines go down from their marks.
 const MOST_LINES: usize = 16;
 /// Dots of a series beyond which every so many-th is drawn.
 const DOTS: usize = 1500;
-
-impl Entry<'_> {
-    fn width(&self) -> f64 {
-        match self {
-            Entry::Curve(_, series) => font::width(&series.name, NAME) + 42.0,
-            Entry::Events(label) => font::width(label, NAME) + SAMPLE + 14.0,
-        }
-    }
-}
-
-/// A small triangle whose tip touches `at` from above.
-fn arrow_down(page: &mut Canvas, [x, y]: [f64; 2]) {
-    page.area(vec![[x, y], [x - 4.0, y - 8.0], [x + 4.0, y - 8.0]], Some(Fill::Flat(BLACK, 1.0)), None);
-}
 
 /// Of many points, the first, the last, the lowest and the highest of each column of pixels.
 fn thinned(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
@@ -414,12 +284,12 @@ impl Guide {
 }
 
 impl Series {
-    fn colour(&self, k: usize) -> Colour {
+    pub(super) fn colour(&self, k: usize) -> Colour {
         COLOURS[self.colour.unwrap_or(k) % COLOURS.len()]
     }
 
     /// Every second curve is dashed.
-    fn dash(&self, k: usize) -> bool {
-        self.colour.unwrap_or(k) % 2 == 1
+    pub(super) fn dash(&self, k: usize) -> bool {
+        is_dashed(self.colour.unwrap_or(k))
     }
 }

@@ -30,6 +30,30 @@ pub(crate) const COLOURS: [Colour; 9] = [
     Colour(170, 30, 60),
 ];
 
+/// Outline of a mark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    Circle,
+    Square,
+    Triangle,
+    /// With its tip below.
+    Falling,
+    Diamond,
+}
+
+/// Marks of the curves, in their order, with their radii in pixels: every second one is hollow and larger, so that one is seen
+/// within the other.
+pub(crate) const MARKS: [(Shape, f64); 8] = [
+    (Shape::Circle, 3.2),
+    (Shape::Square, 4.6),
+    (Shape::Triangle, 4.6),
+    (Shape::Circle, 5.4),
+    (Shape::Square, 3.0),
+    (Shape::Falling, 6.0),
+    (Shape::Diamond, 4.2),
+    (Shape::Diamond, 6.6),
+];
+
 /// Width of a figure for a column of an article, pixels; in print it is reduced to a half.
 pub(crate) const COLUMN: f64 = 500.0;
 /// Height of a plot with its title and axes.
@@ -50,10 +74,15 @@ pub(crate) const CURVE: f64 = 1.8;
 pub(crate) const WIDE: f64 = 3.6;
 pub(crate) const THIN: f64 = 1.0;
 
-/// Dash and gap of every second curve, of guides, and of what lies behind a sphere.
+/// Dash and gap of dashed curves, of guides, and of what lies behind a sphere.
 pub(crate) const DASHED: [f64; 2] = [7.0, 4.0];
 pub(crate) const DOTTED: [f64; 2] = [1.5, 3.5];
 pub(crate) const HIDDEN: [f64; 2] = [4.0, 4.0];
+
+/// Whether the k-th curve is dashed.
+pub(crate) fn is_dashed(k: usize) -> bool {
+    k % 2 == 1
+}
 
 /// The family of letters where the font of the program is not installed: others that are not wider.
 pub(crate) const FAMILY: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";

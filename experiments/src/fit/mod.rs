@@ -27,6 +27,8 @@ use crate::plot::Picture;
 use crate::table::Format;
 
 const EXAMPLES: &str = "Examples:
+  polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
+    --noise 0.01 --out record.csv
   polhode fit record.csv
   polhode fit record.csv --window 0,2.5 --trace 0.0007
   polhode fit record.csv --report fit.html --residuals residuals.csv
@@ -77,7 +79,7 @@ pub(crate) struct Fit {
     prior: PriorArguments,
     #[command(flatten)]
     wheel: WheelArguments,
-    /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, drag that grows with the square of the rate, constant in body axes
+    /// Torque on the body besides those of the record; a model, whose values are estimated: relative drag, drag along each sensor axis, drag that grows with the square of the rate, constant in body axes
     #[arg(long, value_enum, default_value_t = Torque::Auto)]
     torque: Torque,
     /// Whether the coefficients of the torque are those of the whole record, or each segment has its own

@@ -52,22 +52,22 @@ pub(crate) struct Propagate {
     #[command(flatten)]
     times: TimeArguments,
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
-    #[arg(long, value_name = "NAME", default_value = "exact")]
+    #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Method")]
     method: String,
     /// Step of a method with fixed steps, s, a whole number of which leads to every time; exact, taylor, dop853 and tsit5 need none
-    #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true)]
+    #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Method")]
     step: Option<f64>,
     /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
-    #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true, help_heading = "Method")]
     tolerance: Option<f64>,
     /// Columns of the rows, by commas: t, q, omega, energy, momentum, errors, euler, or names of columns [default: all]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Output")]
     fields: Vec<String>,
     /// How rows are printed [default: table on a terminal, csv otherwise]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
     /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
 }
 

@@ -1,6 +1,7 @@
 //! `polhode experiment`: the results of experiments, run, written, compared and published.
 
 mod check;
+mod committed;
 mod page;
 mod provenance;
 mod publish;

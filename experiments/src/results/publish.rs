@@ -4,112 +4,24 @@
 //! `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced by that table in Markdown, and
 //! every `generated/experiment-table` that the article names is made: a LaTeX table, a CSV, or the experiment, commit and
 //! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both, `work-precision/which` the quickest
-//! methods by kind of problem, and `work-precision/claim` whether any is quicker than the general-purpose ones everywhere.
+//! methods by kind of problem, `work-precision/claim` whether any is quicker than the general-purpose ones everywhere, and
+//! `generated/work-precision-curves.csv` cost against accuracy. `generated/style` is the style of figures for LaTeX.
 //! Nothing is read or written outside of the root, whatever the results and the markers say.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
-
 use super::RESULTS;
-use super::which::Which;
+use super::committed::{NAMES, REMEDY, Results, is_name, within};
 use crate::error::Error;
+use crate::figure;
 use crate::files::{MARK, Staging, emit, read};
 use crate::methods;
-use crate::table::{Part, Shown, Table};
 
 const GENERATED: &str = "generated/";
 const METHODS: &str = "methods";
 const ORIGIN: &str = "origin";
-/// What is made of the costs that the experiment `COSTED` measured.
-const COSTED: &str = "work-precision";
-const WHICH: &str = "which";
-const CLAIM: &str = "claim";
-const NAMES: &str = "names have small letters, digits and hyphens";
-const REMEDY: &str =
-    "run `polhode experiment run all --scale paper`, then `polhode experiment publish --from results/paper`";
-
-/// What is read of a `run.toml`.
-#[derive(Deserialize)]
-struct Origin {
-    experiment: String,
-    scale: String,
-    commit: String,
-    changed: String,
-    #[serde(default)]
-    tables: BTreeMap<String, Described>,
-    #[serde(default)]
-    views: BTreeMap<String, Part>,
-}
-
-#[derive(Deserialize)]
-struct Described {
-    #[serde(default)]
-    shown: Vec<Shown>,
-}
-
-impl fmt::Display for Origin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let changes = if self.changed == "false" { "" } else { " with changes" };
-        write!(f, "{}, commit {}{changes}, scale {}", self.experiment, self.commit, self.scale)
-    }
-}
-
-/// The committed results of one experiment.
-struct Results {
-    folder: PathBuf,
-    origin: Origin,
-}
-
-impl Results {
-    fn open(folder: PathBuf) -> Result<Self, Error> {
-        let path = folder.join(MARK);
-        let origin: Origin = toml::from_str(&read(&path, REMEDY)?)
-            .map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
-        let name = &origin.experiment;
-        if !is_name(name) || !folder.ends_with(name) {
-            let rule = if is_name(name) { "is not the name of its folder" } else { NAMES };
-            return Err(Error::input(&format!("{}: experiment", path.display()), name, rule, REMEDY));
-        }
-        Ok(Self { folder, origin })
-    }
-
-    fn csv(&self, table: &str) -> Result<String, Error> {
-        read(&within(&self.folder, self.folder.join(format!("{table}.csv")))?, REMEDY)
-    }
-
-    /// The quickest methods, of the costs of `work-precision`.
-    fn which(&self) -> Result<Which, Error> {
-        Which::of(&self.csv("costs")?).map_err(|reason| {
-            Error::Input(format!("{}/costs.csv: {reason}; {REMEDY}", self.folder.display()))
-        })
-    }
-
-    /// Whether `name` is the claim about the costs of `work-precision`.
-    fn is_claim(&self, name: &str) -> bool {
-        self.origin.experiment == COSTED && name == CLAIM
-    }
-
-    /// The table or view of that name, to be rounded.
-    fn table(&self, name: &str) -> Result<Table, Error> {
-        if self.origin.experiment == COSTED && name == WHICH {
-            return Ok(self.which()?.table());
-        }
-        let part = self.origin.views.get(name);
-        let whole = part.map_or(name, |part| &part.table);
-        let described = self.origin.tables.get(&format!("{whole}.csv"));
-        let Some(described) = described.filter(|found| is_name(whole) && !found.shown.is_empty()) else {
-            let place = self.folder.join(MARK).display().to_string();
-            return Err(Error::input(&place, name, "is no table that it describes for readers", REMEDY));
-        };
-        let table = Table::from_csv(whole, &self.csv(whole)?, &described.shown).map_err(|reason| {
-            Error::Input(format!("{}/{whole}.csv: {reason}; {REMEDY}", self.folder.display()))
-        })?;
-        Ok(part.map_or_else(|| table.clone(), |part| part.of(&table)))
-    }
-}
+const STYLE: &str = "style";
 
 /// Fills README.md and paper/generated below `root`, after taking over the results of the folder `from`, if given.
 pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
@@ -192,6 +104,10 @@ fn for_article(name: &str, results: &[Results]) -> Result<(String, String), Erro
         let head = format!("% catalogue of methods, version {}\n", env!("CARGO_PKG_VERSION"));
         return Ok(("methods.tex".into(), head + &methods::table().latex()));
     }
+    if stem == STYLE {
+        let head = format!("% style of figures, version {}\n", env!("CARGO_PKG_VERSION"));
+        return Ok(("style.tex".into(), head + &figure::latex()));
+    }
     let (stem, is_csv) = stem.strip_suffix(".csv").map_or((stem, false), |stem| (stem, true));
     // of two experiments, one may be called as the other begins
     let of =
@@ -211,26 +127,6 @@ fn for_article(name: &str, results: &[Results]) -> Result<(String, String), Erro
         (ORIGIN, false) => Ok((format!("{stem}.tex"), format!("% {head}\n{head}%\n"))),
         (_, false) => Ok((format!("{stem}.tex"), format!("% {head}\n{}", found.table(table)?.latex()))),
     }
-}
-
-/// Whether `name` can be that of an experiment or a table: it leads to no other folder.
-fn is_name(name: &str) -> bool {
-    !name.is_empty() && name.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'-'))
-}
-
-/// `path`, if no link leads out of `root`.
-fn within(root: &Path, path: PathBuf) -> Result<PathBuf, Error> {
-    let leads_out = match (root.canonicalize(), path.canonicalize()) {
-        (Ok(root), Ok(end)) => !end.starts_with(root),
-        // what is not there yet is made here, unless a link says where
-        _ => path.is_symlink(),
-    };
-    if leads_out {
-        let value = path.display().to_string();
-        let remedy = "put a file or folder in its place";
-        return Err(Error::input("--root", &value, "is a link that leads out of it", remedy));
-    }
-    Ok(path)
 }
 
 fn folders(results: &Path) -> Result<Vec<PathBuf>, Error> {

@@ -13,10 +13,10 @@ pub(super) struct DisturbanceArguments {
     /// Drag in proportion to the angular momentum of the body, -k J w, 1/s
     #[arg(long, value_name = "K", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     relative_drag: f64,
-    /// Viscous drag about each axis, -d w, N m s
+    /// Viscous drag about each axis, -d w, N m s: three coefficients, where --drag of propagate has one for all axes
     #[arg(long, value_name = "dx,dy,dz", value_parser = drags, allow_hyphen_values = true)]
     drag: Option<[f64; 3]>,
-    /// Constant torque that the record does not tell, N m
+    /// Constant torque that the record does not tell, N m (--torque of fit names a model)
     #[arg(long, value_name = "tx,ty,tz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     torque: Option<[f64; 3]>,
     /// Constant torque that is written to columns tx, ty, tz, N m
@@ -25,7 +25,7 @@ pub(super) struct DisturbanceArguments {
     /// White noise of each component of the torque: deviation of the impulse of 1 s, N m s^(1/2)
     #[arg(long, value_name = "S", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     torque_noise: f64,
-    /// Momentum of a wheel at the start, written to columns hx, hy, hz, N m s
+    /// Momentum of a wheel at the start, written to columns hx, hy, hz, N m s (--wheel of fit is an axis with an inertia)
     #[arg(long, value_name = "hx,hy,hz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     wheel: Option<[f64; 3]>,
     /// Change of the wheel's momentum, N m

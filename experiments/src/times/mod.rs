@@ -17,6 +17,7 @@ pub(crate) use regular::{Regular, regular};
 
 /// Times of the rows, and what they count from.
 #[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Times")]
 pub(crate) struct TimeArguments {
     /// Output times: a list t1,t2,..., a file with one time a line or a column, or - for standard input; seconds, with a unit (12h, 30d), or dates with --epoch
     #[arg(long, value_name = "LIST|FILE|-", value_parser = times, allow_hyphen_values = true,

@@ -63,7 +63,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut figure = Figure::log_log(
         "efficiency",
         format!(
-            "Error over the Cramér–Rao bound: {trials} records of {seconds} s at 100 Hz, asymmetric body"
+            "Error over the Cramér–Rao bound: {trials} records of {seconds} s at 100 Hz, asymmetric body; bars: 95 % of what so few \
+             records scatter"
         ),
         "noise over rate",
         "error over bound",
@@ -86,8 +87,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             }
             let value = (level, summary.over_bound);
             match curves.iter_mut().find(|s| s.name == label) {
-                Some(series) => series.points.push(value),
-                None => curves.push(Series::new(label, vec![value])),
+                Some(series) => series.push(value, summary.interval),
+                None => curves.push(Series::new(label, vec![value]).with_spread(vec![summary.interval])),
             }
         };
         table.push(summary.row(name, OWN, "", level, Some(refused)));

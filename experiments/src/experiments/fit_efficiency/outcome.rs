@@ -19,6 +19,8 @@ pub(super) struct Summary {
     pub(super) answered: usize,
     /// Root of the mean square error over the bound.
     pub(super) over_bound: f64,
+    /// Its 95 % interval, for the scatter of the records.
+    pub(super) interval: (f64, f64),
     median: Option<f64>,
     quantile_90: Option<f64>,
     over_likelihood: Option<f64>,
@@ -36,10 +38,13 @@ impl Summary {
         let both = outcomes.iter().zip(likelihood).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
         let (own, other) =
             both.fold((0.0, 0.0), |(own, other), (a, b)| (own + a.over_bound, other + b.over_bound));
+        let over_bound =
+            (answers.iter().map(|o| o.over_bound).sum::<f64>() / (5 * answers.len()) as f64).sqrt();
+        let spread = libm::exp(half_width(&answers, 5.0 * over_bound * over_bound));
         Summary {
             answered: answers.len(),
-            over_bound: (answers.iter().map(|o| o.over_bound).sum::<f64>() / (5 * answers.len()) as f64)
-                .sqrt(),
+            over_bound,
+            interval: (over_bound / spread, over_bound * spread),
             median: quantile(&sorted, 0.5),
             quantile_90: quantile(&sorted, 0.9),
             over_likelihood: (other > 0.0).then(|| (own / other).sqrt()),
@@ -80,6 +85,14 @@ pub(super) fn best(choices: impl Iterator<Item = Summary>) -> Option<(usize, Sum
     })
 }
 
+/// Half width of the 95 % interval of the logarithm of the root of the mean square, whose mean is `mean`.
+fn half_width(answers: &[Outcome], mean: f64) -> f64 {
+    let n = answers.len() as f64;
+    let square = |o: &Outcome| (o.over_bound - mean) * (o.over_bound - mean);
+    let variance = answers.iter().map(square).sum::<f64>() / (n - 1.0).max(1.0);
+    1.96 * (variance / n).sqrt() / (2.0 * mean)
+}
+
 /// Of ascending values, by linear interpolation.
 fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
@@ -109,6 +122,10 @@ mod tests {
         let s = Summary::new(&outcomes, &likelihood);
         assert_eq!((s.answered, s.median, s.coverage), (3, Some(2.0), Some(0.5)));
         assert_eq!(s.over_bound, (70.0_f64 / 15.0).sqrt());
+        // of 5, 20 and 45: mean 70/3, standard deviation 20.2
+        let relative = libm::log(s.interval.1 / s.over_bound);
+        assert!((relative - 1.96 * 20.207_259_421_636_9 / 3.0_f64.sqrt() / (140.0 / 3.0)).abs() < 1e-12);
+        assert!((s.interval.0 * s.interval.1 - s.over_bound * s.over_bound).abs() < 1e-12);
         assert_eq!(s.over_likelihood, Some(2.5_f64.sqrt()));
         assert_eq!(s.quantile_90, Some(2.0 + 0.8));
         let none = Summary::new(&[None], &[None]);

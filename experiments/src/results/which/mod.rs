@@ -1,5 +1,7 @@
 //! Which method is the quickest, by kind of problem: what `work-precision` measured, over all bodies of a kind.
 
+mod curves;
+
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
@@ -25,6 +27,8 @@ struct Row {
     method: String,
     general: String,
     rk4_steps: f64,
+    rk4_steps_p10: f64,
+    rk4_steps_p90: Option<f64>,
 }
 
 /// What one body asks: a horizon and an accuracy, and what it costs each method.
@@ -54,6 +58,12 @@ fn ranked<'a>(contests: &[&Contest<'a>]) -> Vec<(&'a str, f64)> {
         everywhere.map(|(method, (count, sum))| (method, libm::exp(sum / count as f64))).collect();
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
     found
+}
+
+/// The first horizon, or as far as the motions of a kind are known.
+fn longest(contests: &[Contest], kind: &str) -> f64 {
+    let known = contests.iter().filter(|contest| contest.kind == kind).map(|contest| contest.turned);
+    known.filter(|turned| *turned <= HORIZONS[0]).fold(0.0, f64::max)
 }
 
 impl Which {
@@ -126,10 +136,7 @@ impl Which {
         let mut table = Table::new("which", "The quickest method by problem, horizon and accuracy.", columns);
         let contests = self.contests();
         for kind in self.kinds() {
-            // where a motion is not known to the first horizon, as far as it is known
-            let known = contests.iter().filter(|contest| contest.kind == kind).map(|contest| contest.turned);
-            let longest = known.filter(|turned| *turned <= HORIZONS[0]).fold(0.0, f64::max);
-            for turned in [longest, HORIZONS[1]] {
+            for turned in [longest(&contests, kind), HORIZONS[1]] {
                 for accuracy in ACCURACIES {
                     let of = |contest: &&Contest| {
                         contest.kind == kind && contest.turned == turned && contest.accuracy == accuracy
