@@ -26,15 +26,15 @@ const REFERENCE: u64 = 10_000;
 
 /// Instructions, method, and how many times as fast as the scalar rk4 it was (AVX-512 with two units, beside other programs).
 const ROWS: [(Instructions, &str, f64); 9] = [
-    (Instructions::Widest, "two-turn:31", 9.7),
-    (Instructions::Widest, "lie-poisson:321", 5.1),
-    (Instructions::Widest, "rk4", 7.6),
-    (Instructions::Avx2, "two-turn:31", 6.9),
-    (Instructions::Avx2, "lie-poisson:321", 3.7),
-    (Instructions::Avx2, "rk4", 5.0),
-    (Instructions::Baseline, "two-turn:31", 3.7),
-    (Instructions::Baseline, "lie-poisson:321", 1.9),
-    (Instructions::Baseline, "rk4", 1.8),
+    (Instructions::Widest, "two-turn:31", 11.9),
+    (Instructions::Widest, "lie-poisson:321", 6.2),
+    (Instructions::Widest, "rk4", 8.1),
+    (Instructions::Avx2, "two-turn:31", 8.2),
+    (Instructions::Avx2, "lie-poisson:321", 4.3),
+    (Instructions::Avx2, "rk4", 5.6),
+    (Instructions::Baseline, "two-turn:31", 4.4),
+    (Instructions::Baseline, "lie-poisson:321", 2.3),
+    (Instructions::Baseline, "rk4", 2.7),
 ];
 
 /// Different bodies and starts.

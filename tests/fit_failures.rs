@@ -6,7 +6,10 @@ mod measured;
 
 use measured::{distance, entries, example, random_rotation, record, sampled, times, turned};
 use nalgebra::{Matrix3, Vector3};
-use polhode::fit::{Constraint, FitError, Limit, Reading, Record, Settings, Undetermined, fit, simulate};
+use polhode::fit::{
+    Constraint, Disturbances, FitError, Gyroscope, Limit, Reading, Record, Settings, Undetermined, fit,
+    simulate, simulate_with,
+};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 
@@ -230,6 +233,30 @@ fn mistaken_units_are_named_where_no_tensor_settles() {
     let rates = thrown([1.0, 1.05, 1.1], [1.0, 2.0, 1.0], 1e-3, &mut random);
     let message = read(&rates, 1.0, pi / 30.0).unwrap_err().to_string();
     assert!(message.contains(rpm) || message.contains("are the units right?"), "{message}");
+}
+
+/// In a wrong unit a body next to a sphere, slowed or shaken by torques, comes near to the record; in the right one the noise of
+/// the rates explains it.
+#[test]
+fn mistaken_units_are_found_where_torques_would_explain_the_record() {
+    let moments = [1.0, 2.0, 2.6].map(|moment| moment / 5.6);
+    let body = Inertia::from_moments(moments).unwrap();
+    let times: Vec<f64> = (0..3000).map(|i| f64::from(i) / 50.0).collect();
+    let drag = Disturbances { relative_drag: 1e-2, ..Disturbances::default() };
+    let sensor = Gyroscope { noise: 1e-2, ..Gyroscope::default() };
+    let mut random = Random::new(7);
+    for (of_times, of_rates) in [(1.0, 180.0 / std::f64::consts::PI), (1e3, 1.0)].repeat(3) {
+        let omega = random.normal_vector().normalize();
+        let rates = simulate_with(&body, omega, &times, &drag, &sensor, &mut random).unwrap();
+        let read = |of_times: f64, of_rates: f64| {
+            let t: Vec<f64> = times.iter().map(|t| t * of_times).collect();
+            let w: Vec<_> = rates.iter().map(|w| w * of_rates).collect();
+            fit(&Record::from_samples(&t, &w).unwrap(), &Settings::default())
+        };
+        assert!(read(1.0, 1.0).is_ok(), "{omega}");
+        let wrong = read(of_times, of_rates);
+        assert!(matches!(wrong, Err(FitError::Units { .. })), "{omega} {of_times} {of_rates}: {wrong:?}");
+    }
 }
 
 #[test]

@@ -99,6 +99,68 @@ fn drag_is_found_and_fitted_at_its_bound() {
     }
 }
 
+/// Without any drag half of the records would have it drive the body: its coefficient is then zero, with the deviation of
+/// what the record leaves possible, and the tensor keeps its own.
+#[test]
+fn drag_takes_energy() {
+    let mut random = Random::new(61);
+    let times = sampled(20, 20);
+    for (model, most) in [(TorqueModel::Drag, 1), (TorqueModel::Drag3, 3), (TorqueModel::Drag6, 1)] {
+        let (mut active, mut coefficients, mut told, mut covered) = (0, 0, 0, 0);
+        let count = 16;
+        for _ in 0..count {
+            let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &random_rotation(&mut random));
+            let omega = random.normal_vector().normalize();
+            let noisy: Vec<_> =
+                free(&j, omega, &times).iter().map(|w| w + random.normal_vector() * 1e-3).collect();
+            let settings = Settings { torque: model, ..Settings::default() };
+            let e = fit(&Record::from_samples(&times, &noisy).unwrap(), &settings).unwrap();
+            let drags = e.active_constraints.iter().filter(|c| c.constraint.to_string().contains("drag"));
+            let held = drags.count();
+            assert!(held <= most);
+            active += held;
+            let of: Vec<f64> = e.torque.coefficients.iter().map(|c| c.value).collect();
+            let lowest = match of[..] {
+                [xx, yy, zz, xy, xz, yz] => {
+                    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).symmetric_eigenvalues().min()
+                }
+                _ => of.iter().copied().fold(f64::INFINITY, f64::min),
+            };
+            assert!(lowest >= -1e-16, "{lowest:e}");
+            assert!(e.torque.coefficients.iter().all(|c| c.sigma > 0.0), "{:?}", e.torque);
+            coefficients += of.len();
+            told += e.torque.coefficients.iter().filter(|c| c.value.abs() < 1.96 * c.sigma).count();
+            // one moment at a time: along an active face the covariance is no longer that of a normal distribution
+            let errors = entries(&(e.shape.tensor() - j));
+            covered += (0..6).filter(|&k| errors[k].abs() < 1.96 * e.covariance[(k, k)].sqrt()).count();
+        }
+        let share = covered as f64 / (6 * count) as f64;
+        println!(
+            "{model:?}: {active} active, {told} of {coefficients} drags and {share:.3} of entries covered"
+        );
+        assert!(active >= count / 4, "{model:?}: {active}");
+        assert!(told as f64 > 0.88 * coefficients as f64, "{model:?}: {told} of {coefficients}");
+        assert!(share > 0.88, "{model:?}: {share}");
+    }
+}
+
+/// Drag that would drive a body which a motor drives is held at zero, and the contradiction is told.
+#[test]
+fn a_driven_body_contradicts_drag() {
+    let mut random = Random::new(62);
+    let times = sampled(50, 20);
+    let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &random_rotation(&mut random));
+    let driven = motion(&j, Vector3::new(0.3, 1.0, 0.4), &times, &|_, w| j * w * 0.02);
+    let noisy: Vec<_> = driven.iter().map(|w| w + random.normal_vector() * 1e-3).collect();
+    let settings = Settings { torque: TorqueModel::Drag, ..Settings::default() };
+    let e = fit(&Record::from_samples(&times, &noisy).unwrap(), &settings).unwrap();
+    assert_eq!(e.torque.coefficients[0].value, 0.0);
+    assert!(e.pull > 20.0, "{}", e.pull);
+    let warnings: Vec<String> = e.warnings.iter().map(ToString::to_string).collect();
+    assert!(warnings.iter().any(|w| w.contains("drag >= 0 (drag takes energy)")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.contains("the record contradicts them")), "{warnings:?}");
+}
+
 /// Readings at a tensor, further unknowns, a start and times.
 type Readings<'a> = dyn Fn(&Matrix3<f64>, &[f64], Vector3<f64>, &[f64]) -> Vec<Vector3<f64>> + 'a;
 

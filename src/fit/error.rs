@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::physical::constraint::Constraint;
 use super::physical::failure::SolverFailure;
+use super::record::RateUnit;
 use super::report::averages::AverageAxis;
 use super::report::identifiability::Identifiability;
 use super::weak::mistaken_units::{MistakenUnit, alternatives};
@@ -115,6 +116,108 @@ pub enum FitError {
     /// Limits that leave less than a millionth of the trace between them.
     #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", demand(&.0.first), demand(&.0.second))]
     NoRoom(Box<Clash>),
+    /// Coefficients of a torque that the record cannot tell.
+    #[error(
+        "the record cannot tell {}{}: ask for a simpler torque, or record longer, with a larger wobble, or several throws \
+         about different axes", names.join(", "),
+        if *rank < 5 { format!(" from the tensor, of which it determines {rank} of 5 numbers with them, and 5 without") }
+        else { String::new() }
+    )]
+    Untold {
+        /// Their names.
+        names: Vec<&'static str>,
+        /// How many of the five numbers of the tensor are determined with them.
+        rank: usize,
+    },
+    /// A wheel is to be calibrated from a record that does not tell its speed.
+    #[error(
+        "no wheel turns in the record: each segment must hold the speed of the wheel, somewhere not zero"
+    )]
+    NoWheelSpeed,
+    /// A wheel is to be calibrated from a record that has torques.
+    #[error("the record has torques: calibrate a wheel from records in which none acts but that of air")]
+    WheelWithTorques,
+    /// Segments that hold different quantities.
+    #[error(
+        "{with} has {what} and {without} has none: give both what their sensors read, zeros where nothing turns or \
+         pushes, or fit them apart"
+    )]
+    Sensors {
+        /// The quantity.
+        what: &'static str,
+        /// The first segment that has it.
+        with: String,
+        /// The first that has not.
+        without: String,
+    },
+    /// A segment whose rates have a unit beside one whose unit is a guess.
+    #[error(
+        "{named} is in {unit} by its header, and {unnamed} names no unit and would be taken for rad/s: name the unit of \
+         both"
+    )]
+    MixedUnits {
+        /// The segment whose unit is named.
+        named: String,
+        /// Its unit.
+        unit: RateUnit,
+        /// The first segment whose unit is not.
+        unnamed: String,
+    },
+    /// The covariance of a prior tensor is not one.
+    #[error(
+        "{}; give one that is symmetric and positive, as standard deviations that are not zero do",
+        if *symmetric { format!("the covariance of the prior tensor is not positive: its smallest eigenvalue is {least:.3e} (kg m^2)^2") }
+        else { "the covariance of the prior tensor is not symmetric".into() }
+    )]
+    PriorCovariance {
+        /// Its smallest eigenvalue, (kg m²)²; NaN where an entry is not finite.
+        least: f64,
+        /// Whether it is symmetric.
+        symmetric: bool,
+    },
+    /// The prior tensor and a limit, or the physical law, exclude each other.
+    #[error(
+        "the prior tensor and {} exclude each other: it lies {pull:.1} of its standard deviations outside; check the \
+         signs of its products, widen its deviations, or leave one of the two out",
+        demand(constraint)
+    )]
+    PriorOutside {
+        /// The limit or the law.
+        constraint: Constraint,
+        /// Distance, in standard deviations of the prior.
+        pull: f64,
+    },
+    /// The prior tensor and the record exclude each other.
+    #[error(
+        "the prior tensor and the record exclude each other: (xx, yy, zz, xy, xz, yz) over the trace is {} by the prior \
+         and {} by the record, chi squared {chi2:.1} of {dof} degrees of freedom; check the axes of the prior, the signs \
+         of its products and its unit, widen its deviations, or leave it out",
+        six(prior),
+        six(record)
+    )]
+    PriorContradicted {
+        /// Entries xx, yy, zz, xy, xz, yz of the prior, over its trace.
+        prior: [f64; 6],
+        /// The same of what the record says.
+        record: [f64; 6],
+        /// Square of their distance in standard deviations of it.
+        chi2: f64,
+        /// Its degrees of freedom.
+        dof: usize,
+    },
+    /// The prior tensor has another size than the known quantity says.
+    #[error(
+        "the prior tensor has the trace {prior:.4e} +- {sigma:.1e} kg m^2, and the known quantity gives {known:.4e}: they \
+         exclude each other; correct one of them, or give the prior as a shape"
+    )]
+    PriorSize {
+        /// Trace of the prior, kg m².
+        prior: f64,
+        /// Its standard deviation, kg m².
+        sigma: f64,
+        /// Trace by the known quantity, kg m².
+        known: f64,
+    },
     /// The axis of a limit has no direction.
     #[error("limit {limit} has the axis {axis:?}; it must be a finite vector that is not zero")]
     LimitAxis {
@@ -180,6 +283,10 @@ fn demand(constraint: &Constraint) -> String {
         Constraint::Triangle => "the law I1 + I2 >= I3, by which a moment is at most half the trace".into(),
         limit => limit.to_string(),
     }
+}
+
+fn six(entries: &[f64; 6]) -> String {
+    format!("({})", entries.map(|entry| format!("{entry:.4}")).join(", "))
 }
 
 fn nearest(torque: Option<f64>, most: f64) -> String {

@@ -1,22 +1,25 @@
 //! The estimator: from a record to a physical tensor.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::error::FitError;
-use super::physical::coordinates::tensor;
+use super::physical::constraint::ActiveConstraint;
+use super::physical::coordinates::{Coordinates, ENTRIES, Form, tensor};
 use super::physical::failure::SolverFailure;
-use super::physical::nearest::nearest;
+use super::physical::nearest::{Normal, nearest};
 use super::record::Record;
 use super::report::averages;
+use super::report::columns::{dissipation, is_drag, is_torque, named};
 use super::report::estimate::Estimate;
 use super::report::facts::Facts;
 use super::report::identifiability::Identifiability;
-use super::report::nuisance::Spike;
+use super::report::nuisance::{Agreement, Spike};
 use super::report::torque_free::trends;
-use super::settings::{Settings, TorqueModel, TorqueNoise};
+use super::settings::{Settings, TorqueModel, TorqueNoise, TorqueScope};
+use super::weak::joint::Joint;
 use super::weak::ladder::{Demand, climb};
 use super::weak::mistaken_units::{Better, better_unit, suspicious};
-use super::weak::model::{Column, Kind, sensor_columns};
+use super::weak::model::{Column, Kind, STEPS, sensor_columns, walk_columns};
 use super::weak::noise;
 use super::weak::normalised::{Normalised, normalised};
 use super::weak::radius::Failure;
@@ -67,30 +70,25 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     if input.is_some() && settings.known.is_some() {
         return Err(FitError::TwoScales);
     }
-    let variance = match settings.noise {
-        Some(sigma) => Some((sigma / rms) * (sigma / rms))
-            .filter(|v| v.is_normal())
-            .ok_or(FitError::Setting { name: "the noise", value: sigma })?,
-        None => noise::variance(&stretches),
-    };
-    // readings of a noiseless record carry at least the quadrature's error
-    let variance = variance.max(1e-20);
-    // the mean square is 1, of which the noise of three components is 3 σ²: a quarter is too much to fit
-    if 3.0 * variance > 0.25 {
-        return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
-    }
+    let variance = read_variance(settings, record, &stretches, rms)?;
     let singular = || FitError::Solver(SolverFailure::Covariance);
     let mut columns = sensor_columns(&settings.sensor, rms);
-    columns.extend(input.map(|_| Column { kind: Kind::Input, prior: None }));
+    columns.extend(input.map(|_| Column::new(Kind::Input, None)));
+    if let Some(walk) = settings.offset_walk {
+        // per √(unit of time), which is one over the unit of rate
+        columns.extend(walk_columns(&stretches, walk / rms / rms.sqrt(), STEPS));
+    }
+    let long = |s: &&Stretch| s.times.len() >= 2 * SAMPLES_PER_TEST as usize;
+    let alone: Vec<usize> = match settings.torque_scope {
+        TorqueScope::Segment => stretches.iter().filter(long).map(|s| s.index).collect(),
+        TorqueScope::Record => Vec::new(),
+    };
     let demand = Demand {
         radius: settings.radius.map(|r| r * rms),
         torque: settings.torque,
-        noise: match settings.torque_noise {
-            TorqueNoise::None => Noise::White,
-            TorqueNoise::Given(density) => Noise::Given(density / (rms * rms * rms) / variance),
-            TorqueNoise::Fitted => Noise::Fitted,
-        },
+        noise: noise_of(settings, rms, variance),
         columns: &columns,
+        alone: &alone,
         units: settings.check_units && input.is_none(),
     };
     let chosen = climb(&stretches, demand, variance).map_err(|failure| match failure {
@@ -104,11 +102,10 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     // torque noise may hide a mistaken unit, which must then explain the record without any
     let noisy = weak.levels().iter().any(|levels| levels.torque > 0.0);
     let doubtful = misfit > 4.0 || noisy || !weak.settled();
-    let better = if demand.units && suspicious(weak, variance) && !doubtful {
-        better_unit(&stretches, Some(weak), variance)
-    } else {
-        chosen.better.clone().filter(|_| doubtful)
-    };
+    let better = chosen.better.clone().filter(|_| doubtful).or_else(|| {
+        let asks = demand.units && suspicious(weak, variance);
+        asks.then(|| better_unit(&stretches, Some(weak), variance)).flatten()
+    });
     // a unit of any size must not convince: there is a tensor next to the sphere for any small wobble in large enough a unit
     if let Some(better) = better.as_ref().filter(|b| b.credible && !b.vague) {
         return Err(mistaken(misfit, better));
@@ -126,13 +123,19 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
             .then_some(-fall.rate * rms);
         return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall });
     }
+    let untold = untold(weak, &stretches, variance * misfit.max(1.0), &identifiability);
+    if !untold.is_empty() {
+        return Err(FitError::Untold { names: untold, rank: identifiability.rank });
+    }
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
     }
-    let root = weak.root / (variance * misfit.max(1.0)).sqrt();
-    // R⁻¹, a factor of the covariance
-    let free = root.try_inverse().ok_or(FitError::Solver(SolverFailure::Information))?;
-    let answer = nearest(weak.x(), root, &settings.limits)?;
+    let information = || FitError::Solver(SolverFailure::Information);
+    let kept = |column: &Column| is_drag(column) || column.kind == Kind::Input;
+    let joint = Joint::new(weak, kept, (variance * misfit.max(1.0)).sqrt()).ok_or_else(information)?;
+    let dissipation = dissipation(&weak.columns, &joint.kept);
+    let (told, prior) = with_prior(&joint, weak, settings, input)?;
+    let answer = nearest(&told, &settings.limits, &dissipation)?;
     let facts = Facts {
         record,
         settings,
@@ -143,8 +146,82 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         misfit,
         spikes,
         input,
+        joint: &joint,
+        told: &told,
+        prior,
+        dissipation: &dissipation,
     };
-    facts.report(answer, free, identifiability, better.as_ref().filter(|b| b.credible))
+    facts.report(answer, identifiability, better.as_ref().filter(|b| b.credible))
+}
+
+/// Variance of the noise of a component of the rates, in units of the mean square rate.
+pub(super) fn read_variance(
+    settings: &Settings,
+    record: &Record,
+    stretches: &[Stretch],
+    rms: f64,
+) -> Result<f64, FitError> {
+    let rounding = |quanta: Vector3<f64>| record.rounding(&quanta) / rms / rms;
+    let given = settings.quantum.map_or(0.0, |quantum| rounding(Vector3::repeat(quantum)));
+    let variance = match settings.noise {
+        Some(sigma) => Some((sigma / rms) * (sigma / rms))
+            .filter(|v| v.is_normal())
+            .ok_or(FitError::Setting { name: "the noise", value: sigma })?,
+        // slow motions rest on a step: their differences tell too little of its rounding
+        None => noise::variance(stretches).max(rounding(record.quanta())),
+    };
+    let variance = match settings.noise {
+        Some(_) => variance + given,
+        None => variance.max(given),
+    };
+    // readings of a noiseless record carry at least the quadrature's error
+    let variance = variance.max(1e-20);
+    // the mean square is 1, of which the noise of three components is 3 σ²: a quarter is too much to fit
+    if 3.0 * variance > 0.25 {
+        return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
+    }
+    Ok(variance)
+}
+
+/// The torque noise that is asked for, in units of the rate and of the noise of its readings.
+pub(super) fn noise_of(settings: &Settings, rms: f64, variance: f64) -> Noise {
+    match settings.torque_noise {
+        TorqueNoise::None => Noise::White,
+        TorqueNoise::Given(density) => Noise::Given(density / (rms * rms * rms) / variance),
+        TorqueNoise::Fitted => Noise::Fitted,
+    }
+}
+
+/// Chance of a distance between prior and record by which they exclude each other: χ² of 5 and of 6 degrees of freedom.
+const EXCLUDED: [f64; 2] = [35.888_186_879_672_87, 38.258_336_377_209_69]; // one in a million
+
+/// Standard deviations of a prior by which it may lie outside limits and law.
+const OUTSIDE: f64 = 6.0;
+
+/// What the record tells, joined with the prior, and how they agree.
+fn with_prior(
+    joint: &Joint,
+    weak: &WeakEstimate,
+    settings: &Settings,
+    input: Option<f64>,
+) -> Result<(Normal, Option<Agreement>), FitError> {
+    let Some(prior) = &settings.prior else { return Ok((joint.told.clone(), None)) };
+    let prior = prior.told()?;
+    let alone = nearest(&prior.shape(), &settings.limits, &[])?;
+    let pulls = |c: &&ActiveConstraint| c.multiplier;
+    if let Some(active) = alone.active.iter().max_by(|a, b| pulls(a).total_cmp(&pulls(b)))
+        && alone.pull > OUTSIDE
+    {
+        return Err(FitError::PriorOutside { constraint: active.constraint, pull: alone.pull });
+    }
+    let place = joint.kept.iter().position(|&k| weak.columns[k].kind == Kind::Input);
+    let (told, chi2, dof) =
+        prior.join(&joint.told, place.zip(input)).ok_or(FitError::Solver(SolverFailure::Information))?;
+    if chi2 > EXCLUDED[dof.clamp(5, 6) - 5] {
+        let six = |x: &Coordinates| ENTRIES.map(|entry| tensor(x)[entry]);
+        return Err(FitError::PriorContradicted { prior: six(&prior.x), record: six(&weak.x()), chi2, dof });
+    }
+    Ok((told, Some(Agreement { chi2, dof })))
 }
 
 fn mistaken(misfit: f64, b: &Better) -> FitError {
@@ -174,14 +251,67 @@ fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f
     }
 }
 
-fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
-    let mut scatter = Matrix3::zeros();
-    let mut count = 0.0;
+/// Standard deviation of a coefficient of torque, in units of the rate, beyond which the record says nothing of it.
+const UNTOLD: f64 = 1.0;
+
+/// Coefficients of torque that the record cannot tell: from the tensor, which it would determine without them, or at all.
+fn untold(
+    weak: &WeakEstimate,
+    stretches: &[Stretch],
+    variance: f64,
+    identifiability: &Identifiability,
+) -> Vec<&'static str> {
+    let Some(stacked) = &weak.stacked else { return Vec::new() };
+    let torques: Vec<usize> = (0..weak.columns.len()).filter(|&k| is_torque(&weak.columns[k])).collect();
+    if torques.is_empty() {
+        return Vec::new();
+    }
+    let mut names = Vec::new();
+    let mut name = |k: usize| {
+        let name = named(weak.columns[k].kind).0;
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    };
+    if identifiability.complete() {
+        let Some(factor) = stacked.joint_factor() else { return Vec::new() };
+        let fitted = |k: usize| {
+            weak.columns[k].segment.is_none_or(|s| weak.parts.iter().any(|part| part.stretch == s))
+        };
+        let vague = |k: usize| factor.row(k).norm() * variance.sqrt() > UNTOLD;
+        torques.iter().copied().filter(|&k| fitted(k) && vague(k)).for_each(&mut name);
+        return names;
+    }
+    let without = weak.without(&torques, variance.sqrt());
+    let known = without.and_then(|root| identify_by(&root, weak, stretches, variance));
+    if known.is_some_and(|known| known.complete()) {
+        torques.into_iter().for_each(&mut name);
+    }
+    names
+}
+
+fn identify_by(
+    root: &Form,
+    weak: &WeakEstimate,
+    stretches: &[Stretch],
+    variance: f64,
+) -> Option<Identifiability> {
+    let svd = (root / variance.sqrt()).svd(false, true);
+    let directions = svd.v_t?.transpose();
+    Some(Identifiability::new(&(svd.singular_values, directions), &scatter_of(stretches), &tensor(&weak.x())))
+}
+
+fn scatter_of(stretches: &[Stretch]) -> Matrix3<f64> {
+    let (mut scatter, mut count) = (Matrix3::zeros(), 0.0);
     for w in stretches.iter().flat_map(|s| &s.rates) {
         scatter += w * w.transpose();
         count += 1.0;
     }
+    scatter / count
+}
+
+fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
     let (singular, directions) = weak.spectrum()?;
     let spectrum = (singular / variance.sqrt(), directions);
-    Some(Identifiability::new(&spectrum, &(scatter / count), &tensor(&weak.x())))
+    Some(Identifiability::new(&spectrum, &scatter_of(stretches), &tensor(&weak.x())))
 }

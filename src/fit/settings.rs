@@ -2,6 +2,7 @@
 
 use super::error::FitError;
 use super::physical::limits::Limit;
+use super::physical::prior::Prior;
 use super::report::scale::Known;
 
 /// A torque that acts on the body besides what the record measures. Coefficients are per trace of the tensor, so that
@@ -17,12 +18,25 @@ pub enum TorqueModel {
     Drag3,
     /// Viscous drag with a symmetric matrix: τ = −D ω, six coefficients.
     Drag6,
+    /// Drag that grows with the square of the rate: τ = −c |ω| J ω, c ≥ 0, per radian.
+    Quadratic,
     /// A torque that is constant in body axes.
     Constant,
     /// The first of no torque, [`Drag`](Self::Drag) or [`Constant`](Self::Constant), and [`Drag3`](Self::Drag3) that
     /// the next one does not surpass in restricted likelihood.
     #[default]
     Auto,
+}
+
+/// What shares the coefficients of a torque.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TorqueScope {
+    /// All segments of a record.
+    #[default]
+    Record,
+    /// Each segment has its own.
+    Segment,
 }
 
 /// White torque noise: what acts on the body at random, as turbulence does.
@@ -99,12 +113,21 @@ pub struct Settings {
     pub noise: Option<f64>,
     /// What is known of the moments beforehand.
     pub limits: Vec<Limit>,
+    /// A tensor that is known beforehand.
+    pub prior: Option<Prior>,
     /// What gives the absolute size.
     pub known: Option<Known>,
     /// Whether a unit that explains the record better is an error.
     pub check_units: bool,
     /// The torque that acts.
     pub torque: TorqueModel,
+    /// What shares its coefficients.
+    pub torque_scope: TorqueScope,
+    /// Step of the readings, rad/s; found in the readings without it. Its rounding is noise of variance
+    /// q²/12, times the number of equal readings in a row.
+    pub quantum: Option<f64>,
+    /// Random walk of the offset of each axis: standard deviation after 1 s, rad/s per √s; none without it.
+    pub offset_walk: Option<f64>,
     /// The torque noise.
     pub torque_noise: TorqueNoise,
     /// What may be wrong with the sensor.
@@ -119,9 +142,13 @@ impl Default for Settings {
             radius: None,
             noise: None,
             limits: Vec::new(),
+            prior: None,
             known: None,
             check_units: true,
             torque: TorqueModel::default(),
+            torque_scope: TorqueScope::default(),
+            quantum: None,
+            offset_walk: None,
             torque_noise: TorqueNoise::default(),
             sensor: SensorPriors::default(),
             leave_out_spikes: true,
@@ -142,11 +169,16 @@ impl Settings {
             ("the noise", self.noise),
             ("the known quantity", known),
             ("the torque noise", density),
+            ("the quantum", self.quantum),
+            ("the walk of the offset", self.offset_walk),
         ];
         for (name, value) in own.into_iter().chain(self.sensor.named()) {
             if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
                 return Err(FitError::Setting { name, value });
             }
+        }
+        if let Some(prior) = &self.prior {
+            prior.check()?;
         }
         if let Some(Known::Moment { axis, .. }) = self.known {
             let size = axis.norm();

@@ -18,7 +18,7 @@ pub use free::{
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop};
 pub use reach::TimeError;
-pub(crate) use turn::{turn_a_little_about, turn_about, turn_about_axis, turn_moderately_about};
+pub(crate) use turn::{turn_a_little_about, turn_about, turn_about_axis, turn_by};
 
 use crate::body::{Point, Time};
 use crate::num::Real;

@@ -2,7 +2,6 @@
 
 use crate::body::Point;
 use crate::num::Real;
-use crate::num::trig::sin_cos_moderate;
 use crate::rotation::{Quat, Vec3};
 
 /// As [`turn_about`], about an axis that is known at run time only.
@@ -33,26 +32,20 @@ pub(crate) fn turn_a_little_about<const AXIS: usize, S: Real>(x: &mut Point<S>, 
     turn_by::<AXIS, S>(x, (x.momentum_body[AXIS] * half_rate_time).sin_cos_small());
 }
 
-/// The same by an angle of which half is at most π/4.
+/// The same by sine and cosine of half the angle.
 #[inline(always)]
-pub(crate) fn turn_moderately_about<const AXIS: usize>(x: &mut Point<f64>, half_rate_time: f64) {
-    turn_by::<AXIS, f64>(x, sin_cos_moderate(x.momentum_body[AXIS] * half_rate_time));
-}
-
-/// By sine and cosine of half the angle.
-#[inline(always)]
-fn turn_by<const AXIS: usize, S: Real>(x: &mut Point<S>, (s, c): (S, S)) {
+pub(crate) fn turn_by<const AXIS: usize, S: Real>(x: &mut Point<S>, (s, c): (S, S)) {
     let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
     let m = x.momentum_body;
     let twice = s + s;
     let (v, w) = (twice * s, twice * c);
     x.add_component(j, w * m[k] - v * m[j]);
-    x.add_component(k, -(w * m[j]) - v * m[k]);
+    x.add_component(k, -(w * m[j] + v * m[k]));
     // q ∘ (c, s e_i) − q, without the products by zero
     let (q, less) = (x.attitude, S::of(1.0) - c);
-    let mut change = Quat::new(-(s * q.v[AXIS]) - less * q.w, Vec3::zero());
+    let mut change = Quat::new(-(s * q.v[AXIS] + less * q.w), Vec3::zero());
     change.v[AXIS] = s * q.w - less * q.v[AXIS];
     change.v[j] = s * q.v[k] - less * q.v[j];
-    change.v[k] = -(s * q.v[j]) - less * q.v[k];
+    change.v[k] = -(s * q.v[j] + less * q.v[k]);
     x.add_attitude(change);
 }

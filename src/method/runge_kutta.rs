@@ -6,7 +6,7 @@ use super::lanes::Kernel;
 use super::{Claimed, Claims, Cost, Kept, Map, Method, SideBySide};
 use crate::body::{Field, Phase, Point, Problem, Rotor, Time};
 use crate::num::{Dd, Real};
-use crate::rotation::Vec3;
+use crate::rotation::{Quat, Vec3};
 
 /// What an explicit method on (q, m) claims of every motion: nothing kept but, with `norm`, |q|.
 fn claims(order: u32, norm: bool, right_sides: u32, source: &'static str) -> Option<Claims> {
@@ -69,6 +69,7 @@ pub struct Rk4Map<S, F> {
     /// Half a step and a whole one, s.
     later: [Dd; 2],
     equations: Equations<S, F>,
+    free: FreeRk4<S>,
     normalized: bool,
 }
 
@@ -88,6 +89,7 @@ impl<S: Real> Method<S> for Rk4 {
             h: S::from_dd(h),
             later: [h * 0.5, h],
             equations: Equations::new(rotor, field),
+            free: FreeRk4::new(S::from_dd(h), rotor.inverse_moments()),
             normalized: self.normalized,
         }
     }
@@ -96,25 +98,30 @@ impl<S: Real> Method<S> for Rk4 {
 impl<S: Real, F: Field<S>> Map<S> for Rk4Map<S, F> {
     #[inline]
     fn apply(&mut self, at: Time, point: &mut Point<S>) {
-        let [middle, end] = self.later.map(|duration| at.later(duration));
-        let (times, x) = ([at, middle, end], point.phase());
-        point.set_phase(if self.normalized {
-            rk4_step::<true, S, F>(self.h, times, &self.equations, x)
-        } else {
-            rk4_step::<false, S, F>(self.h, times, &self.equations, x)
+        let x = point.phase();
+        point.set_phase(match (F::ACTS, self.normalized) {
+            (false, true) => self.free.step::<true>(x),
+            (false, false) => self.free.step::<false>(x),
+            (true, normalized) => {
+                let [middle, end] = self.later.map(|duration| at.later(duration));
+                let mut x = rk4_step(self.h, [at, middle, end], &self.equations, x);
+                if normalized {
+                    x.attitude = x.attitude.normalized();
+                }
+                x
+            }
         });
     }
 
     fn side_by_side(&self) -> Option<SideBySide<S>> {
-        let Vec3([a, b, c]) = self.equations.inverse_moments;
         let kernel = Kernel::Rk4(self.normalized);
-        (!F::ACTS).then(|| SideBySide { kernel, constants: vec![self.h, a, b, c] })
+        (!F::ACTS).then(|| SideBySide { kernel, constants: self.free.constants.to_vec() })
     }
 }
 
 /// One step of `h` between the first and the last of `times`, with its middle between them.
 #[inline(always)]
-pub(super) fn rk4_step<const NORMALIZED: bool, S: Real, F: Field<S>>(
+fn rk4_step<S: Real, F: Field<S>>(
     h: S,
     [begin, middle, end]: [Time; 3],
     equations: &Equations<S, F>,
@@ -125,11 +132,66 @@ pub(super) fn rk4_step<const NORMALIZED: bool, S: Real, F: Field<S>>(
     let k2 = equations.rate(middle, &(x + k1 * half));
     let k3 = equations.rate(middle, &(x + k2 * half));
     let k4 = equations.rate(end, &(x + k3 * h));
-    let mut x = x + (k1 + (k2 + k3) * two + k4) * (h / S::of(6.0));
-    if NORMALIZED {
-        x.attitude = x.attitude.normalized();
+    x + (k1 + (k2 + k3) * two + k4) * (h / S::of(6.0))
+}
+
+/// The same step without torque, by an eighth fewer operations and with the same bits.
+///
+/// What differs are powers of two. The outer stages have reciprocal moments of half their size, so that k₁ and k₄ come out as
+/// halves and k₂ + k₃ need not be doubled; the half of `q' = ½ q ∘ ω` stands in the lengths of the steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FreeRk4<S> {
+    constants: [S; FREE_CONSTANTS],
+}
+
+/// A whole, half and quarter of the step, a third and a sixth, the reciprocal moments and their halves.
+pub(super) const FREE_CONSTANTS: usize = 11;
+
+impl<S: Real> FreeRk4<S> {
+    fn new(h: S, inverse_moments: Vec3<S>) -> Self {
+        let (half, sixth) = (S::of(0.5), h / S::of(6.0));
+        let (Vec3([a, b, c]), Vec3([d, e, f])) = (inverse_moments, inverse_moments * half);
+        FreeRk4 { constants: [h, h * half, h * half * half, sixth + sixth, sixth, a, b, c, d, e, f] }
     }
-    x
+
+    #[inline(always)]
+    pub(super) fn of(constants: [S; FREE_CONSTANTS]) -> Self {
+        FreeRk4 { constants }
+    }
+
+    #[inline(always)]
+    pub(super) fn step<const NORMALIZED: bool>(&self, x: Phase<S>) -> Phase<S> {
+        let [h, half, quarter, third, sixth, inverse @ ..] = self.constants;
+        let [a, b, c, d, e, f] = inverse;
+        let (inner, outer) = (Vec3([a, b, c]), Vec3([d, e, f]));
+        let k1 = free_rate(&x, outer);
+        let k2 = free_rate(&moved(&x, &k1, [half, h]), inner);
+        let k3 = free_rate(&moved(&x, &k2, [quarter, half]), inner);
+        let k4 = free_rate(&moved(&x, &k3, [half, h]), outer);
+        let mut x = moved(&x, &(k1 + (k2 + k3) + k4), [sixth, third]);
+        if NORMALIZED {
+            x.attitude = x.attitude.normalized();
+        }
+        x
+    }
+}
+
+/// `q ∘ (0, ω)` and `m × ω` with ω = m by the reciprocal moments.
+#[inline(always)]
+fn free_rate<S: Real>(x: &Phase<S>, inverse_moments: Vec3<S>) -> Phase<S> {
+    let omega = x.momentum_body.times(inverse_moments);
+    let q = x.attitude;
+    let attitude = Quat { w: -q.v.dot(omega), v: omega * q.w + q.v.cross(omega) };
+    Phase { attitude, momentum_body: x.momentum_body.cross(omega) }
+}
+
+/// `x` with `k` times one length added to the attitude, times another to the momentum.
+#[inline(always)]
+fn moved<S: Real>(x: &Phase<S>, k: &Phase<S>, [attitude, momentum]: [S; 2]) -> Phase<S> {
+    Phase {
+        attitude: x.attitude + k.attitude * attitude,
+        momentum_body: x.momentum_body + k.momentum_body * momentum,
+    }
 }
 
 /// Explicit Euler: `x + h k₁`. Spirals outwards at every step.

@@ -20,17 +20,34 @@
 //! elimination, Compress (§2.8).
 
 use core::cmp::Ordering;
+use core::fmt;
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::Dd;
 use super::error_free::{quick_two_sum, two_prod, two_sum};
 
+/// Components that there is room for. Compressed ones lie 53 bits apart, so that the range of a double holds 40.
+const ROOM: usize = 48;
+
 /// An exact sum of floating-point numbers.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone)]
 #[must_use]
 pub struct Expansion {
-    /// Without overlap and without zeros, smallest first; zero is the empty sum.
-    parts: Vec<f64>,
+    /// The first `count` are the components, without overlap and without zeros, smallest first; zero is the empty sum.
+    parts: [f64; ROOM],
+    count: usize,
+}
+
+impl Default for Expansion {
+    fn default() -> Expansion {
+        Expansion { parts: [0.0; ROOM], count: 0 }
+    }
+}
+
+impl fmt::Debug for Expansion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Expansion").field(&self.parts()).finish()
+    }
 }
 
 impl Expansion {
@@ -46,7 +63,7 @@ impl Expansion {
     /// Order of the value relative to zero.
     #[must_use]
     pub fn sign(&self) -> Ordering {
-        match self.parts.last() {
+        match self.parts().last() {
             Some(&largest) if largest > 0.0 => Ordering::Greater,
             Some(_) => Ordering::Less,
             None => Ordering::Equal,
@@ -55,17 +72,21 @@ impl Expansion {
 
     /// The value rounded once, with relative error at most 2⁻¹⁰⁵; zero exactly when the value is zero.
     pub fn to_dd(&self) -> Dd {
-        let parts = self.clone().compressed().parts;
-        let Some((&hi, rest)) = parts.split_last() else {
+        let compressed = self.clone().compressed();
+        let Some((&hi, rest)) = compressed.parts().split_last() else {
             return Dd::ZERO;
         };
         Dd::sum(hi, rest.iter().sum())
     }
 
+    fn parts(&self) -> &[f64] {
+        &self.parts[..self.count]
+    }
+
     fn push(&mut self, term: f64) {
         let mut carry = term;
         let mut kept = 0;
-        for k in 0..self.parts.len() {
+        for k in 0..self.count {
             let (sum, error) = two_sum(carry, self.parts[k]);
             carry = sum;
             if error != 0.0 {
@@ -73,36 +94,50 @@ impl Expansion {
                 kept += 1;
             }
         }
-        self.parts.truncate(kept);
-        if carry != 0.0 {
-            self.parts.push(carry);
+        self.count = kept;
+        if carry == 0.0 {
+            return;
+        }
+        if kept == ROOM {
+            self.compress();
+            self.push(carry);
+        } else {
+            self.parts[kept] = carry;
+            self.count += 1;
         }
     }
 
-    /// The same value in as few components as its bits need.
     fn compressed(mut self) -> Expansion {
-        let Some(mut carry) = self.parts.pop() else {
-            return self;
-        };
-        let mut upper = Vec::new();
-        while let Some(part) = self.parts.pop() {
-            let (sum, error) = quick_two_sum(carry, part);
+        self.compress();
+        self
+    }
+
+    /// Brings the same value into as few components as its bits need.
+    fn compress(&mut self) {
+        let Some(last) = self.count.checked_sub(1) else { return };
+        // from above, sums to the upper end of the same places
+        let (mut carry, mut first) = (self.parts[last], self.count);
+        for k in (0..last).rev() {
+            let (sum, error) = quick_two_sum(carry, self.parts[k]);
             if error == 0.0 {
                 carry = sum;
             } else {
-                upper.push(sum);
+                first -= 1;
+                self.parts[first] = sum;
                 carry = error;
             }
         }
-        while let Some(part) = upper.pop() {
-            let (sum, error) = quick_two_sum(part, carry);
+        let mut kept = 0;
+        for k in first..self.count {
+            let (sum, error) = quick_two_sum(self.parts[k], carry);
             if error != 0.0 {
-                self.parts.push(error);
+                self.parts[kept] = error;
+                kept += 1;
             }
             carry = sum;
         }
-        self.parts.push(carry);
-        self
+        self.parts[kept] = carry;
+        self.count = kept + 1;
     }
 }
 
@@ -121,7 +156,9 @@ impl From<Dd> for Expansion {
 impl Neg for &Expansion {
     type Output = Expansion;
     fn neg(self) -> Expansion {
-        Expansion { parts: self.parts.iter().map(|part| -part).collect() }
+        let mut negated = self.clone();
+        negated.parts[..self.count].iter_mut().for_each(|part| *part = -*part);
+        negated
     }
 }
 
@@ -129,7 +166,7 @@ impl Add for &Expansion {
     type Output = Expansion;
     fn add(self, other: &Expansion) -> Expansion {
         let mut sum = self.clone();
-        for &part in &other.parts {
+        for &part in other.parts() {
             sum.push(part);
         }
         sum.compressed()
@@ -146,7 +183,22 @@ impl Sub for &Expansion {
 impl Mul for &Expansion {
     type Output = Expansion;
     fn mul(self, other: &Expansion) -> Expansion {
-        let pairs = self.parts.iter().flat_map(|&a| other.parts.iter().map(move |&b| two_prod(a, b)));
+        let pairs = self.parts().iter().flat_map(|&a| other.parts().iter().map(move |&b| two_prod(a, b)));
         Expansion::sum(pairs.flat_map(|(product, error)| [error, product])).compressed()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_components_than_there_is_room_for_are_summed_exactly() {
+        // single bits far apart: none of the 51 overlaps another
+        let bits = (0..=50).map(|k| libm::ldexp(1.0, -20 * k));
+        let sum = Expansion::sum(bits.clone());
+        assert!(sum.count < ROOM);
+        let rest = bits.take(50).fold(sum, |sum, bit| &sum - &Expansion::from(bit));
+        assert_eq!(rest.to_dd(), Dd::from(libm::ldexp(1.0, -1000)));
     }
 }

@@ -4,11 +4,34 @@
 //! several sets of instructions. There is no fused multiply-add, which would round otherwise, and no function with a closure,
 //! which would not be compiled for the instructions of its caller.
 
+use core::ops::{Deref, DerefMut};
+
 /// Lanes of a block: its loops fill the longest vectors many times over, and its numbers stay in the first cache.
 pub(crate) const LANES: usize = 64;
 
-/// One number for each lane of a block.
-pub(crate) type Lane = [f64; LANES];
+/// One number for each lane of a block. It begins with a cache line: else half of the vectors would lie across two.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(crate) struct Lane([f64; LANES]);
+
+impl Lane {
+    pub(crate) const ZERO: Lane = Lane([0.0; LANES]);
+}
+
+impl Deref for Lane {
+    type Target = [f64; LANES];
+    #[inline(always)]
+    fn deref(&self) -> &[f64; LANES] {
+        &self.0
+    }
+}
+
+impl DerefMut for Lane {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64; LANES] {
+        &mut self.0
+    }
+}
 
 /// Sets of vector instructions. All give the same bits; the narrower ones are there to compare.
 ///

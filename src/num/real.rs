@@ -62,6 +62,12 @@ pub trait Real:
         let (sin, cos) = x.sin_cos();
         if x.magnitude() == 0.0 { (Self::of(1.0), cos) } else { (sin / x, cos) }
     }
+    /// The number times a power of two, exactly unless it under- or overflows.
+    #[inline]
+    #[must_use]
+    fn times_power_of_two(self, power: f64) -> Self {
+        self * Self::of(power)
+    }
     /// |x| as `f64`; of several lanes the largest, NaN if one is NaN.
     fn magnitude(self) -> f64;
     /// `self + b` and the error of its rounding (Knuth): exact for `f64`, in any other scalar as good as its own rounding.

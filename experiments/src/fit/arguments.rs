@@ -1,10 +1,11 @@
 //! The flags of what the fit reckons with: torques, the sensor, and what gives the absolute size.
 
 use clap::{Args, ValueEnum};
-use nalgebra::Vector3;
-use polhode::fit::{Known, SensorPriors, TorqueModel};
+use nalgebra::{Matrix3, Vector3};
+use polhode::fit::{Known, Prior, SensorPriors, TorqueModel, TorqueScope};
+use polhode::inertia::Inertia;
 
-use crate::arguments::{number, numbers, positive};
+use crate::arguments::{list, number, numbers, positive};
 use crate::body_arguments::described;
 use crate::error::Error;
 
@@ -19,6 +20,8 @@ pub(super) enum Torque {
     Drag3,
     /// -D w, D symmetric
     Drag6,
+    /// -c |w| J w
+    Quadratic,
     /// Constant in body axes
     Constant,
     /// The simplest that the record does not contradict
@@ -32,8 +35,27 @@ impl From<Torque> for TorqueModel {
             Torque::Drag => TorqueModel::Drag,
             Torque::Drag3 => TorqueModel::Drag3,
             Torque::Drag6 => TorqueModel::Drag6,
+            Torque::Quadratic => TorqueModel::Quadratic,
             Torque::Constant => TorqueModel::Constant,
             Torque::Auto => TorqueModel::Auto,
+        }
+    }
+}
+
+/// What shares the coefficients of a torque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Scope {
+    /// One set for all segments
+    Record,
+    /// One set for each segment
+    Segment,
+}
+
+impl From<Scope> for TorqueScope {
+    fn from(scope: Scope) -> Self {
+        match scope {
+            Scope::Record => TorqueScope::Record,
+            Scope::Segment => TorqueScope::Segment,
         }
     }
 }
@@ -56,9 +78,23 @@ pub(super) struct SensorArguments {
     /// Standard deviation of the delays of y and z behind x, s: estimated with this prior
     #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
     gyro_skew: Option<f64>,
+    /// Random walk of the offset of each axis: standard deviation after 1 s, rad/s per sqrt(s)
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_walk: Option<f64>,
+    /// Step of the digital readings, rad/s: its rounding is noise of variance Q^2/12 [default: found in the readings]
+    #[arg(long, value_name = "Q", value_parser = positive, allow_hyphen_values = true)]
+    quantum: Option<f64>,
 }
 
 impl SensorArguments {
+    pub(super) fn walk(&self) -> Option<f64> {
+        self.gyro_walk
+    }
+
+    pub(super) fn quantum(&self) -> Option<f64> {
+        self.quantum
+    }
+
     pub(super) fn priors(&self) -> SensorPriors {
         SensorPriors {
             offset: self.gyro_bias,
@@ -92,6 +128,11 @@ pub(super) struct KnownArguments {
 }
 
 impl KnownArguments {
+    /// The body that `--body` names.
+    pub(super) fn body(&self) -> Result<Option<Inertia>, Error> {
+        self.body.as_deref().map(|text| Ok(described(text)?.inertia)).transpose()
+    }
+
     pub(super) fn known(&self) -> Result<Option<Known>, Error> {
         if let Some(text) = &self.body {
             return Ok(Some(Known::Trace(described(text)?.inertia.tensor().trace())));
@@ -103,5 +144,44 @@ impl KnownArguments {
             .or(self.momentum.map(Known::Momentum))
             .or(self.twice_energy.map(Known::TwiceEnergy))
             .or(self.moment.map(moment)))
+    }
+}
+
+/// A tensor that is known beforehand.
+#[derive(Args, Clone, Debug)]
+#[group(multiple = false)]
+pub(super) struct PriorArguments {
+    /// Inertia tensor that is known beforehand, as from CAD, kg m^2, sensor axes: three moments or six entries, then the
+    /// relative standard deviation s of its entries, s sqrt(Iii Ijj); it is joined with what the record tells
+    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true)]
+    prior_inertia: Option<Prior>,
+    /// The same in any unit: only the shape is known, not the size
+    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true)]
+    prior_shape: Option<Prior>,
+}
+
+fn prior(text: &str) -> Result<Prior, String> {
+    let values = list(text)?;
+    let (tensor, sigma) = match values[..] {
+        [x, y, z, sigma] => (Matrix3::from_diagonal(&Vector3::new(x, y, z)), sigma),
+        [xx, yy, zz, xy, xz, yz, sigma] => (Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz), sigma),
+        _ => {
+            let rule = "needed are 3 moments or 6 entries, and their relative standard deviation";
+            return Err(format!("{} numbers; {rule}", values.len()));
+        }
+    };
+    if !(sigma > 0.0) {
+        return Err(format!("the relative standard deviation is {sigma:?}; it must be positive"));
+    }
+    if let Some(moment) = tensor.diagonal().iter().find(|moment| !(**moment > 0.0)) {
+        return Err(format!("the moment {moment:?} is not positive"));
+    }
+    Ok(Prior::relative(tensor, sigma))
+}
+
+impl PriorArguments {
+    pub(super) fn prior(&self) -> Option<Prior> {
+        let shape = self.prior_shape.clone().map(Prior::shape_only);
+        self.prior_inertia.clone().or(shape)
     }
 }

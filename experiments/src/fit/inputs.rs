@@ -14,6 +14,20 @@ pub(super) struct WheelArguments {
     /// column `wheel`, with its unit in the header, as `wheel (rpm)`
     #[arg(long, value_name = "nx,ny,nz,I", value_parser = wheel, allow_hyphen_values = true)]
     wheel: Option<Wheel>,
+    /// Find the moment of inertia of a wheel with this axis instead, sensor axes: the body is that of --body, in sensor
+    /// axes, with the wheel at rest; the speed of the wheel relative to it is the column `wheel`, with its unit
+    #[arg(long, value_name = "nx,ny,nz", value_parser = axis, conflicts_with = "wheel", requires = "body", allow_hyphen_values = true)]
+    calibrate_wheel: Option<Vector3<f64>>,
+}
+
+fn axis(text: &str) -> Result<Vector3<f64>, String> {
+    let axis = Vector3::from(numbers::<3>(text)?);
+    let size = axis.norm();
+    if size > 0.0 && size.is_finite() {
+        Ok(axis / size)
+    } else {
+        Err("the axis has no direction; give a vector that is not zero".into())
+    }
 }
 
 /// Momentum per speed, kg m².
@@ -22,13 +36,9 @@ struct Wheel(Vector3<f64>);
 
 fn wheel(text: &str) -> Result<Wheel, String> {
     let [x, y, z, inertia] = numbers::<4>(text)?;
-    let axis = Vector3::new(x, y, z);
-    let size = axis.norm();
-    if !(size > 0.0 && size.is_finite()) {
-        return Err("the axis has no direction; give a vector that is not zero".into());
-    }
+    let axis = axis(&format!("{x},{y},{z}"))?;
     if inertia > 0.0 {
-        Ok(Wheel(axis / size * inertia))
+        Ok(Wheel(axis * inertia))
     } else {
         Err(format!("the moment of inertia is {inertia:?}; it must be positive"))
     }
@@ -172,23 +182,34 @@ impl<'t> Sheet<'t> {
     }
 }
 
-fn no_speed(file: &str) -> Error {
+fn no_speed(flag: &str, file: &str) -> Error {
     let rule = format!("{file} has no column of its speed");
-    Error::input("--wheel", "", &rule, "name the column wheel, with its unit")
+    Error::input(flag, "", &rule, "name the column wheel, with its unit")
 }
 
 impl WheelArguments {
+    /// The axis of the wheel whose inertia is to be found.
+    pub(super) fn calibrated(&self) -> Option<Vector3<f64>> {
+        self.calibrate_wheel
+    }
+
+    /// The wheel whose speed is read, with the flag that asks for it; one to be calibrated has 1 kg m² so far.
+    fn asked(&self) -> Option<(Wheel, &'static str)> {
+        let calibrated = self.calibrate_wheel.map(|axis| (Wheel(axis), "--calibrate-wheel"));
+        self.wheel.map(|wheel| (wheel, "--wheel")).or(calibrated)
+    }
+
     /// The record with the wheel momenta and torques that its text holds.
     pub(super) fn complete(&self, record: Record, text: &str, file: &str) -> Result<Record, Error> {
         let first = record.segments.iter().filter_map(|s| s.lines().first()).min().copied().unwrap_or(1);
         let Some(sheet) = Sheet::new(text, file, first) else {
-            return if self.wheel.is_some() { Err(no_speed(file)) } else { Ok(record) };
+            return self.asked().map_or(Ok(record), |(_, flag)| Err(no_speed(flag, file)));
         };
         let momenta = sheet.triple(Kind::Momentum, &["Nms", "kgm^2/s", "kgm²/s", "kgm2/s"], "N m s")?;
         let torques = sheet.triple(Kind::Torque, &["Nm"], "N m")?;
-        let speed = match (self.wheel, sheet.column(Kind::Speed)) {
-            (Some(wheel), Some(column)) => Some((wheel.0 * sheet.speed_unit(column)?, column)),
-            (Some(_), None) => return Err(no_speed(file)),
+        let speed = match (self.asked(), sheet.column(Kind::Speed)) {
+            (Some((wheel, _)), Some(column)) => Some((wheel.0 * sheet.speed_unit(column)?, column)),
+            (Some((_, flag)), None) => return Err(no_speed(flag, file)),
             (None, Some(column)) => {
                 warn(&format!(
                     "{}: the column is not used; --wheel nx,ny,nz,I says which momentum the speed stands for",
@@ -219,7 +240,11 @@ impl WheelArguments {
             }
             *segment = own;
         }
-        Ok(record)
+        // a wheel whose speed is not used was named above
+        Ok(record.with_used(|name| {
+            let name = name.split(['(', '[']).next().unwrap_or_default().trim();
+            Kind::of(name).is_some()
+        }))
     }
 }
 

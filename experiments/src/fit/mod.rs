@@ -1,9 +1,9 @@
 //! `polhode fit`: inertia from measured angular velocity.
 
 mod arguments;
+mod calibrate;
 mod flights;
 mod inputs;
-mod motion;
 mod page;
 mod plot;
 mod report;
@@ -11,7 +11,7 @@ mod residuals;
 
 use std::path::{Path, PathBuf};
 
-use arguments::{KnownArguments, SensorArguments, Torque};
+use arguments::{KnownArguments, PriorArguments, Scope, SensorArguments, Torque};
 use clap::Args;
 use flights::Spans;
 use inputs::WheelArguments;
@@ -35,7 +35,7 @@ const EXAMPLES: &str = "Examples:
 
 /// Inertia tensor of a torque-free body from its measured angular velocity
 ///
-/// Without one of --trace, --momentum, --twice-energy or --moment the tensor is known up to a factor, and its trace is
+/// Without one of --trace, --momentum, --twice-energy, --moment or --prior-inertia the tensor is known up to a factor, and its trace is
 /// set to 1; columns hx, hy, hz (momentum of wheels, N m s) and tx, ty, tz (known torque, N m) make it absolute, too. Exit code 1: the record does not determine the tensor; what it does determine is printed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -74,17 +74,22 @@ pub(crate) struct Fit {
     #[command(flatten)]
     known: KnownArguments,
     #[command(flatten)]
+    prior: PriorArguments,
+    #[command(flatten)]
     wheel: WheelArguments,
-    /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, constant in body axes
+    /// Torque on the body besides those of the record: relative drag, drag along each sensor axis, drag that grows with the square of the rate, constant in body axes
     #[arg(long, value_enum, default_value_t = Torque::Auto)]
     torque: Torque,
+    /// Whether the coefficients of the torque are those of the whole record, or each segment has its own
+    #[arg(long, value_enum, default_value_t = Scope::Record)]
+    torque_per: Scope,
     #[command(flatten)]
     sensor: SensorArguments,
     /// Fit even if the record agrees far better with other units than those named
     #[arg(long)]
     trust_units: bool,
     /// Write the residuals to this file: a plot, or rows where it ends in .csv
-    #[arg(long, value_name = "FILE.svg|.csv")]
+    #[arg(long, value_name = "FILE.svg|.png|.csv")]
     residuals: Option<PathBuf>,
     /// Draw measured and fitted rates, and |L| and T along the record, to this file
     #[arg(long, value_name = "FILE.svg|.png")]
@@ -209,13 +214,32 @@ impl Fit {
             radius: self.radius,
             noise: self.noise,
             limits: least.chain(most).collect(),
+            prior: self.prior.prior(),
             known: self.known.known()?,
             check_units: !self.trust_units,
             torque: self.torque.into(),
+            torque_scope: self.torque_per.into(),
+            quantum: self.sensor.quantum(),
+            offset_walk: self.sensor.walk(),
             sensor: self.sensor.priors(),
             ..Settings::default()
         };
         let format = Format::of(self.format, self.out.as_deref())?;
+        let names = report::unused(&record);
+        if !names.is_empty() {
+            warn(&format!("columns not used: {}", names.join(", ")));
+        }
+        if let (Some(axis), Some(body)) = (self.wheel.calibrated(), self.known.body()?) {
+            let settings = Settings { known: None, ..settings };
+            return output.write_whole(&calibrate::report(
+                &record,
+                &body,
+                &axis,
+                &settings,
+                &self.names(),
+                format,
+            )?);
+        }
         let mut spans = Spans::default();
         let fitted = match self.window.is_empty() {
             true => Spans::find(&mut record, &settings).and_then(|found| {
@@ -258,23 +282,25 @@ impl Fit {
         };
         // as long a computation as the fit itself, for those outputs alone that show it
         let shown = residuals.is_some() || page.is_some() || figure.is_some();
-        let motion = if shown { motion::fitted(&estimate, &record) } else { Vec::new() };
-        let left = match self.residuals.as_deref() {
-            Some(path) if ends_in(path, &["csv"]) => Some(residuals::rows(&record, &motion).csv()),
-            Some(_) => Some(plot::residuals(&estimate)?),
-            None => None,
-        };
+        let motion = if shown { estimate.fitted(&record) } else { Vec::new() };
         let page = match page {
             Some((file, form)) => {
                 Some((file, page::estimated(&estimate, &record, &motion, &spans, &self.names(), form)?))
             }
             None => None,
         };
-        output.write_whole(&report::identified(&estimate, &spans, format))?;
+        output.write_whole(&report::identified(&estimate, &record, &spans, format))?;
         // the JSON holds them too; a file of rows does not
         estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
-        for (file, text) in residuals.zip(left).into_iter().chain(page) {
+        if let Some((file, text)) = page {
             file.write_whole(&text)?;
+        }
+        if let Some((file, path)) = residuals.zip(self.residuals.as_deref()) {
+            let picture = if ends_in(path, &["png"]) { Picture::Png } else { Picture::Svg };
+            match ends_in(path, &["csv"]) {
+                true => file.write_whole(&residuals::rows(&record, &motion).csv())?,
+                false => crate::plot::write(file, picture, &plot::residuals(&estimate).page())?,
+            }
         }
         if let Some((file, picture)) = figure {
             crate::plot::write(file, picture, &page::figures::overview(&estimate, &motion, &record))?;
@@ -330,11 +356,11 @@ impl Fit {
         if let Some(path) = self
             .residuals
             .as_deref()
-            .filter(|path| path.extension().is_some() && !ends_in(path, &["svg", "csv"]))
+            .filter(|path| path.extension().is_some() && !ends_in(path, &["svg", "png", "csv"]))
         {
             let value = path.display().to_string();
-            let rule = "residuals are written as SVG or CSV";
-            return Err(Error::input("--residuals", &value, rule, "let the name end in .svg or .csv"));
+            let rule = "residuals are written as SVG, PNG or CSV";
+            return Err(Error::input("--residuals", &value, rule, "let the name end in .svg, .png or .csv"));
         }
         Ok(())
     }

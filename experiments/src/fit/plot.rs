@@ -2,7 +2,6 @@
 
 use polhode::fit::Estimate;
 
-use crate::error::Error;
 use crate::figure::{Figure, Scale, Series};
 
 /// Names of the axes.
@@ -31,7 +30,7 @@ pub(super) fn without_gaps<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Vec
 }
 
 /// Whitened residuals of each component over time; a band marks two standard deviations.
-pub(super) fn residuals(estimate: &Estimate) -> Result<String, Error> {
+pub(super) fn residuals(estimate: &Estimate) -> Figure {
     let single = estimate.residuals.len() == 1;
     let times: Vec<Vec<f64>> = if single {
         estimate.residuals.iter().map(|r| r.times.clone()).collect()
@@ -45,7 +44,7 @@ pub(super) fn residuals(estimate: &Estimate) -> Result<String, Error> {
     figure.series = (0..3)
         .map(|axis| Series::new(AXES[axis], values().map(|(t, v)| (*t, v[axis])).collect()).dots())
         .collect();
-    figure.svg()
+    figure
 }
 
 #[cfg(test)]

@@ -1,12 +1,11 @@
 //! The rows of `--residuals FILE.csv`.
 
-use polhode::fit::Record;
+use polhode::fit::{FittedMotion, Record};
 
-use super::motion::Fitted;
 use crate::table::{Cell, Column, Table};
 
 /// Measured and fitted rates, and their difference.
-pub(super) fn rows(record: &Record, motion: &[Fitted]) -> Table {
+pub(super) fn rows(record: &Record, motion: &[FittedMotion]) -> Table {
     let rate = |name, meaning| Column::new(name, "rad/s", meaning);
     let columns = vec![
         Column::new("segment", "", "number of the segment"),

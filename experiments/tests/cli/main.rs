@@ -11,6 +11,7 @@ mod compose;
 mod ensemble;
 mod experiment;
 mod fit;
+mod fit_inputs;
 mod flights;
 mod forces;
 mod general;

@@ -5,7 +5,9 @@
 
 mod bound;
 mod nearest_motion;
+mod planned;
 mod sensitivity;
 
 pub(crate) use bound::Motions;
 pub use bound::foreseen_bound;
+pub use planned::foreseen_bound_with;

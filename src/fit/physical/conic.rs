@@ -5,8 +5,8 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverError, SolverStatus,
     SupportedConeT,
 };
+use nalgebra::DVector;
 
-use super::coordinates::Coordinates;
 use super::failure::SolverFailure;
 
 /// Conditions a·x ≤ b and second-order cones, gathered for the solver.
@@ -26,7 +26,7 @@ impl Conditions {
     }
 
     /// base₀ + g₀·x ≥ |(base₁ + g₁·x, base₂ + g₂·x)|.
-    pub(crate) fn second_order(&mut self, cone: [(Coordinates, f64); 3]) {
+    pub(crate) fn second_order(&mut self, cone: [(DVector<f64>, f64); 3]) {
         self.second_order.extend(cone.map(|(g, base)| ((-g).as_slice().to_vec(), base)));
     }
 

@@ -3,51 +3,57 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::certificate::{CERTIFIED, Certificate, STATIONARY};
-use super::constraint::{ActiveConstraint, Constraint};
-use super::coordinates::{Coordinates, Form, coordinates, eigen};
+use super::constraint::ActiveConstraint;
+use super::coordinates::{Coordinates, eigen};
 use super::failure::SolverFailure;
 use super::law::LARGEST_SHARE;
-use super::limits::{Limit, side};
-use super::program::Program;
+use super::program::{Program, Wall};
 
 /// The answer of the program.
 pub(crate) struct Nearest {
+    /// Coordinates of the tensor.
     pub(crate) x: Coordinates,
+    /// The unknowns before them.
+    pub(crate) others: Vec<f64>,
     pub(crate) active: Vec<ActiveConstraint>,
-    /// Gradients of the active constraints in whitened increments.
-    pub(crate) face: Vec<Coordinates>,
+    /// Distance from the unconstrained answer, standard deviations.
+    pub(crate) pull: f64,
     pub(crate) certificate: Certificate,
 }
 
+/// Axes and eigenvalues of a matrix, descending.
+type Frame = ([Vector3<f64>; 3], [f64; 3]);
+
 impl Program {
     /// Newton's method on the face that the solver's answer lies on, and the certificate.
-    pub(super) fn polish(
-        &self,
-        start: Coordinates,
-        rounds: usize,
-        limits: &[Limit],
-    ) -> Result<Nearest, SolverFailure> {
+    pub(super) fn polish(&self, start: DVector<f64>, rounds: usize) -> Result<Nearest, SolverFailure> {
         let near = 1e-4 * (1.0 + start.norm());
-        let (moments, axes) = eigen(self.tensor(&start));
-        let distance = |k: usize| {
-            let v = axes.column(k).into_owned();
-            (LARGEST_SHARE - moments[k]) / self.reading(&v, &v).g.norm()
-        };
-        let mut face = (0..3).filter(|&k| distance(k) <= near).count().min(2);
+        let mut faces: Vec<usize> = self
+            .walls
+            .iter()
+            .map(|wall| {
+                let (values, axes) = eigen(self.matrix(wall, &start));
+                let distance = |k: usize| {
+                    let v = axes.column(k).into_owned();
+                    (wall.most - values[k]) / self.reading(wall, &v, &v).g.norm()
+                };
+                (0..3).filter(|&k| distance(k) <= near).count().min(wall.rank)
+            })
+            .collect();
         let mut held: Vec<usize> = (0..self.rows.len())
             .filter(|&k| {
                 let row = &self.rows[k].0;
-                -(row.base + row.g.dot(&start)) <= near * row.g.norm()
+                -row.at(&start) <= near * row.g.norm()
             })
             .collect();
         // a constraint that is near but does not push is let go, the one that pulls most first
         loop {
-            let newton = match self.newton(start, face, &held) {
+            let newton = match self.newton(&start, &faces, &held) {
                 // of constraints that depend on each other, as the sides of a narrow limit, the furthest is not reached
                 Err(_) if !held.is_empty() => {
                     let reach = |k: usize| {
                         let row = &self.rows[k].0;
-                        -(row.base + row.g.dot(&start)) / row.g.norm()
+                        -row.at(&start) / row.g.norm()
                     };
                     let furthest = (0..held.len()).max_by(|&a, &b| reach(held[a]).total_cmp(&reach(held[b])));
                     held.remove(furthest.unwrap_or(0));
@@ -55,95 +61,107 @@ impl Program {
                 }
                 solved => solved?,
             };
-            let (z, _) = eigen(newton.z);
-            let slack_of_face = z[0].min(0.0);
+            let lowest = newton.zs.iter().map(|z| eigen(*z).0[0].min(0.0)).enumerate();
+            let (loose, slack_of_face) = lowest.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
             let weakest = newton.held.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
             let tolerance = CERTIFIED * (1.0 + newton.largest());
             match weakest {
                 Some((k, &m)) if m < -tolerance && m <= slack_of_face => {
                     held.remove(k);
                 }
-                _ if slack_of_face < -tolerance => face -= 1,
-                _ => return self.certify(newton, face, &held, rounds, limits),
+                _ if slack_of_face < -tolerance => faces[loose] -= 1,
+                _ => return self.certify(newton, &faces, &held, rounds),
             }
         }
     }
 
-    /// Principal axes and moments at `y`, descending.
-    fn frame(&self, y: &Coordinates) -> ([Vector3<f64>; 3], [f64; 3]) {
-        let (moments, axes) = eigen(self.tensor(y));
-        (core::array::from_fn(|k| axes.column(2 - k).into_owned()), [moments[2], moments[1], moments[0]])
+    /// Axes and eigenvalues of a wall at `y`.
+    fn frame(&self, wall: &Wall, y: &DVector<f64>) -> Frame {
+        let (values, axes) = eigen(self.matrix(wall, y));
+        (core::array::from_fn(|k| axes.column(2 - k).into_owned()), [values[2], values[1], values[0]])
     }
 
-    /// Gradients of the entries of J on the face, then of the limits that are held.
-    fn gradients(&self, v: &[Vector3<f64>; 3], face: usize, held: &[usize]) -> Vec<Coordinates> {
-        let pairs = (0..face).flat_map(|a| (0..=a).map(move |b| (a, b)));
-        pairs
-            .map(|(a, b)| self.reading(&v[a], &v[b]).g)
-            .chain(held.iter().map(|&k| self.rows[k].0.g))
-            .collect()
+    fn frames(&self, y: &DVector<f64>) -> Vec<Frame> {
+        self.walls.iter().map(|wall| self.frame(wall, y)).collect()
+    }
+
+    /// Gradients of the entries of each matrix on its face, then of the limits that are held.
+    fn gradients(&self, frames: &[Frame], faces: &[usize], held: &[usize]) -> Vec<DVector<f64>> {
+        let mut gradients = Vec::new();
+        for ((wall, (v, _)), &face) in self.walls.iter().zip(frames).zip(faces) {
+            let pairs = (0..face).flat_map(|a| (0..=a).map(move |b| (a, b)));
+            gradients.extend(pairs.map(|(a, b)| self.reading(wall, &v[a], &v[b]).g));
+        }
+        gradients.extend(held.iter().map(|&k| self.rows[k].0.g.clone()));
+        gradients
     }
 
     /// The multipliers that make |y + Σ multiplier · gradient| least.
-    fn least_multipliers(&self, y: &Coordinates, face: usize, held: &[usize]) -> Vec<f64> {
-        let gradients = self.gradients(&self.frame(y).0, face, held);
+    fn least_multipliers(&self, y: &DVector<f64>, faces: &[usize], held: &[usize]) -> Vec<f64> {
+        let gradients = self.gradients(&self.frames(y), faces, held);
         let sizes: Vec<f64> = gradients.iter().map(|g| g.norm()).collect();
-        let units = DMatrix::from_fn(5, gradients.len(), |k, e| gradients[e][k] / sizes[e]);
-        let right = DVector::from_column_slice((-y).as_slice());
-        let solved = (units.transpose() * &units).full_piv_lu().solve(&(units.transpose() * right));
+        let units = DMatrix::from_fn(y.len(), gradients.len(), |k, e| gradients[e][k] / sizes[e]);
+        let solved = (units.transpose() * &units).full_piv_lu().solve(&(units.transpose() * -y));
         solved.map_or(vec![0.0; sizes.len()], |m| m.iter().zip(&sizes).map(|(m, s)| m / s).collect())
     }
 
-    fn newton(&self, start: Coordinates, face: usize, held: &[usize]) -> Result<Newton, SolverFailure> {
-        let equations = face * (face + 1) / 2 + held.len();
-        let none =
-            Newton { y: Coordinates::zeros(), z: Matrix3::zeros(), held: Vec::new(), gradients: Vec::new() };
+    fn newton(&self, start: &DVector<f64>, faces: &[usize], held: &[usize]) -> Result<Newton, SolverFailure> {
+        let size = start.len();
+        let equations = faces.iter().map(|face| face * (face + 1) / 2).sum::<usize>() + held.len();
+        let none = Newton {
+            y: DVector::zeros(size),
+            zs: vec![Matrix3::zeros(); self.walls.len()],
+            held: Vec::new(),
+        };
         if equations == 0 {
             return Ok(none);
         }
-        let mut y = start;
-        // Z is kept in sensor axes: where two moments agree, their axes differ from step to step
-        let mut z = multiplier(&self.frame(&start).0, face, &self.least_multipliers(&start, face, held));
+        let mut y = start.clone();
+        // each Z is kept in sensor axes: where two moments agree, their axes differ from step to step
+        let mut zs = multipliers(&self.frames(start), faces, &self.least_multipliers(start, faces, held));
         let mut newton = none;
         for _ in 0..12 {
-            let (v, moments) = self.frame(&y);
-            let gradients = self.gradients(&v, face, held);
+            let frames = self.frames(&y);
+            let gradients = self.gradients(&frames, faces, held);
             let mut values = Vec::with_capacity(equations);
-            for (a, moment) in moments.iter().take(face).enumerate() {
-                values.extend((0..=a).map(|b| if a == b { moment - LARGEST_SHARE } else { 0.0 }));
-            }
-            values.extend(held.iter().map(|&k| self.rows[k].0.base + self.rows[k].0.g.dot(&y)));
             // curvature of the eigenvalues: they repel those off the face
-            let mut hessian = Form::identity();
-            let frame = Matrix3::from_columns(&v);
-            let inner = frame.transpose() * z * frame;
-            for (a, b, j) in
-                (0..face).flat_map(|a| (0..face).flat_map(move |b| (face..3).map(move |j| (a, b, j))))
-            {
-                let (ga, gb) = (self.reading(&v[a], &v[j]).g, self.reading(&v[b], &v[j]).g);
-                hessian += (ga * gb.transpose() + gb * ga.transpose())
-                    * (inner[(a, b)] / (LARGEST_SHARE - moments[j]));
+            let mut hessian = DMatrix::identity(size, size);
+            for (((wall, (v, moments)), &face), z) in self.walls.iter().zip(&frames).zip(faces).zip(&zs) {
+                for (a, moment) in moments.iter().take(face).enumerate() {
+                    values.extend((0..=a).map(|b| if a == b { moment - wall.most } else { 0.0 }));
+                }
+                let frame = Matrix3::from_columns(v);
+                let inner = frame.transpose() * z * frame;
+                for (a, b, j) in
+                    (0..face).flat_map(|a| (0..face).flat_map(move |b| (face..3).map(move |j| (a, b, j))))
+                {
+                    let ga = self.reading(wall, &v[a], &v[j]).g;
+                    let gb = self.reading(wall, &v[b], &v[j]).g;
+                    hessian += (&ga * gb.transpose() + &gb * ga.transpose())
+                        * (inner[(a, b)] / (wall.most - moments[j]));
+                }
             }
-            let n = 5 + equations;
+            values.extend(held.iter().map(|&k| self.rows[k].0.at(&y)));
+            let n = size + equations;
             let mut matrix = DMatrix::zeros(n, n);
-            matrix.view_mut((0, 0), (5, 5)).copy_from(&hessian);
+            matrix.view_mut((0, 0), (size, size)).copy_from(&hessian);
             let mut right = DVector::zeros(n);
-            right.rows_mut(0, 5).copy_from(&-y);
+            right.rows_mut(0, size).copy_from(&-&y);
             // rows of unit size: gradients span many decades
             let sizes: Vec<f64> = gradients.iter().map(|g| g.norm()).collect();
             for (e, g) in gradients.iter().enumerate() {
-                for k in 0..5 {
-                    matrix[(5 + e, k)] = g[k] / sizes[e];
-                    matrix[(k, 5 + e)] = g[k] / sizes[e];
+                for k in 0..size {
+                    matrix[(size + e, k)] = g[k] / sizes[e];
+                    matrix[(k, size + e)] = g[k] / sizes[e];
                 }
-                right[5 + e] = -values[e] / sizes[e];
+                right[size + e] = -values[e] / sizes[e];
             }
             let step = matrix.full_piv_lu().solve(&right).ok_or(SolverFailure::Dependent)?;
-            let move_ = Coordinates::from_column_slice(&step.as_slice()[..5]);
-            y += move_;
-            let multipliers: Vec<f64> = (0..equations).map(|e| step[5 + e] / sizes[e]).collect();
-            z = multiplier(&v, face, &multipliers);
-            newton = Newton { y, z, held: multipliers[face * (face + 1) / 2..].to_vec(), gradients };
+            let move_ = step.rows(0, size).into_owned();
+            y += &move_;
+            let found: Vec<f64> = (0..equations).map(|e| step[size + e] / sizes[e]).collect();
+            zs = multipliers(&frames, faces, &found);
+            newton = Newton { held: found[equations - held.len()..].to_vec(), zs: zs.clone(), y: y.clone() };
             if move_.norm() <= 1e-15 * (1.0 + y.norm()) {
                 break;
             }
@@ -154,27 +172,31 @@ impl Program {
     fn certify(
         &self,
         newton: Newton,
-        face: usize,
+        faces: &[usize],
         held: &[usize],
         rounds: usize,
-        limits: &[Limit],
     ) -> Result<Nearest, SolverFailure> {
-        let y = newton.y;
-        let (_, moments) = self.frame(&y);
-        let mut gradient = y + self.gradient(&coordinates(&newton.z));
-        let mut violation = (moments[0] - LARGEST_SHARE).max(0.0);
+        let y = &newton.y;
+        let mut gradient = y.clone();
+        let (mut violation, mut lowest) = (0.0_f64, newton.held.iter().copied().fold(0.0, f64::min));
+        let mut largest_moment = 0.0;
+        for (k, (wall, z)) in self.walls.iter().zip(&newton.zs).enumerate() {
+            let matrix = self.matrix(wall, y);
+            let moment = eigen(matrix).0[2];
+            if k == 0 {
+                largest_moment = moment;
+            }
+            gradient += self.push(wall, z);
+            let apart = (z * (Matrix3::identity() * wall.most - matrix)).norm() / (1.0 + newton.largest());
+            violation = violation.max(moment - wall.most).max(apart);
+            lowest = lowest.min(eigen(*z).0[0]);
+        }
         for (k, (row, ..)) in self.rows.iter().enumerate() {
-            violation = violation.max(row.base + row.g.dot(&y));
+            violation = violation.max(row.at(y));
             if let Some(at) = held.iter().position(|&h| h == k) {
-                gradient += row.g * newton.held[at];
+                gradient += &row.g * newton.held[at];
             }
         }
-        let (z, _) = eigen(newton.z);
-        violation = violation.max(
-            (newton.z * (Matrix3::identity() * LARGEST_SHARE - self.tensor(&y))).norm()
-                / (1.0 + newton.largest()),
-        );
-        let lowest = newton.held.iter().copied().fold(z[0].min(0.0), f64::min);
         let certificate = Certificate {
             stationarity: gradient.norm() / (1.0 + y.norm()),
             violation,
@@ -188,42 +210,52 @@ impl Program {
             return Err(SolverFailure::NotOptimal(certificate));
         }
         let mut active = Vec::new();
-        if face > 0 {
-            let constraint = if face == 1 { Constraint::Triangle } else { Constraint::Rod };
-            active.push(ActiveConstraint { constraint, multiplier: newton.z.trace() });
+        for ((wall, &face), z) in self.walls.iter().zip(faces).zip(&newton.zs) {
+            if face > 0 {
+                let constraint = wall.says[(face - 1).min(1)];
+                active.push(ActiveConstraint { constraint, multiplier: z.trace() / wall.unit });
+            }
         }
         for (&k, &multiplier) in held.iter().zip(&newton.held) {
-            let (_, limit, upper) = self.rows[k];
-            active.push(ActiveConstraint { constraint: side(limit, &limits[limit], upper), multiplier });
+            let (_, constraint, unit) = self.rows[k];
+            active.push(ActiveConstraint { constraint, multiplier: multiplier / unit });
         }
-        let mut x = self.centre + self.root.solve_upper_triangular(&y).unwrap_or(Coordinates::zeros());
-        if face > 0 {
+        let unknowns = self.unknowns(y);
+        let first = unknowns.len() - 5;
+        let mut x = Coordinates::from_column_slice(&unknowns.as_slice()[first..]);
+        if faces.first().is_some_and(|face| *face > 0) {
             // the last rounding goes towards the sphere: the tensor handed out is physical, not nearly so
-            x *= ((LARGEST_SHARE - 1.0 / 3.0) / (moments[0] - 1.0 / 3.0)).min(1.0) * (1.0 - 1e-14);
+            x *= ((LARGEST_SHARE - 1.0 / 3.0) / (largest_moment - 1.0 / 3.0)).min(1.0) * (1.0 - 1e-14);
         }
-        Ok(Nearest { x, active, face: newton.gradients, certificate })
+        let others = unknowns.as_slice()[..first].to_vec();
+        Ok(Nearest { x, others, active, pull: y.norm(), certificate })
     }
 }
 
-/// Z in sensor axes from the multipliers of its lower triangle along the axes `v`.
-fn multiplier(v: &[Vector3<f64>; 3], face: usize, multipliers: &[f64]) -> Matrix3<f64> {
-    let pairs = (0..face).flat_map(|a| (0..=a).map(move |b| (a, b)));
-    pairs.zip(multipliers).fold(Matrix3::zeros(), |z, ((a, b), &m)| {
-        z + (v[a] * v[b].transpose() + v[b] * v[a].transpose()) * (0.5 * m)
+/// Z of each wall in sensor axes from the multipliers of their lower triangles along the axes of `frames`.
+fn multipliers(frames: &[Frame], faces: &[usize], multipliers: &[f64]) -> Vec<Matrix3<f64>> {
+    let mut left = multipliers.iter();
+    let each = frames.iter().zip(faces);
+    each.map(|((v, _), &face)| {
+        let pairs = (0..face).flat_map(|a| (0..=a).map(move |b| (a, b)));
+        pairs.zip(&mut left).fold(Matrix3::zeros(), |z, ((a, b), &m)| {
+            z + (v[a] * v[b].transpose() + v[b] * v[a].transpose()) * (0.5 * m)
+        })
     })
+    .collect()
 }
 
 struct Newton {
-    y: Coordinates,
-    /// Multiplier of the physical law, in sensor axes.
-    z: Matrix3<f64>,
+    y: DVector<f64>,
+    /// Multiplier of each wall, in sensor axes.
+    zs: Vec<Matrix3<f64>>,
     /// Multipliers of the limits that are held.
     held: Vec<f64>,
-    gradients: Vec<Coordinates>,
 }
 
 impl Newton {
     fn largest(&self) -> f64 {
-        self.held.iter().copied().fold(self.z.amax(), |m, h| m.max(h.abs()))
+        let of_walls = self.zs.iter().map(Matrix3::amax);
+        of_walls.chain(self.held.iter().map(|h| h.abs())).fold(0.0, f64::max)
     }
 }

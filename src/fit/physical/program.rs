@@ -1,113 +1,221 @@
 //! The program min ½|y|², and its answer by the solver with cuts.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::conic::Conditions;
-use super::coordinates::{Coordinates, Form, eigen, pair, tensor};
+use super::constraint::Constraint;
+use super::coordinates::{basis, eigen};
+use super::dissipation::Dissipation;
 use super::failure::SolverFailure;
 use super::law::{CUTS, LARGEST_SHARE};
 
 /// Violation of the law that ends the cuts.
 const VIOLATION: f64 = 1e-9;
+/// Size that a standard deviation of drag has in the program, as those of a tensor have: violations are measured by it.
+const SHARE: f64 = 1e-3;
 
 /// A reading base + g·y that must not be positive.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct Row {
     pub(super) base: f64,
-    pub(super) g: Coordinates,
+    pub(super) g: DVector<f64>,
 }
 
-/// min ½|y|² over the physical tensors x̂ + R⁻¹ y that obey the limits.
+impl Row {
+    pub(super) fn at(&self, y: &DVector<f64>) -> f64 {
+        self.base + self.g.dot(y)
+    }
+}
+
+/// A symmetric matrix base + Σ z_k B_k of the unknowns z whose eigenvalues must not exceed `most`.
+pub(super) struct Wall {
+    base: Matrix3<f64>,
+    terms: Vec<(usize, Matrix3<f64>)>,
+    pub(super) most: f64,
+    /// Most eigenvalues that may reach `most` at once.
+    pub(super) rank: usize,
+    /// Units of the matrix in one of the program.
+    pub(super) unit: f64,
+    /// What it says where one eigenvalue reaches `most`, and where several do.
+    pub(super) says: [Constraint; 2],
+}
+
+impl Wall {
+    /// No moment exceeds half the trace; `first` is the place of the five coordinates of the tensor.
+    pub(super) fn law(first: usize) -> Wall {
+        Wall {
+            base: Matrix3::identity() / 3.0,
+            terms: (0..5).map(|k| (first + k, basis(k))).collect(),
+            most: LARGEST_SHARE,
+            rank: 2,
+            unit: 1.0,
+            says: [Constraint::Triangle, Constraint::Rod],
+        }
+    }
+
+    fn value(&self, z: &DVector<f64>) -> Matrix3<f64> {
+        self.terms.iter().fold(self.base, |sum, (k, b)| sum + b * z[*k])
+    }
+}
+
+/// min ½|y|² over the unknowns ẑ + R⁻¹ y, the last five of them a physical tensor, that obey rows and walls.
 pub(super) struct Program {
-    pub(super) centre: Coordinates,
-    pub(super) root: Form,
-    pub(super) rows: Vec<(Row, usize, bool)>,
+    pub(super) centre: DVector<f64>,
+    /// Upper triangular.
+    pub(super) root: DMatrix<f64>,
+    /// The physical law first.
+    pub(super) walls: Vec<Wall>,
+    /// Each with what it says, and the units of that in one of the row.
+    pub(super) rows: Vec<(Row, Constraint, f64)>,
 }
 
 impl Program {
-    /// vᵀ J w.
-    pub(super) fn reading(&self, v: &Vector3<f64>, w: &Vector3<f64>) -> Row {
-        let p = pair(v, w);
-        Row { base: v.dot(w) / 3.0 + self.centre.dot(&p), g: self.gradient(&p) }
+    /// Without rows but those by which drag takes energy.
+    pub(super) fn new(centre: DVector<f64>, root: DMatrix<f64>, dissipation: &[Dissipation]) -> Program {
+        let law = Wall::law(centre.len() - 5);
+        let mut program = Program { centre, root, walls: vec![law], rows: Vec::new() };
+        for of in dissipation {
+            match of {
+                Dissipation::Coefficient { place, .. } => {
+                    let unit = program.deviation(*place) / SHARE;
+                    let mut p = DVector::zeros(program.centre.len());
+                    p[*place] = -1.0 / unit;
+                    let row = Row { base: p.dot(&program.centre), g: program.gradient(&p) };
+                    program.rows.push((row, of.constraint(), unit));
+                }
+                Dissipation::Matrix { places, .. } => {
+                    let deviations = places.iter().map(|&place| program.deviation(place));
+                    let unit = deviations.fold(f64::INFINITY, f64::min) / SHARE;
+                    let entries = places.iter().enumerate();
+                    program.walls.push(Wall {
+                        base: Matrix3::zeros(),
+                        terms: entries.map(|(k, &place)| (place, Dissipation::entry(k) / -unit)).collect(),
+                        most: 0.0,
+                        rank: 3,
+                        unit,
+                        says: [of.constraint(), of.constraint()],
+                    });
+                }
+            }
+        }
+        program
     }
 
-    /// The gradient with respect to y of the reading p·x.
-    pub(super) fn gradient(&self, p: &Coordinates) -> Coordinates {
-        self.root.transpose().solve_lower_triangular(p).unwrap_or(Coordinates::zeros())
+    /// The standard deviation of an unknown.
+    fn deviation(&self, place: usize) -> f64 {
+        let mut p = DVector::zeros(self.centre.len());
+        p[place] = 1.0;
+        self.gradient(&p).norm()
     }
 
-    pub(super) fn tensor(&self, y: &Coordinates) -> Matrix3<f64> {
-        let step = self.root.solve_upper_triangular(y).unwrap_or(Coordinates::zeros());
-        tensor(&(self.centre + step))
+    /// vᵀ M w of a wall.
+    pub(super) fn reading(&self, wall: &Wall, v: &Vector3<f64>, w: &Vector3<f64>) -> Row {
+        let mut p = DVector::zeros(self.centre.len());
+        for (k, b) in &wall.terms {
+            p[*k] = v.dot(&(b * w));
+        }
+        Row { base: v.dot(&(wall.base * w)) + self.centre.dot(&p), g: self.gradient(&p) }
+    }
+
+    /// The gradient of tr(Z M) of a wall.
+    pub(super) fn push(&self, wall: &Wall, z: &Matrix3<f64>) -> DVector<f64> {
+        let mut p = DVector::zeros(self.centre.len());
+        for (k, b) in &wall.terms {
+            p[*k] = b.dot(z);
+        }
+        self.gradient(&p)
+    }
+
+    /// The gradient with respect to y of the reading p·z.
+    pub(super) fn gradient(&self, p: &DVector<f64>) -> DVector<f64> {
+        self.root.transpose().solve_lower_triangular(p).unwrap_or_else(|| DVector::zeros(p.len()))
+    }
+
+    /// The unknowns at `y`.
+    pub(super) fn unknowns(&self, y: &DVector<f64>) -> DVector<f64> {
+        let step = self.root.solve_upper_triangular(y).unwrap_or_else(|| DVector::zeros(y.len()));
+        &self.centre + step
+    }
+
+    /// The matrix of a wall at `y`.
+    pub(super) fn matrix(&self, wall: &Wall, y: &DVector<f64>) -> Matrix3<f64> {
+        wall.value(&self.unknowns(y))
     }
 
     /// The answer of Clarabel, with cuts added until the law and the limits are met.
     ///
     /// A cut is added only when violated, so that no cut is farther away than the current iterate: next to cuts at 1e5
     /// standard deviations the solver would not resolve answers at one.
-    pub(super) fn cut(&self) -> Result<(Coordinates, usize), SolverFailure> {
-        let mut y = Coordinates::zeros();
+    pub(super) fn cut(&self) -> Result<(DVector<f64>, usize), SolverFailure> {
+        let size = self.centre.len();
+        let mut y = DVector::zeros(size);
         let mut rows: Vec<Row> = Vec::new();
         let mut cones: Vec<[Row; 3]> = Vec::new();
         let mut last = f64::INFINITY;
         for round in 0..=CUTS {
-            let (moments, v) = eigen(self.tensor(&y));
-            let beyond = |row: &Row| row.base + row.g.dot(&y);
+            let spectra: Vec<_> = self.walls.iter().map(|wall| eigen(self.matrix(wall, &y))).collect();
             let violated: Vec<Row> =
-                self.rows.iter().map(|(row, ..)| *row).filter(|r| beyond(r) > VIOLATION).collect();
-            let violation = violated.iter().map(beyond).fold(moments[2] - LARGEST_SHARE, f64::max);
+                self.rows.iter().map(|(row, ..)| row).filter(|r| r.at(&y) > VIOLATION).cloned().collect();
+            let beyond = self.walls.iter().zip(&spectra).map(|(wall, (values, _))| values[2] - wall.most);
+            let violation = violated.iter().map(|row| row.at(&y)).chain(beyond).fold(f64::MIN, f64::max);
             // where the solver's own accuracy ends the descent, Newton's method and the certificate take over
             if violation <= VIOLATION || (round > 0 && violation <= 1e-5 && violation > 0.5 * last) {
                 return Ok((y, round));
             }
             last = violation;
             rows.extend(violated);
-            let walls: Vec<Row> = (0..3)
-                .filter(|&k| moments[k] > LARGEST_SHARE + VIOLATION)
-                .map(|k| v.column(k).into_owned())
-                .map(|v| self.reading(&v, &v))
-                .map(|r| Row { base: r.base - LARGEST_SHARE, g: r.g })
-                .collect();
-            let new_cones = !walls.is_empty() && round > 0;
-            rows.extend(walls);
+            let mut broken = Vec::new();
+            for (wall, (values, axes)) in self.walls.iter().zip(&spectra) {
+                let before = rows.len();
+                for k in (0..3).filter(|&k| values[k] > wall.most + VIOLATION) {
+                    let v = axes.column(k).into_owned();
+                    let r = self.reading(wall, &v, &v);
+                    rows.push(Row { base: r.base - wall.most, g: r.g });
+                }
+                if rows.len() > before && round > 0 {
+                    broken.push((wall, values, axes));
+                }
+            }
             // the answer is at least as far away as the furthest wall that it must reach
             let distance = |r: &Row| r.base / r.g.norm();
             let scale = rows.iter().map(distance).filter(|d| d.is_finite()).fold(0.0, f64::max);
             if scale == 0.0 {
                 return Ok((y, round));
             }
-            if new_cones {
-                cones.extend((0..2).map(|k| self.minor(&v, &moments, k, scale)));
+            for (wall, values, axes) in broken {
+                cones.extend((0..2).map(|k| self.minor(wall, axes, values, k, scale)));
             }
-            let mut conditions = Conditions::new(5);
+            let mut conditions = Conditions::new(size);
             for row in &rows {
                 let size = row.g.norm();
                 if size > 0.0 {
-                    conditions.nonnegative((row.g / size).as_slice(), -row.base / size / scale);
+                    conditions.nonnegative((&row.g / size).as_slice(), -row.base / size / scale);
                 }
             }
             for cone in &cones {
                 let size = cone.iter().map(|r| r.g.norm()).fold(0.0, f64::max);
-                conditions.second_order(cone.map(|r| ((r.g / size), r.base / size / scale)));
+                conditions.second_order(cone.each_ref().map(|r| (&r.g / size, r.base / size / scale)));
             }
-            let answer = conditions.solve(&[1.0; 5], &[0.0; 5])?;
-            y = Coordinates::from_column_slice(&answer) * scale;
+            let answer = conditions.solve(&vec![1.0; size], &vec![0.0; size])?;
+            y = DVector::from_vec(answer) * scale;
         }
         Err(SolverFailure::Cuts { rounds: CUTS })
     }
 
-    /// The minor [½ − a, −c; −c, ½ − b] ⪰ 0 of the largest and the k-th axis as a cone: p + q ≥ |(q − p, 2c)| with
-    /// p = (½ − a)/w, q = (½ − b) w, where w makes both of one size at answers of the size `scale`.
-    fn minor(&self, v: &Matrix3<f64>, moments: &Vector3<f64>, k: usize, scale: f64) -> [Row; 3] {
+    /// The minor [m − a, −c; −c, m − b] ⪰ 0 of the largest and the k-th axis as a cone: p + q ≥ |(q − p, 2c)| with
+    /// p = (m − a)/w, q = (m − b) w, where w makes both of one size at answers of the size `scale`.
+    fn minor(&self, wall: &Wall, v: &Matrix3<f64>, moments: &Vector3<f64>, k: usize, scale: f64) -> [Row; 3] {
         let (top, other) = (v.column(2).into_owned(), v.column(k).into_owned());
-        let (a, b, c) = (self.reading(&top, &top), self.reading(&other, &other), self.reading(&top, &other));
+        let a = self.reading(wall, &top, &top);
+        let b = self.reading(wall, &other, &other);
+        let c = self.reading(wall, &top, &other);
         let small = a.g.norm() * scale;
-        let large = (LARGEST_SHARE - moments[k]).max(b.g.norm() * scale);
+        let large = (wall.most - moments[k]).max(b.g.norm() * scale);
         let w = (small / large).sqrt();
-        let p = Row { base: (LARGEST_SHARE - a.base) / w, g: -a.g / w };
-        let q = Row { base: (LARGEST_SHARE - b.base) * w, g: -b.g * w };
+        let p = Row { base: (wall.most - a.base) / w, g: -a.g / w };
+        let q = Row { base: (wall.most - b.base) * w, g: -b.g * w };
         [
-            Row { base: p.base + q.base, g: p.g + q.g },
+            Row { base: p.base + q.base, g: &p.g + &q.g },
             Row { base: q.base - p.base, g: q.g - p.g },
             Row { base: 2.0 * c.base, g: c.g * 2.0 },
         ]

@@ -29,7 +29,7 @@ pub(super) struct Cleaned {
 
 /// The segments that `rows` hold.
 pub(super) fn cleaned(file: &str, rows: Rows) -> Result<Cleaned, RecordError> {
-    let Rows { rows, names, columns, .. } = rows;
+    let Rows { rows, names, columns, rate_unit, .. } = rows;
     let mut segments: Vec<Segment> = Vec::new();
     let mut findings = Vec::new();
     let mut merged: Vec<([f64; 4], f64, usize)> = Vec::with_capacity(rows.len());
@@ -84,6 +84,7 @@ pub(super) fn cleaned(file: &str, rows: Rows) -> Result<Cleaned, RecordError> {
                 rates: Vec::new(),
                 lines: Vec::new(),
                 inputs: None,
+                rate_unit,
             });
         }
         if let Some(segment) = segments.last_mut() {

@@ -6,6 +6,7 @@ mod columns;
 mod echo;
 mod error;
 mod names;
+mod quantum;
 mod read;
 mod segment;
 mod spikes;
@@ -46,6 +47,8 @@ pub struct Record {
     /// What was found among the rows, and when, s.
     findings: Vec<(f64, Finding)>,
     skipped: Vec<RecordError>,
+    /// File and name of each column that was not read.
+    unused: Vec<(String, String)>,
 }
 impl Record {
     /// From times (s) and angular velocities (rad/s, sensor axes).
@@ -70,7 +73,14 @@ impl Record {
             times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
         Record::cleaned(
             "samples",
-            Rows { rows, names: NAMES.map(String::from), columns: [1, 2, 3, 4], skipped: Vec::new() },
+            Rows {
+                rows,
+                names: NAMES.map(String::from),
+                columns: [1, 2, 3, 4],
+                rate_unit: Some(RateUnit::default()),
+                unused: Vec::new(),
+                skipped: Vec::new(),
+            },
         )
     }
     /// From a text of rows: cells apart by comma, semicolon or tab, or by two spaces or more, with decimal commas where
@@ -99,8 +109,9 @@ impl Record {
 
     fn cleaned(file: &str, mut rows: Rows) -> Result<Record, RecordError> {
         let skipped = core::mem::take(&mut rows.skipped);
+        let unused = core::mem::take(&mut rows.unused).into_iter().map(|name| (file.into(), name)).collect();
         let Cleaned { segments, findings } = cleaned(file, rows)?;
-        Ok(Record { segments, findings, skipped })
+        Ok(Record { segments, findings, skipped, unused })
     }
 
     /// Why rows of the text were left out, one by one.
@@ -108,9 +119,34 @@ impl Record {
         &self.skipped
     }
 
+    /// File and name of each column of a text that was not read.
+    ///
+    /// ```
+    /// use polhode::fit::{Reading, Record};
+    /// let text = "t,wx,wy,wz,temperature\n0,1,2,3,20\n0.1,1,2,3,20\n";
+    /// let record = Record::read(text, "toss.csv", Reading::default())?;
+    /// assert_eq!(record.unused_columns(), [("toss.csv".to_string(), "temperature".to_string())]);
+    /// # Ok::<(), polhode::fit::RecordError>(())
+    /// ```
+    pub fn unused_columns(&self) -> &[(String, String)] {
+        &self.unused
+    }
+
+    /// Takes columns that the caller has read by itself off the [list](Self::unused_columns) of those that were not.
+    #[must_use]
+    pub fn with_used(mut self, uses: impl Fn(&str) -> bool) -> Record {
+        self.unused.retain(|(_, name)| !uses(name));
+        self
+    }
+
     /// Number of samples.
     pub fn samples(&self) -> usize {
         self.segments.iter().map(|s| s.times.len()).sum()
+    }
+
+    /// What is known of its files, without samples.
+    fn of_none(&self) -> Record {
+        Record { skipped: self.skipped.clone(), unused: self.unused.clone(), ..Record::default() }
     }
 
     /// The spikes of all segments, and the record without them, where there are any.
@@ -120,8 +156,7 @@ impl Record {
             return None;
         }
         let mut all = Vec::new();
-        let mut record =
-            Record { segments: Vec::new(), findings: self.findings.clone(), skipped: self.skipped.clone() };
+        let mut record = Record { findings: self.findings.clone(), ..self.of_none() };
         for (k, (segment, spikes)) in self.segments.iter().zip(each).enumerate() {
             record.segments.push(segment.without(&spikes));
             all.extend(spikes.into_iter().map(|sample| Spike {
@@ -132,6 +167,25 @@ impl Record {
             }));
         }
         Some((all, record))
+    }
+
+    /// The step of each component of the readings, rad/s; 0 where they have none.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::fit::Record;
+    /// let times: Vec<f64> = (0..100).map(f64::from).collect();
+    /// let rates: Vec<_> = (0..100).map(|i| Vector3::new(0.25 * f64::from(i % 9), 1.0, 0.0)).collect();
+    /// assert_eq!(Record::from_samples(&times, &rates)?.quanta(), Vector3::new(0.25, 0.0, 0.0));
+    /// # Ok::<(), polhode::fit::RecordError>(())
+    /// ```
+    pub fn quanta(&self) -> Vector3<f64> {
+        quantum::quanta(self.segments.iter().flat_map(|s| &s.rates))
+    }
+
+    /// Variance of the rounding of a component of the readings to steps of `quanta`, (rad/s)².
+    pub(crate) fn rounding(&self, quanta: &Vector3<f64>) -> f64 {
+        quantum::rounding(&self.segments, quanta)
     }
 
     /// Number of samples that were merged into one of the same time.
@@ -164,7 +218,7 @@ impl Record {
         {
             return Err(RecordError::Window { start, end });
         }
-        let mut cut = Record { skipped: self.skipped.clone(), ..Record::default() };
+        let mut cut = self.of_none();
         for (start, end) in joined(windows) {
             cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
             let before = cut.segments.len();
@@ -188,7 +242,7 @@ impl Record {
     /// The parts in which [flights](crate::fit::flights()) of this record were found, one segment each.
     #[must_use]
     pub fn during(&self, flights: &[Flight]) -> Record {
-        let mut cut = Record { skipped: self.skipped.clone(), ..Record::default() };
+        let mut cut = self.of_none();
         for flight in flights {
             let Some(s) = self.segments.get(flight.segment) else { continue };
             let inside = |t: &f64| (flight.start..=flight.end).contains(t);
@@ -208,6 +262,7 @@ impl Record {
         self.segments.extend(other.segments);
         self.findings.extend(other.findings);
         self.skipped.extend(other.skipped);
+        self.unused.extend(other.unused);
         self
     }
 }

@@ -28,6 +28,10 @@ pub(super) struct Rows {
     pub(super) rows: Vec<(usize, [f64; 4])>,
     pub(super) names: [String; 4],
     pub(super) columns: [usize; 4],
+    /// The unit of the rates, where the text or a setting names one.
+    pub(super) rate_unit: Option<RateUnit>,
+    /// Names of the columns that are not read.
+    pub(super) unused: Vec<String>,
     /// Why rows were left out.
     pub(super) skipped: Vec<RecordError>,
 }
@@ -73,6 +77,7 @@ pub(super) fn rows(text: &str, file: &str, reading: &Reading) -> Result<Rows, Re
         }
     }
     let time = time.or(layout.found.time_unit).or_else(|| preamble.time_unit(&names[columns[0]]));
+    let rate_unit = rates[0].or(layout.found.rate_unit).or(preamble.rate_unit());
     let rates =
         rates.map(|unit| unit.or(layout.found.rate_unit).or(preamble.rate_unit()).unwrap_or_default());
     let scale = preamble.scale(&names[columns[1]]);
@@ -105,7 +110,20 @@ pub(super) fn rows(text: &str, file: &str, reading: &Reading) -> Result<Rows, Re
     {
         return Err(first.clone());
     }
-    Ok(Rows { rows, names: columns.map(|c| names[c].clone()), columns: columns.map(|c| c + 1), skipped })
+    let is_read = |place: usize| columns.contains(&place) || layout.found.nanoseconds == Some(place);
+    let others = names.iter().enumerate().filter(|(place, _)| !is_read(*place));
+    let called = |(place, name): (usize, &String)| match name.as_str() {
+        "" => format!("column {}", place + 1),
+        name => name.to_string(),
+    };
+    Ok(Rows {
+        rows,
+        names: columns.map(|c| names[c].clone()),
+        columns: columns.map(|c| c + 1),
+        rate_unit,
+        unused: others.map(called).collect(),
+        skipped,
+    })
 }
 
 /// Names and places of the columns: as they are asked for, by a header, or by themselves.

@@ -5,6 +5,7 @@ use core::ops::Range;
 use nalgebra::Vector3;
 
 use super::error::RecordError;
+use super::units::RateUnit;
 
 /// Samples without a gap between them: finite, at ascending times.
 ///
@@ -27,6 +28,8 @@ pub struct Segment {
     /// The line of each sample in its source, from 1.
     pub(super) lines: Vec<usize>,
     pub(super) inputs: Option<Inputs>,
+    /// The unit of the rates in the source, where that or a setting names one.
+    pub(super) rate_unit: Option<RateUnit>,
 }
 
 /// Wheel momenta (N m s) and torques (N m) at the times of a segment, sensor axes; a list is empty where there are none.
@@ -73,7 +76,14 @@ impl Segment {
             return Err(RecordError::Order { file: source.into(), line: k + 2, time, before });
         }
         let lines = (1..=times.len()).collect();
-        Ok(Segment { source: source.into(), times, rates, lines, inputs: None })
+        Ok(Segment {
+            source: source.into(),
+            times,
+            rates,
+            lines,
+            inputs: None,
+            rate_unit: Some(RateUnit::default()),
+        })
     }
 
     /// With the angular momentum of wheels in the body relative to it, N m s, sensor axes, one per time.
@@ -150,6 +160,7 @@ impl Segment {
             rates: kept.iter().map(|&i| self.rates[i]).collect(),
             lines: kept.iter().map(|&i| self.lines[i]).collect(),
             inputs: self.inputs.as_ref().map(|inputs| inputs.of(kept.iter().copied())),
+            rate_unit: self.rate_unit,
         }
     }
 
@@ -161,12 +172,18 @@ impl Segment {
             rates: self.rates[range.clone()].to_vec(),
             lines: self.lines[range.clone()].to_vec(),
             inputs: self.inputs.as_ref().map(|inputs| inputs.of(range)),
+            rate_unit: self.rate_unit,
         }
     }
 
     /// The line of each sample in its source, from 1; of a segment that was not read from a text its place.
     pub fn lines(&self) -> &[usize] {
         &self.lines
+    }
+
+    /// The unit of the rates in its source; `None` where neither that nor a setting names one, and rad/s is a guess.
+    pub fn rate_unit(&self) -> Option<RateUnit> {
+        self.rate_unit
     }
 
     /// Where it comes from.

@@ -6,49 +6,58 @@
 use nalgebra::Vector3;
 
 /// Sets of neighbours that foresee a sample: how many before it, and how many after.
-const SETS: [(usize, usize); 5] = [(2, 2), (3, 1), (1, 3), (3, 0), (0, 3)];
+const SETS: [(usize, usize); 7] = [(2, 2), (3, 1), (1, 3), (3, 0), (0, 3), (2, 0), (0, 2)];
 /// The weights of the neighbours in each set where none is missing: how far from the sample, and its weight.
-const NEXT: [[(isize, f64); 4]; 5] = [
+const NEXT: [[(isize, f64); 4]; 7] = [
     [(-1, 2.0 / 3.0), (-2, -1.0 / 6.0), (1, 2.0 / 3.0), (2, -1.0 / 6.0)],
     [(-1, 1.5), (-2, -1.0), (-3, 0.25), (1, 0.25)],
     [(-1, 0.25), (1, 1.5), (2, -1.0), (3, 0.25)],
     [(-1, 3.0), (-2, -3.0), (-3, 1.0), (0, 0.0)],
     [(1, 3.0), (2, -3.0), (3, 1.0), (0, 0.0)],
+    [(-1, 2.0), (-2, -1.0), (0, 0.0), (0, 0.0)],
+    [(1, 2.0), (2, -1.0), (0, 0.0), (0, 0.0)],
 ];
-/// Samples on each side among which the usual deviation is sought, and whose deviations a spike changes.
+/// Sets on one side of a sample, those before and those after it; of two the worse counts, as a second spike may be such that
+/// one of them foresees the first.
+const SIDES: [[usize; 2]; 2] = [[3, 5], [4, 6]];
+/// Samples on each side among which the usual deviation is sought.
 const NEIGHBOURS: usize = 25;
+/// Samples on each side whose predictions a spike may change.
+const SPAN: usize = 12;
 /// Usual deviations that a spike exceeds by the median of its predictions: normal noise does so once in 1e17 samples.
 const FAR: f64 = 6.0;
-/// The same by every prediction, also those that magnify the noise: beside a jump one is as usual.
+/// The same by the predictions of either side, which magnify the noise: beside a jump one is as usual.
 const EVERY: f64 = 1.5;
 
 /// Indices of the spikes among samples at nearly even times, ascending.
 ///
-/// A sample counts as one only if no set of its neighbours foresees it: those beside a jump have a set without it. The
-/// worst comes first, and is no neighbour of the others any more.
+/// A sample counts as one only if neither side foresees it: those beside a jump have a side without it. What is found is no
+/// neighbour of the others any more.
 pub(super) fn spikes(rates: &[Vector3<f64>]) -> Vec<usize> {
     let mut left = vec![true; rates.len()];
-    let of_sets: Vec<[f64; 5]> = (0..rates.len()).map(|i| deviations(rates, &left, i)).collect();
-    let usual: [f64; 5] = core::array::from_fn(|k| {
+    let of_sets: Vec<Deviations> = (0..rates.len()).map(|i| deviations(rates, &left, i)).collect();
+    let usual: Deviations = core::array::from_fn(|k| {
         let mut all: Vec<f64> = of_sets.iter().map(|d| d[k]).filter(|d| d.is_finite()).collect();
         median(&mut all).unwrap_or(0.0)
     });
-    let score = |of_sets: &[f64; 5]| {
+    let score = |of_sets: &Deviations| {
+        let relative = |k: usize| Some(of_sets[k] / usual[k]).filter(|s| s.is_finite());
+        let sides = SIDES.map(|sets| sets.into_iter().filter_map(relative).reduce(f64::max));
         let (mut each, mut count) = ([0.0; 5], 0);
-        for score in of_sets.iter().zip(usual).map(|(d, u)| d / u).filter(|s| s.is_finite()) {
+        for score in (0..3).map(relative).chain(sides).flatten() {
             each[count] = score;
             count += 1;
         }
         let each = &mut each[..count];
         let first = each.first().copied().unwrap_or(0.0);
-        let least = each.iter().copied().fold(f64::INFINITY, f64::min);
+        let least = sides.into_iter().flatten().fold(f64::INFINITY, f64::min);
         Score { first, least, middle: median(each).unwrap_or(0.0) }
     };
     let mut scores: Vec<Score> = of_sets.iter().map(score).collect();
     // where the motion is too fast for the sampling, all samples deviate
     let stands_out = |scores: &[Score], i: usize| {
         let own = scores[i];
-        if !(own.least.is_finite() && own.least > EVERY && own.middle > FAR) {
+        if !own.is_far() {
             return false;
         }
         let around = &scores[i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(scores.len())];
@@ -57,27 +66,31 @@ pub(super) fn spikes(rates: &[Vector3<f64>]) -> Vec<usize> {
     };
     let mut suspects: Vec<usize> = (0..rates.len()).filter(|&i| stands_out(&scores, i)).collect();
     let mut found = Vec::new();
+    let around = |i: usize, reach: usize| i.saturating_sub(reach)..(i + reach + 1).min(rates.len());
     while let Some(worst) =
         (0..suspects.len()).max_by(|&a, &b| scores[suspects[a]].first.total_cmp(&scores[suspects[b]].first))
     {
         let spike = suspects.swap_remove(worst);
         found.push(spike);
         left[spike] = false;
-        for i in spike.saturating_sub(NEIGHBOURS)..(spike + NEIGHBOURS + 1).min(rates.len()) {
-            if left[i] {
-                scores[i] = score(&deviations(rates, &left, i));
-            }
+        for i in around(spike, SPAN).filter(|&i| left[i]) {
+            scores[i] = score(&deviations(rates, &left, i));
         }
         // without the spike among their neighbours others may stand out, or no longer do
         suspects.retain(|&i| i.abs_diff(spike) > NEIGHBOURS);
-        let near = spike.saturating_sub(NEIGHBOURS)..(spike + NEIGHBOURS + 1).min(rates.len());
-        suspects.extend(near.filter(|&i| left[i] && stands_out(&scores, i)));
+        suspects.extend(around(spike, NEIGHBOURS).filter(|&i| left[i] && stands_out(&scores, i)));
     }
+    // a sample between two spikes may have looked worse than they do
+    found.retain(|&i| {
+        let keep = score(&deviations(rates, &left, i)).is_far();
+        left[i] = !keep;
+        keep
+    });
     found.sort_unstable();
     found
 }
 
-/// How far no set of neighbours foresees a sample, in usual deviations, and the median of the sets.
+/// How far neither side foresees a sample, in usual deviations, and the median of all predictions.
 #[derive(Clone, Copy)]
 struct Score {
     /// By the set with the least noise: of a spike it is larger than of those beside it.
@@ -86,8 +99,16 @@ struct Score {
     middle: f64,
 }
 
+impl Score {
+    fn is_far(&self) -> bool {
+        self.least.is_finite() && self.least > EVERY && self.middle > FAR
+    }
+}
+
+type Deviations = [f64; SETS.len()];
+
 /// The deviation of a sample from each of its predictions, in units of their noise; infinite where neighbours are missing.
-fn deviations(rates: &[Vector3<f64>], left: &[bool], i: usize) -> [f64; 5] {
+fn deviations(rates: &[Vector3<f64>], left: &[bool], i: usize) -> Deviations {
     // the usual case, whose weights are constants
     if i >= 3 && i + 3 < rates.len() && left[i - 3..=i + 3].iter().all(|left| *left) {
         return NEXT.map(|weights| {
@@ -150,6 +171,23 @@ mod tests {
             rates[i].y += 0.5;
         }
         assert_eq!(spikes(&rates), at);
+    }
+
+    #[test]
+    fn spikes_beside_each_other_are_found_at_every_distance_and_sign() {
+        let mut random = Random::new(4);
+        let still: Vec<Vector3<f64>> = (0..200)
+            .map(|i| {
+                let t = 0.01 * f64::from(i);
+                Vector3::new(libm::sin(t), libm::cos(1.3 * t), 0.2) + random.normal_vector() * 1e-2
+            })
+            .collect();
+        for (apart, size) in (1..6).flat_map(|apart| [(apart, 0.5), (apart, -0.5)]) {
+            let mut rates = still.clone();
+            rates[100].y += 0.5;
+            rates[100 + apart].y += size;
+            assert_eq!(spikes(&rates), [100, 100 + apart], "{size}");
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, UnitQuaternion};
 
 use super::identifiability::Identifiability;
-use super::nuisance::{Nuisance, SegmentSummary, Spike, Systematic, Torque};
+use super::nuisance::{Agreement, Nuisance, SegmentSummary, Spike, Systematic, Torque};
 use super::torque_free::{InvariantTrend, Whiteness};
 use super::warning::Warning;
 use crate::fit::physical::certificate::Certificate;
@@ -63,16 +63,19 @@ pub struct Estimate {
     /// Covariance of the entries xx, yy, zz, xy, xz, yz of the shape, shares² of the trace; rank 5. Of an answer that a
     /// constraint holds it is the mean square distance from it of what the record tells within the constraints.
     pub covariance: SMatrix<f64, 6, 6>,
-    /// Covariance of the same before the physical law was imposed: what a test of other tensors should use.
+    /// Covariance of the same before the physical law was imposed, with the prior: what a test of other tensors should use.
     pub free_covariance: SMatrix<f64, 6, 6>,
     /// The Cramér–Rao bound on it, shares² of the trace; `None` where the tensor has no inverse, or no free motion of it explains the samples.
     pub bound: Option<SMatrix<f64, 6, 6>>,
     /// Root of the trace of [`free_covariance`](Self::free_covariance) over that of the bound; 1 is efficient.
     pub bound_ratio: Option<f64>,
-    /// Absolute tensor, kg m², sensor axes; `None` without [`Settings::known`](crate::fit::Settings::known).
+    /// Absolute tensor, kg m², sensor axes; `None` where nothing gives its size, as [`Settings::known`](crate::fit::Settings::known)
+    /// does, or wheels and torques of the record.
     pub inertia: Option<Inertia>,
     /// Covariance of its entries xx, yy, zz, xy, xz, yz, (kg m²)².
     pub inertia_covariance: Option<SMatrix<f64, 6, 6>>,
+    /// Step of each component of the readings, rad/s, as found or given; 0 where there is none.
+    pub quanta: [f64; 3],
     /// Noise of one component of the rates, rad/s.
     pub noise_sigma: f64,
     /// Mean square of the residuals over the noise; the covariance is multiplied by it, before law and limits are
@@ -108,6 +111,8 @@ pub struct Estimate {
     pub nuisances: Vec<Nuisance>,
     /// What errors of the sensor that the fit takes to be zero would do to the moments.
     pub systematic: Vec<Systematic>,
+    /// How the record agrees with [`Settings::prior`](crate::fit::Settings::prior).
+    pub prior: Option<Agreement>,
     /// Each segment that was long enough.
     pub per_segment: Vec<SegmentSummary>,
     /// Samples that were left out because they stand out of their neighbours.

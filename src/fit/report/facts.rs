@@ -1,31 +1,35 @@
 //! The report, drawn from the record, its weak estimate and the nearest physical tensor.
 
-use nalgebra::{DMatrix, Matrix3, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::columns::{is_torque, nuisances};
 use super::estimate::{Estimate, Residuals};
 use super::identifiability::Identifiability;
-use super::nuisance::{Nuisance, Spike, Torque};
+use super::nuisance::{Agreement, Nuisance, Spike, Torque};
 use super::segments::summaries;
 use super::systematic::systematic;
 use super::torque_free::{InvariantTrend, Whiteness, trends};
 use super::warnings::{Grounds, warnings};
 use crate::fit::cramer_rao::Motions;
 use crate::fit::error::FitError;
+use crate::fit::physical::constraint::{ActiveConstraint, Constraint};
 use crate::fit::physical::coordinates::{
     Coordinates, ENTRIES, Form, eigen, entries_of_coordinates, pair, tensor,
 };
+use crate::fit::physical::dissipation::Dissipation;
 use crate::fit::physical::face::Nearest;
 use crate::fit::physical::failure::SolverFailure;
 use crate::fit::physical::law::LARGEST_SHARE;
+use crate::fit::physical::nearest::Normal;
+use crate::fit::physical::prior::{Prior, Told};
 use crate::fit::physical::truncated::spread;
 use crate::fit::record::Record;
 use crate::fit::settings::{Settings, TorqueModel};
+use crate::fit::weak::joint::Joint;
 use crate::fit::weak::ladder::Chosen;
 use crate::fit::weak::mistaken_units::Better;
 use crate::fit::weak::model::{Column, Kind, Unknowns};
 use crate::fit::weak::noise::SURE;
-use crate::fit::weak::stacked::Stacked;
 use crate::fit::weak::test_functions::Stretch;
 use crate::inertia::{Inertia, InertiaShape};
 
@@ -41,6 +45,11 @@ pub(crate) struct Facts<'a> {
     pub(crate) spikes: Vec<Spike>,
     /// Unit of the column of wheel momenta and torques, kg m².
     pub(crate) input: Option<f64>,
+    pub(crate) joint: &'a Joint,
+    /// What record and prior tell of the columns that are kept and the tensor.
+    pub(crate) told: &'a Normal,
+    pub(crate) prior: Option<Agreement>,
+    pub(crate) dissipation: &'a [Dissipation],
 }
 
 impl Facts<'_> {
@@ -48,16 +57,30 @@ impl Facts<'_> {
     pub(crate) fn report(
         &self,
         nearest: Nearest,
-        free: Form,
         identifiability: Identifiability,
         better: Option<&Better>,
     ) -> Result<Estimate, FitError> {
         let weak = &self.chosen.weak;
-        let root = weak.root / (self.variance * self.misfit.max(1.0)).sqrt();
+        let singular = || FitError::Solver(SolverFailure::Information);
+        let kept = self.joint.kept.len();
+        // R⁻¹, a factor of the covariance
+        let joint_factor = self.told.root.clone().try_inverse().ok_or_else(singular)?;
+        let free: Form = joint_factor.fixed_view::<5, 5>(kept, kept).into_owned();
         // of an answer that is held, what the record tells inside the walls; far outside, what it tells without them
-        let held = !nearest.face.is_empty();
-        let cut = || spread(&weak.x(), &free, &self.settings.limits, &nearest.x).unwrap_or(free);
-        let on_face = if held { cut() } else { free };
+        let answer = DVector::from_iterator(kept + 5, nearest.others.iter().chain(nearest.x.iter()).copied());
+        let cut = if nearest.active.is_empty() {
+            None
+        } else {
+            let limits = &self.settings.limits;
+            spread(&self.told.centre, &joint_factor, limits, self.dissipation, &answer)
+        };
+        let together = cut.clone().unwrap_or_else(|| &joint_factor * joint_factor.transpose());
+        let of_tensor = cut.as_ref().map(|m| m.fixed_view::<5, 5>(kept, kept).into_owned());
+        let on_face = of_tensor.and_then(|m| m.cholesky()).map_or(free, |factor| factor.l());
+        let held: Vec<(usize, f64)> = cut
+            .iter()
+            .flat_map(|m| self.joint.kept.iter().enumerate().map(|(place, &k)| (k, m[(place, place)].sqrt())))
+            .collect();
         let shape = shape_of(&tensor(&nearest.x))?;
         let j = shape.tensor();
         let (moments, _) = eigen(j);
@@ -81,17 +104,17 @@ impl Facts<'_> {
         let motions =
             free_body.then(|| Motions::nearest(self.stretches, &nearest.x, self.variance)).flatten();
         let bound = motions.as_ref().and_then(|m| m.bound(self.variance));
-        let bound_ratio = bound.map(|b| free.norm() / b.trace().sqrt());
+        let bound_ratio = bound.filter(|_| self.prior.is_none()).map(|b| free.norm() / b.trace().sqrt());
         let covariance = on_face * on_face.transpose();
-        let at = weak.stacked.as_ref().and_then(|s| s.with_columns(nearest.x));
-        let at = at.unwrap_or_else(|| weak.at.clone());
-        let (inertia, inertia_covariance) = self.absolute(&j, &covariance, motions.as_ref(), &at)?;
+        let at = self.joint.unknowns(&nearest.others, nearest.x);
+        let (inertia, inertia_covariance) =
+            self.absolute(&j, &covariance, &together, motions.as_ref(), &at)?;
         let (momentum, energy) = trends(self.stretches, &j, self.variance * self.misfit.max(1.0));
         let per_second =
             |d: InvariantTrend| InvariantTrend { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
         let residuals = self.residuals(&at);
-        let (torques, sensor) = self.nuisances(&at);
-        let pull = (root * (nearest.x - weak.x())).norm();
+        let (torques, sensor) = self.nuisances(&at, &held);
+        let pull = nearest.pull;
         let mut estimate = Estimate {
             principal: [moments[0], moments[1], moments[2]],
             sigma_principal,
@@ -105,6 +128,7 @@ impl Facts<'_> {
             bound_ratio,
             inertia,
             inertia_covariance,
+            quanta: self.settings.quantum.map_or_else(|| self.record.quanta().into(), |quantum| [quantum; 3]),
             noise_sigma: self.variance.sqrt() * self.rms,
             chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / weak.dof().max(1) as f64,
             pull,
@@ -114,7 +138,7 @@ impl Facts<'_> {
             radius: weak.radius / self.rms,
             identifiability,
             triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
-            active_constraints: nearest.active,
+            active_constraints: nearest.active.into_iter().map(|c| self.in_seconds(c)).collect(),
             certificate: nearest.certificate,
             momentum_trend: per_second(momentum),
             energy_trend: per_second(energy),
@@ -122,6 +146,7 @@ impl Facts<'_> {
             torque: torques,
             nuisances: sensor,
             systematic: systematic(weak, self.stretches, &v, &moments.into(), self.variance, self.rms),
+            prior: self.prior,
             per_segment: summaries(weak, self.record, self.variance, self.rms),
             spikes: self.spikes.clone(),
             residuals,
@@ -141,19 +166,38 @@ impl Facts<'_> {
         Ok(estimate)
     }
 
+    /// The multiplier of a drag per unit of it in 1/s.
+    fn in_seconds(&self, active: ActiveConstraint) -> ActiveConstraint {
+        let unit = match active.constraint {
+            Constraint::Drag { .. } | Constraint::DragMatrix { .. } => self.rms,
+            _ => 1.0,
+        };
+        ActiveConstraint { multiplier: active.multiplier / unit, ..active }
+    }
+
     fn absolute(
         &self,
         j: &Matrix3<f64>,
         covariance: &Form,
+        together: &DMatrix<f64>,
         motions: Option<&Motions<'_>>,
         at: &Unknowns,
     ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
         if let Some(unit) = self.input {
-            return self.by_inputs(j, unit, at);
+            return self.by_inputs(j, unit, together, at);
         }
-        let Some(known) = self.settings.known else { return Ok((None, None)) };
+        let prior = self.settings.prior.as_ref().map(Prior::told).transpose()?.filter(|prior| prior.sized);
+        let Some(known) = self.settings.known else {
+            return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, &at.x));
+        };
         let scale = known.scale(self.stretches, self.rms, j, self.variance);
         let trace = scale.trace;
+        if let Some(prior) = prior {
+            let (expected, sigma) = (prior.trace, prior.size_deviation());
+            if libm::log(trace / expected).abs() > SURE * sigma {
+                return Err(FitError::PriorSize { prior: expected, sigma: expected * sigma, known: trace });
+            }
+        }
         // its covariance goes with the square
         if !(trace * trace).is_normal() {
             return Err(FitError::Setting { name: "the known quantity", value: known.value() });
@@ -164,20 +208,19 @@ impl Facts<'_> {
         Ok((Some(inertia), Some(scale.covariance(j, covariance, excess, motions))))
     }
 
-    /// The absolute tensor J/u by wheel momenta and torques, where u stands out of its noise.
+    /// The absolute tensor J/u by wheel momenta and torques, where u stands out of its noise; `together` is the covariance
+    /// of the columns that are kept and the tensor.
     fn by_inputs(
         &self,
         j: &Matrix3<f64>,
         unit: f64,
+        together: &DMatrix<f64>,
         at: &Unknowns,
     ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
-        let weak = &self.chosen.weak;
-        let column = weak.columns.iter().position(|column| column.kind == Kind::Input);
-        let factor = weak.stacked.as_ref().and_then(Stacked::joint_factor);
-        let (Some(k), Some(factor)) = (column, factor) else { return Ok((None, None)) };
-        let factor = factor * (self.variance * self.misfit.max(1.0)).sqrt();
-        let u = at.c[k];
-        if u <= SURE * factor.row(k).norm() {
+        let is_input = |&k: &usize| self.chosen.weak.columns[k].kind == Kind::Input;
+        let Some(place) = self.joint.kept.iter().position(is_input) else { return Ok((None, None)) };
+        let u = at.c[self.joint.kept[place]];
+        if u <= SURE * together[(place, place)].sqrt() {
             return Ok((None, None));
         }
         let trace = unit / u;
@@ -185,19 +228,20 @@ impl Facts<'_> {
             Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
         // d(J/u) = dJ/u − J du/u²
         let entries = entries_of_coordinates();
-        let count = weak.columns.len();
-        let spread = DMatrix::from_fn(6, count + 5, |row, l| {
-            let of_shape: f64 = (0..5).map(|c| entries[(row, c)] * factor[(count + c, l)]).sum();
-            trace * (of_shape - j[ENTRIES[row]] * factor[(k, l)] / u)
+        let first = self.joint.kept.len();
+        let slope = DMatrix::from_fn(6, first + 5, |row, l| match l {
+            l if l >= first => trace * entries[(row, l - first)],
+            l if l == place => -trace * j[ENTRIES[row]] / u,
+            _ => 0.0,
         });
-        let covariance = &spread * spread.transpose();
+        let covariance = &slope * together * slope.transpose();
         Ok((Some(inertia), Some(SMatrix::from_fn(|row, column| covariance[(row, column)]))))
     }
 
     /// The coefficients of the torque, and what was estimated of the sensor.
-    fn nuisances(&self, at: &Unknowns) -> (Torque, Vec<Nuisance>) {
+    fn nuisances(&self, at: &Unknowns, held: &[(usize, f64)]) -> (Torque, Vec<Nuisance>) {
         let variance = self.variance * self.misfit.max(1.0);
-        let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms);
+        let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms, held);
         let (torques, sensor): (Vec<_>, Vec<_>) = all
             .into_iter()
             .filter(|(column, _)| column.kind != Kind::Input)
@@ -233,6 +277,22 @@ impl Facts<'_> {
         })
         .collect()
     }
+}
+
+/// The absolute tensor where only a prior gives its size.
+fn by_prior(
+    j: &Matrix3<f64>,
+    prior: &Told,
+    covariance: &Form,
+    x: &Coordinates,
+) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+    let (trace, slope, variance) = prior.size(x);
+    let inertia =
+        Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
+    let shape = SVector::<f64, 6>::from_fn(|row, _| j[ENTRIES[row]]) * trace;
+    let map = entries_of_coordinates() * trace + shape * slope.transpose();
+    let covariance = map * covariance * map.transpose() + shape * shape.transpose() * variance;
+    Ok((Some(inertia), Some(covariance)))
 }
 
 /// A tensor as a checked shape.

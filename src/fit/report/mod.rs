@@ -5,6 +5,7 @@ pub(crate) mod columns;
 pub(crate) mod estimate;
 pub(crate) mod facts;
 pub(crate) mod identifiability;
+pub(crate) mod motion;
 pub(crate) mod nuisance;
 pub(crate) mod scale;
 pub(crate) mod segments;

@@ -16,6 +16,8 @@ pub struct Nuisance {
     pub sigma: f64,
     /// The standard deviation of its prior, where it has one.
     pub prior: Option<f64>,
+    /// The segment that it is of, from 0, where each has its own.
+    pub segment: Option<usize>,
 }
 
 /// The torque that a fit reckons with.
@@ -32,20 +34,31 @@ pub struct Torque {
     pub ratios_without: Option<[f64; 2]>,
 }
 
-/// What an error of the sensor that the fit takes to be zero would do to the moments.
+/// What an error of the sensor, or a wheel inside the body, that the fit takes to be zero would do to the moments.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Systematic {
-    /// The error, as `offset_x`.
+    /// The error, as `offset_x`; `wheel_x` is a constant momentum inside the body, `walk` a random walk of the offsets.
     pub name: &'static str,
     /// Its size.
     pub size: f64,
     /// The unit of its size, empty for a ratio.
     pub unit: &'static str,
-    /// The change of the principal moments, as shares of the trace, that an error of this size makes.
+    /// The change of the principal moments, as shares of the trace, that an error of this size makes; of a walk its
+    /// standard deviation.
     pub principal: [f64; 3],
     /// The same of I₁/I₃ and I₂/I₃.
     pub ratios: [f64; 2],
+}
+
+/// How a prior tensor and a record agree.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Agreement {
+    /// Square of their distance in standard deviations of it: χ² where both are right.
+    pub chi2: f64,
+    /// Its degrees of freedom.
+    pub dof: usize,
 }
 
 /// One segment of a record in a fit.

@@ -1,11 +1,11 @@
-//! What errors of the sensor that a fit takes to be zero would do to the moments.
+//! What errors of the sensor, and a wheel inside the body, that a fit takes to be zero would do to the moments.
 
 use nalgebra::Vector3;
 
 use super::columns::{named, unit};
 use super::nuisance::Systematic;
-use crate::fit::physical::coordinates::{Coordinates, pair};
-use crate::fit::weak::model::{Column, Kind, Unknowns};
+use crate::fit::physical::coordinates::{Coordinates, pair, tensor};
+use crate::fit::weak::model::{Column, Kind, Unknowns, walk_columns};
 use crate::fit::weak::stacked::Stacked;
 use crate::fit::weak::test_functions::Stretch;
 use crate::fit::weak::weak_estimate::WeakEstimate;
@@ -25,6 +25,49 @@ const ERRORS: [(Kind, f64); 12] = [
     (Kind::Skew(1), 1e-3),
     (Kind::Skew(2), 1e-3),
 ];
+/// Momentum of a wheel inside the body over that of the body.
+const WHEEL: f64 = 1e-3;
+/// Random walk of the offsets, rad/s per √s.
+const WALK: f64 = 1e-4;
+/// Steps of that walk in each segment: the slow ones matter.
+const WALK_STEPS: usize = 6;
+/// Columns of a walk beyond which it is not asked for: the segments are many, and each is short.
+const MOST: usize = 60;
+
+/// An error, and the columns that it is made of with the size of each; those of a random one are independent.
+struct Line {
+    name: &'static str,
+    unit: &'static str,
+    size: f64,
+    columns: Vec<(Column, f64)>,
+}
+
+/// The errors that a fit with `weak.columns` takes to be zero, in the units of the fit.
+fn lines(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Line> {
+    let alone = |kind: Kind, size: f64, factor: f64| {
+        let (name, unit, _) = named(kind);
+        Line { name, unit, size, columns: vec![(Column::new(kind, None), size * factor)] }
+    };
+    let estimated = |kind: Kind| weak.columns.iter().any(|column| column.kind == kind);
+    let sensor = ERRORS.into_iter().filter(|(kind, _)| !estimated(*kind));
+    let mut lines: Vec<Line> = sensor.map(|(kind, size)| alone(kind, size, 1.0 / unit(kind, rms))).collect();
+    let j = tensor(&weak.x());
+    let (mut squares, mut count) = (0.0, 0.0);
+    for rate in stretches.iter().flat_map(|stretch| &stretch.rates) {
+        squares += (j * rate).norm_squared();
+        count += 1.0;
+    }
+    let momentum = (squares / f64::max(count, 1.0)).sqrt();
+    lines.extend([0, 1, 2].map(|axis| alone(Kind::Rotor(axis), WHEEL, momentum)));
+    let walk = walk_columns(stretches, WALK / rms / rms.sqrt(), WALK_STEPS);
+    let fitted = weak.columns.iter().any(|column| matches!(column.kind, Kind::Walk { .. }));
+    if walk.len() <= MOST && !fitted {
+        let step = |column: Column| column.prior.map(|size| (Column { prior: None, ..column }, size));
+        let columns = walk.into_iter().filter_map(step).collect();
+        lines.push(Line { name: "walk", unit: "rad/s/sqrt(s)", size: WALK, columns });
+    }
+    lines
+}
 
 /// The lines of the report; `axes` and `moments` are the principal ones, ascending, and `rms` is the unit rate, rad/s.
 ///
@@ -37,22 +80,23 @@ pub(crate) fn systematic(
     variance: f64,
     rms: f64,
 ) -> Vec<Systematic> {
-    let estimated = |kind| weak.columns.iter().any(|column| column.kind == kind);
-    let errors: Vec<(Kind, f64)> = ERRORS.into_iter().filter(|(kind, _)| !estimated(*kind)).collect();
-    let first = errors.iter().map(|&(kind, _)| Column { kind, prior: None });
+    let lines = lines(weak, stretches, rms);
+    let first = lines.iter().flat_map(|line| &line.columns).map(|(column, _)| *column);
     let columns: Vec<Column> = first.chain(weak.columns.iter().copied()).collect();
+    let errors = columns.len() - weak.columns.len();
     let mut at = weak.at.clone();
-    at.c = vec![0.0; errors.len()].into_iter().chain(at.c).collect();
+    at.c = vec![0.0; errors].into_iter().chain(at.c).collect();
     let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], &columns, &at));
     let Some(whitened) = parts.collect::<Option<Vec<Vec<f64>>>>() else { return Vec::new() };
     let origin = Unknowns::at(Coordinates::zeros(), &weak.columns);
     let (wide, own) = (columns.len() + 6, weak.columns.len() + 6);
-    let each = errors.iter().enumerate().filter_map(|(k, &(kind, size))| {
+    // of the principal moments and of the ratios, by a column of a given size
+    let changes = |k: usize, size: f64| -> Option<[f64; 5]> {
         let rows: Vec<Vec<f64>> = whitened
             .iter()
             .map(|part| {
                 let row = |row: &[f64]| {
-                    let mut kept = row[errors.len()..].to_vec();
+                    let mut kept = row[errors..].to_vec();
                     kept[own - 1] = -row[k];
                     kept
                 };
@@ -60,12 +104,23 @@ pub(crate) fn systematic(
             })
             .collect();
         let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
-        let step = Stacked::new(&rows, &weak.columns, &origin, variance.sqrt()).minimiser()?.x;
-        let step = step * (size / unit(kind, rms));
+        let step = Stacked::new(&rows, &weak.columns, &origin, variance.sqrt()).minimiser()?.x * size;
         let change: [f64; 3] = core::array::from_fn(|k| pair(&axes[k], &axes[k]).dot(&step));
         let ratio = |k: usize| (change[k] - change[2] * moments[k] / moments[2]) / moments[2];
-        let (name, unit_name, _) = named(kind);
-        Some(Systematic { name, size, unit: unit_name, principal: change, ratios: [ratio(0), ratio(1)] })
+        Some([change[0], change[1], change[2], ratio(0), ratio(1)])
+    };
+    let mut place = 0;
+    let each = lines.into_iter().filter_map(|line| {
+        let begin = place;
+        place += line.columns.len();
+        let of = line.columns.iter().enumerate().map(|(k, &(_, size))| changes(begin + k, size));
+        let of: Vec<[f64; 5]> = of.collect::<Option<_>>()?;
+        let [a, b, c, d, e] = match of.as_slice() {
+            [one] => *one,
+            many => core::array::from_fn(|k| many.iter().map(|own| own[k] * own[k]).sum::<f64>().sqrt()),
+        };
+        let (name, size, unit) = (line.name, line.size, line.unit);
+        Some(Systematic { name, size, unit, principal: [a, b, c], ratios: [d, e] })
     });
     each.filter(|s| s.principal.iter().all(|v| v.is_finite())).collect()
 }

@@ -31,12 +31,13 @@ pub(crate) struct Chosen {
 
 /// The columns of a torque.
 pub(crate) fn columns_of(model: TorqueModel) -> Vec<Column> {
-    let flat = |kind| Column { kind, prior: None };
+    let flat = |kind| Column::new(kind, None);
     match model {
         TorqueModel::None | TorqueModel::Auto => Vec::new(),
         TorqueModel::Drag => vec![flat(Kind::Drag)],
         TorqueModel::Drag3 => (0..3).map(Kind::Viscous).map(flat).collect(),
         TorqueModel::Drag6 => (0..6).map(Kind::Viscous).map(flat).collect(),
+        TorqueModel::Quadratic => vec![flat(Kind::Quadratic)],
         TorqueModel::Constant => (0..3).map(Kind::Constant).map(flat).collect(),
     }
 }
@@ -49,13 +50,27 @@ pub(crate) struct Demand<'a> {
     pub(crate) noise: Noise,
     /// Columns that every model has.
     pub(crate) columns: &'a [Column],
+    /// The stretches that have torques of their own; none where all share theirs.
+    pub(crate) alone: &'a [usize],
     /// Whether to ask for mistaken units.
     pub(crate) units: bool,
 }
 
 impl Demand<'_> {
     fn columns(&self, model: TorqueModel) -> Vec<Column> {
-        columns_of(model).into_iter().chain(self.columns.iter().copied()).collect()
+        self.torques(model).into_iter().chain(self.columns.iter().copied()).collect()
+    }
+
+    /// The columns of a torque, for each stretch where it has its own.
+    fn torques(&self, model: TorqueModel) -> Vec<Column> {
+        let shared = columns_of(model);
+        if self.alone.is_empty() {
+            return shared;
+        }
+        let of = |&segment: &usize| {
+            shared.iter().map(move |column| Column { segment: Some(segment), ..*column }).collect::<Vec<_>>()
+        };
+        self.alone.iter().flat_map(of).collect()
     }
 }
 
@@ -91,7 +106,7 @@ fn choose(
     if demand.units && (!explained || !first.settled()) {
         *better = better_unit(stretches, Some(&first), variance);
         // before the descents, which would not end soon either
-        if better.as_ref().is_some_and(|b| b.credible && !b.vague && b.far)
+        if better.as_ref().is_some_and(|b| b.credible && !b.vague && (b.far || b.sure))
             && let Some(better) = better.take()
         {
             return Err(Failure::Units(first.misfit(variance), Box::new(better)));
@@ -102,7 +117,7 @@ fn choose(
         let asks = demand.torque == TorqueModel::Auto
             && [TorqueModel::Drag, TorqueModel::Constant]
                 .into_iter()
-                .any(|model| gain_of(stretches, &first, &demand, model, variance) > needed(0, model));
+                .any(|model| gain_of(stretches, &first, &demand, model, variance) > needed(&demand, model));
         let done = match demand.noise {
             Noise::Given(_) => false,
             Noise::White | Noise::Fitted => !restless && !asks,
@@ -126,8 +141,8 @@ fn choose(
     let mut best = plain(none, TorqueModel::None);
     let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
         let gain = likelihood(stretches, &weak, variance) - floor;
-        let more = columns_of(model).len().saturating_sub(columns_of(best.model).len()).max(1);
-        let asked = if best.model == TorqueModel::None { needed(0, model) } else { threshold(more) };
+        let more = demand.torques(model).len().saturating_sub(demand.torques(best.model).len()).max(1);
+        let asked = if best.model == TorqueModel::None { needed(&demand, model) } else { threshold(more) };
         let before = likelihood(stretches, &best.weak, variance) - floor;
         let better = weak.settled() && (!best.weak.settled() || gain - before > asked);
         let gain = Some(gain).filter(|gain| gain.is_finite());
@@ -160,8 +175,8 @@ fn threshold(coefficients: usize) -> f64 {
     FIRST + FURTHER * (coefficients.max(1) - 1) as f64
 }
 
-fn needed(already: usize, model: TorqueModel) -> f64 {
-    threshold(columns_of(model).len().saturating_sub(already))
+fn needed(demand: &Demand<'_>, model: TorqueModel) -> f64 {
+    threshold(demand.torques(model).len())
 }
 
 /// Log-likelihood of an estimate, the unknowns at their best; estimates at one radius can be compared.

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::covariance::{Covariance, Levels};
 use super::model::{Column, Kind, Terms, Unknowns, cross_derivative, distortion, symmetric};
 use super::moments::{Group, Inputs, Moments, Sums, groups};
+use super::quadratic::{Quadratic, slope};
 use super::test_functions::{Seen, Stretch, TestFunctions};
 use crate::fit::physical::coordinates::{Form, basis};
 use crate::num::banded::Banded;
@@ -47,7 +48,7 @@ impl Linearised {
         origin: Unknowns,
         tests: TestFunctions,
     ) -> Self {
-        let terms = Terms::new(columns, &origin);
+        let terms = Terms::new(columns, &origin, stretch);
         let rows = rows(stretch, noise, columns, &origin, &tests);
         Linearised { tests, width: columns.len() + 6, rows, terms, origin }
     }
@@ -79,7 +80,8 @@ impl Linearised {
             let [aa, ba, bb] = seen.sums(&inverse);
             let ab = ba.transpose();
             let w = self.terms.rate(&group.reading);
-            let k = bases.map(|b| cross_derivative(&b, &w) + b * self.terms.drag);
+            let drag = Matrix3::identity() * self.terms.drag + slope(&w) * self.terms.quadratic;
+            let k = bases.map(|b| cross_derivative(&b, &w) + b * drag);
             // Σ tr Z D_l D_kᵀ with D_k = −φ' B_k + φ K_k
             for l in 0..5 {
                 let from_slope = bases[l] * aa - k[l] * ba;
@@ -104,41 +106,61 @@ pub(crate) fn rows(
     origin: &Unknowns,
     tests: &TestFunctions,
 ) -> Vec<f64> {
-    let terms = Terms::new(columns, origin);
+    let terms = Terms::new(columns, origin, stretch);
     let moments = Moments::new(stretch, noise, tests);
     let width = columns.len() + 6;
     let mut rows = vec![0.0; 3 * tests.count * width];
-    let skewed: Vec<Option<Vec<Vector3<f64>>>> = columns
+    // columns that act on the samples one by one
+    let groups = || groups(stretch, noise, tests.radius);
+    let changed: Vec<Option<Vec<Vector3<f64>>>> = columns
         .iter()
         .map(|column| match column.kind {
-            Kind::Skew(axis) => Some(skewed(groups(stretch, noise, tests.radius), &terms, tests, axis)),
+            _ if !column.acts_on(stretch) => Some(Vec::new()),
+            Kind::Skew(axis) => Some(skewed(groups(), &terms, tests, axis)),
+            Kind::Walk { axis, from, until } => {
+                let share = |time: f64| ((time - from) / (until - from)).clamp(0.0, 1.0);
+                let change = |group: &Group, _: &Vector3<f64>| Vector3::ith(axis, -share(group.time));
+                Some(self::changed(groups(), &terms, tests, change))
+            }
             _ => None,
         })
         .collect();
+    let quadratic = Quadratic::new(stretch, noise, &terms, tests, columns);
     for m in 0..tests.count {
         let inputs = moments.inputs.get(m);
         let area = moments.area(m);
         let motion = Corrected::new(&terms, &moments.motion(m), area);
         let readings = Corrected::new(&terms, &moments.readings(m), area);
         let mut residual = readings.residual(&terms, inputs);
+        let by_square = quadratic.as_ref().map_or(Vector3::zeros(), |sums| sums.motion[m]);
+        if let Some(sums) = &quadratic {
+            residual += terms.j * sums.readings[m] * terms.quadratic;
+        }
         let mut put = |column: usize, values: Vector3<f64>| {
             for p in 0..3 {
                 rows[(3 * m + p) * width + column] = values[p];
             }
         };
-        for (k, (column, skewed)) in columns.iter().zip(&skewed).enumerate() {
-            let derivative = match skewed {
-                Some(skewed) => {
-                    residual += skewed[m] * origin.c[k];
-                    skewed[m]
+        for (k, (column, changed)) in columns.iter().zip(&changed).enumerate() {
+            let derivative = match (changed, &quadratic) {
+                (Some(changed), _) => {
+                    let Some(change) = changed.get(m) else { continue };
+                    residual += change * origin.c[k];
+                    *change
                 }
-                None => motion.derivative(column.kind, &terms, inputs),
+                (None, Some(_)) if column.kind == Kind::Quadratic => terms.j * by_square,
+                (None, sums) => {
+                    let own = sums.as_ref().and_then(|sums| sums.sensor[k].get(m));
+                    let by_sensor = own.map_or(Vector3::zeros(), |sum| terms.j * sum * terms.quadratic);
+                    motion.derivative(column.kind, &terms, inputs) + by_sensor
+                }
             };
             put(k, derivative);
         }
         for k in 0..5 {
             let b = basis(k);
-            let own = b * (motion.value * terms.drag - motion.slope) + crossed(&motion.square, &b);
+            let drag = motion.value * terms.drag + by_square * terms.quadratic;
+            let own = b * (drag - motion.slope) + crossed(&motion.square, &b);
             put(columns.len() + k, own);
         }
         put(columns.len() + 5, residual);
@@ -199,6 +221,9 @@ fn carry(
         if let Some(inputs) = &stretch.inputs {
             own -= values.cross(&(inputs.wheel[i] * terms.input));
         }
+        if terms.quadratic != 0.0 {
+            own += slope(&w) * (terms.j * values) * terms.quadratic;
+        }
         *n = *n * kept + own * (stretch.weights[i] * share);
     }
 }
@@ -219,13 +244,26 @@ fn skewed(
     tests: &TestFunctions,
     axis: usize,
 ) -> Vec<Vector3<f64>> {
+    let Some(inverse) = terms.j.try_inverse() else { return vec![Vector3::zeros(); tests.count] };
+    changed(groups, terms, tests, |group, w| {
+        let momentum = terms.j * w + group.wheel * terms.input;
+        let drag = terms.viscous * w + terms.j * w * (w.norm() * terms.quadratic);
+        let slope = inverse * (terms.constant - w.cross(&momentum) - drag);
+        Vector3::ith(axis, slope[axis])
+    })
+}
+
+/// What the equations of each test change with a change of the rates, given at a group of samples and its rate.
+fn changed(
+    groups: impl Iterator<Item = Group>,
+    terms: &Terms,
+    tests: &TestFunctions,
+    change: impl Fn(&Group, &Vector3<f64>) -> Vector3<f64>,
+) -> Vec<Vector3<f64>> {
     let mut sums = vec![Vector3::zeros(); tests.count];
-    let Some(inverse) = terms.j.try_inverse() else { return sums };
     for group in groups {
         let w = terms.rate(&group.reading);
-        let momentum = terms.j * w + group.wheel * terms.input;
-        let slope = inverse * (terms.constant - w.cross(&momentum) - terms.viscous * w);
-        let change = Vector3::ith(axis, slope[axis]) * group.weight;
+        let change = change(&group, &w) * group.weight;
         let (by_slope, by_value) = (terms.j * change, terms.by_rate(&w, &group.wheel) * change);
         for (m, slope, value) in Seen::new(tests, group.time).each() {
             sums[m] += by_value * value - by_slope * slope;
@@ -296,7 +334,8 @@ impl Corrected {
                 own - inputs.map_or(Vector3::zeros(), |i| wheel(e * i.value.transpose()))
             }
             Kind::Input => inputs.map_or(Vector3::zeros(), |i| self.input(terms, i)),
-            Kind::Skew(_) => Vector3::zeros(),
+            Kind::Rotor(k) => self.value.cross(&Vector3::ith(k, 1.0)),
+            Kind::Skew(_) | Kind::Walk { .. } | Kind::Quadratic => Vector3::zeros(),
             Kind::Scale | Kind::AxisScale(_) | Kind::Misalignment(_) => {
                 let q = distortion(kind).unwrap_or_else(Matrix3::zeros);
                 let square = q * self.with_readings;

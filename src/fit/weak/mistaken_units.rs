@@ -86,6 +86,9 @@ pub(crate) struct Better {
     pub(crate) vague: bool,
     /// Whether the misfit in the unit that was read is so much larger that no torque noise is likely to be its cause.
     pub(crate) far: bool,
+    /// Whether the noise of the rates alone explains the record in the best of them, and by no chance in the unit that was
+    /// read: torques would leave more in any unit.
+    pub(crate) sure: bool,
     /// Distance from the sphere, as a share of the trace, of the tensor in the unit that was read, where it is that which
     /// speaks against the unit.
     pub(crate) sphere: Option<f64>,
@@ -108,6 +111,10 @@ const BETTER: f64 = 2.0;
 
 /// Fall of the misfit that torque noise is not likely to hide.
 const FAR: f64 = 20.0;
+
+/// Standard deviations of the misfit of noise by which the unit that was read must explain less than one in which noise explains
+/// all.
+const SURELY: f64 = 10.0;
 
 /// Distance from the sphere, as a share of the trace, below which another unit is asked for: rates that are read too large
 /// by a factor make a body nearer to a sphere by the same factor.
@@ -135,10 +142,12 @@ pub(crate) fn better_unit(
     let pilot = radius::pilot(stretches);
     let drag = columns_of(TorqueModel::Drag);
     let sphere = weak.filter(|weak| suspicious(weak, variance)).map(|weak| weak.x().norm());
-    let quick = || radius::tried(&pilot, &drag, variance).map(|weak| weak.misfit(variance));
-    if sphere.is_none() && quick().is_some_and(|misfit| misfit < EXPLAINED) {
+    let quick = if sphere.is_none() { radius::tried(&pilot, &drag, variance) } else { None };
+    if quick.as_ref().is_some_and(|weak| weak.misfit(variance) <= weak.expected_misfit()) {
         return None;
     }
+    // rates that are read too small make a body that no tensor comes near to
+    let too_large = sphere.is_some() || quick.is_some_and(|weak| weak.misfit(variance) < EXPLAINED);
     let short = radius::longest(stretches, SAMPLES);
     let is_whole = samples(&short) == samples(&pilot);
     let explains = |stretches: &[Stretch], factor: f64| {
@@ -151,7 +160,7 @@ pub(crate) fn better_unit(
     let mut found: Vec<Found> = Vec::new();
     let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
     for (factor, mistake) in candidates.chain([(ANY, None)]) {
-        if sphere.is_some() && factor >= 1.0 {
+        if too_large && factor >= 1.0 {
             continue;
         }
         let tried = explains(&short, factor);
@@ -160,13 +169,15 @@ pub(crate) fn better_unit(
         let (misfit, credible) = (other.misfit(variance), credible(&other, variance));
         // next to a sphere the misfits are alike, and the shapes must tell
         if sphere.is_none_or(|distance| credible && other.x().norm() >= FARTHER * distance) {
-            found.push(Found { factor, mistake, misfit, dof: other.dof() as f64, credible });
+            let by_noise = misfit <= other.expected_misfit();
+            found.push(Found { factor, mistake, misfit, dof: other.dof() as f64, credible, by_noise });
         }
     }
     found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     let best = found.first()?;
     let as_read = if sphere.is_some() { best.misfit } else { as_read(&pilot, weak, &drag, variance)? };
-    if sphere.is_none() && as_read < (BETTER * best.misfit).max(EXPLAINED) {
+    let sure = best.by_noise && as_read - best.misfit > SURELY * (2.0 / best.dof).sqrt();
+    if sphere.is_none() && !sure && as_read < (BETTER * best.misfit).max(EXPLAINED) {
         return None;
     }
     let equal = |f: &Found| (f.misfit - best.misfit) * best.dof <= EQUAL * best.misfit.max(1.0);
@@ -181,6 +192,7 @@ pub(crate) fn better_unit(
         credible: best.credible,
         vague,
         far: FAR * best.misfit < as_read,
+        sure,
         sphere,
     })
 }
@@ -207,6 +219,8 @@ struct Found {
     misfit: f64,
     dof: f64,
     credible: bool,
+    /// Whether the noise of the rates alone explains it.
+    by_noise: bool,
 }
 
 /// Largest standard deviation, relative to the distance from the sphere, of an estimate that supports its unit.

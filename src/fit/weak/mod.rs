@@ -20,6 +20,8 @@
 //! | D | Dᵀ D is what errors of the mean rates may add to H where nothing but their mean stands out of the noise |
 
 pub(crate) mod covariance;
+pub(crate) mod held;
+pub(crate) mod joint;
 pub(crate) mod ladder;
 pub(crate) mod levels;
 pub(crate) mod linearised;
@@ -28,6 +30,7 @@ pub(crate) mod model;
 pub(crate) mod moments;
 pub(crate) mod noise;
 pub(crate) mod normalised;
+pub(crate) mod quadratic;
 pub(crate) mod radius;
 pub(crate) mod rounds;
 pub(crate) mod stacked;

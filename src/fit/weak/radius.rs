@@ -30,7 +30,7 @@ fn covariance(information: &Form, inflation: &Form, variance: f64) -> Option<For
 }
 
 /// Radii to choose from, ascending: doubling from half the time in which the body turns by one radian.
-fn candidates(stretches: &[Stretch]) -> Vec<f64> {
+pub(super) fn candidates(stretches: &[Stretch]) -> Vec<f64> {
     let longest = stretches.iter().map(Stretch::duration).fold(0.0, f64::max);
     let samples: usize = stretches.iter().map(|s| s.times.len()).sum();
     let duration: f64 = stretches.iter().map(Stretch::duration).sum();

@@ -19,8 +19,8 @@ pub(crate) struct Stacked {
     pub(crate) root: Form,
     z: Coordinates,
     /// Rows of the columns: their own triangle, their part in x, and their right-hand side.
-    own: DMatrix<f64>,
-    shared: DMatrix<f64>,
+    pub(super) own: DMatrix<f64>,
+    pub(super) shared: DMatrix<f64>,
     right: DVector<f64>,
     /// Sum of squares of the whitened residuals that no x removes.
     pub(crate) squares: f64,
@@ -34,12 +34,19 @@ impl Stacked {
         let count = columns.len();
         let width = count + 6;
         let equations: usize = rows.iter().map(|rows| rows.len() / width).sum();
-        let mut each = rows.iter().flat_map(|rows| rows.chunks_exact(width));
+        // a stretch with columns of its own is made a triangle first, so that those of the others cost nothing
+        let alone = columns.iter().any(|column| column.segment.is_some()) && rows.len() > 1;
+        let small: Vec<Vec<f64>> =
+            if alone { rows.iter().map(|rows| triangle(rows, width)).collect() } else { Vec::new() };
+        let of_stretch = |rows: &[f64]| rows.len() / width;
+        let all: Vec<&[f64]> = if alone { small.iter().map(Vec::as_slice).collect() } else { rows.to_vec() };
+        let height: usize = all.iter().map(|rows| of_stretch(rows)).sum();
+        let mut each = all.iter().flat_map(|rows| rows.chunks_exact(width));
         let mut r = Mat::<f64>::zeros(0, width);
-        for part in 0..=equations / TOGETHER {
+        for part in 0..=height / TOGETHER {
             let first = r.nrows();
-            let own = TOGETHER.min(equations - part * TOGETHER);
-            let priors = if part == equations / TOGETHER { count } else { 0 };
+            let own = TOGETHER.min(height - part * TOGETHER);
+            let priors = if part == height / TOGETHER { count } else { 0 };
             let mut stack = Mat::<f64>::zeros((first + own + priors).max(width), width);
             stack.as_mut().subrows_mut(0, first).copy_from(&r);
             for (i, row) in each.by_ref().take(own).enumerate() {
@@ -118,4 +125,23 @@ impl Stacked {
     pub(crate) fn squares_at(&self, x: &Coordinates) -> f64 {
         (self.root * (x - self.origin.x) + self.z).norm_squared() + self.squares
     }
+}
+
+/// Rows of `width` numbers as the rows of their triangle: the columns that are zero in all of them are left out of it.
+fn triangle(rows: &[f64], width: usize) -> Vec<f64> {
+    let used: Vec<usize> =
+        (0..width).filter(|&k| rows.chunks_exact(width).any(|row| row[k] != 0.0)).collect();
+    if rows.len() / width <= used.len() {
+        return rows.to_vec();
+    }
+    let full = Mat::from_fn(rows.len() / width, used.len(), |i, k| rows[i * width + used[k]]);
+    let qr = full.qr();
+    let r = qr.thin_R();
+    let mut small = vec![0.0; used.len() * width];
+    for i in 0..used.len() {
+        for k in i..used.len() {
+            small[i * width + used[k]] = r[(i, k)];
+        }
+    }
+    small
 }

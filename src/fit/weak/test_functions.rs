@@ -21,6 +21,8 @@ pub(crate) struct Stretch {
     pub(crate) weights: Vec<f64>,
     /// What acts on the body and is known.
     pub(crate) inputs: Option<KnownInputs>,
+    /// Its number in the record.
+    pub(crate) index: usize,
 }
 
 /// Wheel momenta and torques at the times of a stretch, in units of the unit rate and its square.
@@ -33,7 +35,7 @@ pub(crate) struct KnownInputs {
 impl Stretch {
     pub(crate) fn new(times: Vec<f64>, rates: Vec<Vector3<f64>>) -> Self {
         let weights = quadrature::weights(&times);
-        Stretch { times, rates, weights, inputs: None }
+        Stretch { times, rates, weights, inputs: None, index: 0 }
     }
 
     pub(crate) fn duration(&self) -> f64 {
@@ -46,6 +48,7 @@ impl Stretch {
         let inputs = self.inputs.as_ref();
         Stretch {
             inputs: inputs.map(|i| KnownInputs { wheel: head(&i.wheel), torque: head(&i.torque) }),
+            index: self.index,
             ..Stretch::new(self.times[..count].to_vec(), head(&self.rates))
         }
     }

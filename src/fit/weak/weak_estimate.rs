@@ -128,6 +128,29 @@ impl WeakEstimate {
         self.parts.iter().map(|part| part.levels).collect()
     }
 
+    /// R as it would be without some of the columns.
+    pub(crate) fn without(&self, left_out: &[usize], deviation: f64) -> Option<Form> {
+        let stacked = self.stacked.as_ref()?;
+        let kept: Vec<usize> = (0..self.columns.len()).filter(|k| !left_out.contains(k)).collect();
+        let columns: Vec<Column> = kept.iter().map(|&k| self.columns[k]).collect();
+        let origin = Unknowns { x: stacked.origin.x, c: kept.iter().map(|&k| stacked.origin.c[k]).collect() };
+        let width = self.columns.len() + 6;
+        let rows: Vec<Vec<f64>> = self
+            .parts
+            .iter()
+            .map(|part| {
+                let each = part.rows.chunks_exact(width);
+                let kept = |row: &[f64]| {
+                    let own = kept.iter().map(|&k| row[k]);
+                    own.chain(row[width - 6..].iter().copied()).collect::<Vec<f64>>()
+                };
+                each.flat_map(kept).collect()
+            })
+            .collect();
+        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        Some(Stacked::new(&rows, &columns, &origin, deviation).root)
+    }
+
     /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
     /// without its squares.
     pub(crate) fn spectrum(&self) -> Option<(Coordinates, Form)> {

@@ -24,5 +24,5 @@ pub(crate) use orbit::FreeOrbit;
 pub(super) use phase::{Pair, Phase, TOO_FAR, pair, reduce};
 pub use pure_spin::{PureSpin, Stability};
 pub use symmetric_top::SymmetricTop;
-pub(super) use theta::{Family, LEAST_TERMS, T, U, V_MINUS, V_PLUS, least_value, polynomial, power};
+pub(super) use theta::{Family, LEAST_TERMS, Powers, T, U, V_MINUS, V_PLUS, least_value, polynomial};
 pub use tumbling::{TumblingElements, TumblingError};

@@ -9,7 +9,7 @@ use super::phase::{Spin, pair, steady};
 use super::polhode::{Polhode, exact_separation};
 use super::theta::{Points, Theta};
 use crate::body::{Phase, Point};
-use crate::num::{Dd, Instructions, LANES, Precise};
+use crate::num::{Dd, Instructions, LANES, Lane, Precise};
 use crate::rotation::{Quat, Vec3};
 
 /// Constants of one motion, worked out once; then any time in O(1).
@@ -93,7 +93,7 @@ impl FreeOrbit {
         for (block, times) in times.chunks(LANES).enumerate() {
             let together = match &self.kind {
                 Kind::Circulating(orbit) => {
-                    let mut t = [0.0; LANES];
+                    let mut t = Lane::ZERO;
                     t[..times.len()].copy_from_slice(times);
                     orbit.quick.at_all(&t, &mut lanes, by)
                 }

@@ -18,8 +18,8 @@
 
 use super::nutation::{Nutation, sign_of};
 use crate::flow::free::{
-    Family, LEAST_TERMS as TERMS, Pair, Phase, T, TOO_FAR, U, V_MINUS, V_PLUS, least_value, pair, polynomial,
-    power, reduce,
+    Family, LEAST_TERMS as TERMS, Pair, Phase, Powers, T, TOO_FAR, U, V_MINUS, V_PLUS, least_value, pair,
+    polynomial, reduce,
 };
 use crate::num::complex::Complex;
 use crate::num::elliptic::{Modulus, r_f};
@@ -226,10 +226,10 @@ impl Sums {
     /// Of θ₁ or, times i, θ₂ at x ∓ iy, the upper sign for `sign` = 1, over a constant: e^{y} ∝ 1/√g with h g = q,
     /// `h = e^{−π(K'−η)/K}`.
     fn direct(second: bool, nome: Dd, h: Dd, sign: Dd) -> Self {
-        let g = nome / h;
+        let [of_nome, of_h, of_g] = [nome, h, nome / h].map(Powers::of);
         let term = |n: u32| {
-            let weight = power(nome, n * n) * power(h, n) * if second { 1.0 } else { alternating(n) };
-            let (even, odd) = (Dd::ONE + power(g, 2 * n + 1), Dd::ONE - power(g, 2 * n + 1));
+            let weight = of_nome.power(n * n) * of_h.power(n) * if second { 1.0 } else { alternating(n) };
+            let (even, odd) = (Dd::ONE + of_g.power(2 * n + 1), Dd::ONE - of_g.power(2 * n + 1));
             let odd = -(sign * weight * odd);
             if second { [odd, weight * even] } else { [weight * even, odd] }
         };
@@ -238,10 +238,11 @@ impl Sums {
 
     /// Of the dual form: θ₁ or, times i, θ₄ at iβ ± α, over a constant.
     fn dual(second: bool, nome: Dd, alpha: Dd, sign: Dd) -> Self {
+        let powers = Powers::of(nome);
         let term = |n: u32| {
             let multiple = if second { 2 * n } else { 2 * n + 1 };
             let (sin, cos) = (alpha * f64::from(multiple)).sin_cos();
-            let weight = power(nome, if second { n * n } else { n * n + n }) * alternating(n);
+            let weight = powers.power(if second { n * n } else { n * n + n }) * alternating(n);
             let weight = weight * if second && n > 0 { 2.0 } else { 1.0 };
             if second { [weight * cos, -(sign * weight * sin)] } else { [sign * weight * sin, weight * cos] }
         };

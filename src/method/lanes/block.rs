@@ -21,7 +21,7 @@ impl Block {
     /// Of at most [`LANES`] points, each with the constants of its steps; lanes that are left repeat the first.
     pub(crate) fn new(kernel: &Kernel, members: &[(Point<f64>, &SideBySide<f64>)]) -> Self {
         let count = members.first().map_or(0, |(_, steps)| steps.constants.len());
-        let (mut points, mut constants) = ([[0.0; LANES]; PARTS], vec![[0.0; LANES]; count]);
+        let (mut points, mut constants) = ([Lane::ZERO; PARTS], vec![Lane::ZERO; count]);
         let filled = members.iter().chain(members.first().into_iter().cycle()).take(LANES);
         for (n, (point, steps)) in filled.enumerate() {
             for (lane, part) in points.iter_mut().zip(point.parts()) {

@@ -1,18 +1,19 @@
 //! Loops over the lanes of a block.
 //!
-//! One loop for each turn and not one for each step: a whole step has more numbers than registers, and more operations than
-//! a processor looks ahead.
+//! Each loop is short: a processor looks about a hundred operations ahead, and the operations of one lane wait for each other.
+//! So one loop takes the sines of a turn and another turns by them, while a whole step of the Runge–Kutta method, in which
+//! less waits, is one.
 
 use core::ops::Range;
 
 use multiversion::multiversion;
 
 use super::block::PARTS;
-use crate::body::{Free, Point, RENORMALIZE_EVERY, Time};
-use crate::flow::{turn_a_little_about, turn_moderately_about};
-use crate::method::runge_kutta::{Equations, rk4_step};
+use crate::body::{Point, RENORMALIZE_EVERY};
+use crate::flow::turn_by;
+use crate::method::runge_kutta::{FREE_CONSTANTS, FreeRk4};
+use crate::num::trig::{sin_cos_moderate, sin_cos_small};
 use crate::num::{LANES, Lane};
-use crate::rotation::Vec3;
 
 /// Does `$step` with the point of every lane in turn.
 macro_rules! each {
@@ -38,7 +39,7 @@ macro_rules! each {
 pub(crate) enum Kernel {
     /// Turns about principal axes, one after another; the constants are half their angles over the momentum about the axis.
     Turns(Vec<usize>, Width),
-    /// The classical Runge–Kutta method, normalised or not; the constants are the step and the reciprocal moments.
+    /// The classical Runge–Kutta method, normalised or not; the constants are those of [`FreeRk4`].
     Rk4(bool),
 }
 
@@ -68,9 +69,10 @@ pub(super) fn avx2(kernel: &Kernel, points: &mut [Lane; PARTS], constants: &[Lan
 pub(super) fn steps(kernel: &Kernel, points: &mut [Lane; PARTS], constants: &[Lane], range: Range<u64>) {
     match kernel {
         Kernel::Turns(axes, width) => {
+            let mut angles = [Lane::ZERO; 2];
             for step in range {
                 for (axis, half_rates) in axes.iter().zip(constants) {
-                    turn(*axis, *width, points, half_rates);
+                    turn(*axis, *width, points, half_rates, &mut angles);
                 }
                 if step % RENORMALIZE_EVERY == RENORMALIZE_EVERY - 1 {
                     each!(points, |n, x| x.renormalize());
@@ -78,12 +80,12 @@ pub(super) fn steps(kernel: &Kernel, points: &mut [Lane; PARTS], constants: &[La
             }
         }
         Kernel::Rk4(normalized) => {
-            if let [h, a, b, c] = constants {
+            if let Some(constants) = constants.first_chunk() {
                 for _ in range {
                     if *normalized {
-                        rk4::<true>(points, h, [a, b, c]);
+                        rk4::<true>(points, constants);
                     } else {
-                        rk4::<false>(points, h, [a, b, c]);
+                        rk4::<false>(points, constants);
                     }
                 }
             }
@@ -91,23 +93,35 @@ pub(super) fn steps(kernel: &Kernel, points: &mut [Lane; PARTS], constants: &[La
     }
 }
 
+/// A turn; `angles` is room for sine and cosine of half the angles.
 #[inline(always)]
-fn turn(axis: usize, width: Width, points: &mut [Lane; PARTS], half_rates: &Lane) {
-    match (axis, width) {
-        (0, Width::Small) => each!(points, |n, x| turn_a_little_about::<0, f64>(x, half_rates[n])),
-        (1, Width::Small) => each!(points, |n, x| turn_a_little_about::<1, f64>(x, half_rates[n])),
-        (_, Width::Small) => each!(points, |n, x| turn_a_little_about::<2, f64>(x, half_rates[n])),
-        (0, Width::Moderate) => each!(points, |n, x| turn_moderately_about::<0>(x, half_rates[n])),
-        (1, Width::Moderate) => each!(points, |n, x| turn_moderately_about::<1>(x, half_rates[n])),
-        (_, Width::Moderate) => each!(points, |n, x| turn_moderately_about::<2>(x, half_rates[n])),
+fn turn(axis: usize, width: Width, points: &mut [Lane; PARTS], half_rates: &Lane, angles: &mut [Lane; 2]) {
+    let [sines, cosines] = angles;
+    let momenta = &points[4 + axis % 3];
+    match width {
+        Width::Small => {
+            for n in 0..LANES {
+                (sines[n], cosines[n]) = sin_cos_small(momenta[n] * half_rates[n]);
+            }
+        }
+        Width::Moderate => {
+            for n in 0..LANES {
+                (sines[n], cosines[n]) = sin_cos_moderate(momenta[n] * half_rates[n]);
+            }
+        }
+    }
+    match axis {
+        0 => each!(points, |n, x| turn_by::<0, f64>(x, (sines[n], cosines[n]))),
+        1 => each!(points, |n, x| turn_by::<1, f64>(x, (sines[n], cosines[n]))),
+        _ => each!(points, |n, x| turn_by::<2, f64>(x, (sines[n], cosines[n]))),
     }
 }
 
 #[inline(always)]
-fn rk4<const NORMALIZED: bool>(points: &mut [Lane; PARTS], h: &Lane, [a, b, c]: [&Lane; 3]) {
-    let nothing = Time::from_seconds(0.0);
+fn rk4<const NORMALIZED: bool>(points: &mut [Lane; PARTS], constants: &[Lane; FREE_CONSTANTS]) {
+    let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10] = constants;
     each!(points, |n, x| {
-        let equations = Equations::of(Vec3([a[n], b[n], c[n]]), Free);
-        x.set_phase(rk4_step::<NORMALIZED, f64, Free>(h[n], [nothing; 3], &equations, x.phase()));
+        let rk4 = FreeRk4::of([c0[n], c1[n], c2[n], c3[n], c4[n], c5[n], c6[n], c7[n], c8[n], c9[n], c10[n]]);
+        x.set_phase(rk4.step::<NORMALIZED>(x.phase()));
     });
 }

@@ -31,6 +31,10 @@ impl Real for Dd {
         elementary::sin_cos(self)
     }
     #[inline]
+    fn times_power_of_two(self, power: f64) -> Dd {
+        Dd { hi: self.hi * power, lo: self.lo * power }
+    }
+    #[inline]
     fn magnitude(self) -> f64 {
         self.hi.abs()
     }

@@ -101,7 +101,7 @@ pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
     while !together((x.to_f64() + y.to_f64() + z.to_f64()) / 3.0, [x, y, z]) {
         let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
         let shift = a * b + b * c + c * a;
-        [x, y, z] = [x, y, z].map(|argument| (argument + shift) * S::of(0.25));
+        [x, y, z] = [x, y, z].map(|argument| (argument + shift).times_power_of_two(0.25));
     }
     let mean = (x + y + z) / S::of(3.0);
     let (x, y) = ((mean - x) / mean, (mean - y) / mean);
@@ -140,7 +140,7 @@ pub fn r_c<S: Precise>(x: S, y: S) -> S {
 fn degenerate<S: Precise>(mut x: S, mut y: S) -> S {
     while !together((x.to_f64() + 2.0 * y.to_f64()) / 3.0, [x, y]) {
         let shift = S::of(2.0) * x.sqrt() * y.sqrt() + y;
-        [x, y] = [x, y].map(|argument| (argument + shift) * S::of(0.25));
+        [x, y] = [x, y].map(|argument| (argument + shift).times_power_of_two(0.25));
     }
     let mean = (x + y + y) / S::of(3.0);
     let s = (y - mean) / mean;
@@ -191,8 +191,8 @@ pub fn r_j<S: Precise>(mut x: S, mut y: S, mut z: S, mut p: S) -> S {
             return S::of(f64::INFINITY);
         }
         sum = sum + scale / d * degenerate(S::of(1.0), ratio);
-        scale = scale * S::of(0.25);
-        [x, y, z, p] = [x, y, z, p].map(|argument| (argument + shift) * S::of(0.25));
+        scale = scale.times_power_of_two(0.25);
+        [x, y, z, p] = [x, y, z, p].map(|argument| (argument + shift).times_power_of_two(0.25));
     }
     let mean = (x + y + z + p + p) / S::of(5.0);
     S::of(6.0) * sum + scale * third_kind(mean, x, y, z)
@@ -217,8 +217,8 @@ pub fn r_d<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
         let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
         let shift = a * b + b * c + c * a;
         sum = sum + scale / (c * (z + shift));
-        scale = scale * S::of(0.25);
-        [x, y, z] = [x, y, z].map(|argument| (argument + shift) * S::of(0.25));
+        scale = scale.times_power_of_two(0.25);
+        [x, y, z] = [x, y, z].map(|argument| (argument + shift).times_power_of_two(0.25));
     }
     let mean = (x + y + z + z + z) / S::of(5.0);
     S::of(3.0) * sum + scale * third_kind(mean, x, y, z)

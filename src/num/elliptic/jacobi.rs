@@ -32,11 +32,11 @@ impl<S: Precise> Modulus<S> {
             if (a - b).magnitude() <= S::ROUNDOFF.sqrt() * a.magnitude() {
                 break;
             }
-            ladder[steps] = ((a + b) * S::of(0.5), (a * b).sqrt());
+            ladder[steps] = ((a + b).times_power_of_two(0.5), (a * b).sqrt());
             steps += 1;
         }
         let (a, b) = ladder[steps - 1];
-        let mean = if b == S::of(0.0) { b } else { (a + b) * S::of(0.5) };
+        let mean = if b == S::of(0.0) { b } else { (a + b).times_power_of_two(0.5) };
         Modulus { complement: m1, ladder, steps, mean }
     }
 

@@ -127,6 +127,8 @@ pub(super) const CASES: [Case; 24] = [
 pub(super) struct Drawn {
     pub(super) disturbances: Disturbances,
     pub(super) gyroscope: Gyroscope,
+    /// Momentum of a wheel that the fit does not know of, over that of the body.
+    unknown_wheel: Vector3<f64>,
 }
 
 impl Case {
@@ -137,8 +139,10 @@ impl Case {
         let (torque, offset) = (signs(self.torque), signs(self.offset));
         let (axis_scales, misalignment) = (signs(self.axis_scales), signs(self.misalignment));
         let scale = self.scale * sign();
-        let wheel = random.normal_vector().normalize() * (self.wheel * momentum);
+        let share = random.normal_vector().normalize() * self.wheel;
+        let wheel = share * momentum;
         Drawn {
+            unknown_wheel: if self.wheel_known { Vector3::zeros() } else { share },
             disturbances: Disturbances {
                 relative_drag: self.drag,
                 torque,
@@ -180,7 +184,7 @@ impl Case {
 }
 
 impl Drawn {
-    /// The errors of the sensor by the names that the fit gives them.
+    /// The errors that the fit takes to be zero, by the names that it gives them; of a walk its size.
     pub(super) fn errors(&self) -> Vec<(&'static str, f64)> {
         let g = &self.gyroscope;
         let named = |names: [&'static str; 3], v: &Vector3<f64>| [0, 1, 2].map(|k| (names[k], v[k]));
@@ -188,6 +192,8 @@ impl Drawn {
         errors.extend(named(["offset_x", "offset_y", "offset_z"], &g.offset));
         errors.extend(named(["scale_x", "scale_y", "scale_z"], &g.axis_scales));
         errors.extend(named(["misalignment_xy", "misalignment_xz", "misalignment_yz"], &g.misalignment));
+        errors.extend(named(["wheel_x", "wheel_y", "wheel_z"], &self.unknown_wheel));
+        errors.push(("walk", g.offset_walk));
         errors.retain(|(_, value)| *value != 0.0);
         errors
     }

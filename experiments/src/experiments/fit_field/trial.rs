@@ -135,15 +135,15 @@ fn lines_cover(estimate: &Estimate, truth: &Matrix3<f64>, drawn: &Drawn) -> bool
     moments.sort_by(f64::total_cmp);
     let errors = drawn.errors();
     (0..3).all(|k| {
-        let systematic: f64 = errors
-            .iter()
-            .filter_map(|(name, error)| {
-                let line = estimate.systematic.iter().find(|line| line.name == *name)?;
-                Some((line.principal[k] * error / line.size).abs())
-            })
-            .sum();
+        let change = |name: &str, error: f64| {
+            let line = estimate.systematic.iter().find(|line| line.name == name);
+            line.map_or(0.0, |line| (line.principal[k] * error / line.size).abs())
+        };
+        let of = |random: bool| errors.iter().filter(move |(name, _)| (*name == "walk") == random);
+        let systematic: f64 = of(false).map(|(name, error)| change(name, *error)).sum();
+        let walk: f64 = of(true).map(|(name, size)| change(name, *size)).sum();
         // the lines are derivatives: a tenth is left for what is not linear
         (estimate.principal[k] - moments[k]).abs()
-            <= ONE_IN_A_THOUSAND * estimate.sigma_principal[k] + 1.1 * systematic
+            <= ONE_IN_A_THOUSAND * estimate.sigma_principal[k].hypot(walk) + 1.1 * systematic
     })
 }

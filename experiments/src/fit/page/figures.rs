@@ -1,9 +1,8 @@
 //! The drawings of a page.
 
 use nalgebra::Vector3;
-use polhode::fit::{Estimate, Record};
+use polhode::fit::{Estimate, FittedMotion, Record};
 
-use super::super::motion::Fitted;
 use super::super::plot::{self, AXES, over_time, without_gaps};
 use super::noise;
 use crate::document::Part;
@@ -17,8 +16,8 @@ const DRAWN: usize = 8;
 const SMALL: f64 = 260.0;
 
 /// Measured and fitted rates of each segment, or of those that fit worst.
-pub(super) fn motions(motion: &[Fitted], record: &Record) -> Result<Vec<Part>, Error> {
-    let mut chosen: Vec<&Fitted> = motion.iter().collect();
+pub(super) fn motions(motion: &[FittedMotion], record: &Record) -> Result<Vec<Part>, Error> {
+    let mut chosen: Vec<&FittedMotion> = motion.iter().collect();
     worst_first(&mut chosen);
     let mut parts = vec![Part::Heading("Measured and fitted rates".into())];
     if motion.len() > DRAWN {
@@ -31,7 +30,7 @@ pub(super) fn motions(motion: &[Fitted], record: &Record) -> Result<Vec<Part>, E
 }
 
 /// Measured and fitted rates of a segment, with a caption.
-fn followed(m: &Fitted, record: &Record) -> Option<(Figure, String)> {
+fn followed(m: &FittedMotion, record: &Record) -> Option<(Figure, String)> {
     let s = record.segments.get(m.segment)?;
     let title = format!("Segment {}: measured (dots) and fitted (lines)", m.segment + 1);
     let mut figure = over_time(title, "angular velocity (rad/s)", true, SMALL);
@@ -49,8 +48,8 @@ fn followed(m: &Fitted, record: &Record) -> Option<(Figure, String)> {
 }
 
 /// Measured and fitted rates of the segments, and |L| and 2T along them, on one page.
-pub(in super::super) fn overview(e: &Estimate, motion: &[Fitted], record: &Record) -> Canvas {
-    let mut chosen: Vec<&Fitted> = motion.iter().collect();
+pub(in super::super) fn overview(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Canvas {
+    let mut chosen: Vec<&FittedMotion> = motion.iter().collect();
     worst_first(&mut chosen);
     let mut figures: Vec<Figure> =
         chosen.into_iter().filter_map(|m| followed(m, record)).map(|(figure, _)| figure).collect();
@@ -59,7 +58,7 @@ pub(in super::super) fn overview(e: &Estimate, motion: &[Fitted], record: &Recor
 }
 
 /// The segments that fit worst, where there are too many to draw.
-fn worst_first(chosen: &mut Vec<&Fitted>) {
+fn worst_first(chosen: &mut Vec<&FittedMotion>) {
     if chosen.len() > DRAWN {
         chosen.sort_by(|a, b| b.rms().unwrap_or(f64::MAX).total_cmp(&a.rms().unwrap_or(f64::MAX)));
         chosen.truncate(DRAWN);
@@ -77,12 +76,12 @@ fn rates(times: &[f64], rates: &[Vector3<f64>], named: bool) -> Vec<Series> {
 }
 
 /// Residuals: whitened against time, their spectrum and their Allan deviation.
-pub(super) fn residuals(e: &Estimate, motion: &[Fitted], record: &Record) -> Result<Vec<Part>, Error> {
+pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Vec<Part>, Error> {
     let mut parts = vec![Part::Heading("Residuals".into())];
     let caption =
         "Residuals of the weak equations in standard deviations; the band is two of them wide on each side.";
-    parts.push(Part::Figure(plot::residuals(e)?, caption.into()));
-    let left: Vec<_> = motion.iter().filter_map(Fitted::residuals).collect();
+    parts.push(Part::Figure(plot::residuals(e).svg()?, caption.into()));
+    let left: Vec<_> = motion.iter().filter_map(FittedMotion::residuals).collect();
     let times = motion.iter().filter_map(|m| record.segments.get(m.segment)).map(|s| s.times());
     let Some(interval) = interval(times).filter(|_| !left.is_empty()) else { return Ok(parts) };
     let spectrum = noise::spectrum(&left, interval);
@@ -127,15 +126,15 @@ fn interval<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
 }
 
 /// |J ω| and ω·J ω of the samples over their means.
-pub(super) fn invariants(e: &Estimate, motion: &[Fitted], record: &Record) -> Result<Part, Error> {
+pub(super) fn invariants(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Part, Error> {
     let caption = "Angular momentum |Jω| and twice the energy, 2T = ω·Jω, which a free body keeps.";
     Ok(Part::Figure(kept(e, motion, record).svg()?, caption.into()))
 }
 
-fn kept(e: &Estimate, motion: &[Fitted], record: &Record) -> Figure {
+fn kept(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Figure {
     let j = e.shape.tensor();
-    let segments: Vec<&Fitted> = motion.iter().collect();
-    let source = |m: &Fitted| record.segments.get(m.segment).map_or(&[][..], |s| s.times());
+    let segments: Vec<&FittedMotion> = motion.iter().collect();
+    let source = |m: &FittedMotion| record.segments.get(m.segment).map_or(&[][..], |s| s.times());
     let single = segments.len() == 1;
     let times: Vec<Vec<f64>> = if single {
         segments.iter().map(|m| source(m).to_vec()).collect()

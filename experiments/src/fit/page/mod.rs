@@ -3,11 +3,13 @@
 pub(super) mod figures;
 mod noise;
 
-use polhode::fit::{Estimate, Nuisance, Record};
+use polhode::fit::{Estimate, FittedMotion, Nuisance, Record};
 
 use super::flights::Spans;
-use super::motion::Fitted;
-use super::report::{Facts, SURE, digits, sizes, systematic, torque, with_error};
+
+use super::report::{
+    Facts, SURE, coefficients, digits, sensor_lines, sizes, systematic, torque, unused, with_error,
+};
 use crate::document::{Form, Part};
 use crate::error::Error;
 
@@ -15,7 +17,7 @@ use crate::error::Error;
 pub(super) fn estimated(
     e: &Estimate,
     record: &Record,
-    motion: &[Fitted],
+    motion: &[FittedMotion],
     spans: &Spans,
     names: &str,
     form: Form,
@@ -34,6 +36,10 @@ pub(super) fn estimated(
     parts.extend(figures::residuals(e, motion, record)?);
     parts.push(figures::invariants(e, motion, record)?);
     parts.extend(spikes(e, record));
+    let columns = unused(record);
+    if !columns.is_empty() {
+        parts.push(Part::Paragraph(format!("Columns not used: {}.", columns.join(", "))));
+    }
     Ok(form.write(&format!("Inertia from {names}"), &parts))
 }
 
@@ -74,7 +80,7 @@ fn answer(e: &Estimate) -> Vec<Part> {
         .map(|k| row(format!("I{}", k + 1), e.principal[k], e.sigma_principal[k], off.map(|o| o[k])))
         .collect();
     for (k, name) in ["I1/I3", "I2/I3"].into_iter().enumerate() {
-        let squares = e.systematic.iter().map(|line| line.ratios[k] * line.ratios[k]);
+        let squares = sensor_lines(e).map(|line| line.ratios[k] * line.ratios[k]);
         let off = off.map(|_| squares.sum::<f64>().sqrt());
         rows.push(row(name.into(), e.ratios[k], e.sigma_ratios[k], off));
     }
@@ -84,6 +90,12 @@ fn answer(e: &Estimate) -> Vec<Part> {
     ];
     if off.is_some() {
         parts.push(Part::Paragraph(format!("Systematic: if the sensor is off by {}.", sizes(e))));
+    }
+    if let Some(prior) = e.prior {
+        parts.push(Part::Paragraph(format!(
+            "With a prior tensor; χ² of its distance from the record is {:.1} at {} degrees of freedom.",
+            prior.chi2, prior.dof
+        )));
     }
     let axes = e.axes.to_rotation_matrix();
     let head = ["axis", "x", "y", "z", "turn about it"].map(String::from).to_vec();
@@ -110,9 +122,9 @@ fn answer(e: &Estimate) -> Vec<Part> {
     parts
 }
 
-fn numbers(of: &[Nuisance]) -> Part {
+fn numbers(of: &[&Nuisance]) -> Part {
     let head = ["", "value", "unit", "prior"].map(String::from).to_vec();
-    let row = |n: &Nuisance| {
+    let row = |n: &&Nuisance| {
         let prior = n.prior.map_or("–".into(), |prior| format!("± {prior}"));
         vec![n.name.into(), with_error(n.value, n.sigma).replace("+-", "±"), n.unit.into(), prior]
     };
@@ -129,7 +141,10 @@ fn torques(e: &Estimate) -> Vec<Part> {
         Some(gain) => format!("Model: {model}. It gains {gain:.1} in log-likelihood over none."),
         None => format!("Model: {model}."),
     }));
-    parts.push(numbers(&e.torque.coefficients));
+    let shared = coefficients(e, None);
+    if !shared.is_empty() {
+        parts.push(numbers(&shared));
+    }
     if let Some(without) = e.torque.ratios_without {
         let head = ["", "with the torque", "without it"].map(String::from).to_vec();
         let row = |k: usize, name: &str| {
@@ -147,7 +162,7 @@ fn sensor(e: &Estimate) -> Vec<Part> {
         parts.push(Part::Heading("Sensor".into()));
     }
     if !e.nuisances.is_empty() {
-        parts.push(numbers(&e.nuisances));
+        parts.push(numbers(&e.nuisances.iter().collect::<Vec<_>>()));
     }
     if !e.systematic.is_empty() {
         parts
@@ -163,7 +178,7 @@ fn sensor(e: &Estimate) -> Vec<Part> {
     parts
 }
 
-fn segments(e: &Estimate, record: &Record, motion: &[Fitted]) -> Part {
+fn segments(e: &Estimate, record: &Record, motion: &[FittedMotion]) -> Part {
     let names = [
         "segment",
         "from (s)",
@@ -175,12 +190,20 @@ fn segments(e: &Estimate, record: &Record, motion: &[Fitted]) -> Part {
         "weight",
         "shift",
     ];
+    let own: Vec<&str> = e
+        .per_segment
+        .first()
+        .map_or(Vec::new(), |first| coefficients(e, Some(first.segment)).iter().map(|n| n.name).collect());
     let rows = motion.iter().filter_map(|m| {
         let s = record.segments.get(m.segment)?;
         let summary = e.per_segment.iter().find(|p| p.segment == m.segment);
         let shown = |x: Option<f64>, places: usize| x.map_or("–".into(), |x| format!("{x:.places$e}"));
         let fixed = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.3}"));
-        Some(vec![
+        let torques = own.iter().map(|name| {
+            let of = coefficients(e, Some(m.segment)).into_iter().find(|n| n.name == *name);
+            of.map_or("–".into(), |n| with_error(n.value, n.sigma).replace("+-", "±"))
+        });
+        let mut cells = vec![
             format!("{} {}", m.segment + 1, s.source()),
             s.times().first().map_or(String::new(), |t| format!("{t:.3}")),
             s.times().last().map_or(String::new(), |t| format!("{t:.3}")),
@@ -190,9 +213,11 @@ fn segments(e: &Estimate, record: &Record, motion: &[Fitted]) -> Part {
             shown(summary.map(|p| p.torque_noise), 1),
             fixed(summary.map(|p| p.weight)),
             fixed(summary.map(|p| p.shift)),
-        ])
+        ];
+        cells.extend(torques);
+        Some(cells)
     });
-    Part::Table(names.map(String::from).to_vec(), rows.collect())
+    Part::Table(names.into_iter().chain(own.iter().copied()).map(String::from).collect(), rows.collect())
 }
 
 fn spikes(e: &Estimate, record: &Record) -> Vec<Part> {

@@ -1,11 +1,11 @@
 //! A fit as JSON.
 
 use nalgebra::{Matrix3, SMatrix};
-use polhode::fit::{Estimate, Nuisance};
+use polhode::fit::{Estimate, Nuisance, Record};
 use serde_json::{Map, Value, json};
 
 use super::super::flights::Spans;
-use super::{METHOD, torque};
+use super::{METHOD, coefficients, torque, unused};
 
 fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
     (0..3).map(|i| (0..3).map(|j| m[(i, j)]).collect()).collect()
@@ -15,7 +15,16 @@ fn matrix(m: &SMatrix<f64, 6, 6>) -> Vec<Vec<f64>> {
     (0..6).map(|i| (0..6).map(|j| m[(i, j)]).collect()).collect()
 }
 
-pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
+pub(super) fn object(e: &Estimate, record: &Record, spans: &Spans) -> Value {
+    let mut whole = answer(e);
+    if let (Value::Object(all), Value::Object(more)) = (&mut whole, grounds(e, record, spans)) {
+        all.extend(more);
+    }
+    whole
+}
+
+/// The tensor, and how far to trust it.
+fn answer(e: &Estimate) -> Value {
     let axes = e.axes.quaternion();
     json!({
         "shape": square(&e.shape.tensor()),
@@ -29,6 +38,7 @@ pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
         "inertia": e.inertia.as_ref().map(|i| square(&i.tensor())),
         "inertia_covariance": e.inertia_covariance.as_ref().map(matrix),
         "noise_sigma": e.noise_sigma,
+        "quanta": e.quanta,
         "samples": e.samples,
         "segments": e.segments,
         "radius": e.radius,
@@ -51,13 +61,20 @@ pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
         "momentum_drift": { "rate": e.momentum_trend.rate, "sigma": e.momentum_trend.sigma },
         "energy_drift": { "rate": e.energy_trend.rate, "sigma": e.energy_trend.sigma },
         "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
+    })
+}
+
+/// What it rests on.
+fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
+    json!({
         "torque": {
             "model": torque(e.torque.model),
-            "coefficients": nuisances(&e.torque.coefficients),
+            "coefficients": nuisances(&coefficients(e, None)),
             "gain": e.torque.gain,
             "ratios_without": e.torque.ratios_without,
         },
-        "nuisances": nuisances(&e.nuisances),
+        "nuisances": nuisances(&e.nuisances.iter().collect::<Vec<_>>()),
+        "prior": e.prior.map(|p| json!({ "chi2": p.chi2, "dof": p.dof })),
         "systematic": e.systematic.iter().map(|line| json!({
             "name": line.name, "size": line.size, "unit": line.unit,
             "principal": line.principal, "ratios": line.ratios,
@@ -66,10 +83,12 @@ pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
         "per_segment": e.per_segment.iter().map(|s| json!({
             "segment": s.segment + 1, "samples": s.samples, "noise_sigma": s.noise_sigma,
             "torque_noise": s.torque_noise, "weight": s.weight, "shift": s.shift,
+            "torque": nuisances(&coefficients(e, Some(s.segment))),
         })).collect::<Vec<_>>(),
         "spikes": e.spikes.iter().map(|s| json!({
             "segment": s.segment + 1, "line": s.line, "time": s.time,
         })).collect::<Vec<_>>(),
+        "unused_columns": unused(record),
         "flights": spans.json(),
         "flight_limits": spans.limits(),
         "warnings": e.warnings.iter().map(ToString::to_string).chain(spans.remark().map(String::from))
@@ -78,8 +97,8 @@ pub(super) fn object(e: &Estimate, spans: &Spans) -> Value {
 }
 
 /// By name: value, standard deviation, unit, and the deviation of the prior where there is one.
-fn nuisances(of: &[Nuisance]) -> Map<String, Value> {
-    let entry = |n: &Nuisance| {
+fn nuisances(of: &[&Nuisance]) -> Map<String, Value> {
+    let entry = |n: &&Nuisance| {
         let value = json!({ "value": n.value, "sigma": n.sigma, "unit": n.unit, "prior": n.prior });
         (n.name.to_string(), value)
     };

@@ -4,7 +4,7 @@ mod json;
 mod rows;
 mod text;
 
-use polhode::fit::{AverageAxis, Estimate, Identifiability, Record, TorqueModel};
+use polhode::fit::{AverageAxis, Estimate, Identifiability, Nuisance, Record, Systematic, TorqueModel};
 use serde_json::{Value, json};
 
 use super::flights::Spans;
@@ -15,12 +15,23 @@ pub(super) const ENTRIES: [(&str, usize, usize); 6] =
     [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
 
 /// A tensor in full.
-pub(super) fn identified(e: &Estimate, spans: &Spans, format: Format) -> String {
+pub(super) fn identified(e: &Estimate, record: &Record, spans: &Spans, format: Format) -> String {
     match format {
-        Format::Table => text::text(e, spans),
+        Format::Table => text::text(e, record, spans),
         Format::Csv => rows::rows(e).csv(),
-        Format::Json => pretty(&json::object(e, spans)),
+        Format::Json => pretty(&json::object(e, record, spans)),
     }
+}
+
+/// Names of the columns that are not used, each once.
+pub(super) fn unused(record: &Record) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for (_, name) in record.unused_columns() {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    names
 }
 
 /// What a record tells that does not determine the tensor.
@@ -63,6 +74,7 @@ impl Facts {
                 "samples": record.samples(), "segments": record.segments.len(), "method": METHOD,
                 "identifiable": false, "rank": self.rank, "null_directions": self.open, "known": self.known,
                 "triangle_slack": null, "active_constraints": [], "chi2_per_dof": null, "warnings": [],
+                "unused_columns": unused(record),
                 "flights": spans.json(), "flight_limits": spans.limits(),
             })),
             Format::Csv => {
@@ -112,18 +124,23 @@ pub(super) fn digits(sigma: f64) -> usize {
 /// Half widths of 95 % intervals in standard deviations.
 pub(super) const SURE: f64 = 1.959_963_984_540_054;
 
+/// The systematic lines of the sensor: most bodies have no wheel.
+pub(super) fn sensor_lines(e: &Estimate) -> impl Iterator<Item = &Systematic> {
+    e.systematic.iter().filter(|line| !line.name.starts_with("wheel"))
+}
+
 /// What an error of each of the sizes of the systematic lines would make of the principal moments together, shares of
 /// the trace; `None` where there are no lines.
 pub(super) fn systematic(e: &Estimate) -> Option<[f64; 3]> {
     let sum =
-        |k: usize| e.systematic.iter().map(|line| line.principal[k] * line.principal[k]).sum::<f64>().sqrt();
+        |k: usize| sensor_lines(e).map(|line| line.principal[k] * line.principal[k]).sum::<f64>().sqrt();
     (!e.systematic.is_empty()).then(|| [0, 1, 2].map(sum))
 }
 
 /// The sizes of the systematic lines in words, one for each kind of error.
 pub(super) fn sizes(e: &Estimate) -> String {
     let mut words: Vec<String> = Vec::new();
-    for line in &e.systematic {
+    for line in sensor_lines(e) {
         let kind = line.name.split('_').next().unwrap_or_default();
         let word = match line.unit {
             "" => format!("{} % of {kind}", 100.0 * line.size),
@@ -136,6 +153,11 @@ pub(super) fn sizes(e: &Estimate) -> String {
     words.join(", ")
 }
 
+/// The coefficients of the torque of one segment, or without it those that all share.
+pub(super) fn coefficients(e: &Estimate, segment: Option<usize>) -> Vec<&Nuisance> {
+    e.torque.coefficients.iter().filter(|c| c.segment == segment).collect()
+}
+
 /// The model of a torque in words.
 pub(super) fn torque(model: TorqueModel) -> &'static str {
     match model {
@@ -143,6 +165,7 @@ pub(super) fn torque(model: TorqueModel) -> &'static str {
         TorqueModel::Drag => "drag",
         TorqueModel::Drag3 => "drag3",
         TorqueModel::Drag6 => "drag6",
+        TorqueModel::Quadratic => "quadratic",
         TorqueModel::Constant => "constant",
         _ => "auto",
     }

@@ -30,7 +30,8 @@ pub(super) fn rows(e: &Estimate) -> Table {
         }
     }
     for n in e.torque.coefficients.iter().chain(&e.nuisances) {
-        table.push(row![n.name, n.value, n.sigma]);
+        let name = n.segment.map_or(n.name.into(), |k| format!("segment_{}_{}", k + 1, n.name));
+        table.push(row![name, n.value, n.sigma]);
     }
     for line in &e.systematic {
         for k in 0..3 {
@@ -44,6 +45,9 @@ pub(super) fn rows(e: &Estimate) -> Table {
     table.push(row!["triangle_slack", e.triangle_slack, 2.0 * e.sigma_principal[2]]);
     table.push(row!["noise_sigma", e.noise_sigma, None::<f64>]);
     table.push(row!["chi2_per_dof", e.chi2_per_dof, (2.0 / e.dof.max(1) as f64).sqrt()]);
+    if let Some(prior) = e.prior {
+        table.push(row!["prior_chi2", prior.chi2, (2.0 * prior.dof as f64).sqrt()]);
+    }
     table.push(row!["bound_ratio", e.bound_ratio, None::<f64>]);
     table.push(row!["momentum_drift", e.momentum_trend.rate, e.momentum_trend.sigma]);
     table.push(row!["energy_drift", e.energy_trend.rate, e.energy_trend.sigma]);

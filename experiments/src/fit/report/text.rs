@@ -1,13 +1,13 @@
 //! A fit as text for a terminal.
 
 use nalgebra::Matrix3;
-use polhode::fit::{Estimate, InvariantTrend, Nuisance};
+use polhode::fit::{Estimate, InvariantTrend, Nuisance, Record};
 
 use super::super::flights::Spans;
-use super::{METHOD, SURE, digits, sizes, systematic, torque, with_error};
+use super::{METHOD, SURE, coefficients, digits, sizes, systematic, torque, unused, with_error};
 
 /// The answer first, then what it rests on.
-pub(super) fn text(e: &Estimate, spans: &Spans) -> String {
+pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans) -> String {
     let mut lines = answer(e);
     lines.push(String::new());
     lines.extend(axes(e));
@@ -20,6 +20,15 @@ pub(super) fn text(e: &Estimate, spans: &Spans) -> String {
     lines.extend(spans.lines());
     lines.extend(segments(e));
     lines.push(String::new());
+    if e.quanta.iter().any(|quantum| *quantum > 0.0) {
+        let [x, y, z] = e.quanta;
+        lines.push(format!("steps of the readings: {x:.3e}, {y:.3e}, {z:.3e} rad/s"));
+    }
+    let names = unused(record);
+    if !names.is_empty() {
+        lines.push(format!("columns not used: {}", names.join(", ")));
+    }
+    lines.extend(prior(e));
     lines.extend(quality(e));
     lines.join("\n") + "\n"
 }
@@ -95,7 +104,7 @@ fn torques(e: &Estimate) -> Vec<String> {
             None => format!("torque: {}", torque(e.torque.model)),
         },
     ];
-    lines.extend(e.torque.coefficients.iter().map(number));
+    lines.extend(coefficients(e, None).into_iter().map(number));
     if let Some([a, b]) = e.torque.ratios_without {
         lines.push(format!("  without it I1/I3 would be {a:.4} and I2/I3 {b:.4}"));
     }
@@ -109,11 +118,14 @@ fn sensor(e: &Estimate) -> Vec<String> {
         lines.extend(e.nuisances.iter().map(number));
     }
     if !e.systematic.is_empty() {
-        lines.extend([String::new(), "change of (I1, I2, I3) with an error of the sensor:".into()]);
+        lines.extend([
+            String::new(),
+            "change of (I1, I2, I3) with an error of the sensor, or a wheel in the body:".into(),
+        ]);
         for line in &e.systematic {
             let [a, b, c] = line.principal;
             let size = format!("{} {}", line.size, line.unit);
-            lines.push(format!("  {:<16} {:<11} ({a:9.1e}, {b:9.1e}, {c:9.1e})", line.name, size.trim()));
+            lines.push(format!("  {:<16} {:<20} ({a:9.1e}, {b:9.1e}, {c:9.1e})", line.name, size.trim()));
         }
     }
     lines
@@ -139,7 +151,23 @@ fn segments(e: &Estimate) -> Vec<String> {
             s.shift
         ));
     }
+    if e.torque.coefficients.iter().any(|c| c.segment.is_some()) {
+        lines.extend([String::new(), "segment  torque".into()]);
+        for s in &e.per_segment {
+            let own = coefficients(e, Some(s.segment));
+            let values =
+                own.iter().map(|n| format!("{} {} {}", n.name, with_error(n.value, n.sigma), n.unit));
+            lines.push(format!("{:>7}  {}", s.segment + 1, values.collect::<Vec<_>>().join(", ")));
+        }
+    }
     lines
+}
+
+fn prior(e: &Estimate) -> Option<String> {
+    let line = |p: polhode::fit::Agreement| {
+        format!("record against prior tensor: chi^2 {:.1} of {} degrees of freedom", p.chi2, p.dof)
+    };
+    e.prior.map(line)
 }
 
 fn quality(e: &Estimate) -> Vec<String> {

@@ -1,7 +1,7 @@
 //! The direct form: trigonometric sums with the nome q.
 
 use super::series::{
-    DD_TERMS, Form, Series, T, U, V_MINUS, V_PLUS, first, flip, polynomial, power, rate_at_zero, total,
+    DD_TERMS, Form, Powers, Series, T, U, V_MINUS, V_PLUS, first, flip, polynomial, rate_at_zero, total,
 };
 use crate::flow::free::phase::Phase;
 use crate::flow::free::polhode::Polhode;
@@ -28,6 +28,7 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     // K' − η, finite also for k = 0
     let eta = amp_a / norm * r_f(amp_c * amp_c / (norm * norm), amp_b * amp_b / (norm * norm), Dd::ONE);
     let h = (-(Dd::PI * eta / quarter)).exp();
+    let powers = Powers::of(q);
     let g = q / h;
 
     // Z = 1 + Σ (−1)ⁿ [(q^{2n²−n} hⁿ + q^{2n²} gⁿ) cos 2nx − iδ (… − …) sin 2nx],
@@ -48,7 +49,7 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
         if n > 0 {
             q4n = q4n * q4;
             // q^{4n−3} = q^{4(n−1)} q and so on; no division by q, which may be zero
-            let before = power(q, 4 * n as u32 - 3);
+            let before = powers.power(4 * n as u32 - 3);
             zh = zh * before * h;
             zg = zg * before * q * g;
             wh = wh * before * q * q * h;
@@ -70,10 +71,10 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     let (mut t2, mut t3, mut t4) = (Dd::of(2.0), Dd::ONE, Dd::ONE);
     let mut square = Dd::ONE; // q^{n²}
     for n in 1..=7_u32 {
-        square = square * power(q, 2 * n - 1);
+        square = square * powers.power(2 * n - 1);
         t3 = t3 + square * 2.0;
         t4 = t4 + square * if n % 2 == 0 { 2.0 } else { -2.0 };
-        t2 = t2 + square * power(q, n) * 2.0;
+        t2 = t2 + square * powers.power(n) * 2.0;
     }
     let kappa = norm * z0 * z0 * 2.0 / ((norm + amp_a) * t4);
     let flip = flip(polhode);
@@ -84,11 +85,11 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     ];
     let least = if polhode.about_smallest {
         let scale = polhode.sigma * amp_a * t4 / t3 * kappa;
-        let term = |n: u32| power(q, n * n) * scale * if n == 0 { 1.0 } else { 2.0 };
+        let term = |n: u32| powers.power(n * n) * scale * if n == 0 { 1.0 } else { 2.0 };
         polynomial([0, 1, 2, 3, 4].map(term), T)
     } else {
         let scale = flip * amp_c * t4 / t2 * kappa * 2.0;
-        polynomial([0, 1, 2, 3, 4].map(|n: u32| power(q, n * n + n) * scale), V_MINUS)
+        polynomial([0, 1, 2, 3, 4].map(|n: u32| powers.power(n * n + n) * scale), V_MINUS)
     };
 
     let (s2, c2) = (x0 * 2.0).sin_cos();

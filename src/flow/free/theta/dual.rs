@@ -1,7 +1,7 @@
 //! The dual form: hyperbolic sums with the complementary nome q'.
 
 use super::series::{
-    DD_TERMS, Form, Series, T, TERMS, V_MINUS, V_PLUS, first, flip, polynomial, power, rate_at_zero, total,
+    DD_TERMS, Form, Powers, Series, T, TERMS, V_MINUS, V_PLUS, first, flip, polynomial, rate_at_zero, total,
 };
 use crate::flow::free::phase::{Phase, pair};
 use crate::flow::free::polhode::Polhode;
@@ -17,6 +17,7 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     let is_limit = polhode.asymptotic.is_some();
     let q = if is_limit { Dd::ZERO } else { (-(Dd::PI * quarter / dual_quarter)).exp() };
     let ratio = amp_c / amp_b; // sn(η | k')
+    let powers = Powers::of(q);
     let cosine = i_a * (i_c - i_b) / (i_b * (i_c - i_a)); // 1 − (C/B)², without cancellation
     let eta = ratio * r_f(cosine, Dd::ONE - polhode.complement * ratio * ratio, Dd::ONE);
     let per_phase = Dd::FRAC_PI_4 / dual_quarter; // β/u
@@ -30,7 +31,7 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     let mut odd = [Dd::ZERO; DD_TERMS];
     for n in 0..DD_TERMS {
         if n > 0 {
-            weight = weight * power(q, n as u32);
+            weight = weight * powers.power(n as u32);
             (s, c) = (s * c2 + c * s2, c * c2 - s * s2);
         }
         even[n] = weight * c;
@@ -40,21 +41,22 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     let slope = (0..DD_TERMS).fold(Dd::ZERO, |sum, n| sum + odd[n] * (2.0 * n as f64 + 1.0));
     let beta_rate = polhode.rate * per_phase;
     let twist_rate = rate_at_zero(polhode) * 0.5 - delta * beta_rate * slope / z0;
-    let beta = polhode.phase() * per_phase;
+    let start = polhode.phase();
+    let beta = start * per_phase;
     let (form, phase) = if polhode.is_separatrix() {
         (Form::Separatrix, Phase::new(beta_rate, beta))
     } else {
         let half = quarter * 2.0;
         let (width, jump) = ((per_phase * half).hi(), pair(delta * alpha * 2.0 / Dd::TAU));
         let form = if is_limit { Form::Limit { width, jump } } else { Form::Dual { width, jump } };
-        (form, Phase::new(polhode.rate / half, polhode.phase() / half))
+        (form, Phase::new(polhode.rate / half, start / half))
     };
 
     // θ constants of nome q'
     let (mut t2, mut t3, mut t4) = (Dd::ONE, Dd::ONE, Dd::ONE);
     for n in 1..DD_TERMS as u32 {
-        let square = power(q, n * n);
-        t2 = t2 + square * power(q, n);
+        let square = powers.power(n * n);
+        t2 = t2 + square * powers.power(n);
         t3 = t3 + square * 2.0;
         t4 = t4 + square * if n % 2 == 0 { 2.0 } else { -2.0 };
     }
@@ -74,7 +76,7 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     };
     let term = |n: u32| {
         let sign = if polhode.about_smallest || n.is_multiple_of(2) { 1.0 } else { -1.0 };
-        power(q, n * n) * scale * if n == 0 { 1.0 } else { 2.0 * sign }
+        powers.power(n * n) * scale * if n == 0 { 1.0 } else { 2.0 * sign }
     };
     let least = polynomial([0, 1, 2, 3, 4].map(term), T);
     let start = at_start(even, odd.map(|v| v * delta), beta);

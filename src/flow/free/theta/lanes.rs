@@ -25,7 +25,7 @@ pub(in crate::flow::free) struct Points {
 
 impl Points {
     pub(in crate::flow::free) fn new() -> Self {
-        let zero = [0.0; LANES];
+        let zero = Lane::ZERO;
         Points { attitude: [zero; 4], momentum: [zero; 3], axes: [0, 1, 2], turns: zero, turn: [zero; 4] }
     }
 

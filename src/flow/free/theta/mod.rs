@@ -26,7 +26,7 @@ mod series;
 
 pub(super) use self::lanes::Points;
 pub(in crate::flow) use self::series::{
-    Family, LEAST_TERMS, T, U, V_MINUS, V_PLUS, least_value, polynomial, power,
+    Family, LEAST_TERMS, Powers, T, U, V_MINUS, V_PLUS, least_value, polynomial,
 };
 use self::series::{Form, TERMS, value};
 use super::phase::{Pair, Phase, TOO_FAR};

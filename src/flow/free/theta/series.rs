@@ -75,7 +75,10 @@ pub(in crate::flow) fn polynomial<const N: usize>(v: [Dd; N], [c, a, b]: Family)
     now[1] = b;
     for v in v {
         for k in 0..N {
-            sum[k] = sum[k] + v * before[k];
+            // every other one is zero
+            if before[k] != 0.0 {
+                sum[k] = sum[k] + v * before[k];
+            }
         }
         let mut next = [0.0; N];
         for k in 0..N {
@@ -107,14 +110,25 @@ pub(super) fn total(v: &[Dd; DD_TERMS]) -> Dd {
     v.iter().rev().fold(Dd::ZERO, |sum, &x| sum + x)
 }
 
-pub(in crate::flow) fn power(x: Dd, n: u32) -> Dd {
-    let (mut result, mut base, mut n) = (Dd::ONE, x, n);
-    while n > 0 {
-        if n % 2 == 1 {
-            result = result * base;
+/// Powers of one number below the 32nd, from its squares.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::flow) struct Powers {
+    /// x, x², x⁴ and so on.
+    squares: [Dd; 5],
+}
+
+impl Powers {
+    pub(in crate::flow) fn of(x: Dd) -> Self {
+        let mut squares = [x; 5];
+        for n in 1..squares.len() {
+            squares[n] = squares[n - 1] * squares[n - 1];
         }
-        base = base * base;
-        n /= 2;
+        Powers { squares }
     }
-    result
+
+    pub(in crate::flow) fn power(&self, n: u32) -> Dd {
+        let used =
+            self.squares.iter().enumerate().filter(|(k, _)| n >> k & 1 == 1).map(|(_, square)| *square);
+        used.reduce(|product, square| product * square).unwrap_or(Dd::ONE)
+    }
 }

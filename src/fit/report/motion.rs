@@ -1,55 +1,79 @@
 //! The motion that a fit stands for, beside the readings.
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::fit::{Estimate, Nuisance, Record, Segment};
 
-/// One segment, measured and fitted.
-pub(super) struct Fitted {
+use super::estimate::Estimate;
+use super::nuisance::Nuisance;
+use crate::fit::record::{Record, Segment};
+
+/// One segment of a record, measured and fitted.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct FittedMotion {
     /// Index of the segment in the record.
-    pub(super) segment: usize,
+    pub segment: usize,
     /// Whether each sample was used: spikes were not.
-    pub(super) used: Vec<bool>,
-    /// Angular velocities from the readings and what was found of the sensor, rad/s.
-    pub(super) measured: Vec<Vector3<f64>>,
-    /// The motion of the fitted tensor and torque nearest to them, rad/s; `None` where none was found.
-    pub(super) fitted: Option<Vec<Vector3<f64>>>,
+    pub used: Vec<bool>,
+    /// Angular velocities at the times of the segment from its readings and what was found of the sensor, rad/s, sensor axes.
+    pub measured: Vec<Vector3<f64>>,
+    /// The motion of the fitted tensor, torque and wheels nearest to them, rad/s; `None` where none was found.
+    pub fitted: Option<Vec<Vector3<f64>>>,
 }
 
-impl Fitted {
+impl FittedMotion {
     /// Measured less fitted, rad/s, of the samples that were used; the others are 0.
-    pub(super) fn residuals(&self) -> Option<Vec<Vector3<f64>>> {
+    pub fn residuals(&self) -> Option<Vec<Vector3<f64>>> {
         let fitted = self.fitted.as_ref()?;
         let left = self.measured.iter().zip(fitted).zip(&self.used);
         Some(left.map(|((a, b), used)| if *used { a - b } else { Vector3::zeros() }).collect())
     }
 
     /// Root mean square of a component of the residuals, rad/s.
-    pub(super) fn rms(&self) -> Option<f64> {
+    pub fn rms(&self) -> Option<f64> {
         let count = self.used.iter().filter(|used| **used).count().max(1);
         let sum: f64 = self.residuals()?.iter().map(Vector3::norm_squared).sum();
         Some((sum / (3 * count) as f64).sqrt())
     }
 }
 
-/// The segments that the fit has used.
-pub(super) fn fitted(e: &Estimate, record: &Record) -> Vec<Fitted> {
-    let law = Law::new(e);
-    let sensor = Sensor::new(&e.nuisances);
-    let segments = record.segments.iter().enumerate();
-    segments
-        .filter(|(k, _)| e.residuals.iter().any(|r| r.segment == *k))
-        .map(|(segment, s)| {
-            let measured: Vec<Vector3<f64>> = s.rates().iter().map(|w| sensor.rate(w)).collect();
-            let mut used = vec![true; measured.len()];
-            for spike in e.spikes.iter().filter(|spike| spike.segment == segment) {
-                if let Some(used) = used.get_mut(spike.sample) {
-                    *used = false;
+impl Estimate {
+    /// The motion of the fitted tensor, with its torques and wheels, nearest to each segment of `record` that the fit has
+    /// used; `record` is the one that was fitted.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::fit::{Record, Settings, fit, simulate};
+    /// use polhode::{inertia::Inertia, num::Random};
+    /// # let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+    /// # let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
+    /// # let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
+    /// let record = Record::from_samples(&times, &rates)?;
+    /// let fitted = fit(&record, &Settings::default())?.fitted(&record);
+    /// let rates = fitted[0].fitted.as_ref().ok_or("a motion")?;
+    /// assert!((rates[0] - Vector3::new(0.3, 1.0, 0.4)).norm() < 1e-3);
+    /// assert!(fitted[0].rms().is_some_and(|rms| (rms / 1e-3 - 1.0).abs() < 0.1)); // the noise
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn fitted(&self, record: &Record) -> Vec<FittedMotion> {
+        let sensor = Sensor::new(&self.nuisances);
+        let segments = record.segments.iter().enumerate();
+        segments
+            .filter(|(k, _)| self.residuals.iter().any(|r| r.segment == *k))
+            .map(|(segment, s)| {
+                let measured: Vec<Vector3<f64>> = s.rates().iter().map(|w| sensor.rate(w)).collect();
+                let mut used = vec![true; measured.len()];
+                for spike in self.spikes.iter().filter(|spike| spike.segment == segment) {
+                    if let Some(used) = used.get_mut(spike.sample) {
+                        *used = false;
+                    }
                 }
-            }
-            let fitted = law.as_ref().and_then(|law| law.nearest(s, &measured, &used));
-            Fitted { segment, used, measured, fitted }
-        })
-        .collect()
+                let law = Law::new(self, segment);
+                let fitted = law.and_then(|law| law.nearest(s, &measured, &used));
+                FittedMotion { segment, used, measured, fitted }
+            })
+            .collect()
+    }
 }
 
 fn value(of: &[Nuisance], name: &str) -> Option<f64> {
@@ -91,12 +115,14 @@ impl Sensor {
     }
 }
 
-/// p' = p × ω − k J ω − D ω + τ with p = J ω + h, everything over the trace of the tensor.
+/// p' = p × ω − k J ω − D ω − c |ω| J ω + τ with p = J ω + h, everything over the trace of the tensor.
 struct Law {
     j: Matrix3<f64>,
     inverse: Matrix3<f64>,
     /// k J + D.
     damping: Matrix3<f64>,
+    /// c.
+    quadratic: f64,
     torque: Vector3<f64>,
     /// Trace of the tensor, kg m², where it is known.
     trace: Option<f64>,
@@ -130,14 +156,16 @@ const STEP: f64 = 0.05;
 
 impl Law {
     /// `None` where the tensor has no inverse.
-    fn new(e: &Estimate) -> Option<Self> {
+    fn new(e: &Estimate, segment: usize) -> Option<Self> {
         let j = e.shape.tensor();
-        let of = &e.torque.coefficients;
+        let acting = e.torque.coefficients.iter().filter(|c| c.segment.is_none_or(|own| own == segment));
+        let of = &acting.cloned().collect::<Vec<_>>();
         let drag = value(of, "drag").unwrap_or(0.0);
         Some(Law {
             j,
             inverse: j.try_inverse()?,
             damping: j * drag + symmetric(of, "drag"),
+            quadratic: value(of, "quadratic_drag").unwrap_or(0.0),
             torque: vector(of, "torque"),
             trace: e.inertia.as_ref().map(|inertia| inertia.tensor().trace()),
         })
@@ -158,8 +186,12 @@ impl Law {
         (wheel, torque): (Vector3<f64>, Vector3<f64>),
     ) -> (Vector3<f64>, Matrix3<f64>) {
         let w = self.inverse * (p - wheel);
-        let linear = (p.cross_matrix() - self.damping) * self.inverse - w.cross_matrix();
-        (self.torque + torque + p.cross(&w) - self.damping * w, linear)
+        let size = w.norm();
+        let along = if size > 0.0 { w * w.transpose() / size } else { Matrix3::zeros() };
+        let damping = self.damping + self.j * (self.quadratic * size);
+        let by_rate = damping + self.j * along * self.quadratic;
+        let linear = (p.cross_matrix() - by_rate) * self.inverse - w.cross_matrix();
+        (self.torque + torque + p.cross(&w) - damping * w, linear)
     }
 
     /// From sample `i` to the next by the classical Runge–Kutta step, for p and its derivative with respect to the start.

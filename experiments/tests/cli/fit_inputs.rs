@@ -1,0 +1,148 @@
+//! `polhode fit` with what is known besides the record: priors, wheels, torques, sensors, noise.
+
+use serde_json::Value;
+
+use crate::harness::{Scratch, output, refused, run};
+
+/// A body with the trace 5.6 kg m^2.
+const SIMULATE: &str = "simulate --moments 1,2,2.6 --omega 0.3,1,0.4 --every 0.02";
+
+fn json(line: &str) -> Value {
+    let answer = run(&format!("{line} --format json"));
+    assert_eq!(answer.code, 0, "{line}: {}", answer.err);
+    serde_json::from_str(&answer.out).unwrap()
+}
+
+fn number(answer: &Value, path: &str) -> f64 {
+    answer.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {answer:#}"))
+}
+
+#[test]
+fn a_prior_tensor_is_joined_or_contradicted() {
+    let scratch = Scratch::new("fit-prior");
+    let record = scratch.0.join("record.csv").display().to_string();
+    output(&format!("{SIMULATE} --until 20 --noise 1e-2 --out {record}"));
+    let alone = json(&format!("fit {record}"));
+    let joined = json(&format!("fit {record} --prior-inertia 1.001,2.001,2.601,0.001"));
+    assert!(number(&joined, "/sigma_principal/0") < 0.9 * number(&alone, "/sigma_principal/0"));
+    assert!((number(&joined, "/inertia/1/1") - 2.0).abs() < 0.02, "{joined:#}");
+    assert!(number(&joined, "/prior/chi2") < 20.5 && number(&joined, "/prior/dof") == 5.0);
+    assert!(alone["prior"].is_null() && alone["inertia"].is_null());
+    let shape = json(&format!("fit {record} --prior-shape 10,20,26,0,0,0,0.003"));
+    assert!(shape["inertia"].is_null() && shape["prior"].is_object());
+    let text = run(&format!("fit {record} --format table --prior-shape 10,20,26,0.003")).out;
+    assert!(text.contains("record against prior tensor: chi^2"), "{text}");
+    refused(
+        &format!("fit {record} --prior-inertia 2.6,1,2,0.01"),
+        &["the prior tensor and the record exclude each other", "of 5 degrees of freedom", "leave it out"],
+    );
+    refused(&format!("fit {record} --prior-inertia 1,1,3,0.01"), &["the law I1 + I2 >= I3"]);
+    refused(&format!("fit {record} --prior-inertia 1,2,2.6,-0.01"), &["--prior-inertia", "must be positive"]);
+    refused(&format!("fit {record} --prior-inertia 1,2,2.6"), &["3 numbers", "3 moments or 6 entries"]);
+    refused(&format!("fit {record} --prior-inertia 1,2,2.6,0.01 --trace 9"), &["gives 9.0000e0"]);
+}
+
+/// A wheel of 0.4 N m s about z at 40 rad/s has 0.01 kg m^2.
+#[test]
+fn a_wheel_is_calibrated_by_a_body_that_is_known() {
+    let scratch = Scratch::new("fit-calibrate");
+    let path = |name: &str| scratch.0.join(name).display().to_string();
+    let (momenta, record) = (path("momenta.csv"), path("proof.csv"));
+    let body = path("body.json");
+    output(&format!("inertia tensor 1,2,2.6,0,0,0 --mass 30 --format json --out {body}"));
+    output(&format!("{SIMULATE} --until 20 --noise 1e-3 --wheel 0,0,0.4 --out {momenta}"));
+    let text = std::fs::read_to_string(&momenta).unwrap();
+    let rows = text.lines().skip(1).map(|row| {
+        let cells: Vec<&str> = row.split(',').take(4).collect();
+        format!("{},40,21\n", cells.join(","))
+    });
+    let rows = rows.collect::<String>();
+    std::fs::write(&record, format!("t,wx,wy,wz,wheel (rad/s),temperature\n{rows}")).unwrap();
+    let line = format!("fit {record} --calibrate-wheel 0,0,1 --body {body}");
+    let answer = json(&line);
+    let (value, sigma) = (number(&answer, "/wheel_inertia"), number(&answer, "/sigma"));
+    assert!((value - 0.01).abs() < 5.0 * sigma && sigma < 2e-4, "{value} +- {sigma}");
+    assert_eq!(answer["unused_columns"], serde_json::json!(["temperature"]));
+    let told = run(&format!("{line} --format table"));
+    assert!(
+        told.out.starts_with("wheel inertia: (") && told.out.contains("e-2 kg m^2 (95 %)"),
+        "{}",
+        told.out
+    );
+    assert_eq!(told.err, "warning: columns not used: temperature\n");
+    assert!(run(&format!("{line} --format csv")).out.contains("\nwheel_inertia,0.0"));
+
+    refused(&format!("fit {record} --calibrate-wheel 0,0,1"), &["--body"]);
+    refused(&format!("fit {record} --calibrate-wheel 0,0,0 --body {body}"), &["no direction"]);
+    refused(
+        &format!("fit {momenta} --calibrate-wheel 0,0,1 --body {body}"),
+        &["--calibrate-wheel", "no column of its speed"],
+    );
+    // one file with a wheel, one without
+    let bare = path("bare.csv");
+    output(&format!("{SIMULATE} --until 20 --noise 1e-3 --out {bare}"));
+    refused(
+        &format!("fit {momenta} {bare}"),
+        &["segment 1", "momenta.csv", "has wheel momenta and segment 2", "bare.csv", "has none"],
+    );
+}
+
+#[test]
+fn columns_that_are_not_used_are_named() {
+    let scratch = Scratch::new("fit-unused");
+    let text = output(&format!("{SIMULATE} --until 20 --noise 1e-3"));
+    let rows = text.lines().skip(1).map(|row| format!("{row},20.5,a\n")).collect::<String>();
+    let record = scratch.file("record.csv", format!("t,wx,wy,wz,temperature,mark\n{rows}"));
+    let page = scratch.0.join("fit.html").display().to_string();
+    let told = run(&format!("fit {record} --format table --report {page}"));
+    assert!(told.out.contains("\ncolumns not used: temperature, mark\n"), "{}", told.out);
+    assert!(told.err.contains("warning: columns not used: temperature, mark"), "{}", told.err);
+    assert!(std::fs::read_to_string(page).unwrap().contains("Columns not used: temperature, mark."));
+    let answer = json(&format!("fit {record}"));
+    assert_eq!(answer["unused_columns"], serde_json::json!(["temperature", "mark"]));
+}
+
+/// Two tosses under drag, written as steps of 0.01 rad/s.
+#[test]
+fn torques_of_segments_and_steps_of_readings_are_reported() {
+    let scratch = Scratch::new("fit-models");
+    let path = |name: &str| scratch.0.join(name).display().to_string();
+    let (slow, fast) = (path("slow.csv"), path("fast.csv"));
+    let line = format!("{SIMULATE} --until 20 --noise 1e-3 --quantum 0.01");
+    output(&format!("{line} --relative-drag 0.02 --out {slow}"));
+    output(&format!("{line} --relative-drag 0.1 --seed 5 --out {fast}"));
+    let apart = format!("fit {slow} {fast} --torque drag --torque-per segment");
+    let answer = json(&apart);
+    assert_eq!(answer["torque"]["coefficients"], serde_json::json!({}));
+    for (k, drag) in [(0, 0.02), (1, 0.1)] {
+        let (value, sigma) = (
+            number(&answer, &format!("/per_segment/{k}/torque/drag/value")),
+            number(&answer, &format!("/per_segment/{k}/torque/drag/sigma")),
+        );
+        assert!((value - drag).abs() < 4.0 * sigma, "{k}: {value} +- {sigma}");
+    }
+    assert!((number(&answer, "/quanta/0") - 0.01).abs() < 1e-9, "{}", answer["quanta"]);
+    let page = path("fit.html");
+    let told = run(&format!("{apart} --format table --report {page}"));
+    assert!(told.out.contains("\nsegment  torque\n      1  drag 0.0"), "{}", told.out);
+    assert!(told.out.contains("steps of the readings: 1.000e-2"), "{}", told.out);
+    assert!(std::fs::read_to_string(page).unwrap().contains("<th>drag</th>"));
+    assert!(run(&format!("{apart} --format csv")).out.contains("\nsegment_2_drag,0."));
+
+    let quadratic = json(&format!("fit {slow} --torque quadratic --gyro-walk 1e-4 --quantum 0.01"));
+    assert!(number(&quadratic, "/torque/coefficients/quadratic_drag/value") > 0.0);
+    refused(&format!("fit {slow} --quantum 0"), &["--quantum", "not positive"]);
+    refused(&format!("fit {slow} --gyro-walk -1"), &["--gyro-walk", "not positive"]);
+}
+
+#[test]
+fn residuals_are_a_png_by_their_ending() {
+    let scratch = Scratch::new("fit-png");
+    let path = |name: &str| scratch.0.join(name).display().to_string();
+    let (record, picture) = (path("record.csv"), path("residuals.png"));
+    output(&format!("{SIMULATE} --until 20 --noise 1e-3 --out {record}"));
+    output(&format!("fit {record} --residuals {picture} --out {}", path("fit.json")));
+    let bytes = std::fs::read(picture).unwrap();
+    assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
+    refused(&format!("fit {record} --residuals {}", path("residuals.pdf")), &[".svg, .png or .csv"]);
+}
