@@ -146,8 +146,9 @@ pub(crate) fn better_unit(
     if quick.as_ref().is_some_and(|weak| weak.misfit(variance) <= weak.expected_misfit()) {
         return None;
     }
+    let quick = quick.map(|weak| weak.misfit(variance));
     // rates that are read too small make a body that no tensor comes near to
-    let too_large = sphere.is_some() || quick.is_some_and(|weak| weak.misfit(variance) < EXPLAINED);
+    let too_large = sphere.is_some() || quick.is_some_and(|misfit| misfit < EXPLAINED);
     let short = radius::longest(stretches, SAMPLES);
     let is_whole = samples(&short) == samples(&pilot);
     let explains = |stretches: &[Stretch], factor: f64| {
@@ -175,7 +176,11 @@ pub(crate) fn better_unit(
     }
     found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     let best = found.first()?;
-    let as_read = if sphere.is_some() { best.misfit } else { as_read(&pilot, weak, &drag, variance)? };
+    let as_read = if sphere.is_some() {
+        best.misfit
+    } else {
+        as_read(&pilot, weak, &drag, quick, best.misfit, variance)?
+    };
     let sure = best.by_noise && as_read - best.misfit > SURELY * (2.0 / best.dof).sqrt();
     if sphere.is_none() && !sure && as_read < (BETTER * best.misfit).max(EXPLAINED) {
         return None;
@@ -197,14 +202,25 @@ pub(crate) fn better_unit(
     })
 }
 
-/// The least misfit in the unit that was read; `None` where it can not be told.
-fn as_read(pilot: &[Stretch], weak: Option<&WeakEstimate>, drag: &[Column], variance: f64) -> Option<f64> {
-    let own = weak.map(|weak| weak.columns.as_slice()).filter(|own| *own != drag);
+/// The least misfit in the unit that was read, `quick` that of a first trial; `None` where it can not be told.
+fn as_read(
+    pilot: &[Stretch],
+    weak: Option<&WeakEstimate>,
+    drag: &[Column],
+    quick: Option<f64>,
+    best: f64,
+    variance: f64,
+) -> Option<f64> {
+    if let Some(quick) = quick.filter(|quick| *quick > FAR * best) {
+        return Some(quick);
+    }
+    // without columns it is what it is with drag, or more
+    let own = weak.map(|weak| weak.columns.as_slice()).filter(|own| !own.is_empty() && *own != drag);
     let misfits = own.into_iter().chain([drag]).filter_map(|columns| {
         let weak = radius::descended(pilot, None, columns, variance, Noise::White).ok()?;
         Some(weak.misfit(variance))
     });
-    misfits.min_by(f64::total_cmp)
+    misfits.chain(quick).min_by(f64::total_cmp)
 }
 
 fn samples(stretches: &[Stretch]) -> usize {

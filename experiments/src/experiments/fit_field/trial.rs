@@ -144,6 +144,6 @@ fn lines_cover(estimate: &Estimate, truth: &Matrix3<f64>, drawn: &Drawn) -> bool
         let walk: f64 = of(true).map(|(name, size)| change(name, *size)).sum();
         // the lines are derivatives: a tenth is left for what is not linear
         (estimate.principal[k] - moments[k]).abs()
-            <= ONE_IN_A_THOUSAND * estimate.sigma_principal[k].hypot(walk) + 1.1 * systematic
+            <= ONE_IN_A_THOUSAND * libm::hypot(estimate.sigma_principal[k], walk) + 1.1 * systematic
     })
 }
