@@ -99,7 +99,7 @@ fn the_ending_of_a_file_names_its_format() {
     refused(&format!("{BRICK} --format urdf --out {}", file("b.json")), &["--out", "different formats"]);
     refused(&format!("{BRICK} --format json --out {}", file("b.urdf")), &["--out", "different formats"]);
     let record = scratch.file("r.csv", "t,wx,wy,wz\n0,1,2,3\n");
-    refused(&format!("fit {record} --residuals {}", file("r.png")), &["--residuals", "r.png", "SVG", ".svg"]);
+    refused(&format!("fit {record} --residuals {}", file("r.jpg")), &["--residuals", "r.jpg", "SVG", ".svg"]);
 }
 
 #[test]

@@ -124,9 +124,9 @@ pub(super) fn digits(sigma: f64) -> usize {
 /// Half widths of 95 % intervals in standard deviations.
 pub(super) const SURE: f64 = 1.959_963_984_540_054;
 
-/// The systematic lines of the sensor: most bodies have no wheel.
+/// The systematic lines of constant errors of the sensor, which every sensor has; most bodies have no wheel.
 pub(super) fn sensor_lines(e: &Estimate) -> impl Iterator<Item = &Systematic> {
-    e.systematic.iter().filter(|line| !line.name.starts_with("wheel"))
+    e.systematic.iter().filter(|line| !line.name.starts_with("wheel") && line.name != "walk")
 }
 
 /// What an error of each of the sizes of the systematic lines would make of the principal moments together, shares of
