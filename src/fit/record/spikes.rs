@@ -5,18 +5,28 @@
 
 use nalgebra::Vector3;
 
-/// Sets of neighbours that foresee a sample: how many before it, and how many after.
-const SETS: [(usize, usize); 7] = [(2, 2), (3, 1), (1, 3), (3, 0), (0, 3), (2, 0), (0, 2)];
-/// The weights of the neighbours in each set where none is missing: how far from the sample, and its weight.
-const NEXT: [[(isize, f64); 4]; 7] = [
-    [(-1, 2.0 / 3.0), (-2, -1.0 / 6.0), (1, 2.0 / 3.0), (2, -1.0 / 6.0)],
-    [(-1, 1.5), (-2, -1.0), (-3, 0.25), (1, 0.25)],
-    [(-1, 0.25), (1, 1.5), (2, -1.0), (3, 0.25)],
-    [(-1, 3.0), (-2, -3.0), (-3, 1.0), (0, 0.0)],
-    [(1, 3.0), (2, -3.0), (3, 1.0), (0, 0.0)],
-    [(-1, 2.0), (-2, -1.0), (0, 0.0), (0, 0.0)],
-    [(1, 2.0), (2, -1.0), (0, 0.0), (0, 0.0)],
+/// Sets of neighbours that foresee a sample: -2 is the second before it, 3 the third after it, 0 none.
+const SETS: [[isize; 4]; 7] = [
+    [-1, -2, 1, 2],
+    [-1, -2, -3, 1],
+    [-1, 1, 2, 3],
+    [-1, -2, -3, 0],
+    [1, 2, 3, 0],
+    [-1, -2, -4, 0],
+    [1, 2, 4, 0],
 ];
+/// The weights of the neighbours in each set where none is missing.
+const WEIGHTS: [[f64; 4]; 7] = [
+    [2.0 / 3.0, -1.0 / 6.0, 2.0 / 3.0, -1.0 / 6.0],
+    [1.5, -1.0, 0.25, 0.25],
+    [0.25, 1.5, -1.0, 0.25],
+    [3.0, -3.0, 1.0, 0.0],
+    [3.0, -3.0, 1.0, 0.0],
+    [8.0 / 3.0, -2.0, 1.0 / 3.0, 0.0],
+    [8.0 / 3.0, -2.0, 1.0 / 3.0, 0.0],
+];
+/// The farthest neighbour of a set.
+const FARTHEST: usize = 4;
 /// Sets on one side of a sample, those before and those after it; of two the worse counts, as a second spike may be such that
 /// one of them foresees the first.
 const SIDES: [[usize; 2]; 2] = [[3, 5], [4, 6]];
@@ -110,28 +120,29 @@ type Deviations = [f64; SETS.len()];
 /// The deviation of a sample from each of its predictions, in units of their noise; infinite where neighbours are missing.
 fn deviations(rates: &[Vector3<f64>], left: &[bool], i: usize) -> Deviations {
     // the usual case, whose weights are constants
-    if i >= 3 && i + 3 < rates.len() && left[i - 3..=i + 3].iter().all(|left| *left) {
-        return NEXT.map(|weights| {
+    let span = i.wrapping_sub(FARTHEST)..=i + FARTHEST;
+    if i >= FARTHEST && left.get(span).is_some_and(|span| span.iter().all(|left| *left)) {
+        return core::array::from_fn(|set| {
             let (mut rest, mut noise) = (rates[i], 1.0);
-            for (node, weight) in weights.into_iter().filter(|(node, _)| *node != 0) {
-                rest -= rates[i.wrapping_add_signed(node)] * weight;
+            for (node, weight) in SETS[set].iter().zip(WEIGHTS[set]).filter(|(node, _)| **node != 0) {
+                rest -= rates[i.wrapping_add_signed(*node)] * weight;
                 noise += weight * weight;
             }
             rest.norm() / noise.sqrt()
         });
     }
-    let before = (0..i).rev().filter(|&k| left[k]).take(3);
-    let after = (i + 1..rates.len()).filter(|&k| left[k]).take(3);
-    let (mut low, mut high) = ([None; 3], [None; 3]);
+    let before = (0..i).rev().filter(|&k| left[k]);
+    let after = (i + 1..rates.len()).filter(|&k| left[k]);
+    let (mut low, mut high) = ([None; FARTHEST], [None; FARTHEST]);
     before.zip(&mut low).for_each(|(k, slot)| *slot = Some(k));
     after.zip(&mut high).for_each(|(k, slot)| *slot = Some(k));
-    SETS.map(|(below, above)| {
+    SETS.map(|set| {
         let mut nodes = [0; 4];
-        let chosen = low[..below].iter().chain(&high[..above]);
         let mut count = 0;
-        for (slot, node) in nodes.iter_mut().zip(chosen) {
-            let Some(node) = node else { return f64::INFINITY };
-            *slot = *node;
+        for (slot, &place) in nodes.iter_mut().zip(set.iter().filter(|place| **place != 0)) {
+            let side = if place < 0 { &low } else { &high };
+            let Some(node) = side[place.unsigned_abs() - 1] else { return f64::INFINITY };
+            *slot = node;
             count += 1;
         }
         let offsets = nodes.map(|k| k as f64 - i as f64);
