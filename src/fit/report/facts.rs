@@ -24,7 +24,7 @@ use crate::fit::physical::nearest::Normal;
 use crate::fit::physical::prior::{Prior, Told};
 use crate::fit::physical::truncated::spread;
 use crate::fit::record::Record;
-use crate::fit::settings::{Settings, TorqueModel};
+use crate::fit::settings::{Settings, TorqueModel, TorqueNoise};
 use crate::fit::weak::joint::Joint;
 use crate::fit::weak::ladder::Chosen;
 use crate::fit::weak::mistaken_units::Better;
@@ -160,6 +160,7 @@ impl Facts<'_> {
             misfit: self.misfit,
             better,
             found,
+            noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
             driven: self.input.is_some(),
         };
         estimate.warnings = warnings(&estimate, &grounds);

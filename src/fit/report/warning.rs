@@ -28,6 +28,11 @@ pub enum Warning {
         /// Line of the first of them.
         line: usize,
     },
+    /// The residuals ask for a torque at random.
+    TorqueNoise {
+        /// Largest power spectral density of the angular acceleration among the segments, (rad/s²)² s.
+        density: f64,
+    },
     /// Segments were left out, as too short for the test functions.
     ShortSegments {
         /// Segments that were left out.
@@ -117,6 +122,11 @@ impl fmt::Display for Warning {
                 f,
                 "{} left out as standing far out of what their neighbours foresee; the first is in line {line}",
                 counted(*samples, "was", "were")
+            ),
+            Self::TorqueNoise { density } => write!(
+                f,
+                "torques at random are part of the fit, with a density of up to {density:.1e} (rad/s^2)^2 s; an error of the \
+                 sensor may look like them, see the systematic changes"
             ),
             Self::ShortSegments { short, segments } => {
                 write!(f, "{short} of {segments} segments are too short for the test functions")

@@ -19,6 +19,8 @@ pub(super) struct Grounds<'a> {
     pub(super) better: Option<&'a Better>,
     /// Whether the fit has found the torque by itself.
     pub(super) found: bool,
+    /// The same of torque noise.
+    pub(super) noise_found: bool,
     /// Whether wheels or known torques act, which change |J ω| and ω·J ω.
     pub(super) driven: bool,
 }
@@ -26,7 +28,7 @@ pub(super) struct Grounds<'a> {
 /// What of the record, the residuals and the answer limits the use of `e`.
 pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     let mut list = Vec::new();
-    let Grounds { record, weak, misfit, better, found, driven } = *grounds;
+    let Grounds { record, weak, misfit, better, found, noise_found, driven } = *grounds;
     if record.merged() > 0 {
         list.push(Warning::Merged { samples: record.merged() });
     }
@@ -67,6 +69,10 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     }
     if found && e.torque.model != TorqueModel::None {
         list.push(Warning::Torque(e.torque.clone()));
+    }
+    let density = e.per_segment.iter().map(|s| s.torque_noise).fold(0.0, f64::max);
+    if noise_found && density > 0.0 {
+        list.push(Warning::TorqueNoise { density });
     }
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);

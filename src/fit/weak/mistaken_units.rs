@@ -106,9 +106,6 @@ const LISTED: usize = 3;
 /// Largest misfit of a unit that explains a record.
 const EXPLAINED: f64 = 2.0;
 
-/// Fall of the misfit below which another unit is no better.
-const BETTER: f64 = 2.0;
-
 /// Fall of the misfit that torque noise is not likely to hide.
 const FAR: f64 = 20.0;
 
@@ -182,7 +179,8 @@ pub(crate) fn better_unit(
         as_read(&pilot, weak, &drag, quick, best.misfit, variance)?
     };
     let sure = best.by_noise && as_read - best.misfit > SURELY * (2.0 / best.dof).sqrt();
-    if sphere.is_none() && !sure && as_read < (BETTER * best.misfit).max(EXPLAINED) {
+    let far = as_read > (FAR * best.misfit).max(EXPLAINED);
+    if sphere.is_none() && !sure && !far {
         return None;
     }
     let equal = |f: &Found| (f.misfit - best.misfit) * best.dof <= EQUAL * best.misfit.max(1.0);
@@ -196,7 +194,7 @@ pub(crate) fn better_unit(
         misfit: first.misfit,
         credible: best.credible,
         vague,
-        far: FAR * best.misfit < as_read,
+        far,
         sure,
         sphere,
     })
