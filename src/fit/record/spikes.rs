@@ -36,8 +36,8 @@ const NEIGHBOURS: usize = 25;
 const SPAN: usize = 12;
 /// Usual deviations that a spike exceeds by the median of its predictions: normal noise does so once in 1e17 samples.
 const FAR: f64 = 6.0;
-/// The same by the predictions of either side, which magnify the noise: beside a jump one is as usual.
-const EVERY: f64 = 1.5;
+/// The same by the predictions of either side: beside a jump one side is as usual, which noise alone doubles in one sample of thirty.
+const EVERY: f64 = 2.0;
 
 /// Indices of the spikes among samples at nearly even times, ascending.
 ///
