@@ -2,13 +2,12 @@
 
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, SMatrix, Vector3};
 
-use crate::fit::physical::coordinates::{Form, basis, coordinates, eigen, entries_of_coordinates};
+use crate::fit::physical::coordinates::{Form, basis, coordinates, eigen, entries_of_coordinates, symmetric};
 use crate::fit::report::columns::unit;
 use crate::fit::settings::Settings;
 use crate::fit::weak::ladder::columns_of;
 use crate::fit::weak::model::{
-    Column, Kind, STEPS, Terms, Unknowns, cross_derivative, distortion, sensor_columns, symmetric,
-    walk_columns,
+    Column, Kind, STEPS, Terms, Unknowns, cross_derivative, distortion, sensor_columns, walk_columns,
 };
 use crate::fit::weak::quadratic::slope;
 use crate::fit::weak::test_functions::Stretch;

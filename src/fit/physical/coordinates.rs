@@ -18,6 +18,15 @@ const SIXTH_ROOT: f64 = 0.408_248_290_463_863; // 1/√6
 /// The rows and columns of the order xx, yy, zz, xy, xz, yz.
 pub(crate) const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
+/// e_i e_jᵀ + e_j e_iᵀ of entry `k` in the order xx, yy, zz, xy, xz, yz; e_i e_iᵀ on the diagonal.
+pub(crate) fn symmetric(k: usize) -> Matrix3<f64> {
+    let (i, j) = ENTRIES[k];
+    let mut m = Matrix3::zeros();
+    m[(i, j)] = 1.0;
+    m[(j, i)] = 1.0;
+    m
+}
+
 /// B_k.
 pub(crate) fn basis(k: usize) -> Matrix3<f64> {
     match k {

@@ -3,7 +3,7 @@
 use nalgebra::{DVector, Matrix3};
 
 use super::constraint::Constraint;
-use super::coordinates::{ENTRIES, eigen};
+use super::coordinates::{ENTRIES, eigen, symmetric};
 
 /// A condition on coefficients of drag, by their places among the unknowns of the program.
 #[derive(Clone, Debug)]
@@ -15,15 +15,6 @@ pub(crate) enum Dissipation {
 }
 
 impl Dissipation {
-    /// What an entry of the order xx, yy, zz, xy, xz, yz contributes to the matrix.
-    pub(crate) fn entry(k: usize) -> Matrix3<f64> {
-        let (i, j) = ENTRIES[k];
-        let mut m = Matrix3::zeros();
-        m[(i, j)] = 1.0;
-        m[(j, i)] = 1.0;
-        m
-    }
-
     pub(crate) fn constraint(&self) -> Constraint {
         match *self {
             Self::Coefficient { name, segment, .. } => Constraint::Drag { name, segment },
@@ -32,7 +23,7 @@ impl Dissipation {
     }
 
     fn matrix(places: &[usize; 6], z: &DVector<f64>) -> Matrix3<f64> {
-        (0..6).fold(Matrix3::zeros(), |sum, k| sum + Self::entry(k) * z[places[k]])
+        (0..6).fold(Matrix3::zeros(), |sum, k| sum + symmetric(k) * z[places[k]])
     }
 
     /// Whether unknowns obey it.

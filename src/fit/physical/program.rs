@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::conic::Conditions;
 use super::constraint::Constraint;
-use super::coordinates::{basis, eigen};
+use super::coordinates::{basis, eigen, symmetric};
 use super::dissipation::Dissipation;
 use super::failure::SolverFailure;
 use super::law::{CUTS, LARGEST_SHARE};
@@ -89,7 +89,7 @@ impl Program {
                     let entries = places.iter().enumerate();
                     program.walls.push(Wall {
                         base: Matrix3::zeros(),
-                        terms: entries.map(|(k, &place)| (place, Dissipation::entry(k) / -unit)).collect(),
+                        terms: entries.map(|(k, &place)| (place, symmetric(k) / -unit)).collect(),
                         most: 0.0,
                         rank: 3,
                         unit,

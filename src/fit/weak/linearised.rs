@@ -4,11 +4,11 @@ use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
 
 use super::covariance::{Covariance, Levels};
-use super::model::{Column, Kind, Terms, Unknowns, cross_derivative, distortion, symmetric};
+use super::model::{Column, Kind, Terms, Unknowns, cross_derivative, distortion};
 use super::moments::{Group, Inputs, Moments, Sums, groups};
 use super::quadratic::{Quadratic, slope};
 use super::test_functions::{Seen, Stretch, TestFunctions};
-use crate::fit::physical::coordinates::{Form, basis};
+use crate::fit::physical::coordinates::{Form, basis, symmetric};
 use crate::num::banded::Banded;
 
 /// Σ v × B v from S = Σ v vᵀ; of an S that is not symmetric, Σ v × B u from Σ v uᵀ.

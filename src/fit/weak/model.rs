@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::quadratic::slope;
 use super::test_functions::Stretch;
-use crate::fit::physical::coordinates::{Coordinates, ENTRIES, tensor};
+use crate::fit::physical::coordinates::{Coordinates, symmetric, tensor};
 use crate::fit::settings::SensorPriors;
 
 /// An unknown beside the tensor, in units of the root mean square rate.
@@ -109,15 +109,6 @@ pub(crate) fn walk_columns(stretches: &[Stretch], walk: f64, most: usize) -> Vec
         }
     }
     columns
-}
-
-/// e_i e_jᵀ + e_j e_iᵀ of entry `k` in the order xx, yy, zz, xy, xz, yz; e_i e_iᵀ on the diagonal.
-pub(crate) fn symmetric(k: usize) -> Matrix3<f64> {
-    let (i, j) = ENTRIES[k];
-    let mut m = Matrix3::zeros();
-    m[(i, j)] = 1.0;
-    m[(j, i)] = 1.0;
-    m
 }
 
 /// The change of P with an error of scale or alignment, which is that of ω = P y.
