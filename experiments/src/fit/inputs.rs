@@ -119,21 +119,27 @@ impl<'t> Sheet<'t> {
         format!("{}, line {} ({name})", self.file, self.header + 1)
     }
 
-    /// Three columns of one kind, or none; two of them are a mistake.
+    /// Three columns of one kind, or none; two of them are a mistake. `unit` is one of `units` as messages write it, and
+    /// that of names without one where that is `assumed`.
     fn triple(
         &self,
         kind: fn(usize) -> Kind,
         units: &[&str],
         unit: &str,
+        assumed: bool,
     ) -> Result<Option<[&Found; 3]>, Error> {
         let all = [0, 1, 2].map(|axis| self.column(kind(axis)));
         if let [Some(x), Some(y), Some(z)] = all {
             for column in [x, y, z] {
-                let named = column.unit.as_deref().unwrap_or(unit);
+                let place = self.place(&column.name);
+                let Some(named) = column.unit.as_deref().or(assumed.then_some(unit)) else {
+                    let remedy = format!("write {} ({unit}) in the header", column.name);
+                    return Err(Error::input(&place, "", "the column has no unit", &remedy));
+                };
                 let plain: String = named.chars().filter(|c| !" .*·".contains(*c)).collect();
                 if !units.contains(&plain.as_str()) {
                     let rule = format!("the unit here is {unit}");
-                    return Err(Error::input(&self.place(&column.name), named, &rule, "convert the column"));
+                    return Err(Error::input(&place, named, &rule, "convert the column"));
                 }
             }
             return Ok(Some([x, y, z]));
@@ -205,8 +211,9 @@ impl WheelArguments {
         let Some(sheet) = Sheet::new(text, file, first) else {
             return self.asked().map_or(Ok(record), |(_, flag)| Err(no_speed(flag, file)));
         };
-        let momenta = sheet.triple(Kind::Momentum, &["Nms", "kgm^2/s", "kgm²/s", "kgm2/s"], "N m s")?;
-        let torques = sheet.triple(Kind::Torque, &["Nm"], "N m")?;
+        let momenta =
+            sheet.triple(Kind::Momentum, &["Nms", "kgm^2/s", "kgm²/s", "kgm2/s"], "N m s", false)?;
+        let torques = sheet.triple(Kind::Torque, &["Nm"], "N m", true)?;
         let speed = match (self.asked(), sheet.column(Kind::Speed)) {
             (Some((wheel, _)), Some(column)) => Some((wheel.0 * sheet.speed_unit(column)?, column)),
             (Some((_, flag)), None) => return Err(no_speed(flag, file)),

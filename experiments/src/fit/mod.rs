@@ -40,7 +40,7 @@ const EXAMPLES: &str = "Examples:
 /// Inertia tensor of a torque-free body from its measured angular velocity
 ///
 /// Without one of --trace, --momentum, --twice-energy, --moment or --prior-inertia the tensor is known up to a factor, and its trace is
-/// set to 1; columns hx, hy, hz (momentum of wheels, N m s) and tx, ty, tz (known torque, N m) make it absolute, too. Exit code 1: the record does not determine the tensor; what it does determine is printed.
+/// set to 1; columns `hx (N m s)`, hy, hz (momentum of wheels, with this unit in the header) and tx, ty, tz (known torque, N m) make it absolute, too. Exit code 1: the record does not determine the tensor; what it does determine is printed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Fit {

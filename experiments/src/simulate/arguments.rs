@@ -25,7 +25,7 @@ pub(super) struct DisturbanceArguments {
     /// White noise of each component of the torque: deviation of the impulse of 1 s, N m s^(1/2)
     #[arg(long, value_name = "S", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     torque_noise: f64,
-    /// Momentum of a wheel at the start, written to columns hx, hy, hz, N m s (--wheel of fit is an axis with an inertia)
+    /// Momentum of a wheel at the start, written to the columns hx, hy, hz (N m s) (--wheel of fit is an axis with an inertia)
     #[arg(long, value_name = "hx,hy,hz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     wheel: Option<[f64; 3]>,
     /// Change of the wheel's momentum, N m

@@ -149,10 +149,14 @@ impl Simulate {
         columns.extend(axes(["wx", "wy", "wz"], "rad/s", about));
         if self.disturbances.has_wheel() {
             let meaning = "momentum of the wheel along this body axis";
-            columns.extend(axes(["hx", "hy", "hz"], "N m s", [meaning; 3]));
+            columns.extend(axes(["hx (N m s)", "hy (N m s)", "hz (N m s)"], "N m s", [meaning; 3]));
         }
         if self.disturbances.known_torque().is_some() {
-            columns.extend(axes(["tx", "ty", "tz"], "N m", ["torque about this body axis"; 3]));
+            columns.extend(axes(
+                ["tx (N m)", "ty (N m)", "tz (N m)"],
+                "N m",
+                ["torque about this body axis"; 3],
+            ));
         }
         Table::new("record", "Readings of a rate sensor.", columns)
     }

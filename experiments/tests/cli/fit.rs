@@ -46,7 +46,10 @@ fn a_simulated_instrument_is_the_golden_one() {
          --spikes 0.2,5"
     ));
     golden("simulate-instrument.csv", &found);
-    assert!(found.starts_with("t,wx,wy,wz,hx,hy,hz,tx,ty,tz\n0.0,"), "{found}");
+    assert!(
+        found.starts_with("t,wx,wy,wz,hx (N m s),hy (N m s),hz (N m s),tx (N m),ty (N m),tz (N m)\n0.0,"),
+        "{found}"
+    );
     let rows: Vec<Vec<f64>> =
         found.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
     assert_eq!(rows.len(), 12);
@@ -392,6 +395,8 @@ fn wheels_and_torques_are_columns() {
     refused(2, &format!("fit {record} --wheel 0,0,1,-1"), &["--wheel", "must be positive"]);
     fs::write(&speed, with_speed("hx (N m s)", "40")).unwrap();
     refused(2, &format!("fit {speed}"), &["line 1 (hx)", "two columns more"]);
-    fs::write(&record, text.replacen("hx,hy,hz", "hx (g m),hy (g m),hz (g m)", 1)).unwrap();
+    fs::write(&record, text.replace("(N m s)", "(g m)")).unwrap();
     refused(2, &format!("fit {record}"), &["line 1 (hx)", "the unit here is N m s"]);
+    fs::write(&record, text.replace(" (N m s)", "")).unwrap();
+    refused(2, &format!("fit {record}"), &["line 1 (hx)", "has no unit", "write hx (N m s)"]);
 }
