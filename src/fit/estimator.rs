@@ -7,6 +7,7 @@ use super::physical::constraint::ActiveConstraint;
 use super::physical::coordinates::{Coordinates, ENTRIES, Form, tensor};
 use super::physical::failure::SolverFailure;
 use super::physical::nearest::{Normal, nearest};
+use super::physical::prior::{Prior, Told};
 use super::record::Record;
 use super::report::averages;
 use super::report::columns::{dissipation, is_drag, is_torque, named};
@@ -16,6 +17,7 @@ use super::report::identifiability::Identifiability;
 use super::report::nuisance::{Agreement, Spike};
 use super::report::torque_free::trends;
 use super::settings::{Settings, TorqueModel, TorqueNoise, TorqueScope};
+use super::weak::completed::completed;
 use super::weak::joint::Joint;
 use super::weak::ladder::{Demand, climb};
 use super::weak::mistaken_units::{Better, better_unit, suspicious};
@@ -91,7 +93,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         alone: &alone,
         units: settings.check_units && input.is_none(),
     };
-    let chosen = climb(&stretches, demand, variance).map_err(|failure| match failure {
+    let mut chosen = climb(&stretches, demand, variance).map_err(|failure| match failure {
         Failure::Dense => settings.radius.map_or_else(singular, |radius| FitError::Dense { radius }),
         Failure::TooShort => too_short(record, settings, &stretches, rms),
         Failure::Singular => singular(),
@@ -112,9 +114,21 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     }
     // torque noise that explains what a unit would explain without any explains nothing
     let hidden = noisy && better.as_ref().is_some_and(|b| b.vague && b.far);
+    let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
     // what the noise does not explain enlarges the deviations
-    let identifiability = identify(weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
-    if hidden || (!weak.settled() && misfit > weak.expected_misfit()) {
+    let mut identifiability = identify(weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
+    let open = !weak.settled() || !identifiability.complete();
+    let filled = prior.as_ref().filter(|_| open && input.is_none()).and_then(|prior| {
+        let filled = completed(&stretches, weak, &prior.shape_root(), prior.x, variance)?;
+        identifiability =
+            Identifiability::new(&filled.alone, &scatter_of(&stretches), &tensor(&filled.weak.x()));
+        Some(filled)
+    });
+    let agreed = filled.as_ref().map(|filled| Agreement { chi2: filled.chi2, dof: 5 });
+    let is_filled = filled.is_some();
+    if let Some(filled) = filled {
+        chosen.weak = filled.weak;
+    } else if hidden || (!weak.settled() && misfit > weak.expected_misfit()) {
         // the rates are not constant, and still no tensor explains them
         let axes = averages::axes(&stretches, variance);
         let factor = better.map(|b| b.factor);
@@ -122,20 +136,32 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
             .then_some(-fall.rate * rms);
         return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall });
+    } else {
+        let untold = untold(weak, &stretches, variance * misfit.max(1.0), &identifiability);
+        // of a torque that was not asked for the message could ask for nothing simpler
+        if settings.torque != TorqueModel::Auto && !untold.is_empty() {
+            return Err(FitError::Untold { names: untold, rank: identifiability.rank });
+        }
+        if !identifiability.complete() {
+            return Err(FitError::Unidentifiable(Box::new(identifiability)));
+        }
     }
-    let untold = untold(weak, &stretches, variance * misfit.max(1.0), &identifiability);
-    // of a torque that was not asked for the message could ask for nothing simpler
-    if settings.torque != TorqueModel::Auto && !untold.is_empty() {
-        return Err(FitError::Untold { names: untold, rank: identifiability.rank });
-    }
-    if !identifiability.complete() {
-        return Err(FitError::Unidentifiable(Box::new(identifiability)));
-    }
+    let weak = &chosen.weak;
+    let misfit = weak.misfit(variance);
     let information = || FitError::Solver(SolverFailure::Information);
     let kept = |column: &Column| is_drag(column) || column.kind == Kind::Input;
     let joint = Joint::new(weak, kept, (variance * misfit.max(1.0)).sqrt()).ok_or_else(information)?;
     let dissipation = dissipation(&weak.columns, &joint.kept);
-    let (told, prior) = with_prior(&joint, weak, settings, input)?;
+    let (told, agreed) = match &prior {
+        Some(prior) if !is_filled => with_prior(&joint, weak, prior, input)?,
+        _ => (joint.told.clone(), agreed),
+    };
+    if let (Some(prior), Some(Agreement { chi2, dof })) = (&prior, agreed)
+        && chi2 > EXCLUDED[dof.clamp(5, 6) - 5]
+    {
+        let six = |x: &Coordinates| ENTRIES.map(|entry| tensor(x)[entry]);
+        return Err(FitError::PriorContradicted { prior: six(&prior.x), record: six(&weak.x()), chi2, dof });
+    }
     let answer = nearest(&told, &settings.limits, &dissipation)?;
     let facts = Facts {
         record,
@@ -149,7 +175,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         input,
         joint: &joint,
         told: &told,
-        prior,
+        prior: agreed,
         dissipation: &dissipation,
     };
     facts.report(answer, identifiability, better.as_ref().filter(|b| b.credible))
@@ -199,14 +225,8 @@ const EXCLUDED: [f64; 2] = [35.888_186_879_672_87, 38.258_336_377_209_69]; // on
 /// Standard deviations of a prior by which it may lie outside limits and law.
 const OUTSIDE: f64 = 6.0;
 
-/// What the record tells, joined with the prior, and how they agree.
-fn with_prior(
-    joint: &Joint,
-    weak: &WeakEstimate,
-    settings: &Settings,
-    input: Option<f64>,
-) -> Result<(Normal, Option<Agreement>), FitError> {
-    let Some(prior) = &settings.prior else { return Ok((joint.told.clone(), None)) };
+/// A prior that limits and law allow.
+fn consistent(prior: &Prior, settings: &Settings) -> Result<Told, FitError> {
     let prior = prior.told()?;
     let alone = nearest(&prior.shape(), &settings.limits, &[])?;
     let pulls = |c: &&ActiveConstraint| c.multiplier;
@@ -215,13 +235,19 @@ fn with_prior(
     {
         return Err(FitError::PriorOutside { constraint: active.constraint, pull: alone.pull });
     }
+    Ok(prior)
+}
+
+/// What the record tells, joined with the prior, and how they agree.
+fn with_prior(
+    joint: &Joint,
+    weak: &WeakEstimate,
+    prior: &Told,
+    input: Option<f64>,
+) -> Result<(Normal, Option<Agreement>), FitError> {
     let place = joint.kept.iter().position(|&k| weak.columns[k].kind == Kind::Input);
-    let (told, chi2, dof) =
-        prior.join(&joint.told, place.zip(input)).ok_or(FitError::Solver(SolverFailure::Information))?;
-    if chi2 > EXCLUDED[dof.clamp(5, 6) - 5] {
-        let six = |x: &Coordinates| ENTRIES.map(|entry| tensor(x)[entry]);
-        return Err(FitError::PriorContradicted { prior: six(&prior.x), record: six(&weak.x()), chi2, dof });
-    }
+    let joined = prior.join(&joint.told, place.zip(input));
+    let (told, chi2, dof) = joined.ok_or(FitError::Solver(SolverFailure::Information))?;
     Ok((told, Some(Agreement { chi2, dof })))
 }
 

@@ -113,7 +113,7 @@ pub struct Settings {
     pub noise: Option<f64>,
     /// What is known of the moments beforehand.
     pub limits: Vec<Limit>,
-    /// A tensor that is known beforehand.
+    /// A tensor that is known beforehand: it is joined with the record, and supplies what the record leaves open.
     pub prior: Option<Prior>,
     /// What gives the absolute size.
     pub known: Option<Known>,

@@ -152,7 +152,8 @@ impl KnownArguments {
 #[group(multiple = false)]
 pub(super) struct PriorArguments {
     /// Inertia tensor that is known beforehand, as from CAD, kg m^2, sensor axes: three moments or six entries, then the
-    /// relative standard deviation s of its entries, s sqrt(Iii Ijj); it is joined with what the record tells
+    /// relative standard deviation s of its entries, s sqrt(Iii Ijj); it is joined with what the record tells,
+    /// and supplies what the record leaves open
     #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true)]
     prior_inertia: Option<Prior>,
     /// The same in any unit: only the shape is known, not the size

@@ -42,6 +42,19 @@ fn a_prior_tensor_is_joined_or_contradicted() {
     refused(&format!("fit {record} --prior-inertia 1,2,2.6,-0.01"), &["--prior-inertia", "must be positive"]);
     refused(&format!("fit {record} --prior-inertia 1,2,2.6"), &["3 numbers", "3 moments or 6 entries"]);
     refused(&format!("fit {record} --prior-inertia 1,2,2.6,0.01 --trace 9"), &["gives 9.0000e0"]);
+
+    // a pure spin tells its axis alone
+    let spin = scratch.0.join("spin.csv").display().to_string();
+    output(&format!(
+        "simulate --moments 1,2,2.6 --omega 0,0,1 --every 0.05 --until 20 --noise 1e-3 --out {spin}"
+    ));
+    assert_eq!(run(&format!("fit {spin}")).code, 1);
+    let filled = json(&format!("fit {spin} --prior-inertia 1,2,2.6,0.01"));
+    assert_eq!(filled["identifiable"], false);
+    assert!(number(&filled, "/rank") == 2.0 && filled["null_directions"].as_array().unwrap().len() == 3);
+    assert!((number(&filled, "/ratios/0") * 2.6 - 1.0).abs() < 0.02, "{filled:#}");
+    let text = run(&format!("fit {spin} --format table --prior-inertia 1,2,2.6,0.01")).out;
+    assert!(text.contains("the record alone determines 2 of the 5 numbers of the shape"), "{text}");
 }
 
 /// A wheel of 0.4 N m s about z at 40 rad/s has 0.01 kg m^2.

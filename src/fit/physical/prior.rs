@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
 
-use super::coordinates::{Coordinates, ENTRIES, basis, coordinates, eigen};
+use super::coordinates::{Coordinates, ENTRIES, Form, basis, coordinates, eigen};
 use super::nearest::Normal;
 use crate::fit::error::FitError;
 
@@ -119,6 +119,11 @@ impl Told {
     pub(crate) fn shape(&self) -> Normal {
         let centre = DVector::from_column_slice(self.x.as_slice());
         Normal { centre, root: self.shape_root.clone().qr().r() }
+    }
+
+    /// A root of the information about the shape.
+    pub(crate) fn shape_root(&self) -> Form {
+        Form::from_fn(|i, k| self.shape_root[(i, k)])
     }
 
     /// Joined with what a record tells; `input` is the place of one over the trace among its unknowns, and the trace that

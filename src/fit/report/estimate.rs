@@ -91,7 +91,7 @@ pub struct Estimate {
     pub segments: usize,
     /// Half width of the test functions, s.
     pub radius: f64,
-    /// Which of the five numbers the record determines.
+    /// Which of the five numbers the record determines; without a prior tensor all.
     pub identifiability: Identifiability,
     /// I₁ + I₂ − I₃ as a share of the trace; never negative.
     pub triangle_slack: f64,

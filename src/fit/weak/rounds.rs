@@ -7,7 +7,7 @@ use super::levels::{Choice, likeliest};
 use super::linearised::{Linearised, Whitened};
 use super::model::{Column, Unknowns};
 use super::noise::SURE;
-use super::stacked::Stacked;
+use super::stacked::{Pull, Stacked};
 use super::test_functions::{Stretch, TestFunctions};
 use super::weak_estimate::{Part, WeakEstimate};
 use crate::fit::physical::coordinates::{Coordinates, Form, eigen, tensor};
@@ -70,6 +70,7 @@ pub(crate) struct Rounds<'a> {
     noise: Vec<Vec<Vector3<f64>>>,
     levels: Vec<Levels>,
     pub(crate) at: Unknowns,
+    pull: Option<Pull>,
 }
 
 impl<'a> Rounds<'a> {
@@ -90,7 +91,12 @@ impl<'a> Rounds<'a> {
         }
         let noise = used.iter().map(|(_, s, _)| vec![Vector3::zeros(); s.times.len()]).collect();
         let levels = vec![Levels::WHITE; used.len()];
-        Some(Rounds { used, columns, noise, levels, at })
+        Some(Rounds { used, columns, noise, levels, at, pull: None })
+    }
+
+    /// With what is known of the tensor beforehand, in units of the noise of the rates.
+    pub(crate) fn with_pull(self, pull: Pull) -> Self {
+        Rounds { pull: Some(pull), ..self }
     }
 
     /// The equations of each stretch at the samples so far.
@@ -127,7 +133,10 @@ impl<'a> Rounds<'a> {
         let parts = self.linearise();
         let whitened = self.whiten(&parts)?;
         let stacked = self.stack(&whitened, variance);
-        let next = stacked.ridge(variance)?;
+        let next = match &self.pull {
+            Some(pull) => stacked.pulled(pull)?,
+            None => stacked.ridge(variance)?,
+        };
         // where torques act, full steps may end in going to and fro
         let relax = if full || stacked.excess(variance) < TORQUES { 1.0 } else { 0.5 };
         Some(self.advance(&parts, &whitened, &stacked, &next, relax, variance))
@@ -245,7 +254,8 @@ impl<'a> Rounds<'a> {
         let parts = self.linearise();
         let whitened = self.whiten(&parts)?;
         let stacked = self.stack(&whitened, variance);
-        let at = stacked.minimiser().unwrap_or_else(|| self.at.clone());
+        let best = self.pull.as_ref().map_or_else(|| stacked.minimiser(), |pull| stacked.pulled(pull));
+        let at = best.unwrap_or_else(|| self.at.clone());
         // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
         // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
         let gain = (of_sphere - stacked.squares) / (variance * stacked.excess(variance));

@@ -12,6 +12,13 @@ const FLAT: f64 = 1e3;
 /// Rows that are brought to a triangle together, on the triangle of those before.
 const TOGETHER: usize = 16_384;
 
+/// Further equations W (x − centre) = 0 of the tensor alone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pull {
+    pub(crate) root: Form,
+    pub(crate) centre: Coordinates,
+}
+
 /// min |R (x − origin) + z|²: what all stretches say together, each column at its best for x.
 pub(crate) struct Stacked {
     pub(crate) origin: Unknowns,
@@ -87,11 +94,16 @@ impl Stacked {
     pub(crate) fn ridge(&self, ridge: f64) -> Option<Unknowns> {
         // far above the rounding of R, where the record tells nothing and has no noise either; only weights are at stake
         let weight = ridge.sqrt().max(1e-7 * self.root.norm());
+        self.pulled(&Pull { root: Form::identity() * weight, centre: Coordinates::zeros() })
+    }
+
+    /// The x that makes |R (x − origin) + z|² + |W (x − centre)|² least, with its columns.
+    pub(crate) fn pulled(&self, pull: &Pull) -> Option<Unknowns> {
         let mut stack = SMatrix::<f64, 10, 6>::zeros();
         stack.fixed_view_mut::<5, 5>(0, 0).copy_from(&self.root);
         stack.fixed_view_mut::<5, 1>(0, 5).copy_from(&self.z);
-        stack.fixed_view_mut::<5, 5>(5, 0).copy_from(&(Form::identity() * weight));
-        stack.fixed_view_mut::<5, 1>(5, 5).copy_from(&(self.origin.x * weight));
+        stack.fixed_view_mut::<5, 5>(5, 0).copy_from(&pull.root);
+        stack.fixed_view_mut::<5, 1>(5, 5).copy_from(&(pull.root * (self.origin.x - pull.centre)));
         let r = stack.qr().r();
         let step = r.fixed_view::<5, 5>(0, 0).solve_upper_triangular(&-r.fixed_view::<5, 1>(0, 5))?;
         self.with_columns(self.origin.x + step)

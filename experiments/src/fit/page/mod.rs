@@ -96,6 +96,13 @@ fn answer(e: &Estimate) -> Vec<Part> {
             "With a prior tensor; χ² of its distance from the record is {:.1} at {} degrees of freedom.",
             prior.chi2, prior.dof
         )));
+        let rank = e.identifiability.rank;
+        if rank < 5 {
+            let text = format!(
+                "The record alone determines {rank} of the 5 numbers of the shape, the prior the rest."
+            );
+            parts.push(Part::Paragraph(text));
+        }
     }
     let axes = e.axes.to_rotation_matrix();
     let head = ["axis", "x", "y", "z", "turn about it"].map(String::from).to_vec();

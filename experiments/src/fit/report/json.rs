@@ -43,8 +43,10 @@ fn answer(e: &Estimate) -> Value {
         "segments": e.segments,
         "radius": e.radius,
         "method": METHOD,
-        "identifiable": true,
-        "null_directions": [],
+        "identifiable": e.identifiability.complete(),
+        "null_directions":
+            e.identifiability.null_directions.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "rank": e.identifiability.rank,
         "spectrum": e.identifiability.deviations,
         "bound": e.bound.as_ref().map(matrix),
         "bound_ratio": e.bound_ratio,

@@ -163,16 +163,23 @@ fn segments(e: &Estimate) -> Vec<String> {
     lines
 }
 
-fn prior(e: &Estimate) -> Option<String> {
-    let line = |p: polhode::fit::Agreement| {
-        format!("record against prior tensor: chi^2 {:.1} of {} degrees of freedom", p.chi2, p.dof)
-    };
-    e.prior.map(line)
+fn prior(e: &Estimate) -> Vec<String> {
+    let Some(p) = e.prior else { return Vec::new() };
+    let mut lines =
+        vec![format!("record against prior tensor: chi^2 {:.1} of {} degrees of freedom", p.chi2, p.dof)];
+    let rank = e.identifiability.rank;
+    if rank < 5 {
+        lines.push(format!(
+            "the record alone determines {rank} of the 5 numbers of the shape, the prior the rest"
+        ));
+    }
+    lines
 }
 
 fn quality(e: &Estimate) -> Vec<String> {
     let percent = |drift: InvariantTrend| with_error(100.0 * drift.rate, 100.0 * drift.sigma);
-    let spectrum = e.identifiability.deviations.map(|d| format!("{d:.1e}")).join(", ");
+    let told = |d: f64| if d.is_finite() { format!("{d:.1e}") } else { "none".into() };
+    let spectrum = e.identifiability.deviations.map(told).join(", ");
     vec![
         format!("method: {METHOD}"),
         format!("half width of the test functions: {:.4} s", e.radius),
