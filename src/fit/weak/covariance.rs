@@ -30,6 +30,14 @@ impl Levels {
     pub(crate) const WHITE: Levels = Levels { white: 1.0, torque: 0.0, shape: Shape::Moments };
 }
 
+/// The covariance of the components of torque noise of level 1.
+pub(super) fn torque_shape(shape: Shape, j: &Matrix3<f64>) -> Matrix3<f64> {
+    match shape {
+        Shape::Moments => j * j,
+        Shape::Alike => Matrix3::identity() / 9.0,
+    }
+}
+
 /// The covariance of the equations of one stretch at any levels of noise.
 #[derive(Clone)]
 pub(crate) struct Covariance {
@@ -96,10 +104,7 @@ impl Covariance {
 
     /// What torque noise adds to the columns of each test, from their diagonals down.
     fn of_torque(&self, levels: Levels) -> [Vec<f64>; 3] {
-        let shape = match levels.shape {
-            Shape::Moments => self.j * self.j,
-            Shape::Alike => Matrix3::identity() / 9.0,
-        };
+        let shape = torque_shape(levels.shape, &self.j);
         [0, 1, 2].map(|q| {
             let mut column = vec![0.0; 3 * self.tests.reach + 3];
             for (row, overlap) in self.tests.overlaps().iter().enumerate() {

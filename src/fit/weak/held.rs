@@ -68,8 +68,9 @@ fn at(
         let covariances: Vec<Covariance> =
             each.map(|((part, (_, s, _)), noise)| part.covariance(s, noise)).collect();
         let each = parts.iter().zip(&covariances).zip(&levels);
-        let whitened = each
-            .map(|((part, covariance), levels)| Some(part.whitened(covariance.factor(*levels)?, *levels)));
+        let whitened = each.map(|((part, covariance), levels)| {
+            Some(part.whitened(covariance.factor(*levels)?, *levels, None))
+        });
         let whitened: Vec<Whitened> = whitened.collect::<Option<_>>()?;
         let rows: Vec<&[f64]> = whitened.iter().map(|part| part.rows.as_slice()).collect();
         let stacked = Stacked::new(&rows, columns, &at, variance.sqrt());

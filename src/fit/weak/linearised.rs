@@ -4,6 +4,7 @@ use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
 
 use super::covariance::{Covariance, Levels};
+use super::driven::take_out;
 use super::model::{Column, Kind, Terms, Unknowns, cross_derivative, distortion};
 use super::moments::{Group, Inputs, Moments, Sums, groups};
 use super::quadratic::{Quadratic, slope};
@@ -27,7 +28,7 @@ pub(crate) struct Linearised {
     /// Row by row, not whitened.
     pub(crate) rows: Vec<f64>,
     /// What the unknowns make of torque and sensor.
-    terms: Terms,
+    pub(super) terms: Terms,
     /// Where it was linearised.
     pub(crate) origin: Unknowns,
 }
@@ -58,9 +59,13 @@ impl Linearised {
         Covariance::new(stretch, noise, &self.terms, &self.tests)
     }
 
-    /// The equations whitened by the factor of the covariance of their residuals at `levels`.
-    pub(crate) fn whitened(&self, factor: Banded, levels: Levels) -> Whitened {
+    /// The equations whitened by the factor of the covariance of their residuals at `levels`; with `driven` columns the
+    /// effect of torque noise is taken out of their derivatives.
+    pub(crate) fn whitened(&self, factor: Banded, levels: Levels, driven: Option<&[Column]>) -> Whitened {
         let mut rows = self.rows.clone();
+        if let Some(columns) = driven {
+            take_out(&mut rows, columns, &self.terms.j, &factor, levels, &self.tests);
+        }
         factor.forward(&mut rows, self.width);
         Whitened { factor, levels, width: self.width, rows }
     }

@@ -10,7 +10,8 @@
 //!
 //! Torques and errors of the sensor are further unknowns, one column of G each. White torque noise of density ρ adds
 //! ρ ∫ φ_m φ_m' dt to C, in the same band. From ρ = ∞, where the weights do not depend on J and the problem is convex, the
-//! rounds descend to the ρ of the largest restricted likelihood.
+//! rounds descend to the ρ of the largest restricted likelihood. There its effect is taken out of G, as the noise of the
+//! samples is.
 //!
 //! | here | meaning |
 //! |---|---|
@@ -21,6 +22,7 @@
 
 pub(crate) mod completed;
 pub(crate) mod covariance;
+pub(crate) mod driven;
 pub(crate) mod held;
 pub(crate) mod joint;
 pub(crate) mod ladder;

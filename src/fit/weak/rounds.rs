@@ -71,6 +71,8 @@ pub(crate) struct Rounds<'a> {
     levels: Vec<Levels>,
     pub(crate) at: Unknowns,
     pull: Option<Pull>,
+    /// Whether the effect of torque noise is taken out of the derivatives.
+    driven: bool,
 }
 
 impl<'a> Rounds<'a> {
@@ -91,7 +93,7 @@ impl<'a> Rounds<'a> {
         }
         let noise = used.iter().map(|(_, s, _)| vec![Vector3::zeros(); s.times.len()]).collect();
         let levels = vec![Levels::WHITE; used.len()];
-        Some(Rounds { used, columns, noise, levels, at, pull: None })
+        Some(Rounds { used, columns, noise, levels, at, pull: None, driven: false })
     }
 
     /// With what is known of the tensor beforehand, in units of the noise of the rates.
@@ -116,7 +118,8 @@ impl<'a> Rounds<'a> {
     pub(crate) fn whiten(&self, parts: &[Linearised]) -> Option<Vec<Whitened>> {
         let each = self.used.iter().zip(&self.noise).zip(parts).zip(&self.levels);
         let whitened = each.map(|((((_, s, _), noise), part), levels)| {
-            Some(part.whitened(part.covariance(s, noise).into_factor(*levels)?, *levels))
+            let factor = part.covariance(s, noise).into_factor(*levels)?;
+            Some(part.whitened(factor, *levels, self.driven.then_some(self.columns)))
         });
         whitened.collect()
     }
@@ -204,7 +207,8 @@ impl<'a> Rounds<'a> {
             }
             let each = parts.iter().zip(&covariances).zip(&self.levels);
             let whitened = each.map(|((part, covariance), levels)| {
-                Some(part.whitened(covariance.factor(*levels)?, *levels))
+                let driven = self.driven.then_some(self.columns);
+                Some(part.whitened(covariance.factor(*levels)?, *levels, driven))
             });
             let whitened: Vec<Whitened> = whitened.collect::<Option<_>>()?;
             let stacked = self.stack(&whitened, variance);
@@ -231,15 +235,20 @@ impl<'a> Rounds<'a> {
                 changed |= (new.torque - levels.torque).abs() > SAME * levels.torque;
                 *levels = new;
             }
-            if moved <= STILL && !changed {
+            let done = moved <= STILL && !changed;
+            let torques = self.levels.iter().any(|levels| levels.torque > 0.0);
+            if done && (self.driven || !torques) {
                 break;
             }
+            // not on the way down, where the problem is to stay convex
+            self.driven |= !changed && torques;
         }
         Some(moved)
     }
 
     /// With the levels that other rounds of the same stretches have found.
     pub(crate) fn with_levels(mut self, other: &Rounds<'_>) -> Self {
+        self.driven = other.driven;
         let of = |stretch: usize| other.used.iter().position(|(k, ..)| *k == stretch);
         for ((k, ..), levels) in self.used.iter().zip(&mut self.levels) {
             if let Some(at) = of(*k) {

@@ -4,6 +4,7 @@ use faer::Mat;
 use nalgebra::Vector3;
 
 use super::covariance::{Covariance, Levels};
+use super::driven::take_out;
 use super::linearised::{Linearised, residuals, rows};
 use super::model::{Column, Unknowns};
 use super::noise::SURE;
@@ -60,7 +61,9 @@ impl Part {
         at: &Unknowns,
     ) -> Option<Vec<f64>> {
         let factor = self.covariance(stretch).into_factor(self.levels)?;
-        let mut rows = rows(stretch, &self.noise, columns, at, &self.linearised.tests);
+        let tests = &self.linearised.tests;
+        let mut rows = rows(stretch, &self.noise, columns, at, tests);
+        take_out(&mut rows, columns, &self.linearised.terms.j, &factor, self.levels, tests);
         factor.forward(&mut rows, columns.len() + 6);
         Some(rows)
     }
