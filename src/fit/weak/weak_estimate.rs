@@ -59,8 +59,9 @@ impl Part {
         columns: &[Column],
         at: &Unknowns,
     ) -> Option<Vec<f64>> {
-        let factor = self.covariance(stretch).into_factor(self.levels)?;
+        // the rows first: what they are made of is gone when the covariance needs its room
         let mut rows = rows(stretch, &self.noise, columns, at, &self.linearised.tests);
+        let factor = self.covariance(stretch).into_factor(self.levels)?;
         factor.forward(&mut rows, columns.len() + 6);
         Some(rows)
     }
