@@ -9,10 +9,8 @@ const DECADES: usize = 12;
 /// Share of [`GAIN`] that one of these brings at least, if the likeliest torque noise between two of them brings all of it:
 /// a third while twice the log-likelihood is a parabola, more beyond.
 const BETWEEN: f64 = 0.25;
-/// Decades between the three torque noises whose likelihoods are taken for a parabola.
-const STEP: f64 = 0.25;
-/// Most of these steps downhill: a decade.
-const STEPS: usize = 4;
+/// Steps of the golden section within two decades: to a tenth of the torque noise.
+const SECTIONS: usize = 6;
 /// Gain of twice the log-likelihood for which the shape of the torque noise changes.
 const RESHAPED: f64 = 1.0;
 
@@ -98,7 +96,7 @@ impl Search<'_> {
                 best.1
             }
         };
-        at(lowest(cost, middle))
+        at(golden(cost, middle - 1.0, middle + 1.0))
     }
 
     /// The likeliest noise of the rates with torque noise of `ratio` times its level.
@@ -118,27 +116,21 @@ impl Search<'_> {
     }
 }
 
-/// Where a smooth function near `middle` is least: downhill from there, and then the vertex of a parabola.
-///
-/// It comes ever nearer with `middle`, so that a descent that begins each round at the last one's vertex ends.
-fn lowest(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
-    let at = |place: f64| (place, cost(place));
-    let mut points = [at(middle - STEP), at(middle), at(middle + STEP)];
-    for _ in 0..STEPS {
-        let [below, least, above] = points;
-        if below.1 < least.1 {
-            points = [at(below.0 - STEP), below, least];
-        } else if above.1 < least.1 {
-            points = [least, above, at(above.0 + STEP)];
+/// Where a function with one minimum between `low` and `high` is least.
+fn golden(cost: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    const SHARE: f64 = 0.618_033_988_749_894_8;
+    let (mut a, mut b) = (high - SHARE * (high - low), low + SHARE * (high - low));
+    let (mut at_a, mut at_b) = (cost(a), cost(b));
+    for _ in 0..SECTIONS {
+        if at_a < at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - SHARE * (high - low);
+            at_a = cost(a);
         } else {
-            break;
+            (low, a, at_a) = (a, b, at_b);
+            b = low + SHARE * (high - low);
+            at_b = cost(b);
         }
     }
-    let [below, least, above] = points;
-    let (slope, curvature) = (below.1 - above.1, below.1 - 2.0 * least.1 + above.1);
-    // no matrix is positive far off
-    if !(slope.is_finite() && curvature > 0.0) {
-        return points.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(middle, |(place, _)| place);
-    }
-    least.0 + STEP * (0.5 * slope / curvature).clamp(-1.0, 1.0)
+    0.5 * (low + high)
 }
