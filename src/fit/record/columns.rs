@@ -88,6 +88,10 @@ pub(super) fn may_part_thousands(cell: &str) -> bool {
 /// The cells of a line, quotes removed. A comma in a number is a decimal one where semicolons or tabs part the cells, and
 /// within quotes where it cannot part thousands.
 pub(super) fn cells(line: &str) -> Vec<String> {
+    // the usual row
+    if line.contains(',') && !line.contains([';', '\t', '"']) {
+        return line.split(',').map(|cell| cell.trim().to_string()).collect();
+    }
     let delimiter =
         [';', '\t', ','].into_iter().find(|&d| line.contains(d) && parts(line.trim(), |c| c == d).len() > 1);
     let clean = |cell: &str| {

@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 use super::columns::{named, unit};
 use super::nuisance::Systematic;
-use crate::fit::physical::coordinates::{Coordinates, pair, tensor};
-use crate::fit::weak::model::{Column, Kind, Unknowns, walk_columns};
-use crate::fit::weak::stacked::Stacked;
+use crate::fit::physical::coordinates::{pair, tensor};
+use crate::fit::weak::model::{Column, Kind, walk_columns};
+use crate::fit::weak::stacked::responses;
 use crate::fit::weak::test_functions::Stretch;
 use crate::fit::weak::weak_estimate::WeakEstimate;
 
@@ -88,39 +88,27 @@ pub(crate) fn systematic(
     at.c = vec![0.0; errors].into_iter().chain(at.c).collect();
     let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], &columns, &at));
     let Some(whitened) = parts.collect::<Option<Vec<Vec<f64>>>>() else { return Vec::new() };
-    let origin = Unknowns::at(Coordinates::zeros(), &weak.columns);
-    let (wide, own) = (columns.len() + 6, weak.columns.len() + 6);
+    let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
+    let Some(steps) = responses(&rows, &columns, errors, variance.sqrt()) else { return Vec::new() };
     // of the principal moments and of the ratios, by a column of a given size
-    let changes = |k: usize, size: f64| -> Option<[f64; 5]> {
-        let rows: Vec<Vec<f64>> = whitened
-            .iter()
-            .map(|part| {
-                let row = |row: &[f64]| {
-                    let mut kept = row[errors..].to_vec();
-                    kept[own - 1] = -row[k];
-                    kept
-                };
-                part.chunks_exact(wide).flat_map(row).collect()
-            })
-            .collect();
-        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
-        let step = Stacked::new(&rows, &weak.columns, &origin, variance.sqrt()).minimiser()?.x * size;
+    let changes = |k: usize, size: f64| -> [f64; 5] {
+        let step = steps[k] * size;
         let change: [f64; 3] = core::array::from_fn(|k| pair(&axes[k], &axes[k]).dot(&step));
         let ratio = |k: usize| (change[k] - change[2] * moments[k] / moments[2]) / moments[2];
-        Some([change[0], change[1], change[2], ratio(0), ratio(1)])
+        [change[0], change[1], change[2], ratio(0), ratio(1)]
     };
     let mut place = 0;
-    let each = lines.into_iter().filter_map(|line| {
+    let each = lines.into_iter().map(|line| {
         let begin = place;
         place += line.columns.len();
         let of = line.columns.iter().enumerate().map(|(k, &(_, size))| changes(begin + k, size));
-        let of: Vec<[f64; 5]> = of.collect::<Option<_>>()?;
+        let of: Vec<[f64; 5]> = of.collect();
         let [a, b, c, d, e] = match of.as_slice() {
             [one] => *one,
             many => core::array::from_fn(|k| many.iter().map(|own| own[k] * own[k]).sum::<f64>().sqrt()),
         };
         let (name, size, unit) = (line.name, line.size, line.unit);
-        Some(Systematic { name, size, unit, principal: [a, b, c], ratios: [d, e] })
+        Systematic { name, size, unit, principal: [a, b, c], ratios: [d, e] }
     });
     each.filter(|s| s.principal.iter().all(|v| v.is_finite())).collect()
 }

@@ -17,6 +17,10 @@ const FIRST: f64 = 5.0;
 /// What each further coefficient must bring beyond that.
 const FURTHER: f64 = 1.5;
 
+/// Share of the gain asked for that the equations of an estimate without a torque must promise before it is fitted: the
+/// torque noise falls in a fit, so that its gain grows.
+const HOPE: f64 = 0.5;
+
 /// A weak estimate with the torque it was made with.
 pub(crate) struct Chosen {
     pub(crate) weak: WeakEstimate,
@@ -115,9 +119,9 @@ fn choose(
     if explained {
         let restless = demand.noise == Noise::Fitted && has_torque_noise(stretches, &first, variance);
         let asks = demand.torque == TorqueModel::Auto
-            && [TorqueModel::Drag, TorqueModel::Constant]
-                .into_iter()
-                .any(|model| gain_of(stretches, &first, &demand, model, variance) > needed(&demand, model));
+            && [TorqueModel::Drag, TorqueModel::Constant].into_iter().any(|model| {
+                gain_of(stretches, &first, &demand.columns(model), variance) > needed(&demand, model)
+            });
         let done = match demand.noise {
             Noise::Given(_) => false,
             Noise::White | Noise::Fitted => !restless && !asks,
@@ -137,6 +141,8 @@ fn choose(
     let radius = Some(drag.radius);
     let none = descent(TorqueModel::None, radius)?;
     let floor = likelihood(stretches, &none, variance);
+    let gain = gain_of(stretches, &none, &demand.columns(TorqueModel::Constant), variance);
+    let may_be_constant = !none.settled() || gain > HOPE * needed(&demand, TorqueModel::Constant);
     let without = none.settled().then(|| none.x());
     let mut best = plain(none, TorqueModel::None);
     let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
@@ -149,10 +155,11 @@ fn choose(
         if better { Chosen { weak, model, gain, without, better: None } } else { best }
     };
     best = climb(best, TorqueModel::Drag, drag);
-    if let Ok(constant) = descent(TorqueModel::Constant, radius) {
+    if may_be_constant && let Ok(constant) = descent(TorqueModel::Constant, radius) {
         best = climb(best, TorqueModel::Constant, constant);
     }
     if best.model == TorqueModel::Drag
+        && may_be_drag3(stretches, &best.weak, &demand, variance)
         && let Ok(drag) = descent(TorqueModel::Drag3, radius)
     {
         best = climb(best, TorqueModel::Drag3, drag);
@@ -204,16 +211,18 @@ fn has_torque_noise(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -
     })
 }
 
-/// Gain of log-likelihood that the columns of a torque would bring to the equations of an estimate without.
-fn gain_of(
-    stretches: &[Stretch],
-    weak: &WeakEstimate,
-    demand: &Demand<'_>,
-    model: TorqueModel,
-    variance: f64,
-) -> f64 {
-    let with = with_columns(stretches, weak, &demand.columns(model), variance);
+/// Gain of log-likelihood that `columns` would bring to the equations of an estimate that has only the last of them.
+fn gain_of(stretches: &[Stretch], weak: &WeakEstimate, columns: &[Column], variance: f64) -> f64 {
+    let with = with_columns(stretches, weak, columns, variance);
     with.map_or(0.0, |with| 0.5 * (weak.squares - with.squares) / variance)
+}
+
+/// Whether drag about three axes may be worth a fit beside the drag of an estimate.
+fn may_be_drag3(stretches: &[Stretch], weak: &WeakEstimate, demand: &Demand<'_>, variance: f64) -> bool {
+    let three = demand.torques(TorqueModel::Drag3);
+    let more = three.len().saturating_sub(demand.torques(TorqueModel::Drag).len());
+    let both: Vec<Column> = three.into_iter().chain(demand.columns(TorqueModel::Drag)).collect();
+    !weak.settled() || gain_of(stretches, weak, &both, variance) > HOPE * threshold(more)
 }
 
 /// The equations of an estimate with further columns, which come first and are zero where it stands.

@@ -9,8 +9,10 @@ const DECADES: usize = 12;
 /// Share of [`GAIN`] that one of these brings at least, if the likeliest torque noise between two of them brings all of it:
 /// a third while twice the log-likelihood is a parabola, more beyond.
 const BETWEEN: f64 = 0.25;
-/// Steps of the golden section within two decades: to a tenth of the torque noise.
-const SECTIONS: usize = 6;
+/// Steps of the golden section within two decades.
+const SECTIONS: usize = 4;
+/// Decades to both sides of where it ends between which the likelihood is taken for a parabola.
+const STEP: f64 = 0.15;
 /// Gain of twice the log-likelihood for which the shape of the torque noise changes.
 const RESHAPED: f64 = 1.0;
 
@@ -96,7 +98,7 @@ impl Search<'_> {
                 best.1
             }
         };
-        at(golden(cost, middle - 1.0, middle + 1.0))
+        at(vertex(cost, golden(cost, middle - 1.0, middle + 1.0)))
     }
 
     /// The likeliest noise of the rates with torque noise of `ratio` times its level.
@@ -133,4 +135,16 @@ fn golden(cost: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
         }
     }
     0.5 * (low + high)
+}
+
+/// The vertex of the parabola about `middle`, where that is a minimum: a golden section alone ends at one of a few places, and
+/// descents would go to and fro between two of them.
+fn vertex(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
+    let [below, least, above] = [-STEP, 0.0, STEP].map(|step| cost(middle + step));
+    let (slope, curvature) = (below - above, below - 2.0 * least + above);
+    if slope.is_finite() && curvature > 0.0 {
+        middle + STEP * (0.5 * slope / curvature).clamp(-1.0, 1.0)
+    } else {
+        middle
+    }
 }

@@ -115,28 +115,34 @@ pub(crate) fn rows(
     let moments = Moments::new(stretch, noise, tests);
     let width = columns.len() + 6;
     let mut rows = vec![0.0; 3 * tests.count * width];
-    // columns that act on the samples one by one
+    // columns that act on the samples one by one, of which one at a time is kept beside the rows
     let groups = || groups(stretch, noise, tests.radius);
-    let changed: Vec<Option<Vec<Vector3<f64>>>> = columns
-        .iter()
-        .map(|column| match column.kind {
-            _ if !column.acts_on(stretch) => Some(Vec::new()),
-            Kind::Skew(axis) => Some(skewed(groups(), &terms, tests, axis)),
+    let is_put = |column: &Column| {
+        matches!(column.kind, Kind::Skew(_) | Kind::Walk { .. }) || !column.acts_on(stretch)
+    };
+    for (k, column) in columns.iter().enumerate().filter(|(_, column)| column.acts_on(stretch)) {
+        let changed = match column.kind {
+            Kind::Skew(axis) => skewed(groups(), &terms, tests, axis),
             Kind::Walk { axis, from, until } => {
                 let share = |time: f64| ((time - from) / (until - from)).clamp(0.0, 1.0);
                 let change = |group: &Group, _: &Vector3<f64>| Vector3::ith(axis, -share(group.time));
-                Some(self::changed(groups(), &terms, tests, change))
+                changed(groups(), &terms, tests, change)
             }
-            _ => None,
-        })
-        .collect();
+            _ => continue,
+        };
+        for (row, value) in rows.chunks_exact_mut(width).zip(changed.iter().flat_map(Vector3::iter)) {
+            row[k] = *value;
+            row[width - 1] += value * origin.c[k];
+        }
+    }
     let quadratic = Quadratic::new(stretch, noise, &terms, tests, columns);
     for m in 0..tests.count {
         let inputs = moments.inputs.get(m);
         let area = moments.area(m);
         let motion = Corrected::new(&terms, &moments.motion(m), area);
         let readings = Corrected::new(&terms, &moments.readings(m), area);
-        let mut residual = readings.residual(&terms, inputs);
+        let put_already = Vector3::from_fn(|p, _| rows[(3 * m + p) * width + width - 1]);
+        let mut residual = readings.residual(&terms, inputs) + put_already;
         let by_square = quadratic.as_ref().map_or(Vector3::zeros(), |sums| sums.motion[m]);
         if let Some(sums) = &quadratic {
             residual += terms.j * sums.readings[m] * terms.quadratic;
@@ -146,15 +152,10 @@ pub(crate) fn rows(
                 rows[(3 * m + p) * width + column] = values[p];
             }
         };
-        for (k, (column, changed)) in columns.iter().zip(&changed).enumerate() {
-            let derivative = match (changed, &quadratic) {
-                (Some(changed), _) => {
-                    let Some(change) = changed.get(m) else { continue };
-                    residual += change * origin.c[k];
-                    *change
-                }
-                (None, Some(_)) if column.kind == Kind::Quadratic => terms.j * by_square,
-                (None, sums) => {
+        for (k, column) in columns.iter().enumerate().filter(|(_, column)| !is_put(column)) {
+            let derivative = match &quadratic {
+                Some(_) if column.kind == Kind::Quadratic => terms.j * by_square,
+                sums => {
                     let own = sums.as_ref().and_then(|sums| sums.sensor[k].get(m));
                     let by_sensor = own.map_or(Vector3::zeros(), |sum| terms.j * sum * terms.quadratic);
                     motion.derivative(column.kind, &terms, inputs) + by_sensor

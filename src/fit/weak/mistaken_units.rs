@@ -106,6 +106,9 @@ const LISTED: usize = 3;
 /// Largest misfit of a unit that explains a record.
 const EXPLAINED: f64 = 2.0;
 
+/// Misfit of the first rounds from which no unit comes to explain a record.
+const HOPELESS: f64 = 10.0 * EXPLAINED;
+
 /// Fall of the misfit that torque noise is not likely to hide.
 const FAR: f64 = 20.0;
 
@@ -139,13 +142,6 @@ pub(crate) fn better_unit(
     let pilot = radius::pilot(stretches);
     let drag = columns_of(TorqueModel::Drag);
     let sphere = weak.filter(|weak| suspicious(weak, variance)).map(|weak| weak.x().norm());
-    let quick = if sphere.is_none() { radius::tried(&pilot, &drag, variance) } else { None };
-    if quick.as_ref().is_some_and(|weak| weak.misfit(variance) <= weak.expected_misfit()) {
-        return None;
-    }
-    let quick = quick.map(|weak| weak.misfit(variance));
-    // rates that are read too small make a body that no tensor comes near to
-    let too_large = sphere.is_some() || quick.is_some_and(|misfit| misfit < EXPLAINED);
     let short = radius::longest(stretches, SAMPLES);
     let is_whole = samples(&short) == samples(&pilot);
     let explains = |stretches: &[Stretch], factor: f64| {
@@ -153,12 +149,14 @@ pub(crate) fn better_unit(
             .iter()
             .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
             .collect();
-        radius::tried(&scaled, &drag, variance).filter(|weak| weak.misfit(variance) < EXPLAINED)
+        let tried = radius::tried(&scaled, &drag, variance, HOPELESS);
+        tried.filter(|weak| weak.misfit(variance) < EXPLAINED)
     };
     let mut found: Vec<Found> = Vec::new();
     let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
     for (factor, mistake) in candidates.chain([(ANY, None)]) {
-        if too_large && factor >= 1.0 {
+        // rates that are read too small make a body that no tensor comes near to
+        if sphere.is_some() && factor >= 1.0 {
             continue;
         }
         let tried = explains(&short, factor);
@@ -171,12 +169,24 @@ pub(crate) fn better_unit(
             found.push(Found { factor, mistake, misfit, dof: other.dof() as f64, credible, by_noise });
         }
     }
+    if found.is_empty() {
+        return None;
+    }
+    // the unit that was read is tried last: most records leave nothing to compare it with
+    let quick = if sphere.is_none() { radius::tried(&pilot, &drag, variance, f64::INFINITY) } else { None };
+    if quick.as_ref().is_some_and(|weak| weak.misfit(variance) <= weak.expected_misfit()) {
+        return None;
+    }
+    let quick = quick.map(|weak| weak.misfit(variance));
+    if quick.is_some_and(|misfit| misfit < EXPLAINED) {
+        found.retain(|found| found.factor < 1.0);
+    }
     found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     let best = found.first()?;
     let as_read = if sphere.is_some() {
         best.misfit
     } else {
-        as_read(&pilot, weak, &drag, quick, best.misfit, variance)?
+        as_read([&short, &pilot], weak, &drag, quick, best.misfit, variance)?
     };
     let sure = best.by_noise && as_read - best.misfit > SURELY * (2.0 / best.dof).sqrt();
     let far = as_read > (FAR * best.misfit).max(EXPLAINED);
@@ -200,9 +210,10 @@ pub(crate) fn better_unit(
     })
 }
 
-/// The least misfit in the unit that was read, `quick` that of a first trial; `None` where it can not be told.
+/// The least misfit in the unit that was read, or less where that is [`FAR`] from `best` as well; `quick` is that of a first
+/// trial. `None` where it can not be told.
 fn as_read(
-    pilot: &[Stretch],
+    [short, pilot]: [&[Stretch]; 2],
     weak: Option<&WeakEstimate>,
     drag: &[Column],
     quick: Option<f64>,
@@ -214,11 +225,24 @@ fn as_read(
     }
     // without columns it is what it is with drag, or more
     let own = weak.map(|weak| weak.columns.as_slice()).filter(|own| !own.is_empty() && *own != drag);
-    let misfits = own.into_iter().chain([drag]).filter_map(|columns| {
-        let weak = radius::descended(pilot, None, columns, variance, Noise::White).ok()?;
-        Some(weak.misfit(variance))
-    });
-    misfits.chain(quick).min_by(f64::total_cmp)
+    let descended = |stretches: &[Stretch]| -> Vec<WeakEstimate> {
+        let columns = own.into_iter().chain([drag]);
+        columns
+            .filter_map(|columns| radius::descended(stretches, None, columns, variance, Noise::White).ok())
+            .collect()
+    };
+    let least = |weak: &[WeakEstimate]| weak.iter().map(|weak| weak.misfit(variance)).min_by(f64::total_cmp);
+    // what a part of the record leaves, the whole leaves too
+    if quick.is_none() {
+        let share = samples(short) as f64 / samples(pilot).max(1) as f64;
+        let part = descended(short);
+        let settled = part.iter().all(WeakEstimate::settled);
+        let bound = least(&part).filter(|_| settled).map(|misfit| misfit * share);
+        if let Some(bound) = bound.filter(|bound| *bound > (FAR * best).max(EXPLAINED)) {
+            return Some(bound);
+        }
+    }
+    least(&descended(pilot)).into_iter().chain(quick).min_by(f64::total_cmp)
 }
 
 fn samples(stretches: &[Stretch]) -> usize {

@@ -1,5 +1,6 @@
 //! The half width of the test functions: chosen by least predicted covariance, doubled where the rounds do not settle.
 
+use super::linearised::{Linearised, Whitened};
 use super::mistaken_units::Better;
 use super::model::{Column, Unknowns};
 use super::rounds::{Noise, RESTLESS, Rounds, TORQUES};
@@ -45,9 +46,98 @@ pub(super) fn candidates(stretches: &[Stretch]) -> Vec<f64> {
     radii
 }
 
-/// The radius of least predicted covariance, and the unknowns it was judged at.
+/// Rounds at the middle radius, from the sphere: where radii are compared.
 ///
 /// Torque noise that was fitted at one radius is that of all: its level is a property of the body.
+fn compared_at<'a>(
+    stretches: &'a [Stretch],
+    radii: &[f64],
+    columns: &'a [Column],
+    variance: f64,
+    noise: Option<Noise>,
+) -> Option<Rounds<'a>> {
+    let start = Unknowns::at(Coordinates::zeros(), columns);
+    let mut rounds = Rounds::new(stretches, radii[radii.len() / 2], columns, start.clone())?;
+    if let Some(noise) = noise {
+        if rounds.descend(variance, noise).is_none() {
+            rounds.at = start;
+        }
+    } else {
+        for _ in 0..2 {
+            if rounds.round(variance, true).is_none() {
+                break;
+            }
+        }
+    }
+    Some(rounds)
+}
+
+/// Equations of one radius, whose covariance is predicted.
+struct Judged<'a> {
+    radius: f64,
+    rounds: Rounds<'a>,
+    parts: Vec<Linearised>,
+    whitened: Vec<Whitened>,
+    information: Form,
+    /// Variance of the noise, as large as the misfit makes it.
+    variance: f64,
+}
+
+impl<'a> Judged<'a> {
+    fn new(
+        stretches: &'a [Stretch],
+        radius: f64,
+        columns: &'a [Column],
+        variance: f64,
+        compared: &Rounds<'_>,
+    ) -> Option<Self> {
+        let rounds = Rounds::new(stretches, radius, columns, compared.at.clone())?.with_levels(compared);
+        let parts = rounds.linearise();
+        let whitened = rounds.whiten(&parts)?;
+        let stacked = rounds.stack(&whitened, variance);
+        let information = stacked.information();
+        // a misfit counts as noise, so that radii too short for the sampling or too long for the torques lose
+        let variance = variance * stacked.excess(variance);
+        Some(Judged { radius, rounds, parts, whitened, information, variance })
+    }
+
+    /// Trace of the covariance, infinite where there is none.
+    fn trace(&self, inflation: &Form) -> f64 {
+        covariance(&self.information, inflation, self.variance).map_or(f64::INFINITY, |c| c.trace())
+    }
+
+    /// The same without noise in G, which only adds to it.
+    fn least(&self) -> f64 {
+        self.trace(&Form::zeros())
+    }
+}
+
+/// The radius of least predicted covariance where `compared` stands.
+fn least_covariance(
+    stretches: &[Stretch],
+    radii: &[f64],
+    columns: &[Column],
+    variance: f64,
+    compared: &Rounds<'_>,
+) -> f64 {
+    let each = radii.iter().filter_map(|&radius| Judged::new(stretches, radius, columns, variance, compared));
+    let mut judged: Vec<Judged<'_>> = each.collect();
+    judged.sort_by(|a, b| a.least().total_cmp(&b.least()));
+    let mut best = (f64::INFINITY, radii[radii.len() / 2]);
+    for judged in judged {
+        // what the noise in G adds is dear, and not asked for where the rest is too much already
+        if judged.least() >= best.0 {
+            break;
+        }
+        let trace = judged.trace(&judged.rounds.inflation(&judged.parts, &judged.whitened));
+        if trace < best.0 {
+            best = (trace, judged.radius);
+        }
+    }
+    best.1
+}
+
+/// The radius of least predicted covariance, and the unknowns it was judged at.
 fn choose_radius(
     stretches: &[Stretch],
     columns: &[Column],
@@ -55,36 +145,8 @@ fn choose_radius(
     noise: Option<Noise>,
 ) -> Option<(f64, Unknowns)> {
     let radii = candidates(stretches);
-    let mut start = Unknowns::at(Coordinates::zeros(), columns);
-    let mut pilot = Rounds::new(stretches, radii[radii.len() / 2], columns, start.clone())?;
-    if let Some(noise) = noise {
-        if pilot.descend(variance, noise).is_some() {
-            start = pilot.at.clone();
-        }
-    } else {
-        for _ in 0..2 {
-            if pilot.round(variance, true).is_none() {
-                break;
-            }
-            start = pilot.at.clone();
-        }
-    }
-    let mut best = (f64::INFINITY, radii[radii.len() / 2]);
-    for radius in radii {
-        let Some(rounds) = Rounds::new(stretches, radius, columns, start.clone()) else { continue };
-        let rounds = rounds.with_levels(&pilot);
-        let parts = rounds.linearise();
-        let Some(whitened) = rounds.whiten(&parts) else { continue };
-        let stacked = rounds.stack(&whitened, variance);
-        // a misfit counts as noise, so that radii too short for the sampling or too long for the torques lose
-        let inflated = variance * stacked.excess(variance);
-        let spread = covariance(&stacked.information(), &rounds.inflation(&parts, &whitened), inflated);
-        let trace = spread.map_or(f64::INFINITY, |c| c.trace());
-        if trace < best.0 {
-            best = (trace, radius);
-        }
-    }
-    Some((best.1, start))
+    let compared = compared_at(stretches, &radii, columns, variance, noise)?;
+    Some((least_covariance(stretches, &radii, columns, variance, &compared), compared.at))
 }
 
 /// Samples on which the radius is chosen: more would not change it.
@@ -186,9 +248,20 @@ pub(crate) fn descended(
 const TRIED: usize = 2;
 
 /// The weak estimate without torque noise, where rounds at one of two radii settle: enough to tell whether some unit
-/// explains a record.
-pub(crate) fn tried(stretches: &[Stretch], columns: &[Column], variance: f64) -> Option<WeakEstimate> {
-    let (first, start) = choose_radius(stretches, columns, variance, None)?;
+/// explains a record. It is dropped where the first rounds leave a misfit of more than `most`.
+pub(crate) fn tried(
+    stretches: &[Stretch],
+    columns: &[Column],
+    variance: f64,
+    most: f64,
+) -> Option<WeakEstimate> {
+    let radii = candidates(stretches);
+    let compared = compared_at(stretches, &radii, columns, variance, None)?;
+    if most.is_finite() && compared.excess(variance).is_some_and(|excess| excess > most) {
+        return None;
+    }
+    let first = least_covariance(stretches, &radii, columns, variance, &compared);
+    let start = compared.at;
     let radii = core::iter::successors(Some(first), |radius| Some(2.0 * radius)).take(TRIED);
     radii
         .filter_map(|radius| {

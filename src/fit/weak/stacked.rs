@@ -41,11 +41,9 @@ impl Stacked {
         let count = columns.len();
         let width = count + 6;
         let equations: usize = rows.iter().map(|rows| rows.len() / width).sum();
-        // a stretch with columns of its own is made a triangle first, so that those of the others cost nothing
-        let alone = columns.iter().any(|column| column.segment.is_some()) && rows.len() > 1;
-        let small: Vec<Vec<f64>> =
-            if alone { rows.iter().map(|rows| triangle(rows, width)).collect() } else { Vec::new() };
-        let all: Vec<&[f64]> = if alone { small.iter().map(Vec::as_slice).collect() } else { rows.to_vec() };
+        let small = triangles(rows, columns, width);
+        let all: Vec<&[f64]> =
+            small.as_ref().map_or(rows.to_vec(), |s| s.iter().map(Vec::as_slice).collect());
         let height: usize = all.iter().map(|rows| rows.len() / width).sum();
         let mut each = all.iter().flat_map(|rows| rows.chunks_exact(width));
         let mut r = Mat::<f64>::zeros(0, width);
@@ -136,6 +134,56 @@ impl Stacked {
     pub(crate) fn squares_at(&self, x: &Coordinates) -> f64 {
         (self.root * (x - self.origin.x) + self.z).norm_squared() + self.squares
     }
+}
+
+/// How far each of the first `errors` columns moves x where the others are to make up for it, per its unit; the rest are as in
+/// [`Stacked::new`].
+pub(crate) fn responses(
+    rows: &[&[f64]],
+    columns: &[Column],
+    errors: usize,
+    deviation: f64,
+) -> Option<Vec<Coordinates>> {
+    let (wide, own) = (columns.len() + 6, columns.len() - errors);
+    let small = triangles(rows, columns, wide);
+    let all: Vec<&[f64]> = small.as_ref().map_or(rows.to_vec(), |s| s.iter().map(Vec::as_slice).collect());
+    // the errors are the right-hand sides, in the place of the residual
+    let place = |k: usize| if k < errors { own + 5 + k } else { k - errors };
+    let mut r = Mat::<f64>::zeros(0, wide - 1);
+    let mut each = all.iter().flat_map(|rows| rows.chunks_exact(wide)).peekable();
+    let mut priors =
+        columns[errors..].iter().map(|column| deviation / column.prior.unwrap_or(FLAT)).enumerate();
+    loop {
+        let part: Vec<&[f64]> = each.by_ref().take(TOGETHER).collect();
+        let weights: Vec<(usize, f64)> =
+            if each.peek().is_none() { priors.by_ref().collect() } else { Vec::new() };
+        let first = r.nrows();
+        let height = first + part.len() + weights.len();
+        let mut stack = Mat::<f64>::zeros(height.max(wide - 1), wide - 1);
+        stack.as_mut().subrows_mut(0, first).copy_from(&r);
+        for (i, row) in part.iter().enumerate() {
+            for (k, value) in row[..wide - 1].iter().enumerate() {
+                stack[(first + i, place(k))] = *value;
+            }
+        }
+        for (k, weight) in weights {
+            stack[(first + part.len() + k, k)] = weight;
+        }
+        r = stack.qr().thin_R().to_owned();
+        if each.peek().is_none() {
+            break;
+        }
+    }
+    let root = Form::from_fn(|i, k| if i <= k { r[(own + i, own + k)] } else { 0.0 });
+    let moved =
+        |k: usize| root.solve_upper_triangular(&Coordinates::from_fn(|i, _| r[(own + i, own + 5 + k)]));
+    (0..errors).map(moved).collect()
+}
+
+/// The triangle of each stretch, where some have columns of their own: those of the others then cost nothing.
+fn triangles(rows: &[&[f64]], columns: &[Column], width: usize) -> Option<Vec<Vec<f64>>> {
+    let alone = columns.iter().any(|column| column.segment.is_some()) && rows.len() > 1;
+    alone.then(|| rows.iter().map(|rows| triangle(rows, width)).collect())
 }
 
 /// Rows of `width` numbers as the rows of their triangle: the columns that are zero in all of them are left out of it.

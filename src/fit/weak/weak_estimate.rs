@@ -60,9 +60,10 @@ impl Part {
         columns: &[Column],
         at: &Unknowns,
     ) -> Option<Vec<f64>> {
-        let factor = self.covariance(stretch).into_factor(self.levels)?;
+        // the rows first: what they are made of is gone when the covariance needs its room
         let tests = &self.linearised.tests;
         let mut rows = rows(stretch, &self.noise, columns, at, tests);
+        let factor = self.covariance(stretch).into_factor(self.levels)?;
         take_out(&mut rows, columns, &self.linearised.terms.j, &factor, self.levels, tests);
         factor.forward(&mut rows, columns.len() + 6);
         Some(rows)
