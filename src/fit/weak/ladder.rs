@@ -2,7 +2,7 @@
 
 use super::covariance::Levels;
 use super::levels::{Choice, likeliest};
-use super::mistaken_units::{Better, better_unit};
+use super::mistaken_units::{Better, better_unit, suspicious};
 use super::model::{Column, Kind};
 use super::radius::{Failure, descended, estimate};
 use super::rounds::Noise;
@@ -107,10 +107,10 @@ fn choose(
     let base = if free { TorqueModel::None } else { demand.torque };
     let first = estimate(stretches, demand.radius, &demand.columns(base), variance)?;
     let explained = first.misfit(variance) <= first.expected_misfit();
-    if demand.units && (!explained || !first.settled()) {
+    if demand.units && (!explained || !first.settled() || suspicious(&first, variance)) {
         *better = better_unit(stretches, Some(&first), variance);
         // before the descents, which would not end soon either
-        if better.as_ref().is_some_and(|b| b.credible && !b.vague && (b.far || b.sure))
+        if better.as_ref().is_some_and(|b| b.credible && !b.vague && (b.far || b.sure || b.sphere.is_some()))
             && let Some(better) = better.take()
         {
             return Err(Failure::Units(first.misfit(variance), Box::new(better)));

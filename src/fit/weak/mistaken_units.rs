@@ -141,7 +141,7 @@ pub(crate) fn better_unit(
 ) -> Option<Better> {
     let pilot = radius::pilot(stretches);
     let drag = columns_of(TorqueModel::Drag);
-    let sphere = weak.filter(|weak| suspicious(weak, variance)).map(|weak| weak.x().norm());
+    let mut sphere = weak.filter(|weak| suspicious(weak, variance)).map(|weak| weak.x().norm());
     let short = radius::longest(stretches, SAMPLES);
     let is_whole = samples(&short) == samples(&pilot);
     let explains = |stretches: &[Stretch], factor: f64| {
@@ -152,6 +152,26 @@ pub(crate) fn better_unit(
         let tried = radius::tried(&scaled, &drag, variance, HOPELESS);
         tried.filter(|weak| weak.misfit(variance) < EXPLAINED)
     };
+    let read = |stretches: &[Stretch]| radius::tried(stretches, &drag, variance, f64::INFINITY);
+    let by_noise = |weak: &Option<WeakEstimate>| {
+        weak.as_ref().is_some_and(|weak| weak.misfit(variance) <= weak.expected_misfit())
+    };
+    let spherical = |weak: &Option<WeakEstimate>| {
+        weak.as_ref().filter(|weak| suspicious(weak, variance)).map(|weak| weak.x().norm())
+    };
+    let mut quick = None;
+    if sphere.is_none() {
+        // what a part of the record does not gainsay the whole may not either; where it does, the units are tried first
+        let part = read(&short);
+        if by_noise(&part) || spherical(&part).is_some() {
+            let whole = read(&pilot);
+            sphere = spherical(&whole);
+            if sphere.is_none() && by_noise(&whole) {
+                return None;
+            }
+            quick = Some(whole);
+        }
+    }
     let mut found: Vec<Found> = Vec::new();
     let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
     for (factor, mistake) in candidates.chain([(ANY, None)]) {
@@ -172,9 +192,11 @@ pub(crate) fn better_unit(
     if found.is_empty() {
         return None;
     }
-    // the unit that was read is tried last: most records leave nothing to compare it with
-    let quick = if sphere.is_none() { radius::tried(&pilot, &drag, variance, f64::INFINITY) } else { None };
-    if quick.as_ref().is_some_and(|weak| weak.misfit(variance) <= weak.expected_misfit()) {
+    if sphere.is_none() && quick.is_none() {
+        quick = Some(read(&pilot));
+    }
+    let quick = quick.flatten();
+    if sphere.is_none() && by_noise(&quick) {
         return None;
     }
     let quick = quick.map(|weak| weak.misfit(variance));
