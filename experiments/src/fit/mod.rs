@@ -48,8 +48,8 @@ pub(crate) struct Fit {
     /// Columns of the time and of the rates, by name or number, where they are not found: t=NAME,x=NAME,y=NAME,z=NAME
     #[arg(long, value_name = "t=...,x=...,y=...,z=...", value_parser = columns)]
     columns: Option<ColumnNames>,
-    /// Share of the rows that may be left out because they cannot be read [default: 0.02]
-    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    /// Fraction of the rows that may be left out because they cannot be read [default: 0.02]
+    #[arg(long, value_name = "FRACTION", value_parser = share, allow_hyphen_values = true)]
     skip_rows: Option<f64>,
     /// Unit of time where the header names none: s, ms, us, ns, or a number of seconds [default: s]
     #[arg(long, value_name = "UNIT", value_parser = time_unit)]
@@ -67,11 +67,11 @@ pub(crate) struct Fit {
     /// Standard deviation of the noise, rad/s [default: from the samples]
     #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
     noise: Option<f64>,
-    /// Lower limit on the moment about an axis, a share of the trace; repeatable
-    #[arg(long, value_name = "nx,ny,nz,SHARE", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    /// Lower limit on the moment about an axis, a fraction of the trace; repeatable
+    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true)]
     at_least: Vec<[f64; 4]>,
-    /// Upper limit on the moment about an axis, a share of the trace; repeatable
-    #[arg(long, value_name = "nx,ny,nz,SHARE", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    /// Upper limit on the moment about an axis, a fraction of the trace; repeatable
+    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true)]
     at_most: Vec<[f64; 4]>,
     #[command(flatten)]
     known: KnownArguments,
@@ -175,7 +175,7 @@ fn columns(text: &str) -> Result<ColumnNames, String> {
 fn share(text: &str) -> Result<f64, String> {
     match number(text)? {
         share if (0.0..1.0).contains(&share) => Ok(share),
-        share => Err(format!("{share:?} is no share of the rows; give a number from 0 to below 1")),
+        share => Err(format!("{share:?} is no fraction of the rows; give a number from 0 to below 1")),
     }
 }
 
@@ -409,7 +409,7 @@ impl Fit {
                     format!("{error}, or say which they are: --columns t=NAME,x=NAME,y=NAME,z=NAME")
                 }
                 RecordError::Value { .. } | RecordError::Cells { .. } | RecordError::Order { .. } => {
-                    format!("{error}, or allow for more such rows by --skip-rows SHARE")
+                    format!("{error}, or allow for more such rows by --skip-rows FRACTION")
                 }
                 _ => error.to_string(),
             })
