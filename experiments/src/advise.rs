@@ -18,7 +18,8 @@ use crate::times::{duration, positive_duration};
 
 const USAGE: &str = "polhode advise <BODY> [START] --until <T> --attitude-error <E> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
-  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ... and an attitude";
+  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ...
+         and --attitude <w,x,y,z> | --angles <phi,theta,psi> | ...";
 
 const EXAMPLES: &str = "Examples:
   polhode advise --moments 1,2,3 --omega 0.4,1,-0.3 --until 1e4 \\

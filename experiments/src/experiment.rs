@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::io::IsTerminal;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -67,6 +67,8 @@ pub(crate) struct Report {
     pub(crate) seed: Option<u64>,
     /// Claims that did not hold: the results are written all the same, and the command fails.
     pub(crate) failures: Vec<String>,
+    /// Wall time of the run.
+    pub(crate) took: Duration,
 }
 
 /// A finished SVG.
@@ -118,7 +120,9 @@ impl Experiment {
     /// Does the work.
     pub(crate) fn report(&self, scale: Scale) -> Result<Report, Error> {
         let context = Context::new(self.name, scale);
-        let report = (self.run)(&context)?;
+        let start = Instant::now();
+        let mut report = (self.run)(&context)?;
+        report.took = start.elapsed();
         context.bar.finish_and_clear();
         Ok(report)
     }

@@ -16,7 +16,8 @@ use crate::table::{Cell, Column, Format, Table, row};
 
 const USAGE: &str = "polhode motion <BODY> [START] [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
-  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ... and an attitude,
+  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ...
+         and --attitude <w,x,y,z> | --angles <phi,theta,psi> | ...,
          or --periods <P_phi,P_psi> --mode <lam|sam>";
 
 const EXAMPLES: &str = "Examples:
@@ -27,16 +28,29 @@ const EXAMPLES: &str = "Examples:
 
 /// Mode, periods, stability and distance to the separatrix of torque-free motion
 ///
-/// The angular momentum L circulates in the body about the axis of the smallest moment (long-axis mode) or of the largest
-/// (short-axis mode); of a steady spin the axis, its stability and the rate at which deviations grow are printed. Light-curve
-/// work calls precession_period P_phi and polhode_period P_psi: the mean period of that axis about L, and the period of L
-/// about the axis in the body. theta is the angle between the two; lambda and beta are longitude and latitude of L in space;
-/// phi and psi are the other two Euler angles (z-x-z, z along L and along the axis) at the start. combined_period, P_1 of
-/// light curves: 1/P_1 = 1/P_phi + 1/P_psi in long-axis mode, - in short-axis mode. nutation_period: the axis nods towards L
-/// and back. separatrix_distance: (|L|^2/2E - I_middle)/I_middle, negative in long-axis mode. energy_ratio: to the least energy
-/// with this L. csv and json have angles in rad and times in s.
+/// In free motion the angular momentum L goes round one principal axis of the
+/// body, and this axis goes round L: the axis of the smallest moment (long-axis
+/// mode) or of the largest (short-axis mode). The table has these quantities:
+///
+///   mode                 long-axis, short-axis, separatrix or steady
+///   polhode_period       L once round the axis, seen from the body; P_psi of
+///                        light curves
+///   precession_period    the axis once round L, mean; P_phi of light curves
+///   combined_period      P_1 of light curves: 1/P_1 = 1/P_phi + 1/P_psi in
+///                        long-axis mode, 1/P_phi - 1/P_psi in short-axis mode
+///   nutation_period      the axis towards L and back
+///   separatrix_distance  (|L|^2/2E - I_middle)/I_middle, negative in long-axis
+///                        mode
+///   energy_ratio         energy over the least energy with this L
+///   stability            of a steady spin, with the growth_rate of deviations
+///   theta_min, _max      least and largest angle between the axis and L
+///   lambda, beta         longitude and latitude of L in space
+///   phi, psi             Euler angles at the start (z-x-z, z along L and along
+///                        the axis)
+///
+/// csv and json have angles in rad and times in s.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = USAGE, after_help = EXAMPLES)]
+#[command(verbatim_doc_comment, override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Motion {
     #[command(flatten)]
     body: BodyArguments,

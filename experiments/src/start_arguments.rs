@@ -19,7 +19,7 @@ pub(crate) struct StartArguments {
     /// Angular velocity at the start, body axes, rad/s or --rate-unit [default: that of the catalogue's body]
     #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     omega: Option<[f64; 3]>,
-    /// Unit of --omega: rad, deg or rev per s, min, h or d, as in deg/s, deg/d; or rpm
+    /// Unit of --omega: rad/s, deg/s, rpm, or another of rad, deg, rev per s, min, h, d, as in deg/d [default: rad/s]
     #[arg(long, value_name = "UNIT", value_parser = rate_unit, requires = "omega")]
     rate_unit: Option<Factor>,
     /// Angular momentum at the start in place of --omega, body axes, kg m^2/s
@@ -29,7 +29,7 @@ pub(crate) struct StartArguments {
     #[arg(long, value_name = "Lx,Ly,Lz", value_parser = numbers::<3>, allow_hyphen_values = true,
           conflicts_with_all = ["omega", "momentum_body"])]
     momentum_space: Option<[f64; 3]>,
-    /// Attitude at the start: quaternion from body to space axes, scalar first, of any norm but zero [default: 1,0,0,0]
+    /// Attitude at the start: quaternion that turns body axes to space axes, scalar first; it is divided by its norm [default: 1,0,0,0]
     #[arg(long, value_name = "w,x,y,z", value_parser = quaternion, allow_hyphen_values = true)]
     attitude: Option<[f64; 4]>,
     /// Attitude at the start by Euler angles in the sequence of --euler, rad or --angle-unit

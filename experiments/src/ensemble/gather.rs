@@ -15,8 +15,9 @@ use crate::error::{Error, unexpected};
 use crate::files::{MARK, Output, unwritable};
 
 const EXAMPLES: &str = "Examples:
-  polhode gather shares
-  polhode gather shares --threads 1";
+  polhode ensemble examples/ensemble.toml --out halves --shard 1/2
+  polhode ensemble examples/ensemble.toml --out halves --shard 2/2
+  polhode gather halves";
 
 /// Reduce the shards of an ensemble to the results of one run
 ///

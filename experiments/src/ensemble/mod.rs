@@ -33,9 +33,11 @@ const BYTES_OF_THREAD: u64 = 3 * 21_000_000;
 
 const AFTER_HELP: &str = "SPEC.toml:
   [body]    moments = [3], inertia = [6] (xx, yy, zz, xy, xz, yz), or body
-  [start]   omega = [3] rad/s, attitude = [4]; rate_unit and angle_unit,
-            such as \"deg/s\" and \"deg\", hold for [spread] and members too
-  [spread]  omega, attitude (rad), moments (relative): standard deviations
+  [start]   omega = [3], rad/s; attitude = [4], quaternion from body to space,
+            scalar first; rate_unit and angle_unit, such as \"deg/s\" and
+            \"deg\", hold for [spread] and the members too
+  [spread]  standard deviations, one or three each: omega, rad/s; attitude,
+            rad, about the body axes; moments, relative
   [spread.covariance]  omega 3x3, attitude 3x3, inertia 6x6, or joint 12x12
   [spread.range]       omega, attitude, moments: [[low, high], ...]; \"all\"
   [run]     members, seed, method, step, tolerance, start_time, times,
@@ -46,18 +48,19 @@ const AFTER_HELP: &str = "SPEC.toml:
 
 Examples:
   polhode ensemble examples/ensemble.toml --out ensemble
-  polhode ensemble examples/ensemble.toml --out shares --shard 1/2
-  polhode ensemble examples/ensemble.toml --out shares --shard 2/2";
+  polhode ensemble examples/ensemble.toml --out halves --shard 1/2
+  polhode ensemble examples/ensemble.toml --out halves --shard 2/2
+  polhode gather halves";
 
 /// Many bodies from uncertain starts: mean attitude and dispersion over time
 ///
 /// Members are drawn from standard deviations, covariances or ranges of start and inertia, or listed in a CSV (members_file).
 /// Tensors that no body has are drawn again, so the spread of the inertia ends at the triangle inequalities. Member k is the
-/// same in any share of the work. DIR gets summary.csv, dispersion.csv, dispersion.svg, failures.csv,
+/// same in any division of the work. DIR gets summary.csv, dispersion.csv, dispersion.svg, failures.csv,
 /// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml.
 ///
-/// A share of the members is named by --shard, or by the environment of a Slurm array or of an MPI launcher; it goes to
-/// DIR/shards, and `polhode gather DIR` makes the results of all. A share that is finished is not run again.
+/// With --shard K/N, or in a Slurm array or under an MPI launcher, only the K-th of N parts of the members is run. Its results,
+/// a shard, go to DIR/shards, and `polhode gather DIR` makes those of all members. A shard that is finished is not run again.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Ensemble {
@@ -67,7 +70,7 @@ pub(crate) struct Ensemble {
     /// Folder of the results
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Share K of N of the members, K from 1 [default: what the launcher says, else all members]
+    /// Part K of N of the members, K from 1 [default: what the launcher says, else all members]
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
     /// Threads [default: as many as there are cores]; the results do not depend on it

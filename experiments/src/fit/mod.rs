@@ -55,11 +55,11 @@ pub(crate) struct Fit {
     /// Standard deviation of the noise, rad/s [default: from the samples]
     #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
     noise: Option<f64>,
-    /// Lower limit on the moment about an axis, a share of the trace; repeatable
-    #[arg(long, value_name = "nx,ny,nz,SHARE", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    /// Lower limit on the moment about an axis, a fraction of the trace; repeatable
+    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true)]
     at_least: Vec<[f64; 4]>,
-    /// Upper limit on the moment about an axis, a share of the trace; repeatable
-    #[arg(long, value_name = "nx,ny,nz,SHARE", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    /// Upper limit on the moment about an axis, a fraction of the trace; repeatable
+    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true)]
     at_most: Vec<[f64; 4]>,
     #[command(flatten)]
     known: KnownArguments,

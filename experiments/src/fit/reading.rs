@@ -16,8 +16,8 @@ pub(super) struct ReadingArguments {
     /// Columns of the time and of the rates, by name or number, where they are not found: t=NAME,x=NAME,y=NAME,z=NAME
     #[arg(long, value_name = "t=...,x=...,y=...,z=...", value_parser = columns)]
     columns: Option<ColumnNames>,
-    /// Share of the rows that may be left out because they cannot be read [default: 0.02]
-    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    /// Fraction of the rows that may be left out because they cannot be read [default: 0.02]
+    #[arg(long, value_name = "FRACTION", value_parser = share, allow_hyphen_values = true)]
     skip_rows: Option<f64>,
     /// Unit of time where the header names none: s, ms, us, ns, or a number of seconds [default: s]
     #[arg(long, value_name = "UNIT", value_parser = time_unit)]
@@ -99,7 +99,7 @@ fn columns(text: &str) -> Result<ColumnNames, String> {
 fn share(text: &str) -> Result<f64, String> {
     match number(text)? {
         share if (0.0..1.0).contains(&share) => Ok(share),
-        share => Err(format!("{share:?} is no share of the rows; give a number from 0 to below 1")),
+        share => Err(format!("{share:?} is no fraction of the rows; give a number from 0 to below 1")),
     }
 }
 
@@ -152,7 +152,7 @@ impl ReadingArguments {
                     format!("{error}, or say which they are: --columns t=NAME,x=NAME,y=NAME,z=NAME")
                 }
                 RecordError::Value { .. } | RecordError::Cells { .. } | RecordError::Order { .. } => {
-                    format!("{error}, or allow for more such rows by --skip-rows SHARE")
+                    format!("{error}, or allow for more such rows by --skip-rows FRACTION")
                 }
                 _ => error.to_string(),
             })

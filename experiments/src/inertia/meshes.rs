@@ -20,19 +20,19 @@ const HEAVY: f64 = 1e5;
 /// The flags of `mesh`.
 #[derive(Args, Clone, Debug, Default)]
 pub(super) struct MeshArguments {
-    /// Unit of length of a mesh: mm, cm, m, in, or a number of metres
+    /// Unit of length of a mesh: mm, cm, m, in, or a number of metres [default: m]
     #[arg(long, value_name = "UNIT", value_parser = unit, allow_hyphen_values = true)]
     pub(super) length_unit: Option<f64>,
-    /// Vertices of a mesh within this share of its size are the same [default: 2^-17]
-    #[arg(long, value_name = "SHARE", value_parser = positive, allow_hyphen_values = true)]
+    /// Vertices of a mesh within this fraction of its size are the same [default: 2^-17]
+    #[arg(long, value_name = "FRACTION", value_parser = positive, allow_hyphen_values = true)]
     pub(super) weld: Option<f64>,
-    /// How the holes of an open mesh are closed
+    /// How the holes of an open mesh are closed [default: an open mesh is refused]
     #[arg(long, value_enum, conflicts_with = "shell")]
     pub(super) close: Option<How>,
-    /// Only the surface of a mesh has mass, as walls of this thickness, m
+    /// Only the surface of a mesh has mass, as walls of this thickness, m [default: the mesh is solid]
     #[arg(long, value_name = "THICKNESS", value_parser = positive, allow_hyphen_values = true)]
     pub(super) shell: Option<f64>,
-    /// Only this group of an OBJ file, or solid of an ASCII STL
+    /// Only this group of an OBJ file, or solid of an ASCII STL [default: the whole file]
     #[arg(long, value_name = "NAME")]
     pub(super) group: Option<String>,
 }

@@ -67,15 +67,15 @@ pub(crate) struct Inertia {
     /// Further robot models
     #[arg(value_name = "FILE")]
     more: Vec<String>,
-    /// Mass, kg
+    /// Mass, kg; a shape or a mesh needs this or --density, a tensor only for output that states a mass
     #[arg(long, value_name = "M", value_parser = positive, allow_hyphen_values = true)]
     mass: Option<f64>,
-    /// Density, kg/m^3 (of a surface kg/m^2, of a line kg/m)
+    /// Density in place of --mass, kg/m^3 (of a surface kg/m^2, of a line kg/m)
     #[arg(long, value_name = "D", value_parser = positive, allow_hyphen_values = true, conflicts_with = "mass")]
     density: Option<f64>,
     #[command(flatten)]
     mesh: MeshArguments,
-    /// Centre of mass of a typed tensor, m
+    /// Centre of mass of a typed tensor, m [default: 0,0,0]
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     center_of_mass: Option<[f64; 3]>,
     /// Reference point of a typed tensor, m [default: its centre of mass]
@@ -84,7 +84,7 @@ pub(crate) struct Inertia {
     /// Edges of the bounding box of the body, m; with them more mistakes in a typed tensor are found
     #[arg(long, value_name = "LX,LY,LZ", value_parser = numbers::<3>, allow_hyphen_values = true)]
     extents: Option<[f64; 3]>,
-    /// Print the tensor about this point too, m
+    /// Print the tensor about this point too, m [default: about the centre of mass alone]
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     about: Option<[f64; 3]>,
     /// Of every link of a model all that is known, not one line
@@ -96,7 +96,7 @@ pub(crate) struct Inertia {
     /// Folder that includes of an MJCF model may not leave [default: its own]
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
-    /// What is written: table on a terminal, csv otherwise
+    /// What is written [default: what the ending of --out names, else table on a terminal, csv otherwise]
     #[arg(long, value_enum)]
     format: Option<Form>,
     /// Write to this file instead of standard output

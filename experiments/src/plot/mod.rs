@@ -22,7 +22,8 @@ use looks::Looks;
 
 const USAGE: &str = "polhode plot <KIND> <BODY> [START] --until <T> --out <FILE> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
-  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ... and an attitude";
+  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ...
+         and --attitude <w,x,y,z> | --angles <phi,theta,psi> | ...";
 
 const EXAMPLES: &str = "Examples:
   polhode plot omega --body t-handle --until 60 --out flips.svg

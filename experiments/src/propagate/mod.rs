@@ -25,7 +25,8 @@ use columns::{Columns, Reading};
 
 const USAGE: &str = "polhode propagate <BODY> [START] <TIMES> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
-  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ... and an attitude
+  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ...
+         and --attitude <w,x,y,z> | --angles <phi,theta,psi> | ...
   TIMES: --times <LIST|FILE|-> | --until <T> --every <DT>";
 
 const EXAMPLES: &str = "Examples:

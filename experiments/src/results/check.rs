@@ -12,22 +12,65 @@ use crate::table::Table;
 const GOLDEN: &str = "experiments/tests/golden/smoke";
 /// Differences that are told one by one.
 const TOLD: usize = 8;
-const REMEDY: &str = "if that is intended, `polhode experiment check --accept` writes it";
 
-/// Runs the experiments called `names` (or `all`) at smoke scale and compares them with the files below `root`.
-pub(super) fn run(names: &[String], root: &Path, accept: bool) -> Result<(), Error> {
-    if !root.join(GOLDEN).is_dir() {
+/// The scales whose numbers are committed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Committed {
+    /// Some seconds for each experiment at most
+    Smoke,
+    /// Full size: hours on two cores; run.toml beside the committed numbers
+    /// states the seconds of each experiment
+    Paper,
+}
+
+impl Committed {
+    fn scale(self) -> Scale {
+        match self {
+            Self::Smoke => Scale::Smoke,
+            Self::Paper => Scale::Paper,
+        }
+    }
+
+    /// Where the numbers of this scale are.
+    fn folder(self) -> &'static str {
+        match self {
+            Self::Smoke => GOLDEN,
+            Self::Paper => RESULTS,
+        }
+    }
+
+    fn remedy(self) -> &'static str {
+        match self {
+            Self::Smoke => "if that is intended, `polhode experiment check --accept` writes it",
+            Self::Paper => {
+                "if that is intended, `polhode experiment run NAME --scale paper` and \
+                 `polhode experiment publish --from results/paper` write it"
+            }
+        }
+    }
+}
+
+/// Runs the experiments called `names` (or `all`) and compares them with the files below `root`.
+pub(super) fn run(names: &[String], scale: Committed, root: &Path, accept: bool) -> Result<(), Error> {
+    if accept && scale == Committed::Paper {
+        let remedy = "run `polhode experiment run all --scale paper` and `polhode experiment publish --from \
+                      results/paper`, or leave out one of the two flags";
+        let rule = "the tables of README.md and paper/generated have to follow these numbers";
+        return Err(Error::input("--accept with --scale", "paper", rule, remedy));
+    }
+    if !root.join(scale.folder()).is_dir() {
         let value = root.display().to_string();
-        return Err(Error::input("--root", &value, &format!("holds no {GOLDEN}"), "name the project's root"));
+        let rule = format!("holds no {}", scale.folder());
+        return Err(Error::input("--root", &value, &rule, "name the project's root"));
     }
     let mut differences = Vec::new();
     for experiment in chosen("experiment check", names)? {
-        let report = experiment.report(Scale::Smoke)?;
+        let report = experiment.report(scale.scale())?;
         differences.extend(report.failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));
         if accept {
-            write(root, experiment, &report)?;
+            write(root, scale, experiment, &report)?;
         } else {
-            differences.extend(compare(root, experiment, &report)?);
+            differences.extend(compare(root, scale, experiment, &report)?);
         }
     }
     if differences.is_empty() {
@@ -39,7 +82,7 @@ pub(super) fn run(names: &[String], root: &Path, accept: bool) -> Result<(), Err
         differences.push(format!("and {more} more"));
     }
     if !accept {
-        differences.push(REMEDY.into());
+        differences.push(scale.remedy().into());
     }
     Err(Error::Failed(differences.join("\n")))
 }
@@ -47,17 +90,18 @@ pub(super) fn run(names: &[String], root: &Path, accept: bool) -> Result<(), Err
 /// Each deterministic table with the committed file that holds it, as a path below the root. Data are the same at every
 /// scale, and are committed with the results of paper scale.
 fn committed<'a>(
+    scale: Committed,
     experiment: &Experiment,
     report: &'a Report,
 ) -> impl Iterator<Item = (PathBuf, &'a Table)> + use<'a> {
-    let [golden, results] = [GOLDEN, RESULTS].map(|folder| Path::new(folder).join(experiment.name));
+    let [numbers, results] = [scale.folder(), RESULTS].map(|folder| Path::new(folder).join(experiment.name));
     let file = |folder: &Path, table: &Table| folder.join(format!("{}.csv", table.name));
-    let tables = report.tables.iter().map(move |table| (file(&golden, table), table));
+    let tables = report.tables.iter().map(move |table| (file(&numbers, table), table));
     tables.chain(report.data.iter().map(move |table| (file(&results, table), table)))
 }
 
-fn write(root: &Path, experiment: &Experiment, report: &Report) -> Result<(), Error> {
-    for (path, table) in committed(experiment, report) {
+fn write(root: &Path, scale: Committed, experiment: &Experiment, report: &Report) -> Result<(), Error> {
+    for (path, table) in committed(scale, experiment, report) {
         let path = root.join(path);
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)
@@ -68,28 +112,43 @@ fn write(root: &Path, experiment: &Experiment, report: &Report) -> Result<(), Er
     Ok(())
 }
 
-fn compare(root: &Path, experiment: &Experiment, report: &Report) -> Result<Vec<String>, Error> {
+fn compare(
+    root: &Path,
+    scale: Committed,
+    experiment: &Experiment,
+    report: &Report,
+) -> Result<Vec<String>, Error> {
     let mut found = Vec::new();
-    let mut known = Vec::new();
-    for (path, table) in committed(experiment, report) {
-        known.push(root.join(&path));
+    let folder = Path::new(scale.folder()).join(experiment.name);
+    let mut known: Vec<PathBuf> = committed(scale, experiment, report).map(|(path, _)| path).collect();
+    for (path, table) in committed(scale, experiment, report) {
         match root.join(&path).is_file() {
-            true => found.extend(differences(&path, &read(&root.join(&path), REMEDY)?, &table.csv())?),
+            true => {
+                let text = read(&root.join(&path), scale.remedy())?;
+                let told = differences(&path, &text, &table.csv());
+                found.extend(told.map_err(|reason| Error::Failed(format!("{reason}; {}", scale.remedy())))?);
+            }
             false => found.push(format!("{}: is not there", path.display())),
         }
     }
+    // times stand beside the numbers of paper scale; they are another machine's
+    let times = report.timing.iter().chain(&report.times);
+    known.extend(times.map(|table| folder.join(format!("{}.csv", table.name))));
     // a file that no table makes would never be compared
-    let folder = Path::new(GOLDEN).join(experiment.name);
     let entries = std::fs::read_dir(root.join(&folder)).into_iter().flatten().filter_map(Result::ok);
-    let mut strangers: Vec<PathBuf> =
-        entries.map(|entry| entry.path()).filter(|path| !known.contains(path)).collect();
+    let names = entries.map(|entry| folder.join(entry.file_name()));
+    let mut strangers: Vec<PathBuf> = names.filter(|path| is_table(path) && !known.contains(path)).collect();
     strangers.sort();
     found.extend(strangers.iter().map(|path| format!("{}: no table is called so", path.display())));
     Ok(found)
 }
 
+fn is_table(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "csv")
+}
+
 /// Each cell of the rows that is not the committed one, bit for bit.
-fn differences(path: &Path, committed: &str, found: &str) -> Result<Vec<String>, Error> {
+fn differences(path: &Path, committed: &str, found: &str) -> Result<Vec<String>, String> {
     if committed == found {
         return Ok(Vec::new());
     }
@@ -130,11 +189,10 @@ fn shown(cell: &str) -> &str {
     if cell.is_empty() { "nothing" } else { cell }
 }
 
-fn cells(path: &Path, text: &str) -> Result<Vec<Vec<String>>, Error> {
+fn cells(path: &Path, text: &str) -> Result<Vec<Vec<String>>, String> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
     let rows = reader.records().map(|row| row.map(|row| row.iter().map(String::from).collect()));
-    rows.collect::<Result<_, _>>()
-        .map_err(|error| Error::Failed(format!("{}: {error}; {REMEDY}", path.display())))
+    rows.collect::<Result<_, _>>().map_err(|error| format!("{}: {error}", path.display()))
 }
 
 #[cfg(test)]
@@ -145,7 +203,7 @@ mod tests {
     fn the_place_and_both_values_are_told() {
         let told = |committed: &str| {
             let found = "method,error\nrk4,0.1\n\"a,b\",\n";
-            differences(Path::new("x.csv"), committed, found).map_err(|error| error.to_string())
+            differences(Path::new("x.csv"), committed, found)
         };
         let none: [&str; 0] = [];
         assert_eq!(told("method,error\nrk4,0.1\n\"a,b\",\n").unwrap(), none);

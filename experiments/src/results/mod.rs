@@ -12,6 +12,7 @@ use std::path::PathBuf;
 
 use clap::Subcommand;
 
+use self::check::Committed;
 use crate::error::Error;
 use crate::experiment::{Experiment, Scale};
 use crate::experiments;
@@ -27,11 +28,12 @@ const LIST_EXAMPLES: &str = "Examples:
 
 const CHECK_EXAMPLES: &str = "Examples:
   polhode experiment check order
-  polhode experiment check order --root .";
+  polhode experiment check order --scale paper";
 
 const PUBLISH_EXAMPLES: &str = "Examples:
   polhode experiment publish
-  polhode experiment publish --root .";
+  polhode experiment run order --scale paper --out new
+  polhode experiment publish --from new/paper";
 
 const EXAMPLES: &str = "Examples:
   polhode experiment run order drift --scale smoke
@@ -62,28 +64,33 @@ pub(crate) enum ExperimentCommand {
         #[arg(long, value_name = "FILE")]
         report: Option<PathBuf>,
     },
-    /// Run experiments at smoke scale and compare every number with the
-    /// committed ones
+    /// Run experiments and compare every number with the committed ones
     ///
-    /// Timings are not compared. Exit code 1 if a cell differs or a claim fails; the first differences are listed with file, row,
-    /// column and both values.
+    /// Compares with files of the repository, in whose root it runs. The numbers of smoke scale are in experiments/tests/golden/smoke, those of paper scale in experiments/results. Times are
+    /// not compared. Exit code 1 if a cell differs or a claim fails; the first differences are listed with file, row, column and
+    /// both values.
     #[command(after_help = CHECK_EXAMPLES)]
     Check {
         /// Names of experiments, or all
         #[arg(default_value = "all")]
         names: Vec<String>,
-        /// Root of the repository
+        /// Size of the runs
+        #[arg(long, value_enum, default_value = "smoke")]
+        scale: Committed,
+        /// Root of the repository, where the command runs elsewhere
         #[arg(long, default_value = ".")]
         root: PathBuf,
-        /// Replace the committed numbers by the new ones
+        /// Replace the committed numbers of smoke scale by the new ones; of paper scale, `polhode experiment publish --from` does
         #[arg(long)]
         accept: bool,
     },
     /// Write tables of the committed results of paper scale into README.md and
     /// paper/generated
+    ///
+    /// Works on files of the repository, in whose root it runs: the results are in experiments/results.
     #[command(after_help = PUBLISH_EXAMPLES)]
     Publish {
-        /// Root of the repository
+        /// Root of the repository, where the command runs elsewhere
         #[arg(long, default_value = ".")]
         root: PathBuf,
         /// Folder of new results that replace the committed ones first, such as results/paper
@@ -97,7 +104,7 @@ impl ExperimentCommand {
         match self {
             Self::List { format } => list(format),
             Self::Run { names, scale, out, report } => run::run(&names, scale, &out, report.as_deref()),
-            Self::Check { names, root, accept } => check::run(&names, &root, accept),
+            Self::Check { names, scale, root, accept } => check::run(&names, scale, &root, accept),
             Self::Publish { root, from } => publish::run(&root, from.as_deref()),
         }
     }

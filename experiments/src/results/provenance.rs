@@ -19,6 +19,10 @@ struct Provenance<'a> {
     profile: &'static str,
     target: &'static str,
     cpu_features: Vec<&'static str>,
+    /// Cores that the run could use.
+    cores: usize,
+    /// Wall time of the run; like the cores, for readers only: nothing that is published or compared depends on it.
+    seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
     tables: BTreeMap<String, Columns<'a>>,
@@ -63,6 +67,8 @@ pub(super) fn describe<'a>(experiment: &'a str, scale: Scale, report: &'a Report
         profile: env!("POLHODE_PROFILE"),
         target: env!("POLHODE_TARGET"),
         cpu_features: cpu_features(),
+        cores: std::thread::available_parallelism().map_or(1, usize::from),
+        seconds: (report.took.as_secs_f64() * 10.0).round() / 10.0,
         seed: report.seed,
         tables: rounded.chain(others).collect(),
         views: views.collect(),

@@ -87,8 +87,8 @@ pub(super) struct GyroscopeArguments {
     /// Delay of the reading of each axis after the time of the row, s
     #[arg(long, value_name = "sx,sy,sz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     skew: Option<[f64; 3]>,
-    /// Share of the samples with a spike on one component, and its size, rad/s
-    #[arg(long, value_name = "SHARE,SIZE", value_parser = spikes, allow_hyphen_values = true)]
+    /// Fraction of the samples with a spike on one component, and its size, rad/s
+    #[arg(long, value_name = "FRACTION,SIZE", value_parser = spikes, allow_hyphen_values = true)]
     spikes: Option<[f64; 2]>,
 }
 
@@ -101,12 +101,12 @@ fn drags(text: &str) -> Result<[f64; 3], String> {
     }
 }
 
-/// A share and a size.
+/// A fraction and a size.
 fn spikes(text: &str) -> Result<[f64; 2], String> {
     let [share, size] = numbers(text)?;
     match (0.0..=1.0).contains(&share) && size >= 0.0 {
         true => Ok([share, size]),
-        false => Err("give a share from 0 to 1 and a size of 0 or more".into()),
+        false => Err("give a fraction from 0 to 1 and a size of 0 or more".into()),
     }
 }
 

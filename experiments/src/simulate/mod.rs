@@ -45,11 +45,11 @@ pub(crate) struct Simulate {
     /// Time between samples, s
     #[arg(long, value_name = "DT", value_parser = positive, allow_hyphen_values = true)]
     every: f64,
-    /// Scatter of the sample times, as a share of the time between samples; below 1
-    #[arg(long, value_name = "SHARE", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
+    /// Scatter of the sample times, as a fraction of DT; below 1
+    #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     jitter: f64,
     /// Scatter of the true times, as a fraction of DT, where the record has the regular times
-    #[arg(long, value_name = "SHARE", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
+    #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     hidden_jitter: f64,
     /// Number of tosses, each a motion of its own of duration T
     #[arg(long, value_name = "N", default_value = "1")]
@@ -78,11 +78,11 @@ pub(crate) struct Simulate {
 /// Samples of all tosses: more are rather a slip of the pen than a wish.
 const MOST_SAMPLES: usize = 2_000_000;
 
-/// A share of the time between samples.
+/// A fraction of the time between samples.
 fn jitter(text: &str) -> Result<f64, String> {
     match number(text)? {
         value if (0.0..1.0).contains(&value) => Ok(value),
-        _ => Err("samples must keep their order; give a share from 0 to below 1".into()),
+        _ => Err("samples must keep their order; give a fraction from 0 to below 1".into()),
     }
 }
 

@@ -52,6 +52,10 @@ fn experiments_repeat_bit_for_bit_and_can_be_published() {
     }
     for (name, bytes) in &files {
         let text = String::from_utf8(bytes.clone()).unwrap();
+        if name.ends_with("run.toml") {
+            let stated = |key: &str| text.lines().any(|line| line.starts_with(&format!("{key} = ")));
+            assert!(stated("seconds") && stated("cores"), "{name}: {text}");
+        }
         assert!(!text.contains("NaN") && !text.contains(",inf"), "{name}");
     }
     // the committed ones come from another profile and, it may be, another processor
@@ -130,6 +134,34 @@ fn a_number_that_changed_is_told_with_its_place() {
         "experiment check --accept".to_string(),
     ] {
         assert!(answer.err.contains(&part), "'{part}' is not in: {}", answer.err);
+    }
+}
+
+#[test]
+fn numbers_of_paper_scale_are_compared_with_the_published_ones() {
+    let scratch = Scratch::new("check-paper");
+    let line = format!("experiment check order --scale paper --root {}", scratch.0.display());
+    refused(&format!("{line} --accept"), &["--accept", "'paper'", "experiment publish --from results/paper"]);
+    refused(&line.replace("paper", "standard"), &["--scale", "'standard'", "smoke, paper"]);
+    refused(&line, &["--root", "holds no experiments/results", "name the project's root"]);
+    let folder = scratch.0.join("experiments/results/order");
+    fs::create_dir_all(&folder).unwrap();
+    for name in names(&root().join("experiments/results/order")) {
+        fs::copy(root().join("experiments/results/order").join(&name), folder.join(&name)).unwrap();
+    }
+    // times and pictures beside the numbers are not compared
+    fs::write(folder.join("order.svg"), "").unwrap();
+    assert_eq!(output(&line), "");
+    let orders = folder.join("orders.csv");
+    let text = fs::read_to_string(&orders).unwrap();
+    let (kept, last) = text.trim_end().rsplit_once('\n').unwrap();
+    fs::write(&orders, format!("{kept}\n")).unwrap();
+    let answer = run(&line);
+    assert_eq!((answer.code, answer.out.as_str()), (1, ""), "{last}");
+    for part in
+        ["experiments/results/order/orders.csv: committed rows", "experiment publish --from results/paper"]
+    {
+        assert!(answer.err.contains(part), "'{part}' is not in: {}", answer.err);
     }
 }
 

@@ -293,12 +293,12 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     refused(2, &format!("fit {record} --out {same} --residuals {same}"), &["it would replace --out"]);
     assert_eq!(fs::read_to_string(&record).unwrap(), before);
     refused(2, &format!("{SIMULATE} --until 1 --noise -1"), &["'--noise <SIGMA>'", "-1.0 is negative"]);
-    refused(2, &format!("{SIMULATE} --until 1 --jitter 1"), &["'--jitter <SHARE>'", "keep their order"]);
+    refused(2, &format!("{SIMULATE} --until 1 --jitter 1"), &["'--jitter <FRACTION>'", "keep their order"]);
     for (flags, says) in [
         ("--relative-drag -0.1", ["'--relative-drag <K>'", "-0.1 is negative"]),
         ("--drag 0,-1,0", ["'--drag <dx,dy,dz>'", "-1.0 would drive the body"]),
-        ("--spikes 2,5", ["'--spikes <SHARE,SIZE>'", "a share from 0 to 1"]),
-        ("--hidden-jitter -1", ["'--hidden-jitter <SHARE>'", "keep their order"]),
+        ("--spikes 2,5", ["'--spikes <FRACTION,SIZE>'", "a fraction from 0 to 1"]),
+        ("--hidden-jitter -1", ["'--hidden-jitter <FRACTION>'", "keep their order"]),
         ("--tosses 0", ["'--tosses <N>'", "0"]),
         ("--tosses 100000", ["--tosses: '100000'", "51 samples each"]),
         ("--pause 0", ["'--pause <P>'", "not positive"]),

@@ -53,6 +53,6 @@ fn a_bad_row_is_left_out_and_told() {
     for part in ["warning: 1 row is left out beside 2000", "log.csv, line 701, column 2 (wx)"] {
         assert!(answer.err.contains(part), "{}", answer.err);
     }
-    refused(&format!("fit {spoiled} --skip-rows 0"), &["line 701, column 2 (wx)", "--skip-rows SHARE"]);
+    refused(&format!("fit {spoiled} --skip-rows 0"), &["line 701, column 2 (wx)", "--skip-rows FRACTION"]);
     refused(&format!("fit {spoiled} --skip-rows 1"), &["--skip-rows", "from 0 to below 1"]);
 }
