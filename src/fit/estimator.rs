@@ -129,22 +129,9 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     if let Some(filled) = filled {
         chosen.weak = filled.weak;
     } else if hidden || (!weak.settled() && misfit > weak.expected_misfit()) {
-        // the rates are not constant, and still no tensor explains them
-        let axes = averages::axes(&stretches, variance);
-        let factor = better.map(|b| b.factor);
-        let (fall, _) = trends(&stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0));
-        let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
-            .then_some(-fall.rate * rms);
-        return Err(FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall });
+        return Err(unsettled(settings, &stretches, misfit, variance, rms, better.map(|b| b.factor)));
     } else {
-        let untold = untold(weak, &stretches, variance * misfit.max(1.0), &identifiability);
-        // of a torque that was not asked for the message could ask for nothing simpler
-        if settings.torque != TorqueModel::Auto && !untold.is_empty() {
-            return Err(FitError::Untold { names: untold, rank: identifiability.rank });
-        }
-        if !identifiability.complete() {
-            return Err(FitError::Unidentifiable(Box::new(identifiability)));
-        }
+        told_by(weak, settings, &stretches, variance * misfit.max(1.0), &identifiability)?;
     }
     let weak = &chosen.weak;
     let misfit = weak.misfit(variance);
@@ -156,11 +143,8 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         Some(prior) if !is_filled => with_prior(&joint, weak, prior, input)?,
         _ => (joint.told.clone(), agreed),
     };
-    if let (Some(prior), Some(Agreement { chi2, dof })) = (&prior, agreed)
-        && chi2 > EXCLUDED[dof.clamp(5, 6) - 5]
-    {
-        let six = |x: &Coordinates| ENTRIES.map(|entry| tensor(x)[entry]);
-        return Err(FitError::PriorContradicted { prior: six(&prior.x), record: six(&weak.x()), chi2, dof });
+    if let Some((prior, agreed)) = prior.as_ref().zip(agreed) {
+        check_agreement(prior, agreed, weak)?;
     }
     let answer = nearest(&told, &settings.limits, &dissipation)?;
     let facts = Facts {
@@ -249,6 +233,54 @@ fn with_prior(
     let joined = prior.join(&joint.told, place.zip(input));
     let (told, chi2, dof) = joined.ok_or(FitError::Solver(SolverFailure::Information))?;
     Ok((told, Some(Agreement { chi2, dof })))
+}
+
+/// Refuses a prior and a record that exclude each other.
+fn check_agreement(
+    prior: &Told,
+    Agreement { chi2, dof }: Agreement,
+    weak: &WeakEstimate,
+) -> Result<(), FitError> {
+    if chi2 <= EXCLUDED[dof.clamp(5, 6) - 5] {
+        return Ok(());
+    }
+    let six = |x: &Coordinates| ENTRIES.map(|entry| tensor(x)[entry]);
+    Err(FitError::PriorContradicted { prior: six(&prior.x), record: six(&weak.x()), chi2, dof })
+}
+
+/// The rates are not constant, and still no tensor explains them.
+fn unsettled(
+    settings: &Settings,
+    stretches: &[Stretch],
+    misfit: f64,
+    variance: f64,
+    rms: f64,
+    factor: Option<f64>,
+) -> FitError {
+    let axes = averages::axes(stretches, variance);
+    let (fall, _) = trends(stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0));
+    let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
+        .then_some(-fall.rate * rms);
+    FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall }
+}
+
+/// Refuses a record that leaves the tensor open, or the torques that were asked for.
+fn told_by(
+    weak: &WeakEstimate,
+    settings: &Settings,
+    stretches: &[Stretch],
+    variance: f64,
+    identifiability: &Identifiability,
+) -> Result<(), FitError> {
+    let names = untold(weak, stretches, variance, identifiability);
+    // of a torque that was not asked for the message could ask for nothing simpler
+    if settings.torque != TorqueModel::Auto && !names.is_empty() {
+        return Err(FitError::Untold { names, rank: identifiability.rank });
+    }
+    match identifiability.complete() {
+        true => Ok(()),
+        false => Err(FitError::Unidentifiable(Box::new(identifiability.clone()))),
+    }
 }
 
 fn mistaken(misfit: f64, b: &Better) -> FitError {

@@ -13,7 +13,7 @@ use crate::fit::physical::coordinates::{Coordinates, Form};
 pub(crate) struct Completed {
     /// Its R is that of both.
     pub(crate) weak: WeakEstimate,
-    /// Singular values of what the record tells alone, and their directions.
+    /// Singular values of what the record tells alone, one over the standard deviations, and their directions.
     pub(crate) alone: (Coordinates, Form),
     /// Square of the distance of the two, in standard deviations.
     pub(crate) chi2: f64,
@@ -42,10 +42,11 @@ pub(crate) fn completed(
     let apart = stacked.squares_at(&weak.x()) - stacked.squares;
     let chi2 = apart / variance / misfit + (root * (weak.x() - centre)).norm_squared();
     // what the record tells of the five numbers, less what is in doubt of it, above what the prior does
-    let alone = weak.spectrum()?;
+    let (singular, directions) = weak.spectrum()?;
     let mut both = SMatrix::<f64, 10, 5>::zeros();
-    both.fixed_view_mut::<5, 5>(0, 0).copy_from(&(Form::from_diagonal(&alone.0) * alone.1.transpose()));
+    both.fixed_view_mut::<5, 5>(0, 0).copy_from(&(Form::from_diagonal(&singular) * directions.transpose()));
     both.fixed_view_mut::<5, 5>(5, 0).copy_from(&(root * deviation));
     let joined = both.qr().r();
+    let alone = (singular / deviation, directions);
     Some(Completed { weak: WeakEstimate { root: joined, doubt: Form::zeros(), ..weak }, alone, chi2 })
 }

@@ -1,8 +1,8 @@
 //! The Cramér–Rao bound on a tensor beside unknown torques, sensor errors and torque noise.
 //!
 //! To first order the readings are linear in the unknowns and in the torque's noise, so the bound is the covariance of a
-//! Kalman filter that runs along the true motion: its state is (entries of J, drag, constant torque, offset, scale, ω),
-//! of which those that are known start with no variance.
+//! Kalman filter that runs along the true motion, or, under torque noise, along the motion without it. Its state is (entries
+//! of J, drag, constant torque, offset, scale, ω), of which those that are known start with no variance.
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
