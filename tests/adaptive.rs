@@ -2,63 +2,13 @@
 
 #![allow(clippy::unwrap_used)]
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::{Body, Force, Potential, State, Time};
+mod motions;
+
+use motions::{free, magnet, run, satellite, started, thruster, top};
+use polhode::body::{Body, State};
 use polhode::inertia::Inertia;
-use polhode::method::{ADAPTIVE, Claimed, method};
-use polhode::num::Real;
-use polhode::rotation::{Quat, Vec3};
+use polhode::method::{ADAPTIVE, method};
 use polhode::run::{Run, Watch};
-
-fn free() -> (Body, State) {
-    started(Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap()), [0.4, 1.0, -0.3])
-}
-
-fn top() -> (Body, State) {
-    let inertia = Inertia::from_moments([1.0, 1.0, 0.25]).unwrap();
-    started(Body::heavy(inertia, [0.0, 0.0, 0.7].into()).unwrap(), [0.3, -0.2, 5.0])
-}
-
-/// A magnet along body z in a field along space x, on a body whose tensor is not diagonal.
-struct Magnet(f64);
-
-impl<S: Real> Potential<S> for Magnet {
-    fn energy(&self, _: Time, attitude: Quat<S>) -> S {
-        -(S::of(self.0) * attitude.rotate(Vec3::unit(2))[0])
-    }
-    fn torque(&self, _: Time, attitude: Quat<S>) -> Vec3<S> {
-        Vec3::unit(2).cross(attitude.rotate_back(Vec3::unit(0))) * S::of(self.0)
-    }
-}
-
-fn magnet() -> (Body, State) {
-    let tensor = Matrix3::new(1.0, 0.1, 0.2, 0.1, 2.0, 0.3, 0.2, 0.3, 2.5);
-    let body = Body::free(Inertia::from_tensor(tensor).unwrap());
-    started(body.with(Force::potential("magnet", Magnet(0.5))), [0.4, 1.0, -0.3])
-}
-
-fn satellite() -> (Body, State) {
-    let inertia = Inertia::from_moments([10.0, 25.0, 30.0]).unwrap();
-    let gradient = Force::gravity_gradient(&inertia, 0.001, 0.3).unwrap();
-    started(Body::free(inertia).with(gradient), [2e-4, -3e-4, 1.2e-3])
-}
-
-/// On from t = 3 to 4.5: steps are rejected at both ends.
-fn thruster() -> (Body, State) {
-    let (body, start) = free();
-    let push = |t: f64| Vector3::new(0.0, 0.0, if (3.0..4.5).contains(&t) { 0.5 } else { 0.0 });
-    (body.with(Force::torque_fn("thruster", move |t, _, _| push(t))), start)
-}
-
-fn started(body: Body, omega: [f64; 3]) -> (Body, State) {
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5);
-    let start = body.state(tilt, omega.into()).unwrap();
-    (body, start)
-}
-
-fn run(name: &str, (body, start): &(Body, State), h: f64) -> Run {
-    Run::new(&method(name).unwrap(), body, start, h).unwrap()
-}
 
 /// Every adaptive method with its usual tolerance and with a tight one, each with the motions that it is for.
 fn adaptive() -> Vec<(String, Vec<(Body, State)>)> {

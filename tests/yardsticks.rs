@@ -2,41 +2,19 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod motions;
+
+use motions::{free, run, started, thruster, top};
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Force, Point, State, Time, Torque};
 use polhode::flow::ExactMotion;
 use polhode::inertia::Inertia;
-use polhode::method::{AnyMethod, Claimed, Dop853, Tsit5, method};
+use polhode::method::{Dop853, Tsit5, method};
 use polhode::num::{Dd, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
-use polhode::run::{Run, RunError, Watch};
+use polhode::run::{RunError, Watch};
 
 const ADAPTIVE: [&str; 4] = ["dop853", "dop853:1e-12", "tsit5", "tsit5:1e-9"];
-
-fn free() -> (Body, State) {
-    started(Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap()), [0.4, 1.0, -0.3])
-}
-
-fn top() -> (Body, State) {
-    let inertia = Inertia::from_moments([1.0, 1.0, 0.25]).unwrap();
-    started(Body::heavy(inertia, [0.0, 0.0, 0.7].into()).unwrap(), [0.3, -0.2, 5.0])
-}
-
-fn thruster() -> (Body, State) {
-    let (body, start) = free();
-    let push = |t: f64| Vector3::new(0.0, 0.0, if (3.0..4.5).contains(&t) { 0.5 } else { 0.0 });
-    (body.with(Force::torque_fn("thruster", move |t, _, _| push(t))), start)
-}
-
-fn started(body: Body, omega: [f64; 3]) -> (Body, State) {
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5);
-    let start = body.state(tilt, omega.into()).unwrap();
-    (body, start)
-}
-
-fn run(name: &str, (body, start): &(Body, State), h: f64) -> Run {
-    Run::new(&method(name).unwrap(), body, start, h).unwrap()
-}
 
 /// Attitude error after the time `t`, with `steps` outputs on the way.
 fn attitude_error(name: &str, case: &(Body, State), t: f64, steps: u64) -> f64 {

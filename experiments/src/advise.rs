@@ -8,11 +8,9 @@ use polhode::method::method;
 use serde_json::json;
 
 use crate::arguments::positive;
-use crate::body_arguments::BodyArguments;
 use crate::error::{Error, warn};
 use crate::files::emit;
-use crate::force_arguments::ForceArguments;
-use crate::start_arguments::StartArguments;
+use crate::motion_arguments::MotionArguments;
 use crate::table::{Cell, Column, Format, Table, row};
 use crate::times::{duration, positive_duration};
 
@@ -40,11 +38,7 @@ const EXAMPLES: &str = "Examples:
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Advise {
     #[command(flatten)]
-    body: BodyArguments,
-    #[command(flatten)]
-    start: StartArguments,
-    #[command(flatten)]
-    forces: ForceArguments,
+    motion: MotionArguments,
     /// Duration of the motion, s, or with a unit, as 30d
     #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Demand")]
     until: f64,
@@ -92,8 +86,8 @@ impl Advise {
                 return Err(Error::Input(format!("--exclude: {error}")));
             }
         }
-        let body = self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)?;
-        let start = body.leave(&self.start.inside(&body, self.body.published_start())?);
+        let body = self.motion.body()?;
+        let start = body.leave(&self.motion.start(&body)?);
         let mut demand = Demand::new(self.until, self.attitude_error);
         demand.energy_error = self.energy_error;
         demand.budget = self.budget;

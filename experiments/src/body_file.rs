@@ -26,13 +26,23 @@ pub(crate) fn inertia(text: &str) -> Result<Option<Inertia>, Error> {
         None => None,
     };
     let Some(chosen) = chosen else {
-        let names: Vec<&str> = bodies.iter().map(|(name, _)| name.as_str()).collect();
+        let names: Vec<&str> =
+            bodies.iter().map(|(name, _)| name.as_str()).filter(|name| !name.is_empty()).collect();
         return Err(match link {
+            _ if bodies.is_empty() => {
+                Error::input("--body", text, "no body in it states an inertia tensor", "name another file")
+            }
+            Some(_) if names.is_empty() => Error::input(
+                "--body",
+                text,
+                "the bodies of this file have no names",
+                "leave out the colon and what follows",
+            ),
             Some(link) => Error::unknown_name(&format!("--body: {}", path.display()), "link", link, names),
             None => Error::input(
                 "--body",
                 text,
-                &format!("has {} bodies: {}", names.len(), visible(&names.join(", "))),
+                &format!("has {} bodies: {}", bodies.len(), visible(&names.join(", "))),
                 "name one of them behind a colon, as FILE:NAME",
             ),
         });

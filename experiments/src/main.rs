@@ -20,6 +20,7 @@ mod inertia;
 mod measured;
 mod methods;
 mod motion;
+mod motion_arguments;
 mod parallel;
 mod plot;
 mod propagate;

@@ -57,10 +57,10 @@ pub(crate) struct Motion {
     #[command(flatten)]
     start: StartArguments,
     /// How the quantities are printed [default: table on a terminal, csv otherwise]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
     /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
 }
 

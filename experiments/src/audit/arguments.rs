@@ -11,37 +11,37 @@ use crate::arguments::positive;
 #[derive(Args, Clone, Debug)]
 pub(super) struct ReadingArguments {
     /// Columns by name or by number from 1. Keys: t, id; qw,qx,qy,qz, or q0..q3 where the place of the scalar is open; r11..r33; e1..e3 (Euler); s1..s3 (MRP); wx,wy,wz; lx,ly,lz
-    #[arg(long, value_name = "KEY=NAME,...", value_parser = ColumnNames::parse)]
+    #[arg(long, value_name = "KEY=NAME,...", value_parser = ColumnNames::parse, help_heading = "Reading")]
     columns: Option<ColumnNames>,
     /// Unit of time: s, ms, us, ns, or a number of seconds, such as the step of a dump that counts steps [default: that of the header, else s]
-    #[arg(long, value_name = "UNIT", value_parser = time_unit)]
+    #[arg(long, value_name = "UNIT", value_parser = time_unit, help_heading = "Reading")]
     pub(super) time_unit: Option<f64>,
     /// State the place of the scalar [default: found from the rows]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Reading")]
     quaternion: Option<Order>,
     /// State the direction of the attitude [default: found from the rows]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Reading")]
     attitude: Option<To>,
     /// Product of the quaternions for which --attitude is meant [default: hamilton]
-    #[arg(long, value_enum, requires = "attitude")]
+    #[arg(long, value_enum, requires = "attitude", help_heading = "Reading")]
     product: Option<Product>,
     /// State the axes of the angular velocity [default: found from the rows]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Reading")]
     omega_frame: Option<Axes>,
     /// State the axes of the angular momentum [default: found from the rows]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Reading")]
     momentum_frame: Option<Axes>,
     /// State the unit of the angular velocity: rad/s, deg/s or rpm
-    #[arg(long, value_name = "UNIT", value_parser = rate)]
+    #[arg(long, value_name = "UNIT", value_parser = rate, help_heading = "Reading")]
     rate_unit: Option<RateUnit>,
     /// Sequence of the Euler angles in the order of their columns, about turned axes, as zyx; about fixed axes with :extrinsic
-    #[arg(long, value_name = "SEQUENCE[:extrinsic]", value_parser = sequence)]
+    #[arg(long, value_name = "SEQUENCE[:extrinsic]", value_parser = sequence, help_heading = "Reading")]
     euler: Option<(EulerSequence, Turns)>,
     /// Unit of the Euler angles: rad or deg
-    #[arg(long, value_name = "UNIT", value_parser = angle)]
+    #[arg(long, value_name = "UNIT", value_parser = angle, help_heading = "Reading")]
     angle_unit: Option<AngleUnit>,
     /// The moments may belong to the axes in any order
-    #[arg(long)]
+    #[arg(long, help_heading = "Reading")]
     any_order: bool,
 }
 

@@ -68,28 +68,28 @@ pub(crate) struct Audit {
     #[command(flatten)]
     reading: ReadingArguments,
     /// Audit this body of the column id alone
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help_heading = "Reading")]
     id: Option<String>,
     /// Largest error of a record that is right, rad and relative
-    #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true, default_value = "1e-6")]
+    #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
     tolerance: f64,
     /// Compare with this golden trajectory too, of whose body the record then is
-    #[arg(long, value_name = "GOLDEN.csv", conflicts_with_all = ["BodyArguments", "weight_moment"])]
+    #[arg(long, value_name = "GOLDEN.csv", conflicts_with_all = ["BodyArguments", "weight_moment"], help_heading = "Verdict")]
     against: Option<PathBuf>,
     /// Write golden trajectories and programs that check against them into this folder
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["record", "against", "BodyArguments"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["record", "against", "BodyArguments"], help_heading = "Output")]
     golden: Option<PathBuf>,
     /// Draw the errors of energy, |m|, direction of L and attitude against time to this file
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", help_heading = "Output")]
     figure: Option<PathBuf>,
     /// Write one page with the verdict, its numbers and the figure to this file
-    #[arg(long, value_name = "FILE.html|.md")]
+    #[arg(long, value_name = "FILE.html|.md", help_heading = "Output")]
     report: Option<PathBuf>,
     /// How the verdict is written: words on a terminal, csv otherwise
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
     /// Write to this file instead of standard output
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
 }
 

@@ -10,15 +10,13 @@ use polhode::method::{ADAPTIVE, AnyMethod};
 use polhode::run::{RunError, Schedule, ScheduleError};
 
 use crate::arguments::{list, positive};
-use crate::body_arguments::BodyArguments;
 use crate::error::{Error, warn};
 use crate::figure::{Figure, Series};
 use crate::files::{Output, emit};
-use crate::force_arguments::ForceArguments;
 use crate::measured::{Care, Ending, Measured, Motion, StepTime, is_adaptive};
 use crate::methods::named;
+use crate::motion_arguments::MotionArguments;
 use crate::plot::Picture;
-use crate::start_arguments::StartArguments;
 use crate::table::{Cell, Column, Format, Table, row};
 use crate::text::short;
 use crate::times::duration;
@@ -53,11 +51,7 @@ const LOOKS: u32 = 64;
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Compare {
     #[command(flatten)]
-    body: BodyArguments,
-    #[command(flatten)]
-    start: StartArguments,
-    #[command(flatten)]
-    forces: ForceArguments,
+    motion: MotionArguments,
     /// Methods, separated by commas: BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods`
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', required = true, help_heading = "Methods")]
     methods: Vec<String>,
@@ -111,8 +105,8 @@ struct Entry {
 
 impl Compare {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        let body = self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)?;
-        let start = self.start.inside(&body, self.body.published_start())?;
+        let body = self.motion.body()?;
+        let start = self.motion.start(&body)?;
         let span = self.span()?;
         let entries = self.entries(span)?;
         let trajectories: Vec<Trajectory> = self
@@ -137,7 +131,7 @@ impl Compare {
         let mut table = Table::new("comparison", "Methods on one body.", columns(&body));
         let mut figure = Figure::log_log(
             "comparison",
-            format!("Attitude error against processor time: {}, {} s", self.body.label(), short(span)),
+            format!("Attitude error against processor time: {}, {} s", self.motion.body.label(), short(span)),
             "processor time (steps of rk4)",
             "attitude error (rad)",
         );

@@ -40,8 +40,8 @@ pub(super) struct Looks {
 
 impl Looks {
     pub(super) fn of(plot: &Plot) -> Result<Self, Error> {
-        let body = plot.forces.act_on(plot.body.heavy(plot.forces.weight_moment)?)?;
-        let start = plot.start.inside(&body, plot.body.published_start())?;
+        let body = plot.motion.body()?;
+        let start = plot.motion.start(&body)?;
         let exact = ExactMotion::from_point(&body, start);
         let mut looks = Looks {
             body,

@@ -11,12 +11,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use crate::arguments::{number, numbers, positive};
-use crate::body_arguments::BodyArguments;
 use crate::error::{Error, warn};
 use crate::figure::Canvas;
 use crate::files::Output;
-use crate::force_arguments::ForceArguments;
-use crate::start_arguments::StartArguments;
+use crate::motion_arguments::MotionArguments;
 use crate::times::positive_duration;
 use looks::Looks;
 
@@ -103,37 +101,33 @@ pub(crate) struct Plot {
     #[arg(value_enum, value_name = "KIND")]
     kind: Kind,
     #[command(flatten)]
-    body: BodyArguments,
-    #[command(flatten)]
-    start: StartArguments,
-    #[command(flatten)]
-    forces: ForceArguments,
+    motion: MotionArguments,
     /// End of the motion: s, or with a unit (ms, min, h, d)
-    #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Motion")]
     until: f64,
     /// Time of the start, s; forces may depend on it
-    #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
+    #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Motion")]
     start_time: f64,
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME]; see `polhode methods`
-    #[arg(long, value_name = "NAME", default_value = "exact")]
+    #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Motion")]
     method: String,
     /// Step of a method with fixed steps, s; exact, taylor, dop853 and tsit5 need none
-    #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true)]
+    #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Motion")]
     step: Option<f64>,
     /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
-    #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true, help_heading = "Motion")]
     tolerance: Option<f64>,
     /// Axis whose path trace draws [default: that of the weight of a top, else z]
-    #[arg(long, value_enum, value_name = "AXIS")]
+    #[arg(long, value_enum, value_name = "AXIS", help_heading = "Picture")]
     axis: Option<BodyAxis>,
     /// Direction that spheres are seen from: azimuth and elevation, deg [default: one that shows the path]
-    #[arg(long, value_name = "AZ,EL", value_parser = angle, allow_hyphen_values = true)]
+    #[arg(long, value_name = "AZ,EL", value_parser = angle, allow_hyphen_values = true, help_heading = "Picture")]
     view: Option<[f64; 2]>,
     /// Size: column, wide, slide or WIDTHxHEIGHT in pixels; a PNG has twice as many [default: column]
-    #[arg(long, value_name = "SIZE", value_parser = size, default_value = "column", hide_default_value = true)]
+    #[arg(long, value_name = "SIZE", value_parser = size, default_value = "column", hide_default_value = true, help_heading = "Picture")]
     size: Size,
     /// The picture; its ending names the format: .svg, .png or .html
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Picture")]
     out: PathBuf,
 }
 
@@ -230,7 +224,11 @@ impl Plot {
         // what is rounding beside the others was a zero
         let rounded = |w: &f64| if w.abs() < 1e-15 * omega.norm() { 0.0 } else { *w };
         let omega: Vec<String> = omega.iter().map(|w| short(rounded(w))).collect();
-        format!("{what}: {}, ω = ({}) rad/s at the start, {method}", self.body.label(), omega.join(", "))
+        format!(
+            "{what}: {}, ω = ({}) rad/s at the start, {method}",
+            self.motion.body.label(),
+            omega.join(", ")
+        )
     }
 }
 

@@ -53,7 +53,7 @@ pub(super) fn omega(plot: &Plot, looks: &Looks) -> Canvas {
 
 /// Euler angles against time; of a symmetric top also the potential of its tilt.
 pub(super) fn angles(plot: &Plot, looks: &Looks) -> Canvas {
-    let sequence = plot.start.euler.unwrap_or_default();
+    let sequence = plot.motion.start.euler.unwrap_or_default();
     let [width, height] = plot.size();
     let size = [width, (0.5 * height).max(190.0)];
     let found: Vec<_> = looks.states.iter().map(|state| sequence.angles(state.rotation())).collect();

@@ -125,6 +125,8 @@ pub(super) fn still(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
     page.as_class("ellipsoid", |page| {
         page.area(outline, Some(Fill::Flat(BODY, 0.78)), Some(Stroke::new(GREY, 1.2)));
     });
+    // what the body hides of it is dashed
+    page.as_class("herpolhode", |page| view.line(page, &herpolhode, ORANGE, 1.6, true));
     for axis in 0..3 {
         let section: Vec<V> = ring(V::ith(axis, 1.0)).map(place).collect();
         view.curve_on(&mut page, &section, normal, Colour(140, 155, 170), 0.9);

@@ -14,11 +14,9 @@ use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Sample, Schedule, ScheduleError, Watch};
 
 use crate::arguments::positive;
-use crate::body_arguments::BodyArguments;
 use crate::error::{Error, warn};
-use crate::force_arguments::ForceArguments;
 use crate::methods::unknown;
-use crate::start_arguments::StartArguments;
+use crate::motion_arguments::MotionArguments;
 use crate::table::{Format, Rows};
 use crate::times::{OutputTimes, TimeArguments, positive_duration};
 use columns::{Columns, Reading};
@@ -45,11 +43,7 @@ const EXAMPLES: &str = "Examples:
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Propagate {
     #[command(flatten)]
-    body: BodyArguments,
-    #[command(flatten)]
-    start: StartArguments,
-    #[command(flatten)]
-    forces: ForceArguments,
+    motion: MotionArguments,
     #[command(flatten)]
     times: TimeArguments,
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
@@ -74,9 +68,9 @@ pub(crate) struct Propagate {
 
 impl Propagate {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        let body = self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)?;
-        let columns = Columns::chosen(&self.fields, self.start.euler, &body)?;
-        let start = self.start.inside(&body, self.body.published_start())?;
+        let body = self.motion.body()?;
+        let columns = Columns::chosen(&self.fields, self.motion.start.euler, &body)?;
+        let start = self.motion.start(&body)?;
         let times = self.times.output()?;
         if self.method == "exact" {
             self.exact(&body, start, &times, columns)

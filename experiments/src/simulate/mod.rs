@@ -37,37 +37,37 @@ pub(crate) struct Simulate {
     #[command(flatten)]
     body: BodyArguments,
     /// Angular velocity at the start, body axes, rad/s [default: that of the catalogue's body]
-    #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true, help_heading = "Start")]
     omega: Option<[f64; 3]>,
     /// Duration, s
-    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, help_heading = "Record")]
     until: f64,
     /// Time between samples, s
-    #[arg(long, value_name = "DT", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DT", value_parser = positive, allow_hyphen_values = true, help_heading = "Record")]
     every: f64,
     /// Scatter of the sample times, as a fraction of DT; below 1
-    #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
+    #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
     jitter: f64,
     /// Scatter of the true times, as a fraction of DT, where the record has the regular times
-    #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
+    #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
     hidden_jitter: f64,
     /// Number of tosses, each a motion of its own of duration T
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1", help_heading = "Record")]
     tosses: NonZeroUsize,
     /// Time between two tosses, s [default: 20 DT]
-    #[arg(long, value_name = "P", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "P", value_parser = positive, allow_hyphen_values = true, help_heading = "Record")]
     pause: Option<f64>,
     /// Standard deviation of each component of the later tosses' starts about --omega, rad/s
-    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
     scatter: f64,
     /// Seed of the random numbers
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1", help_heading = "Record")]
     seed: u64,
     /// How rows are printed: table on a terminal, csv otherwise
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
     /// Write to this file instead of standard output
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
     #[command(flatten)]
     disturbances: DisturbanceArguments,

@@ -64,6 +64,12 @@ fn a_link_of_a_model_is_named_behind_a_colon() {
     assert!((energy - 0.5 * (2.0 * 0.09 + 1.0 + 2.5 * 0.16)).abs() < 1e-12, "{text}");
     refused(&format!("propagate --body {robot} {start}"), &["has 2 bodies: upper, lower", "FILE:NAME"]);
     refused(&format!("propagate --body {robot}:uper {start}"), &["'uper': no such link", "'upper'"]);
+    let nameless = scratch.file("box.json", output("inertia box 3,2,1 --mass 1 --format json"));
+    refused(&format!("propagate --body {nameless}:lid {start}"), &["have no names", "leave out the colon"]);
+    let empty = scratch.file("frames.urdf", "<robot name='r'><link name='base'/></robot>");
+    for body in [&empty, &format!("{empty}:base")] {
+        refused(&format!("propagate --body {body} {start}"), &["no body in it states an inertia tensor"]);
+    }
 }
 
 #[test]
