@@ -14,7 +14,7 @@ pub(super) struct ReadingArguments {
     #[arg(long, value_name = "KEY=NAME,...", value_parser = ColumnNames::parse, help_heading = "Reading")]
     columns: Option<ColumnNames>,
     /// Unit of time: s, ms, us, ns, or a number of seconds, such as the step of a dump that counts steps [default: that of the header, else s]
-    #[arg(long, value_name = "UNIT", value_parser = time_unit)]
+    #[arg(long, value_name = "UNIT", value_parser = time_unit, help_heading = "Reading")]
     pub(super) time_unit: Option<f64>,
     /// State the place of the scalar [default: found from the rows]
     #[arg(long, value_enum, help_heading = "Reading")]

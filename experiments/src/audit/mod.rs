@@ -68,7 +68,7 @@ pub(crate) struct Audit {
     #[command(flatten)]
     reading: ReadingArguments,
     /// Audit this body of the column id alone
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help_heading = "Reading")]
     id: Option<String>,
     /// Largest error of a record that is right, rad and relative
     #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
