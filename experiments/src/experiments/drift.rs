@@ -9,7 +9,7 @@ use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, catalo
 use polhode::observe::secular_drift;
 use polhode::run::Run;
 
-use super::followed::{Effort, Followed, follow, rows_of_methods};
+use super::followed::{Effort, Ending, Followed, follow, rows_of_methods};
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::table::{Cell, Column, Table, row};
@@ -91,13 +91,8 @@ fn columns() -> Vec<Column> {
         Column::new("flips", "", "changes of sign of the momentum along the middle axis").hidden(),
         Column::new("flips_exact", "", "the same of the exact motion").hidden(),
         Column::new("flips_right", "", "whether they agree").heading("flips").latex("flips"),
-        Column::new(
-            "status",
-            "",
-            "ok; lost: the attitude was first seen more than 1 rad off; diverged or unsolved: the run ended",
-        ),
-        Column::new("time_reached", "s", "time of the row").hidden(),
     ];
+    columns.extend(Ending::columns());
     columns.extend(Effort::columns());
     columns
 }

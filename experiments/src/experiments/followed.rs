@@ -50,6 +50,13 @@ pub(super) enum Ending {
 }
 
 impl Ending {
+    /// Columns that say how a run ended, and when.
+    pub(super) fn columns() -> [Column; 2] {
+        let meaning =
+            "ok; lost: the attitude was first seen more than 1 rad off; diverged or unsolved: the run ended";
+        [Column::new("status", "", meaning), Column::new("time_reached", "s", "time of the row").hidden()]
+    }
+
     /// Whether the run came to its end.
     pub(super) fn is_whole(self) -> bool {
         matches!(self, Ending::Held | Ending::Lost(_))

@@ -9,7 +9,7 @@ use polhode::num::Dd;
 use polhode::observe::secular_drift;
 use polhode::run::Run;
 
-use super::followed::{Effort, Followed, follow, rows_of_methods};
+use super::followed::{Effort, Ending, Followed, follow, rows_of_methods};
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::table::{Cell, Column, Table, row};
@@ -76,13 +76,8 @@ fn columns() -> Vec<Column> {
         Column::new("energy_slope_half_width", "1/s", "half width of its 95 % interval")
             .heading("±")
             .digits(2),
-        Column::new(
-            "status",
-            "",
-            "ok; lost: the attitude was first seen more than 1 rad off; diverged or unsolved: the run ended",
-        ),
-        Column::new("time_reached", "s", "time of the row").hidden(),
     ];
+    columns.extend(Ending::columns());
     columns.extend(Effort::columns());
     columns
 }
