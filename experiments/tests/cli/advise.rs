@@ -34,7 +34,7 @@ fn propagate_takes_the_advice_as_it_stands() {
 #[test]
 fn the_closed_form_is_advised_where_there_is_one() {
     let answer: Value = serde_json::from_str(&output(&format!(
-        "advise {BODY} --until 50 --attitude-error 1e-5 --format json"
+        "advise {BODY} --until 5000 --attitude-error 1e-5 --format json"
     )))
     .unwrap();
     assert_eq!((answer["method"].as_str(), &answer["step"]), (Some("exact"), &Value::Null));

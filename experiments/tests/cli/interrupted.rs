@@ -112,7 +112,7 @@ fn a_signal_leaves_nothing_beside_the_old_file() {
     let old = fs::read(&path).unwrap();
     for (name, number) in [("INT", 2), ("TERM", 15)] {
         // far longer than the test waits
-        let mut child = start(&line(200_000));
+        let mut child = start(&line(5_000_000));
         let begin = Instant::now();
         while scratch.names().len() < 2 && begin.elapsed() < Duration::from_secs(20) {
             std::thread::sleep(Duration::from_millis(5));
