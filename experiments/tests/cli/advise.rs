@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::harness::{output, refused};
+use crate::harness::{output, refused, run};
 
 const BODY: &str = "--moments 1,2,3 --omega 0.4,1,-0.3";
 
@@ -33,10 +33,10 @@ fn propagate_takes_the_advice_as_it_stands() {
 
 #[test]
 fn the_closed_form_is_advised_where_there_is_one() {
-    let answer: Value = serde_json::from_str(&output(&format!(
-        "advise {BODY} --until 5000 --attitude-error 1e-5 --format json"
-    )))
-    .unwrap();
+    // on a loaded machine the advice may say on standard error what it had no time to see
+    let asked = run(&format!("advise {BODY} --until 5000 --attitude-error 1e-5 --format json"));
+    assert_eq!(asked.code, 0, "{}", asked.err);
+    let answer: Value = serde_json::from_str(&asked.out).unwrap();
     assert_eq!((answer["method"].as_str(), &answer["step"]), (Some("exact"), &Value::Null));
 }
 
