@@ -7,6 +7,7 @@ use polhode::num::{Dd, Precise};
 use polhode::rotation::Vec3;
 use polhode::run::{Run, RunError, Sample, Schedule, Watch};
 
+use super::followed::Ending;
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Scale, Series, sheet, ten_to};
@@ -41,7 +42,7 @@ const INTERVALS_A_DECADE: u32 = 4;
 const LOOKS: u64 = 24;
 
 /// Beyond this change a run says no more.
-const LOST: f64 = 10.0;
+const TENFOLD: f64 = 10.0;
 
 /// What a look sees: the relative changes of energy and |m| with their signs, and the angle between L and L₀ in rad.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +69,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     ]
     .map(|(name, y, scale)| Figure::new(name, "", ("time (s)", Scale::Log), (y, scale)).sized(500.0, 280.0));
     for ((name, family), found) in METHODS.into_iter().zip(found) {
-        let Followed { intervals, order, lost } = found?;
+        let Followed { intervals, order, ending } = found?;
         for (k, panel) in panels.iter_mut().enumerate() {
             let furthest = |(low, high): (f64, f64)| if high.abs() >= low.abs() { high } else { low };
             let points = intervals.iter().map(|i| (i.time, furthest(i.range[k]))).collect();
@@ -87,7 +88,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                 norm.0,
                 norm.1,
                 direction.1,
-                lost.clone()
+                ending.clone()
             ];
             if n + 1 == intervals.len() {
                 summary.push(row.clone());
@@ -137,7 +138,7 @@ struct Interval {
 struct Followed {
     intervals: Vec<Interval>,
     order: Option<u64>,
-    lost: String,
+    ending: String,
 }
 
 fn follow(name: &str, power: u32) -> Result<Followed, Error> {
@@ -149,7 +150,7 @@ fn follow(name: &str, power: u32) -> Result<Followed, Error> {
     let run = Run::new(method.as_ref(), &body, &start, STEP).map_err(unexpected)?;
     let mut run = run.watching(Watch::Never);
     let first = run.sample();
-    let (mut intervals, mut lost) = (Vec::new(), "ok".to_string());
+    let (mut intervals, mut ending) = (Vec::new(), Ending::Held);
     let mut begun = 0_u64;
     for end in ends(power) {
         let looks = (1..=LOOKS).map(|k| begun + (end - begun) * k / LOOKS).collect::<Vec<_>>();
@@ -158,14 +159,14 @@ fn follow(name: &str, power: u32) -> Result<Followed, Error> {
             let sample = match sample {
                 Ok(sample) => sample,
                 Err(RunError::Diverged { last } | RunError::Unsolved { last, .. }) => {
-                    lost = format!("lost at t = {:.3e}", last.elapsed.hi());
+                    ending = Ending::Diverged(last.elapsed.hi());
                     break;
                 }
                 Err(error) => return Err(unexpected(error)),
             };
             let changes = changes(&sample, &first);
-            if changes.0.iter().any(|change| change.is_nan() || change.abs() > LOST) {
-                lost = format!("lost at t = {:.3e}", sample.elapsed.hi());
+            if changes.0.iter().any(|change| change.is_nan() || change.abs() > TENFOLD) {
+                ending = Ending::Lost(sample.elapsed.hi());
                 break;
             }
             for (range, change) in range.iter_mut().zip(changes.0) {
@@ -176,12 +177,12 @@ fn follow(name: &str, power: u32) -> Result<Followed, Error> {
         if let Some(sample) = reached {
             intervals.push(Interval { steps: sample.steps, time: sample.elapsed.hi(), range });
         }
-        if lost != "ok" {
+        if ending != Ending::Held {
             break;
         }
         begun = end;
     }
-    Ok(Followed { intervals, order, lost })
+    Ok(Followed { intervals, order, ending: ending.to_string() })
 }
 
 /// Steps at the ends of the intervals.
@@ -214,6 +215,6 @@ mod tests {
         assert!(split[1].1.abs() < 1e-13 && split[2].1 < 1e-13, "{split:?}");
         let rk4 = of("rk4");
         assert!(rk4[0].1 < -1e-9 && rk4[1].1 < -1e-10 && rk4[2].1 > 1e-9, "{rk4:?}");
-        assert!(follow("explicit-euler", 6).unwrap().lost.starts_with("lost at t = "));
+        assert!(follow("explicit-euler", 6).unwrap().ending.starts_with("lost at t = "));
     }
 }

@@ -14,6 +14,7 @@ use polhode::rotation::{Quat, Vec3, rotation_angle};
 use crate::error::Error;
 use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series};
+use crate::measured::LOST;
 use crate::table::{Column, Table, row};
 
 const FIXTURES: &str = include_str!("../../../tests/data/free_body/fixtures.csv");
@@ -66,6 +67,11 @@ impl Worst {
         self.omega = larger(self.omega, other.omega);
         self.plain_attitude = larger(self.plain_attitude, other.plain_attitude);
     }
+
+    /// The error of plain arithmetic unless the attitude is lost.
+    fn held_plain(&self) -> Option<f64> {
+        Some(self.plain_attitude).filter(|error| *error <= LOST)
+    }
 }
 
 /// The larger of two errors; a NaN is larger than any number.
@@ -113,9 +119,13 @@ fn fixtures(report: &mut Report) -> Result<(), Error> {
                 .heading("attitude")
                 .digits(2),
             Column::new("omega_error", "", "largest |omega - exact| / |exact|").heading("omega").digits(2),
-            Column::new("plain_attitude_error", "rad", "the same angle with all constants and phases in f64")
-                .heading("f64 only")
-                .digits(2),
+            Column::new(
+                "plain_attitude_error",
+                "rad",
+                "the same angle with all constants and phases in f64; empty where it exceeds 1 rad",
+            )
+            .heading("f64 only")
+            .digits(2),
         ]
     };
     let mut regimes = Table::new(
@@ -124,7 +134,7 @@ fn fixtures(report: &mut Report) -> Result<(), Error> {
         columns(Column::new("regime", "", "kind of body and start")),
     );
     for (regime, worst) in &by_regime {
-        regimes.push(row![*regime, worst.cases, worst.attitude, worst.omega, worst.plain_attitude]);
+        regimes.push(row![*regime, worst.cases, worst.attitude, worst.omega, worst.held_plain()]);
     }
     let mut times = Table::new(
         "times",
@@ -137,7 +147,7 @@ fn fixtures(report: &mut Report) -> Result<(), Error> {
             worst.cases,
             worst.attitude,
             worst.omega,
-            worst.plain_attitude
+            worst.held_plain()
         ]);
     }
     let mut all = Worst::default();
@@ -152,11 +162,13 @@ fn fixtures(report: &mut Report) -> Result<(), Error> {
         "turned (rad)",
         "attitude error (rad)",
     );
-    let curve = |name: &str, error: fn(&Worst) -> f64| {
-        let points = by_time.iter().map(|(power, worst)| (libm::exp10(f64::from(*power)), error(worst)));
-        Series::new(name, points.collect())
+    let curve = |name: &str, error: fn(&Worst) -> Option<f64>| {
+        let point = |(power, worst): (&i32, &Worst)| Some((libm::exp10(f64::from(*power)), error(worst)?));
+        Series::new(name, by_time.iter().filter_map(point).collect())
     };
-    figure.series = vec![curve("double-double", |w| w.attitude), curve("f64 only", |w| w.plain_attitude)];
+    figure.series =
+        vec![curve("double-double", |worst| Some(worst.attitude)), curve("f64 only", Worst::held_plain)];
+    figure.level("lost beyond 1 rad", LOST);
     report.figures.push(figure);
     Ok(())
 }

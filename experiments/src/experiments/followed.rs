@@ -11,6 +11,7 @@ use polhode::run::{Run, RunError, Sample, Schedule};
 use crate::error::{Error, unexpected};
 use crate::experiment::Drawing;
 use crate::figure::{Group, RowPlot, Values};
+use crate::measured::LOST;
 use crate::table::{Cell, Column, Table};
 
 /// Looks at the energy for its secular slope.
@@ -18,9 +19,6 @@ const LOOKS: u64 = 512;
 
 /// Of those, one in so many at the attitude, to see when it is lost.
 const ATTITUDE_EVERY: usize = 8;
-
-/// An attitude that is further off than this, rad, is lost: what follows is no error but chance.
-pub(super) const LOST: f64 = 1.0;
 
 /// What was seen of a run.
 pub(super) struct Followed {
@@ -75,8 +73,9 @@ impl fmt::Display for Ending {
 }
 
 /// To two digits: a loss is seen at one look out of many only.
-fn rounded(t: f64) -> f64 {
-    format!("{t:.1e}").parse().unwrap_or(t)
+fn rounded(t: f64) -> String {
+    let t = format!("{t:.1e}").parse().unwrap_or(t);
+    if (1e-3..1e6).contains(&t) { t.to_string() } else { format!("{t:e}") }
 }
 
 /// Follows `run` for `steps` steps or until it fails; `exact` is the motion, where it is known.

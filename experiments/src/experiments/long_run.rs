@@ -8,10 +8,11 @@ use polhode::flow::FreeMotion;
 use polhode::method::method;
 use polhode::run::{Run, Schedule};
 
-use super::followed::attitude_error;
+use super::followed::{Ending, attitude_error};
 use crate::error::Error;
 use crate::experiment::{Context, Report};
 use crate::figure::{Figure, Series, ten_to};
+use crate::measured::LOST;
 use crate::table::{Cell, Column, Table, row};
 
 const METHODS: [&str; 8] = [
@@ -50,9 +51,18 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                 .heading("L")
                 .latex("$L$")
                 .digits(2),
-            Column::new("attitude_error", "rad", "angle between computed and exact attitude")
-                .heading("attitude")
-                .digits(2),
+            Column::new(
+                "attitude_error",
+                "rad",
+                "angle between computed and exact attitude; empty once it is lost",
+            )
+            .heading("attitude")
+            .digits(2),
+            Column::new(
+                "status",
+                "",
+                "ok; lost: the attitude was first seen more than 1 rad off at this time",
+            ),
         ],
     );
     let mut summary = series.clone();
@@ -121,10 +131,13 @@ fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
     let mut run = Run::new(method.as_ref(), &body, &start, STEP).map_err(|e| failed(&e))?;
     let exact = FreeMotion::from_point(body.inertia(), run.start().to_dd());
     let clock = Instant::now();
-    let mut rows = Vec::new();
+    let (mut rows, mut ending) = (Vec::new(), Ending::Held);
     for sample in run.samples(Schedule::logarithmic(steps, 4)).skip(1) {
         let sample = sample.map_err(|e| failed(&e))?;
         let attitude = attitude_error(&sample, &exact.point_at_dd(sample.elapsed));
+        if ending == Ending::Held && attitude > LOST {
+            ending = Ending::Lost(sample.elapsed.hi());
+        }
         let worst = sample.worst;
         rows.push(
             row![
@@ -134,7 +147,8 @@ fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
                 worst.energy,
                 worst.momentum_norm,
                 worst.momentum_vector,
-                attitude
+                (ending == Ending::Held).then_some(attitude),
+                ending.to_string()
             ]
             .to_vec(),
         );

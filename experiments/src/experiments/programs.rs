@@ -11,7 +11,7 @@ use serde::Deserialize;
 
 use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::measured::StepTime;
+use crate::measured::{LOST, StepTime};
 use crate::table::{Column, Table, row};
 
 /// Figures that the programs themselves give, with what they were asked.
@@ -26,9 +26,6 @@ const END: f64 = 1e4;
 const RIVAL: &str = "dmv:10";
 const FEWEST: u32 = 13;
 const MOST: u32 = 20;
-
-/// Beyond this an attitude is lost, rad.
-const LOST: f64 = 1.0;
 
 #[derive(Clone, Deserialize)]
 struct Program {

@@ -13,7 +13,7 @@ use crate::error::{Error, unexpected};
 pub(crate) use reference::Reference;
 pub(crate) use timing::StepTime;
 
-/// An attitude that is further off than this is lost, rad.
+/// An attitude that is further off than this, rad, is lost: what follows is no error but chance.
 pub(crate) const LOST: f64 = 1.0;
 
 /// One body from one start on, with the motion that runs are compared with.

@@ -141,7 +141,8 @@ pub(crate) fn better_unit(
 ) -> Option<Better> {
     let pilot = radius::pilot(stretches);
     let drag = columns_of(TorqueModel::Drag);
-    let mut sphere = weak.filter(|weak| suspicious(weak, variance)).map(|weak| weak.x().norm());
+    let spherical = |weak: &WeakEstimate| suspicious(weak, variance).then(|| weak.x().norm());
+    let mut sphere = weak.and_then(spherical);
     let short = radius::longest(stretches, SAMPLES);
     let is_whole = samples(&short) == samples(&pilot);
     let explains = |stretches: &[Stretch], factor: f64| {
@@ -156,16 +157,13 @@ pub(crate) fn better_unit(
     let by_noise = |weak: &Option<WeakEstimate>| {
         weak.as_ref().is_some_and(|weak| weak.misfit(variance) <= weak.expected_misfit())
     };
-    let spherical = |weak: &Option<WeakEstimate>| {
-        weak.as_ref().filter(|weak| suspicious(weak, variance)).map(|weak| weak.x().norm())
-    };
     let mut quick = None;
     if sphere.is_none() {
         // what a part of the record does not gainsay the whole may not either; where it does, the units are tried first
         let part = read(&short);
-        if by_noise(&part) || spherical(&part).is_some() {
+        if by_noise(&part) || part.as_ref().and_then(spherical).is_some() {
             let whole = read(&pilot);
-            sphere = spherical(&whole);
+            sphere = whole.as_ref().and_then(spherical);
             if sphere.is_none() && by_noise(&whole) {
                 return None;
             }

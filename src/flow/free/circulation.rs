@@ -12,9 +12,9 @@
 //!   1/(1 − s²) and 1/(1 + p s²). The part linear in u joins the rate of the twist.
 //! - *Rate of the twist at u = 0.* `ψ' = G/I_a + (2H − G²/I_a)/(G + A)` cancels for rods; the same over one
 //!   denominator, `(2H + GA/I_a)/(G + A)`, is a sum of positive terms.
-//! - *Celledoni, Fassò, Säfström and Zanna* (SIAM J. Sci. Comput. 30 (2008) 2084) print wrong signs and a separatrix
-//!   case that covers only half of it, as Leroy's note in the sources of Principia found; nothing here is taken from
-//!   them. *TOMS algorithm 903* prints for its example 4 a quaternion that is off in the tenth digit: compare
+//! - *Celledoni, Fassò, Säfström and Zanna* (SIAM J. Sci. Comput. 30 (2008) 2084): their preprint has wrong signs and a
+//!   separatrix case that covers only half of it, as Leroy's note in the sources of Principia found; nothing here is
+//!   taken from it, and the printed article was not compared. *TOMS algorithm 903* prints for its example 4 a quaternion that is off in the tenth digit: compare
 //!   `tests/data/free_body/reference.csv`, scenario E4.
 
 use super::phase::reduce;
