@@ -59,7 +59,7 @@ impl Table {
         for row in self.rows() {
             let cell = |(k, column): &(usize, &Column)| match &row[*k] {
                 Cell::Number(x) => rounded(*x, column.digits).latex(),
-                Cell::Integer(n) => format!("${n}$"),
+                Cell::Integer(n) => latex_count(*n),
                 other => escaped_latex(&other.exact()),
             };
             text += &line(shown.iter().map(cell).collect());
@@ -82,6 +82,12 @@ fn latex_heading(column: &Column) -> String {
         "" => heading,
         unit => format!("{heading} [{}]", escaped_latex(unit)),
     }
+}
+
+/// Powers of ten as such from a hundred thousand on.
+fn latex_count(n: i64) -> String {
+    let power = n.checked_ilog10().filter(|power| *power >= 5 && 10_i64.checked_pow(*power) == Some(n));
+    power.map_or_else(|| format!("${n}$"), |power| format!("$10^{{{power}}}$"))
 }
 
 fn escaped_markdown(text: &str) -> String {

@@ -7,19 +7,23 @@ pub(super) struct Rounded {
     pub(super) exponent: Option<i32>,
 }
 
-/// `x`, finite, to at most `digits` significant digits; zeros at the end are dropped.
+/// `x`, finite, to `digits` significant digits; zeros at the end are dropped where no more than the rounding of a sum or product
+/// was cut off.
 pub(super) fn rounded(x: f64, digits: usize) -> Rounded {
     let decimals = digits.saturating_sub(1);
     let text = format!("{x:.decimals$e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);
+    let short: f64 = text.parse().unwrap_or(x);
+    let is_exact = (short - x).abs() <= 4.0 * f64::EPSILON * x.abs();
     if x != 0.0 && !(-3..6).contains(&exponent) {
-        return Rounded { mantissa: trimmed(mantissa), exponent: Some(exponent) };
+        let mantissa = if is_exact { trimmed(mantissa) } else { mantissa.to_string() };
+        return Rounded { mantissa, exponent: Some(exponent) };
     }
     // Rounded first and printed then, or 99999.9 to three digits would keep five nines.
-    let value: f64 = text.parse().unwrap_or(x);
     let decimals = usize::try_from(decimals as i32 - exponent).unwrap_or(0);
-    Rounded { mantissa: trimmed(&format!("{value:.decimals$}")), exponent: None }
+    let value = format!("{short:.decimals$}");
+    Rounded { mantissa: if is_exact { trimmed(&value) } else { value }, exponent: None }
 }
 
 fn trimmed(decimal: &str) -> String {
@@ -59,11 +63,15 @@ mod tests {
             (4.3123e-10, 2, "4.3e-10"),
             (0.01, 3, "0.01"),
             (1.0 / 3.0, 3, "0.333"),
-            (9.996, 3, "10"),
+            (9.996, 3, "10.0"),
+            (10.0, 3, "10"),
+            (0.1 + 0.2, 3, "0.3"),
             (99_999.9, 3, "100000"),
-            (999_999.9, 3, "1e6"),
+            (999_999.9, 3, "1.00e6"),
+            (2.0004e-4, 2, "2.0e-4"),
+            (2e-4, 2, "2e-4"),
             (-12_345.0, 3, "-12300"),
-            (0.000_999_96, 4, "0.001"),
+            (0.000_999_96, 4, "0.001000"),
             (0.0, 3, "0"),
             (1e-47, 3, "1e-47"),
             (-2.5e33, 1, "-2e33"), // half to even, as the decimal expansion is exact
