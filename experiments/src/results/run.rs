@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::page::Page;
+use super::page::{Page, is_page};
 use super::{chosen, provenance};
 use crate::error::Error;
 use crate::experiment::{Experiment, Report, Scale};
@@ -14,7 +14,7 @@ pub(super) fn run(names: &[String], scale: Scale, out: &Path, page: Option<&Path
         |experiment: &'static Experiment| (experiment, out.join(scale.to_string()).join(experiment.name));
     let chosen: Vec<_> = chosen("experiment run", names)?.into_iter().map(with_folder).collect();
     // a place that cannot be written is found out before the work, not after it
-    let mut page = page.map(|path| Page::new(path, scale)).transpose()?;
+    let mut page = page.map(|path| opened(path, scale, out)).transpose()?;
     for (_, folder) in &chosen {
         drop(Staging::new(folder)?);
     }
@@ -32,6 +32,16 @@ pub(super) fn run(names: &[String], scale: Scale, out: &Path, page: Option<&Path
         page.finish()?;
     }
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.join("\n"))) }
+}
+
+/// The page, which may stand in the folder of results.
+fn opened(path: &Path, scale: Scale, out: &Path) -> Result<Page, Error> {
+    is_page(path)?;
+    if path.parent() == Some(out) {
+        std::fs::create_dir_all(out)
+            .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", out.display())))?;
+    }
+    Page::new(path, scale)
 }
 
 fn write(experiment: &Experiment, scale: Scale, report: &Report, folder: &Path) -> Result<(), Error> {

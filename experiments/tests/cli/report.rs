@@ -8,7 +8,8 @@ use crate::harness::{Scratch, output, refused};
 #[test]
 fn the_page_holds_every_result_and_needs_nothing_else() {
     let scratch = Scratch::new("report-page");
-    let (page, out) = (scratch.0.join("results.html"), scratch.0.join("results"));
+    let out = scratch.0.join("results");
+    let page = out.join("results.html"); // in a folder that is not there yet
     let line = format!(
         "experiment run order separatrix --scale smoke --out {} --report {}",
         out.display(),

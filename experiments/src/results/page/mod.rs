@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::provenance;
+use super::which::Which;
 use crate::error::Error;
 use crate::experiment::{Experiment, Report, Scale};
 use crate::files::Output;
@@ -16,8 +17,8 @@ use turning::{Turning, turning};
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 
-/// The experiment whose winners are the verdict, and its table of them.
-const VERDICT: (&str, &str) = ("work-precision", "winners");
+/// The experiment whose costs are the verdict.
+const VERDICT: &str = "work-precision";
 
 /// A page under way.
 pub(super) struct Page {
@@ -33,12 +34,8 @@ pub(super) struct Page {
 
 impl Page {
     /// # Errors
-    /// A name that does not end in .html, and a place that cannot be written.
+    /// A place that cannot be written.
     pub(super) fn new(path: &Path, scale: Scale) -> Result<Self, Error> {
-        if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("html")) {
-            let value = path.display().to_string();
-            return Err(Error::input("--report", &value, "the report is a page", "end its name in .html"));
-        }
         Ok(Self {
             output: Output::to_file("--report", path)?,
             scale,
@@ -72,9 +69,9 @@ impl Page {
             self.sections += &titled(table);
         }
         self.sections += "</section>\n";
-        let tables = report.tables.iter().chain(&report.views);
-        if let Some(table) = tables.clone().find(|table| (name, &*table.name) == VERDICT) {
-            self.verdict = Some(titled(table));
+        if name == VERDICT {
+            self.verdict =
+                report.times.iter().find(|table| table.name == "costs").map(verdict).transpose()?;
         }
         let _ = writeln!(
             self.runs,
@@ -101,10 +98,7 @@ impl Page {
             .map(|name| format!("<a href=\"#{name}\">{name}</a>\n"))
             .collect();
         let verdict = self.verdict.unwrap_or_else(|| {
-            format!(
-                "<p>Which method needs least is asked by the experiment {}, which was not run.</p>\n",
-                VERDICT.0
-            )
+            format!("<p>Which method is the quickest is asked by the experiment {VERDICT}, which was not run.</p>\n")
         });
         let failures = match self.failures.as_slice() {
             [] => "<p>Every claim that these experiments check held.</p>\n".to_string(),
@@ -117,7 +111,7 @@ impl Page {
              <title>polhode: results</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
              <h1>Integrators of rigid-body rotation: results</h1>\n\
              <p class=\"quiet\">polhode {}, {} scale</p>\n<nav>\n{links}</nav>\n\
-             <section id=\"verdict\">\n<h2>Which method needs least</h2>\n{verdict}{failures}</section>\n{turning}{}\
+             <section id=\"verdict\">\n<h2>Which method is the quickest</h2>\n{verdict}{failures}</section>\n{turning}{}\
              <section id=\"provenance\">\n<h2>Provenance</h2>\n{}</section>\n\
              <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
             env!("CARGO_PKG_VERSION"),
@@ -127,6 +121,21 @@ impl Page {
         );
         self.output.write_whole(&page)
     }
+}
+
+/// Who is the quickest, in a sentence and by kind of problem.
+fn verdict(costs: &Table) -> Result<String, Error> {
+    let which = Which::of(&costs.csv()).map_err(|reason| Error::Failed(format!("costs: {reason}")))?;
+    Ok(format!("<p>{}</p>\n{}", escaped(&which.claim()), titled(&which.table())))
+}
+
+/// Refuses a name that does not end in .html.
+pub(super) fn is_page(path: &Path) -> Result<(), Error> {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html")) {
+        return Ok(());
+    }
+    let value = path.display().to_string();
+    Err(Error::input("--report", &value, "the report is a page", "end its name in .html"))
 }
 
 /// A table under its caption.
