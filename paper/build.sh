@@ -13,7 +13,7 @@ missing() {
 for tool in latexmk pdflatex bibtex; do
   command -v "$tool" >/dev/null || missing "$tool is not installed"
 done
-for file in lmodern.sty rotating.sty booktabs.sty microtype.sty pgfplots.sty pgfplotstable.sty; do
+for file in lmodern.sty natbib.sty rotating.sty booktabs.sty microtype.sty pgfplots.sty pgfplotstable.sty; do
   kpsewhich "$file" >/dev/null || missing "$file is not installed"
 done
 for file in $(grep -oh 'generated/[a-z0-9.-]*' main.tex style.tex sections/*.tex | sort -u); do
