@@ -9,7 +9,7 @@ use polhode::num::Dd;
 use polhode::observe::Errors;
 use polhode::run::{Run, RunError, Sample, Watch};
 
-use crate::error::{Error, unexpected};
+use crate::error::Error;
 pub(crate) use reference::Reference;
 pub(crate) use timing::StepTime;
 
@@ -183,8 +183,7 @@ impl Motion {
 
     /// Processor time of a step of `method`; of one that chooses its steps, per interval of output.
     pub(crate) fn step_time(&self, method: &dyn AnyMethod, step: f64) -> Result<StepTime, Error> {
-        let timed = StepTime::measure(method, &self.body, self.start, self.clock(step));
-        timed.map_err(unexpected)
+        StepTime::measure(method, &self.body, self.start, self.clock(step))
     }
 
     /// An interval of output of methods that choose their steps, s: that of the looks where they are even.

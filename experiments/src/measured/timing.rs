@@ -3,13 +3,15 @@
 use std::time::Instant;
 
 use polhode::body::{Body, Clock, Point};
-use polhode::method::{AnyMethod, Rk4, Step, StepError};
+use polhode::method::{AnyMethod, Step, method};
+
+use crate::error::{Error, unexpected};
 
 /// Bursts of each; the least counts, because whatever else the machine does only adds.
 const BURSTS: u32 = 9;
 
 /// Length of a burst, s.
-const BURST: f64 = 1e-4;
+const BURST: f64 = 2e-4;
 
 /// Time of one step.
 #[derive(Clone, Copy, Debug)]
@@ -21,20 +23,21 @@ pub(crate) struct StepTime {
 }
 
 impl StepTime {
-    /// Of `method` with the steps of `clock`, in bursts that alternate with those of `rk4`.
+    /// Of `timed` with the steps of `clock`, in bursts that alternate with those of `rk4`.
     ///
     /// # Errors
     /// A body or a step that the method is not for.
     pub(crate) fn measure(
-        method: &dyn AnyMethod,
+        timed: &dyn AnyMethod,
         body: &Body,
         start: Point<f64>,
         clock: Clock,
-    ) -> Result<Self, StepError> {
-        let mut contestants = [
-            Contestant::new(method.prepare_f64(clock, body)?, start),
-            Contestant::new((Rk4 { normalized: false }).prepare_f64(clock, body)?, start),
-        ];
+    ) -> Result<Self, Error> {
+        // by its name as the other: the same machine code, whichever crate compiles it
+        let unit = method("rk4").map_err(unexpected)?;
+        let prepared = |method: &dyn AnyMethod| method.prepare_f64(clock, body).map_err(unexpected);
+        let mut contestants =
+            [Contestant::new(prepared(timed)?, start), Contestant::new(prepared(unit.as_ref())?, start)];
         for _ in 0..BURSTS {
             contestants.iter_mut().for_each(Contestant::burst);
         }

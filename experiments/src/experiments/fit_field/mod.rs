@@ -52,6 +52,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             tally.refused,
             tally.units,
             tally.warned,
+            tally.outside,
+            tally.by_lines,
             tally.silent,
         ]);
         timing.push(row![case.name, noise, tally.seconds(0.5), tally.seconds(1.0)]);
@@ -96,7 +98,10 @@ fn columns() -> Vec<Column> {
         Column::new("refused", "", "records refused for another reason than units"),
         Column::new("units", "", "records refused because the units look mistaken"),
         Column::new("warned", "", "answers with a warning"),
-        Column::new("silent", "", "answers outside the 99.9 % ellipsoid without a warning or a systematic line that covers the error"),
+        Column::new("outside", "", "answers whose own 99.9 % ellipsoid does not hold the truth"),
+        Column::new("by_lines", "", "of these, without a warning, those that the report's lines of systematic errors cover at the size that the sensor's error has")
+            .heading("by lines"),
+        Column::new("silent", "", "of these, those with neither"),
     ]
 }
 
@@ -123,7 +128,8 @@ fn totals(pooled: &Tally, cells: &[(usize, f64)], results: &[Trial], trials: usi
         Column::new("low", "", "lower end of its 95 % interval (Wilson)").heading("from"),
         Column::new("high", "", "upper end of its 95 % interval (Wilson)").heading("to"),
     ];
-    let mut table = Table::new("totals", "Counts over all rows of a kind.", columns);
+    let caption = "Counts over all rows of a kind. Rows of both noises share motions and draws; the intervals take them as independent.";
+    let mut table = Table::new("totals", caption, columns);
     let mut push = |quantity: &str, count: u64, of: u64| {
         let interval = Interval::new(count, of);
         let shown = |x: fn(&Interval) -> f64| interval.as_ref().map(x).and_then(rounded);
@@ -145,6 +151,12 @@ fn totals(pooled: &Tally, cells: &[(usize, f64)], results: &[Trial], trials: usi
     push("95 % ellipsoids that hold the truth, model at hand", pooled.covered(), pooled.answered());
     push("refused, model at hand", known.refused + known.units, known.records());
     push("warnings on ideal records", ideal.warned, ideal.answered());
+    push("outside the 99.9 % ellipsoid, all records", right_units.outside, right_units.answered());
+    push(
+        "of these, without a warning and within the systematic lines",
+        right_units.by_lines,
+        right_units.outside,
+    );
     push("silently wrong, all records", right_units.silent, right_units.answered());
     push("right units taken for mistaken", right_units.units, right_units.records());
     push("mistaken units caught", wrong_units.units, wrong_units.records());

@@ -19,6 +19,11 @@ pub(super) struct Tally {
     covered: u64,
     stated: u64,
     pub(super) warned: u64,
+    /// Answers whose own 99.9 % ellipsoid does not hold the truth.
+    pub(super) outside: u64,
+    /// Of these, without a warning, those that lines of systematic errors cover.
+    pub(super) by_lines: u64,
+    /// Of these, those with neither.
     pub(super) silent: u64,
     pub(super) units: u64,
     pub(super) refused: u64,
@@ -80,6 +85,8 @@ impl Tally {
                     t.stated += u64::from(answer.own.is_some());
                     t.covered += u64::from(answer.own.is_some_and(|square| square < inside));
                     let wrong = answer.own.is_none_or(|square| square > outside);
+                    t.outside += u64::from(wrong);
+                    t.by_lines += u64::from(wrong && !answer.warned && answer.lines_cover);
                     t.silent += u64::from(wrong && !answer.warned && !answer.lines_cover);
                 }
             }
@@ -94,6 +101,8 @@ impl Tally {
         self.covered += other.covered;
         self.stated += other.stated;
         self.warned += other.warned;
+        self.outside += other.outside;
+        self.by_lines += other.by_lines;
         self.silent += other.silent;
         self.units += other.units;
         self.refused += other.refused;
@@ -213,6 +222,7 @@ mod tests {
         let trials = verdicts.map(|verdict| Trial { verdict, seconds: 0.1 });
         let t = Tally::new(&trials, 5);
         assert_eq!((t.answered(), t.covered(), t.warned, t.silent), (4, 1, 1, 1));
+        assert_eq!((t.outside, t.by_lines), (3, 1));
         assert_eq!((t.units, t.refused, t.records()), (1, 1, 6));
         assert_eq!(t.over_bound(), Some((95.0_f64 / 20.0).sqrt()));
     }

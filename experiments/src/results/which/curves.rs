@@ -6,7 +6,7 @@ use super::{Contest, Which, longest};
 use crate::table::{Column, Table, row};
 
 /// Methods that know nothing of rotation and are shown wherever they reach an accuracy.
-const GENERAL: [&str; 4] = ["rk4", "dop853", "rk8", "taylor"];
+const GENERAL: [&str; 5] = ["rk4", "dop853", "rk8", "taylor", "gauss:8"];
 
 /// What stands for the method that knows of rotation, whatever its name.
 const GEOMETRIC: &str = "geometric";
