@@ -3,9 +3,10 @@
 //! The committed results are CSVs with a `run.toml` beside them. A block in README.md between
 //! `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced by that table in Markdown, and
 //! every `generated/experiment-table` that the article names is made: a LaTeX table, a CSV, or the experiment, commit and
-//! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both, `work-precision/which` the quickest
-//! methods by kind of problem, `work-precision/claim` whether any is quicker than the general-purpose ones everywhere, and
-//! `generated/work-precision-curves.csv` cost against accuracy. `generated/style` is the style of figures for LaTeX.
+//! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both, in the article without sources;
+//! `work-precision/which` the quickest methods by kind of problem, `work-precision/claim` whether any is quicker than the
+//! general-purpose ones everywhere, and `generated/work-precision-curves.csv` cost against accuracy. `generated/style` is the
+//! style of figures for LaTeX.
 //! Nothing is read or written outside of the root, whatever the results and the markers say.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,6 +18,7 @@ use crate::error::Error;
 use crate::figure;
 use crate::files::{MARK, Staging, emit, read};
 use crate::methods;
+use crate::table::{Column, Table};
 
 const GENERATED: &str = "generated/";
 const METHODS: &str = "methods";
@@ -102,7 +104,7 @@ fn for_article(name: &str, results: &[Results]) -> Result<(String, String), Erro
     let stem = name.strip_suffix(".tex").unwrap_or(name);
     if stem == METHODS {
         let head = format!("% catalogue of methods, version {}\n", env!("CARGO_PKG_VERSION"));
-        return Ok(("methods.tex".into(), head + &methods::table().latex()));
+        return Ok(("methods.tex".into(), head + &catalogue().latex()));
     }
     if stem == STYLE {
         let head = format!("% style of figures, version {}\n", env!("CARGO_PKG_VERSION"));
@@ -127,6 +129,14 @@ fn for_article(name: &str, results: &[Results]) -> Result<(String, String), Erro
         (ORIGIN, false) => Ok((format!("{stem}.tex"), format!("% {head}\n{head}%\n"))),
         (_, false) => Ok((format!("{stem}.tex"), format!("% {head}\n{}", found.table(table)?.latex()))),
     }
+}
+
+/// The methods without their sources, which the article cites.
+fn catalogue() -> Table {
+    let mut table = methods::table();
+    let without = |column: Column| if column.name == "source" { column.hidden() } else { column };
+    table.columns = table.columns.into_iter().map(without).collect();
+    table
 }
 
 fn folders(results: &Path) -> Result<Vec<PathBuf>, Error> {
