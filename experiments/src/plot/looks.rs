@@ -20,6 +20,8 @@ const FEWEST: u64 = 600;
 const MOST: u64 = 20_000;
 /// Points for each radian that the body turns.
 const PER_RADIAN: f64 = 12.0;
+/// Marks of flips that can be told apart.
+const MOST_FLIPS: u64 = 400;
 /// Beyond this turn between two points, rad, they are not joined.
 const RESOLVED: f64 = 0.8;
 
@@ -34,8 +36,23 @@ pub(super) struct Looks {
     /// Body axes, rad/s.
     pub(super) omegas: Vec<Vector3<f64>>,
     pub(super) errors: Vec<Errors>,
-    /// Times at which the momentum along the axis of the middle moment changes sign, s; `None` where that is not counted.
-    pub(super) flips: Option<Vec<f64>>,
+    /// Sign changes of the momentum along the axis of the middle moment; `None` where they are not counted.
+    pub(super) flips: Option<Flips>,
+}
+
+/// Flips of a motion.
+#[derive(Default)]
+pub(super) struct Flips {
+    pub(super) count: u64,
+    /// s; those of the first flips where there are more than marks can tell apart.
+    pub(super) times: Vec<f64>,
+}
+
+impl Flips {
+    /// Whether each has its mark.
+    pub(super) fn can_be_told_apart(&self) -> bool {
+        self.count <= MOST_FLIPS
+    }
 }
 
 impl Looks {
@@ -184,7 +201,7 @@ impl Looks {
                 Error::Input(format!("{flag}: {error}"))
             })?;
         let middle = middle_axis(&self.body);
-        let mut flips = middle.map(|_| Vec::new());
+        let mut flips = middle.map(|_| Flips::default());
         let mut before: Option<(f64, f64, u64)> = None;
         for sample in run.samples(Schedule::every(steps.div_ceil(MOST).max(1), steps)) {
             let sample = match sample {
@@ -198,7 +215,10 @@ impl Looks {
             if let (Some(axis), Some(found), Some(count)) = (&middle, &mut flips, sample.flips) {
                 let along = sample.state.momentum().dot(axis);
                 if let Some((time, from, counted)) = before {
-                    found.extend(crossings((time, from), (t, along), count - counted));
+                    found.count += count - counted;
+                    if found.can_be_told_apart() {
+                        found.times.extend(crossings((time, from), (t, along), count - counted));
+                    }
                 }
                 before = Some((t, along, count));
             }
@@ -246,23 +266,24 @@ fn crossings((t0, from): (f64, f64), (t1, to): (f64, f64), count: u64) -> Vec<f6
     (0..count).map(|k| t0 + share(k) * (t1 - t0)).collect()
 }
 
-/// Times of the flips of a free motion up to the last look, by halving the interval in which they are counted.
-fn flips_of(motion: &FreeMotion, plot: &Plot, times: &[f64]) -> Vec<f64> {
-    let mut found = Vec::new();
-    let elapsed = |t: f64| Dd::from(t) - Dd::from(plot.start_time);
+/// Flips of a free motion up to the last look, their times by halving the interval in which they are counted.
+fn flips_of(motion: &FreeMotion, plot: &Plot, times: &[f64]) -> Flips {
+    let counted = |t: f64| motion.flips(Dd::from(t) - Dd::from(plot.start_time));
+    let mut flips = Flips { count: times.last().map_or(0, |&end| counted(end)), times: Vec::new() };
+    if !flips.can_be_told_apart() {
+        return flips;
+    }
     for pair in times.windows(2) {
-        let before = motion.flips(elapsed(pair[0]));
-        let count = motion.flips(elapsed(pair[1])).saturating_sub(before);
-        for k in 1..=count {
+        for number in counted(pair[0]) + 1..=counted(pair[1]) {
             let (mut low, mut high) = (pair[0], pair[1]);
             for _ in 0..40 {
                 let middle = 0.5 * (low + high);
-                if motion.flips(elapsed(middle)) >= before + k { high = middle } else { low = middle }
+                if counted(middle) >= number { high = middle } else { low = middle }
             }
-            found.push(high);
+            flips.times.push(high);
         }
     }
-    found
+    flips
 }
 
 #[cfg(test)]

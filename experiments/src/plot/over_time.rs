@@ -9,9 +9,6 @@ use super::{Plot, short};
 use crate::error::Error;
 use crate::figure::{Canvas, Figure, Scale, Series, page_of};
 
-/// Marks of flips that can be told apart.
-const MOST_FLIPS: usize = 400;
-
 impl Looks {
     /// A curve against time: a line where the looks are close enough, else dots.
     fn curve(&self, name: &str, values: impl Iterator<Item = Option<f64>>) -> Series {
@@ -35,15 +32,15 @@ pub(super) fn omega(plot: &Plot, looks: &Looks) -> Canvas {
         figure.series.push(looks.curve(&name, looks.omegas.iter().map(|omega| Some(omega[axis]))));
     }
     match &looks.flips {
-        Some(flips) if flips.len() > MOST_FLIPS => {
-            title += &format!("; {} flips, too close to mark", flips.len());
+        Some(flips) if !flips.can_be_told_apart() => {
+            title += &format!("; {} flips, too close to mark", flips.count);
         }
-        Some(flips) if !flips.is_empty() => {
-            let label = match flips.len() {
+        Some(flips) if flips.count > 0 => {
+            let label = match flips.count {
                 1 => "a flip: L changes its side along the middle axis".to_owned(),
                 count => format!("{count} flips: L changes its side along the middle axis"),
             };
-            figure.events(label, "flip", flips.clone());
+            figure.events(label, "flip", flips.times.clone());
         }
         _ => {}
     }
