@@ -145,7 +145,7 @@ fn titled(table: &Table) -> String {
 
 /// The polhode and the herpolhode, to turn.
 fn turned(turning: &Turning) -> String {
-    let numbers = |values: [f64; 3]| values.map(|x| x.to_string()).join(", ");
+    let numbers = |values: [f64; 3]| values.map(|x| x.to_string().replace('-', "−")).join(", ");
     let canvas = |id: &str, caption: &str, curves: &[turning::Curve]| {
         let curves = serde_json::to_string(curves).unwrap_or_default();
         format!(
