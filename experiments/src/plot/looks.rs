@@ -44,7 +44,7 @@ pub(super) struct Looks {
 #[derive(Default)]
 pub(super) struct Flips {
     pub(super) count: u64,
-    /// s; those of the first flips where there are more than marks can tell apart.
+    /// s; not of all where there are more than marks can tell apart.
     pub(super) times: Vec<f64>,
 }
 

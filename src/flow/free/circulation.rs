@@ -14,7 +14,8 @@
 //!   denominator, `(2H + GA/I_a)/(G + A)`, is a sum of positive terms.
 //! - *Celledoni, Fassò, Säfström and Zanna* (SIAM J. Sci. Comput. 30 (2008) 2084): their preprint has wrong signs and a
 //!   separatrix case that covers only half of it, as Leroy's note in the sources of Principia found; nothing here is
-//!   taken from it, and the printed article was not compared. *TOMS algorithm 903* prints for its example 4 a quaternion that is off in the tenth digit: compare
+//!   taken from it, and the printed article was not compared.
+//! - *TOMS algorithm 903* prints for its example 4 a quaternion that is off in the tenth digit: compare
 //!   `tests/data/free_body/reference.csv`, scenario E4.
 
 use super::phase::reduce;
