@@ -33,7 +33,7 @@
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
 //! | [`advise`] | which method with which step, from short runs on the body itself |
-//! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how wrong |
+//! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how large its error is |
 //! | [`catalogue`] | named bodies with their sources |
 //! | `fit` | inertia from measured angular velocity; with the feature `fit` |
 //! | [`guide`] | a chapter for each kind of user; your own force, your own method; the exact motion |

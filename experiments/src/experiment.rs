@@ -18,7 +18,7 @@ pub(crate) enum Scale {
     Smoke,
     /// A few minutes in all
     Standard,
-    /// Full size, as in the article
+    /// Full size, as in the article: about an hour and a half on two cores
     Paper,
 }
 

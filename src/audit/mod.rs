@@ -1,4 +1,4 @@
-//! Is this rotation right, in which convention, and how wrong?
+//! Is this rotation right, in which convention, and how large is its error?
 //!
 //! A [`Trajectory`] from elsewhere, in whatever convention, is read in every [`Reading`] that its columns allow; the reading by
 //! which the equations of motion lead from row to row is the convention of the record. What is left then are the errors of the

@@ -105,7 +105,7 @@ pub struct Member {
     pub attitude: Quat<f64>,
     /// Its angular velocity at the start, body axes, rad/s.
     pub omega_body: Vec3<f64>,
-    /// How often its inertia was drawn until a body could have it.
+    /// How often its inertia was drawn: again wherever the moments violate the triangle inequality.
     pub draws: u32,
 }
 

@@ -45,7 +45,7 @@ const EXAMPLES: &str = "Examples:
 /// Readings of the ranking that are shown.
 const RANKED: usize = 5;
 
-/// Whether a trajectory of another program is right, in which convention, and how wrong
+/// Whether a trajectory of another program is right, its convention and its error
 ///
 /// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
 /// angular momentum in columns of any common names, the qpos and qvel of MuJoCo, and LAMMPS dumps; several bodies by a column

@@ -34,7 +34,7 @@ pub(super) struct Record {
     pub(super) method: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) seed: Option<u64>,
-    /// Tensors that were drawn until each member had one that a body can have.
+    /// Tensors drawn, with those whose moments violate the triangle inequality and were drawn again.
     pub(super) draws: u64,
     /// Members that have no rows from some time on.
     pub(super) failed: u64,
