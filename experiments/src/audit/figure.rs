@@ -10,7 +10,7 @@ use crate::figure::{Figure, Scale, Series, sheet};
 /// The errors of one panel.
 type Values = fn(&Traces) -> &[f64];
 
-/// Energy, |m|, direction of L and attitude, signed, in decades of either sign; what the record does not tell is left out.
+/// Energy, |m|, direction of L and attitude, on logarithmic axes for both signs; what the record does not tell is left out.
 ///
 /// # Errors
 /// A figure that cannot be drawn.

@@ -18,7 +18,7 @@ pub(super) fn page(name: &str, outcomes: &[Outcome], form: Form) -> Result<Strin
     }
     parts.push(Part::Heading("Errors against time".into()));
     let caption = "Energy and |m| as relative changes from the first row, the angle of L in space from its first direction, and \
-                   the angle of the attitude from the motion; signed, in decades of either sign.";
+                   the angle of the attitude from the motion; the axes are logarithmic, with positive values above the middle and negative ones below.";
     parts.push(Part::Figure(panels(name, outcomes)?.svg, caption.into()));
     Ok(form.write(&format!("Audit of {name}"), &parts))
 }

@@ -110,12 +110,13 @@ impl Axis {
         (place - self.first) / (self.last - self.first)
     }
 
-    /// Gives two linear axes the same length.
-    pub(super) fn equalize(x: &mut Self, y: &mut Self) {
-        let length = (x.last - x.first).max(y.last - y.first);
-        for axis in [x, y] {
+    /// Gives two linear axes of so many pixels the same scale.
+    pub(super) fn equalize(axes: &mut [Self; 2], pixels: [f64; 2]) {
+        let scale = |k: usize| (axes[k].last - axes[k].first) / pixels[k];
+        let scale = scale(0).max(scale(1));
+        for (axis, pixels) in axes.iter_mut().zip(pixels) {
             let middle = 0.5 * (axis.first + axis.last);
-            (axis.first, axis.last) = (middle - 0.5 * length, middle + 0.5 * length);
+            (axis.first, axis.last) = (middle - 0.5 * scale * pixels, middle + 0.5 * scale * pixels);
         }
     }
 

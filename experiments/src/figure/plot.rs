@@ -80,13 +80,13 @@ impl Figure {
         let levels = self.levels().map(|level| level.through.1);
         let band = self.band.into_iter().flat_map(|half| [-half, half]);
         let ordinates: Vec<f64> = values(|p| p.1).into_iter().chain(bars).chain(levels).chain(band).collect();
-        let [mut x, mut y] = [(0, values(|p| p.0)), (1, ordinates)].map(|(k, values)| {
+        let mut axes = [(0, values(|p| p.0)), (1, ordinates)].map(|(k, values)| {
             Axis::over(self.scales[k], values.into_iter().filter(|value| value.is_finite()))
         });
         if self.equal {
-            Axis::equalize(&mut x, &mut y);
+            Axis::equalize(&mut axes, [1.0; 2]);
         }
-        [x, y]
+        axes
     }
 
     pub(super) fn title_lines(&self) -> Vec<String> {
@@ -106,11 +106,16 @@ impl Figure {
         LINE * (self.title_lines().len() + self.legend().len()) as f64 + 14.0
     }
 
-    fn on_page(&self, [x, y]: &[Axis; 2], margins: Margins, [width, height]: [f64; 2]) -> Canvas {
+    fn on_page(&self, axes: &[Axis; 2], margins: Margins, [width, height]: [f64; 2]) -> Canvas {
         let mut page = Canvas::new(width, height);
         let (left, right) = (margins.left, width - margins.right);
         let (top, bottom) = (margins.top, height - BELOW);
         page.heading(&self.title);
+        let mut axes = axes.clone();
+        if self.equal {
+            Axis::equalize(&mut axes, [right - left, bottom - top]);
+        }
+        let [x, y] = &axes;
         let across = |share: f64| left + share * (right - left);
         let down = |share: f64| bottom - share * (bottom - top);
         let place = |p: &(f64, f64)| [across(x.share(p.0)), down(y.share(p.1))];

@@ -36,8 +36,11 @@ pub(super) struct Looks {
     /// Body axes, rad/s.
     pub(super) omegas: Vec<Vector3<f64>>,
     pub(super) errors: Vec<Errors>,
-    /// Sign changes of the momentum along the axis of the middle moment; `None` where they are not counted.
+    /// Sign changes of the momentum along the axis of the middle moment; `None` where they are not counted or the body does not
+    /// turn over.
     pub(super) flips: Option<Flips>,
+    /// Why the run ended early, where it did.
+    pub(super) ended: Option<RunError>,
 }
 
 /// Flips of a motion.
@@ -68,6 +71,7 @@ impl Looks {
             omegas: Vec::new(),
             errors: Vec::new(),
             flips: None,
+            ended: None,
         };
         if plot.method == "exact" {
             let exact = exact.map_err(|error| {
@@ -161,7 +165,7 @@ impl Looks {
             self.push(plot.start_time + t.hi(), state, omega, monitor.errors(&x));
         }
         if let (ExactMotion::Free(motion), Some(_)) = (exact, middle_axis(&self.body)) {
-            self.flips = Some(flips_of(motion, plot, &self.times));
+            self.flips = Some(flips_of(motion, plot, &self.times)).filter(|_| self.turns_over());
         }
         Ok(())
     }
@@ -207,7 +211,7 @@ impl Looks {
             let sample = match sample {
                 Ok(sample) => sample,
                 Err(error) => {
-                    warn(&format!("--method {}: {error}; what came before is drawn", plot.method));
+                    self.ended = Some(error);
                     break;
                 }
             };
@@ -224,8 +228,24 @@ impl Looks {
             }
             self.push(t, sample.state, sample.omega_body, sample.errors);
         }
-        self.flips = flips;
+        self.flips = flips.filter(|_| self.turns_over());
         Ok(())
+    }
+
+    /// Whether L comes within 45° of the middle axis: around the others its side along that axis changes too, but the body
+    /// only wobbles.
+    fn turns_over(&self) -> bool {
+        let Some(axis) = middle_axis(&self.body) else { return false };
+        let momenta = self.states.iter().map(|state| state.momentum());
+        momenta.into_iter().any(|m| m.dot(&axis).abs() > core::f64::consts::FRAC_1_SQRT_2 * m.norm())
+    }
+
+    /// What acts on the body, as part of a title.
+    pub(super) fn forces(&self) -> String {
+        let gravity = self.body.gravity::<f64>().map(|_| "gravity");
+        let names = gravity.into_iter().chain(self.body.forces().iter().map(|force| force.name()));
+        let names = names.collect::<Vec<_>>();
+        if names.is_empty() { String::new() } else { format!(" under {}", names.join(", ")) }
     }
 }
 

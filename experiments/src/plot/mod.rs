@@ -57,8 +57,8 @@ struct Size(Option<[f64; 2]>);
 
 const SIZES: [(&str, [f64; 2]); 3] =
     [("column", [500.0, 400.0]), ("wide", [860.0, 400.0]), ("slide", [960.0, 540.0])];
-/// The smallest and the largest side of a picture, pixels.
-const SIDES: [f64; 2] = [240.0, 4000.0];
+/// The smallest and the largest width and height of a picture, pixels.
+const SIDES: [[f64; 2]; 2] = [[400.0, 4000.0], [240.0, 4000.0]];
 
 fn size(text: &str) -> Result<Size, String> {
     if let Some((_, size)) = SIZES.iter().find(|(name, _)| *name == text) {
@@ -70,12 +70,12 @@ fn size(text: &str) -> Result<Size, String> {
     let (width, height) = text.split_once(['x', '×']).ok_or_else(unknown)?;
     let sides = [width, height].map(positive);
     let [Ok(width), Ok(height)] = sides else { return Err(unknown()) };
-    let [least, most] = SIDES;
-    if [width, height].iter().all(|side| (least..=most).contains(side)) {
-        Ok(Size(Some([width, height])))
-    } else {
-        Err(format!("each side must lie between {least} and {most} pixels"))
+    for ((name, side), [least, most]) in [("width", width), ("height", height)].into_iter().zip(SIDES) {
+        if !(least..=most).contains(&side) {
+            return Err(format!("the {name} must lie between {least} and {most} pixels"));
+        }
     }
+    Ok(Size(Some([width, height])))
 }
 
 /// An axis of the body.
@@ -93,7 +93,8 @@ fn angle(text: &str) -> Result<[f64; 2], String> {
 /// Pictures of a motion: polhode, herpolhode, angular velocity, angles, trace, Poinsot's construction, conserved quantities
 ///
 /// The ending of FILE names the format: .svg, .png, and .html for the animation of poinsot, a page that needs no network. With
-/// --method exact the curves are those of the closed form, else those of the method; the title names body, start and step.
+/// --method exact the curves are those of the closed form, else those of the method; the title names body, forces, angular velocity
+/// at the start, method and step.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Plot {
@@ -111,7 +112,7 @@ pub(crate) struct Plot {
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME]; see `polhode methods`
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Motion")]
     method: String,
-    /// Step of a method with fixed steps, s; exact, taylor, dop853 and tsit5 need none
+    /// Step of a method with fixed steps, s; exact takes none, and taylor, dop853 and tsit5 need none
     #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Motion")]
     step: Option<f64>,
     /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
@@ -123,7 +124,7 @@ pub(crate) struct Plot {
     /// Direction that spheres are seen from: azimuth and elevation, deg [default: one that shows the path]
     #[arg(long, value_name = "AZ,EL", value_parser = angle, allow_hyphen_values = true, help_heading = "Picture")]
     view: Option<[f64; 2]>,
-    /// Size: column, wide, slide or WIDTHxHEIGHT in pixels; a PNG has twice as many [default: column]
+    /// Size: column (500x400), wide (860x400), slide (960x540) or WIDTHxHEIGHT in pixels; long titles, several panels and equal scales make a picture higher; a PNG has twice as many pixels [default: column]
     #[arg(long, value_name = "SIZE", value_parser = size, default_value = "column", hide_default_value = true, help_heading = "Picture")]
     size: Size,
     /// The picture; its ending names the format: .svg, .png or .html
@@ -183,29 +184,57 @@ impl Plot {
         if self.axis.is_some() && self.kind != Kind::Trace {
             return Err(Error::Input("--axis: only trace draws the path of one axis; leave it out".into()));
         }
+        let seen_from = match self.kind {
+            Kind::Polhode | Kind::Trace => true,
+            Kind::Poinsot => picture != Picture::Html,
+            Kind::Herpolhode | Kind::Omega | Kind::Angles | Kind::Conserved => false,
+        };
+        if self.view.is_some() && !seen_from {
+            return Err(Error::Input(
+                "--view: only polhode, trace and the still of poinsot are seen from a direction; leave it out".into(),
+            ));
+        }
         let file = Output::to_file("--out", &self.out)?;
         let looks = Looks::of(self)?;
         if !looks.is_resolved() {
-            warn(&format!(
-                "--until: '{}': the body turns by {:.2} rad from one of {} points to the next, and they are not joined; an earlier end shows the curve",
+            let words = format!(
+                "--until: '{}': the body turns by {} rad from one of {} points to the next",
                 crate::text::short(self.until),
-                looks.turn(),
+                short(looks.turn()),
                 looks.times.len()
+            );
+            if picture == Picture::Html {
+                return Err(Error::Input(format!(
+                    "{words}, too far for a motion to be seen; give an earlier end"
+                )));
+            }
+            warn(&format!(
+                "{words}, and the points are not joined; an earlier end or a smaller step shows the curve"
             ));
         }
         if picture == Picture::Html {
-            return file.write_whole(&animation::page(self, &looks)?);
+            file.write_whole(&animation::page(self, &looks)?)?;
+        } else {
+            write(file, picture, &self.page(&looks)?)?;
         }
-        let page = match self.kind {
-            Kind::Polhode => paths::polhode(self, &looks)?,
-            Kind::Herpolhode => paths::herpolhode(self, &looks)?,
-            Kind::Trace => paths::trace(self, &looks)?,
-            Kind::Omega => over_time::omega(self, &looks),
-            Kind::Angles => over_time::angles(self, &looks),
-            Kind::Conserved => over_time::conserved(self, &looks)?,
-            Kind::Poinsot => poinsot::still(self, &looks)?,
-        };
-        write(file, picture, &page)
+        match looks.ended {
+            Some(error) => {
+                Err(Error::Failed(format!("--method {}: {error}; what came before is drawn", self.method)))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn page(&self, looks: &Looks) -> Result<Canvas, Error> {
+        Ok(match self.kind {
+            Kind::Polhode => paths::polhode(self, looks)?,
+            Kind::Herpolhode => paths::herpolhode(self, looks)?,
+            Kind::Trace => paths::trace(self, looks)?,
+            Kind::Omega => over_time::omega(self, looks),
+            Kind::Angles => over_time::angles(self, looks),
+            Kind::Conserved => over_time::conserved(self, looks)?,
+            Kind::Poinsot => poinsot::still(self, looks)?,
+        })
     }
 
     /// Width and height, pixels.
@@ -225,8 +254,9 @@ impl Plot {
         let rounded = |w: &f64| if w.abs() < 1e-15 * omega.norm() { 0.0 } else { *w };
         let omega: Vec<String> = omega.iter().map(|w| short(rounded(w))).collect();
         format!(
-            "{what}: {}, ω = ({}) rad/s at the start, {method}",
+            "{what}: {}{}, ω = ({}) rad/s at the start, {method}",
             self.motion.body.label(),
+            looks.forces(),
             omega.join(", ")
         )
     }
@@ -251,7 +281,8 @@ mod tests {
     fn sizes_have_names_or_pixels_within_bounds() {
         assert_eq!(size("wide"), Ok(Size(Some([860.0, 400.0]))));
         assert_eq!(size("640x480"), Ok(Size(Some([640.0, 480.0]))));
-        assert!(size("10x480").unwrap_err().contains("between 240 and 4000"));
+        assert!(size("10x480").unwrap_err().contains("the width must lie between 400 and 4000"));
+        assert!(size("480x10").unwrap_err().contains("the height must lie between 240 and 4000"));
         assert!(size("huge").unwrap_err().contains("known: column, wide, slide"));
         assert!(size("axb").unwrap_err().contains("WIDTHxHEIGHT"));
     }

@@ -54,11 +54,14 @@ pub(super) fn angles(plot: &Plot, looks: &Looks) -> Canvas {
     let [width, height] = plot.size();
     let size = [width, (0.5 * height).max(190.0)];
     let found: Vec<_> = looks.states.iter().map(|state| sequence.angles(state.rotation())).collect();
+    // where both outer axes lie on one line, only the turn about that line has a meaning, and stands as the first angle
+    let locked = found.iter().all(|found| found.locked);
+    let names: &[&str] =
+        if locked { &["φ ± ψ (rad)", "θ (rad)"] } else { &["φ (rad)", "θ (rad)", "ψ (rad)"] };
     let mut panels = Vec::new();
-    for (k, name) in ["φ (rad)", "θ (rad)", "ψ (rad)"].into_iter().enumerate() {
+    for (k, name) in names.iter().enumerate() {
         let mut figure = panel(name, Scale::Linear, size);
-        // where two axes are on one line, only the sum of two angles has a meaning
-        let values = found.iter().map(|found| (!found.locked).then_some(found.angles[k]));
+        let values = found.iter().map(|found| (locked || k == 1 || !found.locked).then_some(found.angles[k]));
         let values: Vec<Option<f64>> = if k == 1 { values.collect() } else { unwrapped(values) };
         let curve = looks.curve("", values.into_iter());
         if let (1, Some(top)) = (k, looks.top().filter(|_| is_tilt(looks, sequence))) {
@@ -75,11 +78,9 @@ pub(super) fn angles(plot: &Plot, looks: &Looks) -> Canvas {
         panels.extend(potential(looks, top, [width, height.min(320.0)]));
     }
     let name = format!("Euler angles {sequence}");
-    let locked = found.iter().all(|found| found.locked);
     let mut title = plot.title(&name, looks) + &looks.remark();
     if locked {
-        title +=
-            "; both outer axes lie on one line at all times, and the angles have no meaning of their own";
+        title += "; both outer axes lie on one line at all times, so only φ ± ψ is defined";
     }
     page_of(&title, 1, &panels)
 }

@@ -14,6 +14,8 @@ type V = Vector3<f64>;
 
 /// Of what context is drawn in.
 const PALE: Colour = Colour(165, 165, 165);
+/// Cosine of the angle between two arrows whose names would touch.
+const BESIDE: f64 = 0.99;
 /// A path that is shorter than this is a point.
 const POINT: f64 = 1e-9;
 
@@ -36,15 +38,18 @@ impl Looks {
         }
     }
 
-    fn at_rest(&self) -> bool {
-        self.states.iter().any(|state| state.momentum().norm() == 0.0)
+    /// # Errors
+    /// A body that is at rest, at some time or always.
+    fn must_turn(&self, kind: &str) -> Result<(), Error> {
+        let rests = |state: &polhode::body::State| state.momentum().norm() == 0.0;
+        if !self.states.iter().any(rests) {
+            return Ok(());
+        }
+        let when = if self.states.iter().all(rests) { "" } else { " at some time" };
+        Err(Error::Input(format!(
+            "--omega: the body is at rest{when}, and a {kind} needs a direction; give another start, or plot omega"
+        )))
     }
-}
-
-fn resting(kind: &str) -> Error {
-    Error::Input(format!(
-        "--omega: the body is at rest at some time, and a {kind} needs a direction; give another start, or plot omega"
-    ))
 }
 
 /// A page with its title, and a view of a sphere in the middle of what is left.
@@ -110,18 +115,23 @@ fn dot(page: &mut Canvas, view: &View, at: V, radius: f64, hidden: bool) {
 
 /// Directions of the angular momentum in the body.
 pub(super) fn polhode(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
-    if looks.at_rest() {
-        return Err(resting("polhode"));
-    }
+    looks.must_turn("polhode")?;
     let path: Vec<V> = looks.states.iter().map(|state| state.momentum().normalize()).collect();
     let mut title = plot.title("Polhode", looks) + &looks.remark();
     if looks.free().is_some_and(|motion| motion.pure_spin().is_some()) {
         title += "; the polhode is a point";
     }
-    let (mut page, view) = sphere(plot, &title, &path);
     let inertia = looks.body.inertia();
     let frame = inertia.principal_axes();
-    for curve in context(inertia.principal_moments()) {
+    let context = context(inertia.principal_moments());
+    if context.iter().any(|curve| curve.separatrix) {
+        title += "; orange: the separatrix";
+    }
+    if !context.is_empty() {
+        title += "; grey: other polhodes";
+    }
+    let (mut page, view) = sphere(plot, &title, &path);
+    for curve in context {
         let points: Vec<V> = curve.points.into_iter().map(|v| frame * v).collect();
         if curve.separatrix {
             page.as_class("separatrix", |page| view.curve(page, &points, ORANGE, 1.6));
@@ -214,27 +224,27 @@ pub(super) fn trace(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
         });
     }
     draw_path(&mut page, &view, &path, looks.is_resolved());
+    let momentum = looks.free().and(looks.states.first()).map(|state| state.momentum_space());
+    let momentum = momentum.and_then(|momentum| momentum.try_normalize(0.0));
+    // next to an axis the two share one name
+    let beside = |axis: &V| momentum.is_some_and(|momentum| momentum.dot(axis) > BESIDE);
     for (axis, name) in [(V::x(), "X"), (V::y(), "Y"), (V::z(), "Z")] {
-        view.axis(&mut page, axis, BLACK, name);
+        let name = if beside(&axis) { format!("{name}, L") } else { name.to_owned() };
+        view.axis(&mut page, axis, BLACK, &name);
     }
-    if let (true, Some(state)) = (looks.free().is_some(), looks.states.first()) {
-        let momentum = state.momentum_space();
-        if momentum.norm() > 0.0 {
-            view.axis(&mut page, momentum.normalize(), ORANGE, "L");
-        }
+    if let Some(momentum) = momentum.filter(|momentum| momentum.max() <= BESIDE) {
+        view.axis(&mut page, momentum, ORANGE, "L");
     }
     Ok(page)
 }
 
-/// ω in the plane across the angular momentum; under gravity, across the vertical.
+/// ω in the plane across the angular momentum; under forces, across the Z axis.
 pub(super) fn herpolhode(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
-    if looks.at_rest() {
-        return Err(resting("herpolhode"));
-    }
+    looks.must_turn("herpolhode")?;
     let momentum = looks.states.first().map_or(V::z(), |state| state.momentum_space());
     let is_free = looks.body.problem() == polhode::body::Problem::Free;
     let (normal, plane) =
-        if is_free { (momentum.normalize(), "L") } else { (V::z(), "the vertical, as L is not constant") };
+        if is_free { (momentum.normalize(), "L") } else { (V::z(), "the Z axis, as L is not constant") };
     let least = normal.iamin();
     let right = normal.cross(&V::ith(least, 1.0)).normalize();
     let up = normal.cross(&right);
@@ -260,6 +270,7 @@ pub(super) fn herpolhode(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
         title += "; the herpolhode is a point: ω lies along L";
         figure.series.push(Series::new("", vec![(0.0, 0.0)]));
     } else {
+        figure.series.push(Series::new("", points.first().copied().into_iter().collect()));
         if is_free {
             let round = (outer - inner) <= 1e-6 * outer;
             title += if round { "; a circle" } else { "; grey: the circles that it touches" };
@@ -269,6 +280,7 @@ pub(super) fn herpolhode(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
                 figure.series.push(Series::new("", ring).plain().coloured(7));
             }
         }
+        title += "; dot: the start";
         let path = Series::new("", points).coloured(2);
         figure.series.push(if looks.is_resolved() { path.plain() } else { path.dots() });
     }

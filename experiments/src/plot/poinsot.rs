@@ -77,7 +77,8 @@ pub(super) fn still(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
     let [width, height] = plot.size();
     let mut page = Canvas::new(width, height);
     let mut title = plot.title("Poinsot's construction", looks) + &looks.remark();
-    if looks.free().is_some_and(|motion| motion.pure_spin().is_some()) {
+    let spins = looks.free().is_some_and(|motion| motion.pure_spin().is_some());
+    if spins {
         title += "; polhode and herpolhode are points";
     }
     let head = page.heading(&title);
@@ -138,8 +139,10 @@ pub(super) fn still(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
     page.note([x + 8.0, y], "ω", 16.0, crate::figure::Anchor::Start);
     view.arrow(&mut page, V::zeros(), bottom * LOWER, GREEN, "L");
     page.as_class("point", |page| page.circle(view.place(contact), 3.4, Some(Fill::Flat(BLACK, 1.0)), None));
-    let key = "blue: polhode on the ellipsoid; orange: herpolhode on the plane";
-    page.text([0.5 * width, height - 10.0], key, 12.0, crate::figure::Anchor::Middle, BLACK);
+    if !spins {
+        let key = "blue: polhode on the ellipsoid; orange: herpolhode on the plane";
+        page.text([0.5 * width, height - 10.0], key, 12.0, crate::figure::Anchor::Middle, BLACK);
+    }
     Ok(page)
 }
 

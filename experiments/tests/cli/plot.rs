@@ -224,8 +224,10 @@ fn what_cannot_be_drawn_is_refused_with_what_can() {
         &["'flip'", "polhode, herpolhode, omega, angles, trace, poinsot, conserved"],
     );
     refused(&with("omega", "--size huge --out a.svg"), &["--size", "known: column, wide, slide"]);
-    refused(&with("omega", "--size 9x9 --out a.svg"), &["between 240 and 4000"]);
+    refused(&with("omega", "--size 9x9 --out a.svg"), &["between 400 and 4000"]);
     refused(&with("omega", "--axis x --out a.svg"), &["--axis: only trace"]);
+    refused(&with("omega", "--view 30,20 --out a.svg"), &["--view: only polhode, trace and"]);
+    refused(&with("poinsot", "--view 30,20 --out a.html"), &["--view: only polhode, trace and"]);
     refused(&with("omega", "--step 0.1 --out a.svg"), &["--step", "exact takes no step"]);
     refused(&with("omega", "--tolerance 1e-9 --out a.svg"), &["--tolerance", "takes no --tolerance"]);
     refused(&with("omega", "--method rk4 --out a.svg"), &["--step: missing: rk4 needs a step"]);
@@ -248,7 +250,9 @@ fn what_cannot_be_drawn_is_refused_with_what_can() {
     // a run that ends early is drawn as far as it came
     let scratch = Scratch::new("plot-diverged");
     let flags = "omega --moments 1,2,3 --omega 0.4,1,-0.3 --until 2000 --method explicit-euler --step 0.5";
-    let (_, err) = drawn(&scratch, flags);
-    assert!(err.contains("what came before is drawn"), "{err}");
+    let answer = polhode(&words(&format!("plot {flags} --out drawn.svg")), &scratch.0);
+    assert_eq!(answer.code, 1, "{}", answer.err);
+    assert!(answer.err.contains("what came before is drawn"), "{}", answer.err);
+    Document::parse(&fs::read_to_string(scratch.0.join("drawn.svg")).unwrap()).unwrap();
     assert_eq!(run("plot --help").code, 0);
 }
