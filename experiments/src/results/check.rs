@@ -18,8 +18,7 @@ const TOLD: usize = 8;
 pub(crate) enum Committed {
     /// Some seconds for each experiment at most
     Smoke,
-    /// Full size: hours on two cores; run.toml beside the committed numbers
-    /// states the seconds of each experiment
+    /// Full size: about an hour and a half on two cores; run.toml beside the committed numbers states the seconds of each experiment
     Paper,
 }
 
