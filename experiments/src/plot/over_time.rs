@@ -152,8 +152,11 @@ pub(super) fn conserved(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
         ("L_z", |errors| errors.momentum_z),
         ("Jacobi", |errors| errors.jacobi),
     ];
+    // the start itself has no error, and would stretch the axis
+    let shown = |k: usize| k > 0 || looks.errors.len() == 1;
     for (name, error) in quantities {
-        let series = looks.curve(name, looks.errors.iter().map(error));
+        let errors = looks.errors.iter().enumerate().map(|(k, errors)| error(errors).filter(|_| shown(k)));
+        let series = looks.curve(name, errors);
         if !series.points.is_empty() {
             figure.series.push(series);
         }
