@@ -3,7 +3,7 @@
 use std::process::Command;
 
 /// Paths whose changes make a commit "dirty"; results and pages do not.
-const SOURCES: [&str; 5] = ["../src", "src", "../Cargo.toml", "../Cargo.lock", "Cargo.toml"];
+const SOURCES: [&str; 6] = ["../src", "../crates", "src", "../Cargo.toml", "../Cargo.lock", "Cargo.toml"];
 
 fn main() {
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());

@@ -3,7 +3,7 @@
 //! * the exact motion of the free body and of Lagrange's top, at any time, to rounding;
 //! * integrators on SO(3), with what each keeps stated and tested, watched in more digits than they integrate;
 //! * inertia tensors from moments, solids, meshes and parts, and what is wrong with one that no body has;
-//! * with the feature `fit`, inertia tensors from noisy records of angular velocity.
+//! * in the crate `polhode-fit`, inertia tensors from noisy records of angular velocity.
 //!
 //! ```
 //! use nalgebra::{UnitQuaternion, Vector3};
@@ -35,7 +35,8 @@
 //! | [`advise`] | which method with which step, from short runs on the body itself |
 //! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how large its error is |
 //! | [`catalogue`] | named bodies with their sources |
-//! | `fit` | inertia from measured angular velocity; with the feature `fit` |
+//! | [`record`] | measured angular velocities: samples in segments without gaps |
+//! | [`units`] | units of times and rates by name |
 //! | [`guide`] | a chapter for each kind of user; your own force, your own method; the exact motion |
 //!
 //! Each of those that hold code uses only those above it. The types that most programs need are also at the root:
@@ -45,7 +46,6 @@
 //!
 //! | feature | what it adds |
 //! |---|---|
-//! | `fit` | the module `fit`, with the solvers clarabel and faer |
 //! | `parallel` | [ensembles](run::Ensemble) on several threads, by rayon |
 //! | `random` | seeded random numbers, and [populations](body) of bodies and starts drawn with them |
 //!
@@ -76,15 +76,15 @@ pub mod advise;
 pub mod audit;
 pub mod body;
 pub mod catalogue;
-#[cfg(feature = "fit")]
-pub mod fit;
 pub mod flow;
 pub mod inertia;
 pub mod method;
 pub mod num;
 pub mod observe;
+pub mod record;
 pub mod rotation;
 pub mod run;
+pub mod units;
 
 /// A chapter for each kind of user, and what stands behind the exact motion.
 pub mod guide {
@@ -94,9 +94,6 @@ pub mod guide {
     pub mod inertia_tensors {}
     #[doc = include_str!("../docs/own-force-and-method.md")]
     pub mod own_force_and_method {}
-    #[cfg(feature = "fit")]
-    #[doc = include_str!("../docs/records.md")]
-    pub mod records {}
     #[doc = include_str!("../docs/simulators.md")]
     pub mod simulators {}
     #[doc = include_str!("../docs/teaching.md")]

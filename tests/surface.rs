@@ -1,4 +1,4 @@
-//! Surfaces as files hold them: welded, closed, hulls, walls, and PLY.
+//! Surfaces as files hold them: welded, closed, hulls, walls.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -167,83 +167,4 @@ fn a_unit_of_length_scales_the_vertices() {
         millimetres.scaled(-1.0).unwrap_err().to_string(),
         "unit of length is -1; it must be a finite number above zero"
     );
-}
-
-/// A tetrahedron with three edges along the axes, in one of the encodings of PLY.
-fn ply(encoding: &str) -> Vec<u8> {
-    let header = format!(
-        "ply\nformat {encoding} 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty uchar red\n\
-         property double y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
-    );
-    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0_f32]];
-    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3_i32]];
-    let mut bytes = header.into_bytes();
-    for [x, y, z] in corners {
-        match encoding {
-            "ascii" => bytes.extend(format!("{x} 255 {y} {z}\n").bytes()),
-            "binary_little_endian" => {
-                bytes.extend(x.to_le_bytes());
-                bytes.push(255);
-                bytes.extend(f64::from(y).to_le_bytes());
-                bytes.extend(z.to_le_bytes());
-            }
-            _ => {
-                bytes.extend(x.to_be_bytes());
-                bytes.push(255);
-                bytes.extend(f64::from(y).to_be_bytes());
-                bytes.extend(z.to_be_bytes());
-            }
-        }
-    }
-    for [a, b, c] in faces {
-        match encoding {
-            "ascii" => bytes.extend(format!("3 {a} {b} {c}\n").bytes()),
-            _ => {
-                bytes.push(3);
-                for index in [a, b, c] {
-                    let little = encoding == "binary_little_endian";
-                    bytes.extend(if little { index.to_le_bytes() } else { index.to_be_bytes() });
-                }
-            }
-        }
-    }
-    bytes
-}
-
-#[test]
-fn ply_files_are_read_in_every_encoding() {
-    for encoding in ["ascii", "binary_little_endian", "binary_big_endian"] {
-        let mesh = Mesh::from_ply(&ply(encoding)[..]).unwrap();
-        assert_eq!((mesh.volume(), mesh.triangles()), (1.0, 4), "{encoding}");
-        let bytes = ply(encoding);
-        let message = Mesh::from_ply(&bytes[..bytes.len() - 3]).unwrap_err().to_string();
-        assert_eq!(message, "PLY is truncated: it ends in face 4 of 4", "{encoding}");
-    }
-    let message = |text: &str| Mesh::from_ply(text.as_bytes()).unwrap_err().to_string();
-    let head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
-                element face 1\nproperty list uint int vertex_index\nend_header\n0 0 0\n";
-    for (text, expected) in [
-        ("solid\n", "line 1: 'solid' where 'ply' is expected"),
-        (
-            "ply\nformat xml 1.0\n",
-            "line 2: 'format xml 1.0' where format ascii, binary_little_endian or binary_big_endian is expected",
-        ),
-        (
-            "ply\nelement vertex many\n",
-            "line 2: 'element vertex many' where 'element NAME COUNT' is expected",
-        ),
-        (
-            "ply\nformat ascii 1.0\nproperty float x\n",
-            "line 3: 'property float x' where 'property TYPE NAME' of an element is expected",
-        ),
-        ("ply\nformat ascii 1.0\n", "line 3: '' where 'end_header' is expected"),
-        (&format!("{head}3 0 1 2\n"), "face 1 names vertex 1, counted from 0, but there are 1"),
-        (&format!("{head}3 0 x 2\n"), "line 11: 'x' where a number is expected"),
-        (
-            &format!("{head}4000000000 0\n"),
-            "face 1 has a list of 4000000000 numbers, and at most 1048576 are read; is this the right file?",
-        ),
-    ] {
-        assert_eq!(message(text), expected);
-    }
 }

@@ -5,15 +5,15 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+use polhode_files::error::Error;
+use polhode_pages::figure::{Drawing, Figure};
+use polhode_pages::table::Table;
 
-use crate::error::Error;
-use crate::figure::Figure;
 use crate::parallel;
-use crate::table::Table;
 
 /// How large an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Scale {
+pub enum Scale {
     /// A few seconds in all, for tests
     Smoke,
     /// A few minutes in all
@@ -24,7 +24,7 @@ pub(crate) enum Scale {
 
 impl Scale {
     /// One of three values.
-    pub(crate) fn pick<T>(self, smoke: T, standard: T, paper: T) -> T {
+    pub fn pick<T>(self, smoke: T, standard: T, paper: T) -> T {
         match self {
             Self::Smoke => smoke,
             Self::Standard => standard,
@@ -40,47 +40,40 @@ impl fmt::Display for Scale {
 }
 
 /// An experiment by name.
-pub(crate) struct Experiment {
-    pub(crate) name: &'static str,
+pub struct Experiment {
+    pub name: &'static str,
     /// What it asks.
-    pub(crate) question: &'static str,
-    pub(crate) run: fn(&Context) -> Result<Report, Error>,
+    pub question: &'static str,
+    pub run: fn(&Context) -> Result<Report, Error>,
 }
 
 /// What an experiment found.
 #[derive(Default)]
-pub(crate) struct Report {
+pub struct Report {
     /// Deterministic rows, in full precision.
-    pub(crate) tables: Vec<Table>,
+    pub tables: Vec<Table>,
     /// Rows that only programs read, the same at every scale: CSV alone.
-    pub(crate) data: Vec<Table>,
+    pub data: Vec<Table>,
     /// Parts of them for readers; where there are none, the tables themselves are shown.
-    pub(crate) views: Vec<Table>,
-    pub(crate) figures: Vec<Figure>,
+    pub views: Vec<Table>,
+    pub figures: Vec<Figure>,
     /// Figures that are not plots.
-    pub(crate) drawings: Vec<Drawing>,
+    pub drawings: Vec<Drawing>,
     /// Times, which depend on the machine.
-    pub(crate) timing: Option<Table>,
+    pub timing: Option<Table>,
     /// Rows of times that only programs read.
-    pub(crate) times: Vec<Table>,
+    pub times: Vec<Table>,
     /// Of the random numbers, if there were any.
-    pub(crate) seed: Option<u64>,
+    pub seed: Option<u64>,
     /// Claims that did not hold: the results are written all the same, and the command fails.
-    pub(crate) failures: Vec<String>,
+    pub failures: Vec<String>,
     /// Wall time of the run.
-    pub(crate) took: Duration,
-}
-
-/// A finished SVG.
-pub(crate) struct Drawing {
-    /// File name without ending.
-    pub(crate) name: &'static str,
-    pub(crate) svg: String,
+    pub took: Duration,
 }
 
 /// What an experiment is told.
-pub(crate) struct Context {
-    pub(crate) scale: Scale,
+pub struct Context {
+    pub scale: Scale,
     bar: ProgressBar,
 }
 
@@ -96,11 +89,7 @@ impl Context {
     }
 
     /// `work` on each of `parts`, on as many threads as there are cores; results in the order of the parts.
-    pub(crate) fn in_parallel<T: Send, R: Send>(
-        &self,
-        parts: Vec<T>,
-        work: impl Fn(T) -> R + Sync,
-    ) -> Vec<R> {
+    pub fn in_parallel<T: Send, R: Send>(&self, parts: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
         self.bar.set_length(parts.len() as u64);
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         parallel::map(parts, cores, |part| {
@@ -118,7 +107,7 @@ impl Context {
 
 impl Experiment {
     /// Does the work.
-    pub(crate) fn report(&self, scale: Scale) -> Result<Report, Error> {
+    pub fn report(&self, scale: Scale) -> Result<Report, Error> {
         let context = Context::new(self.name, scale);
         let start = Instant::now();
         let mut report = (self.run)(&context)?;

@@ -5,11 +5,7 @@ use rayon::prelude::*;
 
 /// `work` on each of `parts`, on `threads` threads; the results stand in the order of the parts. Where the system refuses so
 /// many, half of them are tried, and at last the calling thread alone.
-pub(crate) fn map<T: Send, R: Send>(
-    parts: Vec<T>,
-    threads: usize,
-    work: impl Fn(T) -> R + Sync + Send,
-) -> Vec<R> {
+pub fn map<T: Send, R: Send>(parts: Vec<T>, threads: usize, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
     let counts = std::iter::successors(Some(threads.min(parts.len())), |count| Some(count / 2));
     let pool = counts
         .take_while(|count| *count > 1)

@@ -17,7 +17,7 @@ pub use distribution::{DistributionError, Region, integrate_mass};
 pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Oddity, Twin, Verdict, diagnose};
 pub use error::{InertiaError, MassError};
 pub use mass::{Amount, MassProperties};
-pub use mesh::{Boundary, Closing, Edge, FLOAT_WELD, Mesh, MeshError, Repair, Surface};
+pub use mesh::{Boundary, Closing, Edge, FLOAT_WELD, Mesh, MeshError, Repair, Surface, SurfaceBuilder};
 pub use solids::Solid;
 pub use symmetry::{Class, Symmetry};
 pub use tensor::{Inertia, InertiaShape};

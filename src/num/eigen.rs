@@ -6,7 +6,7 @@ use super::Precise;
 ///
 /// Cyclic Jacobi (Golub and Van Loan, §8.5): each rotation annihilates one pair of off-diagonal entries, to full
 /// relative accuracy of the small ones where the matrix allows it. The signs of the vectors are arbitrary.
-pub(crate) fn eigen<S: Precise, const N: usize>(mut a: [[S; N]; N]) -> ([S; N], [[S; N]; N]) {
+pub fn eigen<S: Precise, const N: usize>(mut a: [[S; N]; N]) -> ([S; N], [[S; N]; N]) {
     let (zero, one) = (S::of(0.0), S::of(1.0));
     // v[k] is the k-th column of the product of all rotations
     let mut v: [[S; N]; N] =

@@ -12,20 +12,17 @@
 //! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
 //! same input gives the same bits on every CPU and at every optimisation level.
 
-#[cfg(feature = "fit")]
-pub(crate) mod banded;
 pub(crate) mod complex;
 pub mod dd;
 #[cfg(any(test, feature = "random"))]
 pub mod distribution;
-pub(crate) mod eigen;
+#[doc(hidden)]
+pub mod eigen;
 pub mod elliptic;
 pub(crate) mod error_free;
 pub mod expansion;
 pub(crate) mod exponential;
 mod lanes;
-#[cfg(feature = "fit")]
-pub(crate) mod quadrature;
 #[cfg(any(test, feature = "random"))]
 pub mod random;
 pub mod real;
@@ -44,5 +41,6 @@ pub(crate) use lanes::{LANES, Lane};
 pub use random::Random;
 pub use real::{Precise, Real};
 pub use series::Series;
-pub(crate) use shown::{Computed, Shown};
+#[doc(hidden)]
+pub use shown::{Computed, Shown};
 pub use sum::Compensated;

@@ -4,7 +4,7 @@ use core::fmt;
 
 /// A number with all its digits: written out where that is short, with a power of ten elsewhere.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shown(pub(crate) f64);
+pub struct Shown(pub f64);
 
 impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -15,7 +15,7 @@ impl fmt::Display for Shown {
 
 /// A number that was computed, without the noise of its last digits: 0.3 of 0.30000000000000004.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Computed(pub(crate) f64);
+pub struct Computed(pub f64);
 
 impl fmt::Display for Computed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -30,7 +30,7 @@ MODULES = {
     "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], 40, ["--lib", "--test=exact", "--test=properties", "--test=tops"]),
     "method": (["src/method/**"], 50, ["--lib", "--test=laws", "--test=dmv", "--test=two_turns", "--test=schemes", "--test=taylor", "--test=exact_step"]),
     "observe": (["src/observe/**"], 2, ["--lib", "--test=observe", "--test=properties"]),
-    "fit": (["src/fit/**"], 100, ["--features=fit", "--lib", "--test=fit", "--test=fit_failures", "--test=record"]),
+    "fit": (["crates/polhode-fit/src/**"], 100, ["--package=polhode-fit", "--lib", "--test=fit", "--test=fit_failures"]),
 }
 OUTCOMES = {"CaughtMutant": "caught", "Timeout": "timeout", "MissedMutant": "missed", "Unviable": "unviable"}
 

@@ -11,12 +11,12 @@ use polhode::inertia::Inertia;
 use polhode::method::{AdaptiveTaylor, AnyMethod as _, Step, method};
 use polhode::num::{Dd, Precise};
 use polhode::rotation::{Quat, Vec3};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::{Figure, Scale, Series, sheet};
+use polhode_pages::table::{Cell, Column, Table, row};
 
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Scale, Series, sheet};
 use crate::measured::{Care, Ending, Motion};
-use crate::table::{Cell, Column, Table, row};
 
 /// A start of the top with the moments 0.5, 0.85, 1 kg m² and the weight moment 1 N m along the axis of the largest.
 struct Orbit {

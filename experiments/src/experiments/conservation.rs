@@ -6,12 +6,12 @@ use polhode::method::{Claimed, method};
 use polhode::num::{Dd, Precise};
 use polhode::rotation::Vec3;
 use polhode::run::{Run, RunError, Sample, Schedule, Watch};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::{Figure, Scale, Series, sheet, ten_to};
+use polhode_pages::table::{Column, Table, row};
 
 use super::followed::Ending;
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Scale, Series, sheet, ten_to};
-use crate::table::{Column, Table, row};
 
 const BODY: &str = "textbook";
 

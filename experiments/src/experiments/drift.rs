@@ -8,11 +8,11 @@ use polhode::flow::FreeMotion;
 use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, catalogue};
 use polhode::observe::secular_drift;
 use polhode::run::Run;
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::table::{Cell, Column, Table, row};
 
 use super::followed::{Effort, Ending, Followed, follow, rows_of_methods};
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::table::{Cell, Column, Table, row};
 
 const BODIES: [&str; 7] = ["textbook", "toutatis", "racket", "t-handle", "phone", "water", "spacecraft"];
 

@@ -10,12 +10,12 @@ use polhode::flow::{Flow, FreeBody, FreeMotion};
 use polhode::inertia::Inertia;
 use polhode::num::{Dd, Precise, Random};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
+use polhode_files::error::Error;
+use polhode_pages::figure::{Figure, Series};
+use polhode_pages::table::{Column, Table, row};
 
-use crate::error::Error;
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series};
 use crate::measured::LOST;
-use crate::table::{Column, Table, row};
 
 const FIXTURES: &str = include_str!("../../../tests/data/free_body/fixtures.csv");
 

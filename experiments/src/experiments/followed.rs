@@ -7,12 +7,12 @@ use polhode::method::Claimed;
 use polhode::num::Dd;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Sample, Schedule};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::Drawing;
+use polhode_pages::figure::{Group, RowPlot, Values};
+use polhode_pages::table::{Cell, Column, Table};
 
-use crate::error::{Error, unexpected};
-use crate::experiment::Drawing;
-use crate::figure::{Group, RowPlot, Values};
 use crate::measured::LOST;
-use crate::table::{Cell, Column, Table};
 
 /// Looks at the energy for its secular slope.
 const LOOKS: u64 = 512;

@@ -8,11 +8,11 @@ use polhode::method::{AnyMethod, catalogue};
 use polhode::num::Dd;
 use polhode::observe::secular_drift;
 use polhode::run::Run;
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::table::{Cell, Column, Table, row};
 
 use super::followed::{Effort, Ending, Followed, follow, rows_of_methods};
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::table::{Cell, Column, Table, row};
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let steps = context.scale.pick(2_000, 100_000, 1_000_000);

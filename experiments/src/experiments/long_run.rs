@@ -7,13 +7,13 @@ use polhode::catalogue;
 use polhode::flow::FreeMotion;
 use polhode::method::method;
 use polhode::run::{Run, Schedule};
+use polhode_files::error::Error;
+use polhode_pages::figure::{Figure, Series, ten_to};
+use polhode_pages::table::{Cell, Column, Table, row};
 
 use super::followed::{Ending, attitude_error};
-use crate::error::Error;
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series, ten_to};
 use crate::measured::LOST;
-use crate::table::{Cell, Column, Table, row};
 
 const METHODS: [&str; 8] = [
     "rk4",

@@ -15,11 +15,11 @@ use polhode::inertia::Inertia;
 use polhode::method::{AxisOrder, Step, TwoAxes, method};
 use polhode::num::{Dd, Real};
 use polhode::rotation::{Quat, Vec3};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::{Figure, Scale, Series};
+use polhode_pages::table::{Column, Table, row};
 
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Scale, Series};
-use crate::table::{Column, Table, row};
 
 /// Moments and angular velocity at the start, rad/s, of the body whose energy is followed.
 const MOMENTS: [f64; 3] = [0.625, 0.75, 1.0];

@@ -4,12 +4,12 @@ use polhode::body::{Body, Problem};
 use polhode::catalogue;
 use polhode::method::{AnyMethod, catalogue};
 use polhode::run::{Halving, halvings};
+use polhode_files::error::Error;
+use polhode_pages::figure::{Figure, Series};
+use polhode_pages::table::{Column, Table, row};
 
 use super::followed::claimed_evaluations;
-use crate::error::Error;
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series};
-use crate::table::{Column, Table, row};
 
 /// Time over which errors grow, s: a power of two, so that every step is exact.
 const SPAN: f64 = 2.0;

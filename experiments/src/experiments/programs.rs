@@ -7,12 +7,12 @@ use polhode::method::{AnyMethod, method};
 use polhode::num::Dd;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, Watch};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::table::{Column, Table, row};
 use serde::Deserialize;
 
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
 use crate::measured::{LOST, StepTime};
-use crate::table::{Column, Table, row};
 
 /// Figures that the programs themselves give, with what they were asked.
 const FIGURES: &str = include_str!("../../../tests/data/programs/figures.csv");

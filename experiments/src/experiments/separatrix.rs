@@ -17,11 +17,11 @@ use polhode::method::{AnyMethod, Claimed, method};
 use polhode::num::{Dd, Random, Real};
 use polhode::rotation::{Quat, Vec3};
 use polhode::run::{Run, RunError};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::{Figure, Series, ten_to};
+use polhode_pages::table::{Column, Table, row};
 
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series, ten_to};
-use crate::table::{Column, Table, row};
 
 /// Bodies of the catalogue: of three quite different moments, a needle, and a body that is nearly a ball.
 const BODIES: [&str; 3] = ["textbook", "racket", "spacecraft"];

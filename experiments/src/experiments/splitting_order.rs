@@ -6,12 +6,12 @@ use polhode::inertia::Inertia;
 use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, Splitting, TwoAxes, TwoTurn};
 use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::{Figure, Series};
+use polhode_pages::table::{Cell, Column, Table, row};
 
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series};
 use crate::measured::{Care, Motion};
-use crate::table::{Cell, Column, Table, row};
 
 /// A body, and its angular velocity at the start, rad/s, of about 1.
 struct Subject {

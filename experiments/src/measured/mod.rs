@@ -8,16 +8,16 @@ use polhode::method::{ADAPTIVE, AnyMethod, StepError};
 use polhode::num::Dd;
 use polhode::observe::Errors;
 use polhode::run::{Run, RunError, Sample, Watch};
+use polhode_files::error::Error;
 
-use crate::error::Error;
-pub(crate) use reference::Reference;
-pub(crate) use timing::StepTime;
+pub use reference::Reference;
+pub use timing::StepTime;
 
 /// An attitude that is further off than this, rad, is lost: what follows is no error but chance.
-pub(crate) const LOST: f64 = 1.0;
+pub const LOST: f64 = 1.0;
 
 /// One body from one start on, with the motion that runs are compared with.
-pub(crate) struct Motion {
+pub struct Motion {
     body: Body,
     start: Point<f64>,
     start_time: f64,
@@ -27,7 +27,7 @@ pub(crate) struct Motion {
 
 /// What becomes of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Ending {
+pub enum Ending {
     /// It comes to its end, with the attitude less than a radian off.
     Held,
     /// The attitude is more than a radian off at the time, s since the start.
@@ -42,41 +42,41 @@ pub(crate) enum Ending {
 
 /// One look at a run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Look {
+pub struct Look {
     /// Time since the start, s.
-    pub(crate) elapsed: f64,
+    pub elapsed: f64,
     /// Angle to the true attitude, rad.
-    pub(crate) attitude_error: f64,
+    pub attitude_error: f64,
     /// Evaluations so far.
-    pub(crate) evaluations: u64,
+    pub evaluations: u64,
 }
 
 /// A run that was measured.
 #[derive(Clone, Debug)]
-pub(crate) struct Measured {
+pub struct Measured {
     /// Looks as long as the true motion is known, ascending in time.
-    pub(crate) looks: Vec<Look>,
+    pub looks: Vec<Look>,
     /// The last finite sample.
-    pub(crate) last: Sample,
-    pub(crate) ending: Ending,
+    pub last: Sample,
+    pub ending: Ending,
     /// Right sides, turns, elliptic additions, free flows, solutions and kicks together.
-    pub(crate) evaluations: u64,
+    pub evaluations: u64,
 }
 
 /// How a run is looked at.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Care {
+pub struct Care {
     /// How often the invariants are evaluated.
-    pub(crate) watch: Watch,
+    pub watch: Watch,
     /// Whether the run ends where the attitude is lost.
-    pub(crate) until_lost: bool,
+    pub until_lost: bool,
     /// Where it ends at the latest, s since the start.
-    pub(crate) until: f64,
+    pub until: f64,
 }
 
 impl Care {
     /// Every step watched, to the end.
-    pub(crate) const FULL: Care = Care { watch: Watch::EveryStep, until_lost: false, until: f64::INFINITY };
+    pub const FULL: Care = Care { watch: Watch::EveryStep, until_lost: false, until: f64::INFINITY };
 }
 
 impl Motion {
@@ -84,7 +84,7 @@ impl Motion {
     ///
     /// # Errors
     /// Times that the true motion cannot be followed to.
-    pub(crate) fn new(body: &Body, start: &Point<Dd>, start_time: f64, times: &[f64]) -> Result<Self, Error> {
+    pub fn new(body: &Body, start: &Point<Dd>, start_time: f64, times: &[f64]) -> Result<Self, Error> {
         let start = start.to_f64();
         let reference = Reference::new(body, start, start_time, times)?;
         let span = times.last().copied().unwrap_or(0.0);
@@ -92,7 +92,7 @@ impl Motion {
     }
 
     /// The same up to `span` s, looked at `looks` times at equal distances.
-    pub(crate) fn evenly(
+    pub fn evenly(
         body: &Body,
         start: &Point<Dd>,
         start_time: f64,
@@ -103,16 +103,16 @@ impl Motion {
         Motion::new(body, start, start_time, &times)
     }
 
-    pub(crate) fn body(&self) -> &Body {
+    pub fn body(&self) -> &Body {
         &self.body
     }
 
-    pub(crate) fn start(&self) -> &Point<f64> {
+    pub fn start(&self) -> &Point<f64> {
         &self.start
     }
 
     /// The motion that runs are compared with.
-    pub(crate) fn reference(&self) -> &Reference {
+    pub fn reference(&self) -> &Reference {
         &self.reference
     }
 
@@ -124,12 +124,7 @@ impl Motion {
     ///
     /// # Errors
     /// As [`Run::from_point`], and a force that is not finite; a run that fails on its way is measured up to there.
-    pub(crate) fn measure(
-        &self,
-        method: &dyn AnyMethod,
-        step: f64,
-        care: Care,
-    ) -> Result<Measured, RunError> {
+    pub fn measure(&self, method: &dyn AnyMethod, step: f64, care: Care) -> Result<Measured, RunError> {
         let run = Run::from_point(method, &self.body, self.start, self.clock(step))?;
         let mut run = run.watching(care.watch);
         let of_step = evaluations(method, &self.body);
@@ -182,17 +177,17 @@ impl Motion {
     }
 
     /// Processor time of a step of `method`; of one that chooses its steps, per interval of output.
-    pub(crate) fn step_time(&self, method: &dyn AnyMethod, step: f64) -> Result<StepTime, Error> {
+    pub fn step_time(&self, method: &dyn AnyMethod, step: f64) -> Result<StepTime, Error> {
         StepTime::measure(method, &self.body, self.start, self.clock(step))
     }
 
     /// An interval of output of methods that choose their steps, s: that of the looks where they are even.
-    pub(crate) fn interval(&self) -> f64 {
+    pub fn interval(&self) -> f64 {
         self.reference.times().next().unwrap_or(self.span)
     }
 
     /// max |E − E₀| of the errors `worst` over what kinetic and potential energy exchange; under uniform gravity alone.
-    pub(crate) fn exchanged_energy_error(&self, worst: &Errors) -> Option<f64> {
+    pub fn exchanged_energy_error(&self, worst: &Errors) -> Option<f64> {
         let exchanged = self.reference.exchanged_energy()?;
         let weight = self.body.gravity::<f64>()?.weight_moment.norm() * self.body.scale();
         let start = self.start.to_dd();
@@ -205,14 +200,14 @@ impl Motion {
     ///
     /// # Errors
     /// None but those of [`new`](Self::new).
-    pub(crate) fn attitude_error(&self, point: &Point<Dd>, elapsed: Dd) -> Result<f64, StepError> {
+    pub fn attitude_error(&self, point: &Point<Dd>, elapsed: Dd) -> Result<f64, StepError> {
         Ok(reference::apart(point.attitude, self.reference.point_at(elapsed)?.attitude))
     }
 }
 
 impl Measured {
     /// The last look at which the attitude is not lost yet, unless it is lost before.
-    pub(crate) fn attitude_error(&self) -> Option<f64> {
+    pub fn attitude_error(&self) -> Option<f64> {
         match self.ending {
             Ending::Held => self.looks.last().map(|look| look.attitude_error),
             _ => None,
@@ -220,7 +215,7 @@ impl Measured {
     }
 
     /// The largest error of the attitude up to `elapsed` s since the start; `None` where the run does not come so far, or is lost.
-    pub(crate) fn largest_attitude_error(&self, elapsed: f64) -> Option<f64> {
+    pub fn largest_attitude_error(&self, elapsed: f64) -> Option<f64> {
         let mut before = self.looks.iter().filter(|look| look.elapsed <= elapsed * (1.0 + 1e-9));
         let largest = before.clone().map(|look| look.attitude_error).fold(0.0, f64::max);
         let reached = before.next_back().is_some_and(|look| look.elapsed >= elapsed * (1.0 - 1e-9));
@@ -230,8 +225,8 @@ impl Measured {
 
 impl Ending {
     /// In words, with times of the clock.
-    pub(crate) fn words(self, start_time: f64) -> String {
-        let at = |elapsed: f64| crate::text::short(rounded(start_time + elapsed));
+    pub fn words(self, start_time: f64) -> String {
+        let at = |elapsed: f64| polhode_files::text::short(rounded(start_time + elapsed));
         match self {
             Ending::Held => "ok".into(),
             Ending::Lost(t) => format!("lost at t = {}", at(t)),
@@ -248,13 +243,13 @@ fn rounded(t: f64) -> f64 {
 }
 
 /// Whether the method chooses its steps: `dop853`, `tsit5`, and `taylor` but for `taylor:20`, whose argument is an order.
-pub(crate) fn is_adaptive(name: &str) -> bool {
+pub fn is_adaptive(name: &str) -> bool {
     let (base, argument) = name.split_once(':').unwrap_or((name, ""));
     ADAPTIVE.contains(&base) && argument.parse::<u32>().is_err()
 }
 
 /// Evaluations in a step, of all kinds together.
-pub(crate) fn evaluations(method: &dyn AnyMethod, body: &Body) -> u64 {
+pub fn evaluations(method: &dyn AnyMethod, body: &Body) -> u64 {
     let Some(claims) = method.claims(body.problem()) else { return 0 };
     let cost = claims.cost;
     u64::from(cost.right_sides + cost.turns + cost.additions + cost.free_flows + cost.solves + cost.kicks)

@@ -5,8 +5,7 @@ use polhode::flow::ExactMotion;
 use polhode::method::{AdaptiveTaylor, AnyMethod as _, StepError};
 use polhode::num::{Dd, Precise};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
-
-use crate::error::Error;
+use polhode_files::error::Error;
 
 /// Two runs in double-double agree up to this angle, rad: below it a double has no digits.
 const AGREEMENT: f64 = 1e-13;
@@ -18,7 +17,7 @@ const FLIP_ANGLE: f64 = 0.25;
 const SECOND_ANGLE: f64 = 0.25;
 
 /// The motion of a body from one start, at times that are counted from it.
-pub(crate) struct Reference {
+pub struct Reference {
     body: Body,
     start_time: f64,
     closed: Option<ExactMotion>,
@@ -49,7 +48,7 @@ impl Reference {
     ///
     /// # Errors
     /// Times beyond the reach of the closed form, and a body that no run in double-double can follow.
-    pub(crate) fn new(body: &Body, start: Point<f64>, start_time: f64, times: &[f64]) -> Result<Self, Error> {
+    pub fn new(body: &Body, start: Point<f64>, start_time: f64, times: &[f64]) -> Result<Self, Error> {
         // the rounding of |q| would scale the torque
         let Point { attitude, momentum_body, .. } = start.to_dd();
         let point = Point::new(attitude.normalized(), momentum_body);
@@ -148,12 +147,12 @@ impl Reference {
     }
 
     /// Times of the looks after the start up to which the motion is known, s since the start.
-    pub(crate) fn times(&self) -> impl DoubleEndedIterator<Item = f64> + '_ {
+    pub fn times(&self) -> impl DoubleEndedIterator<Item = f64> + '_ {
         self.looks.iter().skip(1).map(|look| look.elapsed)
     }
 
     /// Up to when the motion is known, s since the start.
-    pub(crate) fn known_until(&self) -> f64 {
+    pub fn known_until(&self) -> f64 {
         self.looks.last().map_or(0.0, |look| look.elapsed)
     }
 
@@ -161,7 +160,7 @@ impl Reference {
     ///
     /// # Errors
     /// None but those of [`new`](Self::new).
-    pub(crate) fn point_at(&self, elapsed: Dd) -> Result<Point<Dd>, StepError> {
+    pub fn point_at(&self, elapsed: Dd) -> Result<Point<Dd>, StepError> {
         let distance = |look: &Look| (elapsed - Dd::from(look.elapsed)).hi().abs();
         let after = self.looks.partition_point(|look| look.elapsed < elapsed.hi());
         let before = &self.looks[after.saturating_sub(1)];
@@ -175,12 +174,12 @@ impl Reference {
     }
 
     /// How often the body has flipped until the look at `elapsed` s after the start; `None` where that is not counted.
-    pub(crate) fn flips_until(&self, elapsed: f64) -> Option<u64> {
+    pub fn flips_until(&self, elapsed: f64) -> Option<u64> {
         self.looks.iter().rev().find(|look| look.elapsed <= elapsed).and_then(|look| look.flips)
     }
 
     /// How often the body has flipped until `elapsed` s after the start: at any time of a closed form, else at looks alone.
-    pub(crate) fn flips_at(&self, elapsed: f64) -> Option<u64> {
+    pub fn flips_at(&self, elapsed: f64) -> Option<u64> {
         match &self.closed {
             Some(ExactMotion::Free(free)) => Some(free.flips(Dd::from(elapsed))),
             _ => self.looks.iter().find(|look| look.elapsed == elapsed).and_then(|look| look.flips),
@@ -188,7 +187,7 @@ impl Reference {
     }
 
     /// The largest less the smallest potential energy over the looks, J.
-    pub(crate) fn exchanged_energy(&self) -> Option<f64> {
+    pub fn exchanged_energy(&self) -> Option<f64> {
         let gravity = self.body.gravity::<Dd>().filter(|_| self.body.forces().is_empty())?;
         let vertical = Vec3([Dd::ZERO, Dd::ZERO, Dd::ONE]);
         let potential =

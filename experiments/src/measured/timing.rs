@@ -4,8 +4,7 @@ use std::time::Instant;
 
 use polhode::body::{Body, Clock, Point};
 use polhode::method::{AnyMethod, Step, method};
-
-use crate::error::{Error, unexpected};
+use polhode_files::error::{Error, unexpected};
 
 /// Bursts of each; the least counts, because whatever else the machine does only adds.
 const BURSTS: u32 = 9;
@@ -15,11 +14,11 @@ const BURST: f64 = 2e-4;
 
 /// Time of one step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StepTime {
+pub struct StepTime {
     /// Of the method, s.
-    pub(crate) seconds: f64,
+    pub seconds: f64,
     /// Of `rk4` on the same body, s.
-    pub(crate) rk4: f64,
+    pub rk4: f64,
 }
 
 impl StepTime {
@@ -27,7 +26,7 @@ impl StepTime {
     ///
     /// # Errors
     /// A body or a step that the method is not for.
-    pub(crate) fn measure(
+    pub fn measure(
         timed: &dyn AnyMethod,
         body: &Body,
         start: Point<f64>,

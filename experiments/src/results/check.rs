@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use polhode_files::error::Error;
+use polhode_files::read;
+use polhode_pages::output::emit;
+use polhode_pages::table::Table;
+
 use super::{RESULTS, chosen};
-use crate::error::Error;
 use crate::experiment::{Experiment, Report, Scale};
-use crate::files::{emit, read};
-use crate::table::Table;
 
 /// The CSVs of smoke scale.
 const GOLDEN: &str = "experiments/tests/golden/smoke";
@@ -15,7 +17,7 @@ const TOLD: usize = 8;
 
 /// The scales whose numbers are committed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Committed {
+pub enum Committed {
     /// Some seconds for each experiment at most
     Smoke,
     /// Full size: about an hour and a half on two cores; run.toml beside the committed numbers states the seconds of each experiment

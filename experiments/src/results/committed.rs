@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use polhode_files::error::Error;
+use polhode_files::read;
+use polhode_pages::output::MARK;
+use polhode_pages::table::{Part, Shown, Table};
 use serde::Deserialize;
 
 use super::which::Which;
-use crate::error::Error;
-use crate::files::{MARK, read};
-use crate::table::{Part, Shown, Table};
 
 /// What is made of the costs that the experiment `COSTED` measured.
 const COSTED: &str = "work-precision";

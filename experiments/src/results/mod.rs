@@ -11,13 +11,13 @@ mod which;
 use std::path::PathBuf;
 
 use clap::Subcommand;
+use polhode_files::error::Error;
+use polhode_pages::output::emit;
+use polhode_pages::table::{Column, Format, Table, row};
 
 use self::check::Committed;
-use crate::error::Error;
 use crate::experiment::{Experiment, Scale};
 use crate::experiments;
-use crate::files::emit;
-use crate::table::{Column, Format, Table, row};
 
 /// Results of paper scale, as they are committed.
 const RESULTS: &str = "experiments/results";
@@ -40,7 +40,7 @@ const EXAMPLES: &str = "Examples:
   polhode experiment run order drift --scale smoke --report results.html";
 
 #[derive(Subcommand)]
-pub(crate) enum ExperimentCommand {
+pub enum ExperimentCommand {
     /// List the experiments and the question of each
     #[command(after_help = LIST_EXAMPLES)]
     List {
@@ -100,7 +100,7 @@ pub(crate) enum ExperimentCommand {
 }
 
 impl ExperimentCommand {
-    pub(crate) fn run(self) -> Result<(), Error> {
+    pub fn run(self) -> Result<(), Error> {
         match self {
             Self::List { format } => list(format),
             Self::Run { names, scale, out, report } => run::run(&names, scale, &out, report.as_deref()),

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use polhode_pages::table::{Part, Shown, Table};
 use serde::Serialize;
 
+use crate::build;
 use crate::experiment::{Report, Scale};
-use crate::table::{Part, Shown, Table};
 
 #[derive(Serialize)]
 struct Provenance<'a> {
@@ -61,11 +62,11 @@ pub(super) fn describe<'a>(experiment: &'a str, scale: Scale, report: &'a Report
         experiment,
         scale: scale.to_string(),
         version: env!("CARGO_PKG_VERSION"),
-        commit: env!("POLHODE_COMMIT"),
-        changed: env!("POLHODE_DIRTY"),
-        rustc: env!("POLHODE_RUSTC"),
-        profile: env!("POLHODE_PROFILE"),
-        target: env!("POLHODE_TARGET"),
+        commit: build::COMMIT,
+        changed: build::CHANGED,
+        rustc: build::RUSTC,
+        profile: build::PROFILE,
+        target: build::TARGET,
         cpu_features: cpu_features(),
         cores: std::thread::available_parallelism().map_or(1, usize::from),
         seconds: (report.took.as_secs_f64() * 10.0).round() / 10.0,

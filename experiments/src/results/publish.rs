@@ -12,13 +12,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use polhode_files::error::Error;
+use polhode_files::read;
+use polhode_pages::figure;
+use polhode_pages::output::{MARK, Staging, emit};
+use polhode_pages::table::{Column, Table};
+
 use super::RESULTS;
 use super::committed::{NAMES, REMEDY, Results, is_name, within};
-use crate::error::Error;
-use crate::figure;
-use crate::files::{MARK, Staging, emit, read};
 use crate::methods;
-use crate::table::{Column, Table};
 
 const GENERATED: &str = "generated/";
 const METHODS: &str = "methods";
@@ -187,7 +189,7 @@ fn with_blocks_filled(text: &str, results: &[Results]) -> Result<String, Error> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::scratch::Scratch;
+    use tempfile::tempdir;
 
     const CSV: &str = "method,steps,error\nrk4,10,0.25\nrattle,20,1e-9\n";
 
@@ -206,7 +208,7 @@ mod tests {
 
     #[test]
     fn blocks_are_replaced_and_the_rest_is_kept() {
-        let scratch = Scratch::new("publish");
+        let scratch = tempdir().unwrap();
         let folder = scratch.path().join("drift");
         write_results(&folder, "drift");
         let results = [Results::open(folder).unwrap()];
@@ -220,7 +222,7 @@ mod tests {
 
     #[test]
     fn the_article_gets_the_files_that_it_names() {
-        let scratch = Scratch::new("publish-article");
+        let scratch = tempdir().unwrap();
         let root = scratch.path();
         write_results(&root.join(RESULTS).join("drift"), "drift");
         write_results(&root.join(RESULTS).join("drift-long"), "drift-long");
@@ -258,7 +260,7 @@ mod tests {
 
     #[test]
     fn results_are_taken_over_without_what_follows_from_them() {
-        let scratch = Scratch::new("publish-from");
+        let scratch = tempdir().unwrap();
         let (root, from) = (scratch.path().join("root"), scratch.path().join("from"));
         write_results(&from.join("drift"), "drift");
         for other in ["errors.md", "shown.svg", "other.svg"] {
@@ -275,7 +277,7 @@ mod tests {
 
     #[test]
     fn nothing_outside_of_the_root_is_read_or_written() {
-        let scratch = Scratch::new("publish-outside");
+        let scratch = tempdir().unwrap();
         let root = scratch.path().join("root");
         let results = root.join(RESULTS).join("drift");
         write_results(&results, "drift");
@@ -284,7 +286,10 @@ mod tests {
         let refused = |part: &str| {
             let error = super::run(&root, None).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
-            assert_eq!(scratch.names(), ["root", "secret.csv"]);
+            let mut names: Vec<_> =
+                std::fs::read_dir(scratch.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+            names.sort();
+            assert_eq!(names, ["root", "secret.csv"]);
         };
         for name in ["../../../../secret", "drift/../secret", "drift", "/secret", "drift/"] {
             std::fs::write(&readme, format!("<!-- begin generated: {name} -->\n<!-- end generated -->\n"))

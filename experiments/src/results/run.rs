@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use polhode_files::error::Error;
+use polhode_pages::output::{MARK, Staging, emit};
+
 use super::page::{Page, is_page};
 use super::{chosen, provenance};
-use crate::error::Error;
 use crate::experiment::{Experiment, Report, Scale};
-use crate::files::{MARK, Staging, emit};
 
 /// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`, and the page `page` of all of them.
 pub(super) fn run(names: &[String], scale: Scale, out: &Path, page: Option<&Path>) -> Result<(), Error> {

@@ -5,14 +5,8 @@ mod closed;
 mod error;
 mod hull;
 mod mend;
-mod obj;
-mod ply;
-mod stl;
 mod surface;
-mod text;
 mod welded;
-
-use std::io::{BufRead, Read};
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -22,7 +16,7 @@ use crate::num::{Compensated, Dd};
 use crate::rotation::Vec3;
 pub use error::{Edge, MeshError};
 pub use mend::{Closing, FLOAT_WELD, Repair};
-pub use surface::{Boundary, Surface};
+pub use surface::{Boundary, Surface, SurfaceBuilder};
 use welded::Welded;
 
 /// What a closed, oriented triangle mesh encloses.
@@ -70,30 +64,6 @@ impl Mesh {
             welded.add(corners.map(Into::into))?;
         }
         Self::of(welded)
-    }
-
-    /// From an STL file, binary or ASCII.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); files that end early, name the byte.
-    pub fn from_stl(reader: impl Read) -> Result<Self, MeshError> {
-        Self::of(stl::read(reader)?)
-    }
-
-    /// From an OBJ file: its `v` and `f` lines; polygons are cut into triangles from their first corner.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); lines that cannot be read.
-    pub fn from_obj(reader: impl BufRead) -> Result<Self, MeshError> {
-        Self::of(obj::read(reader)?)
-    }
-
-    /// From a PLY file, text or binary: `x`, `y`, `z` of its vertices and the `vertex_indices` of its faces.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); headers and elements that cannot be read.
-    pub fn from_ply(reader: impl BufRead) -> Result<Self, MeshError> {
-        Self::of(ply::read(reader)?)
     }
 
     fn of(mesh: Welded) -> Result<Self, MeshError> {

@@ -2,14 +2,13 @@
 
 use core::mem::take;
 use std::collections::BTreeMap;
-use std::io::{BufRead, Read};
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::boxes::Bounds;
 use super::closed::{directed, root};
 use super::welded::Welded;
-use super::{Closing, Mesh, MeshError, Repair, hull, mend, obj, ply, stl};
+use super::{Closing, Mesh, MeshError, Repair, hull, mend};
 use crate::inertia::symmetric::from_second_moments;
 use crate::inertia::{Amount, MassError, MassProperties};
 use crate::num::Compensated;
@@ -53,41 +52,56 @@ pub struct Surface {
     pub(super) welded: Welded,
 }
 
+/// Collects the triangles of a file, and the groups that it names.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::inertia::SurfaceBuilder;
+/// let mut builder = SurfaceBuilder::default();
+/// builder.begin_group("lid");
+/// builder.add([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vector3::from))?;
+/// assert_eq!(builder.finish()?.groups().collect::<Vec<_>>(), ["lid"]);
+/// # Ok::<(), polhode::inertia::MeshError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct SurfaceBuilder {
+    welded: Welded,
+}
+
+impl SurfaceBuilder {
+    /// Adds a triangle, corners counterclockwise as seen from outside; one whose corners coincide is left out.
+    ///
+    /// # Errors
+    /// Coordinates that are not finite.
+    pub fn add(&mut self, corners: [Vector3<f64>; 3]) -> Result<(), MeshError> {
+        self.welded.add(corners.map(Into::into))
+    }
+
+    /// What is added from here on belongs to the group `name`.
+    pub fn begin_group(&mut self, name: &str) {
+        self.welded.begin_group(name);
+    }
+
+    /// The surface.
+    ///
+    /// # Errors
+    /// No triangle with three distinct corners.
+    pub fn finish(self) -> Result<Surface, MeshError> {
+        Surface::of(self.welded)
+    }
+}
+
 impl Surface {
     /// From triangles.
     ///
     /// # Errors
     /// Coordinates that are not finite; no triangle with three distinct corners.
     pub fn new(triangles: impl IntoIterator<Item = [Vector3<f64>; 3]>) -> Result<Self, MeshError> {
-        let mut welded = Welded::default();
+        let mut builder = SurfaceBuilder::default();
         for corners in triangles {
-            welded.add(corners.map(Into::into))?;
+            builder.add(corners)?;
         }
-        Self::of(welded)
-    }
-
-    /// From an STL file, binary or ASCII.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); files that end early.
-    pub fn from_stl(reader: impl Read) -> Result<Self, MeshError> {
-        Self::of(stl::read(reader)?)
-    }
-
-    /// From an OBJ file.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); lines that cannot be read.
-    pub fn from_obj(reader: impl BufRead) -> Result<Self, MeshError> {
-        Self::of(obj::read(reader)?)
-    }
-
-    /// From a PLY file, text or binary.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); headers and elements that cannot be read.
-    pub fn from_ply(reader: impl BufRead) -> Result<Self, MeshError> {
-        Self::of(ply::read(reader)?)
+        builder.finish()
     }
 
     /// The convex hull of points.

@@ -10,10 +10,10 @@ use polhode::audit::{Judgement, Question, Reading, audit};
 use polhode::body::Body;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::table::{Column, Table, row};
 
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::table::{Column, Table, row};
 use alike::{ORDERS, alike};
 use mistakes::{Mistake, claims, wrong};
 use motion::Motion;

@@ -8,9 +8,9 @@ use polhode::method::{Claimed as _, catalogue};
 use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode::run::{Run, Watch};
+use polhode_files::error::{Error, unexpected};
 
 use super::nearest::distance;
-use crate::error::{Error, unexpected};
 
 /// A row before it is written: time, attitude from body to space, angular velocity in body axes.
 #[derive(Clone, Copy)]

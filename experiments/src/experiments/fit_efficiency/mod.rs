@@ -4,15 +4,15 @@ mod outcome;
 mod rivals;
 
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
-use polhode::fit::{FitError, Record, Settings, fit, foreseen_bound, simulate};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
+use polhode_files::error::{Error, unexpected};
+use polhode_fit::{FitError, Record, Settings, fit, foreseen_bound, simulate};
+use polhode_pages::figure::{Figure, Series};
+use polhode_pages::table::{Cell, Column, Table};
 
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series};
-use crate::table::{Cell, Column, Table};
 use outcome::{Outcome, Summary, best, rounded};
 use rivals::{ATTITUDE_NOISE, RIVALS, Rival};
 

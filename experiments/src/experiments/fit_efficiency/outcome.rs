@@ -1,6 +1,6 @@
 //! What the answers of one estimator to many records amount to.
 
-use crate::table::{Cell, row};
+use polhode_pages::table::{Cell, row};
 
 /// The 95 % point of χ² with five degrees of freedom.
 const ELLIPSOID: f64 = 11.070_497_693_516_35;

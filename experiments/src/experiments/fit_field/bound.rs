@@ -162,8 +162,8 @@ impl Problem {
 
 #[cfg(test)]
 mod tests {
-    use polhode::fit::foreseen_bound;
     use polhode::inertia::Inertia;
+    use polhode_fit::foreseen_bound;
 
     use super::*;
 

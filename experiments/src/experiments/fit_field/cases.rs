@@ -1,8 +1,8 @@
 //! What is wrong with body and sensor in each row, and what the fit is told of it.
 
 use nalgebra::Vector3;
-use polhode::fit::{Disturbances, Gyroscope, SensorPriors, Settings};
 use polhode::num::Random;
+use polhode_fit::{Disturbances, Gyroscope, SensorPriors, Settings};
 
 use super::bound::Unknown;
 

@@ -5,9 +5,10 @@ mod cases;
 mod tally;
 mod trial;
 
-use crate::error::Error;
+use polhode_files::error::Error;
+use polhode_pages::table::{Column, Table, row};
+
 use crate::experiment::{Context, Report};
-use crate::table::{Column, Table, row};
 use cases::{CASES, Model};
 use tally::{Interval, Tally, rounded};
 use trial::{Trial, trial};

@@ -3,13 +3,13 @@
 use std::time::Instant;
 
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
-use polhode::fit::{Estimate, FitError, Record, Segment, fit, simulate_with};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
+use polhode_files::error::{Error, unexpected};
+use polhode_fit::{Estimate, FitError, Record, Segment, fit, simulate_with};
 
 use super::bound::Problem;
 use super::cases::{Case, Drawn};
-use crate::error::{Error, unexpected};
 
 /// The fit of one record.
 pub(super) struct Trial {

@@ -3,11 +3,11 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, Evidence, MassProperties, Solid, Verdict, diagnose};
 use polhode::num::Random;
+use polhode_files::error::Error;
+use polhode_pages::table::{Column, Table, row};
 
 use super::failed;
-use crate::error::Error;
 use crate::experiment::Context;
-use crate::table::{Column, Table, row};
 
 /// A random body, and what may be known of it.
 struct Patient {

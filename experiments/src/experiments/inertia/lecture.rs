@@ -3,10 +3,10 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, MassProperties, Solid};
 use polhode::num::Random;
+use polhode_files::error::Error;
+use polhode_pages::table::{Column, Table, row};
 
 use super::failed;
-use crate::error::Error;
-use crate::table::{Column, Table, row};
 
 /// A point: mass and place.
 type Point = (f64, Vector3<f64>);

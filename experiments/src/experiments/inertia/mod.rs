@@ -10,11 +10,11 @@ use std::time::Instant;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::{Amount, MassProperties, Mesh, MeshError, Solid, integrate_mass};
 use polhode::num::Random;
+use polhode_files::error::Error;
+use polhode_pages::figure::{Figure, Series};
+use polhode_pages::table::{Column, Table, row};
 
-use crate::error::Error;
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series};
-use crate::table::{Column, Table, row};
 
 /// Of the random bodies.
 const SEED: u64 = 17;
@@ -232,7 +232,10 @@ fn timing(n: usize) -> Result<Table, Error> {
     let mut triangles = 0;
     for _ in 0..3 {
         let start = Instant::now();
-        let mesh = Mesh::from_stl(bytes.as_slice()).map_err(|error| failed(&error))?;
+        let mesh = polhode_files::mesh::stl(bytes.as_slice())
+            .map_err(|error| failed(&error))?
+            .mesh()
+            .map_err(|error| failed(&error))?;
         best = best.min(start.elapsed().as_secs_f64());
         triangles = mesh.triangles() as u64;
     }

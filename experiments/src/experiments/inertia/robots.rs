@@ -3,11 +3,11 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Diagnosis, Evidence, Twin, Verdict, diagnose};
 use polhode::num::Random;
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::table::{Column, Table, row};
 
 use super::failed;
-use crate::error::{Error, unexpected};
 use crate::experiment::Context;
-use crate::table::{Column, Table, row};
 
 /// Links with their mass, centre of mass and tensor.
 const LINKS: &str = include_str!("links.csv");

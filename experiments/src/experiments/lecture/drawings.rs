@@ -5,12 +5,11 @@ use polhode::body::Body;
 use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::inertia::Inertia;
 use polhode::rotation::EulerSequence;
-
-use crate::error::{Error, unexpected};
-use crate::experiment::Drawing;
-use crate::figure::sphere::{View, circle};
-use crate::figure::style::{BLACK, BLUE, GREEN, GREY, NAME, ORANGE, TITLE};
-use crate::figure::{Anchor, Canvas};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::Drawing;
+use polhode_pages::figure::sphere::{View, circle};
+use polhode_pages::figure::style::{BLACK, BLUE, GREEN, GREY, NAME, ORANGE, TITLE};
+use polhode_pages::figure::{Anchor, Canvas};
 
 type V = Vector3<f64>;
 

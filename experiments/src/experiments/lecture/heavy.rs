@@ -8,9 +8,9 @@ use polhode::inertia::Inertia;
 use polhode::method::method;
 use polhode::num::{Dd, Real};
 use polhode::rotation::{EulerSequence, Vec3};
+use polhode_files::error::Error;
 
 use super::{Point, Statements, derivative, larger, unexpected};
-use crate::error::Error;
 
 const HEAVY: &str = "17.6";
 

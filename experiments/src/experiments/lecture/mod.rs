@@ -12,10 +12,10 @@ mod symmetric;
 use nalgebra::Vector3;
 use polhode::num::{Dd, Real};
 use polhode::rotation::Vec3;
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::table::{Column, Table, row};
 
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::table::{Column, Table, row};
 
 /// A measured rate may differ by this share from the predicted one.
 const RATE_TOLERANCE: f64 = 0.03;

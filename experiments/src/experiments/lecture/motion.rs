@@ -7,9 +7,9 @@ use polhode::inertia::Inertia;
 use polhode::num::elliptic::Modulus;
 use polhode::num::{Dd, Random, Real};
 use polhode::rotation::{EulerSequence, Quat, Vec3};
+use polhode_files::error::Error;
 
 use super::{Point, Statements, derivative, larger, unexpected};
-use crate::error::Error;
 
 const ROTATION: &str = "17.2";
 const EQUATIONS: &str = "17.3";

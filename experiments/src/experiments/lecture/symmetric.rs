@@ -5,9 +5,9 @@ use polhode::body::State;
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::{Dd, Real};
+use polhode_files::error::Error;
 
 use super::{Point, Statements, larger, second_derivative, unexpected};
-use crate::error::Error;
 
 const SYMMETRIC: &str = "17.5";
 

@@ -5,9 +5,9 @@ use polhode::flow::FreeMotion;
 use polhode::num::{Dd, Precise, Real};
 use polhode::rotation::Vec3;
 use polhode::run::Run;
+use polhode_files::error::{Error, unexpected};
 
 use super::{Rates, turn_in_space};
-use crate::error::{Error, unexpected};
 
 /// One look at a run.
 #[derive(Clone, Copy, Debug)]

@@ -14,12 +14,12 @@ use polhode::method::{AxisOrder, Claimed, TwoAxes, method};
 use polhode::num::{Dd, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode::run::{Run, Watch};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::{Figure, Series, sheet};
+use polhode_pages::table::{Cell, Column, Table, row};
 
 use super::followed::attitude_error;
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series, sheet};
-use crate::table::{Cell, Column, Table, row};
 use measured::Look;
 
 const BODIES: [&str; 5] = ["textbook", "toutatis", "water", "spacecraft", "dyadic"];

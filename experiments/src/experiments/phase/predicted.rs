@@ -5,9 +5,9 @@ use polhode::flow::FreeMotion;
 use polhode::method::{AnyMethod, AxisOrder, TwoAxes};
 use polhode::num::{Dd, Real};
 use polhode::rotation::Vec3;
+use polhode_files::error::{Error, unexpected};
 
 use super::{Rates, turn_in_space};
-use crate::error::{Error, unexpected};
 
 /// Nodes and weights of Gauss and Legendre on (−1, 1).
 const NODES: [(f64, f64); 5] = [

@@ -12,11 +12,11 @@ use polhode::inertia::Inertia;
 use polhode::method::{Claimed, Energy, Kept, Step, method};
 use polhode::num::{Dd, Precise, Random, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::{Figure, Series, sheet};
+use polhode_pages::table::{Column, Table, row};
 
-use crate::error::{Error, unexpected};
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, Series, sheet};
-use crate::table::{Column, Table, row};
 use statistics::Walks;
 
 const SEED: u64 = 20_260;

@@ -5,10 +5,10 @@ use polhode::catalogue;
 use polhode::inertia::Inertia;
 use polhode::num::{Dd, Random};
 use polhode::rotation::{Quat, Vec3};
+use polhode_files::error::{Error, unexpected};
+use polhode_files::text::short;
 
-use crate::error::{Error, unexpected};
 use crate::experiment::Scale;
-use crate::text::short;
 
 pub(super) const SEED: u64 = 1967;
 

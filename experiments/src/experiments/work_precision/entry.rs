@@ -3,10 +3,10 @@
 use polhode::body::Clock;
 use polhode::method::{AnyMethod, catalogue, method};
 use polhode::run::Watch;
+use polhode_files::error::{Error, unexpected};
 
 use super::cases::Case;
 use super::contest::{Contestant, Quantiles, Run};
-use crate::error::{Error, unexpected};
 use crate::measured::{Care, Ending, LOST, Measured, Motion, StepTime, evaluations, is_adaptive};
 
 /// Schemes beside the catalogue; those that a force does not admit are left out there.

@@ -7,13 +7,14 @@ mod entry;
 mod panel;
 mod tables;
 
+use polhode_files::error::Error;
+use polhode_pages::figure::{Figure, sheet};
+
 use self::cases::Case;
 use self::contest::Currency;
 use self::entry::{Budget, contestant, families};
 use self::tables::{Contest, costs, error_row, is_free, winners};
-use crate::error::Error;
 use crate::experiment::{Context, Report};
-use crate::figure::{Figure, sheet};
 use crate::measured::Motion;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {

@@ -1,8 +1,9 @@
 //! One panel of the figure.
 
+use polhode_pages::figure::{Figure, Series};
+
 use super::contest::{CLOSED_FORM, Contestant, Currency};
 use super::tables::Contest;
-use crate::figure::{Figure, Series};
 
 /// The methods that win at some accuracy, and two that everybody knows, at the last horizon to which the motion is known.
 pub(super) fn panel(contest: &Contest, currency: Currency) -> Figure {

@@ -1,10 +1,11 @@
 //! Rows for readers and for programs.
 
+use polhode_pages::table::{Cell, Column, Table, row};
+
 use super::cases::{Case, Kind};
 use super::contest::{CLOSED_FORM, Contestant, Currency, Quantiles, ranked};
 use super::entry::{Entry, FEW, Found};
 use crate::measured::{Ending, Motion};
-use crate::table::{Cell, Column, Table, row};
 
 /// Accuracies that winners are named for, rad.
 const ACCURACIES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];

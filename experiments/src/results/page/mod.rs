@@ -5,13 +5,14 @@ mod turning;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use polhode_files::error::Error;
+use polhode_files::text::escaped_html as escaped;
+use polhode_pages::output::Output;
+use polhode_pages::table::Table;
+
 use super::provenance;
 use super::which::Which;
-use crate::error::Error;
 use crate::experiment::{Experiment, Report, Scale};
-use crate::files::Output;
-use crate::table::Table;
-use crate::text::escaped_html as escaped;
 use turning::{Turning, turning};
 
 const STYLE: &str = include_str!("style.css");

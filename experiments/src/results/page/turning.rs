@@ -5,9 +5,8 @@ use polhode::catalogue;
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Real;
+use polhode_files::error::{Error, unexpected};
 use serde::Serialize;
-
-use crate::error::{Error, unexpected};
 
 const BODY: &str = "textbook";
 const POINTS: u32 = 240;

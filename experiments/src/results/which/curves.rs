@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use polhode_pages::table::{Column, Table, row};
+
 use super::{Contest, Which, longest};
-use crate::table::{Column, Table, row};
 
 /// Methods that know nothing of rotation and are shown wherever they reach an accuracy.
 const GENERAL: [&str; 5] = ["rk4", "dop853", "rk8", "taylor", "gauss:8"];

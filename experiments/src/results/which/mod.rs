@@ -4,9 +4,8 @@ mod curves;
 
 use std::collections::BTreeMap;
 
+use polhode_pages::table::{Column, Table, row};
 use serde::Deserialize;
-
-use crate::table::{Column, Table, row};
 
 /// Accuracies of the table, rad.
 const ACCURACIES: [f64; 3] = [1e-4, 1e-8, 1e-12];

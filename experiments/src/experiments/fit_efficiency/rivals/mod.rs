@@ -11,7 +11,7 @@ mod strong;
 mod wendy;
 
 use nalgebra::{DMatrix, Matrix3, Matrix5, UnitQuaternion, Vector5};
-use polhode::fit::Record;
+use polhode_fit::Record;
 
 use coordinates::{basis, nearest, tensor};
 use record::{Stretch, normalised};
@@ -164,10 +164,10 @@ fn least_squares(stretches: &[Stretch], rows: impl Fn(&Stretch) -> strong::Rows)
 #[cfg(test)]
 mod tests {
     use nalgebra::{Quaternion, Vector3};
-    use polhode::fit::{Settings, fit, simulate};
     use polhode::flow::FreeMotion;
     use polhode::inertia::Inertia;
     use polhode::num::Random;
+    use polhode_fit::{Settings, fit, simulate};
 
     use super::*;
 

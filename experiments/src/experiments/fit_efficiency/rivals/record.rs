@@ -1,7 +1,7 @@
 //! Records in their own units.
 
 use nalgebra::Vector3;
-use polhode::fit::{Record, Segment};
+use polhode_fit::{Record, Segment};
 
 /// A segment in units of the root mean square rate of its record and its inverse.
 pub(super) struct Stretch {

@@ -1,0 +1,213 @@
+//! `polhode audit`: a verdict on the trajectory of another program.
+
+mod against;
+mod arguments;
+mod figure;
+mod golden;
+mod json;
+mod outcome;
+mod page;
+mod steps;
+mod text;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use polhode::audit::{Question, Trajectory, audit};
+use polhode::body::Body;
+use polhode_files::error::{Error, warn};
+use polhode_files::numbers::positive;
+use polhode_files::text::{short, visible};
+use polhode_files::trajectory;
+use polhode_pages::document::Form;
+use polhode_pages::output::Output;
+use polhode_pages::table::Format;
+
+use crate::flags::body::BodyArguments;
+use crate::flags::force::ForceArguments;
+use against::Golden;
+use arguments::ReadingArguments;
+use outcome::Outcome;
+
+const USAGE: &str = "polhode audit <RUN.csv> [BODY] [FORCE] [OPTIONS]
+       polhode audit --golden <DIR>
+  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
+  FORCE: --weight-moment <cx,cy,cz> | --gravity-gradient <n[,e]> | ...";
+
+const EXAMPLES: &str = "Examples:
+  polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 20 \\
+    --every 0.1 --fields t,q,omega --out run.csv
+  polhode audit run.csv --moments 1,2,3
+  polhode audit run.csv --report audit.html --figure audit.svg
+  polhode audit --golden golden
+  polhode audit golden/free-generic.csv --against golden/free-generic.csv";
+
+/// Readings of the ranking that are shown.
+const RANKED: usize = 5;
+
+/// Whether a trajectory of another program is right, its convention and its error
+///
+/// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
+/// angular momentum in columns of any common names, the qpos and qvel of MuJoCo, and LAMMPS dumps; several bodies by a column
+/// id. Every convention that the columns allow is tried; the one in which the rows obey the equations of motion is kept. Without
+/// a body its moments are fitted up to a factor. right: within --tolerance of a motion of the body, or within the digits and
+/// the noise of the record. Where a name or an option states a direction, a frame, a unit or the order of the moments, and the
+/// rows contradict it, the record is wrong. suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, gyroscopic-term-missing,
+/// gyroscopic-sign, integrator:NAME, discontinuity or none. Exit code 0: right; 1: wrong or undecided.
+#[derive(Args, Clone, Debug)]
+#[command(override_usage = USAGE, after_help = EXAMPLES)]
+#[command(mut_group("BodyArguments", |group| group.required(false)))]
+pub(crate) struct Audit {
+    /// Rows of the trajectory; - reads standard input
+    #[arg(value_name = "RUN.csv", required_unless_present = "golden")]
+    record: Option<PathBuf>,
+    #[command(flatten)]
+    body: Option<BodyArguments>,
+    #[command(flatten)]
+    forces: ForceArguments,
+    #[command(flatten)]
+    reading: ReadingArguments,
+    /// Audit this body of the column id alone
+    #[arg(long, value_name = "NAME", help_heading = "Reading")]
+    id: Option<String>,
+    /// Largest error of a record that is right, rad and relative
+    #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
+    tolerance: f64,
+    /// Compare with this golden trajectory too, of whose body the record then is
+    #[arg(long, value_name = "GOLDEN.csv", conflicts_with_all = ["BodyArguments", "weight_moment"], help_heading = "Verdict")]
+    against: Option<PathBuf>,
+    /// Write golden trajectories and programs that check against them into this folder
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["record", "against", "BodyArguments"], help_heading = "Output")]
+    golden: Option<PathBuf>,
+    /// Draw the errors of energy, |m|, direction of L and attitude against time to this file
+    #[arg(long, value_name = "FILE.svg", help_heading = "Output")]
+    figure: Option<PathBuf>,
+    /// Write one page with the verdict, its numbers and the figure to this file
+    #[arg(long, value_name = "FILE.html|.md", help_heading = "Output")]
+    report: Option<PathBuf>,
+    /// How the verdict is written: words on a terminal, csv otherwise
+    #[arg(long, value_enum, help_heading = "Output")]
+    format: Option<Format>,
+    /// Write to this file instead of standard output
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    out: Option<PathBuf>,
+}
+
+impl Audit {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        if let Some(folder) = &self.golden {
+            return golden::write(folder);
+        }
+        let path = self.record.as_deref().unwrap_or_else(|| Path::new("-"));
+        let name = if path.as_os_str() == "-" {
+            "standard input".into()
+        } else {
+            visible(&path.display().to_string()).into_owned()
+        };
+        let format = Format::of(self.format, self.out.as_deref())?;
+        let form = self.report.as_deref().map(|path| Form::of("--report", path)).transpose()?;
+        let outcomes = self.outcomes(path, &name)?;
+        let text = match format {
+            Format::Table => text::text(&name, &outcomes),
+            Format::Json => json::text(&outcomes),
+            Format::Csv => text::rows(&outcomes).csv(),
+        };
+        if let Some(path) = &self.figure {
+            let drawing = figure::panels(&name, &outcomes)?;
+            Output::to_file("--figure", path)?.write_whole(&drawing.svg)?;
+        }
+        if let Some((path, form)) = self.report.as_deref().zip(form) {
+            Output::to_file("--report", path)?.write_whole(&page::page(&name, &outcomes, form)?)?;
+        }
+        Output::new(self.out.as_deref())?.write_whole(&text)?;
+        if format == Format::Csv {
+            // words and JSON hold them too
+            outcomes.iter().flat_map(Outcome::warnings).for_each(|warning| warn(&warning));
+        }
+        let mut bad = outcomes.iter().filter(|outcome| !outcome.is_right());
+        let Some(first) = bad.next() else { return Ok(()) };
+        let of = first.body.as_ref().map_or(String::new(), |body| format!(", body {body}"));
+        let suspect =
+            if first.is_suspected() { format!(", suspect {}", first.suspect()) } else { String::new() };
+        let others = match bad.count() {
+            0 => String::new(),
+            more => format!("; {more} more of {} bodies are not right", outcomes.len()),
+        };
+        Err(Error::Failed(format!("{name}{of}: {}{suspect}{others}", first.judgement())))
+    }
+
+    /// The verdict on every body of the file.
+    fn outcomes(&self, path: &Path, name: &str) -> Result<Vec<Outcome>, Error> {
+        let golden = self.against.as_deref().map(Golden::read).transpose()?;
+        let body = match (&golden, &self.body) {
+            (Some(golden), _) => Some(self.forces.act_on(golden.body.clone())?),
+            (None, Some(body)) => Some(self.forces.act_on(body.heavy(self.forces.weight_moment)?)?),
+            (None, None) => None,
+        };
+        if body.is_none() && self.forces.is_any() {
+            let remedy = "give --moments, --inertia or --body too";
+            return Err(Error::input(
+                "--moments",
+                "",
+                "missing: a force acts on a body that is known",
+                remedy,
+            ));
+        }
+        let found = trajectory::read(path, &self.reading.columns(), self.reading.time_unit)?;
+        let claims = self.reading.claims(found.claims);
+        let bodies: Vec<(Option<String>, Trajectory)> = match &self.id {
+            None => found.bodies,
+            Some(wanted) => {
+                let known: Vec<String> = found.bodies.iter().filter_map(|(id, _)| id.clone()).collect();
+                let chosen: Vec<_> =
+                    found.bodies.into_iter().filter(|(id, _)| id.as_ref() == Some(wanted)).collect();
+                if chosen.is_empty() {
+                    return Err(Error::unknown_name(
+                        "--id",
+                        "body",
+                        wanted,
+                        known.iter().map(String::as_str),
+                    ));
+                }
+                chosen
+            }
+        };
+        let mut outcomes = Vec::new();
+        for (id, mut record) in bodies {
+            let place = id.as_ref().map_or(name.to_string(), |id| format!("{name}, body {id}"));
+            let mut notes = Vec::new();
+            if found.counts_steps {
+                notes.push(timed(&mut record, body.as_ref(), &place)?);
+            }
+            let mut question = Question::new(body.clone());
+            (question.tolerance, question.claims) = (self.tolerance, claims);
+            let verdict =
+                audit(&record, &question).map_err(|error| Error::Input(format!("{place}: {error}")))?;
+            let against =
+                golden.as_ref().map(|golden| golden.difference(&place, &record, &verdict, self.tolerance));
+            let against = against.transpose()?;
+            if let Some(difference) = against.as_ref().filter(|difference| difference.rows < difference.of) {
+                notes.push(format!(
+                    "{} of the {} times of {} have a row in the record",
+                    difference.rows, difference.of, difference.name
+                ));
+            }
+            outcomes.push(Outcome { body: id, rows: record.times.len(), verdict, against, notes });
+        }
+        Ok(outcomes)
+    }
+}
+
+/// Turns counts of steps into times, and says how.
+fn timed(record: &mut Trajectory, body: Option<&Body>, place: &str) -> Result<String, Error> {
+    let Some(step) = steps::length(record, body) else {
+        let rule = "counts steps of a length that it does not tell";
+        let remedy = "give the length of a step, s, as --time-unit, or dump with dump_modify time yes";
+        return Err(Error::input(place, "", rule, remedy));
+    };
+    record.times.iter_mut().for_each(|t| *t *= step);
+    Ok(format!(
+        "the record counts steps; they are taken to be {} s long, as the body turns; --time-unit gives their length",
+        short(step)
+    ))
+}

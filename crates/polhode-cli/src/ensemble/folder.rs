@@ -1,0 +1,166 @@
+//! A shard on the disk: arrays, largest errors, failures, and the record that it is whole.
+
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use polhode_files::error::{Error, unexpected};
+use polhode_files::npy::Array;
+use polhode_files::read;
+use polhode_pages::output::{MARK, Staging};
+use polhode_pages::table::{Cell, Column, Table};
+
+use super::record::Record;
+use super::shard::Shard;
+use super::work::{ATTITUDES, Failure, Largest, OMEGAS, Shares};
+
+/// Folder of the shards in that of the results.
+pub(super) const SHARDS: &str = "shards";
+const ERRORS: &str = "errors";
+const FAILURES: &str = "failures";
+
+/// A shard that stands whole on the disk.
+pub(super) struct Finished {
+    pub(super) path: PathBuf,
+    pub(super) shard: Shard,
+    pub(super) record: Record,
+}
+
+/// What stands in the folder of shards, by number; hidden names are shards in the making.
+pub(super) fn finished(out: &Path) -> Result<Vec<Finished>, Error> {
+    let folder = out.join(SHARDS);
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        if name.to_string_lossy().starts_with('.') {
+            continue;
+        }
+        let path = entry.path();
+        let record = record(&path)?;
+        let shard = record.as_ref().and_then(Record::place);
+        let Some((record, shard)) = record.zip(shard) else {
+            let rule = format!("is no shard of an ensemble: it has no {MARK} that says so");
+            let place = path.display().to_string();
+            return Err(Error::input(&out.display().to_string(), &place, &rule, "move it away"));
+        };
+        found.push(Finished { path, shard, record });
+    }
+    found.sort_by_key(|found| (found.shard.count, found.shard.number));
+    Ok(found)
+}
+
+/// The record of a folder, if it has one.
+pub(super) fn record(folder: &Path) -> Result<Option<Record>, Error> {
+    let path = folder.join(MARK);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let text = read(&path, "restore it, or remove the folder and run it again")?;
+    Ok(Record::parse(&text).ok())
+}
+
+/// Largest errors of each time.
+fn errors_table() -> Table {
+    let columns = vec![
+        Column::new("t", "s", "time"),
+        Column::new("energy_error_max", "", "largest relative energy error of the members at this time"),
+        Column::new(
+            "momentum_vector_error_max",
+            "",
+            "largest relative error of L in space of the members at this time",
+        ),
+    ];
+    Table::new(ERRORS, "Largest errors at each time.", columns)
+}
+
+/// Members that have no rows from some time on.
+pub(super) fn failures_table(failures: &[Failure]) -> Table {
+    let columns = vec![
+        Column::new("member", "", "its number, from 1"),
+        Column::new("t", "s", "first time at which it has no row"),
+        Column::new("reason", "", "what befell it"),
+    ];
+    let mut table = Table::new(FAILURES, "Members that have no rows from some time on.", columns);
+    for failure in failures {
+        table.push([Cell::from(failure.member), Cell::from(failure.t), Cell::from(failure.reason.as_str())]);
+    }
+    table
+}
+
+/// Writes what goes beside the arrays of a shard, and puts it in its place.
+pub(super) fn commit(staging: Staging, shares: &Shares, record: &Record) -> Result<(), Error> {
+    let mut errors = errors_table();
+    for (t, largest) in shares.times.iter().zip(&shares.largest) {
+        errors.push([Cell::from(*t), Cell::from(largest.energy), Cell::from(largest.momentum_vector)]);
+    }
+    for table in [errors, failures_table(&shares.failures)] {
+        staging.write(&format!("{}.csv", table.name), table.csv().as_bytes())?;
+    }
+    staging.write(MARK, record.text().map_err(unexpected)?.as_bytes())?;
+    staging.commit()
+}
+
+impl Finished {
+    pub(super) fn members(&self) -> u64 {
+        let range = self.shard.range(self.record.identity.members);
+        range.end - range.start
+    }
+
+    pub(super) fn attitudes(&self) -> Result<Array<4>, Error> {
+        self.array(ATTITUDES)
+    }
+
+    pub(super) fn omegas(&self) -> Result<Array<3>, Error> {
+        self.array(OMEGAS)
+    }
+
+    fn array<const N: usize>(&self, name: &str) -> Result<Array<N>, Error> {
+        let path = self.path.join(name);
+        let opened =
+            File::open(&path).and_then(|file| Array::open(file, self.record.identity.times, self.members()));
+        opened.map_err(|error| self.damaged(&path, &error))
+    }
+
+    /// What is wrong with a file of a shard that says that it is whole.
+    pub(super) fn damaged(&self, path: &Path, error: &io::Error) -> Error {
+        let remedy = format!("remove {} and run shard {} again", self.path.display(), self.shard);
+        Error::Input(format!("{}: {error}; {remedy}", path.display()))
+    }
+
+    /// Largest errors and failures.
+    pub(super) fn shares(&self) -> Result<Shares, Error> {
+        let rows = |name: &str| -> Result<Vec<csv::StringRecord>, Error> {
+            let path = self.path.join(format!("{name}.csv"));
+            let damaged = |error: csv::Error| self.damaged(&path, &io::Error::other(error));
+            let mut reader = csv::Reader::from_path(&path).map_err(damaged)?;
+            reader.records().collect::<Result<_, _>>().map_err(damaged)
+        };
+        let wrong = |name: &str| {
+            let path = self.path.join(format!("{name}.csv"));
+            self.damaged(&path, &io::Error::new(io::ErrorKind::InvalidData, "it has other rows than a shard"))
+        };
+        let cell = |text: &str| -> Result<Option<f64>, Error> {
+            if text.is_empty() { Ok(None) } else { text.parse().map(Some).map_err(|_| wrong(ERRORS)) }
+        };
+        let rows_of_errors = rows(ERRORS)?;
+        let each = rows_of_errors.iter().map(|row| match [row.get(0), row.get(1), row.get(2)] {
+            [Some(t), Some(energy), Some(momentum)] => {
+                let largest = Largest { energy: cell(energy)?, momentum_vector: cell(momentum)? };
+                Ok((cell(t)?.ok_or_else(|| wrong(ERRORS))?, largest))
+            }
+            _ => Err(wrong(ERRORS)),
+        });
+        let (times, largest): (Vec<f64>, Vec<Largest>) = each.collect::<Result<_, Error>>()?;
+        if largest.len() as u64 != self.record.identity.times {
+            return Err(wrong(ERRORS));
+        }
+        let failures = rows(FAILURES)?.into_iter().map(|row| {
+            let parsed = || {
+                let reason = row.get(2)?.to_string();
+                Some(Failure { member: row.get(0)?.parse().ok()?, t: row.get(1)?.parse().ok()?, reason })
+            };
+            parsed().ok_or_else(|| wrong(FAILURES))
+        });
+        Ok(Shares { times, largest, failures: failures.collect::<Result<_, _>>()?, draws: self.record.draws })
+    }
+}

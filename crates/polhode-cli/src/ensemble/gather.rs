@@ -1,0 +1,187 @@
+//! `polhode gather`: the shards of an ensemble, made into the results of one run.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use polhode_files::error::{Error, unexpected};
+use polhode_files::npy;
+use polhode_pages::output::{MARK, Output, unwritable};
+
+use super::folder::{Finished, finished};
+use super::memory;
+use super::record::{Identity, Record};
+use super::reduce::{self, reduce};
+use super::results::Results;
+use super::work::{ATTITUDES, Largest, OMEGAS, Shares};
+use super::{said, threads_of};
+
+const EXAMPLES: &str = "Examples:
+  polhode ensemble examples/ensemble.toml --out halves --shard 1/2
+  polhode ensemble examples/ensemble.toml --out halves --shard 2/2
+  polhode gather halves";
+
+/// Reduce the shards of an ensemble to the results of one run
+///
+/// The shards that `polhode ensemble --shard K/N` has written stand in DIR/shards. They must be all of one run: of the same
+/// specification, version and number of shards. The results in DIR are those of the run without shards, to the last bit; the
+/// shards stay where they are, and may be removed then.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Gather {
+    /// Folder of the ensemble, which was its --out
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Threads [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+}
+
+impl Gather {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        let threads = threads_of(self.threads);
+        let shards = finished(&self.folder)?;
+        let identity = self.check(&shards)?;
+        let needed = reduce::memory(identity.members, threads);
+        if let Some(free) = memory::free().filter(|free| needed > *free) {
+            let rule = format!(
+                "reducing {} members takes {} of memory, and {} are free",
+                identity.members,
+                memory::shown(needed),
+                memory::shown(free)
+            );
+            let place = self.folder.display().to_string();
+            return Err(Error::input(
+                "gather",
+                &place,
+                &rule,
+                "give fewer --threads, or take a machine with more",
+            ));
+        }
+        let mut arrays = shards.iter().map(Finished::attitudes).collect::<Result<Vec<_>, _>>()?;
+        let shares = together(&shards)?;
+        let unreadable = |error: std::io::Error| Error::Input(format!("{}: {error}", self.folder.display()));
+        let reduced = reduce(&mut arrays, identity.members, threads).map_err(unreadable)?;
+        let records: Vec<Record> = shards.iter().map(|shard| shard.record.clone()).collect();
+        let record = Record::of_shards(&records).ok_or_else(|| unexpected("no shards"))?;
+        let results = Results::new(&reduced, &shares, record);
+
+        let mut outputs = Vec::new();
+        if identity.attitudes {
+            outputs.push(self.joined(ATTITUDES, &mut arrays)?);
+        }
+        if identity.omegas {
+            let mut omegas = shards.iter().map(Finished::omegas).collect::<Result<Vec<_>, _>>()?;
+            outputs.push(self.joined(OMEGAS, &mut omegas)?);
+        }
+        for (name, content) in results.files()? {
+            let mut output = Output::to_file("gather", &self.folder.join(name))?;
+            output.write(&content)?;
+            outputs.push(output);
+        }
+        // without its record a folder of results is not whole; the new one comes last
+        let mark = self.folder.join(MARK);
+        if mark.exists() {
+            std::fs::remove_file(&mark).map_err(|error| unwritable("gather", &mark, &error))?;
+        }
+        for output in outputs {
+            output.finish()?;
+        }
+        said(&results, &shares, &identity, &self.folder)
+    }
+
+    /// The array of all members, from those of the shards.
+    fn joined<const N: usize>(&self, name: &str, arrays: &mut [npy::Array<N>]) -> Result<Output, Error> {
+        let path = self.folder.join(name);
+        let times = arrays.first().map_or(0, npy::Array::times);
+        let members = arrays.iter().map(npy::Array::members).sum();
+        let mut output = Output::to_file("gather", &path)?;
+        output.write_bytes(&npy::head([times, members, N as u64]))?;
+        for time in 0..times {
+            for array in arrays.iter_mut() {
+                let bytes = array.read(time).map_err(|error| unwritable("gather", &path, &error))?;
+                output.write_bytes(bytes)?;
+            }
+        }
+        Ok(output)
+    }
+
+    /// Whether the shards belong together and none is missing.
+    fn check(&self, shards: &[Finished]) -> Result<Identity, Error> {
+        let refused = |rule: &str, remedy: &str| {
+            Err(Error::input("gather", &self.folder.display().to_string(), rule, remedy))
+        };
+        let Some(first) = shards.first() else {
+            return refused(
+                "has no finished shards",
+                "run polhode ensemble SPEC.toml --out DIR --shard K/N first",
+            );
+        };
+        let count = first.shard.count;
+        if let Some(other) = shards.iter().find(|shard| shard.shard.count != count) {
+            return refused(
+                &format!("holds shards of {count} and of {}", other.shard.count),
+                "remove those of one of the two",
+            );
+        }
+        let identity = &first.record.identity;
+        // the one that most agree with is the run; the others are told
+        let agree =
+            |identity: &Identity| shards.iter().filter(|shard| shard.record.identity == *identity).count();
+        let most = shards
+            .iter()
+            .map(|shard| &shard.record.identity)
+            .max_by_key(|other| (agree(other), *other == identity));
+        let identity = most.unwrap_or(identity);
+        let foreign: Vec<String> = shards
+            .iter()
+            .filter_map(|shard| {
+                let difference = identity.difference(&shard.record.identity)?;
+                Some(format!("{} is {difference}", shard.shard))
+            })
+            .collect();
+        if !foreign.is_empty() {
+            let rule = format!("holds shards of another run: {}", foreign.join("; "));
+            return refused(&rule, "remove them and run them again");
+        }
+        let missing: Vec<String> = (1..=count)
+            .filter(|k| shards.iter().all(|shard| shard.shard.number != *k))
+            .map(|k| k.to_string())
+            .collect();
+        if let Some(one) = missing.first() {
+            let rule = format!("lacks shards {} of {count}", missing.join(", "));
+            return refused(&rule, &format!("run them, as with --shard {one}/{count}"));
+        }
+        if identity.version != env!("CARGO_PKG_VERSION") {
+            let rule = format!("holds shards of version {}", identity.version);
+            return refused(
+                &rule,
+                &format!("gather them with that version; this is {}", env!("CARGO_PKG_VERSION")),
+            );
+        }
+        Ok(identity.clone())
+    }
+}
+
+/// Largest errors and failures of all shards.
+fn together(shards: &[Finished]) -> Result<Shares, Error> {
+    let mut all = Shares::default();
+    for shard in shards {
+        let shares = shard.shares()?;
+        if all.times.is_empty() {
+            all.times = shares.times;
+            all.largest = vec![Largest::default(); all.times.len()];
+        }
+        for (all, one) in all.largest.iter_mut().zip(shares.largest) {
+            *all = all.or(one);
+        }
+        all.failures.extend(shares.failures);
+        all.draws += shares.draws;
+    }
+    Ok(all)
+}
+
+/// Whether a folder holds results of the run `identity`.
+pub(super) fn has_results(folder: &Path, identity: &Identity) -> Result<bool, Error> {
+    let record = super::folder::record(folder)?;
+    Ok(record.is_some_and(|record| record.is_results() && record.identity == *identity))
+}

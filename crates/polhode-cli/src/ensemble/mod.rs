@@ -1,0 +1,298 @@
+//! `polhode ensemble`: many bodies from uncertain starts, on one machine or in shares on many.
+
+mod digest;
+mod folder;
+mod gather;
+mod memory;
+mod record;
+mod reduce;
+mod results;
+mod shard;
+mod spec;
+mod work;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use polhode::num::Instructions;
+use polhode_files::error::{Error, tell, unexpected, warn};
+use polhode_files::npy;
+use polhode_pages::output::{Staging, emit};
+
+pub(crate) use gather::Gather;
+use record::{Identity, Record};
+use results::Results;
+use shard::Shard;
+use spec::Spec;
+use work::{ATTITUDES, Shares};
+
+/// Bytes that a member takes while it is propagated, with a tensor of its own.
+const BYTES_OF_MEMBER: u64 = 264;
+/// Bytes that a thread takes for the rows in work.
+const BYTES_OF_THREAD: u64 = 3 * 21_000_000;
+
+const AFTER_HELP: &str = "SPEC.toml:
+  [body]    moments = [3], inertia = [6] (xx, yy, zz, xy, xz, yz), or body
+  [start]   omega = [3], rad/s; attitude = [4], quaternion from body to space,
+            scalar first; rate_unit and angle_unit, such as \"deg/s\" and
+            \"deg\", hold for [spread] and the members too
+  [spread]  standard deviations, one or three each: omega, rad/s; attitude,
+            rad, about the body axes; moments, relative
+  [spread.covariance]  omega 3x3, attitude 3x3, inertia 6x6, or joint 12x12
+  [spread.range]       omega, attitude, moments: [[low, high], ...]; \"all\"
+  [run]     members, seed, method, step, tolerance, start_time, times,
+            times_file and times_column, or until and every;
+            errors = false leaves energy and L unwatched
+  [force]   weight_moment, gravity_gradient, torque_body, torque_space, drag
+  [output]  arrays = [\"attitudes\", \"omegas\"]
+
+Examples:
+  polhode ensemble examples/ensemble.toml --out ensemble
+  polhode ensemble examples/ensemble.toml --out halves --shard 1/2
+  polhode ensemble examples/ensemble.toml --out halves --shard 2/2
+  polhode gather halves";
+
+/// Many bodies from uncertain starts: mean attitude and dispersion over time
+///
+/// Members are drawn from standard deviations, covariances or ranges of start and inertia, or listed in a CSV (members_file).
+/// Tensors that no body has are drawn again, so the spread of the inertia ends at the triangle inequalities. Member k is the
+/// same in any division of the work. DIR gets summary.csv, dispersion.csv, dispersion.svg, failures.csv,
+/// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml.
+///
+/// With --shard K/N, or in a Slurm array or under an MPI launcher, only the K-th of N parts of the members is run. Its results,
+/// a shard, go to DIR/shards, and `polhode gather DIR` makes those of all members. A shard that is finished is not run again.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = AFTER_HELP)]
+pub(crate) struct Ensemble {
+    /// What is drawn, propagated and kept: a TOML file
+    #[arg(value_name = "SPEC.toml")]
+    spec: PathBuf,
+    /// Folder of the results
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Part K of N of the members, K from 1 [default: what the launcher says, else all members]
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Shard>,
+    /// Threads [default: as many as there are cores]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Vector instructions at most; the results do not depend on it
+    #[arg(long, value_name = "SET", value_enum, default_value_t, hide_default_value = true)]
+    instructions: Set,
+}
+
+/// Sets of vector instructions.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum Set {
+    /// All that the processor has (default)
+    #[default]
+    Widest,
+    /// Nothing beyond AVX2
+    Avx2,
+    /// What the program was compiled for
+    Baseline,
+}
+
+impl From<Set> for Instructions {
+    fn from(set: Set) -> Self {
+        match set {
+            Set::Widest => Self::Widest,
+            Set::Avx2 => Self::Avx2,
+            Set::Baseline => Self::Baseline,
+        }
+    }
+}
+
+/// What the members are propagated by; results depend on none of it.
+#[derive(Clone, Copy, Debug)]
+struct Means {
+    threads: usize,
+    instructions: Instructions,
+}
+
+/// The threads asked for, or one for each core.
+fn threads_of(asked: Option<u16>) -> usize {
+    asked.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from)
+}
+
+impl Ensemble {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        let spec = Spec::read(&self.spec)?;
+        let shard = self.share()?;
+        match shard {
+            None => self.whole(&spec),
+            Some(shard) => self.part(&spec, shard),
+        }
+    }
+
+    fn means(&self) -> Means {
+        Means { threads: threads_of(self.threads), instructions: self.instructions.into() }
+    }
+
+    /// The share of the members; `None` for all, as one run.
+    fn share(&self) -> Result<Option<Shard>, Error> {
+        let found = match self.shard {
+            Some(shard) => Some(shard),
+            None => {
+                let told = Shard::of_environment(|name| std::env::var(name).ok())?;
+                if let Some((shard, name)) = told {
+                    tell("note", &format!("shard {shard}, from {name}; --shard K/N names another"));
+                }
+                told.map(|(shard, _)| shard)
+            }
+        };
+        Ok(found.filter(|shard| *shard != Shard::WHOLE))
+    }
+
+    /// All members in one run.
+    fn whole(&self, spec: &Spec) -> Result<(), Error> {
+        let identity = Identity::of(spec);
+        if self.out.join(folder::SHARDS).exists() {
+            let rule = "holds shards, which results of another run would belong to";
+            let place = self.out.display().to_string();
+            return Err(Error::input(
+                "--out",
+                &place,
+                rule,
+                "gather them with `polhode gather`, or name another folder",
+            ));
+        }
+        if gather::has_results(&self.out, &identity)? {
+            tell("note", &format!("{} holds the results of this run already", self.out.display()));
+            return Ok(());
+        }
+        self.check_room(spec, Shard::WHOLE)?;
+        let means = self.means();
+        let staging = Staging::new(&self.out)?;
+        let range = Shard::WHOLE.range(spec.members);
+        let (arrays, shares) = work::propagate(spec, range, means, &staging, &self.out)?;
+        let mut attitudes = [arrays.attitudes];
+        let reduced = reduce::reduce(&mut attitudes, spec.members, means.threads)
+            .map_err(|error| Error::Input(format!("{}: {error}", self.out.display())))?;
+        let record = Record::new(spec, None, shares.draws, shares.failures.len() as u64);
+        let results = Results::new(&reduced, &shares, record);
+        for (name, content) in results.files()? {
+            staging.write(&name, content.as_bytes())?;
+        }
+        drop(attitudes);
+        if !spec.attitudes {
+            staging.remove(ATTITUDES)?;
+        }
+        staging.commit()?;
+        said(&results, &shares, &identity, &self.out)
+    }
+
+    /// One share, into a folder of its own.
+    fn part(&self, spec: &Spec, shard: Shard) -> Result<(), Error> {
+        let identity = Identity::of(spec);
+        if shard.count > spec.members {
+            let rule = format!("more shards than the {} members", spec.members);
+            return Err(Error::input("--shard", &shard.to_string(), &rule, "take fewer shards"));
+        }
+        for other in folder::finished(&self.out)? {
+            let foreign = |rule: &str| {
+                let place = other.path.display().to_string();
+                Err(Error::input("--out", &place, rule, "remove it, or name another folder"))
+            };
+            if let Some(difference) = identity.difference(&other.record.identity) {
+                return foreign(&format!("is a shard of another run: {difference}"));
+            }
+            if other.shard.count != shard.count {
+                return foreign(&format!(
+                    "is a shard of {}, and this is one of {}",
+                    other.shard.count, shard.count
+                ));
+            }
+            if other.shard == shard {
+                tell("note", &format!("shard {shard} is finished already"));
+                return Ok(());
+            }
+        }
+        self.check_room(spec, shard)?;
+        let range = shard.range(spec.members);
+        let folder = self.out.join(folder::SHARDS).join(shard.folder());
+        let staging = Staging::new(&folder)?;
+        let (_, shares) = work::propagate(spec, range.clone(), self.means(), &staging, &folder)?;
+        let record = Record::new(spec, Some(shard), shares.draws, shares.failures.len() as u64);
+        folder::commit(staging, &shares, &record)?;
+        warn_of(&shares, range.end - range.start);
+        emit(
+            &format!("Shard {shard}, members {} to {}: {}\n", range.start + 1, range.end, folder.display()),
+            None,
+        )
+    }
+
+    /// Refuses work that needs more memory or more room on the disk than there is, before it begins.
+    fn check_room(&self, spec: &Spec, shard: Shard) -> Result<(), Error> {
+        let range = shard.range(spec.members);
+        let (members, threads) = (range.end - range.start, threads_of(self.threads));
+        let times = spec.plan.times.len() as u64;
+        let reduction = if shard == Shard::WHOLE { reduce::memory(members, threads) } else { 0 };
+        let rows = members.saturating_mul(times).saturating_mul(80);
+        let work = BYTES_OF_MEMBER
+            .saturating_mul(members)
+            .saturating_add(rows.min(BYTES_OF_THREAD.saturating_mul(threads as u64)));
+        let needed = work.max(reduction).saturating_add(spec.bytes_of_source());
+        let refused = |what: &str, needed: u64, free: u64, remedy: &str| {
+            let rule = format!(
+                "{members} members take about {} {what}, and {} are free",
+                memory::shown(needed),
+                memory::shown(free)
+            );
+            Err(Error::Input(format!("{}: {rule}; {remedy}", spec.place)))
+        };
+        if let Some(free) = memory::free().filter(|free| needed > *free) {
+            return refused(
+                "of memory",
+                needed,
+                free,
+                "take fewer members, or share them out with --shard K/N",
+            );
+        }
+        let arrays = npy::Array::<4>::size(times, members).saturating_add(if spec.omegas {
+            npy::Array::<3>::size(times, members)
+        } else {
+            0
+        });
+        match memory::disk(&self.out).filter(|free| arrays > *free) {
+            Some(free) => refused(
+                "on the disk of --out",
+                arrays,
+                free,
+                "take fewer members or times, or leave omegas out of [output] arrays",
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Says what befell members.
+fn warn_of(shares: &Shares, members: u64) {
+    if let Some(first) = shares.failures.first() {
+        let (failed, one) = (shares.failures.len(), first.member);
+        warn(&format!(
+            "{failed} of {members} members failed, the first of them member {one}: {}; see failures.csv",
+            first.reason
+        ));
+    }
+}
+
+/// Some rows, and where all of them are.
+fn said(results: &Results, shares: &Shares, identity: &Identity, out: &Path) -> Result<(), Error> {
+    let members = identity.members;
+    warn_of(shares, members);
+    let start = shares.times.first();
+    let none_left = shares.failures.len() as u64 == members
+        && shares.failures.iter().all(|failure| Some(&failure.t) == start);
+    let draws = shares.draws;
+    let redrawn = if draws > members {
+        format!("{} of {draws} tensors drawn belong to no body and were drawn again.\n", draws - members)
+    } else {
+        String::new()
+    };
+    emit(&format!("{}\n{redrawn}Written to {}\n", results.shown(), out.display()), None)?;
+    if none_left {
+        return Err(unexpected(format!("{}: no member has a row; see failures.csv", out.display())));
+    }
+    Ok(())
+}

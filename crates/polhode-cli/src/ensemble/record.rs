@@ -1,0 +1,134 @@
+//! `run.toml` of a shard or of results: what they belong to.
+
+use std::collections::BTreeMap;
+
+use polhode_experiments::build;
+use serde::{Deserialize, Serialize};
+
+use super::shard::Shard;
+use super::spec::Spec;
+
+/// What all shards of a run agree on, and its results too.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Identity {
+    /// Of everything that the numbers depend on.
+    pub(super) spec_hash: String,
+    pub(super) version: String,
+    pub(super) commit: String,
+    pub(super) members: u64,
+    pub(super) times: u64,
+    /// Whether the arrays are kept.
+    pub(super) attitudes: bool,
+    pub(super) omegas: bool,
+}
+
+/// The contents of `run.toml`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Record {
+    /// What this folder is.
+    pub(super) kind: String,
+    /// Of a shard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) shard: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) shards: Option<u64>,
+    pub(super) method: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) seed: Option<u64>,
+    /// Tensors drawn, with those whose moments violate the triangle inequality and were drawn again.
+    pub(super) draws: u64,
+    /// Members that have no rows from some time on.
+    pub(super) failed: u64,
+    pub(super) rustc: String,
+    pub(super) profile: String,
+    pub(super) target: String,
+    pub(super) identity: Identity,
+    /// Columns and arrays of the files beside it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) files: BTreeMap<String, BTreeMap<String, String>>,
+}
+
+const SHARD: &str = "ensemble shard";
+const RESULTS: &str = "ensemble";
+
+impl Identity {
+    /// Of a specification, run by this program.
+    pub(super) fn of(spec: &Spec) -> Self {
+        Self {
+            spec_hash: spec.hash.clone(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            commit: build::COMMIT.into(),
+            members: spec.members,
+            times: spec.plan.times.len() as u64,
+            attitudes: spec.attitudes,
+            omegas: spec.omegas,
+        }
+    }
+
+    /// In what another run differs from this one.
+    pub(super) fn difference(&self, other: &Self) -> Option<String> {
+        let said = |what: &str, here: &str, there: &str| Some(format!("{what} {there}, not {here}"));
+        if self.version != other.version {
+            return said("of version", &self.version, &other.version);
+        }
+        if self.commit != other.commit {
+            return said("of commit", &self.commit, &other.commit);
+        }
+        if self != other {
+            return said("of the specification with hash", &self.spec_hash, &other.spec_hash);
+        }
+        None
+    }
+}
+
+impl Record {
+    /// Of a shard, or of results where there is none.
+    pub(super) fn new(spec: &Spec, shard: Option<Shard>, draws: u64, failed: u64) -> Self {
+        Self {
+            kind: if shard.is_some() { SHARD } else { RESULTS }.into(),
+            shard: shard.map(|shard| shard.number),
+            shards: shard.map(|shard| shard.count),
+            method: spec.plan.method_name().into(),
+            seed: spec.is_drawn().then_some(spec.seed),
+            draws,
+            failed,
+            rustc: build::RUSTC.into(),
+            profile: build::PROFILE.into(),
+            target: build::TARGET.into(),
+            identity: Identity::of(spec),
+            files: BTreeMap::new(),
+        }
+    }
+
+    /// Of the results of all shards.
+    pub(super) fn of_shards(shards: &[Self]) -> Option<Self> {
+        let first = shards.first()?.clone();
+        let sum = |of: fn(&Self) -> u64| shards.iter().map(of).sum();
+        Some(Self {
+            kind: RESULTS.into(),
+            shard: None,
+            shards: None,
+            draws: sum(|shard| shard.draws),
+            failed: sum(|shard| shard.failed),
+            ..first
+        })
+    }
+
+    /// The share that a folder of this record has.
+    pub(super) fn place(&self) -> Option<Shard> {
+        let (number, count) = (self.shard?, self.shards?);
+        (self.kind == SHARD && (1..=count).contains(&number)).then_some(Shard { number, count })
+    }
+
+    pub(super) fn is_results(&self) -> bool {
+        self.kind == RESULTS
+    }
+
+    pub(super) fn parse(text: &str) -> Result<Self, toml::de::Error> {
+        toml::from_str(text)
+    }
+
+    pub(super) fn text(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(self)
+    }
+}

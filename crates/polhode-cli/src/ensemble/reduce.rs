@@ -1,0 +1,88 @@
+//! Mean attitude and dispersion over time, from the arrays of all shards.
+
+use polhode::rotation::{Dispersion, Quat};
+use polhode_experiments::parallel;
+use polhode_files::npy::Array;
+
+/// Memory for the members of one time, bytes a member: attitudes as read, as quaternions, and their angles.
+pub(super) const BYTES: u64 = 32 + 32 + 8;
+/// Memory that the times reduced side by side may take together.
+const MOST: u64 = 200_000_000;
+
+/// Dispersion of the members at one time.
+#[derive(Clone, Debug)]
+pub(super) struct Reduced {
+    /// The sign follows that of the time before.
+    pub(super) mean: [f64; 4],
+    pub(super) root_mean_square: f64,
+    /// Half of the members are no further from the mean; 95 % are.
+    pub(super) median: f64,
+    pub(super) p95: f64,
+    pub(super) largest: f64,
+    pub(super) deviations: [f64; 3],
+    pub(super) axes: [[f64; 3]; 3],
+    pub(super) members: u64,
+}
+
+/// How many times are reduced side by side on `threads` threads.
+fn side_by_side(members: u64, threads: usize) -> usize {
+    let room = (MOST / (BYTES * members).max(1)).max(1);
+    threads.min(usize::try_from(room).unwrap_or(threads)).max(1)
+}
+
+/// Bytes that the reduction takes.
+pub(super) fn memory(members: u64, threads: usize) -> u64 {
+    BYTES.saturating_mul(members).saturating_mul(side_by_side(members, threads) as u64)
+}
+
+/// Every time of the arrays, whose members follow each other; `None` where no member has a row.
+///
+/// The numbers depend on the members and their order only: not on where one array ends and the next begins, nor on threads.
+pub(super) fn reduce(
+    arrays: &mut [Array<4>],
+    members: u64,
+    threads: usize,
+) -> std::io::Result<Vec<Option<Reduced>>> {
+    let times = arrays.first().map_or(0, Array::times);
+    let batch = side_by_side(members, threads);
+    let mut reduced: Vec<Option<Reduced>> = Vec::with_capacity(times as usize);
+    let mut next = 0;
+    while next < times {
+        let end = times.min(next + batch as u64);
+        let mut slabs = Vec::with_capacity(batch);
+        for time in next..end {
+            let mut slab = Vec::with_capacity(members as usize);
+            for array in arrays.iter_mut() {
+                // zeros stand where a member has no row
+                let rows = array.entries(time)?.filter(|q| *q != [0.0; 4]);
+                slab.extend(rows.map(Quat::from_components));
+            }
+            slabs.push(slab);
+        }
+        let dispersions = parallel::map(slabs, batch, |slab: Vec<Quat<f64>>| Dispersion::of(&slab));
+        for found in dispersions {
+            let before = reduced.iter().rev().find_map(|row| row.as_ref().map(|row| row.mean));
+            reduced.push(found.map(|found| Reduced::of(&found, before)));
+        }
+        next = end;
+    }
+    Ok(reduced)
+}
+
+impl Reduced {
+    fn of(found: &Dispersion, before: Option<[f64; 4]>) -> Self {
+        let mean = found.mean().components();
+        let is_turned_over =
+            before.is_some_and(|before| before.iter().zip(mean).map(|(a, b)| a * b).sum::<f64>() < 0.0);
+        Self {
+            mean: if is_turned_over { mean.map(|x| -x) } else { mean },
+            root_mean_square: found.root_mean_square(),
+            median: found.quantile(0.5),
+            p95: found.quantile(0.95),
+            largest: found.largest(),
+            deviations: found.deviations(),
+            axes: found.axes().map(|axis| axis.0),
+            members: found.count() as u64,
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! What becomes of an ensemble: tables, a figure, and the record of what they are.
+
+use std::collections::BTreeMap;
+
+use polhode_files::error::{Error, unexpected};
+use polhode_pages::figure::{Figure, Scale, Series};
+use polhode_pages::output::MARK;
+use polhode_pages::table::{Cell, Column, Table};
+
+use super::folder::failures_table;
+use super::record::Record;
+use super::reduce::Reduced;
+use super::work::{ATTITUDES, OMEGAS, Shares};
+
+/// Rows of the summary that are shown at the end of a run.
+const SHOWN: usize = 12;
+
+/// The files of the results besides the arrays, with their contents; the record comes last.
+pub(super) struct Results {
+    summary: Table,
+    tables: Vec<Table>,
+    figure: Figure,
+    record: Record,
+}
+
+impl Results {
+    pub(super) fn new(reduced: &[Option<Reduced>], shares: &Shares, mut record: Record) -> Self {
+        let (summary, dispersion) = (summary(reduced, shares), dispersion(reduced, shares));
+        let failures = failures_table(&shares.failures);
+        record.files = [&summary, &dispersion, &failures].into_iter().map(columns_of).collect();
+        let identity = &record.identity;
+        for (name, kept, width, what) in [
+            (ATTITUDES, identity.attitudes, 4, "q_w, q_x, q_y, q_z; zeros where a member has no row"),
+            (
+                OMEGAS,
+                identity.omegas,
+                3,
+                "angular velocity, body axes [rad/s]; zeros where a member has no row",
+            ),
+        ] {
+            if kept {
+                let shape = format!(
+                    "{} x {} x {width}, times x members x components",
+                    identity.times, identity.members
+                );
+                let entries = [("shape".to_string(), shape), ("entries".to_string(), what.to_string())];
+                record.files.insert(name.into(), entries.into());
+            }
+        }
+        let figure = figure(reduced, shares);
+        Self { summary, tables: vec![dispersion, failures], figure, record }
+    }
+
+    /// Names and contents, the record last.
+    pub(super) fn files(&self) -> Result<Vec<(String, String)>, Error> {
+        let tables = [&self.summary].into_iter().chain(&self.tables);
+        let mut files: Vec<(String, String)> =
+            tables.map(|table| (format!("{}.csv", table.name), table.csv())).collect();
+        files.push((format!("{}.svg", self.figure.name), self.figure.svg()?));
+        files.push((MARK.into(), self.record.text().map_err(unexpected)?));
+        Ok(files)
+    }
+
+    /// Some rows of the summary, for reading.
+    pub(super) fn shown(&self) -> String {
+        let rows = self.summary.rows();
+        let mut table = Table::new("summary", "", self.summary.columns.clone());
+        let last = rows.len().saturating_sub(1);
+        let count = rows.len().min(SHOWN);
+        for k in 0..count {
+            table.push(rows[if count > 1 { k * last / (count - 1) } else { 0 }].clone());
+        }
+        table.terminal()
+    }
+}
+
+fn columns_of(table: &Table) -> (String, BTreeMap<String, String>) {
+    let meaning = |column: &Column| match &*column.unit {
+        "" => column.meaning.to_string(),
+        unit => format!("{} [{unit}]", column.meaning),
+    };
+    let columns = table.columns.iter().map(|column| (column.name.to_string(), meaning(column)));
+    (format!("{}.csv", table.name), columns.collect())
+}
+
+fn summary(reduced: &[Option<Reduced>], shares: &Shares) -> Table {
+    let mean = "chordal mean of the attitudes";
+    let columns = vec![
+        Column::new("t", "s", "time").digits(6),
+        Column::new("q_w", "", mean).hidden(),
+        Column::new("q_x", "", mean).hidden(),
+        Column::new("q_y", "", mean).hidden(),
+        Column::new("q_z", "", mean).hidden(),
+        Column::new("angle_rms", "rad", "root mean square of the angles to the mean attitude")
+            .heading("angle rms"),
+        Column::new("angle_p50", "rad", "angle that half of the members do not exceed").heading("p50"),
+        Column::new("angle_p95", "rad", "angle that 95 % of the members do not exceed").heading("p95"),
+        Column::new("angle_max", "rad", "largest angle to the mean attitude").heading("max"),
+        Column::new("energy_error_max", "", "largest relative energy error of the members")
+            .heading("max |ΔE/E|"),
+        Column::new("momentum_vector_error_max", "", "largest relative error of L in space")
+            .heading("max |ΔL|/|L|"),
+        Column::new("members", "", "members that have a row"),
+    ];
+    let mut table = Table::new("summary", "Mean attitude and dispersion of the members.", columns);
+    for ((t, row), largest) in shares.times.iter().zip(reduced).zip(&shares.largest) {
+        let of = |value: fn(&Reduced) -> f64| Cell::from(row.as_ref().map(value));
+        let [w, x, y, z] = [0, 1, 2, 3].map(|k| Cell::from(row.as_ref().map(|row| row.mean[k])));
+        table.push([
+            Cell::from(*t),
+            w,
+            x,
+            y,
+            z,
+            of(|row| row.root_mean_square),
+            of(|row| row.median),
+            of(|row| row.p95),
+            of(|row| row.largest),
+            Cell::from(largest.energy),
+            Cell::from(largest.momentum_vector),
+            Cell::from(row.as_ref().map_or(0, |row| row.members)),
+        ]);
+    }
+    table
+}
+
+fn dispersion(reduced: &[Option<Reduced>], shares: &Shares) -> Table {
+    let sigma = "standard deviation of the rotation vectors from the mean about this axis";
+    let axis = "principal direction of the rotation vectors, axes of space";
+    let mut columns = vec![Column::new("t", "s", "time")];
+    columns.extend(["sigma_1", "sigma_2", "sigma_3"].map(|name| Column::new(name, "rad", sigma)));
+    let names = [
+        "axis_1_x", "axis_1_y", "axis_1_z", "axis_2_x", "axis_2_y", "axis_2_z", "axis_3_x", "axis_3_y",
+        "axis_3_z",
+    ];
+    columns.extend(names.map(|name| Column::new(name, "", axis)));
+    let mut table = Table::new("dispersion", "Principal directions of the dispersion.", columns);
+    for (t, row) in shares.times.iter().zip(reduced) {
+        let numbers =
+            row.iter().flat_map(|row| row.deviations.into_iter().chain(row.axes.into_iter().flatten()));
+        let mut cells: Vec<Cell> = [*t].into_iter().chain(numbers).map(Cell::from).collect();
+        cells.resize(table.columns.len(), Cell::Empty);
+        table.push(cells);
+    }
+    table
+}
+
+fn figure(reduced: &[Option<Reduced>], shares: &Shares) -> Figure {
+    let members = reduced.iter().flatten().map(|row| row.members).max().unwrap_or(0);
+    let title = format!("Angles of {members} members to their mean attitude");
+    let axes = (("time (s)", Scale::Linear), ("angle (rad)", Scale::Log));
+    let mut figure = Figure::new("dispersion", title, axes.0, axes.1);
+    type Angle = fn(&Reduced) -> f64;
+    let curves: [(&str, Angle); 4] = [
+        ("largest", |row| row.largest),
+        ("95 %", |row| row.p95),
+        ("rms", |row| row.root_mean_square),
+        ("50 %", |row| row.median),
+    ];
+    for (name, of) in curves {
+        let mut points: Vec<(f64, f64)> =
+            shares.times.iter().zip(reduced).filter_map(|(t, row)| Some((*t, of(row.as_ref()?)))).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        figure.series.push(Series::new(name, points));
+    }
+    figure
+}

@@ -1,0 +1,189 @@
+//! The file that says what an ensemble is: bodies, starts, how they are spread, and what is done with them.
+
+mod candidates;
+mod nominal;
+mod run;
+mod spread;
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use polhode::body::{Body, Member, Population, StateError};
+use polhode::inertia::Inertia;
+use polhode_files::error::Error;
+use polhode_files::read;
+use polhode_files::toml_file::{Section, TomlFile};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::digest::Digest;
+use crate::flags::force::Forces;
+use candidates::Candidates;
+use nominal::Nominal;
+pub(super) use run::{Motion, Plan};
+
+const SECTIONS: [&str; 6] = ["body", "start", "spread", "run", "force", "output"];
+
+/// An ensemble as it was specified, checked.
+#[derive(Debug)]
+pub(super) struct Spec {
+    pub(super) path: PathBuf,
+    /// Where the number of members stands.
+    pub(super) place: String,
+    pub(super) members: u64,
+    pub(super) seed: u64,
+    source: Source,
+    acting: Acting,
+    pub(super) plan: Plan,
+    /// Which arrays are kept.
+    pub(super) attitudes: bool,
+    pub(super) omegas: bool,
+    /// By which shards of the same ensemble know each other.
+    pub(super) hash: String,
+}
+
+/// Where members come from.
+#[derive(Debug)]
+enum Source {
+    Drawn(Box<Population>),
+    Listed(Box<Candidates>),
+}
+
+/// What acts on every member.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Acting {
+    weight_moment: [f64; 3],
+    forces: Forces,
+}
+
+impl Acting {
+    /// The body of a member.
+    pub(super) fn on(&self, inertia: Inertia) -> Result<Body, StateError> {
+        let body = Body::heavy(inertia, self.weight_moment.into())?;
+        // what is wrong with a force is wrong for every inertia, and was found out when the specification was read
+        Ok(self.forces.act_on(body.clone()).unwrap_or(body))
+    }
+}
+
+impl Spec {
+    /// Reads and checks a specification.
+    pub(super) fn read(path: &Path) -> Result<Self, Error> {
+        let text = read(path, "name a TOML file with the tables [body], [start], [spread] and [run]")?;
+        let file = TomlFile { path, text: &text };
+        let document = file.parse()?;
+        let top = Section { file: &file, place: 0, keys: document.get_ref() };
+        top.only("a specification", &SECTIONS)?;
+        let empty = DeTable::new();
+        let section = |name: &str| match top.value(name) {
+            None => Ok(Section { file: &file, place: 0, keys: &empty }),
+            Some(value) => match value.get_ref() {
+                DeValue::Table(keys) => Ok(Section { file: &file, place: value.span().start, keys }),
+                other => Err(top.at(name, &format!("{} given, a table [{name}] needed", other.type_str()))),
+            },
+        };
+        let [body, start, spread, run, force, output] = SECTIONS.map(section);
+        let (spread, run, output) = (spread?, run?, output?);
+        let listed = spread::members_file(&spread)?;
+        let nominal = Nominal::read(&body?, &start?, &force?, listed.is_some())?;
+        let plan = Plan::read(&run, &nominal)?;
+        let seed = run.count("seed")?.unwrap_or(1);
+        let members = run.count("members")?;
+        if members == Some(0) {
+            return Err(run.at("members", "an ensemble needs at least one"));
+        }
+        let (source, members) = match listed {
+            Some(listed) => {
+                let candidates = Candidates::read(&listed, &nominal, &plan)?;
+                let count = candidates.len();
+                if members.is_some_and(|members| members > count) {
+                    let rule = format!(
+                        "{} has {count} rows; ask for at most as many, or leave the key out",
+                        listed.display()
+                    );
+                    return Err(run.at("members", &rule));
+                }
+                (Source::Listed(Box::new(candidates)), members.unwrap_or(count))
+            }
+            None => {
+                let population = spread::population(&spread, &nominal)?;
+                plan.check_nominal(&run, &nominal)?;
+                let missing = || run.at("members", "missing; say how many are drawn");
+                (Source::Drawn(Box::new(population)), members.ok_or_else(missing)?)
+            }
+        };
+        output.only("[output]", &["arrays"])?;
+        let [attitudes, omegas] = arrays(&output)?;
+        let acting = nominal.acting;
+        let place = file.line(run.place_of("members"));
+        let mut spec = Self {
+            path: path.to_path_buf(),
+            place,
+            members,
+            seed,
+            source,
+            acting,
+            plan,
+            attitudes,
+            omegas,
+            hash: String::new(),
+        };
+        spec.hash = spec.digest();
+        Ok(spec)
+    }
+
+    /// Of everything that the results depend on: numbers as they were understood, not comments or the order of keys.
+    fn digest(&self) -> String {
+        let mut digest = Digest::new();
+        let _ = match &self.source {
+            Source::Drawn(population) => write!(digest, "{} {population:?}", self.seed),
+            Source::Listed(candidates) => write!(digest, "{candidates:?}"),
+        };
+        let kept = (self.attitudes, self.omegas);
+        let _ = write!(digest, " {} {:?} {:?} {kept:?}", self.members, self.acting, self.plan);
+        digest.to_string()
+    }
+
+    /// Member number `k`, from 0.
+    pub(super) fn member(&self, k: u64) -> Result<Member, String> {
+        match &self.source {
+            Source::Drawn(population) => population.member(self.seed, k).map_err(|error| error.to_string()),
+            Source::Listed(candidates) => candidates.member(k),
+        }
+    }
+
+    /// Whether members are drawn, with `seed`.
+    pub(super) fn is_drawn(&self) -> bool {
+        matches!(self.source, Source::Drawn(_))
+    }
+
+    pub(super) fn acting(&self) -> Acting {
+        self.acting
+    }
+
+    /// Bytes that the members take before any of them moves.
+    pub(super) fn bytes_of_source(&self) -> u64 {
+        match &self.source {
+            Source::Drawn(_) => 0,
+            Source::Listed(candidates) => candidates.bytes(),
+        }
+    }
+}
+
+/// Which arrays are kept: attitudes and angular velocities.
+fn arrays(output: &Section<'_>) -> Result<[bool; 2], Error> {
+    const KNOWN: [&str; 2] = ["attitudes", "omegas"];
+    let Some(value) = output.value("arrays") else { return Ok([true; 2]) };
+    let needed =
+        || output.at("arrays", "needed is a list of names, of \"attitudes\" and \"omegas\"; [] keeps none");
+    let DeValue::Array(items) = value.get_ref() else { return Err(needed()) };
+    let mut kept = [false; 2];
+    for item in items.iter().map(Spanned::get_ref) {
+        let name = item.as_str().ok_or_else(needed)?;
+        let Some(place) = KNOWN.iter().position(|known| *known == name) else {
+            let place = output.file.line(output.place_of("arrays"));
+            return Err(Error::unknown_name(&place, "array", name, KNOWN));
+        };
+        kept[place] = true;
+    }
+    Ok(kept)
+}

@@ -1,0 +1,153 @@
+//! The body and the start about which members are spread, and what acts on them.
+
+use std::path::Path;
+
+use nalgebra::Matrix3;
+use polhode::body::Body;
+use polhode::catalogue;
+use polhode::inertia::Inertia;
+use polhode::rotation::{Quat, Vec3};
+use polhode_files::error::Error;
+use polhode_files::toml_file::Section;
+
+use super::Acting;
+use crate::flags::body::{Described, described};
+use crate::flags::force::Forces;
+use crate::flags::start::{Factor, angle_unit, rate_unit};
+
+/// What `[body]`, `[start]` and `[force]` say.
+#[derive(Debug)]
+pub(super) struct Nominal {
+    /// `None` where a file of members states it row by row.
+    pub(super) inertia: Option<Inertia>,
+    pub(super) attitude: Quat<f64>,
+    /// `None` where a file of members states it row by row.
+    pub(super) omega: Option<Vec3<f64>>,
+    pub(super) acting: Acting,
+    pub(super) units: Units,
+}
+
+/// In which units angles and rates are typed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Units {
+    /// rad/s.
+    pub(super) rate: f64,
+    /// rad.
+    pub(super) angle: f64,
+}
+
+impl Units {
+    fn read(start: &Section<'_>) -> Result<Self, Error> {
+        let unit = |key: &str, of: fn(&str) -> Result<Factor, String>| match start.text(key)? {
+            None => Ok(1.0),
+            Some(name) => of(name).map(|Factor(unit)| unit).map_err(|error| start.at(key, &error)),
+        };
+        Ok(Self { rate: unit("rate_unit", rate_unit)?, angle: unit("angle_unit", angle_unit)? })
+    }
+}
+
+impl Nominal {
+    /// `listed`: whether members come from a file, which may state what is missing here.
+    pub(super) fn read(
+        body: &Section<'_>,
+        start: &Section<'_>,
+        force: &Section<'_>,
+        listed: bool,
+    ) -> Result<Self, Error> {
+        body.only("[body]", &["moments", "inertia", "body"])?;
+        start.only("[start]", &["omega", "attitude", "rate_unit", "angle_unit"])?;
+        let units = Units::read(start)?;
+        let given: Vec<&str> = body.keys.keys().map(|key| key.get_ref().as_ref()).collect();
+        let found = match given[..] {
+            [] if listed => None,
+            [] => return Err(body.at("moments", "missing in [body]; give moments, inertia or body")),
+            [key] => Some(inertia(body, key)?),
+            [first, second, ..] => {
+                return Err(body.at(second, &format!("given beside {first}; leave one of them out")));
+            }
+        };
+        let published =
+            body.text("body")?.and_then(|name| catalogue::body(name).or_else(|| catalogue::top(name)));
+        let typed = start.numbers::<4>("attitude")?;
+        if typed == Some([0.0; 4]) {
+            return Err(start.at("attitude", "the zero quaternion has no direction; any other norm is fine"));
+        }
+        let omega = start.numbers::<3>("omega")?.map(|omega| omega.map(|rate| rate * units.rate));
+        let published = published.filter(|_| omega.is_none());
+        let attitude =
+            typed.or(published.as_ref().map(|found| found.attitude)).unwrap_or([1.0, 0.0, 0.0, 0.0]);
+        let omega = omega.or(published.map(|found| found.omega_body));
+        if omega.is_none() && !listed {
+            return Err(
+                start.at("omega", "missing in [start]; give [wx, wy, wz] in rad/s, or another rate_unit")
+            );
+        }
+        let own = found.as_ref().map_or([0.0; 3], |found| found.weight_moment);
+        let nominal = Self {
+            inertia: found.map(|found| found.inertia),
+            attitude: Quat::from_components(attitude),
+            omega: omega.map(Vec3),
+            acting: acting(force, own)?,
+            units,
+        };
+        if let Some(inertia) = &nominal.inertia {
+            nominal.check(force, start, inertia)?;
+        }
+        Ok(nominal)
+    }
+
+    /// Whether body, weight, forces and start go together.
+    fn check(&self, force: &Section<'_>, start: &Section<'_>, inertia: &Inertia) -> Result<(), Error> {
+        let heavy = Body::heavy(inertia.clone(), self.acting.weight_moment.into());
+        let heavy = heavy.map_err(|error| force.at("weight_moment", &error.to_string()))?;
+        let body = self.acting.forces.act_on(heavy);
+        let body = body.map_err(|(name, error)| force.at(&name.replace('-', "_"), &error.to_string()))?;
+        match self.omega.map(|omega| body.enter_omega(self.attitude, omega)) {
+            Some(Err(error)) => Err(start.at("omega", &error.to_string())),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn inertia(body: &Section<'_>, key: &str) -> Result<Described, Error> {
+    let refused = |error: &dyn std::fmt::Display| body.at(key, &error.to_string());
+    let alone = |inertia| Described { inertia, weight_moment: [0.0; 3] };
+    if let Some(moments) = body.numbers::<3>("moments")? {
+        return Inertia::from_moments(moments).map(alone).map_err(|error| refused(&error));
+    }
+    if let Some([xx, yy, zz, xy, xz, yz]) = body.numbers::<6>("inertia")? {
+        let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        return Inertia::from_tensor(tensor).map(alone).map_err(|error| refused(&error));
+    }
+    let name = body.text("body")?.unwrap_or_default();
+    // a file is looked for beside the specification
+    let beside = body.file.path.parent().unwrap_or(Path::new("")).join(name);
+    let is_known = catalogue::body(name).or_else(|| catalogue::top(name)).is_some();
+    let found = if is_known { described(name) } else { described(&beside.display().to_string()) };
+    found.or_else(|error| if is_known || beside.exists() { Err(error) } else { described(name) }).map_err(
+        |error| {
+            let message = error.to_string();
+            refused(&message.strip_prefix("--body: ").unwrap_or(&message))
+        },
+    )
+}
+
+/// What acts, by `[force]` or, of the weight, by the catalogue.
+fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
+    force.only("[force]", &["weight_moment", "gravity_gradient", "torque_body", "torque_space", "drag"])?;
+    let one_or_two = |key: &str| -> Result<Option<[f64; 2]>, Error> {
+        match force.list(key)?.as_deref() {
+            None => Ok(None),
+            Some([one]) => Ok(Some([*one, 0.0])),
+            Some([one, two]) => Ok(Some([*one, *two])),
+            Some(found) => Err(force.at(key, &format!("{} given, 1 or 2 needed", found.len()))),
+        }
+    };
+    let forces = Forces {
+        gravity_gradient: one_or_two("gravity_gradient")?,
+        torque_body: force.numbers("torque_body")?,
+        torque_space: force.numbers("torque_space")?,
+        drag: one_or_two("drag")?,
+    };
+    Ok(Acting { weight_moment: force.numbers("weight_moment")?.unwrap_or(own), forces })
+}

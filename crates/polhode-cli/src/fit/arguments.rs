@@ -1,0 +1,188 @@
+//! The flags of what the fit reckons with: torques, the sensor, and what gives the absolute size.
+
+use clap::{Args, ValueEnum};
+use nalgebra::{Matrix3, Vector3};
+use polhode::inertia::Inertia;
+use polhode_files::error::Error;
+use polhode_files::numbers::{list, number, numbers, positive};
+use polhode_fit::{Known, Prior, SensorPriors, TorqueModel, TorqueScope};
+
+use crate::flags::body::described;
+
+/// The torque models of the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Torque {
+    /// The body is free
+    None,
+    /// -k J w
+    Drag,
+    /// -D w, D diagonal in sensor axes
+    Drag3,
+    /// -D w, D symmetric
+    Drag6,
+    /// -c |w| J w
+    Quadratic,
+    /// Constant in body axes
+    Constant,
+    /// The simplest that the record does not contradict
+    Auto,
+}
+
+impl From<Torque> for TorqueModel {
+    fn from(torque: Torque) -> Self {
+        match torque {
+            Torque::None => TorqueModel::None,
+            Torque::Drag => TorqueModel::Drag,
+            Torque::Drag3 => TorqueModel::Drag3,
+            Torque::Drag6 => TorqueModel::Drag6,
+            Torque::Quadratic => TorqueModel::Quadratic,
+            Torque::Constant => TorqueModel::Constant,
+            Torque::Auto => TorqueModel::Auto,
+        }
+    }
+}
+
+/// What shares the coefficients of a torque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Scope {
+    /// One set for all segments
+    Record,
+    /// One set for each segment
+    Segment,
+}
+
+impl From<Scope> for TorqueScope {
+    fn from(scope: Scope) -> Self {
+        match scope {
+            Scope::Record => TorqueScope::Record,
+            Scope::Segment => TorqueScope::Segment,
+        }
+    }
+}
+
+/// Standard deviations of what may be wrong with the sensor.
+#[derive(Args, Clone, Debug)]
+pub(super) struct SensorArguments {
+    /// Standard deviation of the offset of each axis, rad/s: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_bias: Option<f64>,
+    /// Standard deviation of the relative error of scale that the axes share: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_scale: Option<f64>,
+    /// Standard deviation of the relative errors of scale of each axis: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_axis_scales: Option<f64>,
+    /// Standard deviation of the errors of the right angles between axes, rad: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_misalignment: Option<f64>,
+    /// Standard deviation of the delays of y and z behind x, s: estimated with this prior
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_skew: Option<f64>,
+    /// Random walk of the offset of each axis: standard deviation after 1 s, rad/s per sqrt(s)
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    gyro_walk: Option<f64>,
+    /// Step of the digital readings, rad/s: its rounding is noise of variance Q^2/12 [default: found in the readings]
+    #[arg(long, value_name = "Q", value_parser = positive, allow_hyphen_values = true)]
+    quantum: Option<f64>,
+}
+
+impl SensorArguments {
+    pub(super) fn walk(&self) -> Option<f64> {
+        self.gyro_walk
+    }
+
+    pub(super) fn quantum(&self) -> Option<f64> {
+        self.quantum
+    }
+
+    pub(super) fn priors(&self) -> SensorPriors {
+        SensorPriors {
+            offset: self.gyro_bias,
+            scale: self.gyro_scale,
+            axis_scales: self.gyro_axis_scales,
+            misalignment: self.gyro_misalignment,
+            skew: self.gyro_skew,
+        }
+    }
+}
+
+/// What gives the absolute size: at most one of these.
+#[derive(Args, Clone, Debug)]
+#[group(multiple = false)]
+pub(super) struct KnownArguments {
+    /// Body of the same trace: a name of the catalogue, or a file of `polhode inertia`
+    #[arg(long, value_name = "NAME|FILE")]
+    body: Option<String>,
+    /// Trace of the tensor, kg m^2
+    #[arg(long, value_name = "TRACE", value_parser = number, allow_hyphen_values = true)]
+    trace: Option<f64>,
+    /// Magnitude of the angular momentum, kg m^2/s
+    #[arg(long, value_name = "L", value_parser = number, allow_hyphen_values = true)]
+    momentum: Option<f64>,
+    /// Twice the kinetic energy, kg m^2/s^2
+    #[arg(long, value_name = "2T", value_parser = number, allow_hyphen_values = true)]
+    twice_energy: Option<f64>,
+    /// Moment about an axis, kg m^2
+    #[arg(long, value_name = "nx,ny,nz,I", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    moment: Option<[f64; 4]>,
+}
+
+impl KnownArguments {
+    /// The body that `--body` names.
+    pub(super) fn body(&self) -> Result<Option<Inertia>, Error> {
+        self.body.as_deref().map(|text| Ok(described(text)?.inertia)).transpose()
+    }
+
+    pub(super) fn known(&self) -> Result<Option<Known>, Error> {
+        if let Some(text) = &self.body {
+            return Ok(Some(Known::Trace(described(text)?.inertia.tensor().trace())));
+        }
+        let moment = |[x, y, z, value]: [f64; 4]| Known::Moment { axis: Vector3::new(x, y, z), value };
+        Ok(self
+            .trace
+            .map(Known::Trace)
+            .or(self.momentum.map(Known::Momentum))
+            .or(self.twice_energy.map(Known::TwiceEnergy))
+            .or(self.moment.map(moment)))
+    }
+}
+
+/// A tensor that is known beforehand.
+#[derive(Args, Clone, Debug)]
+#[group(multiple = false)]
+pub(super) struct PriorArguments {
+    /// Inertia tensor that is known beforehand, as from CAD, kg m^2, sensor axes: three moments or six entries, then the
+    /// relative standard deviation s of its entries, s sqrt(Iii Ijj); it is joined with what the record tells,
+    /// and supplies what the record leaves open
+    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true)]
+    prior_inertia: Option<Prior>,
+    /// The same in any unit: only the shape is known, not the size
+    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true)]
+    prior_shape: Option<Prior>,
+}
+
+fn prior(text: &str) -> Result<Prior, String> {
+    let values = list(text)?;
+    let (tensor, sigma) = match values[..] {
+        [x, y, z, sigma] => (Matrix3::from_diagonal(&Vector3::new(x, y, z)), sigma),
+        [xx, yy, zz, xy, xz, yz, sigma] => (Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz), sigma),
+        _ => {
+            let rule = "needed are 3 moments or 6 entries, and their relative standard deviation";
+            return Err(format!("{} numbers; {rule}", values.len()));
+        }
+    };
+    if sigma <= 0.0 {
+        return Err(format!("the relative standard deviation is {sigma:?}; it must be positive"));
+    }
+    if let Some(moment) = tensor.diagonal().iter().find(|moment| **moment <= 0.0) {
+        return Err(format!("the moment {moment:?} is not positive"));
+    }
+    Ok(Prior::relative(tensor, sigma))
+}
+
+impl PriorArguments {
+    pub(super) fn prior(&self) -> Option<Prior> {
+        let shape = self.prior_shape.clone().map(Prior::shape_only);
+        self.prior_inertia.clone().or(shape)
+    }
+}

@@ -1,0 +1,92 @@
+//! The inertia of a wheel, from records of a body that is known.
+
+use nalgebra::Vector3;
+use polhode::inertia::Inertia;
+use polhode_files::error::Error;
+use polhode_fit::{FitError, Nuisance, Record, Settings, WheelCalibration, calibrate_wheel};
+use polhode_pages::table::{Column, Format, Table, row};
+use serde_json::{Map, Value, json};
+
+use super::report::{SURE, digits, with_error};
+
+/// The answer as text, rows or JSON; `names` are those of the files.
+pub(super) fn report(
+    record: &Record,
+    body: &Inertia,
+    axis: &Vector3<f64>,
+    settings: &Settings,
+    names: &str,
+    format: Format,
+) -> Result<String, Error> {
+    let wheel = calibrate_wheel(record, body, settings).map_err(|error| {
+        let message = format!("{names}: {error}");
+        match error {
+            FitError::NoRotation { .. } | FitError::Solver(_) => Error::Failed(message),
+            _ => Error::Input(message),
+        }
+    })?;
+    Ok(match format {
+        Format::Table => text(&wheel, axis),
+        Format::Csv => rows(&wheel).csv(),
+        Format::Json => format!("{:#}\n", object(&wheel, axis, record)),
+    })
+}
+
+/// In scientific notation, with the digits that the deviation leaves.
+fn scaled(value: f64, sigma: f64) -> String {
+    let power = if value == 0.0 { 0 } else { libm::floor(libm::log10(value.abs())) as i32 };
+    let unit = libm::pow(10.0, f64::from(power));
+    let places = digits(sigma / unit);
+    format!("({:.places$} +- {:.places$})e{power}", value / unit, sigma / unit)
+}
+
+fn text(wheel: &WheelCalibration, axis: &Vector3<f64>) -> String {
+    let mut lines = vec![
+        format!("wheel inertia: {} kg m^2 (95 %)", scaled(wheel.inertia, SURE * wheel.sigma)),
+        format!("axis: ({}, {}, {})", axis.x, axis.y, axis.z),
+    ];
+    for n in &wheel.nuisances {
+        lines.push(format!("  {:<16} {} {}", n.name, with_error(n.value, n.sigma), n.unit).trim_end().into());
+    }
+    lines.push(format!(
+        "{} samples, segments: {}, noise {:.3e} rad/s",
+        wheel.samples, wheel.segments, wheel.noise_sigma
+    ));
+    lines.push(format!("half width of the test functions: {:.4} s", wheel.radius));
+    lines.push(format!("chi^2 per degree of freedom: {:.3} ({} degrees)", wheel.chi2_per_dof, wheel.dof));
+    lines.join("\n") + "\n"
+}
+
+fn rows(wheel: &WheelCalibration) -> Table {
+    let columns = vec![
+        Column::new("quantity", "", "what"),
+        Column::new("value", "", "estimate"),
+        Column::new("sigma", "", "standard deviation"),
+    ];
+    let mut table = Table::new("wheel", "Inertia of a wheel.", columns);
+    table.push(row!["wheel_inertia", wheel.inertia, wheel.sigma]);
+    wheel.nuisances.iter().for_each(|n| table.push(row![n.name, n.value, n.sigma]));
+    table.push(row!["noise_sigma", wheel.noise_sigma, None::<f64>]);
+    table.push(row!["chi2_per_dof", wheel.chi2_per_dof, (2.0 / wheel.dof.max(1) as f64).sqrt()]);
+    table
+}
+
+fn object(wheel: &WheelCalibration, axis: &Vector3<f64>, record: &Record) -> Value {
+    let entry = |n: &Nuisance| {
+        let value = json!({ "value": n.value, "sigma": n.sigma, "unit": n.unit, "prior": n.prior });
+        (n.name.to_string(), value)
+    };
+    json!({
+        "wheel_inertia": wheel.inertia,
+        "sigma": wheel.sigma,
+        "axis": [axis.x, axis.y, axis.z],
+        "nuisances": wheel.nuisances.iter().map(entry).collect::<Map<_, _>>(),
+        "noise_sigma": wheel.noise_sigma,
+        "samples": wheel.samples,
+        "segments": wheel.segments,
+        "radius": wheel.radius,
+        "chi2_per_dof": wheel.chi2_per_dof,
+        "dof": wheel.dof,
+        "unused_columns": super::report::unused(record),
+    })
+}

@@ -1,0 +1,284 @@
+//! `polhode fit`: inertia from measured angular velocity.
+
+mod arguments;
+mod calibrate;
+mod flights;
+mod inputs;
+mod page;
+mod plot;
+mod reading;
+mod report;
+mod residuals;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use nalgebra::Vector3;
+use polhode_files::error::{Error, warn};
+use polhode_files::numbers::{numbers, positive};
+use polhode_fit::{FitError, Limit, Settings, fit};
+use polhode_pages::document::Form;
+use polhode_pages::output::Output;
+use polhode_pages::table::Format;
+
+use crate::plot::Picture;
+use arguments::{KnownArguments, PriorArguments, Scope, SensorArguments, Torque};
+use flights::Spans;
+use inputs::WheelArguments;
+use reading::ReadingArguments;
+use report::Facts;
+
+const EXAMPLES: &str = "Examples:
+  polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
+    --noise 0.01 --out record.csv
+  polhode fit record.csv
+  polhode fit record.csv --window 0,2.5 --trace 0.0007
+  polhode fit record.csv --report fit.html --residuals residuals.csv
+  polhode fit record.csv --residuals residuals.svg --format json
+  polhode fit record.csv --figure fit.svg";
+
+/// Inertia tensor of a torque-free body from its measured angular velocity
+///
+/// Without one of --trace, --momentum, --twice-energy, --moment or --prior-inertia the tensor is known up to a factor, and its trace is
+/// set to 1; columns `hx (N m s)`, hy, hz (momentum of wheels, with this unit in the header) and tx, ty, tz (known torque, N m) make it absolute, too. Exit code 1: the record does not determine the tensor; what it does determine is printed.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Fit {
+    /// Records with a header: t, wx, wy, wz, or the names of phone apps
+    #[arg(required = true, value_name = "DATA.csv")]
+    data: Vec<PathBuf>,
+    #[command(flatten)]
+    reading: ReadingArguments,
+    /// Half width of the window that smooths the equations, s; rarely needed [default: that of the smallest uncertainty]
+    #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
+    radius: Option<f64>,
+    /// Standard deviation of the noise, rad/s [default: from the samples]
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    noise: Option<f64>,
+    /// Lower limit on the moment about an axis, a fraction of the trace; repeatable
+    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    at_least: Vec<[f64; 4]>,
+    /// Upper limit on the moment about an axis, a fraction of the trace; repeatable
+    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    at_most: Vec<[f64; 4]>,
+    #[command(flatten)]
+    known: KnownArguments,
+    #[command(flatten)]
+    prior: PriorArguments,
+    #[command(flatten)]
+    wheel: WheelArguments,
+    /// Torque on the body besides those of the record; a model, whose values are estimated: relative drag, drag along each sensor axis, drag that grows with the square of the rate, constant in body axes
+    #[arg(long, value_enum, default_value_t = Torque::Auto)]
+    torque: Torque,
+    /// Whether the coefficients of the torque are those of the whole record, or each segment has its own
+    #[arg(long, value_enum, default_value_t = Scope::Record)]
+    torque_per: Scope,
+    #[command(flatten)]
+    sensor: SensorArguments,
+    /// Fit even if the record agrees far better with other units than those named
+    #[arg(long)]
+    trust_units: bool,
+    /// Write the residuals to this file: a plot, or rows where it ends in .csv
+    #[arg(long, value_name = "FILE.svg|.png|.csv")]
+    residuals: Option<PathBuf>,
+    /// Draw measured and fitted rates, and |L| and T along the record, to this file
+    #[arg(long, value_name = "FILE.svg|.png")]
+    figure: Option<PathBuf>,
+    /// Write one page with the answer, its tables and plots to this file, also where the fit is refused
+    #[arg(long, value_name = "FILE.html|.md")]
+    report: Option<PathBuf>,
+    /// How the result is printed: table on a terminal, csv otherwise
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// Write to this file instead of standard output
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Whether the name of a file has one of these endings, in letters of any size.
+fn ends_in(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
+}
+
+impl Fit {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        self.check_paths()?;
+        let form = self.report.as_deref().map(|path| Form::of("--report", path)).transpose()?;
+        let output = Output::new(self.out.as_deref())?;
+        let residuals = self.residuals.as_deref().map(|path| Output::to_file("--residuals", path));
+        let residuals = residuals.transpose()?;
+        let page = self.report.as_deref().map(|path| Output::to_file("--report", path)).transpose()?;
+        let page = page.zip(form);
+        let figure = self.figure.as_deref().map(|path| {
+            let picture = Picture::of("--figure", path, &[Picture::Svg, Picture::Png])?;
+            Ok((Output::to_file("--figure", path)?, picture))
+        });
+        let figure = figure.transpose()?;
+        let mut record = self.reading.record(&self.data, &self.wheel)?;
+        let limit = |axis: &[f64; 4]| Limit {
+            axis: Vector3::new(axis[0], axis[1], axis[2]),
+            at_least: None,
+            at_most: None,
+        };
+        let least = self.at_least.iter().map(|b| Limit { at_least: Some(b[3]), ..limit(b) });
+        let most = self.at_most.iter().map(|b| Limit { at_most: Some(b[3]), ..limit(b) });
+        let settings = Settings {
+            radius: self.radius,
+            noise: self.noise,
+            limits: least.chain(most).collect(),
+            prior: self.prior.prior(),
+            known: self.known.known()?,
+            check_units: !self.trust_units,
+            torque: self.torque.into(),
+            torque_scope: self.torque_per.into(),
+            quantum: self.sensor.quantum(),
+            offset_walk: self.sensor.walk(),
+            sensor: self.sensor.priors(),
+            ..Settings::default()
+        };
+        let format = Format::of(self.format, self.out.as_deref())?;
+        let names = report::unused(&record);
+        if !names.is_empty() {
+            warn(&format!("columns not used: {}", names.join(", ")));
+        }
+        if let (Some(axis), Some(body)) = (self.wheel.calibrated(), self.known.body()?) {
+            let settings = Settings { known: None, ..settings };
+            return output.write_whole(&calibrate::report(
+                &record,
+                &body,
+                &axis,
+                &settings,
+                &self.names(),
+                format,
+            )?);
+        }
+        let mut spans = Spans::default();
+        let fitted = match self.reading.is_whole() {
+            true => Spans::find(&mut record, &settings).and_then(|found| {
+                spans = found;
+                fit(&record, &settings)
+            }),
+            false => fit(&record, &settings),
+        };
+        spans.remark().into_iter().for_each(warn);
+        let estimate = match fitted {
+            Ok(estimate) => estimate,
+            Err(error) => {
+                let reason = match &error {
+                    FitError::NoFlight { .. } => format!("{error} (--window t0,t1)"),
+                    _ => error.to_string(),
+                };
+                let (facts, failed) = match &error {
+                    FitError::Unidentifiable(what) => (Some(Facts::unidentified(what)), true),
+                    FitError::Unsettled { axes, .. } => (Some(Facts::unsettled(axes)), true),
+                    FitError::NoFlight { .. } => (Some(Facts::not_free()), true),
+                    FitError::NoRotation { .. } | FitError::Solver(_) => (None, true),
+                    _ => (None, false),
+                };
+                if let Some((file, form)) = page {
+                    file.write_whole(&page::refused(
+                        &reason,
+                        facts.as_ref(),
+                        &record,
+                        &spans,
+                        &self.names(),
+                        form,
+                    )?)?;
+                }
+                if let Some(facts) = facts {
+                    output.write_whole(&facts.report(&record, &spans, format))?;
+                }
+                let message = format!("{}: {reason}", self.names());
+                return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
+            }
+        };
+        // as long a computation as the fit itself, for those outputs alone that show it
+        let shown = residuals.is_some() || page.is_some() || figure.is_some();
+        let motion = if shown { estimate.fitted(&record) } else { Vec::new() };
+        let page = match page {
+            Some((file, form)) => {
+                Some((file, page::estimated(&estimate, &record, &motion, &spans, &self.names(), form)?))
+            }
+            None => None,
+        };
+        output.write_whole(&report::identified(&estimate, &record, &spans, format))?;
+        // the JSON holds them too; a file of rows does not
+        estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
+        if let Some((file, text)) = page {
+            file.write_whole(&text)?;
+        }
+        if let Some((file, path)) = residuals.zip(self.residuals.as_deref()) {
+            let picture = if ends_in(path, &["png"]) { Picture::Png } else { Picture::Svg };
+            match ends_in(path, &["csv"]) {
+                true => file.write_whole(&residuals::rows(&record, &motion).csv())?,
+                false => crate::plot::write(file, picture, &plot::residuals(&estimate).page())?,
+            }
+        }
+        if let Some((file, picture)) = figure {
+            crate::plot::write(file, picture, &page::figures::overview(&estimate, &motion, &record))?;
+        }
+        Ok(())
+    }
+
+    /// No sample is read twice, and no measurement is written over.
+    fn check_paths(&self) -> Result<(), Error> {
+        let same = |a: &Path, b: &Path| {
+            let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+            whole(a) == whole(b)
+        };
+        for (k, path) in self.data.iter().enumerate() {
+            if self.data[..k].iter().any(|before| same(before, path)) {
+                let value = path.display().to_string();
+                return Err(Error::input(
+                    "DATA",
+                    &value,
+                    "the file is given twice",
+                    "give it once, with windows",
+                ));
+            }
+        }
+        let written = [
+            ("--out", &self.out),
+            ("--residuals", &self.residuals),
+            ("--report", &self.report),
+            ("--figure", &self.figure),
+        ];
+        for (k, (flag, out)) in written.iter().enumerate() {
+            let Some(out) = out else { continue };
+            let twice = written[..k].iter().find(|(_, other)| other.as_ref().is_some_and(|o| same(o, out)));
+            if let Some((other, _)) = twice {
+                let value = out.display().to_string();
+                return Err(Error::input(
+                    flag,
+                    &value,
+                    &format!("it would replace {other}"),
+                    "name another file",
+                ));
+            }
+            if self.data.iter().any(|path| same(path, out)) {
+                let value = out.display().to_string();
+                return Err(Error::input(
+                    flag,
+                    &value,
+                    "it would replace the measurement",
+                    "name another file",
+                ));
+            }
+        }
+        if let Some(path) = self
+            .residuals
+            .as_deref()
+            .filter(|path| path.extension().is_some() && !ends_in(path, &["svg", "png", "csv"]))
+        {
+            let value = path.display().to_string();
+            let rule = "residuals are written as SVG, PNG or CSV";
+            return Err(Error::input("--residuals", &value, rule, "let the name end in .svg, .png or .csv"));
+        }
+        Ok(())
+    }
+
+    fn names(&self) -> String {
+        self.data.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+    }
+}

@@ -1,0 +1,244 @@
+//! A fit, or a refusal, as one page that needs no other file.
+
+pub(super) mod figures;
+mod noise;
+
+use polhode_files::error::Error;
+use polhode_fit::{Estimate, FittedMotion, Nuisance, Record};
+use polhode_pages::document::{Form, Part};
+
+use super::flights::Spans;
+use super::report::{
+    Facts, SURE, coefficients, digits, sensor_lines, sizes, systematic, torque, unused, with_error,
+};
+
+/// The page of an estimate from the files `names`.
+pub(super) fn estimated(
+    e: &Estimate,
+    record: &Record,
+    motion: &[FittedMotion],
+    spans: &Spans,
+    names: &str,
+    form: Form,
+) -> Result<String, Error> {
+    let mut parts = answer(e);
+    if !e.warnings.is_empty() {
+        parts.push(Part::Heading("What speaks against it".into()));
+        parts.push(Part::List(e.warnings.iter().map(ToString::to_string).collect()));
+    }
+    parts.extend(spans.parts());
+    parts.extend(torques(e));
+    parts.extend(sensor(e));
+    parts.push(Part::Heading("Segments".into()));
+    parts.push(segments(e, record, motion));
+    parts.extend(figures::motions(motion, record)?);
+    parts.extend(figures::residuals(e, motion, record)?);
+    parts.push(figures::invariants(e, motion, record)?);
+    parts.extend(spikes(e, record));
+    let columns = unused(record);
+    if !columns.is_empty() {
+        parts.push(Part::Paragraph(format!("Columns not used: {}.", columns.join(", "))));
+    }
+    Ok(form.write(&format!("Inertia from {names}"), &parts))
+}
+
+/// The page of a refusal.
+pub(super) fn refused(
+    reason: &str,
+    facts: Option<&Facts>,
+    record: &Record,
+    spans: &Spans,
+    names: &str,
+    form: Form,
+) -> Result<String, Error> {
+    let mut parts = vec![Part::Paragraph(format!("No inertia tensor: {reason}."))];
+    if let Some(facts) = facts {
+        parts.push(Part::Heading("Known".into()));
+        let known = if facts.known.is_empty() { vec!["nothing".into()] } else { facts.known.clone() };
+        parts.push(Part::List(known));
+        parts.push(Part::Heading("Undetermined".into()));
+        parts.push(Part::List(facts.open.clone()));
+    }
+    parts.extend(spans.parts());
+    parts.push(Part::Heading("Readings".into()));
+    parts.extend(figures::readings(record)?);
+    Ok(form.write(&format!("No inertia from {names}"), &parts))
+}
+
+fn answer(e: &Estimate) -> Vec<Part> {
+    let off = systematic(e);
+    let row = |name: String, value: f64, sigma: f64, off: Option<f64>| {
+        let places = digits(SURE * sigma);
+        let number = |x: f64| format!("{x:.places$}");
+        let off = off.map_or("–".into(), |off| format!("± {}", number(off)));
+        vec![name, number(value), format!("± {}", number(SURE * sigma)), off]
+    };
+    let [a, b, c] = [0, 1, 2].map(|k| format!("{:.*}", digits(e.sigma_principal[k]).min(6), e.principal[k]));
+    let head = ["", "value", "95 %, statistical", "systematic"].map(String::from).to_vec();
+    let mut rows: Vec<Vec<String>> = (0..3)
+        .map(|k| row(format!("I{}", k + 1), e.principal[k], e.sigma_principal[k], off.map(|o| o[k])))
+        .collect();
+    for (k, name) in ["I1/I3", "I2/I3"].into_iter().enumerate() {
+        let squares = sensor_lines(e).map(|line| line.ratios[k] * line.ratios[k]);
+        let off = off.map(|_| squares.sum::<f64>().sqrt());
+        rows.push(row(name.into(), e.ratios[k], e.sigma_ratios[k], off));
+    }
+    let mut parts = vec![
+        Part::Paragraph(format!("I1 : I2 : I3 = {a} : {b} : {c}, as shares of the trace.")),
+        Part::Table(head, rows),
+    ];
+    if off.is_some() {
+        parts.push(Part::Paragraph(format!("Systematic: if the sensor is off by {}.", sizes(e))));
+    }
+    if let Some(prior) = e.prior {
+        parts.push(Part::Paragraph(format!(
+            "With a prior tensor; χ² of its distance from the record is {:.1} at {} degrees of freedom.",
+            prior.chi2, prior.dof
+        )));
+        let rank = e.identifiability.rank;
+        if rank < 5 {
+            let text = format!(
+                "The record alone determines {rank} of the 5 numbers of the shape, the prior the rest."
+            );
+            parts.push(Part::Paragraph(text));
+        }
+    }
+    let axes = e.axes.to_rotation_matrix();
+    let head = ["axis", "x", "y", "z", "turn about it"].map(String::from).to_vec();
+    let rows = (0..3).map(|k| {
+        let turn = e.sigma_axes[k].to_degrees();
+        let turn = if turn < 90.0 { format!("± {turn:.*}°", digits(turn)) } else { "any".into() };
+        let mut cells = vec![format!("{}", k + 1)];
+        cells.extend(axes.matrix().column(k).iter().map(|v| format!("{v:.5}")));
+        cells.push(turn);
+        cells
+    });
+    parts.push(Part::Table(head, rows.collect()));
+    if let Some(inertia) = &e.inertia {
+        parts.push(Part::Paragraph("Inertia tensor, kg m², sensor axes:".into()));
+        let entries = inertia.tensor();
+        let head = ["", "x", "y", "z"].map(String::from).to_vec();
+        let row = |i: usize| {
+            let mut cells = vec![["x", "y", "z"][i].to_string()];
+            cells.extend((0..3).map(|k| format!("{:.6e}", entries[(i, k)])));
+            cells
+        };
+        parts.push(Part::Table(head, (0..3).map(row).collect()));
+    }
+    parts
+}
+
+fn numbers(of: &[&Nuisance]) -> Part {
+    let head = ["", "value", "unit", "prior"].map(String::from).to_vec();
+    let row = |n: &&Nuisance| {
+        let prior = n.prior.map_or("–".into(), |prior| format!("± {prior}"));
+        vec![n.name.into(), with_error(n.value, n.sigma).replace("+-", "±"), n.unit.into(), prior]
+    };
+    Part::Table(head, of.iter().map(row).collect())
+}
+
+fn torques(e: &Estimate) -> Vec<Part> {
+    if e.torque.coefficients.is_empty() {
+        return Vec::new();
+    }
+    let mut parts = vec![Part::Heading("Torque".into())];
+    let model = torque(e.torque.model);
+    parts.push(Part::Paragraph(match e.torque.gain {
+        Some(gain) => format!("Model: {model}. It gains {gain:.1} in log-likelihood over none."),
+        None => format!("Model: {model}."),
+    }));
+    let shared = coefficients(e, None);
+    if !shared.is_empty() {
+        parts.push(numbers(&shared));
+    }
+    if let Some(without) = e.torque.ratios_without {
+        let head = ["", "with the torque", "without it"].map(String::from).to_vec();
+        let row = |k: usize, name: &str| {
+            let with = with_error(e.ratios[k], e.sigma_ratios[k]).replace("+-", "±");
+            vec![name.to_string(), with, format!("{:.5}", without[k])]
+        };
+        parts.push(Part::Table(head, vec![row(0, "I1/I3"), row(1, "I2/I3")]));
+    }
+    parts
+}
+
+fn sensor(e: &Estimate) -> Vec<Part> {
+    let mut parts = Vec::new();
+    if !e.nuisances.is_empty() || !e.systematic.is_empty() {
+        parts.push(Part::Heading("Sensor".into()));
+    }
+    if !e.nuisances.is_empty() {
+        parts.push(numbers(&e.nuisances.iter().collect::<Vec<_>>()));
+    }
+    if !e.systematic.is_empty() {
+        parts
+            .push(Part::Paragraph("Change of the moments with errors that the fit takes to be zero:".into()));
+        let head = ["error", "size", "unit", "I1", "I2", "I3"].map(String::from).to_vec();
+        let rows = e.systematic.iter().map(|line| {
+            let mut cells = vec![line.name.to_string(), format!("{}", line.size), line.unit.to_string()];
+            cells.extend(line.principal.iter().map(|x| format!("{x:.1e}").replace('-', "\u{2212}")));
+            cells
+        });
+        parts.push(Part::Table(head, rows.collect()));
+    }
+    parts
+}
+
+fn segments(e: &Estimate, record: &Record, motion: &[FittedMotion]) -> Part {
+    let names = [
+        "segment",
+        "from (s)",
+        "to (s)",
+        "samples",
+        "rms (rad/s)",
+        "noise (rad/s)",
+        "torque noise",
+        "weight",
+        "shift",
+    ];
+    let own: Vec<&str> = e
+        .per_segment
+        .first()
+        .map_or(Vec::new(), |first| coefficients(e, Some(first.segment)).iter().map(|n| n.name).collect());
+    let rows = motion.iter().filter_map(|m| {
+        let s = record.segments.get(m.segment)?;
+        let summary = e.per_segment.iter().find(|p| p.segment == m.segment);
+        let shown = |x: Option<f64>, places: usize| x.map_or("–".into(), |x| format!("{x:.places$e}"));
+        let fixed = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.3}"));
+        let torques = own.iter().map(|name| {
+            let of = coefficients(e, Some(m.segment)).into_iter().find(|n| n.name == *name);
+            of.map_or("–".into(), |n| with_error(n.value, n.sigma).replace("+-", "±"))
+        });
+        let mut cells = vec![
+            format!("{} {}", m.segment + 1, s.source()),
+            s.times().first().map_or(String::new(), |t| format!("{t:.3}")),
+            s.times().last().map_or(String::new(), |t| format!("{t:.3}")),
+            m.used.iter().filter(|used| **used).count().to_string(),
+            shown(m.rms(), 2),
+            shown(summary.map(|p| p.noise_sigma), 2),
+            shown(summary.map(|p| p.torque_noise), 1),
+            fixed(summary.map(|p| p.weight)),
+            fixed(summary.map(|p| p.shift)),
+        ];
+        cells.extend(torques);
+        Some(cells)
+    });
+    Part::Table(names.into_iter().chain(own.iter().copied()).map(String::from).collect(), rows.collect())
+}
+
+fn spikes(e: &Estimate, record: &Record) -> Vec<Part> {
+    if e.spikes.is_empty() {
+        return Vec::new();
+    }
+    let line = |s: &polhode_fit::Spike| {
+        let source = record.segments.get(s.segment).map_or("", |segment| segment.source());
+        format!("{source}, line {} ({:.4} s)", s.line, s.time)
+    };
+    let shown = e.spikes.iter().take(50).map(line).collect();
+    let mut parts =
+        vec![Part::Heading(format!("Spikes: {} samples left out", e.spikes.len())), Part::List(shown)];
+    if e.spikes.len() > 50 {
+        parts.push(Part::Paragraph(format!("and {} more.", e.spikes.len() - 50)));
+    }
+    parts
+}

@@ -1,0 +1,108 @@
+//! A fit as JSON.
+
+use nalgebra::{Matrix3, SMatrix};
+use polhode_fit::{Estimate, Nuisance, Record};
+use serde_json::{Map, Value, json};
+
+use super::super::flights::Spans;
+use super::{METHOD, coefficients, torque, unused};
+
+fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
+    (0..3).map(|i| (0..3).map(|j| m[(i, j)]).collect()).collect()
+}
+
+fn matrix(m: &SMatrix<f64, 6, 6>) -> Vec<Vec<f64>> {
+    (0..6).map(|i| (0..6).map(|j| m[(i, j)]).collect()).collect()
+}
+
+pub(super) fn object(e: &Estimate, record: &Record, spans: &Spans) -> Value {
+    let mut whole = answer(e);
+    if let (Value::Object(all), Value::Object(more)) = (&mut whole, grounds(e, record, spans)) {
+        all.extend(more);
+    }
+    whole
+}
+
+/// The tensor, and how far to trust it.
+fn answer(e: &Estimate) -> Value {
+    let axes = e.axes.quaternion();
+    json!({
+        "shape": square(&e.shape.tensor()),
+        "principal": e.principal,
+        "axes": [axes.w, axes.i, axes.j, axes.k],
+        "covariance": matrix(&e.covariance),
+        "sigma_principal": e.sigma_principal,
+        "sigma_axes": e.sigma_axes,
+        "ratios": e.ratios,
+        "sigma_ratios": e.sigma_ratios,
+        "inertia": e.inertia.as_ref().map(|i| square(&i.tensor())),
+        "inertia_covariance": e.inertia_covariance.as_ref().map(matrix),
+        "noise_sigma": e.noise_sigma,
+        "quanta": e.quanta,
+        "samples": e.samples,
+        "segments": e.segments,
+        "radius": e.radius,
+        "method": METHOD,
+        "identifiable": e.identifiability.complete(),
+        "null_directions":
+            e.identifiability.null_directions.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "rank": e.identifiability.rank,
+        "spectrum": e.identifiability.deviations,
+        "bound": e.bound.as_ref().map(matrix),
+        "bound_ratio": e.bound_ratio,
+        "triangle_slack": e.triangle_slack,
+        "active_constraints": e.active_constraints.iter()
+            .map(|c| json!({ "name": c.constraint.to_string(), "multiplier": c.multiplier })).collect::<Vec<_>>(),
+        "certificate": {
+            "stationarity": e.certificate.stationarity, "violation": e.certificate.violation,
+            "dual_violation": e.certificate.dual_violation, "rounds": e.certificate.rounds,
+        },
+        "chi2_per_dof": e.chi2_per_dof,
+        "pull": e.pull,
+        "dof": e.dof,
+        "momentum_drift": { "rate": e.momentum_trend.rate, "sigma": e.momentum_trend.sigma },
+        "energy_drift": { "rate": e.energy_trend.rate, "sigma": e.energy_trend.sigma },
+        "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
+    })
+}
+
+/// What it rests on.
+fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
+    json!({
+        "torque": {
+            "model": torque(e.torque.model),
+            "coefficients": nuisances(&coefficients(e, None)),
+            "gain": e.torque.gain,
+            "ratios_without": e.torque.ratios_without,
+        },
+        "nuisances": nuisances(&e.nuisances.iter().collect::<Vec<_>>()),
+        "prior": e.prior.map(|p| json!({ "chi2": p.chi2, "dof": p.dof })),
+        "systematic": e.systematic.iter().map(|line| json!({
+            "name": line.name, "size": line.size, "unit": line.unit,
+            "principal": line.principal, "ratios": line.ratios,
+        })).collect::<Vec<_>>(),
+        "rho": e.per_segment.iter().map(|s| s.torque_noise * s.weight).sum::<f64>(),
+        "per_segment": e.per_segment.iter().map(|s| json!({
+            "segment": s.segment + 1, "samples": s.samples, "noise_sigma": s.noise_sigma,
+            "torque_noise": s.torque_noise, "weight": s.weight, "shift": s.shift,
+            "torque": nuisances(&coefficients(e, Some(s.segment))),
+        })).collect::<Vec<_>>(),
+        "spikes": e.spikes.iter().map(|s| json!({
+            "segment": s.segment + 1, "line": s.line, "time": s.time,
+        })).collect::<Vec<_>>(),
+        "unused_columns": unused(record),
+        "flights": spans.json(),
+        "flight_limits": spans.limits(),
+        "warnings": e.warnings.iter().map(ToString::to_string).chain(spans.remark().map(String::from))
+            .collect::<Vec<_>>(),
+    })
+}
+
+/// By name: value, standard deviation, unit, and the deviation of the prior where there is one.
+fn nuisances(of: &[&Nuisance]) -> Map<String, Value> {
+    let entry = |n: &&Nuisance| {
+        let value = json!({ "value": n.value, "sigma": n.sigma, "unit": n.unit, "prior": n.prior });
+        (n.name.to_string(), value)
+    };
+    of.iter().map(entry).collect()
+}

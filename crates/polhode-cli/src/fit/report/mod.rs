@@ -1,0 +1,172 @@
+//! A fit as text, as rows and as JSON.
+
+mod json;
+mod rows;
+mod text;
+
+use polhode_fit::{AverageAxis, Estimate, Identifiability, Nuisance, Record, Systematic, TorqueModel};
+use polhode_pages::table::{Column, Format, Table, row};
+use serde_json::{Value, json};
+
+use super::flights::Spans;
+
+pub(super) const METHOD: &str = "weak form, generalised least squares on denoised samples";
+pub(super) const ENTRIES: [(&str, usize, usize); 6] =
+    [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
+
+/// A tensor in full.
+pub(super) fn identified(e: &Estimate, record: &Record, spans: &Spans, format: Format) -> String {
+    match format {
+        Format::Table => text::text(e, record, spans),
+        Format::Csv => rows::rows(e).csv(),
+        Format::Json => pretty(&json::object(e, record, spans)),
+    }
+}
+
+/// Names of the columns that are not used, each once.
+pub(super) fn unused(record: &Record) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for (_, name) in record.unused_columns() {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// What a record tells that does not determine the tensor.
+#[derive(Clone, Debug)]
+pub(super) struct Facts {
+    /// How many of the five numbers are known, where they can be counted.
+    pub(super) rank: Option<usize>,
+    pub(super) known: Vec<String>,
+    pub(super) open: Vec<String>,
+}
+
+impl Facts {
+    pub(super) fn unidentified(what: &Identifiability) -> Self {
+        Facts {
+            rank: Some(what.rank),
+            known: what.known.iter().map(ToString::to_string).collect(),
+            open: what.null_directions.iter().map(ToString::to_string).collect(),
+        }
+    }
+
+    pub(super) fn unsettled(axes: &[AverageAxis]) -> Self {
+        let open = "the ratios of the moments, and the axes otherwise: the iteration did not converge";
+        Facts {
+            rank: None,
+            known: axes.iter().map(AverageAxis::to_string).collect(),
+            open: vec![open.into()],
+        }
+    }
+
+    pub(super) fn not_free() -> Self {
+        let open = "the tensor: nowhere in the record does the body rotate freely";
+        Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
+    }
+
+    pub(super) fn report(&self, record: &Record, spans: &Spans, format: Format) -> String {
+        match format {
+            Format::Json => pretty(&json!({
+                "shape": null, "principal": null, "axes": null, "covariance": null, "sigma_principal": null,
+                "inertia": null, "inertia_covariance": null, "noise_sigma": null,
+                "samples": record.samples(), "segments": record.segments.len(), "method": METHOD,
+                "identifiable": false, "rank": self.rank, "null_directions": self.open, "known": self.known,
+                "triangle_slack": null, "active_constraints": [], "chi2_per_dof": null, "warnings": [],
+                "unused_columns": unused(record),
+                "flights": spans.json(), "flight_limits": spans.limits(),
+            })),
+            Format::Csv => {
+                let columns = vec![
+                    Column::new("kind", "", "known or undetermined"),
+                    Column::new("fact", "", "in words"),
+                ];
+                let mut table = Table::new("facts", "What the record tells.", columns);
+                self.known.iter().for_each(|fact| table.push(row!["known", fact.clone()]));
+                self.open.iter().for_each(|fact| table.push(row!["undetermined", fact.clone()]));
+                table.csv()
+            }
+            Format::Table => {
+                let list = |facts: &[String]| facts.iter().map(|f| format!("  {f}\n")).collect::<String>();
+                let counted = self.rank.map(|rank| format!("{rank} of 5 numbers of the tensor are known.\n"));
+                format!(
+                    "{}Known:\n{}Undetermined:\n{}{}",
+                    counted.unwrap_or_default(),
+                    if self.known.is_empty() { "  nothing\n".into() } else { list(&self.known) },
+                    list(&self.open),
+                    spans.lines().iter().map(|line| format!("{line}\n")).collect::<String>()
+                )
+            }
+        }
+    }
+}
+
+fn pretty(value: &Value) -> String {
+    format!("{value:#}\n")
+}
+
+/// `value +- sigma` with two digits of the deviation.
+pub(super) fn with_error(value: f64, sigma: f64) -> String {
+    if !(sigma > 0.0 && sigma.is_finite()) {
+        return format!("{value:.6}");
+    }
+    let digits = digits(sigma);
+    format!("{value:.digits$} +- {sigma:.digits$}")
+}
+
+/// Decimals that show two digits of a deviation.
+pub(super) fn digits(sigma: f64) -> usize {
+    let place = if sigma > 0.0 && sigma.is_finite() { 1.0 - libm::floor(libm::log10(sigma)) } else { 6.0 };
+    place.clamp(0.0, 15.0) as usize
+}
+
+/// Half widths of 95 % intervals in standard deviations.
+pub(super) const SURE: f64 = 1.959_963_984_540_054;
+
+/// The systematic lines of constant errors of the sensor, which every sensor has; most bodies have no wheel.
+pub(super) fn sensor_lines(e: &Estimate) -> impl Iterator<Item = &Systematic> {
+    e.systematic.iter().filter(|line| !line.name.starts_with("wheel") && line.name != "walk")
+}
+
+/// What an error of each of the sizes of the systematic lines would make of the principal moments together, shares of
+/// the trace; `None` where there are no lines.
+pub(super) fn systematic(e: &Estimate) -> Option<[f64; 3]> {
+    let sum =
+        |k: usize| sensor_lines(e).map(|line| line.principal[k] * line.principal[k]).sum::<f64>().sqrt();
+    (!e.systematic.is_empty()).then(|| [0, 1, 2].map(sum))
+}
+
+/// The sizes of the systematic lines in words, one for each kind of error.
+pub(super) fn sizes(e: &Estimate) -> String {
+    let mut words: Vec<String> = Vec::new();
+    for line in sensor_lines(e) {
+        let kind = line.name.split('_').next().unwrap_or_default();
+        let word = match line.unit {
+            "" => format!("{} % of {kind}", 100.0 * line.size),
+            unit => format!("{} {unit} of {kind}", line.size),
+        };
+        if !words.contains(&word) {
+            words.push(word);
+        }
+    }
+    words.join(", ")
+}
+
+/// The coefficients of the torque of one segment, or without it those that all share.
+pub(super) fn coefficients(e: &Estimate, segment: Option<usize>) -> Vec<&Nuisance> {
+    e.torque.coefficients.iter().filter(|c| c.segment == segment).collect()
+}
+
+/// The model of a torque in words.
+pub(super) fn torque(model: TorqueModel) -> &'static str {
+    match model {
+        TorqueModel::None => "none",
+        TorqueModel::Drag => "drag",
+        TorqueModel::Drag3 => "drag3",
+        TorqueModel::Drag6 => "drag6",
+        TorqueModel::Quadratic => "quadratic",
+        TorqueModel::Constant => "constant",
+        _ => "auto",
+    }
+}

@@ -1,0 +1,56 @@
+//! A fit as rows.
+
+use polhode_fit::Estimate;
+use polhode_pages::table::{Column, Table, row};
+
+use super::ENTRIES;
+
+pub(super) fn rows(e: &Estimate) -> Table {
+    let columns = vec![
+        Column::new("quantity", "", "what"),
+        Column::new("value", "", "estimate"),
+        Column::new("sigma", "", "standard deviation"),
+    ];
+    let mut table = Table::new("fit", "Inertia from measured angular velocity.", columns);
+    for k in 0..3 {
+        table.push(row![format!("principal_{}", k + 1), e.principal[k], e.sigma_principal[k]]);
+    }
+    table.push(row!["ratio_1_3", e.ratios[0], e.sigma_ratios[0]]);
+    table.push(row!["ratio_2_3", e.ratios[1], e.sigma_ratios[1]]);
+    for (k, (name, i, j)) in ENTRIES.into_iter().enumerate() {
+        table.push(row![format!("shape_{name}"), e.shape.tensor()[(i, j)], e.covariance[(k, k)].sqrt()]);
+    }
+    let q = e.axes.quaternion();
+    for (name, value) in [("axes_w", q.w), ("axes_x", q.i), ("axes_y", q.j), ("axes_z", q.k)] {
+        table.push(row![name, value, None::<f64>]);
+    }
+    if let (Some(inertia), Some(covariance)) = (&e.inertia, &e.inertia_covariance) {
+        for (k, (name, i, j)) in ENTRIES.into_iter().enumerate() {
+            table.push(row![format!("inertia_{name}"), inertia.tensor()[(i, j)], covariance[(k, k)].sqrt()]);
+        }
+    }
+    for n in e.torque.coefficients.iter().chain(&e.nuisances) {
+        let name = n.segment.map_or(n.name.into(), |k| format!("segment_{}_{}", k + 1, n.name));
+        table.push(row![name, n.value, n.sigma]);
+    }
+    for line in &e.systematic {
+        for k in 0..3 {
+            table.push(row![
+                format!("systematic_{}_principal_{}", line.name, k + 1),
+                line.principal[k],
+                None::<f64>
+            ]);
+        }
+    }
+    table.push(row!["triangle_slack", e.triangle_slack, 2.0 * e.sigma_principal[2]]);
+    table.push(row!["noise_sigma", e.noise_sigma, None::<f64>]);
+    table.push(row!["chi2_per_dof", e.chi2_per_dof, (2.0 / e.dof.max(1) as f64).sqrt()]);
+    if let Some(prior) = e.prior {
+        table.push(row!["prior_chi2", prior.chi2, (2.0 * prior.dof as f64).sqrt()]);
+    }
+    table.push(row!["bound_ratio", e.bound_ratio, None::<f64>]);
+    table.push(row!["momentum_drift", e.momentum_trend.rate, e.momentum_trend.sigma]);
+    table.push(row!["energy_drift", e.energy_trend.rate, e.energy_trend.sigma]);
+    table.push(row!["whiteness", e.whiteness.correlation, e.whiteness.sigma]);
+    table
+}

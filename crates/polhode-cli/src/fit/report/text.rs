@@ -1,0 +1,204 @@
+//! A fit as text for a terminal.
+
+use nalgebra::Matrix3;
+use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
+
+use super::super::flights::Spans;
+use super::{METHOD, SURE, coefficients, digits, sizes, systematic, torque, unused, with_error};
+
+/// The answer first, then what it rests on.
+pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans) -> String {
+    let mut lines = answer(e);
+    lines.push(String::new());
+    lines.extend(axes(e));
+    lines.push(tensor("shape (trace 1)", &e.shape.tensor()));
+    if let Some(inertia) = &e.inertia {
+        lines.push(tensor("inertia (kg m^2)", &inertia.tensor()));
+    }
+    lines.extend(torques(e));
+    lines.extend(sensor(e));
+    lines.extend(spans.lines());
+    lines.extend(segments(e));
+    lines.push(String::new());
+    if e.quanta.iter().any(|quantum| *quantum > 0.0) {
+        let [x, y, z] = e.quanta;
+        lines.push(format!("steps of the readings: {x:.3e}, {y:.3e}, {z:.3e} rad/s"));
+    }
+    let names = unused(record);
+    if !names.is_empty() {
+        lines.push(format!("columns not used: {}", names.join(", ")));
+    }
+    lines.extend(prior(e));
+    lines.extend(quality(e));
+    lines.join("\n") + "\n"
+}
+
+/// The moments with what they are uncertain by, and the ratios.
+fn answer(e: &Estimate) -> Vec<String> {
+    let [a, b, c] = [0, 1, 2].map(|k| format!("{:.*}", digits(e.sigma_principal[k]).min(6), e.principal[k]));
+    let off = systematic(e);
+    let mut lines = vec![format!("I1 : I2 : I3 = {a} : {b} : {c}, as shares of the trace")];
+    for k in 0..3 {
+        let sigma = SURE * e.sigma_principal[k];
+        let places = digits(sigma);
+        let mut line =
+            format!("  I{}     {:.places$} +- {sigma:.places$} (95 %, statistical)", k + 1, e.principal[k]);
+        if let Some(off) = off {
+            line += &format!(" +- {:.places$} (systematic)", off[k]);
+        }
+        lines.push(line);
+    }
+    for (k, name) in ["I1/I3", "I2/I3"].into_iter().enumerate() {
+        let sigma = SURE * e.sigma_ratios[k];
+        let places = digits(sigma);
+        lines.push(format!("  {name}  {:.places$} +- {sigma:.places$} (95 %, statistical)", e.ratios[k]));
+    }
+    if off.is_some() {
+        lines.extend(["systematic: if the sensor is off by".into(), format!("  {}", sizes(e))]);
+    }
+    lines.push(format!(
+        "{} samples, segments: {}, noise {:.3e} rad/s{}",
+        e.samples,
+        e.segments,
+        e.noise_sigma,
+        if e.spikes.is_empty() { String::new() } else { format!(", spikes left out: {}", e.spikes.len()) }
+    ));
+    lines
+}
+
+fn axes(e: &Estimate) -> Vec<String> {
+    let mut lines = vec!["principal axes in sensor axes, and how far they may be turned:".into()];
+    let axes = e.axes.to_rotation_matrix();
+    for k in 0..3 {
+        let v = axes.matrix().column(k);
+        let turn = e.sigma_axes[k].to_degrees();
+        let turn = if turn < 90.0 {
+            format!("{turn:.*} deg about it", digits(turn))
+        } else {
+            "any turn about it".into()
+        };
+        lines.push(format!("  {}  ({:8.5}, {:8.5}, {:8.5}) +- {turn}", k + 1, v[0], v[1], v[2]));
+    }
+    lines
+}
+
+fn tensor(name: &str, m: &Matrix3<f64>) -> String {
+    let row = |i: usize| format!("  {:13.6e} {:13.6e} {:13.6e}", m[(i, 0)], m[(i, 1)], m[(i, 2)]);
+    format!("\n{name}:\n{}\n{}\n{}", row(0), row(1), row(2))
+}
+
+fn number(n: &Nuisance) -> String {
+    let unit = if n.unit.is_empty() { String::new() } else { format!(" {}", n.unit) };
+    let prior = n.prior.map_or(String::new(), |prior| format!(", prior +- {prior}"));
+    format!("  {:<16} {}{unit}{prior}", n.name, with_error(n.value, n.sigma))
+}
+
+fn torques(e: &Estimate) -> Vec<String> {
+    if e.torque.coefficients.is_empty() {
+        return Vec::new();
+    }
+    let mut lines = vec![
+        String::new(),
+        match e.torque.gain {
+            Some(gain) => format!("torque: {}, gain of log-likelihood {gain:.1}", torque(e.torque.model)),
+            None => format!("torque: {}", torque(e.torque.model)),
+        },
+    ];
+    lines.extend(coefficients(e, None).into_iter().map(number));
+    if let Some([a, b]) = e.torque.ratios_without {
+        lines.push(format!("  without it I1/I3 would be {a:.4} and I2/I3 {b:.4}"));
+    }
+    lines
+}
+
+fn sensor(e: &Estimate) -> Vec<String> {
+    let mut lines = Vec::new();
+    if !e.nuisances.is_empty() {
+        lines.extend([String::new(), "sensor:".into()]);
+        lines.extend(e.nuisances.iter().map(number));
+    }
+    if !e.systematic.is_empty() {
+        lines.extend([
+            String::new(),
+            "change of (I1, I2, I3) with an error of the sensor, or a wheel in the body:".into(),
+        ]);
+        for line in &e.systematic {
+            let [a, b, c] = line.principal;
+            let size = format!("{} {}", line.size, line.unit);
+            lines.push(format!("  {:<16} {:<20} ({a:9.1e}, {b:9.1e}, {c:9.1e})", line.name, size.trim()));
+        }
+    }
+    lines
+}
+
+/// Where there are several.
+fn segments(e: &Estimate) -> Vec<String> {
+    if e.per_segment.len() < 2 {
+        return Vec::new();
+    }
+    let mut lines = vec![
+        String::new(),
+        "segment  samples  noise (rad/s)  torque noise  weight  shift if left out".into(),
+    ];
+    for s in &e.per_segment {
+        lines.push(format!(
+            "{:>7}  {:>7}  {:>13.3e}  {:>12.2e}  {:>6.3}  {:>18.2}",
+            s.segment + 1,
+            s.samples,
+            s.noise_sigma,
+            s.torque_noise,
+            s.weight,
+            s.shift
+        ));
+    }
+    if e.torque.coefficients.iter().any(|c| c.segment.is_some()) {
+        lines.extend([String::new(), "segment  torque".into()]);
+        for s in &e.per_segment {
+            let own = coefficients(e, Some(s.segment));
+            let values =
+                own.iter().map(|n| format!("{} {} {}", n.name, with_error(n.value, n.sigma), n.unit));
+            lines.push(format!("{:>7}  {}", s.segment + 1, values.collect::<Vec<_>>().join(", ")));
+        }
+    }
+    lines
+}
+
+fn prior(e: &Estimate) -> Vec<String> {
+    let Some(p) = e.prior else { return Vec::new() };
+    let mut lines =
+        vec![format!("record against prior tensor: chi^2 {:.1} of {} degrees of freedom", p.chi2, p.dof)];
+    let rank = e.identifiability.rank;
+    if rank < 5 {
+        lines.push(format!(
+            "the record alone determines {rank} of the 5 numbers of the shape, the prior the rest"
+        ));
+    }
+    lines
+}
+
+fn quality(e: &Estimate) -> Vec<String> {
+    let percent = |drift: InvariantTrend| with_error(100.0 * drift.rate, 100.0 * drift.sigma);
+    let told = |d: f64| if d.is_finite() { format!("{d:.1e}") } else { "none".into() };
+    let spectrum = e.identifiability.deviations.map(told).join(", ");
+    vec![
+        format!("method: {METHOD}"),
+        format!("half width of the test functions: {:.4} s", e.radius),
+        "standard deviations of the five determined combinations:".into(),
+        format!("  {spectrum}"),
+        e.bound_ratio.map_or("no Cramer-Rao bound for this tensor".into(), |r| {
+            format!("standard deviation over the Cramer-Rao bound: {r:.3}")
+        }),
+        format!("chi^2 per degree of freedom: {:.3} ({} degrees)", e.chi2_per_dof, e.dof),
+        format!(
+            "correlation of neighbouring residuals: {:.3} +- {:.3}",
+            e.whiteness.correlation, e.whiteness.sigma
+        ),
+        format!("drift of |J w|: {} per cent per second", percent(e.momentum_trend)),
+        format!("drift of w J w: {} per cent per second", percent(e.energy_trend)),
+        format!("I1 + I2 - I3: {}", with_error(e.triangle_slack, 2.0 * e.sigma_principal[2])),
+        format!(
+            "optimality: stationarity {:.1e}, violation {:.1e}, {} rounds of cuts",
+            e.certificate.stationarity, e.certificate.violation, e.certificate.rounds
+        ),
+    ]
+}

@@ -1,0 +1,140 @@
+//! The flags that name a body, for every command that takes them.
+
+use clap::Args;
+use nalgebra::Matrix3;
+use polhode::body::Body;
+use polhode::catalogue;
+use polhode::inertia::Inertia;
+use polhode_files::error::Error;
+use polhode_files::numbers::{list, numbers};
+use polhode_files::text::visible;
+
+use crate::flags::body_file;
+
+/// A body: exactly one of three flags.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Body")]
+#[group(required = true, multiple = false)]
+pub(crate) struct BodyArguments {
+    /// Principal moments in the order of the body axes, in any consistent unit
+    #[arg(long, value_name = "I1,I2,I3", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    moments: Option<[f64; 3]>,
+    /// Tensor entries in body axes, I_xy = -sum m x y; or all nine, by rows
+    #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = tensor, allow_hyphen_values = true)]
+    inertia: Option<Matrix3<f64>>,
+    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF or MJCF, with :LINK where it has several
+    #[arg(long, value_name = "NAME|FILE[:LINK]")]
+    body: Option<String>,
+}
+
+/// Six entries of a tensor, or nine.
+fn tensor(text: &str) -> Result<Matrix3<f64>, String> {
+    match list(text)?[..] {
+        [xx, yy, zz, xy, xz, yz] => Ok(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)),
+        ref nine if nine.len() == 9 => Ok(Matrix3::from_row_slice(nine)),
+        ref found => Err(format!(
+            "{} given, 6 needed (Ixx,Iyy,Izz,Ixy,Ixz,Iyz) or 9 (by rows); separate them by commas",
+            found.len()
+        )),
+    }
+}
+
+/// A body with what is published of it.
+pub(crate) struct Described {
+    pub(crate) inertia: Inertia,
+    /// N m, body axes; zero of a body without a fixed point.
+    pub(crate) weight_moment: [f64; 3],
+}
+
+impl Described {
+    fn alone(inertia: Inertia) -> Self {
+        Self { inertia, weight_moment: [0.0; 3] }
+    }
+}
+
+/// The body that `--body` names: of the catalogue, or of a file.
+pub(crate) fn described(text: &str) -> Result<Described, Error> {
+    if let Some(found) = catalogue::body(text).or_else(|| catalogue::top(text)) {
+        return Ok(Described { inertia: found.inertia, weight_moment: found.weight_moment });
+    }
+    if let Some(inertia) = body_file::inertia(text)? {
+        return Ok(Described::alone(inertia));
+    }
+    let known: Vec<&str> =
+        catalogue::bodies().iter().chain(&catalogue::tops()).map(|body| body.name).collect();
+    if text.contains(['.', '/']) {
+        let rule = "no such file, and no such body in the catalogue";
+        return Err(Error::input("--body", text, rule, "`polhode bodies` lists the catalogue"));
+    }
+    Err(Error::unknown_name("--body", "body", text, known.iter().copied()))
+}
+
+impl BodyArguments {
+    /// The body that the flags describe, with the catalogue's weight moment or `weight_moment` in its place.
+    pub(crate) fn heavy(&self, weight_moment: Option<[f64; 3]>) -> Result<Body, Error> {
+        let Described { inertia, weight_moment: own } = self.described()?;
+        let moment = weight_moment.unwrap_or(own);
+        if moment == [0.0; 3] {
+            return Ok(Body::free(inertia));
+        }
+        Body::heavy(inertia, moment.into()).map_err(|error| Error::Input(format!("--weight-moment: {error}")))
+    }
+
+    /// The same for what only free bodies do.
+    pub(crate) fn free(&self) -> Result<Body, Error> {
+        let Described { inertia, weight_moment } = self.described()?;
+        if weight_moment != [0.0; 3] {
+            let name = self.body.as_deref().unwrap_or_default();
+            return Err(Error::input(
+                "--body",
+                name,
+                "is a top under gravity, and this command is for free bodies",
+                "name a free body, or give its --moments to leave the weight out",
+            ));
+        }
+        Ok(Body::free(inertia))
+    }
+
+    /// What a title calls the body.
+    pub(crate) fn label(&self) -> String {
+        match (self.moments, &self.body) {
+            (Some(moments), _) => {
+                format!("moments {}", moments.map(polhode_files::text::rounded).join(", "))
+            }
+            (None, Some(name)) => {
+                let file = std::path::Path::new(name).file_name();
+                visible(&file.map_or(name.clone(), |file| file.to_string_lossy().into_owned())).into_owned()
+            }
+            (None, None) => "a typed tensor".into(),
+        }
+    }
+
+    /// The spin and attitude that the catalogue has with its body.
+    pub(crate) fn published_start(&self) -> Option<PublishedStart> {
+        let name = self.body.as_deref()?;
+        let found = catalogue::body(name).or_else(|| catalogue::top(name))?;
+        Some(PublishedStart { omega: found.omega_body, attitude: found.attitude })
+    }
+
+    fn described(&self) -> Result<Described, Error> {
+        let refused =
+            |flag: &str, error: polhode::inertia::InertiaError| Error::Input(format!("{flag}: {error}"));
+        if let Some(moments) = self.moments {
+            let inertia = Inertia::from_moments(moments).map_err(|error| refused("--moments", error))?;
+            return Ok(Described::alone(inertia));
+        }
+        if let Some(tensor) = self.inertia {
+            let inertia = Inertia::from_tensor(tensor).map_err(|error| refused("--inertia", error))?;
+            return Ok(Described::alone(inertia));
+        }
+        described(self.body.as_deref().unwrap_or_default())
+    }
+}
+
+/// The start that a body is published with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PublishedStart {
+    /// Body axes, rad/s.
+    pub(crate) omega: [f64; 3],
+    pub(crate) attitude: [f64; 4],
+}

@@ -1,0 +1,106 @@
+//! The flags that name what acts on a body.
+
+use clap::Args;
+use nalgebra::Vector3;
+use polhode::body::{Body, Force, ForceError};
+use polhode_files::error::Error;
+use polhode_files::numbers::{list, numbers};
+
+/// What acts on the body; several forces add.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Forces")]
+pub(crate) struct ForceArguments {
+    /// Weight M g times the centre of mass, body axes, N m: the body then has a fixed point, and gravity acts along -Z of space
+    #[arg(long, value_name = "cx,cy,cz", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    pub(crate) weight_moment: Option<[f64; 3]>,
+    /// Gravity gradient on an orbit in the space x-y plane: mean motion, rad/s, and eccentricity (default 0); perigee on +x at t = 0
+    #[arg(long, value_name = "n[,e]", value_parser = one_or_two, allow_hyphen_values = true)]
+    gravity_gradient: Option<OneOrTwo>,
+    /// Constant torque in body axes, N m
+    #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    torque_body: Option<[f64; 3]>,
+    /// Constant torque in the axes of space, N m
+    #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    torque_space: Option<[f64; 3]>,
+    /// Drag torque -c1 w - c2 |w| w, equal about all axes: linear coefficient, N m s, and quadratic one, N m s^2 (default 0)
+    #[arg(long, value_name = "c1[,c2]", value_parser = one_or_two, allow_hyphen_values = true)]
+    drag: Option<OneOrTwo>,
+}
+
+/// A number and a second one, 0 if it is left out.
+#[derive(Clone, Copy, Debug)]
+struct OneOrTwo([f64; 2]);
+
+fn one_or_two(text: &str) -> Result<OneOrTwo, String> {
+    match list(text)?[..] {
+        [one] => Ok(OneOrTwo([one, 0.0])),
+        [one, two] => Ok(OneOrTwo([one, two])),
+        ref found => Err(format!("{} given, 1 or 2 needed; separate them by commas", found.len())),
+    }
+}
+
+/// Forces besides weight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Forces {
+    /// Mean motion, rad/s, and eccentricity.
+    pub(crate) gravity_gradient: Option<[f64; 2]>,
+    /// N m, body axes.
+    pub(crate) torque_body: Option<[f64; 3]>,
+    /// N m, axes of space.
+    pub(crate) torque_space: Option<[f64; 3]>,
+    /// N m s and N m s^2.
+    pub(crate) drag: Option<[f64; 2]>,
+}
+
+impl Forces {
+    /// `body` with these forces.
+    ///
+    /// # Errors
+    /// What is wrong with one of them, and its name.
+    pub(crate) fn act_on(&self, mut body: Body) -> Result<Body, (&'static str, ForceError)> {
+        if let Some([mean_motion, eccentricity]) = self.gravity_gradient {
+            let force = Force::gravity_gradient(body.inertia(), mean_motion, eccentricity)
+                .map_err(|error| ("gravity-gradient", error))?;
+            body = body.with(force);
+        }
+        for (name, torque, make) in [
+            (
+                "torque-body",
+                self.torque_body,
+                Force::constant_torque_body as fn(Vector3<f64>) -> Result<Force, ForceError>,
+            ),
+            ("torque-space", self.torque_space, Force::constant_torque_space),
+        ] {
+            if let Some(torque) = torque {
+                body = body.with(make(torque.into()).map_err(|error| (name, error))?);
+            }
+        }
+        if let Some([linear, quadratic]) = self.drag {
+            body = body.with(Force::drag(linear, quadratic).map_err(|error| ("drag", error))?);
+        }
+        Ok(body)
+    }
+}
+
+impl ForceArguments {
+    /// Whether a flag names a force.
+    pub(crate) fn is_any(&self) -> bool {
+        self.weight_moment.is_some()
+            || self.gravity_gradient.is_some()
+            || self.torque_body.is_some()
+            || self.torque_space.is_some()
+            || self.drag.is_some()
+    }
+
+    /// `body` with the forces besides its weight.
+    pub(crate) fn act_on(&self, body: Body) -> Result<Body, Error> {
+        let pair = |typed: Option<OneOrTwo>| typed.map(|OneOrTwo(pair)| pair);
+        let forces = Forces {
+            gravity_gradient: pair(self.gravity_gradient),
+            torque_body: self.torque_body,
+            torque_space: self.torque_space,
+            drag: pair(self.drag),
+        };
+        forces.act_on(body).map_err(|(name, error)| Error::Input(format!("--{name}: {error}")))
+    }
+}

@@ -1,0 +1,9 @@
+//! Flags that several commands share.
+
+pub(crate) mod body;
+pub(crate) mod body_file;
+pub(crate) mod force;
+pub(crate) mod motion;
+pub(crate) mod start;
+pub(crate) mod times;
+pub(crate) mod tumbling;

@@ -1,0 +1,32 @@
+//! A body, its start and what acts on it: what every command that moves a body is told.
+
+use clap::Args;
+use polhode::body::{Body, Point};
+use polhode::num::Dd;
+use polhode_files::error::Error;
+
+use crate::flags::body::BodyArguments;
+use crate::flags::force::ForceArguments;
+use crate::flags::start::StartArguments;
+
+#[derive(Args, Clone, Debug)]
+pub(crate) struct MotionArguments {
+    #[command(flatten)]
+    pub(crate) body: BodyArguments,
+    #[command(flatten)]
+    pub(crate) start: StartArguments,
+    #[command(flatten)]
+    forces: ForceArguments,
+}
+
+impl MotionArguments {
+    /// The body with all that acts on it.
+    pub(crate) fn body(&self) -> Result<Body, Error> {
+        self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)
+    }
+
+    /// The exact start of that `body` in the solver frame.
+    pub(crate) fn start(&self, body: &Body) -> Result<Point<Dd>, Error> {
+        self.start.inside(body, self.body.published_start())
+    }
+}

@@ -1,0 +1,172 @@
+//! The flags that name the start of a motion: attitude and spin, in the quantities that people have.
+
+use clap::Args;
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+use polhode::body::{Body, Point, State};
+use polhode::num::Dd;
+use polhode::rotation::{EulerSequence, Quat, Vec3};
+use polhode_files::error::{Error, warn};
+use polhode_files::moment::seconds_in;
+use polhode_files::numbers::{numbers, quaternion, turn};
+
+use crate::flags::body::PublishedStart;
+use crate::flags::tumbling::TumblingArguments;
+
+/// Attitude and spin at the start.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Start")]
+pub(crate) struct StartArguments {
+    /// Angular velocity at the start, body axes, rad/s or --rate-unit [default: that of the catalogue's body]
+    #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    omega: Option<[f64; 3]>,
+    /// Unit of --omega: rad/s, deg/s, rpm, or another of rad, deg, rev per s, min, h, d, as in deg/d [default: rad/s]
+    #[arg(long, value_name = "UNIT", value_parser = rate_unit, requires = "omega")]
+    rate_unit: Option<Factor>,
+    /// Angular momentum at the start in place of --omega, body axes, kg m^2/s
+    #[arg(long, value_name = "mx,my,mz", value_parser = numbers::<3>, allow_hyphen_values = true, conflicts_with = "omega")]
+    momentum_body: Option<[f64; 3]>,
+    /// Angular momentum at the start in place of --omega, axes of space, kg m^2/s
+    #[arg(long, value_name = "Lx,Ly,Lz", value_parser = numbers::<3>, allow_hyphen_values = true,
+          conflicts_with_all = ["omega", "momentum_body"])]
+    momentum_space: Option<[f64; 3]>,
+    /// Attitude at the start: quaternion that turns body axes to space axes, scalar first; it is divided by its norm [default: 1,0,0,0]
+    #[arg(long, value_name = "w,x,y,z", value_parser = quaternion, allow_hyphen_values = true)]
+    attitude: Option<[f64; 4]>,
+    /// Attitude at the start by Euler angles in the sequence of --euler, rad or --angle-unit
+    #[arg(long, value_name = "phi,theta,psi", value_parser = numbers::<3>, allow_hyphen_values = true, conflicts_with = "attitude")]
+    angles: Option<[f64; 3]>,
+    /// Attitude at the start by its matrix from body to space axes, nine entries by rows
+    #[arg(long, value_name = "r11,r12,...,r33", value_parser = rotation, allow_hyphen_values = true,
+          conflicts_with_all = ["attitude", "angles"])]
+    rotation: Option<TypedRotation>,
+    /// Sequence of intrinsic Euler angles, each about an axis already turned, such as zyx [default: zxz]; propagate also prints them: phi, theta, psi, rad
+    #[arg(long, value_name = "SEQUENCE", value_parser = sequence)]
+    pub(crate) euler: Option<EulerSequence>,
+    /// Unit of angles that are typed: rad or deg [default: rad]
+    #[arg(long, value_name = "UNIT", value_parser = angle_unit)]
+    angle_unit: Option<Factor>,
+    #[command(flatten)]
+    tumbling: TumblingArguments,
+}
+
+/// What a unit is in rad or rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Factor(pub(crate) f64);
+
+fn angle(name: &str) -> Option<f64> {
+    match name {
+        "rad" => Some(1.0),
+        "deg" | "°" => Some(core::f64::consts::PI / 180.0),
+        "rev" => Some(core::f64::consts::TAU),
+        _ => None,
+    }
+}
+
+pub(crate) fn angle_unit(text: &str) -> Result<Factor, String> {
+    let known = angle(text).filter(|_| text != "rev").map(Factor);
+    known.ok_or_else(|| format!("'{text}' is no unit of angles here; write rad or deg"))
+}
+
+pub(crate) fn rate_unit(text: &str) -> Result<Factor, String> {
+    if text == "rpm" {
+        return Ok(Factor(core::f64::consts::PI / 30.0));
+    }
+    let parts = text.split_once('/').and_then(|(over, under)| Some((angle(over)?, seconds_in(under)?)));
+    let unit = parts.map(|(angle, seconds)| Factor(angle / seconds));
+    unit.ok_or_else(|| format!("'{text}' is no unit of rates here; write rad/s, deg/s, deg/d, rev/h or rpm"))
+}
+
+fn sequence(text: &str) -> Result<EulerSequence, String> {
+    text.parse::<EulerSequence>().map_err(|error| error.to_string())
+}
+
+/// A matrix as typed and the rotation nearest to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct TypedRotation {
+    turn: UnitQuaternion<f64>,
+    /// How far the matrix is from one, as typed.
+    deviation: f64,
+}
+
+/// Beyond this a matrix is not that of a rotation with few digits.
+const MOST_DEVIATION: f64 = 1e-3;
+/// Beyond this its digits say less of an attitude than most users would think.
+const NOTED_DEVIATION: f64 = 1e-6;
+
+fn rotation(text: &str) -> Result<TypedRotation, String> {
+    let matrix = Matrix3::from_row_slice(&numbers::<9>(text)?);
+    let deviation = (matrix.transpose() * matrix - Matrix3::identity()).amax();
+    if deviation.is_nan() || deviation > MOST_DEVIATION {
+        return Err(format!(
+            "its columns are not orthonormal: R^T R differs from 1 by {deviation:.1e}, and at most {MOST_DEVIATION:e} is taken for rounding"
+        ));
+    }
+    if matrix.determinant() < 0.0 {
+        return Err(
+            "its determinant is -1: a reflection, which no body can do; change the sign of an axis".into()
+        );
+    }
+    // the factor of the polar decomposition, by Newton and Schulz; squares of the deviation
+    let nearest = (0..5).fold(matrix, |r, _| r * (Matrix3::identity() * 1.5 - r.transpose() * r * 0.5));
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(nearest));
+    Ok(TypedRotation { turn, deviation })
+}
+
+impl StartArguments {
+    /// The exact start of `body` in the solver frame; what is not given is `published` with the body, if it is.
+    pub(crate) fn inside(&self, body: &Body, published: Option<PublishedStart>) -> Result<Point<Dd>, Error> {
+        let angle_unit = self.angle_unit.map_or(1.0, |Factor(unit)| unit);
+        if let Some(elements) = self.tumbling.elements(angle_unit)? {
+            return elements.point(body.inertia()).map_err(|error| self.tumbling.refused(&error));
+        }
+        let is_published =
+            self.omega.is_none() && self.momentum_body.is_none() && self.momentum_space.is_none();
+        let published = published.filter(|_| is_published);
+        let attitude = match self.attitude(angle_unit) {
+            Some(attitude) => attitude,
+            None => Quat::from_components(published.map_or([1.0, 0.0, 0.0, 0.0], |start| start.attitude)),
+        };
+        let from_momentum = |flag: &str, momentum_body: Vec3<f64>| {
+            let start = body.enter(&State { attitude, momentum_body });
+            start.map_err(|error| Error::Input(format!("{flag}: {error}")))
+        };
+        if let Some(momentum) = self.momentum_body {
+            return from_momentum("--momentum-body", Vec3(momentum));
+        }
+        if let Some(momentum) = self.momentum_space {
+            let turn = turn(attitude.components()).unwrap_or_default();
+            let turn = Quat::<Dd>::of(turn.into()).normalized();
+            let momentum = turn.rotate_back(Vec3::of(Vec3(momentum)));
+            return from_momentum("--momentum-space", momentum.map(Dd::hi));
+        }
+        let unit = self.rate_unit.map_or(1.0, |Factor(unit)| unit);
+        let Some(omega) =
+            self.omega.map(|omega| omega.map(|w| w * unit)).or(published.map(|start| start.omega))
+        else {
+            return Err(Error::Input(
+                "--omega: missing; give --omega wx,wy,wz, --momentum-body, --momentum-space or --periods; bodies of the catalogue have a start"
+                    .into(),
+            ));
+        };
+        let start = body.enter_omega(attitude, Vec3(omega));
+        start.map_err(|error| Error::Input(format!("--omega: {error}")))
+    }
+
+    /// The attitude that was typed, of any norm but zero.
+    fn attitude(&self, angle_unit: f64) -> Option<Quat<f64>> {
+        if let Some(components) = self.attitude {
+            return Some(Quat::from_components(components));
+        }
+        if let Some(typed) = self.rotation {
+            if typed.deviation > NOTED_DEVIATION {
+                warn(&format!(
+                    "--rotation: R^T R differs from 1 by {:.1e}; the nearest rotation is taken",
+                    typed.deviation
+                ));
+            }
+            return Some(typed.turn.into());
+        }
+        let angles = self.angles?.map(|angle| angle * angle_unit);
+        Some(self.euler.unwrap_or_default().attitude(angles).into())
+    }
+}

@@ -1,0 +1,89 @@
+//! The command line of polhode.
+
+mod advise;
+mod audit;
+mod bodies;
+mod compare;
+mod ensemble;
+mod fit;
+mod flags;
+mod inertia;
+mod methods;
+mod motion;
+mod plot;
+mod propagate;
+mod simulate;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use polhode_experiments::results;
+use polhode_files::error::{self, Error};
+
+const EXAMPLES: &str = "Examples:
+  polhode propagate --body t-handle --until 60 --every 10
+  polhode inertia box 0.3,0.2,0.1 --mass 2 --out box.json
+  polhode motion --body box.json --omega 0.3,5,0.2";
+
+const EXPERIMENT_EXAMPLES: &str = "Examples:
+  polhode experiment list
+  polhode experiment run order --scale smoke";
+
+/// Accurate long-time rotation of rigid bodies
+///
+/// Exit code 0: success; 1: a claim, fit or check failed; 2: unusable input.
+#[derive(Parser)]
+#[command(name = "polhode", version, max_term_width = 80, after_help = EXAMPLES)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// List, run, check and publish the experiments
+    #[command(subcommand, after_help = EXPERIMENT_EXAMPLES)]
+    Experiment(results::ExperimentCommand),
+    Propagate(Box<propagate::Propagate>),
+    Motion(Box<motion::Motion>),
+    Advise(Box<advise::Advise>),
+    Compare(Box<compare::Compare>),
+    Plot(Box<plot::Plot>),
+    Audit(Box<audit::Audit>),
+    Ensemble(Box<ensemble::Ensemble>),
+    Gather(Box<ensemble::Gather>),
+    Fit(Box<fit::Fit>),
+    Simulate(Box<simulate::Simulate>),
+    Methods(methods::Methods),
+    Bodies(bodies::Bodies),
+    Inertia(Box<inertia::Inertia>),
+}
+
+fn main() -> ExitCode {
+    match run(CommandLine::parse().command) {
+        Ok(()) | Err(Error::Unread) => ExitCode::SUCCESS,
+        Err(error) => {
+            error::tell("error", &error.to_string());
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Error> {
+    match command {
+        Command::Experiment(command) => command.run(),
+        Command::Propagate(propagate) => propagate.run(),
+        Command::Motion(motion) => motion.run(),
+        Command::Advise(advise) => advise.run(),
+        Command::Compare(compare) => compare.run(),
+        Command::Plot(plot) => plot.run(),
+        Command::Audit(audit) => audit.run(),
+        Command::Ensemble(ensemble) => ensemble.run(),
+        Command::Gather(gather) => gather.run(),
+        Command::Fit(fit) => fit.run(),
+        Command::Simulate(simulate) => simulate.run(),
+        Command::Methods(methods) => methods.run(),
+        Command::Bodies(bodies) => bodies.run(),
+        Command::Inertia(inertia) => inertia.run(),
+    }
+}

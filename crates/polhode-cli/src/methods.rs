@@ -1,0 +1,56 @@
+//! `polhode methods`: the catalogue.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use polhode::method::{AnyMethod, UnknownMethod, catalogue, method};
+use polhode_experiments::methods::{schemes, table};
+use polhode_files::error::Error;
+use polhode_pages::output::emit;
+use polhode_pages::table::Format;
+
+const EXAMPLES: &str = "Examples:
+  polhode methods
+  polhode methods --schemes --format json";
+
+/// List the methods: order, what each conserves, cost per step, source
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Methods {
+    /// List the schemes instead: what may stand behind @, as in kick-drift@srkn-6b
+    #[arg(long)]
+    schemes: bool,
+    /// How rows are printed [default: table on a terminal, csv otherwise]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Methods {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        let table = if self.schemes { schemes() } else { table() };
+        emit(&Format::of(self.format, self.out.as_deref())?.write(&table), self.out.as_deref())
+    }
+}
+
+/// The method that `flag` names.
+pub(crate) fn named(flag: &str, name: &str) -> Result<Box<dyn AnyMethod>, Error> {
+    method(name).map_err(|error| unknown(flag, error))
+}
+
+/// Why what `flag` names is no method.
+pub(crate) fn unknown(flag: &str, error: UnknownMethod) -> Error {
+    match error {
+        UnknownMethod::Name { name } => {
+            let mut known: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
+            known.insert(0, "exact".into());
+            Error::unknown_name(flag, "method", &name, known.iter().map(String::as_str))
+        }
+        UnknownMethod::Argument { name, rule } => {
+            Error::input(flag, &name, "has an argument that it cannot take", &format!("allowed: {rule}"))
+        }
+        error => Error::Input(format!("{flag}: {error}")),
+    }
+}

@@ -1,0 +1,319 @@
+//! A motion as it is drawn: states at equal times, by the closed form or by a method.
+
+use nalgebra::Vector3;
+use polhode::body::{Body, Clock, Point, Problem, State};
+use polhode::flow::{ExactMotion, FreeMotion, LagrangeTop};
+use polhode::method::ADAPTIVE;
+use polhode::num::Dd;
+use polhode::observe::{Errors, Monitor};
+use polhode::rotation::Quat;
+use polhode::run::{Run, RunError, Schedule, ScheduleError};
+use polhode_experiments::measured::is_adaptive;
+use polhode_files::error::{Error, warn};
+use polhode_files::text::short;
+
+use super::{Kind, Plot};
+use crate::methods::named;
+
+/// Points of a curve: at least so many, and at most.
+const FEWEST: u64 = 600;
+const MOST: u64 = 20_000;
+/// Points for each radian that the body turns.
+const PER_RADIAN: f64 = 12.0;
+/// Marks of flips that can be told apart.
+const MOST_FLIPS: u64 = 400;
+/// Beyond this turn between two points, rad, they are not joined.
+const RESOLVED: f64 = 0.8;
+
+/// States at ascending times.
+pub(super) struct Looks {
+    pub(super) body: Body,
+    /// The closed form, where there is one.
+    pub(super) exact: Option<ExactMotion>,
+    /// s.
+    pub(super) times: Vec<f64>,
+    pub(super) states: Vec<State>,
+    /// Body axes, rad/s.
+    pub(super) omegas: Vec<Vector3<f64>>,
+    pub(super) errors: Vec<Errors>,
+    /// Sign changes of the momentum along the axis of the middle moment; `None` where they are not counted or the body does not
+    /// turn over.
+    pub(super) flips: Option<Flips>,
+    /// Why the run ended early, where it did.
+    pub(super) ended: Option<RunError>,
+}
+
+/// Flips of a motion.
+#[derive(Default)]
+pub(super) struct Flips {
+    pub(super) count: u64,
+    /// s; not of all where there are more than marks can tell apart.
+    pub(super) times: Vec<f64>,
+}
+
+impl Flips {
+    /// Whether each has its mark.
+    pub(super) fn can_be_told_apart(&self) -> bool {
+        self.count <= MOST_FLIPS
+    }
+}
+
+impl Looks {
+    pub(super) fn of(plot: &Plot) -> Result<Self, Error> {
+        let body = plot.motion.body()?;
+        let start = plot.motion.start(&body)?;
+        let exact = ExactMotion::from_point(&body, start);
+        let mut looks = Looks {
+            body,
+            exact: None,
+            times: Vec::new(),
+            states: Vec::new(),
+            omegas: Vec::new(),
+            errors: Vec::new(),
+            flips: None,
+            ended: None,
+        };
+        if plot.method == "exact" {
+            let exact = exact.map_err(|error| {
+                let method =
+                    if looks.body.problem() == Problem::Torque { "rk4" } else { "kick-drift@srkn-6b" };
+                Error::Input(format!("--method exact: {error}; use --method {method} with a --step"))
+            })?;
+            looks.exact = Some(exact.clone());
+            looks.follow_exact(plot, &exact, start)?;
+        } else {
+            looks.exact = exact.ok();
+            looks.follow_method(plot, start)?;
+        }
+        Ok(looks)
+    }
+
+    pub(super) fn free(&self) -> Option<&FreeMotion> {
+        match &self.exact {
+            Some(ExactMotion::Free(motion)) => Some(motion),
+            _ => None,
+        }
+    }
+
+    pub(super) fn top(&self) -> Option<&LagrangeTop> {
+        match &self.exact {
+            Some(ExactMotion::Lagrange(top)) => Some(top),
+            _ => None,
+        }
+    }
+
+    /// The direction of the weight moment in body axes; `None` without gravity.
+    pub(super) fn weight(&self) -> Option<Vector3<f64>> {
+        let weight = self.body.gravity::<f64>()?.weight_moment;
+        // a momentum goes the same way out of the solver frame
+        let moment = self.body.leave(&Point::new(Quat::identity(), weight)).momentum();
+        Some(moment.normalize())
+    }
+
+    /// The largest turn between two looks, rad.
+    pub(super) fn turn(&self) -> f64 {
+        let intervals = self.times.windows(2).zip(&self.omegas);
+        intervals.map(|(times, omega)| (times[1] - times[0]) * omega.norm()).fold(0.0, f64::max)
+    }
+
+    /// Whether lines between the looks follow the motion.
+    pub(super) fn is_resolved(&self) -> bool {
+        self.turn() <= RESOLVED
+    }
+
+    fn push(&mut self, t: f64, state: State, omega: Vector3<f64>, errors: Errors) {
+        self.times.push(t);
+        self.states.push(state);
+        self.omegas.push(omega);
+        self.errors.push(errors);
+    }
+
+    fn follow_exact(&mut self, plot: &Plot, exact: &ExactMotion, start: Point<Dd>) -> Result<(), Error> {
+        if let Some(step) = plot.step {
+            let rule = "--method exact takes no step";
+            return Err(Error::input(
+                "--step",
+                &short(step),
+                rule,
+                "leave it out, or name a stepping method",
+            ));
+        }
+        if let Some(tolerance) = plot.tolerance {
+            return Err(without_tolerance(plot, tolerance));
+        }
+        let refused = |error| Error::Input(format!("--until: '{}': {error}", short(plot.until)));
+        exact.check_time(plot.until).map_err(refused)?;
+        // a polhode is closed, and one round of it is all there is to see
+        let mut span = plot.until;
+        if let (Kind::Polhode, ExactMotion::Free(motion)) = (plot.kind, exact) {
+            let period = motion.character().ok().and_then(|character| character.polhode_period);
+            span = period.map_or(span, |period| span.min(period));
+        }
+        let turned = self.body.omega_of(&start).norm() * span;
+        let intervals = (PER_RADIAN * turned).clamp(FEWEST as f64, MOST as f64) as u64;
+        let monitor = Monitor::new(&self.body, Clock::new(1.0), &start.to_f64());
+        for n in 0..=intervals {
+            let t = Dd::from(span) * (n as f64 / intervals as f64);
+            let x = exact.point_at(t);
+            if !x.is_finite() {
+                return Err(Error::Failed(format!(
+                    "--method exact: at {:?} s the state is not finite; use a stepping method",
+                    t.hi()
+                )));
+            }
+            let (state, omega) = (self.body.leave(&x), self.body.omega_of(&x));
+            self.push(plot.start_time + t.hi(), state, omega, monitor.errors(&x));
+        }
+        if let (ExactMotion::Free(motion), Some(_)) = (exact, middle_axis(&self.body)) {
+            self.flips = Some(flips_of(motion, plot, &self.times)).filter(|_| self.turns_over());
+        }
+        Ok(())
+    }
+
+    fn follow_method(&mut self, plot: &Plot, start: Point<Dd>) -> Result<(), Error> {
+        let adaptive = is_adaptive(&plot.method);
+        let name = match plot.tolerance {
+            None => plot.method.clone(),
+            Some(tolerance) if ADAPTIVE.contains(&plot.method.as_str()) => {
+                format!("{}:{tolerance:e}", plot.method)
+            }
+            Some(tolerance) => {
+                named("--method", &plot.method)?;
+                return Err(without_tolerance(plot, tolerance));
+            }
+        };
+        let method = named("--method", &name)?;
+        let speed = self.body.omega_of(&start).norm();
+        let regular = (PER_RADIAN * speed * plot.until).clamp(FEWEST as f64, MOST as f64);
+        let interval = adaptive.then(|| plot.until / libm::ceil(regular));
+        let Some(step) = plot.step.or(interval) else {
+            let rule = format!("missing: {} needs a step in seconds", plot.method);
+            return Err(Error::input("--step", "", &rule, "give --step h"));
+        };
+        let clock = Clock { start: plot.start_time, step };
+        let steps = if plot.step.is_some() { whole_steps(plot, clock)? } else { libm::ceil(regular) as u64 };
+        if step * speed > 1.0 && !adaptive {
+            warn(&format!(
+                "--step: '{}': turns the body by {:.1} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
+                short(step),
+                step * speed
+            ));
+        }
+        let mut run =
+            Run::from_point(method.as_ref(), &self.body, start.to_f64(), clock).map_err(|error| {
+                let flag = if matches!(error, RunError::Step(_)) { "--method" } else { "--step" };
+                Error::Input(format!("{flag}: {error}"))
+            })?;
+        let middle = middle_axis(&self.body);
+        let mut flips = middle.map(|_| Flips::default());
+        let mut before: Option<(f64, f64, u64)> = None;
+        for sample in run.samples(Schedule::every(steps.div_ceil(MOST).max(1), steps)) {
+            let sample = match sample {
+                Ok(sample) => sample,
+                Err(error) => {
+                    self.ended = Some(error);
+                    break;
+                }
+            };
+            let t = sample.time.hi();
+            if let (Some(axis), Some(found), Some(count)) = (&middle, &mut flips, sample.flips) {
+                let along = sample.state.momentum().dot(axis);
+                if let Some((time, from, counted)) = before {
+                    found.count += count - counted;
+                    if found.can_be_told_apart() {
+                        found.times.extend(crossings((time, from), (t, along), count - counted));
+                    }
+                }
+                before = Some((t, along, count));
+            }
+            self.push(t, sample.state, sample.omega_body, sample.errors);
+        }
+        self.flips = flips.filter(|_| self.turns_over());
+        Ok(())
+    }
+
+    /// Whether L comes within 45° of the middle axis: around the others its side along that axis changes too, but the body
+    /// only wobbles.
+    fn turns_over(&self) -> bool {
+        let Some(axis) = middle_axis(&self.body) else { return false };
+        let momenta = self.states.iter().map(|state| state.momentum());
+        momenta.into_iter().any(|m| m.dot(&axis).abs() > core::f64::consts::FRAC_1_SQRT_2 * m.norm())
+    }
+
+    /// What acts on the body, as part of a title.
+    pub(super) fn forces(&self) -> String {
+        let gravity = self.body.gravity::<f64>().map(|_| "gravity");
+        let names = gravity.into_iter().chain(self.body.forces().iter().map(|force| force.name()));
+        let names = names.collect::<Vec<_>>();
+        if names.is_empty() { String::new() } else { format!(" under {}", names.join(", ")) }
+    }
+}
+
+/// The number of steps to the end.
+fn whole_steps(plot: &Plot, clock: Clock) -> Result<u64, Error> {
+    let end = plot.start_time + plot.until;
+    let step = short(clock.step);
+    match Schedule::at_times(clock, &[end]) {
+        Ok(schedule) => Ok(schedule.into_iter().last().unwrap_or(0)),
+        Err(ScheduleError::NotReached { nearest, .. }) => {
+            let rule = format!("no whole number of steps leads to the end {}", short(end));
+            let remedy = format!("take --until {}", short(nearest - plot.start_time));
+            Err(Error::input("--step", &step, &rule, &remedy))
+        }
+        Err(error) => Err(Error::Input(format!("--step: '{step}': {error}"))),
+    }
+}
+
+fn without_tolerance(plot: &Plot, tolerance: f64) -> Error {
+    let rule = format!("--method {} takes no --tolerance", plot.method);
+    let remedy = format!("leave it out, or take one of {}", ADAPTIVE.join(", "));
+    Error::input("--tolerance", &format!("{tolerance:e}"), &rule, &remedy)
+}
+
+/// Unit vector along the axis of the middle moment in body axes; `None` where two moments agree, as there is none.
+fn middle_axis(body: &Body) -> Option<Vector3<f64>> {
+    let [least, middle, most] = body.inertia().principal_moments();
+    (least < middle && middle < most).then(|| body.inertia().principal_axes() * Vector3::y())
+}
+
+/// Times of the sign changes of a component between two looks: where a straight line has its zero, or evenly where there are
+/// several.
+fn crossings((t0, from): (f64, f64), (t1, to): (f64, f64), count: u64) -> Vec<f64> {
+    let share = |k: u64| match count {
+        1 if from != to && from * to <= 0.0 => from / (from - to),
+        _ => (k as f64 + 0.5) / count as f64,
+    };
+    (0..count).map(|k| t0 + share(k) * (t1 - t0)).collect()
+}
+
+/// Flips of a free motion up to the last look, their times by halving the interval in which they are counted.
+fn flips_of(motion: &FreeMotion, plot: &Plot, times: &[f64]) -> Flips {
+    let counted = |t: f64| motion.flips(Dd::from(t) - Dd::from(plot.start_time));
+    let mut flips = Flips { count: times.last().map_or(0, |&end| counted(end)), times: Vec::new() };
+    if !flips.can_be_told_apart() {
+        return flips;
+    }
+    for pair in times.windows(2) {
+        for number in counted(pair[0]) + 1..=counted(pair[1]) {
+            let (mut low, mut high) = (pair[0], pair[1]);
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                if counted(middle) >= number { high = middle } else { low = middle }
+            }
+            flips.times.push(high);
+        }
+    }
+    flips
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flip_stands_where_the_momentum_vanishes() {
+        assert_eq!(crossings((1.0, -2.0), (2.0, 2.0), 1), [1.5]);
+        assert_eq!(crossings((0.0, 1.0), (4.0, 1.0), 2), [1.0, 3.0]);
+        assert!(crossings((0.0, 1.0), (4.0, 1.0), 0).is_empty());
+    }
+}

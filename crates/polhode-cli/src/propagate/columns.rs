@@ -1,0 +1,192 @@
+//! The columns of a trajectory, of which a user may choose.
+
+use nalgebra::Vector3;
+use polhode::body::{Body, Conserved, Point, State, Time};
+use polhode::observe::{Errors, Invariants};
+use polhode::rotation::EulerSequence;
+use polhode_files::error::Error;
+use polhode_pages::table::{Cell, Column, Table};
+
+/// One quantity of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Quantity {
+    Time,
+    Attitude(usize),
+    Omega(usize),
+    Angle(usize),
+    Energy,
+    Momentum,
+    EnergyError,
+    MomentumError,
+    MomentumVectorError,
+    MomentumZError,
+    JacobiError,
+    AttitudeError,
+}
+
+use Quantity::{
+    Angle, Attitude, AttitudeError, Energy, EnergyError, JacobiError, Momentum, MomentumError,
+    MomentumVectorError, MomentumZError, Omega,
+};
+
+/// Group, name, unit, meaning and digits of each quantity, in the order of the columns.
+const ALL: [(Quantity, &str, &str, &str, &str, usize); 19] = [
+    (Quantity::Time, "t", "t", "s", "time", 6),
+    (Attitude(0), "q", "q_w", "", "attitude, body to space, scalar part", 6),
+    (Attitude(1), "q", "q_x", "", "attitude, x", 6),
+    (Attitude(2), "q", "q_y", "", "attitude, y", 6),
+    (Attitude(3), "q", "q_z", "", "attitude, z", 6),
+    (Omega(0), "omega", "omega_body_x", "rad/s", "angular velocity, body axis x", 6),
+    (Omega(1), "omega", "omega_body_y", "rad/s", "angular velocity, body axis y", 6),
+    (Omega(2), "omega", "omega_body_z", "rad/s", "angular velocity, body axis z", 6),
+    (Energy, "energy", "energy", "J", "energy", 6),
+    (Momentum, "momentum", "momentum", "kg m^2/s", "size of the angular momentum", 6),
+    (EnergyError, "errors", "energy_error", "", "largest relative error of the energy so far", 2),
+    (MomentumError, "errors", "momentum_error", "", "largest relative error of |m| so far", 2),
+    (
+        MomentumVectorError,
+        "errors",
+        "momentum_vector_error",
+        "",
+        "largest relative error of L in space so far",
+        2,
+    ),
+    (
+        MomentumZError,
+        "errors",
+        "momentum_z_error",
+        "",
+        "largest relative error of L along space z, under torque",
+        2,
+    ),
+    (AttitudeError, "errors", "attitude_error", "rad", "angle to the exact attitude", 2),
+    (JacobiError, "errors", "jacobi_error", "", "largest relative error of E - n L_z so far", 2),
+    (Angle(0), "euler", "phi", "rad", "first Euler angle", 6),
+    (Angle(1), "euler", "theta", "rad", "second Euler angle", 6),
+    (Angle(2), "euler", "psi", "rad", "third Euler angle", 6),
+];
+
+/// The columns of one run.
+#[derive(Clone, Debug)]
+pub(super) struct Columns {
+    /// Places in [`ALL`].
+    places: Vec<usize>,
+    sequence: EulerSequence,
+}
+
+/// What a row is made of.
+pub(super) struct Reading<'a> {
+    pub(super) at: Time,
+    /// Body axes.
+    pub(super) state: State,
+    /// Body axes, rad/s.
+    pub(super) omega: Vector3<f64>,
+    /// In the solver frame.
+    pub(super) point: &'a Point<f64>,
+    /// The largest errors so far, where they are asked for.
+    pub(super) worst: Option<Errors>,
+    pub(super) attitude_error: Option<f64>,
+}
+
+impl Columns {
+    /// Those that `fields` names, by groups or by columns, or all that the motion of `body` has.
+    pub(super) fn chosen(
+        fields: &[String],
+        sequence: Option<EulerSequence>,
+        body: &Body,
+    ) -> Result<Self, Error> {
+        let has = |quantity: Quantity| match quantity {
+            JacobiError => has_jacobi(body),
+            Angle(_) => sequence.is_some(),
+            _ => true,
+        };
+        let mut places: Vec<usize> = Vec::new();
+        for field in fields {
+            let named = ALL.iter().enumerate();
+            let mut named: Vec<usize> = named
+                .filter(|(_, (_, group, name, ..))| group == field || name == field)
+                .map(|(place, _)| place)
+                .collect();
+            if named.is_empty() {
+                let mut known: Vec<&str> =
+                    ALL.iter().flat_map(|(_, group, name, ..)| [*group, *name]).collect();
+                known.sort_unstable();
+                known.dedup();
+                return Err(Error::unknown_name("--fields", "column", field, known));
+            }
+            // angles that are asked for by name need no sequence
+            named.retain(|place| field == "euler" || matches!(ALL[*place].0, Angle(_)) || has(ALL[*place].0));
+            if named.iter().any(|place| places.contains(place)) {
+                return Err(Error::input("--fields", field, "names a column twice", "name each once"));
+            }
+            places.extend(named);
+        }
+        if fields.is_empty() {
+            places = (0..ALL.len()).filter(|place| has(ALL[*place].0)).collect();
+        }
+        if places.is_empty() {
+            return Err(Error::input(
+                "--fields",
+                &fields.join(","),
+                "the motion has no such quantity",
+                "name others",
+            ));
+        }
+        Ok(Self { places, sequence: sequence.unwrap_or_default() })
+    }
+
+    pub(super) fn table(&self) -> Table {
+        let column = |place: &usize| {
+            let (_, _, name, unit, meaning, digits) = ALL[*place];
+            Column::new(name, unit, meaning).digits(digits)
+        };
+        Table::new("trajectory", "Motion of a body.", self.places.iter().map(column).collect())
+    }
+
+    fn quantities(&self) -> impl Iterator<Item = Quantity> + '_ {
+        self.places.iter().map(|place| ALL[*place].0)
+    }
+
+    /// Whether errors of invariants are among them, which every step is watched for.
+    pub(super) fn errors(&self) -> bool {
+        let watched = [EnergyError, MomentumError, MomentumVectorError, MomentumZError, JacobiError];
+        self.quantities().any(|quantity| watched.contains(&quantity))
+    }
+
+    /// Whether the attitude is compared with the exact one.
+    pub(super) fn attitude_error(&self) -> bool {
+        self.quantities().any(|quantity| quantity == AttitudeError)
+    }
+
+    /// The cells of a row; only what has a column is worked out.
+    pub(super) fn cells<'a>(
+        &'a self,
+        body: &'a Body,
+        reading: &'a Reading<'a>,
+    ) -> impl Iterator<Item = Cell> + 'a {
+        let angles = self.quantities().any(|quantity| matches!(quantity, Angle(_)));
+        let angles = angles.then(|| self.sequence.angles(reading.state.rotation()).angles);
+        let energies = self.quantities().any(|quantity| matches!(quantity, Energy | Momentum));
+        let invariants = energies.then(|| Invariants::of(body, reading.at, reading.point));
+        self.quantities().map(move |quantity| match quantity {
+            Quantity::Time => reading.at.seconds::<f64>().into(),
+            Attitude(k) => reading.state.attitude.components()[k].into(),
+            Omega(k) => reading.omega[k].into(),
+            Angle(k) => angles.map(|angles| angles[k]).into(),
+            Energy => invariants.map(|found| found.energy.hi() * body.scale()).into(),
+            Momentum => invariants.map(|found| found.momentum_norm().hi() * body.scale()).into(),
+            EnergyError => reading.worst.and_then(|worst| worst.energy).into(),
+            MomentumError => reading.worst.and_then(|worst| worst.momentum_norm).into(),
+            MomentumVectorError => reading.worst.and_then(|worst| worst.momentum_vector).into(),
+            MomentumZError => reading.worst.and_then(|worst| worst.momentum_z).into(),
+            JacobiError => reading.worst.and_then(|worst| worst.jacobi).into(),
+            AttitudeError => reading.attitude_error.into(),
+        })
+    }
+}
+
+/// Whether Jacobi's constant is what the motion conserves in place of the energy.
+fn has_jacobi(body: &Body) -> bool {
+    let conserved = body.conserved();
+    !conserved.contains(&Conserved::Energy) && conserved.iter().any(|q| matches!(q, Conserved::Jacobi { .. }))
+}

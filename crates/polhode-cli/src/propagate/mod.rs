@@ -1,0 +1,314 @@
+//! `polhode propagate`: one body to given times.
+
+mod columns;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use polhode::body::{Body, Clock, Point, Problem, Time};
+use polhode::flow::ExactMotion;
+use polhode::method::{ADAPTIVE, AnyMethod, StepError, UnknownMethod, method};
+use polhode::num::Dd;
+use polhode::observe::Monitor;
+use polhode::rotation::rotation_angle;
+use polhode::run::{Run, RunError, Sample, Schedule, ScheduleError, Watch};
+use polhode_files::error::{Error, warn};
+use polhode_files::moment::positive_duration;
+use polhode_files::numbers::positive;
+use polhode_pages::table::{Format, Rows};
+
+use crate::flags::motion::MotionArguments;
+use crate::flags::times::{OutputTimes, TimeArguments};
+use crate::methods::unknown;
+use columns::{Columns, Reading};
+
+const USAGE: &str = "polhode propagate <BODY> [START] <TIMES> [OPTIONS]
+  BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
+  START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ...
+         and --attitude <w,x,y,z> | --angles <phi,theta,psi> | ...
+  TIMES: --times <LIST|FILE|-> | --until <T> --every <DT>";
+
+const EXAMPLES: &str = "Examples:
+  polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --times 0,10,1e6
+  polhode propagate --body toutatis --until 30d --every 6h --fields t,q,omega
+  polhode propagate --body gyroscope --until 1 --every 0.1 --euler zxz
+  polhode propagate --body toutatis --epoch 1992-11-09T17:50 \\
+    --times 1992-11-10,1992-12-04 --fields t,omega
+  polhode propagate --body phone --omega 0,10,1 --until 5 --every 1 \\
+    --drag 1e-5 --method rk4 --step 0.01
+  polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 100 --every 10 \\
+    --method dop853 --tolerance 1e-12";
+
+/// Rotation of one body: attitude, angular velocity and errors at given times
+#[derive(Args, Clone, Debug)]
+#[command(override_usage = USAGE, after_help = EXAMPLES)]
+pub(crate) struct Propagate {
+    #[command(flatten)]
+    motion: MotionArguments,
+    #[command(flatten)]
+    times: TimeArguments,
+    /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
+    #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Method")]
+    method: String,
+    /// Step of a method with fixed steps, s, a whole number of which leads to every time; exact, taylor, dop853 and tsit5 need none
+    #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Method")]
+    step: Option<f64>,
+    /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
+    #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true, help_heading = "Method")]
+    tolerance: Option<f64>,
+    /// Columns of the rows, by commas: t, q, omega, energy, momentum, errors, euler, or names of columns [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Output")]
+    fields: Vec<String>,
+    /// How rows are printed [default: table on a terminal, csv otherwise]
+    #[arg(long, value_enum, help_heading = "Output")]
+    format: Option<Format>,
+    /// Write to this file instead of standard output; its ending names the format: .csv, .json or .txt
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    out: Option<PathBuf>,
+}
+
+impl Propagate {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        let body = self.motion.body()?;
+        let columns = Columns::chosen(&self.fields, self.motion.start.euler, &body)?;
+        let start = self.motion.start(&body)?;
+        let times = self.times.output()?;
+        if self.method == "exact" {
+            self.exact(&body, start, &times, columns)
+        } else {
+            self.stepped(&body, start, &times, columns)
+        }
+    }
+
+    /// The rows that `fill` writes, also where it fails after some of them.
+    fn write(
+        &self,
+        columns: &Columns,
+        count: Option<usize>,
+        fill: impl FnOnce(&mut Rows) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let mut rows = Rows::new(columns.table(), self.format, self.out.as_deref(), count)?;
+        let ended = fill(&mut rows);
+        if matches!(ended, Ok(()) | Err(Error::Failed(_))) {
+            rows.finish()?;
+        }
+        ended
+    }
+
+    fn exact(
+        &self,
+        body: &Body,
+        start: Point<Dd>,
+        times: &OutputTimes,
+        columns: Columns,
+    ) -> Result<(), Error> {
+        if self.step.is_some() {
+            return Err(Error::Input(
+                "--step: --method exact takes no step; leave it out, or name a stepping method".into(),
+            ));
+        }
+        if let Some(tolerance) = self.tolerance {
+            return Err(self.without_tolerance(tolerance));
+        }
+        let motion = ExactMotion::from_point(body, start).map_err(|error| {
+            let method = if body.problem() == Problem::Torque { "rk4" } else { "kick-drift@srkn-6b" };
+            Error::Input(format!("--method exact: {error}; use --method {method} with a --step"))
+        })?;
+        let start_time = self.times.start()?;
+        let check = |t: f64| {
+            // an overflow of the difference is out of reach too
+            let checked = motion.check_time(t - start_time);
+            checked.map_err(|error| Error::Input(format!("{}: {t:?}: {error}", self.times.flag())))
+        };
+        let count = times.check(check)?;
+        let mut monitor = columns.errors().then(|| Monitor::new(body, Clock::new(1.0), &start.to_f64()));
+        self.write(&columns, count, |rows| {
+            for t in times.iter()? {
+                let t = t?;
+                check(t)?;
+                let elapsed = Dd::from(t) - Dd::from(start_time);
+                let x = motion.point_at(elapsed);
+                let finite = monitor.as_mut().map_or(x.is_finite(), |monitor| monitor.observe(&[x]) == 1);
+                if !finite {
+                    return Err(Error::Failed(format!(
+                        "--method exact: at {t:?} s the state is not finite; use --method kick-drift@srkn-6b with a --step"
+                    )));
+                }
+                let reading = Reading {
+                    // the start is what was typed
+                    state: if elapsed == Dd::ZERO { body.leave(&start) } else { body.leave(&x) },
+                    omega: if elapsed == Dd::ZERO { body.omega_of(&start) } else { body.omega_of(&x) },
+                    at: Time::from_seconds(t),
+                    point: &x,
+                    worst: monitor.as_ref().map(Monitor::worst),
+                    attitude_error: None,
+                };
+                rows.push(columns.cells(body, &reading))?;
+            }
+            Ok(())
+        })
+    }
+
+    fn stepped(
+        &self,
+        body: &Body,
+        start: Point<Dd>,
+        times: &OutputTimes,
+        columns: Columns,
+    ) -> Result<(), Error> {
+        let method = self.stepping_method()?;
+        let regular = if self.is_adaptive() { self.times.every().filter(|every| *every > 0.0) } else { None };
+        let Some(h) = self.step.or(regular) else {
+            return Err(Error::Input(format!(
+                "--step: missing; --method {} needs a step in seconds",
+                self.method
+            )));
+        };
+        let clock = Clock { start: self.times.start()?, step: h };
+        let mut before = clock.start;
+        let count = times.check(|t| self.steps_to(clock, &mut before, t).map(|_| ()))?;
+        let mut run = Run::from_point(&method, body, start.to_f64(), clock).map_err(|error| match error {
+            RunError::Step(error @ StepError::Refused { .. }) => Error::Input(format!("--method: {error}")),
+            error => Error::Input(format!("--step: {error}")),
+        })?;
+        if !columns.errors() {
+            run = run.watching(Watch::Never);
+        }
+        let speed = body.omega_of(&start).norm();
+        if h * speed > 1.0 && !self.is_adaptive() {
+            warn(&format!(
+                "--step: '{h:?}': turns the body by {:?} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
+                h * speed
+            ));
+        }
+        // without closed form the attitude error is left empty
+        let exact = columns.attitude_error().then(|| ExactMotion::from_point(body, run.start().to_dd()).ok());
+        let exact = exact.flatten();
+        self.write(&columns, count, |rows| {
+            let mut before = clock.start;
+            for t in times.iter()? {
+                let t = t?;
+                let sample = self.sample(&mut run, self.steps_to(clock, &mut before, t)?)?;
+                let error = exact.as_ref().map(|exact| {
+                    let there = exact.point_at_dd(sample.elapsed);
+                    rotation_angle(sample.point.to_dd().attitude, there.attitude).hi()
+                });
+                let reading = Reading {
+                    state: sample.state,
+                    omega: sample.omega_body,
+                    at: Time::from_seconds(t),
+                    point: &sample.point,
+                    worst: columns.errors().then_some(sample.worst),
+                    attitude_error: error,
+                };
+                rows.push(columns.cells(body, &reading))?;
+                self.check_sense(&sample)?;
+            }
+            Ok(())
+        })
+    }
+
+    fn sample(&self, run: &mut Run, steps: u64) -> Result<Sample, Error> {
+        run.advance_to(steps).map_err(|error| match error {
+            RunError::Diverged { .. }
+            | RunError::Unsolved { .. }
+            | RunError::Stuck { .. }
+            | RunError::Force { .. }
+            | RunError::OutOfRange { .. } => Error::Failed(format!("--method {}: {error}", self.method)),
+            error => Error::Input(error.to_string()),
+        })
+    }
+
+    /// The number of steps that leads to the time `t`, which must not come before `before`.
+    fn steps_to(&self, clock: Clock, before: &mut f64, t: f64) -> Result<u64, Error> {
+        if t < *before {
+            return Err(self.unreachable(&ScheduleError::NotAscending { t, before: *before }));
+        }
+        let steps = Schedule::at_times(clock, &[t]).map_err(|error| self.unreachable(&error))?;
+        *before = t;
+        Ok(steps.into_iter().last().unwrap_or(0))
+    }
+
+    /// Refuses to go on where the numbers no longer are those of a rotation.
+    fn check_sense(&self, sample: &Sample) -> Result<(), Error> {
+        let norm = sample.point.attitude.norm_squared().sqrt();
+        let lost = if (norm - 1.0).abs() > 0.5 {
+            format!("the quaternion of the attitude has the norm {norm:.1e}, not 1")
+        } else {
+            // where nothing is watched, those of this row
+            let (worst, now) = (sample.worst, sample.errors);
+            let errors =
+                [("energy", worst.energy.or(now.energy)), ("|m|", worst.momentum_norm.or(now.momentum_norm))];
+            match errors.into_iter().find(|(_, error)| error.is_some_and(|error| error > 1.0)) {
+                Some((what, Some(error))) => format!("the relative error of {what} is {error:.1e}"),
+                _ => return Ok(()),
+            }
+        };
+        Err(Error::Failed(format!(
+            "--method {}: at {:?} s {lost}: the numbers no longer describe the motion; take a smaller step or another method",
+            self.method,
+            sample.time.hi()
+        )))
+    }
+
+    /// Whether the method chooses its steps: an order, as of taylor:20, is of steps as given.
+    fn is_adaptive(&self) -> bool {
+        let (base, argument) = self.method.split_once(':').unwrap_or((&self.method, ""));
+        ADAPTIVE.contains(&base) && argument.parse::<u32>().is_err()
+    }
+
+    fn without_tolerance(&self, tolerance: f64) -> Error {
+        let rule = format!("--method {} does not choose its steps", self.method);
+        let remedy = format!("leave it out, or take one of {}", ADAPTIVE.join(", "));
+        Error::input("--tolerance", &format!("{tolerance:e}"), &rule, &remedy)
+    }
+
+    fn stepping_method(&self) -> Result<Box<dyn AnyMethod>, Error> {
+        let found = match self.tolerance {
+            None => method(&self.method),
+            Some(tolerance) if ADAPTIVE.contains(&self.method.as_str()) => {
+                let named = method(&format!("{}:{tolerance:e}", self.method));
+                return named.map_err(|error| match error {
+                    UnknownMethod::Argument { rule, .. } => Error::input(
+                        "--tolerance",
+                        &format!("{tolerance:e}"),
+                        &format!("--method {} cannot take it", self.method),
+                        &format!("allowed: {rule}"),
+                    ),
+                    error => Error::Input(format!("--tolerance: {error}")),
+                });
+            }
+            Some(tolerance) => match method(&self.method) {
+                Ok(_) if self.is_adaptive() => {
+                    return Err(Error::input(
+                        "--tolerance",
+                        &format!("{tolerance:e}"),
+                        &format!("--method {} has a tolerance already", self.method),
+                        "give one of the two",
+                    ));
+                }
+                Ok(_) => return Err(self.without_tolerance(tolerance)),
+                error => error,
+            },
+        };
+        found.map_err(|error| unknown("--method", error))
+    }
+
+    /// Why no steps lead to the times that were asked for.
+    fn unreachable(&self, error: &ScheduleError) -> Error {
+        let step = self.step.unwrap_or_default();
+        Error::Input(match *error {
+            ScheduleError::NotAscending { t, before } => format!(
+                "{}: {t:?} comes after {before:?}; a stepping method needs ascending times, none before --start-time; sort them, or use --method exact",
+                self.times.flag()
+            ),
+            ScheduleError::TooMany { t, steps, .. } => format!(
+                "--step: '{step:?}': takes {steps:e} steps to t = {t:?}, and at most 2^53 can be counted; take a larger step"
+            ),
+            ScheduleError::NotReached { t, nearest, .. } => format!(
+                "--step: '{step:?}': no whole number of steps leads to the output time {t:?}; the nearest time reached is {nearest:?}"
+            ),
+            error => format!("--step: {error}"),
+        })
+    }
+}

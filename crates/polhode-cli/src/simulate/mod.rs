@@ -1,0 +1,163 @@
+//! `polhode simulate`: a noisy record of a known body, to simulate a measurement.
+
+mod arguments;
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::Args;
+use nalgebra::Vector3;
+use polhode::num::Random;
+use polhode_files::error::Error;
+use polhode_files::numbers::{not_negative, number, numbers, positive};
+use polhode_fit::simulate_with;
+use polhode_pages::table::{Cell, Column, Format, Rows, Table};
+
+use crate::flags::body::BodyArguments;
+use crate::flags::times::{Regular, regular};
+use arguments::{DisturbanceArguments, GyroscopeArguments};
+
+const USAGE: &str = "polhode simulate <BODY> [--omega <wx,wy,wz>] --until <T> --every <DT>
+  BODY: --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>";
+
+const EXAMPLES: &str = "Examples:
+  polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
+    --noise 0.01 --out record.csv
+  polhode simulate --body racket --omega 1,9,2 --until 1 --every 0.01 \\
+    --tosses 10 --scatter 1 --relative-drag 0.2 --noise 0.01 \\
+    --offset 0.01,0,0 --spikes 0.01,2 --out tosses.csv";
+
+/// Record of a rate sensor on a known body
+///
+/// `polhode fit` reads its CSV, so that a measurement can be planned and an instrument rehearsed. The same seed gives the
+/// same record on every machine.
+#[derive(Args, Clone, Debug)]
+#[command(override_usage = USAGE, after_help = EXAMPLES)]
+pub(crate) struct Simulate {
+    #[command(flatten)]
+    body: BodyArguments,
+    /// Angular velocity at the start, body axes, rad/s [default: that of the catalogue's body]
+    #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true, help_heading = "Start")]
+    omega: Option<[f64; 3]>,
+    /// Duration, s
+    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, help_heading = "Record")]
+    until: f64,
+    /// Time between samples, s
+    #[arg(long, value_name = "DT", value_parser = positive, allow_hyphen_values = true, help_heading = "Record")]
+    every: f64,
+    /// Scatter of the sample times, as a fraction of DT; below 1
+    #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
+    jitter: f64,
+    /// Scatter of the true times, as a fraction of DT, where the record has the regular times
+    #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
+    hidden_jitter: f64,
+    /// Number of tosses, each a motion of its own of duration T
+    #[arg(long, value_name = "N", default_value = "1", help_heading = "Record")]
+    tosses: NonZeroUsize,
+    /// Time between two tosses, s [default: 20 DT]
+    #[arg(long, value_name = "P", value_parser = positive, allow_hyphen_values = true, help_heading = "Record")]
+    pause: Option<f64>,
+    /// Standard deviation of each component of the later tosses' starts about --omega, rad/s
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
+    scatter: f64,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N", default_value = "1", help_heading = "Record")]
+    seed: u64,
+    /// How rows are printed: table on a terminal, csv otherwise
+    #[arg(long, value_enum, help_heading = "Output")]
+    format: Option<Format>,
+    /// Write to this file instead of standard output
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    disturbances: DisturbanceArguments,
+    #[command(flatten)]
+    gyroscope: GyroscopeArguments,
+}
+
+/// Samples of all tosses: more are rather a slip of the pen than a wish.
+const MOST_SAMPLES: usize = 2_000_000;
+
+/// A fraction of the time between samples.
+fn jitter(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        value if (0.0..1.0).contains(&value) => Ok(value),
+        _ => Err("samples must keep their order; give a fraction from 0 to below 1".into()),
+    }
+}
+
+impl Simulate {
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        let body = self.body.free()?;
+        let published = self.body.published_start().map(|start| start.omega);
+        let Some(start) = self.omega.or(published) else {
+            return Err(Error::Input(
+                "--omega: missing; give --omega wx,wy,wz; bodies of the catalogue have one".into(),
+            ));
+        };
+        let (disturbances, gyroscope) = (self.disturbances.disturbances(), self.gyroscope.gyroscope());
+        let mut random = Random::new(self.seed);
+        let grid: Vec<f64> =
+            regular(0.0, self.until, self.every).and_then(Regular::kept).map_err(Error::Input)?;
+        let tosses = self.tosses.get();
+        if tosses.saturating_mul(grid.len()) > MOST_SAMPLES {
+            let rule = format!("{} samples each, and at most {MOST_SAMPLES} are written", grid.len());
+            return Err(Error::input("--tosses", &tosses.to_string(), &rule, "give fewer, or a larger DT"));
+        }
+        let mut rows = Rows::new(self.table(), self.format, self.out.as_deref(), tosses * grid.len())?;
+        let pause = self.pause.unwrap_or(20.0 * self.every);
+        for toss in 0..tosses {
+            let mut scattered = |share: f64, times: &[f64]| -> Vec<f64> {
+                times.iter().map(|t| t + share * self.every * (random.uniform() - 0.5)).collect()
+            };
+            let written = scattered(self.jitter, &grid);
+            let sampled = if self.hidden_jitter > 0.0 {
+                scattered(self.hidden_jitter, &written)
+            } else {
+                written.clone()
+            };
+            let mut omega = Vector3::from(start);
+            if toss > 0 {
+                omega += random.normal_vector() * self.scatter;
+            }
+            let rates =
+                simulate_with(body.inertia(), omega, &sampled, &disturbances, &gyroscope, &mut random)
+                    .map_err(|error| Error::Input(error.to_string()))?;
+            let thrown = toss as f64 * (self.until + pause);
+            for (t, w) in written.iter().zip(&rates) {
+                let mut cells = vec![thrown + t, w.x, w.y, w.z];
+                if self.disturbances.has_wheel() {
+                    cells.extend(disturbances.wheel_at(*t).iter());
+                }
+                cells.extend(self.disturbances.known_torque().into_iter().flatten());
+                rows.push(cells.into_iter().map(Cell::from))?;
+            }
+        }
+        rows.finish()
+    }
+
+    fn table(&self) -> Table {
+        let axes = |names: [&'static str; 3], unit, meaning: [&'static str; 3]| {
+            names.into_iter().zip(meaning).map(move |(name, meaning)| Column::new(name, unit, meaning))
+        };
+        let mut columns = vec![Column::new("t", "s", "time").digits(6)];
+        let about = [
+            "angular velocity about the first body axis",
+            "angular velocity about the second body axis",
+            "angular velocity about the third body axis",
+        ];
+        columns.extend(axes(["wx", "wy", "wz"], "rad/s", about));
+        if self.disturbances.has_wheel() {
+            let meaning = "momentum of the wheel along this body axis";
+            columns.extend(axes(["hx (N m s)", "hy (N m s)", "hz (N m s)"], "N m s", [meaning; 3]));
+        }
+        if self.disturbances.known_torque().is_some() {
+            columns.extend(axes(
+                ["tx (N m)", "ty (N m)", "tz (N m)"],
+                "N m",
+                ["torque about this body axis"; 3],
+            ));
+        }
+        Table::new("record", "Readings of a rate sensor.", columns)
+    }
+}

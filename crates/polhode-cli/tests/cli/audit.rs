@@ -1,0 +1,303 @@
+//! `polhode audit`: files of other programs as they are, the forms of the answer, golden trajectories, refusals.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::harness::{Answer, Scratch, output, polhode, refused, run, words};
+
+const BODY: &str = "--moments 1,2,3";
+
+/// t, q (w, x, y, z) and ω in body axes of the motion by `method`.
+fn rows(method: &str) -> Vec<[f64; 8]> {
+    let line = format!(
+        "propagate {BODY} --omega 0.4,1,-0.3 --attitude 0.9,0.1,-0.3,0.2 --until 20 --every 0.1 --fields t,q,omega --format csv"
+    );
+    let text = output(&format!("{line} {method}"));
+    let numbers = |line: &str| -> Vec<f64> { line.split(',').map(|cell| cell.parse().unwrap()).collect() };
+    text.lines().skip(1).map(|line| numbers(line)[..8].try_into().unwrap()).collect()
+}
+
+fn verdict(answer: &Answer) -> Value {
+    assert!(answer.out.starts_with(['{', '[']), "{} {}", answer.out, answer.err);
+    serde_json::from_str(&answer.out).unwrap()
+}
+
+/// The body vector `v` in space.
+fn rotated(q: &[f64], v: &[f64]) -> [f64; 3] {
+    let q = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]));
+    (q * nalgebra::Vector3::new(v[0], v[1], v[2])).into()
+}
+
+fn table(header: &str, rows: impl Iterator<Item = Vec<f64>>) -> String {
+    let mut text = format!("{header}\n");
+    for row in rows {
+        let cells: Vec<String> = row.iter().map(|x| format!("{x:?}")).collect();
+        let _ = writeln!(text, "{}", cells.join(","));
+    }
+    text
+}
+
+#[test]
+fn layouts_of_common_programs_need_no_flags() {
+    let scratch = Scratch::new("audit-layouts");
+    let rows = rows("");
+    let numbered = |stem: &str, count: usize| (0..count).map(|k| format!(",{stem}[{k}]")).collect::<String>();
+    let mujoco = table(
+        &format!("time{}{}", numbered("qpos", 7), numbered("qvel", 6)),
+        rows.iter().map(|r| {
+            vec![r[0], 0.5, 0.1, 2.0, r[1], r[2], r[3], r[4], 0.0, 0.1, -9.81 * r[0], r[5], r[6], r[7]]
+        }),
+    );
+    let basilisk = table(
+        "time,sigma_BN_1,sigma_BN_2,sigma_BN_3,omega_BN_B_1,omega_BN_B_2,omega_BN_B_3",
+        rows.iter().map(|r| {
+            let sign = if r[1] < 0.0 { -1.0 } else { 1.0 };
+            let s = |k: usize| sign * r[k] / (1.0 + sign * r[1]);
+            vec![r[0], s(2), s(3), s(4), r[5], r[6], r[7]]
+        }),
+    );
+    let plain = table("t,w,x,y,z", rows.iter().map(|r| r[..5].to_vec()));
+    let mut lammps = String::new();
+    for (k, r) in rows.iter().enumerate() {
+        let momentum = rotated(&r[1..5], &[r[5], 2.0 * r[6], 3.0 * r[7]]);
+        let _ = writeln!(
+            lammps,
+            "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n-1 1\n-1 1\n-1 1\n\
+             ITEM: ATOMS id type c_quat[1] c_quat[2] c_quat[3] c_quat[4] angmomx angmomy angmomz\n\
+             1 1 {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
+            20 * k,
+            r[1],
+            r[2],
+            r[3],
+            r[4],
+            momentum[0],
+            momentum[1],
+            momentum[2]
+        );
+    }
+    for (name, text) in
+        [("mujoco.csv", &mujoco), ("basilisk.csv", &basilisk), ("plain.csv", &plain), ("rod.dump", &lammps)]
+    {
+        let file = scratch.file(name, text);
+        let answer = run(&format!("audit {file} {BODY} --format json"));
+        let found = verdict(&answer);
+        assert_eq!(answer.code, 0, "{name}: {} {found:#}", answer.err);
+        assert_eq!(found["verdict"], "right", "{name}");
+        assert_eq!(found["reading"]["attitude"], "body-to-space", "{name}");
+        assert!(found["attitude_error"].as_f64().unwrap() < 1e-6, "{name}: {found:#}");
+        if name == "rod.dump" {
+            let note = found["warnings"][0].as_str().unwrap();
+            assert!(note.contains("they are taken to be 0.005 s long"), "{note}");
+        }
+    }
+}
+
+#[test]
+fn a_wrong_frame_is_found_and_a_claim_makes_it_wrong() {
+    let scratch = Scratch::new("audit-frame");
+    let turned = rows("");
+    let turned = turned.iter().map(|r| {
+        let space = rotated(&r[1..5], &r[5..8]);
+        let mut row = vec![r[0], r[2], r[3], r[4], r[1]];
+        row.extend(space.map(f64::to_degrees));
+        row
+    });
+    let text = table("t,q0,q1,q2,q3,wx,wy,wz", turned);
+    let file = scratch.file("turned.csv", &text);
+    let answer = run(&format!("audit {file} {BODY} --format json"));
+    let found = verdict(&answer);
+    assert_eq!((answer.code, &found["verdict"]), (0, &Value::from("right")), "{found:#}");
+    assert_eq!(found["reading"]["quaternion"], "xyzw");
+    assert_eq!(found["reading"]["omega_frame"], "space");
+    assert_eq!(found["reading"]["rate_unit"], "deg/s");
+    for (claim, suspect) in [("--omega-frame body", "omega-frame"), ("--rate-unit rad/s", "degrees")] {
+        let answer = run(&format!("audit {file} {BODY} {claim} --format json"));
+        let found = verdict(&answer);
+        assert_eq!((answer.code, &found["suspect"]), (1, &Value::from(suspect)), "{found:#}");
+        assert!(answer.err.contains(&format!("wrong, suspect {suspect}")), "{}", answer.err);
+    }
+}
+
+#[test]
+fn an_integrator_is_told_by_its_errors() {
+    let scratch = Scratch::new("audit-integrator");
+    let text = table(
+        "t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z",
+        rows("--method explicit-euler --step 0.01").iter().map(|r| r.to_vec()),
+    );
+    scratch.file("run.csv", text);
+    let audit = |flags: &str| polhode(&words(&format!("audit run.csv {BODY} {flags}")), &scratch.0);
+    let answer = audit("--format json");
+    let found = verdict(&answer);
+    assert_eq!((answer.code, &found["verdict"]), (1, &Value::from("wrong")), "{found:#}");
+    assert_eq!(found["suspect"], "integrator:explicit-euler", "{found:#}");
+    // every form of the answer
+    let answer = audit("--format table --figure audit.svg --report audit.html");
+    assert_eq!(answer.code, 1);
+    for part in
+        ["run.csv: wrong; suspect: integrator:explicit-euler", "Reading: quaternion w,x,y,z", "Flips: "]
+    {
+        assert!(answer.out.contains(part), "{part}: {}", answer.out);
+    }
+    assert!(answer.out.lines().all(|line| line.chars().count() <= 80), "{}", answer.out);
+    let page = fs::read_to_string(scratch.0.join("audit.html")).unwrap();
+    assert!(page.contains("<svg") && page.contains("Suspect: integrator:explicit-euler."));
+    assert!(fs::read_to_string(scratch.0.join("audit.svg")).unwrap().contains("Direction of L in space"));
+    let answer = audit("--format csv");
+    assert!(answer.out.starts_with("id,rows,verdict,suspect,"), "{}", answer.out);
+    assert_eq!(audit("--report audit.pdf").code, 2);
+}
+
+#[test]
+fn bodies_of_one_file_are_told_apart_by_their_id() {
+    let scratch = Scratch::new("audit-bodies");
+    let (right, wrong) = (rows(""), rows("--method explicit-euler --step 0.05"));
+    let mut text = String::from("id,t,q_w,q_x,q_y,q_z\n");
+    for (a, b) in right.iter().zip(&wrong) {
+        for (id, r) in [("good", a), ("bad", b)] {
+            let _ = writeln!(text, "{id},{:?},{:?},{:?},{:?},{:?}", r[0], r[1], r[2], r[3], r[4]);
+        }
+    }
+    let file = scratch.file("two.csv", text);
+    let answer = run(&format!("audit {file} {BODY} --format json"));
+    let found = verdict(&answer);
+    assert_eq!((answer.code, found.as_array().unwrap().len()), (1, 2), "{found:#}");
+    assert_eq!((&found[0]["id"], &found[0]["verdict"]), (&"good".into(), &"right".into()), "{found:#}");
+    assert_eq!((&found[1]["id"], &found[1]["verdict"]), (&"bad".into(), &"wrong".into()), "{found:#}");
+    assert_eq!(run(&format!("audit {file} {BODY} --id good --format json")).code, 0);
+    refused(&format!("audit {file} {BODY} --id godo"), &["--id: 'godo': no such body", "known: good, bad"]);
+}
+
+#[test]
+fn angular_velocity_alone_gets_the_verdict_that_it_allows() {
+    let scratch = Scratch::new("audit-rates");
+    let text = table("t,wx,wy,wz", rows("").iter().map(|r| vec![r[0], r[5], r[6], r[7]]));
+    let file = scratch.file("rates.csv", text);
+    let answer = run(&format!("audit {file} {BODY} --rate-unit rad/s --format json"));
+    let found = verdict(&answer);
+    assert_eq!((answer.code, &found["verdict"]), (0, &Value::from("right")), "{found:#}");
+    assert!(found["warnings"].to_string().contains("no attitude"), "{found:#}");
+    assert!(found["energy_error"].as_f64().unwrap() < 1e-12 && found["attitude_error"].is_null());
+}
+
+/// The committed trajectories are those that the command writes, and each checker accepts what is right and refuses what is not.
+#[test]
+fn golden_trajectories_and_their_checkers() {
+    let scratch = Scratch::new("audit-golden");
+    assert_eq!(polhode(&words("audit --golden golden"), &scratch.0).code, 0);
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden");
+    let folder = scratch.0.join("golden");
+    let mut names = crate::harness::names(&folder);
+    assert_eq!(names, crate::harness::names(&committed));
+    for name in &names {
+        let [new, old] = [&folder, &committed].map(|folder| fs::read_to_string(folder.join(name)).unwrap());
+        assert_eq!(new, old, "golden/{name}: write it again with polhode audit --golden golden");
+    }
+    names.retain(|name| name.ends_with(".csv"));
+    let compiled = Command::new("cc").args(["check.c", "-o", "check", "-lm"]).current_dir(&folder).status();
+    let checkers = [
+        ("python3", vec!["check.py"], Command::new("python3").arg("--version").output().is_ok()),
+        ("./check", vec![], compiled.is_ok_and(|status| status.success())),
+    ];
+    for name in &names {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        // every row with the attitude of the next
+        let mut shifted = String::new();
+        let lines: Vec<&str> = text.lines().collect();
+        for (k, line) in lines.iter().enumerate() {
+            let time = line.split(',').next().unwrap();
+            match lines.get(k + 1) {
+                Some(after) if time.parse::<f64>().is_ok() => {
+                    let _ = writeln!(shifted, "{time},{}", after.split_once(',').unwrap().1);
+                }
+                _ => shifted += &format!("{line}\n"),
+            }
+        }
+        fs::write(folder.join("late.csv"), shifted).unwrap();
+        for (program, first, there) in &checkers {
+            if !there {
+                println!("{program} is not there: its checker was not run");
+                continue;
+            }
+            let check = |run: &str| {
+                let mut command = Command::new(program);
+                if *program == "./check" {
+                    command = Command::new(folder.join("check"));
+                }
+                command.args(first).args([name.as_str(), run]).current_dir(&folder).output().unwrap()
+            };
+            let same = check(name);
+            assert!(same.status.success(), "{program} {name}: {}", String::from_utf8_lossy(&same.stdout));
+            assert_eq!(check("late.csv").status.code(), Some(1), "{program} {name}");
+        }
+        let [same, late] = [name, "late.csv"].map(|run| {
+            polhode(&words(&format!("audit golden/{run} --against golden/{name} --format json")), &scratch.0)
+        });
+        assert_eq!(same.code, 0, "{name}: {} {}", same.out, same.err);
+        assert_eq!(verdict(&same)["against"]["largest"], 0.0, "{name}");
+        assert_eq!(late.code, 1, "{name}: {}", late.out);
+    }
+}
+
+/// An integration in 26 digits that shares nothing with this program comes to the same motions, to the digits of a double.
+#[test]
+fn golden_trajectories_are_right() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = root.join("golden");
+    let files = crate::harness::names(&folder).into_iter().filter(|name| name.ends_with(".csv"));
+    let mut python = Command::new("python3");
+    python.arg(root.join("tests/cli/golden_motion.py")).args(files).current_dir(&folder);
+    let Ok(done) = python.output() else {
+        println!("python3 is not there: the motions were not integrated");
+        return;
+    };
+    let text = String::from_utf8(done.stdout).unwrap();
+    assert_eq!(text.lines().count(), 7, "{text}{}", String::from_utf8_lossy(&done.stderr));
+    for line in text.lines() {
+        let errors: Vec<f64> = line.split(',').skip(1).map(|cell| cell.parse().unwrap()).collect();
+        assert!(errors.iter().all(|error| *error < 3e-15), "{line}");
+    }
+}
+
+#[test]
+fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
+    let scratch = Scratch::new("audit-refusals");
+    let file = |name: &str, text: &str| scratch.file(name, text);
+    let header = "t,q_w,q_x,q_y,q_z\n";
+    let short = file("short.csv", &format!("{header}0,1,0,0,0\n1,1,0,0,0\n"));
+    refused(&format!("audit {short} {BODY}"), &["short.csv: the record has 2 rows", "at least 10"]);
+    let unnamed = file("unnamed.csv", "t,a,b,c,d\n0,1,0,0,0\n");
+    refused(
+        &format!("audit {unnamed}"),
+        &["unnamed.csv, line 1: ", "'t', 'a', 'b', 'c', 'd'", "--columns t=NAME,qw=NAME,qx=NAME,..."],
+    );
+    let back = file("back.csv", &format!("{header}0,1,0,0,0\n2,1,0,0,0\n1,1,0,0,0\n"));
+    refused(
+        &format!("audit {back}"),
+        &["back.csv, line 4, column 1 (t): '1': does not come after", "sort the rows"],
+    );
+    let text = file("text.csv", &format!("{header}0,1,0,x,0\n"));
+    refused(&format!("audit {text}"), &["text.csv, line 2, column 4 (q_y): 'x': is not a number"]);
+    let zero = file("zero.csv", &format!("{header}0,0,0,0,0\n"));
+    refused(
+        &format!("audit {zero}"),
+        &["zero.csv, line 2, column 2: every component of the attitude is zero"],
+    );
+    refused("audit absent.csv", &["absent.csv: cannot be read", "name a text file"]);
+    refused(
+        &format!("audit {short} --drag 1"),
+        &["--moments: missing: a force acts on a body that is known"],
+    );
+    refused(&format!("audit {short} --columns q=1"), &["--columns", "'q=1' has no known key", "qw qx qy qz"]);
+    refused(&format!("audit {short} --against {short}"), &["short.csv: no line '# moments: I1,I2,I3'"]);
+    let own = scratch.file("README.md", "# Mine\n");
+    refused(
+        &format!("audit --golden {}", scratch.0.display()),
+        &["--golden", "README.md of another kind", "empty folder"],
+    );
+    assert_eq!(fs::read_to_string(own).unwrap(), "# Mine\n");
+}

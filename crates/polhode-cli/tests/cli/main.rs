@@ -1,0 +1,28 @@
+//! The command line as its users meet it: golden outputs, golden refusals, and files that are whole or absent.
+//!
+//! `POLHODE_BLESS=1 cargo test -p polhode-cli --test cli` rewrites the golden files; read the difference.
+
+#![allow(clippy::unwrap_used)]
+
+mod advise;
+mod audit;
+mod compare;
+mod compose;
+mod ensemble;
+mod experiment;
+mod fit;
+mod fit_inputs;
+mod flights;
+mod forces;
+mod general;
+mod harness;
+mod inertia;
+#[cfg(unix)]
+mod interrupted;
+mod logs;
+mod motion;
+mod plot;
+mod propagate;
+mod report;
+mod robots;
+mod times;

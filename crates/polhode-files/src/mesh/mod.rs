@@ -1,0 +1,39 @@
+//! Triangles from STL, OBJ and PLY files.
+
+mod error;
+mod obj;
+mod ply;
+mod stl;
+mod text;
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use polhode::inertia::Surface;
+
+use crate::error::Error;
+use crate::text::visible;
+pub use error::MeshFileError;
+pub use obj::read as obj;
+pub use ply::read as ply;
+pub use stl::read as stl;
+
+/// The triangles of a file, whose ending tells its format.
+pub fn surface(path: &Path) -> Result<Surface, Error> {
+    let refused =
+        |error: MeshFileError| Error::Input(visible(&format!("{}: {error}", path.display())).into());
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    let open = || File::open(path).map(BufReader::new).map_err(|error| refused(error.into()));
+    match ending.as_deref() {
+        Some("stl") => stl::read(open()?).map_err(refused),
+        Some("obj") => obj::read(open()?).map_err(refused),
+        Some("ply") => ply::read(open()?).map_err(refused),
+        _ => Err(Error::input(
+            "mesh",
+            &path.display().to_string(),
+            "the ending tells the format, and this one is unknown",
+            "name a file that ends in .stl, .obj or .ply",
+        )),
+    }
+}

@@ -1,0 +1,128 @@
+//! Times of rows: numbers in a unit, counts since 1970, dates; and what lines before the header say of the columns.
+
+use polhode::body::Date;
+use polhode::units::{RateUnit, TimeUnit};
+
+/// Reads the times of one text.
+pub(super) struct Clock {
+    unit: Option<TimeUnit>,
+    /// Known with the first time.
+    kind: Option<Kind>,
+}
+
+enum Kind {
+    Numbers(TimeUnit),
+    /// From this whole number on: what stands for now in nanoseconds since 1970 has more digits than a double.
+    Counts(TimeUnit, i128),
+    /// Seconds and nanoseconds apart, from these seconds on.
+    Stamps(i128),
+    /// From this date on.
+    Dates(Date),
+}
+
+/// A count since 1970 in each unit lies between these, from 2001 on.
+const COUNTS: [(TimeUnit, f64); 3] =
+    [(TimeUnit::Nanoseconds, 1e18), (TimeUnit::Microseconds, 1e15), (TimeUnit::Milliseconds, 1e12)];
+const LATEST: f64 = 4.0;
+
+impl Clock {
+    /// With the unit that is known of numbers.
+    pub(super) fn new(unit: Option<TimeUnit>) -> Self {
+        Clock { unit, kind: None }
+    }
+
+    /// The time of a cell, s; with `nanoseconds` it holds whole seconds.
+    pub(super) fn seconds(&mut self, cell: &str, nanoseconds: Option<&str>) -> Option<f64> {
+        if self.kind.is_none() {
+            self.kind = Some(self.kind_of(cell, nanoseconds.is_some())?);
+        }
+        let number = || cell.parse::<f64>().ok();
+        let time = match self.kind.as_ref()? {
+            Kind::Numbers(unit) => unit.seconds(number()?),
+            Kind::Counts(unit, first) => match cell.parse::<i128>() {
+                Ok(count) => unit.seconds((count - first) as f64),
+                Err(_) => unit.seconds(number()? - *first as f64),
+            },
+            Kind::Stamps(first) => {
+                (cell.parse::<i128>().ok()? - first) as f64 + nanoseconds?.parse::<f64>().ok()? / 1e9
+            }
+            Kind::Dates(first) => cell.parse::<Date>().ok()?.seconds_since(first),
+        };
+        time.is_finite().then_some(time)
+    }
+
+    fn kind_of(&self, cell: &str, has_nanoseconds: bool) -> Option<Kind> {
+        if has_nanoseconds {
+            return cell.parse().ok().map(Kind::Stamps);
+        }
+        let Ok(value) = cell.parse::<f64>() else { return cell.parse().ok().map(Kind::Dates) };
+        let counted = COUNTS.iter().find(|(_, least)| (*least..LATEST * least).contains(&value));
+        if let Some((unit, _)) = counted
+            && self.unit.is_none_or(|known| known == *unit)
+        {
+            return Some(Kind::Counts(*unit, cell.parse().unwrap_or(value as i128)));
+        }
+        Some(Kind::Numbers(self.unit.unwrap_or(TimeUnit::Seconds)))
+    }
+}
+
+/// What the lines before the header say.
+#[derive(Default)]
+pub(super) struct Preamble {
+    /// Of a gyroscope in the units of its converter, deg/s.
+    gyro_scale: Option<f64>,
+    /// Samples a second.
+    rate: Option<f64>,
+    /// An Xsens DOT, whose clock counts microseconds and whose rates are in deg/s.
+    is_dot: bool,
+}
+
+impl Preamble {
+    pub(super) fn of(lines: &[(usize, &str)]) -> Self {
+        let mut found = Preamble::default();
+        for (_, line) in lines {
+            let lower = line.to_lowercase();
+            let value = || lower.rsplit([':', ',', '=']).next().unwrap_or_default().trim_matches(['"', ' ']);
+            if lower.contains("gyro_scale") || lower.contains("gyroscale") {
+                found.gyro_scale = scale(value());
+            } else if lower.contains("sample rate") || lower.contains("update rate") {
+                found.rate =
+                    value().trim_end_matches("hz").trim_end().parse().ok().filter(|rate| *rate > 0.0);
+            } else if lower.contains("devicetag") {
+                found.is_dot = true;
+            }
+        }
+        found
+    }
+
+    /// The unit of a time column that counts in its own way.
+    pub(super) fn time_unit(&self, name: &str) -> Option<TimeUnit> {
+        match name.to_lowercase().as_str() {
+            "sampletimefine" if self.is_dot => Some(TimeUnit::Microseconds),
+            // ticks of 10 kHz
+            "sampletimefine" => Some(TimeUnit::Multiple(1e-4)),
+            "packetcounter" | "frame" => self.rate.map(|rate| TimeUnit::Multiple(1.0 / rate)),
+            _ => None,
+        }
+    }
+
+    pub(super) fn rate_unit(&self) -> Option<RateUnit> {
+        self.is_dot.then_some(RateUnit::DegreesPerSecond)
+    }
+
+    /// What a number of the column `name` is in the unit of the column.
+    pub(super) fn scale(&self, name: &str) -> f64 {
+        let is_raw = name.to_lowercase().starts_with("gyroadc[") && !name.contains('(');
+        self.gyro_scale.filter(|_| is_raw).unwrap_or(1.0)
+    }
+}
+
+/// Betaflight's scale in deg/s: the bits of a float, or a number; what is tiny is in rad/µs.
+fn scale(text: &str) -> Option<f64> {
+    let value = match text.strip_prefix("0x") {
+        Some(bits) => f64::from(f32::from_bits(u32::from_str_radix(bits, 16).ok()?)),
+        None => text.parse().ok()?,
+    };
+    let degrees = if value < 1e-5 { value * 1e6 * (180.0 / core::f64::consts::PI) } else { value };
+    (degrees.is_finite() && degrees > 0.0).then_some(degrees)
+}

@@ -1,0 +1,106 @@
+//! Robot models, link by link: URDF, MJCF and SDF.
+
+mod element;
+mod mjcf;
+mod pose;
+mod sdf;
+mod urdf;
+
+use std::path::Path;
+use std::rc::Rc;
+
+use crate::error::Error;
+use crate::given::{Given, Writing};
+use element::Element;
+pub use element::Value;
+
+/// A language of models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    Urdf,
+    Mjcf,
+    Sdf,
+}
+
+impl Language {
+    pub const NAMES: [&str; 3] = ["urdf", "mjcf", "sdf"];
+
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "urdf" => Some(Self::Urdf),
+            "mjcf" => Some(Self::Mjcf),
+            "sdf" => Some(Self::Sdf),
+            _ => None,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Urdf => "URDF",
+            Self::Mjcf => "MJCF",
+            Self::Sdf => "SDF",
+        }
+    }
+
+    /// The elements at whose head a file of this language may stand.
+    fn roots(self) -> &'static [&'static str] {
+        match self {
+            Self::Urdf => &["robot", "link", "inertial"],
+            Self::Mjcf => &["mujoco", "mujocoinclude", "worldbody", "body", "inertial"],
+            Self::Sdf => &["sdf", "model", "world", "link", "inertial"],
+        }
+    }
+}
+
+/// Every link of the model in `text`; includes of an MJCF model may stand in `root` and below.
+///
+/// # Errors
+/// Text that is no XML, and XML of another kind. A defect of one link is a defect of that link alone.
+pub fn read(language: Language, path: &Path, text: &str, root: Option<&Path>) -> Result<Vec<Given>, Error> {
+    let document = Element::parse(path, text)?;
+    let roots = language.roots();
+    if !document.children.iter().any(|root| roots.contains(&root.tag.as_str())) {
+        let found = document.children.first().map_or(String::new(), |root| format!("<{}>", root.tag));
+        let known: Vec<String> = roots.iter().map(|root| format!("<{root}>")).collect();
+        let rule = format!("no {} model; it begins with one of {}", language.name(), known.join(", "));
+        return Err(Error::input(&path.display().to_string(), &found, &rule, "name another file"));
+    }
+    Ok(match language {
+        Language::Urdf => urdf::links(&document),
+        Language::Mjcf => mjcf::bodies(document, path, root),
+        Language::Sdf => sdf::links(&document),
+    })
+}
+
+/// What a link says of its inertia, before it is examined.
+fn link(name: &str, element: &Element, stated: Result<Option<Given>, String>) -> Given {
+    let place = Some(element.place());
+    match stated {
+        Ok(Some(given)) => Given { name: name.into(), place, ..given },
+        Ok(None) => Given { name: name.into(), place, ..Given::massless() },
+        Err(defect) => Given { name: name.into(), place, ..Given::defective(defect) },
+    }
+}
+
+/// The parts of the file that state a tensor.
+fn writing(element: &Element, values: [Option<&Value>; 6]) -> Writing {
+    let entries = values.map(|value| value.map(|found| found.range.clone()));
+    Writing { file: Rc::clone(&element.file), entries, list: None }
+}
+
+/// A mass of zero with a tensor of zeros is the idiom for a frame without a body.
+fn is_massless(mass: f64, entries: &[f64]) -> bool {
+    mass == 0.0 && entries.iter().all(|entry| *entry == 0.0)
+}
+
+/// A mass that a body may have.
+fn positive(mass: f64) -> Result<f64, String> {
+    if mass > 0.0 {
+        Ok(mass)
+    } else {
+        Err(format!(
+            "mass is {}; it must be above zero, or zero together with every entry of the tensor",
+            mass + 0.0
+        ))
+    }
+}

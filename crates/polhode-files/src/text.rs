@@ -1,0 +1,96 @@
+//! Text from files and numbers as they are shown.
+
+use std::borrow::Cow;
+
+/// Whether a terminal would obey the character rather than show it: C0, DEL, C1 and the controls of writing direction.
+fn is_obeyed(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{061c}')
+}
+
+/// `text` with every character that a terminal would obey written out, as `\u{1b}`.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    escaped(text, is_obeyed, |c| c.escape_default().to_string())
+}
+
+/// The same of a text that may have several lines.
+pub fn visible_lines(text: &str) -> Cow<'_, str> {
+    escaped(text, |c| c != '\n' && is_obeyed(c), |c| c.escape_default().to_string())
+}
+
+/// A JSON value or a quoted TOML key with the same characters written out; programs read what it was.
+pub fn visible_json(text: &str) -> Cow<'_, str> {
+    // none of them is outside of the sixteen bits that the notation has
+    escaped(text, |c| c != '\n' && is_obeyed(c), |c| format!("\\u{:04x}", u32::from(c)))
+}
+
+/// `text` for the contents and the attributes of HTML.
+pub fn escaped_html(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn escaped(text: &str, which: impl Fn(char) -> bool, how: impl Fn(char) -> String) -> Cow<'_, str> {
+    if !text.contains(&which) {
+        return text.into();
+    }
+    let each = |c: char| if which(c) { how(c) } else { c.to_string() };
+    text.chars().map(each).collect::<String>().into()
+}
+
+/// A number with all its digits, written out where that is short.
+pub fn short(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() || (1e-5..1e15).contains(&x.abs()) {
+        format!("{x}")
+    } else {
+        format!("{x:e}")
+    }
+}
+
+/// The same without the noise of the last digit, as of 0.30000000000000004.
+pub fn rounded(x: f64) -> String {
+    let fifteen = format!("{x:.14e}").parse().unwrap_or(x);
+    let [exact, near] = [short(x + 0.0), short(fifteen)];
+    if near.len() + 2 < exact.len() { near } else { exact }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_terminal_obeys_is_written_out() {
+        assert_eq!(visible("\u{1b}]0;x\u{7}\u{9b}\u{7f}"), "\\u{1b}]0;x\\u{7}\\u{9b}\\u{7f}");
+        assert_eq!(visible("a\nb\tc\r"), "a\\nb\\tc\\r");
+        assert_eq!(visible_lines("a\nb\r"), "a\nb\\r");
+        for c in ['\u{202a}', '\u{202e}', '\u{2066}', '\u{2069}', '\u{200e}', '\u{200f}', '\u{61c}'] {
+            assert_eq!(visible(&format!("a{c}b")), format!("a\\u{{{:x}}}b", u32::from(c)));
+        }
+        let plain = "Brüls, Δω · 10 µs, 日本, \u{1f600}";
+        assert!(matches!(visible(plain), Cow::Borrowed(same) if same == plain));
+    }
+
+    #[test]
+    fn json_keeps_its_value() {
+        let name = "\u{1b}\u{9b}\u{202e}\"\n\u{7f}";
+        let written = serde_json::to_string(name).unwrap();
+        let shown = visible_json(&written);
+        assert!(shown.is_ascii() && !shown.contains('\u{7f}'), "{shown}");
+        assert_eq!(serde_json::from_str::<String>(&shown).unwrap(), name);
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (x, expected) in [(5e-324, "5e-324"), (1e300, "1e300"), (0.25, "0.25"), (3.0, "3"), (-0.0, "-0")]
+        {
+            assert_eq!(short(x), expected);
+        }
+        for (x, expected) in [
+            (0.1 + 0.2, "0.3"),
+            (2.0000000000000003e-6, "2e-6"),
+            (1.0 / 3.0, "0.3333333333333333"),
+            (-0.0, "0"),
+        ] {
+            assert_eq!(rounded(x), expected);
+        }
+    }
+}

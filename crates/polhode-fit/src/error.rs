@@ -1,0 +1,324 @@
+//! Why a fit is refused.
+
+use polhode::units::RateUnit;
+use thiserror::Error;
+
+use super::physical::constraint::Constraint;
+use super::physical::failure::SolverFailure;
+use super::report::averages::AverageAxis;
+use super::report::identifiability::Identifiability;
+use super::weak::mistaken_units::{MistakenUnit, alternatives};
+use super::weak::test_functions::TESTS_PER_RADIUS;
+
+/// Two constraints that no physically valid tensor meets together.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clash {
+    /// The first of the two.
+    pub first: Constraint,
+    /// The second of the two.
+    pub second: Constraint,
+    /// By how much each would have to be relaxed, as a share of the trace; negative where both can be met.
+    pub gap: f64,
+}
+
+/// Why a fit was refused.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum FitError {
+    /// Too few samples for even one test function.
+    #[error(
+        "{samples} samples, at most {longest} without a gap (segments: {segments}, left out for flat tops: {saturated}); \
+         a fit needs a segment of at least {needed} samples: record longer or faster"
+    )]
+    TooFewSamples {
+        /// Samples.
+        samples: usize,
+        /// Segments.
+        segments: usize,
+        /// Samples of the longest segment.
+        longest: usize,
+        /// Samples left out for flat tops.
+        saturated: usize,
+        /// Fewest samples of a usable segment.
+        needed: usize,
+    },
+    /// The angular velocity is zero, or a quarter and more of its mean square is noise.
+    #[error(
+        "the rates have a root mean square of {rms:.3e} rad/s and a noise of {noise:.3e} rad/s: the rotation is too \
+         slow for this noise; spin the body faster"
+    )]
+    NoRotation {
+        /// Root mean square rate, rad/s.
+        rms: f64,
+        /// Noise of a component, rad/s.
+        noise: f64,
+    },
+    /// The record determines fewer than five numbers of the tensor.
+    #[error("the record does not determine the tensor: {}", .0.verdict())]
+    Unidentifiable(Box<Identifiability>),
+    /// The iteration did not converge at any radius of the test functions, although the rates change.
+    #[error(
+        "the rates change, but the iteration did not converge in {rounds} rounds at any radius of the test functions: the \
+         noise of {noise:.3e} rad/s may hide the motion, torques may act, or the body may be slender; record longer, \
+         with a larger wobble, or set the radius{}{}{}",
+        slowed(*fall), smaller(*factor), known(axes)
+    )]
+    Unsettled {
+        /// Rounds of reweighting at each radius.
+        rounds: usize,
+        /// Noise of a component, rad/s.
+        noise: f64,
+        /// Factor on rate × time from which on units would explain the record, if they do.
+        factor: Option<f64>,
+        /// What is known all the same, if no torque acted.
+        axes: Vec<AverageAxis>,
+        /// Relative rate at which the rotation slows, 1/s, where it does and no torque was to be fitted.
+        fall: Option<f64>,
+    },
+    /// Nowhere in the record does the body rotate freely.
+    #[error(
+        "the body rotates freely nowhere in the record: torques beyond 0.3 tr(J) |w|^2 act in {:.0} per cent of the time in \
+         which it turns, and {}; throw the body, or fit a window of your own choice",
+        100.0 * share, nearest(*torque, *most)
+    )]
+    NoFlight {
+        /// Share of the time with a turning body in which large torques act.
+        share: f64,
+        /// Least torque of a window that drag does not explain, over the trace times |ω|²; `None` without a window.
+        torque: Option<f64>,
+        /// Largest of a flight.
+        most: f64,
+    },
+    /// Another unit of the rates or times explains the record far better.
+    /// Another unit of the rates or times explains the record far better, or as well by a body that is no sphere.
+    #[error(
+        "the units look mistaken: with rate x time {factor:.4e} times as large ({}) {}; name the units, or switch this \
+         check off",
+        alternatives(mistakes), improvement(*misfit, *better, *sphere)
+    )]
+    Units {
+        /// Factor on rate × time.
+        factor: f64,
+        /// What may have happened, the smallest factor first.
+        mistakes: Vec<MistakenUnit>,
+        /// χ² per degree of freedom as given.
+        misfit: f64,
+        /// The same with the factor.
+        better: f64,
+        /// Distance from the sphere, as a share of the trace, of the tensor that explains the record as given, where the
+        /// misfits do not tell the units apart.
+        sphere: Option<f64>,
+    },
+    /// Limits that exclude each other.
+    #[error("{} and {} exclude each other: each would have to be relaxed by {:.3e} of the trace", demand(&.0.first), demand(&.0.second), .0.gap)]
+    Contradiction(Box<Clash>),
+    /// Limits that leave less than a millionth of the trace between them.
+    #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", demand(&.0.first), demand(&.0.second))]
+    NoRoom(Box<Clash>),
+    /// Coefficients of a torque that the record cannot tell.
+    #[error(
+        "the record cannot tell {}{}: ask for a simpler torque, or record longer, with a larger wobble, or several throws \
+         about different axes", names.join(", "),
+        if *rank < 5 { format!(" from the tensor, of which it determines {rank} of 5 numbers with them, and 5 without") }
+        else { String::new() }
+    )]
+    Untold {
+        /// Their names.
+        names: Vec<&'static str>,
+        /// How many of the five numbers of the tensor are determined with them.
+        rank: usize,
+    },
+    /// A wheel is to be calibrated from a record that does not tell its speed.
+    #[error(
+        "no wheel turns in the record: each segment must hold the speed of the wheel, somewhere not zero"
+    )]
+    NoWheelSpeed,
+    /// A wheel is to be calibrated from a record that has torques.
+    #[error("the record has torques: calibrate a wheel from records in which none acts but that of air")]
+    WheelWithTorques,
+    /// Segments that hold different quantities.
+    #[error(
+        "{with} has {what} and {without} has none: give both what their sensors read, zeros where nothing turns or \
+         pushes, or fit them apart"
+    )]
+    Sensors {
+        /// The quantity.
+        what: &'static str,
+        /// The first segment that has it.
+        with: String,
+        /// The first that has not.
+        without: String,
+    },
+    /// A segment whose rates have a unit beside one whose unit is a guess.
+    #[error(
+        "{named} is in {unit} by its header, and {unnamed} names no unit and would be taken for rad/s: name the unit of \
+         both"
+    )]
+    MixedUnits {
+        /// The segment whose unit is named.
+        named: String,
+        /// Its unit.
+        unit: RateUnit,
+        /// The first segment whose unit is not.
+        unnamed: String,
+    },
+    /// The covariance of a prior tensor is not one.
+    #[error(
+        "{}; give one that is symmetric and positive, as standard deviations that are not zero do",
+        if *symmetric { format!("the covariance of the prior tensor is not positive: its smallest eigenvalue is {least:.3e} (kg m^2)^2") }
+        else { "the covariance of the prior tensor is not symmetric".into() }
+    )]
+    PriorCovariance {
+        /// Its smallest eigenvalue, (kg m²)²; NaN where an entry is not finite.
+        least: f64,
+        /// Whether it is symmetric.
+        symmetric: bool,
+    },
+    /// The prior tensor and a limit, or the physical law, exclude each other.
+    #[error(
+        "the prior tensor and {} exclude each other: it lies {pull:.1} of its standard deviations outside; check the \
+         signs of its products, widen its deviations, or leave one of the two out",
+        demand(constraint)
+    )]
+    PriorOutside {
+        /// The limit or the law.
+        constraint: Constraint,
+        /// Distance, in standard deviations of the prior.
+        pull: f64,
+    },
+    /// The prior tensor and the record exclude each other.
+    #[error(
+        "the prior tensor and the record exclude each other: (xx, yy, zz, xy, xz, yz) over the trace is {} by the prior \
+         and {} by the record, chi squared {chi2:.1} of {dof} degrees of freedom; check the axes of the prior, the signs \
+         of its products and its unit, widen its deviations, or leave it out",
+        six(prior),
+        six(record)
+    )]
+    PriorContradicted {
+        /// Entries xx, yy, zz, xy, xz, yz of the prior, over its trace.
+        prior: [f64; 6],
+        /// The same of what the record says.
+        record: [f64; 6],
+        /// Square of their distance in standard deviations of it.
+        chi2: f64,
+        /// Its degrees of freedom.
+        dof: usize,
+    },
+    /// The prior tensor has another size than the known quantity says.
+    #[error(
+        "the prior tensor has the trace {prior:.4e} +- {sigma:.1e} kg m^2, and the known quantity gives {known:.4e}: they \
+         exclude each other; correct one of them, or give the prior as a shape"
+    )]
+    PriorSize {
+        /// Trace of the prior, kg m².
+        prior: f64,
+        /// Its standard deviation, kg m².
+        sigma: f64,
+        /// Trace by the known quantity, kg m².
+        known: f64,
+    },
+    /// The axis of a limit has no direction.
+    #[error("limit {limit} has the axis {axis:?}; it must be a finite vector that is not zero")]
+    LimitAxis {
+        /// Which limit, from 1.
+        limit: usize,
+        /// Its axis.
+        axis: [f64; 3],
+    },
+    /// The value of a limit is not a share of the trace.
+    #[error("limit {limit} is {value}; it must be a share of the trace, from 0 to 1")]
+    LimitValue {
+        /// Which limit, from 1.
+        limit: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A setting that must be positive and finite is not.
+    #[error(
+        "{name} is {value:?}; it must be a positive number whose square neither underflows nor overflows"
+    )]
+    Setting {
+        /// Which one.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The size of the tensor is given twice.
+    #[error(
+        "the record has wheel momenta or torques, which give the size of the tensor, and so does the known quantity; \
+         leave out one of them"
+    )]
+    TwoScales,
+    /// Test functions that no segment has room for.
+    #[error(
+        "a radius of {radius} s needs a segment of {:.4} s, which holds two test functions with {needed} samples in each; \
+         the longest lasts {longest} s", (2.0 + 0.5 / TESTS_PER_RADIUS) * radius
+    )]
+    Radius {
+        /// The radius, s.
+        radius: f64,
+        /// Duration of the longest segment, s.
+        longest: f64,
+        /// Fewest samples in one test function.
+        needed: usize,
+    },
+    /// Test functions so short that their equations are nearly as many as the samples.
+    #[error(
+        "a radius of {radius} s gives nearly as many equations as there are samples, so that the covariance of \
+         their noise is singular; set a larger radius"
+    )]
+    Dense {
+        /// The radius, s.
+        radius: f64,
+    },
+    /// The program for the nearest physical tensor has no certified answer.
+    #[error("the program for the nearest physical tensor has no certified answer: {0}")]
+    Solver(SolverFailure),
+}
+
+/// The law said in full, where it stands against a limit.
+fn demand(constraint: &Constraint) -> String {
+    match constraint {
+        Constraint::Triangle => "the law I1 + I2 >= I3, by which a moment is at most half the trace".into(),
+        limit => limit.to_string(),
+    }
+}
+
+fn six(entries: &[f64; 6]) -> String {
+    format!("({})", entries.map(|entry| format!("{entry:.4}")).join(", "))
+}
+
+fn nearest(torque: Option<f64>, most: f64) -> String {
+    torque.filter(|torque| *torque > most).map_or("no stretch of free rotation is long enough for a fit".into(), |torque| {
+        format!("the stretch nearest to a free rotation with drag leaves {torque:.3} tr(J) |w|^2, at most {most} is allowed")
+    })
+}
+
+fn improvement(misfit: f64, better: f64, sphere: Option<f64>) -> String {
+    match sphere {
+        Some(distance) => format!(
+            "an ordinary body moves like this; as given only one whose moments agree to {distance:.1e} of their sum does"
+        ),
+        None => format!("the misfit per equation falls from {misfit:.3e} to {better:.3e}"),
+    }
+}
+
+fn slowed(fall: Option<f64>) -> String {
+    fall.map_or(String::new(), |fall| {
+        format!(". The rates fall by {:.2} per cent per second: let the fit reckon with drag", 100.0 * fall)
+    })
+}
+
+fn smaller(factor: Option<f64>) -> String {
+    factor.map_or(String::new(), |factor| {
+        format!(
+            ". With rate x time {factor:.4} times as large or larger, a nearly spherical body would move like this: are the \
+             units right?"
+        )
+    })
+}
+
+fn known(axes: &[AverageAxis]) -> String {
+    axes.iter().map(|axis| format!(". Known: {axis}")).collect()
+}

@@ -1,0 +1,97 @@
+//! Where a flight begins and ends.
+
+use core::ops::Range;
+
+use super::FlightLimit;
+use super::consensus::{MOST_TORQUE, precisions};
+use super::equations::{LOCAL, Normal, Test, Vector};
+use crate::physical::coordinates::Coordinates;
+
+/// Precision of the common tensor in the fit of one flight, against which its own tests stand.
+const COMMON: f64 = 100.0;
+/// Medians of the residuals of a flight that one of its own may reach.
+const USUAL: f64 = 4.0;
+/// Deviations of the noise that it may reach beside.
+const NOISE: f64 = 1.5;
+/// Share of a flight within which an end of it is sought.
+const ENDS: f64 = 0.35;
+/// Rounds of trimming and fitting.
+const ROUNDS: usize = 6;
+/// Fewest tests of a flight.
+const FEWEST: usize = 4;
+/// Tests next to an end that tell why it is one: twice as far as the last of the flight reaches.
+const BESIDE: usize = 8;
+
+/// The tests of one flight, and what stands before and after it.
+pub(super) struct Extent {
+    pub(super) tests: Range<usize>,
+    pub(super) before: FlightLimit,
+    pub(super) after: FlightLimit,
+}
+
+/// Runs of tests that are free.
+pub(super) fn runs(free: &[bool]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for k in (0..free.len()).filter(|&k| free[k]) {
+        match runs.last_mut() {
+            Some(run) if run.end == k => run.end = k + 1,
+            _ => runs.push(k..k + 1),
+        }
+    }
+    runs
+}
+
+/// What of a run of free tests no torque touches, at a tensor next to `x`.
+///
+/// Windows agree up to a torque that is large beside what is left within a flight; its ends are where the residuals
+/// leave their own level.
+pub(super) fn extent(
+    tests: &[Test],
+    run: Range<usize>,
+    x: &Coordinates,
+    speed: f64,
+    variance: f64,
+) -> Option<Extent> {
+    let mut mean = Vector::zeros();
+    mean.fixed_rows_mut::<5>(0).copy_from(x);
+    let mut prior = precisions(speed);
+    prior.fixed_rows_mut::<5>(0).fill(COMMON);
+    let share = |test: &Test, at: &Vector| test.residual(at).norm() / test.size();
+    let mut kept = run.clone();
+    let mut at = mean;
+    for _ in 0..ROUNDS {
+        let mut normal = Normal::prior(&prior, &mean);
+        tests[kept.clone()].iter().for_each(|t| normal.add(t, t.scale(MOST_TORQUE, variance), LOCAL));
+        at = normal.solve()?;
+        let mut shares: Vec<f64> = tests[kept.clone()].iter().map(|t| share(t, &at)).collect();
+        let middle = shares.len() / 2;
+        let median = *shares.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let stands_out =
+            |t: &Test| share(t, &at) > (USUAL * median).max(NOISE * t.noise(variance).sqrt() / t.size());
+        let reach = (ENDS * run.len() as f64) as usize;
+        let before = tests[run.start..run.start + reach].iter().rposition(stands_out);
+        let after = tests[run.end - reach..run.end].iter().position(stands_out);
+        let trimmed =
+            before.map_or(run.start, |k| run.start + k + 1)..after.map_or(run.end, |k| run.end - reach + k);
+        if trimmed.len() < FEWEST {
+            return None;
+        }
+        if trimmed == kept {
+            break;
+        }
+        kept = trimmed;
+    }
+    let limit = |beside: &[Test]| {
+        if beside.is_empty() {
+            return FlightLimit::Edge;
+        }
+        let slow = beside.iter().filter(|t| t.is_slow(speed)).count();
+        match 2 * slow > beside.len() {
+            true => FlightLimit::Slow,
+            false => FlightLimit::Torque { share: beside.iter().map(|t| share(t, &at)).fold(0.0, f64::max) },
+        }
+    };
+    let before = limit(&tests[kept.start.saturating_sub(BESIDE)..kept.start]);
+    let after = limit(&tests[kept.end..(kept.end + BESIDE).min(tests.len())]);
+    Some(Extent { tests: kept, before, after })
+}

@@ -1,0 +1,244 @@
+//! Free rotation found in a whole recording: throws between hands that hold the body, wait and catch.
+//!
+//! The weak form of Euler's equation with drag is linear in tensor and drag. Short windows of it, where they determine
+//! the tensor, propose one; that on which most windows agree is the body's. Windows that agree, each with its own drag,
+//! are free, and each run of them is a flight up to where a torque begins.
+//!
+//! Source: consensus by random samples, Fischler, Bolles 1981, Communications of the ACM 24, 381, with all windows as
+//! samples and their information in place of a count of inliers within each.
+
+mod consensus;
+mod equations;
+mod extent;
+
+use core::fmt;
+
+use nalgebra::Vector3;
+use polhode::record::{Record, Segment};
+
+use super::error::FitError;
+use super::settings::Settings;
+use super::weak::mistaken_units::better_unit;
+use super::weak::noise;
+use super::weak::normalised::{Normalised, normalised};
+use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
+use consensus::{Contradiction, MOST_TORQUE, NoConsensus, consensus};
+use equations::{Test, tests};
+use extent::{Extent, extent, runs};
+
+/// Why a flight does not reach further.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FlightLimit {
+    /// There the segment begins or ends.
+    Edge,
+    /// The body hardly turns there: it rests, or a hand holds it.
+    Slow,
+    /// A torque acts there.
+    Torque {
+        /// Its mean over a test function, over the trace of the tensor times |ω|².
+        share: f64,
+    },
+}
+
+impl fmt::Display for FlightLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Edge => f.write_str("no more samples"),
+            Self::Slow => f.write_str("hardly turns"),
+            Self::Torque { share } => write!(f, "torque {share:.2} tr(J) |w|^2"),
+        }
+    }
+}
+
+/// A span of free rotation, but for drag.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flight {
+    /// Index of its segment in the record.
+    pub segment: usize,
+    /// Time of its first sample, s.
+    pub start: f64,
+    /// Time of its last sample, s.
+    pub end: f64,
+    /// Number of its samples.
+    pub samples: usize,
+    /// Angle by which the body turned, rad.
+    pub turned: f64,
+    /// Why it does not begin earlier.
+    pub before: FlightLimit,
+    /// Why it does not end later.
+    pub after: FlightLimit,
+}
+
+/// The parts of `record` in which `flights` were found, one segment each.
+#[must_use]
+pub fn during(record: &Record, flights: &[Flight]) -> Record {
+    record.spans(flights.iter().map(|flight| (flight.segment, flight.start, flight.end)))
+}
+
+/// Share of the turning tests that a record in a wrong unit contradicts.
+const ALMOST_ALL: f64 = 0.9;
+
+/// The flights of a record.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flights {
+    /// Each flight, in the order of the record.
+    pub list: Vec<Flight>,
+    /// Whether the record as a whole may be that of one free body: its flights are then its segments.
+    pub whole: bool,
+}
+
+/// Finds the spans of a record in which the body rotates freely, but for drag; [`Record::during`] cuts them out.
+///
+/// A record that nowhere contradicts a free body, or one under the torques that [`fit`](super::fit) has columns for, is
+/// one flight from end to end. Otherwise a flight is what one tensor explains together with other flights, up to torques
+/// of 0.02 tr J |ω|². A flight must turn the body; one at less than a tenth of the record's usual rate is not seen.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode_fit::{Record, Settings, fit, flights, simulate};
+/// use polhode::inertia::Inertia;
+/// use polhode::num::Random;
+///
+/// // held still for a second, thrown for one, and held again
+/// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+/// let times: Vec<f64> = (0..300).map(|i| f64::from(i) / 100.0).collect();
+/// let mut random = Random::new(7);
+/// let thrown = simulate(&body, Vector3::new(2.0, 9.0, 4.0), &times[100..200], 1e-2, &mut random)?;
+/// let held = |random: &mut Random| random.normal_vector() * 1e-2;
+/// let rates: Vec<Vector3<f64>> = (0..300)
+///     .map(|i| if (100..200).contains(&i) { thrown[i - 100] } else { held(&mut random) })
+///     .collect();
+///
+/// let record = Record::from_samples(&times, &rates)?;
+/// let found = flights(&record, &Settings::default())?;
+/// assert!(!found.whole && found.list.len() == 1);
+/// let flight = found.list[0];
+/// assert!((flight.start - 1.0).abs() < 0.1 && (flight.end - 2.0).abs() < 0.1);
+/// let estimate = fit(&during(&record, &found.list), &Settings::default())?;
+/// assert!((estimate.principal[0] - 1.0 / 5.6).abs() < 5.0 * estimate.sigma_principal[0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// A setting that no fit can use; too few samples; no rotation; a record that is not free as a whole and has no flight:
+/// because of mistaken units, where such explain it.
+pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError> {
+    settings.check()?;
+    let cleaned = if settings.leave_out_spikes { record.without_spikes() } else { None };
+    let Normalised { stretches, rms, .. } = normalised(cleaned.as_ref().map_or(record, |(_, rest)| rest))?;
+    let variance = match settings.noise {
+        Some(sigma) => (sigma / rms) * (sigma / rms),
+        None => noise::variance(&stretches),
+    };
+    // readings of a noiseless record carry at least the quadrature's error
+    let variance = variance.max(1e-20);
+    let speed = speed(&stretches);
+    let radius = radius(&stretches, speed);
+    let all: Vec<Vec<Test>> = stretches.iter().map(|stretch| tests(stretch, radius)).collect();
+    let Some(contradiction) = Contradiction::new(&all, speed, variance).filter(|c| !c.is_none()) else {
+        return Ok(whole(record));
+    };
+    let none = |torque: Option<f64>| {
+        // in a wrong unit of rate or time nothing is free
+        let suspect = settings.check_units && contradiction.share() > ALMOST_ALL;
+        let better = if suspect { better_unit(&stretches, None, variance) } else { None };
+        match better.filter(|b| b.credible && !b.vague) {
+            Some(b) => FitError::Units {
+                factor: b.factor,
+                mistakes: b.mistakes,
+                misfit: contradiction.misfit(&all, variance),
+                better: b.misfit,
+                sphere: None,
+            },
+            None => FitError::NoFlight { share: contradiction.share(), torque, most: MOST_TORQUE },
+        }
+    };
+    let agreed = consensus(&all, speed, variance)
+        .map_err(|NoConsensus { least }| none(least.map(|least| MOST_TORQUE * least.sqrt())))?;
+    let mut list: Vec<Flight> = Vec::new();
+    for (segment, (tests, free)) in all.iter().zip(&agreed.free).enumerate() {
+        let extents = runs(free).into_iter().filter_map(|run| extent(tests, run, &agreed.x, speed, variance));
+        for found in extents {
+            let span = [
+                (tests[found.tests.start].centre - radius) / rms,
+                (tests[found.tests.end - 1].centre + radius) / rms,
+            ];
+            // neighbours that a short blow parts share no sample
+            let last = list.last().filter(|last| last.segment == segment).map(|last| last.end);
+            list.extend(flight(&record.segments[segment], segment, span, &found, last));
+        }
+    }
+    if list.is_empty() { Err(none(None)) } else { Ok(Flights { list, whole: false }) }
+}
+
+/// Every segment as one flight.
+fn whole(record: &Record) -> Flights {
+    let each = record.segments.iter().enumerate().filter_map(|(k, segment)| {
+        let (start, end) = (*segment.times().first()?, *segment.times().last()?);
+        let (before, after) = (FlightLimit::Edge, FlightLimit::Edge);
+        Some(Flight {
+            segment: k,
+            start,
+            end,
+            samples: segment.times().len(),
+            turned: turned(segment.times(), segment.rates()),
+            before,
+            after,
+        })
+    });
+    Flights { list: each.collect(), whole: true }
+}
+
+/// The samples of a segment in a span of seconds from its start, those up to `last` left out; `None` where there are
+/// too few for a fit.
+fn flight(segment: &Segment, k: usize, span: [f64; 2], found: &Extent, last: Option<f64>) -> Option<Flight> {
+    let times = segment.times();
+    let origin = *times.first()?;
+    let low = match found.before {
+        FlightLimit::Edge => 0,
+        _ => times.partition_point(|t| t - origin < span[0]),
+    };
+    let low = low.max(last.map_or(0, |last| times.partition_point(|t| *t <= last)));
+    let high = match found.after {
+        FlightLimit::Edge => times.len(),
+        _ => times.partition_point(|t| t - origin <= span[1]),
+    };
+    let own = times.get(low..high)?;
+    let (start, end) = (*own.first()?, *own.last()?);
+    let enough = own.len() >= 2 * SAMPLES_PER_TEST as usize;
+    enough.then(|| Flight {
+        segment: k,
+        start,
+        end,
+        samples: own.len(),
+        turned: turned(own, &segment.rates()[low..high]),
+        before: found.before,
+        after: found.after,
+    })
+}
+
+/// ∫ |ω| dt.
+fn turned(times: &[f64], rates: &[Vector3<f64>]) -> f64 {
+    times
+        .windows(2)
+        .zip(rates.windows(2))
+        .map(|(t, w)| 0.5 * (t[1] - t[0]) * (w[0].norm() + w[1].norm()))
+        .sum()
+}
+
+/// The rate of the motion, not of what is held beside it: the mean square of the rates, each weighted with its own.
+fn speed(stretches: &[Stretch]) -> f64 {
+    let squares = || stretches.iter().flat_map(|s| &s.rates).map(|w| w.norm_squared());
+    let (square, fourth) = (squares().sum::<f64>(), squares().map(|s| s * s).sum::<f64>());
+    (fourth / square).sqrt()
+}
+
+/// Half width of the test functions: the time of a turn by one radian, or of a few samples.
+fn radius(stretches: &[Stretch], speed: f64) -> f64 {
+    let intervals = stretches.iter().map(|s| s.times.len().saturating_sub(1)).sum::<usize>();
+    let mean = stretches.iter().map(Stretch::duration).sum::<f64>() / intervals.max(1) as f64;
+    (SAMPLES_PER_TEST * mean).max(1.0 / speed)
+}

@@ -1,0 +1,77 @@
+//! Inertia from measured angular velocity.
+//!
+//! The angular velocity of a torque-free body determines its inertia tensor up to scale: five numbers. [`fit`]
+//! estimates them from a [`Record`] of rates: the weak form of Euler's equation (nothing is differentiated), weighted
+//! by the covariance of its own noise, then the nearest physically valid tensor. [`Estimate`] holds the tensor, the
+//! standard deviation of each number, the Cramér–Rao bound, and what in the record contradicts a free body.
+//!
+//! ```
+//! use nalgebra::Vector3;
+//! use polhode::inertia::Inertia;
+//! use polhode_fit::{Known, Record, Settings, fit, simulate};
+//! use polhode::num::Random;
+//!
+//! let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+//! let times: Vec<f64> = (0..3000).map(|i| f64::from(i) / 100.0).collect();
+//! let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
+//!
+//! let record = Record::from_samples(&times, &rates)?;
+//! let settings = Settings { known: Some(Known::Trace(5.6)), ..Settings::default() };
+//! let estimate = fit(&record, &settings)?;
+//! for (k, truth) in [1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6].into_iter().enumerate() {
+//!     assert!((estimate.principal[k] - truth).abs() < 5.0 * estimate.sigma_principal[k]);
+//!     assert!(estimate.sigma_principal[k] < 1e-4);
+//! }
+//! assert!(estimate.warnings.is_empty(), "{:?}", estimate.warnings);
+//! let inertia = estimate.inertia.ok_or("a trace was given")?; // kg m², since the trace was
+//! assert!((inertia.tensor()[(1, 1)] - 2.0).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`flights()`] finds the spans of free rotation in a recording that also shows how the body was held and caught.
+//!
+//! The tensor comes from rounds of linear least squares with one small semidefinite program at their end, which is solved
+//! by outer approximation; it is not refined by maximum likelihood.
+
+mod banded;
+mod cramer_rao;
+mod error;
+mod estimator;
+mod flights;
+mod physical;
+mod quadrature;
+mod report;
+mod settings;
+mod simulate;
+mod weak;
+mod wheel;
+
+pub use cramer_rao::{foreseen_bound, foreseen_bound_with};
+pub use error::{Clash, FitError};
+pub use estimator::fit;
+pub use flights::{Flight, FlightLimit, Flights, during, flights};
+pub use physical::certificate::Certificate;
+pub use physical::constraint::{ActiveConstraint, Constraint};
+pub use physical::failure::SolverFailure;
+pub use physical::limits::Limit;
+pub use physical::prior::Prior;
+pub use polhode::record::{Record, RecordError, Segment, Spike};
+pub use polhode::units::{RateUnit, TimeUnit};
+pub use report::averages::AverageAxis;
+pub use report::estimate::{Estimate, Residuals};
+pub use report::identifiability::{Identifiability, PrincipalAxis, Undetermined};
+pub use report::motion::FittedMotion;
+pub use report::nuisance::{Agreement, Nuisance, SegmentSummary, Systematic, Torque};
+pub use report::scale::Known;
+pub use report::torque_free::{InvariantTrend, Whiteness};
+pub use report::warning::Warning;
+pub use settings::{SensorPriors, Settings, TorqueModel, TorqueNoise, TorqueScope};
+pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_with};
+pub use weak::mistaken_units::MistakenUnit;
+pub use wheel::{WheelCalibration, calibrate_wheel};
+
+/// A chapter for those who measure.
+pub mod guide {
+    #[doc = include_str!("../records.md")]
+    pub mod records {}
+}

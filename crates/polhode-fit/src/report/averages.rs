@@ -1,0 +1,84 @@
+//! Bounds on the principal axes from averages over a record, where no tensor was found.
+//!
+//! One test function over a whole segment turns Euler's equation into [M, J]_ij = ε_ijk (J v)_k with M = ∫ φ ω ωᵀ dt and
+//! v = ∫ φ' ω dt. Noise adds a multiple of 1 to M, which commutes with J. In the eigenframe of M, with eigenvalues λ,
+//! (λ_i − λ_j) J_ij is a component of J v, and no moment of a body exceeds half the trace: |J_ij| ≤ ½ |v| / |λ_i − λ_j|.
+
+use core::fmt;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::identifiability::{VAGUE, direction};
+use crate::physical::coordinates::eigen;
+use crate::weak::noise::SURE;
+use crate::weak::test_functions::{Seen, Stretch, TestFunctions};
+
+/// An axis that is principal to within a bound, if no torque acted on the body.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AverageAxis {
+    /// Unit vector in sensor axes.
+    pub axis: Vector3<f64>,
+    /// Upper bound on the products of inertia of this axis with the others, as a share of the trace.
+    pub product: f64,
+}
+
+impl fmt::Display for AverageAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let axis = direction(&self.axis);
+        write!(
+            f,
+            "{axis} is a principal axis if no torque acted, to within products of inertia of {:.4} of the trace",
+            self.product
+        )
+    }
+}
+
+/// Parts of a stretch whose mean squares of the rates are compared.
+const PARTS: usize = 8;
+/// Largest difference of two of them, over their mean, that a body keeps up without a torque.
+const UNEVEN: f64 = 0.5;
+
+/// Whether the mean square of the rates stays the same along a stretch: a hand that holds the body changes it.
+fn steady(s: &Stretch) -> bool {
+    let size = s.rates.len().div_ceil(PARTS).max(1);
+    let means = s
+        .rates
+        .chunks(size)
+        .map(|part| part.iter().map(|w| w.norm_squared()).sum::<f64>() / part.len() as f64);
+    let (low, high) = means.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), m| (a.min(m), b.max(m)));
+    high - low <= UNEVEN * 0.5 * (high + low)
+}
+
+/// The axes whose products of inertia have a useful bound.
+pub(crate) fn axes(stretches: &[Stretch], variance: f64) -> Vec<AverageAxis> {
+    if !stretches.iter().all(steady) {
+        return Vec::new();
+    }
+    let (mut m, mut v) = (Matrix3::zeros(), Vector3::zeros());
+    let (mut squares, mut slopes) = (0.0, 0.0);
+    for s in stretches {
+        let Some(tests) = TestFunctions::new(s, 0.5 * s.duration()) else { continue };
+        for ((&t, w), &weight) in s.times.iter().zip(&s.rates).zip(&s.weights) {
+            let seen = Seen::new(&tests, t);
+            let (slope, value) = (weight * seen.slope[0], weight * seen.value[0]);
+            m += w * w.transpose() * value;
+            v += w * slope;
+            squares += value * value * w.norm_squared();
+            slopes += slope * slope;
+        }
+    }
+    // expected squares of the noise in v, and of that in M (Frobenius), whose commutator with J is at most half of it
+    let noise = SURE * ((3.0 * variance * slopes).sqrt() + (8.0 * variance * squares).sqrt());
+    let (values, directions) = eigen(m);
+    (0..3)
+        .map(|k| {
+            let gap = (0..3)
+                .filter(|&i| i != k)
+                .map(|i| (values[i] - values[k]).abs())
+                .fold(f64::INFINITY, f64::min);
+            AverageAxis { axis: directions.column(k).into_owned(), product: 0.5 * (v.norm() + noise) / gap }
+        })
+        .filter(|a| a.product <= VAGUE)
+        .collect()
+}

@@ -1,0 +1,125 @@
+//! The estimate: a tensor, how well it is known, and what contradicts it.
+
+use nalgebra::{SMatrix, UnitQuaternion};
+use polhode::inertia::{Inertia, InertiaShape};
+use polhode::record::Spike;
+
+use super::identifiability::Identifiability;
+use super::nuisance::{Agreement, Nuisance, SegmentSummary, Systematic, Torque};
+use super::torque_free::{InvariantTrend, Whiteness};
+use super::warning::Warning;
+use crate::physical::certificate::Certificate;
+use crate::physical::constraint::ActiveConstraint;
+
+/// Whitened residuals of one segment: standard normal where model and noise are right.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Residuals {
+    /// Index of the segment in the record.
+    pub segment: usize,
+    /// Centres of the test functions, s.
+    pub times: Vec<f64>,
+    /// The residuals of each, three components in standard deviations.
+    pub values: Vec<[f64; 3]>,
+    /// Their mean square.
+    pub mean_square: f64,
+}
+
+/// A fitted tensor and how far to trust it.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode_fit::{Record, Settings, Warning, fit, simulate};
+/// use polhode::inertia::Inertia;
+/// use polhode::num::Random;
+/// # let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+/// # let times: Vec<f64> = (0..2000).map(|i| f64::from(i) / 100.0).collect();
+/// # let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
+/// let estimate = fit(&Record::from_samples(&times, &rates)?, &Settings::default())?;
+/// for k in 0..3 {
+///     println!("I{} = {:.5} +- {:.5} of the trace", k + 1, estimate.principal[k], estimate.sigma_principal[k]);
+/// }
+/// let torque = |w: &Warning| matches!(w, Warning::MomentumTrend(_) | Warning::EnergyTrend(_));
+/// assert!(!estimate.warnings.iter().any(torque)); // a free body keeps both
+/// assert!(estimate.bound_ratio.is_some_and(|ratio| ratio < 1.2)); // next to the Cramér–Rao bound
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The tensor with trace 1, sensor axes.
+    pub shape: InertiaShape,
+    /// Its principal moments, ascending, as shares of the trace.
+    pub principal: [f64; 3],
+    /// Their standard deviations, as shares of the trace.
+    pub sigma_principal: [f64; 3],
+    /// Takes coordinates along the principal axes (ascending, right-handed) to sensor axes.
+    pub axes: UnitQuaternion<f64>,
+    /// Standard deviations of the turn about each principal axis, rad; infinite where two moments agree.
+    pub sigma_axes: [f64; 3],
+    /// The ratios I₁/I₃ and I₂/I₃.
+    pub ratios: [f64; 2],
+    /// Their standard deviations.
+    pub sigma_ratios: [f64; 2],
+    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the shape, shares² of the trace; rank 5. Of an answer that a
+    /// constraint holds it is the mean square distance from it of what the record tells within the constraints.
+    pub covariance: SMatrix<f64, 6, 6>,
+    /// Covariance of the same before the physical law was imposed, with the prior: what a test of other tensors should use.
+    pub free_covariance: SMatrix<f64, 6, 6>,
+    /// The Cramér–Rao bound on it, shares² of the trace; `None` where the tensor has no inverse, or no free motion of it explains the samples.
+    pub bound: Option<SMatrix<f64, 6, 6>>,
+    /// Root of the trace of [`free_covariance`](Self::free_covariance) over that of the bound; 1 is efficient.
+    pub bound_ratio: Option<f64>,
+    /// Absolute tensor, kg m², sensor axes; `None` where nothing gives its size, as [`Settings::known`](crate::Settings::known)
+    /// does, or wheels and torques of the record.
+    pub inertia: Option<Inertia>,
+    /// Covariance of its entries xx, yy, zz, xy, xz, yz, (kg m²)².
+    pub inertia_covariance: Option<SMatrix<f64, 6, 6>>,
+    /// Step of each component of the readings, rad/s, as found or given; 0 where there is none.
+    pub quanta: [f64; 3],
+    /// Noise of one component of the rates, rad/s.
+    pub noise_sigma: f64,
+    /// Mean square of the residuals over the noise; the covariance is multiplied by it, before law and limits are
+    /// imposed, where it exceeds 1.
+    pub chi2_per_dof: f64,
+    /// Distance, in standard deviations, from the unconstrained estimate: how far the physical law and limits moved it.
+    pub pull: f64,
+    /// Degrees of freedom: equations beyond the five unknowns.
+    pub dof: usize,
+    /// Number of samples of the segments that were long enough.
+    pub samples: usize,
+    /// Number of segments that were long enough.
+    pub segments: usize,
+    /// Half width of the test functions, s.
+    pub radius: f64,
+    /// Which of the five numbers the record determines; without a prior tensor all.
+    pub identifiability: Identifiability,
+    /// I₁ + I₂ − I₃ as a share of the trace; never negative.
+    pub triangle_slack: f64,
+    /// Active constraints: the physical law, or limits.
+    pub active_constraints: Vec<ActiveConstraint>,
+    /// Residuals of the conditions of optimality.
+    pub certificate: Certificate,
+    /// Trend of |J ω|.
+    pub momentum_trend: InvariantTrend,
+    /// Trend of 2T = ω·J ω.
+    pub energy_trend: InvariantTrend,
+    /// Correlation of neighbouring residuals.
+    pub whiteness: Whiteness,
+    /// The torque that the fit reckons with.
+    pub torque: Torque,
+    /// What was estimated of the sensor, each with its prior.
+    pub nuisances: Vec<Nuisance>,
+    /// What errors of the sensor that the fit takes to be zero would do to the moments.
+    pub systematic: Vec<Systematic>,
+    /// How the record agrees with [`Settings::prior`](crate::Settings::prior).
+    pub prior: Option<Agreement>,
+    /// Each segment that was long enough.
+    pub per_segment: Vec<SegmentSummary>,
+    /// Samples that were left out because they stand out of their neighbours.
+    pub spikes: Vec<Spike>,
+    /// Residuals by segment.
+    pub residuals: Vec<Residuals>,
+    /// What limits the use of the estimate.
+    pub warnings: Vec<Warning>,
+}

@@ -1,0 +1,301 @@
+//! The report, drawn from the record, its weak estimate and the nearest physical tensor.
+
+use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
+use polhode::inertia::{Inertia, InertiaShape};
+use polhode::record::Record;
+use polhode::record::Spike;
+
+use super::columns::{is_torque, nuisances};
+use super::estimate::{Estimate, Residuals};
+use super::identifiability::Identifiability;
+use super::nuisance::{Agreement, Nuisance, Torque};
+use super::segments::summaries;
+use super::systematic::systematic;
+use super::torque_free::{InvariantTrend, Whiteness, trends};
+use super::warnings::{Grounds, warnings};
+use crate::cramer_rao::Motions;
+use crate::error::FitError;
+use crate::physical::constraint::{ActiveConstraint, Constraint};
+use crate::physical::coordinates::{Coordinates, ENTRIES, Form, eigen, entries_of_coordinates, pair, tensor};
+use crate::physical::dissipation::Dissipation;
+use crate::physical::face::Nearest;
+use crate::physical::failure::SolverFailure;
+use crate::physical::law::LARGEST_SHARE;
+use crate::physical::nearest::Normal;
+use crate::physical::prior::{Prior, Told};
+use crate::physical::truncated::spread;
+use crate::settings::{Settings, TorqueModel, TorqueNoise};
+use crate::weak::joint::Joint;
+use crate::weak::ladder::Chosen;
+use crate::weak::mistaken_units::Better;
+use crate::weak::model::{Column, Kind, Unknowns};
+use crate::weak::noise::SURE;
+use crate::weak::test_functions::Stretch;
+
+/// What the report is drawn from.
+pub(crate) struct Facts<'a> {
+    pub(crate) record: &'a Record,
+    pub(crate) settings: &'a Settings,
+    pub(crate) stretches: &'a [Stretch],
+    pub(crate) rms: f64,
+    pub(crate) variance: f64,
+    pub(crate) chosen: &'a Chosen,
+    pub(crate) misfit: f64,
+    pub(crate) spikes: Vec<Spike>,
+    /// Unit of the column of wheel momenta and torques, kg m².
+    pub(crate) input: Option<f64>,
+    pub(crate) joint: &'a Joint,
+    /// What record and prior tell of the columns that are kept and the tensor.
+    pub(crate) told: &'a Normal,
+    pub(crate) prior: Option<Agreement>,
+    pub(crate) dissipation: &'a [Dissipation],
+}
+
+impl Facts<'_> {
+    /// Everything that can be said of the answer.
+    pub(crate) fn report(
+        &self,
+        nearest: Nearest,
+        identifiability: Identifiability,
+        better: Option<&Better>,
+    ) -> Result<Estimate, FitError> {
+        let weak = &self.chosen.weak;
+        let singular = || FitError::Solver(SolverFailure::Information);
+        let kept = self.joint.kept.len();
+        // R⁻¹, a factor of the covariance
+        let joint_factor = self.told.root.clone().try_inverse().ok_or_else(singular)?;
+        let free: Form = joint_factor.fixed_view::<5, 5>(kept, kept).into_owned();
+        // of an answer that is held, what the record tells inside the walls; far outside, what it tells without them
+        let answer = DVector::from_iterator(kept + 5, nearest.others.iter().chain(nearest.x.iter()).copied());
+        let cut = if nearest.active.is_empty() {
+            None
+        } else {
+            let limits = &self.settings.limits;
+            spread(&self.told.centre, &joint_factor, limits, self.dissipation, &answer)
+        };
+        let together = cut.clone().unwrap_or_else(|| &joint_factor * joint_factor.transpose());
+        let of_tensor = cut.as_ref().map(|m| m.fixed_view::<5, 5>(kept, kept).into_owned());
+        let on_face = of_tensor.and_then(|m| m.cholesky()).map_or(free, |factor| factor.l());
+        let held: Vec<(usize, f64)> = cut
+            .iter()
+            .flat_map(|m| self.joint.kept.iter().enumerate().map(|(place, &k)| (k, m[(place, place)].sqrt())))
+            .collect();
+        let shape = shape_of(&tensor(&nearest.x))?;
+        let j = shape.tensor();
+        let (moments, _) = eigen(j);
+        let axes = Inertia::from_tensor(j).map_or(UnitQuaternion::identity(), |i| i.principal_axes());
+        let v: [Vector3<f64>; 3] = core::array::from_fn(|k| axes * Vector3::ith(k, 1.0));
+        let deviation = |g: Coordinates| (on_face.transpose() * g).norm();
+        let sigma_principal = core::array::from_fn(|k| deviation(pair(&v[k], &v[k])));
+        let sigma_axes = core::array::from_fn(|k| {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            deviation(pair(&v[a], &v[b])) / (moments[a] - moments[b]).abs()
+        });
+        let ratio = |k: usize| {
+            let slope = (pair(&v[k], &v[k]) - pair(&v[2], &v[2]) * (moments[k] / moments[2])) / moments[2];
+            (moments[k] / moments[2], deviation(slope))
+        };
+        let entries = entries_of_coordinates();
+        // of a factor, so that no variance is negative
+        let of_entries = |factor: Form| (entries * factor) * (entries * factor).transpose();
+        // a motion under torques, or of other rates than those of the record, is not that of a free body
+        let free_body = weak.columns.is_empty();
+        let motions =
+            free_body.then(|| Motions::nearest(self.stretches, &nearest.x, self.variance)).flatten();
+        let bound = motions.as_ref().and_then(|m| m.bound(self.variance));
+        let bound_ratio = bound.filter(|_| self.prior.is_none()).map(|b| free.norm() / b.trace().sqrt());
+        let covariance = on_face * on_face.transpose();
+        let at = self.joint.unknowns(&nearest.others, nearest.x);
+        let (inertia, inertia_covariance) =
+            self.absolute(&j, &covariance, &together, motions.as_ref(), &at)?;
+        let (momentum, energy) = trends(self.stretches, &j, self.variance * self.misfit.max(1.0));
+        let per_second =
+            |d: InvariantTrend| InvariantTrend { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
+        let residuals = self.residuals(&at);
+        let (torques, sensor) = self.nuisances(&at, &held);
+        let pull = nearest.pull;
+        let mut estimate = Estimate {
+            principal: [moments[0], moments[1], moments[2]],
+            sigma_principal,
+            axes,
+            sigma_axes,
+            ratios: [ratio(0).0, ratio(1).0],
+            sigma_ratios: [ratio(0).1, ratio(1).1],
+            covariance: of_entries(on_face),
+            free_covariance: of_entries(free),
+            bound: bound.map(|b| entries * b * entries.transpose()),
+            bound_ratio,
+            inertia,
+            inertia_covariance,
+            quanta: self.settings.quantum.map_or_else(|| self.record.quanta().into(), |quantum| [quantum; 3]),
+            noise_sigma: self.variance.sqrt() * self.rms,
+            chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / weak.dof().max(1) as f64,
+            pull,
+            dof: weak.dof(),
+            samples: residuals.iter().map(|r| self.record.segments[r.segment].times().len()).sum(),
+            segments: residuals.len(),
+            radius: weak.radius / self.rms,
+            identifiability,
+            triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
+            active_constraints: nearest.active.into_iter().map(|c| self.in_seconds(c)).collect(),
+            certificate: nearest.certificate,
+            momentum_trend: per_second(momentum),
+            energy_trend: per_second(energy),
+            whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
+            torque: torques,
+            nuisances: sensor,
+            systematic: systematic(weak, self.stretches, &v, &moments.into(), self.variance, self.rms),
+            prior: self.prior,
+            per_segment: summaries(weak, self.record, self.variance, self.rms),
+            spikes: self.spikes.clone(),
+            residuals,
+            warnings: Vec::new(),
+            shape,
+        };
+        let found = self.settings.torque == TorqueModel::Auto;
+        let grounds = Grounds {
+            record: self.record,
+            weak,
+            misfit: self.misfit,
+            better,
+            found,
+            noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
+            driven: self.input.is_some(),
+        };
+        estimate.warnings = warnings(&estimate, &grounds);
+        Ok(estimate)
+    }
+
+    /// The multiplier of a drag per unit of it in 1/s.
+    fn in_seconds(&self, active: ActiveConstraint) -> ActiveConstraint {
+        let unit = match active.constraint {
+            Constraint::Drag { .. } | Constraint::DragMatrix { .. } => self.rms,
+            _ => 1.0,
+        };
+        ActiveConstraint { multiplier: active.multiplier / unit, ..active }
+    }
+
+    fn absolute(
+        &self,
+        j: &Matrix3<f64>,
+        covariance: &Form,
+        together: &DMatrix<f64>,
+        motions: Option<&Motions<'_>>,
+        at: &Unknowns,
+    ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+        if let Some(unit) = self.input {
+            return self.by_inputs(j, unit, together, at);
+        }
+        let prior = self.settings.prior.as_ref().map(Prior::told).transpose()?.filter(|prior| prior.sized);
+        let Some(known) = self.settings.known else {
+            return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, &at.x));
+        };
+        let scale = known.scale(self.stretches, self.rms, j, self.variance);
+        let trace = scale.trace;
+        if let Some(prior) = prior {
+            let (expected, sigma) = (prior.trace, prior.size_deviation());
+            if libm::log(trace / expected).abs() > SURE * sigma {
+                return Err(FitError::PriorSize { prior: expected, sigma: expected * sigma, known: trace });
+            }
+        }
+        // its covariance goes with the square
+        if !(trace * trace).is_normal() {
+            return Err(FitError::Setting { name: "the known quantity", value: known.value() });
+        }
+        let inertia =
+            Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
+        let excess = self.misfit.max(1.0);
+        Ok((Some(inertia), Some(scale.covariance(j, covariance, excess, motions))))
+    }
+
+    /// The absolute tensor J/u by wheel momenta and torques, where u stands out of its noise; `together` is the covariance
+    /// of the columns that are kept and the tensor.
+    fn by_inputs(
+        &self,
+        j: &Matrix3<f64>,
+        unit: f64,
+        together: &DMatrix<f64>,
+        at: &Unknowns,
+    ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+        let is_input = |&k: &usize| self.chosen.weak.columns[k].kind == Kind::Input;
+        let Some(place) = self.joint.kept.iter().position(is_input) else { return Ok((None, None)) };
+        let u = at.c[self.joint.kept[place]];
+        if u <= SURE * together[(place, place)].sqrt() {
+            return Ok((None, None));
+        }
+        let trace = unit / u;
+        let inertia =
+            Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
+        // d(J/u) = dJ/u − J du/u²
+        let entries = entries_of_coordinates();
+        let first = self.joint.kept.len();
+        let slope = DMatrix::from_fn(6, first + 5, |row, l| match l {
+            l if l >= first => trace * entries[(row, l - first)],
+            l if l == place => -trace * j[ENTRIES[row]] / u,
+            _ => 0.0,
+        });
+        let covariance = &slope * together * slope.transpose();
+        Ok((Some(inertia), Some(SMatrix::from_fn(|row, column| covariance[(row, column)]))))
+    }
+
+    /// The coefficients of the torque, and what was estimated of the sensor.
+    fn nuisances(&self, at: &Unknowns, held: &[(usize, f64)]) -> (Torque, Vec<Nuisance>) {
+        let variance = self.variance * self.misfit.max(1.0);
+        let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms, held);
+        let (torques, sensor): (Vec<_>, Vec<_>) = all
+            .into_iter()
+            .filter(|(column, _)| column.kind != Kind::Input)
+            .partition(|(column, _)| is_torque(column));
+        let values = |list: Vec<(Column, Nuisance)>| list.into_iter().map(|(_, n)| n).collect();
+        let ratios_without = self.chosen.without.map(|x| {
+            let (moments, _) = eigen(tensor(&x));
+            [moments[0] / moments[2], moments[1] / moments[2]]
+        });
+        let torque = Torque {
+            model: self.chosen.model,
+            coefficients: values(torques),
+            gain: self.chosen.gain,
+            ratios_without,
+        };
+        (torque, values(sensor))
+    }
+
+    fn residuals(&self, at: &Unknowns) -> Vec<Residuals> {
+        let deviation = self.variance.sqrt();
+        let each = self.chosen.weak.parts.iter();
+        each.map(|part| {
+            let start = self.record.segments[part.stretch].times().first().copied().unwrap_or(0.0);
+            let e = part.residuals(at);
+            let values: Vec<[f64; 3]> =
+                e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
+            Residuals {
+                segment: part.stretch,
+                times: part.centres().iter().map(|c| start + c / self.rms).collect(),
+                mean_square: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
+                values,
+            }
+        })
+        .collect()
+    }
+}
+
+/// The absolute tensor where only a prior gives its size.
+fn by_prior(
+    j: &Matrix3<f64>,
+    prior: &Told,
+    covariance: &Form,
+    x: &Coordinates,
+) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+    let (trace, slope, variance) = prior.size(x);
+    let inertia =
+        Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
+    let shape = SVector::<f64, 6>::from_fn(|row, _| j[ENTRIES[row]]) * trace;
+    let map = entries_of_coordinates() * trace + shape * slope.transpose();
+    let covariance = map * covariance * map.transpose() + shape * shape.transpose() * variance;
+    Ok((Some(inertia), Some(covariance)))
+}
+
+/// A tensor as a checked shape.
+pub(crate) fn shape_of(j: &Matrix3<f64>) -> Result<InertiaShape, FitError> {
+    InertiaShape::from_tensor(*j).map_err(|error| FitError::Solver(SolverFailure::Shape(error)))
+}

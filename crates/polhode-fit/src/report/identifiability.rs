@@ -1,0 +1,203 @@
+//! Which combinations of the five numbers a record determines, and which it does not.
+
+use core::fmt;
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::physical::coordinates::{Coordinates, Form, eigen, trace_free};
+
+/// A combination of entries with a larger standard deviation (share of the trace) counts as undetermined: physically
+/// valid tensors differ by at most 0.4 from the sphere.
+pub(crate) const VAGUE: f64 = 0.1;
+
+/// A principal axis that a record determines, though not the tensor. Its `Display` is a sentence.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipalAxis {
+    /// Unit vector in sensor axes, of either sign.
+    pub axis: Vector3<f64>,
+    /// Its number among the axes that [`Undetermined`] speaks of, from 1.
+    pub number: usize,
+}
+
+impl fmt::Display for PrincipalAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} is a principal axis, numbered {} here", direction(&self.axis), self.number)
+    }
+}
+
+/// A combination of entries that a record leaves undetermined. Its `Display` is a sentence.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Undetermined {
+    /// All ratios and axes: the motion cannot be told from its noise.
+    Everything,
+    /// I₂/I₃ of a pure spin about axis 1.
+    TransverseRatio,
+    /// I₁/I₂ of a pure spin about axis 1.
+    SpinRatio,
+    /// The directions of axes 2 and 3 of a pure spin about axis 1.
+    TransverseAxes,
+    /// Both ratios of a record of pure spins about several principal axes.
+    Ratios,
+    /// The ratio of two moments.
+    Ratio {
+        /// The axis of the one, from 1.
+        low: usize,
+        /// The axis of the other.
+        high: usize,
+    },
+    /// The directions of two axes about the third.
+    Axes {
+        /// The one, from 1.
+        low: usize,
+        /// The other.
+        high: usize,
+        /// The third.
+        about: usize,
+    },
+}
+
+impl fmt::Display for Undetermined {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Everything => "no ratio and no axis is determined: the motion cannot be told from its noise",
+            Self::TransverseRatio => "the ratio I2/I3 is undetermined: the record is a pure spin about axis 1",
+            Self::SpinRatio => {
+                "the ratio I1/I2 is undetermined: nothing compares the spin axis with the other two"
+            }
+            Self::TransverseAxes => "the directions of axes 2 and 3 are undetermined",
+            Self::Ratios => {
+                "the ratios I1/I2 and I2/I3 are undetermined: the record holds only pure spins about principal axes"
+            }
+            Self::Ratio { low, high } => return write!(f, "the ratio I{low}/I{high} is undetermined"),
+            Self::Axes { low, high, about } => {
+                return write!(f, "the directions of axes {low} and {high} about axis {about} are undetermined");
+            }
+        })
+    }
+}
+
+/// The spectrum of information about the five numbers of a tensor of trace 1.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identifiability {
+    /// Standard deviations (share of the trace) along the principal directions of the information, ascending; infinite
+    /// where the motion carries no information.
+    pub deviations: [f64; 5],
+    /// How many of the five are determined.
+    pub rank: usize,
+    /// The undetermined combinations.
+    pub null_directions: Vec<Undetermined>,
+    /// The same as trace-free tensors of Frobenius norm 1, dimensionless, in sensor axes.
+    pub null_tensors: Vec<Matrix3<f64>>,
+    /// The principal axes that are determined nevertheless.
+    pub known: Vec<PrincipalAxis>,
+}
+
+impl Identifiability {
+    /// From the singular values of the whitened equations with their directions; `scatter` is the mean of ω ωᵀ and
+    /// `estimate` the tensor so far.
+    pub(crate) fn new(
+        (singular, directions): &(Coordinates, Form),
+        scatter: &Matrix3<f64>,
+        estimate: &Matrix3<f64>,
+    ) -> Self {
+        let deviations =
+            core::array::from_fn(|k| if singular[k] > 0.0 { 1.0 / singular[k] } else { f64::INFINITY });
+        let null_tensors: Vec<_> = (0..5)
+            .filter(|&k| deviations[k] > VAGUE)
+            .map(|k| trace_free(&directions.column(k).into_owned()))
+            .collect();
+        let rank = 5 - null_tensors.len();
+        let (null_directions, known) = unknowns(&null_tensors, rank, scatter, estimate);
+        Identifiability { deviations, rank, null_directions, null_tensors, known }
+    }
+
+    /// Whether everything but the scale is determined.
+    pub fn complete(&self) -> bool {
+        self.rank == 5
+    }
+
+    /// Both lists in one sentence.
+    pub fn verdict(&self) -> String {
+        let known = if self.known.is_empty() { "nothing is known".into() } else { joined(&self.known) };
+        format!("{} of 5 numbers are known. {}. Known: {known}", self.rank, joined(&self.null_directions))
+    }
+}
+
+fn joined<T: fmt::Display>(facts: &[T]) -> String {
+    facts.iter().map(T::to_string).collect::<Vec<_>>().join("; ")
+}
+
+/// A unit vector of either sign, the largest component positive.
+pub(crate) fn direction(v: &Vector3<f64>) -> String {
+    let v = v * v[v.iamax()].signum();
+    format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z)
+}
+
+fn unknowns(
+    null: &[Matrix3<f64>],
+    rank: usize,
+    scatter: &Matrix3<f64>,
+    estimate: &Matrix3<f64>,
+) -> (Vec<Undetermined>, Vec<PrincipalAxis>) {
+    if rank == 5 {
+        return (Vec::new(), Vec::new());
+    }
+    let (spread, directions) = eigen(*scatter);
+    let main: Vector3<f64> = directions.column(2).into_owned();
+    if rank == 0 {
+        return (vec![Undetermined::Everything], Vec::new());
+    }
+    let common = common_frame(null);
+    let frame = common.unwrap_or_else(|| eigen(*estimate).1);
+    if rank <= 2 && spread[1] <= 0.05 * spread[2] {
+        return (
+            vec![Undetermined::TransverseRatio, Undetermined::SpinRatio, Undetermined::TransverseAxes],
+            vec![PrincipalAxis { axis: main, number: 1 }],
+        );
+    }
+    let known = (0..3)
+        .map(|k| frame.column(k).into_owned())
+        .enumerate()
+        .filter(|(_, v)| null.iter().all(|t| (t * v - v * v.dot(&(t * v))).norm() < 0.1))
+        .map(|(k, axis)| PrincipalAxis { axis, number: k + 1 })
+        .collect();
+    if common.is_some() && rank == 3 {
+        return (vec![Undetermined::Ratios], known);
+    }
+    let mut open = Vec::new();
+    for tensor in null {
+        let n = frame.transpose() * tensor * frame;
+        let off = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| (n[(i, j)].abs() * core::f64::consts::SQRT_2, i, j));
+        let diagonal = n.diagonal().norm();
+        let turn = off.iter().copied().fold((0.0, 0, 0), |a, b| if b.0 > a.0 { b } else { a });
+        if diagonal >= turn.0 {
+            let d = n.diagonal();
+            let (low, high) = (d.imin().min(d.imax()) + 1, d.imin().max(d.imax()) + 1);
+            open.push(Undetermined::Ratio { low, high });
+        } else {
+            let third = 3 - turn.1 - turn.2;
+            open.push(Undetermined::Axes { low: turn.1 + 1, high: turn.2 + 1, about: third + 1 });
+        }
+    }
+    (open, known)
+}
+
+/// The axes that diagonalise all of `null`, if there are such.
+fn common_frame(null: &[Matrix3<f64>]) -> Option<Matrix3<f64>> {
+    // one of these has three distinct eigenvalues, whose axes are the only candidates
+    let sums = null.iter().flat_map(|a| null.iter().flat_map(move |b| [*a, a + b, a - b]));
+    let gap = |m: &Matrix3<f64>| {
+        let (values, _) = eigen(*m);
+        (values[1] - values[0]).min(values[2] - values[1])
+    };
+    let best = sums.max_by(|a, b| gap(a).total_cmp(&gap(b)))?;
+    let (_, frame) = eigen(best);
+    let off = |t: &Matrix3<f64>| {
+        let n = frame.transpose() * t * frame;
+        n[(0, 1)].abs().max(n[(0, 2)].abs()).max(n[(1, 2)].abs())
+    };
+    null.iter().all(|t| off(t) < 0.1).then_some(frame)
+}

@@ -1,0 +1,80 @@
+//! What was estimated beside the tensor, and what errors of the sensor would do to the moments.
+
+use crate::settings::TorqueModel;
+
+/// A number that was estimated beside the tensor.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nuisance {
+    /// Its name, as `drag` or `offset_x`.
+    pub name: &'static str,
+    /// Its unit, empty for a ratio.
+    pub unit: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// The standard deviation of its prior, where it has one.
+    pub prior: Option<f64>,
+    /// The segment that it is of, from 0, where each has its own.
+    pub segment: Option<usize>,
+}
+
+/// The torque that a fit reckons with.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Torque {
+    /// The model; never [`TorqueModel::Auto`].
+    pub model: TorqueModel,
+    /// Its coefficients.
+    pub coefficients: Vec<Nuisance>,
+    /// Gain of log-likelihood over no torque, where both were fitted.
+    pub gain: Option<f64>,
+    /// I₁/I₃ and I₂/I₃ as they would be without the torque.
+    pub ratios_without: Option<[f64; 2]>,
+}
+
+/// What an error of the sensor, or a wheel inside the body, that the fit takes to be zero would do to the moments.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Systematic {
+    /// The error, as `offset_x`; `wheel_x` is a constant momentum inside the body, `walk` a random walk of the offsets.
+    pub name: &'static str,
+    /// Its size.
+    pub size: f64,
+    /// The unit of its size, empty for a ratio.
+    pub unit: &'static str,
+    /// The change of the principal moments, as shares of the trace, that an error of this size makes; of a walk its
+    /// standard deviation.
+    pub principal: [f64; 3],
+    /// The same of I₁/I₃ and I₂/I₃.
+    pub ratios: [f64; 2],
+}
+
+/// How a prior tensor and a record agree.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Agreement {
+    /// Square of their distance in standard deviations of it: χ² where both are right.
+    pub chi2: f64,
+    /// Its degrees of freedom.
+    pub dof: usize,
+}
+
+/// One segment of a record in a fit.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct SegmentSummary {
+    /// Index of the segment in the record.
+    pub segment: usize,
+    /// Samples that were used.
+    pub samples: usize,
+    /// Noise of one component of its rates, rad/s.
+    pub noise_sigma: f64,
+    /// Power spectral density of its torque noise, (rad/s²)² s.
+    pub torque_noise: f64,
+    /// Its share of the information about the tensor: the shares of all segments sum to 1.
+    pub weight: f64,
+    /// Distance, in standard deviations of the estimate, by which the tensor moves where the segment is left out.
+    pub shift: f64,
+}

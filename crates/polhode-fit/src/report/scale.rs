@@ -1,0 +1,184 @@
+//! The absolute size of a tensor whose shape is known.
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+use crate::cramer_rao::Motions;
+use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis, entries_of_coordinates, pair};
+use crate::weak::test_functions::Stretch;
+
+/// A quantity that is known besides the motion, in SI units: it gives the tensor its scale.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode_fit::{Known, Settings};
+/// // from a pendulum: the moment about the z axis, kg m²
+/// let known = Known::Moment { axis: Vector3::z(), value: 2.4e-3 };
+/// let settings = Settings { known: Some(known), ..Settings::default() };
+/// assert_eq!(settings.known, Some(known));
+/// ```
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Known {
+    /// The magnitude |L| of the angular momentum of every segment, kg m²/s.
+    Momentum(f64),
+    /// Twice the kinetic energy of every segment, kg m²/s².
+    TwiceEnergy(f64),
+    /// The moment about an axis (any non-zero vector in sensor axes), kg m².
+    Moment {
+        /// Any non-zero vector along the axis, sensor axes.
+        axis: Vector3<f64>,
+        /// The moment, kg m².
+        value: f64,
+    },
+    /// The trace of the tensor, kg m².
+    Trace(f64),
+}
+
+impl Known {
+    /// The given value.
+    pub(crate) fn value(self) -> f64 {
+        match self {
+            Known::Momentum(v) | Known::TwiceEnergy(v) | Known::Trace(v) | Known::Moment { value: v, .. } => {
+                v
+            }
+        }
+    }
+
+    /// The trace of a tensor of shape `j` from rates in units of their root mean square `rms`, rad/s, whose noise has
+    /// `variance` in those units.
+    pub(crate) fn scale(self, stretches: &[Stretch], rms: f64, j: &Matrix3<f64>, variance: f64) -> Scale {
+        match self {
+            Known::Trace(trace) => Scale { trace, slope: Coordinates::zeros(), mean: None },
+            Known::Moment { axis, value } => {
+                let n = axis.normalize();
+                let share = n.dot(&(j * n));
+                let trace = value / share;
+                Scale { trace, slope: pair(&n, &n) * (-trace / share), mean: None }
+            }
+            Known::TwiceEnergy(value) => {
+                let mean = Mean::new(stretches, *j, basis, variance);
+                // one by one, so that no square of a rate underflows
+                let trace = value / rms / rms / mean.value;
+                mean.scale(trace, 1.0)
+            }
+            Known::Momentum(value) => {
+                let change = |k| j * basis(k) + basis(k) * j;
+                let mean = Mean::new(stretches, j * j, change, variance);
+                let trace = value / rms / mean.value.sqrt();
+                mean.scale(trace, 0.5)
+            }
+        }
+    }
+}
+
+/// The mean of ω·M ω over all samples, free of the bias by noise.
+struct Mean {
+    m: Matrix3<f64>,
+    value: f64,
+    /// Its gradient with respect to the coordinates of the shape.
+    slope: Coordinates,
+    /// Of the mean at a given shape.
+    variance: f64,
+    samples: f64,
+}
+
+impl Mean {
+    /// ω + n has ω·M ω + 2 n·M ω + n·M n: a mean that is larger by σ² tr M, a variance of 4 σ² |M ω|² + 2 σ⁴ tr M².
+    fn new(
+        stretches: &[Stretch],
+        m: Matrix3<f64>,
+        change: impl Fn(usize) -> Matrix3<f64>,
+        variance: f64,
+    ) -> Mean {
+        let (mut scatter, mut samples) = (Matrix3::zeros(), 0.0);
+        for w in stretches.iter().flat_map(|s| &s.rates) {
+            scatter += w * w.transpose();
+            samples += 1.0;
+        }
+        let scatter = scatter / samples - Matrix3::identity() * variance;
+        let of_one = 4.0 * scatter.dot(&(m * m)).max(0.0) + 2.0 * variance * m.norm_squared();
+        let slope = Coordinates::from_fn(|k, _| scatter.dot(&change(k)));
+        Mean { m, value: scatter.dot(&m), slope, variance: variance * of_one / samples, samples }
+    }
+
+    /// The scale from a trace that goes with the inverse `power` of the mean.
+    fn scale(self, trace: f64, power: f64) -> Scale {
+        let per_mean = -power * trace / self.value;
+        Scale { trace, slope: self.slope * per_mean, mean: Some((self, per_mean)) }
+    }
+}
+
+/// The trace of a tensor whose shape is known.
+pub(crate) struct Scale {
+    pub(crate) trace: f64,
+    /// Its gradient with respect to the coordinates of the shape.
+    slope: Coordinates,
+    /// The mean that it was read from, and its derivative with respect to that.
+    mean: Option<(Mean, f64)>,
+}
+
+impl Scale {
+    /// Covariance of the entries of trace × J from that of the coordinates of J; what the noise does not explain has
+    /// enlarged the latter by `excess`.
+    ///
+    /// Shape and mean carry the same noise. Their covariance is taken as for an efficient estimate of the shape at the
+    /// given motions; without motions, the two are taken to err together as badly as they can.
+    pub(crate) fn covariance(
+        &self,
+        j: &Matrix3<f64>,
+        shape: &Form,
+        excess: f64,
+        motions: Option<&Motions<'_>>,
+    ) -> SMatrix<f64, 6, 6> {
+        let entries = SVector::<f64, 6>::from_fn(|k, _| j[ENTRIES[k]]);
+        let map = entries_of_coordinates() * self.trace + entries * self.slope.transpose();
+        let of_shape = map * shape * map.transpose();
+        let Some((mean, per_mean)) = &self.mean else { return of_shape };
+        let variance = mean.variance * excess;
+        let own = entries * *per_mean;
+        let of_mean = own * own.transpose() * variance;
+        if let Some(shared) = motions.and_then(|motions| motions.shared(&mean.m)) {
+            let both = shape * shared / mean.samples;
+            // no more than all of the mean's noise, which an estimate short of efficient would seem to share
+            let most = (variance / shared.dot(&both).abs() * mean.samples).sqrt().min(1.0);
+            let mixed = map * both * own.transpose() * most;
+            return of_shape + mixed + mixed.transpose() + of_mean;
+        }
+        // (a + b)(a + b)ᵀ <= (1 + t) a aᵀ + (1 + 1/t) b bᵀ for every t; this one makes the trace least
+        let t = (of_mean.trace() / of_shape.trace()).sqrt();
+        if t > 0.0 && t.is_finite() {
+            of_shape * (1.0 + t) + of_mean * (1.0 + 1.0 / t)
+        } else {
+            of_shape + of_mean
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without motions the covariance holds for errors of shape and mean that are correlated as badly as they can be, in
+    /// every direction, with the least trace of such bounds.
+    #[test]
+    fn without_motions_shape_and_mean_may_err_together() {
+        let times: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i)).collect();
+        let rates = times.iter().map(|t| Vector3::new(0.3, 1.0 - 0.1 * t, 0.2 * t)).collect();
+        let j = Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45));
+        let scale = Known::TwiceEnergy(3.0).scale(&[Stretch::new(times, rates)], 1.0, &j, 1e-4);
+        let factor = Form::from_fn(|i, k| 1e-3 / (1.0 + ((3 * i + 2 * k) % 7) as f64));
+        let shape = factor * factor.transpose();
+        let of_shape = scale.covariance(&j, &shape, 0.0, None);
+        let of_mean = scale.covariance(&j, &Form::zeros(), 2.0, None);
+        let both = scale.covariance(&j, &shape, 2.0, None);
+        let root = |c: &SMatrix<f64, 6, 6>, v: &SVector<f64, 6>| v.dot(&(c * v)).max(0.0).sqrt();
+        for k in 0..36 {
+            let v = SVector::<f64, 6>::from_fn(|i, _| f64::from((k * (i as u32 + 3) * 7) % 11) - 5.0);
+            let together = root(&of_shape, &v) + root(&of_mean, &v);
+            assert!(root(&both, &v) >= together * (1.0 - 1e-12), "{k}");
+        }
+        let least = of_shape.trace().sqrt() + of_mean.trace().sqrt();
+        assert!((both.trace() / (least * least) - 1.0).abs() < 1e-12);
+        assert!(of_mean.trace() > 0.0 && of_shape.trace() > 0.0);
+    }
+}

@@ -1,0 +1,220 @@
+//! What limits the use of an estimate.
+
+use core::fmt;
+
+use super::nuisance::Torque;
+use super::torque_free::{InvariantTrend, Whiteness};
+use crate::physical::constraint::ActiveConstraint;
+use crate::weak::mistaken_units::{MistakenUnit, alternatives};
+
+/// What limits the use of an estimate. Its `Display` is a sentence.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warning {
+    /// Samples of the same time were averaged.
+    Merged {
+        /// Samples that were merged into another.
+        samples: usize,
+    },
+    /// Samples at the end of the sensor's range were left out.
+    Saturated {
+        /// Samples that were left out.
+        samples: usize,
+    },
+    /// Samples that stand out of their neighbours were left out.
+    Spikes {
+        /// Samples that were left out.
+        samples: usize,
+        /// Line of the first of them.
+        line: usize,
+    },
+    /// The residuals ask for a torque at random.
+    TorqueNoise {
+        /// Largest power spectral density of the angular acceleration among the segments, (rad/s²)² s.
+        density: f64,
+    },
+    /// Segments were left out, as too short for the test functions.
+    ShortSegments {
+        /// Segments that were left out.
+        short: usize,
+        /// Segments of the record.
+        segments: usize,
+    },
+    /// The residuals exceed the noise.
+    Residuals {
+        /// Root mean square of the residuals over the noise.
+        times: f64,
+        /// Noise of one component, rad/s.
+        noise: f64,
+    },
+    /// The iteration had not converged where it ended.
+    NotConverged {
+        /// Standard deviations by which a further round would move the tensor.
+        moved: f64,
+    },
+    /// Other units explain the record better.
+    Units {
+        /// Factor on rate × time.
+        factor: f64,
+        /// What may have happened, the smallest factor first.
+        mistakes: Vec<MistakenUnit>,
+        /// χ² per degree of freedom as given.
+        misfit: f64,
+        /// The same with the factor.
+        better: f64,
+    },
+    /// The residuals are not white.
+    Correlated(Whiteness),
+    /// The angular momentum |J ω| changes.
+    MomentumTrend(InvariantTrend),
+    /// The energy ω·J ω changes.
+    EnergyTrend(InvariantTrend),
+    /// Wheel momenta and torques of the record are too small to give the tensor its size.
+    NoScale,
+    /// A torque was found and reckoned with.
+    Torque(Torque),
+    /// The residuals of one segment exceed those of the median segment.
+    NoisySegment {
+        /// Which segment of the record, from 0.
+        segment: usize,
+        /// Its first time, s.
+        start: f64,
+        /// Root mean square of its residuals over that of the median segment.
+        times: f64,
+    },
+    /// The physical law or a limit is active.
+    Held(ActiveConstraint),
+    /// The record contradicts the physical law or the limits.
+    Contradiction {
+        /// Distance, in standard deviations, from the unconstrained estimate.
+        pull: f64,
+    },
+    /// The tensor is so uncertain that the linear covariance is only a guide.
+    Uncertain {
+        /// Standard deviation of the tensor, as a share of its trace.
+        deviation: f64,
+    },
+    /// Two moments agree within their errors, so that their axes are arbitrary.
+    EqualMoments {
+        /// The lower of the two, from 1.
+        low: usize,
+        /// The higher, from 1.
+        high: usize,
+    },
+    /// Few equations beyond the unknowns.
+    FewEquations {
+        /// Degrees of freedom.
+        dof: usize,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Merged { samples } => {
+                write!(f, "{} merged with the sample of the same time", counted(*samples, "was", "were"))
+            }
+            Self::Saturated { samples } => {
+                let (subject, verb) = if *samples == 1 { ("sample", "was") } else { ("samples", "were") };
+                write!(f, "{samples} {subject} at the end of the sensor's range (flat tops) {verb} left out")
+            }
+            Self::Spikes { samples, line } => write!(
+                f,
+                "{} left out as standing far out of what their neighbours foresee; the first is in line {line}",
+                counted(*samples, "was", "were")
+            ),
+            Self::TorqueNoise { density } => write!(
+                f,
+                "torques at random are part of the fit, with a density of up to {density:.1e} (rad/s^2)^2 s; an error of the \
+                 sensor may look like them, see the systematic changes"
+            ),
+            Self::ShortSegments { short, segments } => {
+                write!(f, "{short} of {segments} segments are too short for the test functions")
+            }
+            Self::Residuals { times, noise } => {
+                let times = if *times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
+                write!(
+                    f,
+                    "the residuals are {times} times what the noise of {noise:.2e} rad/s explains: torques, outliers or \
+                     a sensor that filters; deviations are enlarged by that factor"
+                )
+            }
+            Self::NotConverged { moved } => write!(
+                f,
+                "the iteration did not converge: a further round would move the tensor by {moved:.2} standard \
+                 deviations"
+            ),
+            Self::Units { factor, mistakes, misfit, better } => write!(
+                f,
+                "with rate x time {factor:.4e} times as large the misfit falls from {misfit:.2e} to {better:.2e}: {}?",
+                alternatives(mistakes)
+            ),
+            Self::Correlated(Whiteness { correlation, sigma }) => write!(
+                f,
+                "neighbouring residuals are correlated by {correlation:.2} +- {sigma:.2}: the noise is not white or the \
+                 model is wrong"
+            ),
+            Self::MomentumTrend(trend) => torque(f, "momentum |J w|", trend),
+            Self::EnergyTrend(trend) => torque(f, "energy w J w", trend),
+            Self::NoScale => f.write_str(
+                "the wheel momenta and torques do not stand out of the noise: the size of the tensor is unknown",
+            ),
+            Self::Torque(torque) => reckoned(f, torque),
+            Self::NoisySegment { segment, start, times } => write!(
+                f,
+                "segment {} (from {start} s) has {times:.1} times the residuals of the median segment: check it",
+                segment + 1
+            ),
+            Self::Held(ActiveConstraint { constraint, multiplier }) => {
+                write!(f, "{constraint} is an active constraint (multiplier {multiplier:.3e})")
+            }
+            Self::Contradiction { pull } => write!(
+                f,
+                "the physical law and the limits move the tensor {pull:.1} standard deviations from the unconstrained \
+                 estimate: the record contradicts them"
+            ),
+            Self::Uncertain { deviation } => write!(
+                f,
+                "the tensor has a standard deviation of {:.1} per cent of its trace: above half a per cent the linear \
+                 covariance is only approximate",
+                100.0 * deviation
+            ),
+            Self::EqualMoments { low, high } => write!(
+                f,
+                "moments {low} and {high} agree within their errors: the directions of their axes are arbitrary"
+            ),
+            Self::FewEquations { dof } => {
+                write!(f, "only {dof} degrees of freedom: chi squared is no reliable check")
+            }
+        }
+    }
+}
+
+fn torque(f: &mut fmt::Formatter<'_>, name: &str, trend: &InvariantTrend) -> fmt::Result {
+    let change = with_sigma(100.0 * trend.rate, 100.0 * trend.sigma);
+    write!(f, "not free of torques: the {name} changes by {change} per cent per second")
+}
+
+fn reckoned(f: &mut fmt::Formatter<'_>, torque: &Torque) -> fmt::Result {
+    let values = torque.coefficients.iter().filter(|c| c.segment.is_none());
+    let values = values.map(|c| format!("{} {} {}", c.name, with_sigma(c.value, c.sigma), c.unit));
+    let values: Vec<String> = values.collect();
+    let values = if values.is_empty() { "coefficients for each segment".into() } else { values.join(", ") };
+    write!(f, "not free of torques: the fit reckons with {values}")?;
+    match torque.ratios_without {
+        Some([first, second]) => write!(f, "; without it I1/I3 would be {first:.4} and I2/I3 {second:.4}"),
+        None => Ok(()),
+    }
+}
+
+/// Both to two digits of the deviation.
+fn with_sigma(value: f64, sigma: f64) -> String {
+    let digits = if sigma > 0.0 { 1.0 - libm::floor(libm::log10(sigma)) } else { 2.0 };
+    let digits = digits.clamp(0.0, 15.0) as usize;
+    format!("{value:.digits$} +- {sigma:.digits$}")
+}
+
+/// "1 sample was", "2 samples were".
+fn counted(count: usize, one: &str, more: &str) -> String {
+    if count == 1 { format!("1 sample {one}") } else { format!("{count} samples {more}") }
+}

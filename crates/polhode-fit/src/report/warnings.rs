@@ -1,0 +1,109 @@
+//! Which warnings an estimate needs.
+
+use polhode::record::Record;
+
+use super::estimate::Estimate;
+use super::warning::Warning;
+use crate::settings::TorqueModel;
+use crate::weak::mistaken_units::Better;
+use crate::weak::weak_estimate::WeakEstimate;
+
+/// Standard deviations by which noise alone does not carry five numbers off the physical tensors.
+const FAR: f64 = 6.0;
+
+/// What warnings are drawn from, besides the estimate.
+pub(super) struct Grounds<'a> {
+    pub(super) record: &'a Record,
+    pub(super) weak: &'a WeakEstimate,
+    /// Mean square of the residuals over the noise.
+    pub(super) misfit: f64,
+    pub(super) better: Option<&'a Better>,
+    /// Whether the fit has found the torque by itself.
+    pub(super) found: bool,
+    /// The same of torque noise.
+    pub(super) noise_found: bool,
+    /// Whether wheels or known torques act, which change |J ω| and ω·J ω.
+    pub(super) driven: bool,
+}
+
+/// What of the record, the residuals and the answer limits the use of `e`.
+pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
+    let mut list = Vec::new();
+    let Grounds { record, weak, misfit, better, found, noise_found, driven } = *grounds;
+    if record.merged() > 0 {
+        list.push(Warning::Merged { samples: record.merged() });
+    }
+    if record.saturated() > 0 {
+        list.push(Warning::Saturated { samples: record.saturated() });
+    }
+    if let Some(first) = e.spikes.first() {
+        list.push(Warning::Spikes { samples: e.spikes.len(), line: first.line });
+    }
+    let short = record.segments.len() - e.segments;
+    if short > 0 {
+        list.push(Warning::ShortSegments { short, segments: record.segments.len() });
+    }
+    if misfit > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
+        list.push(Warning::Residuals { times: misfit.sqrt(), noise: e.noise_sigma });
+    }
+    if !weak.still() {
+        list.push(Warning::NotConverged { moved: weak.moved });
+    }
+    if let Some(b) = better {
+        let mistakes = b.mistakes.clone();
+        list.push(Warning::Units { factor: b.factor, mistakes, misfit, better: b.misfit });
+    }
+    if e.whiteness.significant() {
+        list.push(Warning::Correlated(e.whiteness));
+    }
+    if driven {
+        if e.inertia.is_none() {
+            list.push(Warning::NoScale);
+        }
+    } else if e.torque.model == TorqueModel::None {
+        if e.momentum_trend.significant() {
+            list.push(Warning::MomentumTrend(e.momentum_trend));
+        }
+        if e.energy_trend.significant() {
+            list.push(Warning::EnergyTrend(e.energy_trend));
+        }
+    }
+    if found && e.torque.model != TorqueModel::None {
+        list.push(Warning::Torque(e.torque.clone()));
+    }
+    let density = e.per_segment.iter().map(|s| s.torque_noise).fold(0.0, f64::max);
+    if noise_found && density > 0.0 {
+        list.push(Warning::TorqueNoise { density });
+    }
+    let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
+    levels.sort_by(f64::total_cmp);
+    if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {
+        list.extend(e.residuals.iter().filter(|r| r.mean_square > 4.0 * median).map(|r| {
+            Warning::NoisySegment {
+                segment: r.segment,
+                start: record.segments[r.segment].times().first().copied().unwrap_or(0.0),
+                times: (r.mean_square / median).sqrt(),
+            }
+        }));
+    }
+    list.extend(e.active_constraints.iter().cloned().map(Warning::Held));
+    if e.pull > FAR {
+        list.push(Warning::Contradiction { pull: e.pull });
+    }
+    // Frobenius, which no turn of the sensor changes
+    let c = &e.free_covariance;
+    let deviation = (c.trace() + c[(3, 3)] + c[(4, 4)] + c[(5, 5)]).sqrt();
+    if deviation > 5e-3 {
+        list.push(Warning::Uncertain { deviation });
+    }
+    for (low, high) in [(0, 1), (1, 2)] {
+        let (a, b) = (e.sigma_principal[low], e.sigma_principal[high]);
+        if e.principal[high] - e.principal[low] < 3.0 * (a * a + b * b).sqrt() {
+            list.push(Warning::EqualMoments { low: low + 1, high: high + 1 });
+        }
+    }
+    if e.dof < 20 {
+        list.push(Warning::FewEquations { dof: e.dof });
+    }
+    list
+}

@@ -1,0 +1,85 @@
+//! A rate sensor and its errors.
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::num::Random;
+
+use super::{SimulationError, check};
+
+/// Errors of a rate sensor; the default has none.
+///
+/// It reads `(1 + s) (1 + diag a) (1 + Γ) ω + b + walk + noise`, in steps of a quantum, with spikes on single components.
+/// Γ is symmetric: an antisymmetric part would turn the sensor as a whole, and with it the tensor that is fitted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gyroscope {
+    /// Standard deviation of the white noise of each component, rad/s.
+    pub noise: f64,
+    /// Constant offset b, rad/s.
+    pub offset: Vector3<f64>,
+    /// Random walk of the offset of each component, 0 at the first sample: standard deviation after 1 s, rad/s per √s.
+    pub offset_walk: f64,
+    /// Scale error s that all axes share.
+    pub scale: f64,
+    /// Scale error a of each axis.
+    pub axis_scales: Vector3<f64>,
+    /// Γ_xy, Γ_xz, Γ_yz, rad: how far each axis leans towards another.
+    pub misalignment: Vector3<f64>,
+    /// How much later each axis is read than the time says, s.
+    pub skew: Vector3<f64>,
+    /// Step of the digital output, rad/s; 0 for none.
+    pub quantum: f64,
+    /// Share of the samples that carry a spike, on one component at random.
+    pub spikes: f64,
+    /// Size of the spikes, either sign, rad/s.
+    pub spike_size: f64,
+}
+
+impl Gyroscope {
+    pub(super) fn check(&self) -> Result<(), SimulationError> {
+        check("the noise", &[self.noise], false)?;
+        check("the offset", self.offset.as_slice(), true)?;
+        check("the walk of the offset", &[self.offset_walk], false)?;
+        check("the scale error", &[self.scale], true)?;
+        check("a scale error of an axis", self.axis_scales.as_slice(), true)?;
+        check("a misalignment", self.misalignment.as_slice(), true)?;
+        check("a time skew", self.skew.as_slice(), true)?;
+        check("the quantum", &[self.quantum], false)?;
+        check("the share of spikes", &[self.spikes], false)?;
+        check("the size of spikes", &[self.spike_size], false)?;
+        if self.spikes > 1.0 {
+            let rule = "give a share from 0 to 1";
+            return Err(SimulationError::Setting { name: "the share of spikes", value: self.spikes, rule });
+        }
+        Ok(())
+    }
+
+    /// What is added to the scaled rates at each of `times`.
+    pub(super) fn errors(&self, times: &[f64], random: &mut Random) -> Vec<Vector3<f64>> {
+        let mut errors: Vec<Vector3<f64>> =
+            times.iter().map(|_| self.offset + random.normal_vector() * self.noise).collect();
+        if self.offset_walk > 0.0 {
+            let mut walk = Vector3::zeros();
+            for (k, error) in errors.iter_mut().enumerate().skip(1) {
+                walk += random.normal_vector() * (self.offset_walk * (times[k] - times[k - 1]).abs().sqrt());
+                *error += walk;
+            }
+        }
+        if self.spikes > 0.0 {
+            for error in &mut errors {
+                let (chance, place) = (random.uniform(), random.below(6) as usize);
+                if chance < self.spikes {
+                    error[place / 2] += if place % 2 == 0 { self.spike_size } else { -self.spike_size };
+                }
+            }
+        }
+        errors
+    }
+
+    pub(super) fn reading(&self, rate: &Vector3<f64>, error: &Vector3<f64>) -> Vector3<f64> {
+        let [xy, xz, yz] = self.misalignment.into();
+        let lean = Matrix3::new(0.0, xy, xz, xy, 0.0, yz, xz, yz, 0.0);
+        let aligned = rate + lean * rate;
+        let scaled = (aligned + aligned.component_mul(&self.axis_scales)) * (1.0 + self.scale);
+        let read = scaled + error;
+        if self.quantum > 0.0 { read.map(|x| (x / self.quantum).round() * self.quantum) } else { read }
+    }
+}

@@ -1,0 +1,113 @@
+//! Noisy records of known bodies, to plan a measurement before it is made.
+
+mod gyroscope;
+mod motion;
+
+use nalgebra::Vector3;
+use polhode::body::StateError;
+use polhode::inertia::Inertia;
+use polhode::num::Random;
+
+pub use gyroscope::Gyroscope;
+pub use motion::Disturbances;
+
+/// Why a record cannot be simulated.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// The start of the motion, or a time.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// A quantity of [`Disturbances`] or [`Gyroscope`].
+    #[error("{name} is {value:?}; {rule}")]
+    Setting {
+        /// Which.
+        name: &'static str,
+        /// Its value, or that of the component.
+        value: f64,
+        /// What it must be.
+        rule: &'static str,
+    },
+    /// The motion has become too fast to be followed.
+    #[error(
+        "the motion cannot be followed beyond {time:e} s in {steps} steps; weaken the torques or end the record earlier"
+    )]
+    TooFast {
+        /// Where the computation ended, s.
+        time: f64,
+        /// Steps that were taken.
+        steps: usize,
+    },
+}
+
+/// Angular velocities (body axes, rad/s) of the free body at `times` (s), from `omega_body` at time 0, each component
+/// with normal noise of standard deviation `sigma`.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::{fit::simulate, inertia::Inertia, num::Random};
+/// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+/// let times: Vec<f64> = (0..500).map(|i| f64::from(i) / 100.0).collect();
+/// let exact = simulate(&body, Vector3::new(0.1, 1.0, 0.2), &times, 0.0, &mut Random::new(1))?;
+/// assert!((exact[0] - Vector3::new(0.1, 1.0, 0.2)).norm() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// An angular velocity or a time that is not finite, a `sigma` that is negative or not finite.
+pub fn simulate(
+    inertia: &Inertia,
+    omega_body: Vector3<f64>,
+    times: &[f64],
+    sigma: f64,
+    random: &mut Random,
+) -> Result<Vec<Vector3<f64>>, SimulationError> {
+    let gyroscope = Gyroscope { noise: sigma, ..Gyroscope::default() };
+    simulate_with(inertia, omega_body, times, &Disturbances::default(), &gyroscope, random)
+}
+
+/// What `gyroscope` reads (sensor axes = body axes, rad/s) at `times` (s) of a body that `disturbances` act on, from
+/// `omega_body` at time 0.
+///
+/// The random numbers are drawn in the order noise, offset walk, spikes, torque: the noise of the readings is the same
+/// whatever else is asked for.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode_fit::{Disturbances, Gyroscope, simulate_with};
+/// use polhode::{inertia::Inertia, num::Random};
+/// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+/// let omega = Vector3::new(0.1, 1.0, 0.2);
+/// let drag = Disturbances { relative_drag: 0.1, ..Disturbances::default() };
+/// let offset = Gyroscope { offset: Vector3::new(0.0, 0.0, 0.5), ..Gyroscope::default() };
+/// let rates = simulate_with(&body, omega, &[0.0, 10.0], &drag, &offset, &mut Random::new(1))?;
+///
+/// // |J ω| falls by the factor exp(−k t)
+/// let momentum = |w: Vector3<f64>| (body.tensor() * (w - offset.offset)).norm();
+/// assert!((momentum(rates[1]) / momentum(rates[0]) - (-1.0_f64).exp()).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Values that are not finite; negative deviations, drags and quanta; a motion that torques make too fast.
+pub fn simulate_with(
+    inertia: &Inertia,
+    omega_body: Vector3<f64>,
+    times: &[f64],
+    disturbances: &Disturbances,
+    gyroscope: &Gyroscope,
+    random: &mut Random,
+) -> Result<Vec<Vector3<f64>>, SimulationError> {
+    disturbances.check()?;
+    gyroscope.check()?;
+    let errors = gyroscope.errors(times, random);
+    let true_rates = disturbances.rates(inertia, omega_body, times, gyroscope.skew, random)?;
+    Ok(true_rates.iter().zip(&errors).map(|(w, error)| gyroscope.reading(w, error)).collect())
+}
+
+/// `value` if it is finite and, where asked, not negative.
+fn check(name: &'static str, values: &[f64], negative: bool) -> Result<(), SimulationError> {
+    let wrong = values.iter().find(|v| !v.is_finite() || (!negative && **v < 0.0));
+    let rule = if negative { "give a finite number" } else { "give a finite number of at least 0" };
+    wrong.map_or(Ok(()), |&value| Err(SimulationError::Setting { name, value, rule }))
+}

@@ -1,0 +1,247 @@
+//! The motion of a body with drag, torques and a wheel.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::body::StateError;
+use polhode::flow::FreeMotion;
+use polhode::inertia::Inertia;
+use polhode::num::Random;
+
+use super::{SimulationError, check};
+
+/// What acts on a simulated body, in its own axes; the default is the free body.
+///
+/// p' = p × ω − k J ω − D ω + τ + white noise, with p = J ω + h and the momentum h(t) of a wheel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Disturbances {
+    /// Drag k in proportion to the momentum of the body, 1/s.
+    pub relative_drag: f64,
+    /// Viscous drag about each body axis, the diagonal of D, N m s.
+    pub drag: Vector3<f64>,
+    /// Constant torque τ, N m.
+    pub torque: Vector3<f64>,
+    /// White noise of each component of the torque from time 0 on: standard deviation of the impulse of 1 s, N m √s.
+    pub torque_noise: f64,
+    /// Momentum of a wheel at time 0, N m s.
+    pub wheel: Vector3<f64>,
+    /// Its change, N m.
+    pub wheel_rate: Vector3<f64>,
+}
+
+/// Impulses of the torque's noise for each sample.
+const IMPULSES: usize = 4;
+/// Terms of the power series in time, and those between impulses, which are near one another.
+const TERMS: usize = 24;
+const TERMS_OF_IMPULSES: usize = 10;
+/// Size of the last term against the momentum, where a step ends.
+const LAST_TERM: f64 = 1e-17;
+/// Steps after which a motion counts as too fast, for each sample.
+const STEPS: usize = 1000;
+
+impl Disturbances {
+    pub(super) fn check(&self) -> Result<(), SimulationError> {
+        check("the relative drag", &[self.relative_drag], false)?;
+        check("a drag", self.drag.as_slice(), false)?;
+        check("a torque", self.torque.as_slice(), true)?;
+        check("the noise of the torque", &[self.torque_noise], false)?;
+        check("a momentum of the wheel", self.wheel.as_slice(), true)?;
+        check("a change of the wheel's momentum", self.wheel_rate.as_slice(), true)
+    }
+
+    /// Momentum of the wheel at time `t`, N m s.
+    #[must_use]
+    pub fn wheel_at(&self, t: f64) -> Vector3<f64> {
+        self.wheel + self.wheel_rate * t
+    }
+
+    /// True rates at `times`, the component k at times + skew_k.
+    pub(super) fn rates(
+        &self,
+        inertia: &Inertia,
+        omega: Vector3<f64>,
+        times: &[f64],
+        skew: Vector3<f64>,
+        random: &mut Random,
+    ) -> Result<Vec<Vector3<f64>>, SimulationError> {
+        let mut reads: Vec<Read> = Vec::with_capacity(times.len());
+        for (sample, &time) in times.iter().enumerate() {
+            if skew == Vector3::zeros() {
+                reads.push(Read { time, sample, axis: None });
+            } else {
+                reads.extend((0..3).map(|k| Read { time: time + skew[k], sample, axis: Some(k) }));
+            }
+        }
+        if let Some(read) = reads.iter().find(|read| !read.time.is_finite()) {
+            return Err(StateError::NotFinite { quantity: "time", value: read.time }.into());
+        }
+        let mut rates = vec![Vector3::zeros(); times.len()];
+        let mut store = |read: &Read, rate: Vector3<f64>| match read.axis {
+            Some(k) => rates[read.sample][k] = rate[k],
+            None => rates[read.sample] = rate,
+        };
+        // also the door where the start is checked
+        let free = FreeMotion::from_omega(inertia, UnitQuaternion::identity(), omega)?;
+        if *self == Disturbances::default() {
+            let frame = inertia.principal_axes();
+            let moments = Vector3::from(inertia.principal_moments());
+            for read in &reads {
+                let state = free
+                    .at(read.time)
+                    .map_err(|_| StateError::NotFinite { quantity: "time", value: read.time })?;
+                let along = frame.inverse() * Vector3::from(state.momentum_body);
+                store(read, frame * along.component_div(&moments));
+            }
+        } else {
+            reads.sort_by(|a, b| a.time.total_cmp(&b.time));
+            let split = reads.partition_point(|read| read.time < 0.0);
+            let last = reads.last().map_or(0.0, |read| read.time);
+            let mut path = Path::new(self, inertia, omega, reads.len() - split, last, random);
+            for read in &reads[split..] {
+                store(read, path.at(read.time)?);
+            }
+            let mut path = Path::new(self, inertia, omega, split, 0.0, random);
+            for read in reads[..split].iter().rev() {
+                store(read, path.at(read.time)?);
+            }
+        }
+        Ok(rates)
+    }
+}
+
+/// A component of a sample, or all three, and when it is read.
+struct Read {
+    time: f64,
+    sample: usize,
+    axis: Option<usize>,
+}
+
+/// A motion followed from time 0, in units in which the trace of the tensor is of order 1.
+struct Path<'a> {
+    acting: &'a Disturbances,
+    scale: f64,
+    inverse: Matrix3<f64>,
+    /// Times and impulses of the torque's noise, the next one last.
+    impulses: Vec<(f64, Vector3<f64>)>,
+    terms: usize,
+    steps: usize,
+    most_steps: usize,
+    series: Series,
+}
+
+/// Power series of p and ω about a time.
+struct Series {
+    time: f64,
+    momentum: Vec<Vector3<f64>>,
+    rate: Vec<Vector3<f64>>,
+}
+
+impl<'a> Path<'a> {
+    fn new(
+        acting: &'a Disturbances,
+        inertia: &Inertia,
+        omega: Vector3<f64>,
+        reads: usize,
+        last: f64,
+        random: &mut Random,
+    ) -> Self {
+        let scale = libm::scalbn(1.0, libm::ilogb(inertia.tensor().trace()));
+        let j = inertia.tensor() / scale;
+        let frame = inertia.principal_axes().to_rotation_matrix();
+        let reciprocals = Vector3::from(inertia.principal_moments()).map(|moment| scale / moment);
+        let inverse = frame.matrix() * Matrix3::from_diagonal(&reciprocals) * frame.matrix().transpose();
+        let mut impulses = Vec::new();
+        let noisy = acting.torque_noise > 0.0;
+        if noisy && last > 0.0 {
+            let count = IMPULSES * reads;
+            let width = last / count as f64;
+            let size = acting.torque_noise * width.sqrt() / scale;
+            impulses =
+                (0..count).map(|i| ((i as f64 + 0.5) * width, random.normal_vector() * size)).collect();
+            impulses.reverse();
+        }
+        let terms = if noisy { TERMS_OF_IMPULSES } else { TERMS };
+        let mut path = Path {
+            acting,
+            scale,
+            inverse,
+            impulses,
+            terms,
+            steps: 0,
+            most_steps: STEPS * (reads + 1),
+            series: Series { time: 0.0, momentum: Vec::new(), rate: Vec::new() },
+        };
+        path.expand(0.0, j * omega + acting.wheel / scale);
+        path
+    }
+
+    /// The series about `time`, where the momentum is `p`.
+    fn expand(&mut self, time: f64, p: Vector3<f64>) {
+        let a = self.acting;
+        let wheel = [a.wheel_at(time) / self.scale, a.wheel_rate / self.scale];
+        let (mut momentum, mut rate) = (vec![p], Vec::with_capacity(self.terms));
+        for n in 0..self.terms {
+            let own = momentum[n] - wheel.get(n).copied().unwrap_or_default();
+            let w = self.inverse * own;
+            rate.push(w);
+            let mut sum = -own * a.relative_drag - a.drag.component_mul(&w) / self.scale;
+            if n == 0 {
+                sum += a.torque / self.scale;
+            }
+            for i in 0..=n {
+                sum += momentum[i].cross(&rate[n - i]);
+            }
+            momentum.push(sum / (n + 1) as f64);
+        }
+        self.series = Series { time, momentum, rate };
+        self.steps += 1;
+    }
+
+    /// How far from its centre the series holds, if the motion goes on for `span`.
+    fn reach(&self, span: f64) -> f64 {
+        let p = &self.series.momentum;
+        let wheel = self.acting.wheel_rate / self.scale;
+        let size = p[0].norm() + (p[1].norm() + wheel.norm()) * span.abs();
+        let ends = [self.terms - 1, self.terms].map(|n| {
+            let last = p[n].norm();
+            if last > 0.0 { libm::pow(LAST_TERM * size / last, 1.0 / n as f64) } else { f64::INFINITY }
+        });
+        ends[0].min(ends[1])
+    }
+
+    /// Moves the centre of the series to `time`.
+    fn advance(&mut self, time: f64) -> Result<(), SimulationError> {
+        loop {
+            let left = time - self.series.time;
+            let reach = self.reach(left);
+            if left.abs() <= reach {
+                return Ok(());
+            }
+            let next = self.series.time + reach.copysign(left);
+            if self.steps >= self.most_steps || next == self.series.time || !reach.is_finite() {
+                return Err(SimulationError::TooFast { time: self.series.time, steps: self.steps });
+            }
+            let p = horner(&self.series.momentum, next - self.series.time);
+            self.expand(next, p);
+        }
+    }
+
+    /// The rate at `time`; times must move away from 0.
+    fn at(&mut self, time: f64) -> Result<Vector3<f64>, SimulationError> {
+        while let Some((when, impulse)) = self.impulses.pop_if(|(when, _)| *when <= time) {
+            self.advance(when)?;
+            let p = horner(&self.series.momentum, when - self.series.time) + impulse;
+            self.expand(when, p);
+        }
+        self.advance(time)?;
+        let rate = horner(&self.series.rate, time - self.series.time);
+        if rate.iter().all(|w| w.is_finite()) {
+            Ok(rate)
+        } else {
+            Err(SimulationError::TooFast { time, steps: self.steps })
+        }
+    }
+}
+
+/// Σ c_n sⁿ.
+fn horner(coefficients: &[Vector3<f64>], s: f64) -> Vector3<f64> {
+    coefficients.iter().rev().fold(Vector3::zeros(), |sum, c| sum * s + c)
+}

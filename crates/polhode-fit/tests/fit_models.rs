@@ -1,0 +1,244 @@
+//! Models of torque and of noise: quadratic drag, torques of single segments, steps of the readings, offsets that walk.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod measured;
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::inertia::Inertia;
+use polhode::num::Random;
+use polhode_fit::{
+    Disturbances, FitError, Gyroscope, Prior, Record, Segment, SensorPriors, Settings, TorqueModel,
+    TorqueScope, fit, foreseen_bound, foreseen_bound_with, simulate_with,
+};
+
+use measured::torques::{bound, motion};
+use measured::{distance, entries, random_rotation, sampled, turned};
+
+const SHAPE: [f64; 3] = [1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6];
+
+/// The 95 % point of χ² with 5 degrees of freedom.
+const REGION: f64 = 11.070_497_693_516_35;
+
+fn with_noise(rates: &[Vector3<f64>], sigma: f64, random: &mut Random) -> Vec<Vector3<f64>> {
+    rates.iter().map(|w| w + random.normal_vector() * sigma).collect()
+}
+
+/// Errors against the bound with the coefficient among the unknowns. Over 16 records the mean of χ²₅/5 scatters by
+/// √(2/80) = 0.16, its root by 0.08, and the coefficient's own error by √(1/32) = 0.18.
+#[test]
+fn quadratic_drag_is_fitted_at_its_bound() {
+    let mut random = Random::new(91);
+    let times = sampled(20, 30);
+    let settings = Settings { torque: TorqueModel::Quadratic, ..Settings::default() };
+    for (drag, sigma) in [(0.02, 1e-3), (0.1, 1e-2)] {
+        let (mut over, mut squares, mut covered, count) = (0.0, 0.0, 0, 16);
+        for _ in 0..count {
+            let j = turned(SHAPE, &random_rotation(&mut random));
+            let omega = random.normal_vector().normalize();
+            let rates = |j: &Matrix3<f64>, c: &[f64], omega: Vector3<f64>| {
+                motion(j, omega, &times, &|_, w| j * w * (-c[0] * w.norm()))
+            };
+            let bound = bound(&j, omega, &[drag], &[None], sigma, &rates);
+            let noisy = with_noise(&rates(&j, &[drag], omega), sigma, &mut random);
+            let record = Record::from_samples(&times, &noisy).unwrap();
+            let e = fit(&record, &settings).unwrap();
+            let error = entries(&(e.shape.tensor() - j));
+            over += distance(&error, &bound) / f64::from(5 * count);
+            covered += usize::from(distance(&error, &e.free_covariance) < REGION);
+            let [c] = &e.torque.coefficients[..] else { panic!("{:?}", e.torque) };
+            assert_eq!((c.name, c.unit), ("quadratic_drag", "1/rad"));
+            let z = (c.value - drag) / c.sigma;
+            squares += z * z / f64::from(count);
+            // the motion that is handed out leaves the noise
+            let rms = e.fitted(&record)[0].rms().expect("a motion");
+            assert!((rms / sigma - 1.0).abs() < 0.12, "{rms:e}");
+        }
+        println!(
+            "c = {drag}, noise {sigma}: error/bound {:.3}, covered {covered}, c {:.3}",
+            over.sqrt(),
+            squares.sqrt()
+        );
+        assert!(over.sqrt() < 1.32 && covered >= 12, "{} {covered}", over.sqrt());
+        assert!((0.3..1.75).contains(&squares.sqrt()), "{squares}");
+    }
+}
+
+/// Tosses of one body with another drag each: shared, the coefficient contradicts the record; apart, each is found.
+#[test]
+fn each_segment_may_have_a_torque_of_its_own() {
+    let mut random = Random::new(92);
+    let times = sampled(50, 12);
+    let drags = [0.0, 0.03, 0.1, 0.2];
+    let (mut squares, mut over, mut covered, count) = (0.0, 0.0, 0, 12);
+    for trial in 0..count {
+        let j = turned(SHAPE, &random_rotation(&mut random));
+        let mut record = Record::default();
+        for drag in drags {
+            let omega = random.normal_vector().normalize();
+            let rates = motion(&j, omega, &times, &|_, w| j * w * -drag);
+            let noisy = with_noise(&rates, 1e-3, &mut random);
+            record.segments.push(Segment::new("toss", times.clone(), noisy).unwrap());
+        }
+        let apart =
+            Settings { torque: TorqueModel::Drag, torque_scope: TorqueScope::Segment, ..Settings::default() };
+        let e = fit(&record, &apart).unwrap();
+        assert_eq!(e.torque.coefficients.len(), 4);
+        for (k, c) in e.torque.coefficients.iter().enumerate() {
+            assert_eq!((c.segment, c.name), (Some(k), "drag"));
+            assert!(c.value >= 0.0);
+            if k > 0 {
+                let z = (c.value - drags[k]) / c.sigma;
+                squares += z * z / f64::from(3 * count);
+            }
+        }
+        let error = entries(&(e.shape.tensor() - j));
+        over += distance(&error, &e.free_covariance) / f64::from(5 * count);
+        covered += usize::from(distance(&error, &e.free_covariance) < REGION);
+        if trial == 0 {
+            let shared =
+                fit(&record, &Settings { torque_scope: TorqueScope::Record, ..apart.clone() }).unwrap();
+            assert_eq!(shared.torque.coefficients.len(), 1);
+            // what one coefficient does not explain is taken for torque noise
+            assert!(shared.per_segment.iter().any(|s| s.torque_noise > 0.0), "{:?}", shared.per_segment);
+            assert!(e.per_segment.iter().all(|s| s.torque_noise == 0.0), "{:?}", e.per_segment);
+            // of one segment there is nothing to part
+            let mut one = Record::default();
+            one.segments.push(record.segments[2].clone());
+            let alone = fit(&one, &apart).unwrap();
+            let joint = fit(&one, &Settings { torque_scope: TorqueScope::Record, ..apart }).unwrap();
+            assert!((alone.shape.tensor() - joint.shape.tensor()).amax() < 1e-12);
+            assert!(
+                (alone.torque.coefficients[0].sigma / joint.torque.coefficients[0].sigma - 1.0).abs() < 1e-9
+            );
+        }
+    }
+    println!("drags {:.3}, shape {:.3}, covered {covered} of {count}", squares.sqrt(), over.sqrt());
+    // over 36 drags by 0.12, over 60 degrees of freedom by 0.09
+    assert!((0.6..1.45).contains(&squares.sqrt()) && over.sqrt() < 1.4 && covered >= 9);
+}
+
+/// Shares of records whose error lies in the 95 % region, and the root of the mean of χ²₅/5.
+fn coverage(gyroscope: &Gyroscope, settings: &Settings, rate: usize, count: usize, seed: u64) -> (f64, f64) {
+    let mut random = Random::new(seed);
+    let times = sampled(rate, 60);
+    let (mut covered, mut squares) = (0, 0.0);
+    for _ in 0..count {
+        let j = turned([1.0, 2.0, 2.6], &random_rotation(&mut random));
+        let body = Inertia::from_tensor(j).unwrap();
+        let omega = random.normal_vector().normalize();
+        let rates =
+            simulate_with(&body, omega, &times, &Disturbances::default(), gyroscope, &mut random).unwrap();
+        let Ok(e) = fit(&Record::from_samples(&times, &rates).unwrap(), settings) else { continue };
+        let chi2 = distance(&entries(&(e.shape.tensor() - j / 5.6)), &e.free_covariance);
+        covered += usize::from(chi2 < REGION);
+        squares += chi2 / (5 * count) as f64;
+    }
+    (covered as f64 / count as f64, squares.sqrt())
+}
+
+/// Steps of 1 deg/s over a noise of 1e-3 rad/s: fourth differences alone saw so little of them that 23 % were covered.
+#[test]
+fn steps_of_the_readings_count_as_noise() {
+    let degree = core::f64::consts::PI / 180.0;
+    let stepped = Gyroscope { noise: 1e-3, quantum: degree, ..Gyroscope::default() };
+    for settings in [Settings::default(), Settings { quantum: Some(degree), ..Settings::default() }] {
+        let (covered, over) = coverage(&stepped, &settings, 100, 16, 93);
+        println!("steps of 1 deg/s: covered {covered:.3}, errors over deviations {over:.3}");
+        assert!(covered > 0.8, "{covered}");
+    }
+    // beside a noise that hides them they change nothing
+    let hidden = Gyroscope { noise: 1e-2, quantum: 1e-3, ..Gyroscope::default() };
+    let (covered, over) = coverage(&hidden, &Settings::default(), 20, 16, 94);
+    println!(
+        "steps of 1e-3 rad/s under noise of 1e-2: covered {covered:.3}, errors over deviations {over:.3}"
+    );
+    assert!(covered > 0.8 && over > 0.7, "{covered} {over}");
+}
+
+#[test]
+fn an_offset_that_walks_is_covered_by_its_prior() {
+    let walking = Gyroscope { noise: 1e-3, offset_walk: 1e-3, ..Gyroscope::default() };
+    let settings = Settings { offset_walk: Some(1e-3), ..Settings::default() };
+    let (covered, over) = coverage(&walking, &settings, 20, 16, 95);
+    let (without, _) = coverage(&walking, &Settings::default(), 20, 16, 95);
+    println!("walk: covered {covered:.3}, errors over deviations {over:.3}; without the model {without:.3}");
+    assert!(covered > 0.8, "{covered}");
+}
+
+/// Against differences of motions, with drag, an offset and a scale among the unknowns; and without any, the plain bound.
+#[test]
+fn the_bound_of_a_plan_is_that_of_differences() {
+    let times = sampled(20, 20);
+    let mut random = Random::new(96);
+    let j = turned(SHAPE, &random_rotation(&mut random));
+    let body = Inertia::from_tensor(j * 5.6).unwrap();
+    let omega = Vector3::new(0.6, 1.9, 0.8);
+    let plain = foreseen_bound(&body, omega, &times, 1e-3).unwrap();
+    let same = foreseen_bound_with(&body, omega, &times, 1e-3, &Settings::default(), &[]).unwrap();
+    assert!((plain - same).amax() < 1e-4 * plain.amax());
+
+    let sensor = SensorPriors { offset: Some(0.01), scale: Some(0.02), ..SensorPriors::default() };
+    for (model, coefficients) in [
+        (TorqueModel::Drag, &[0.05][..]),
+        (TorqueModel::Drag3, &[0.01, 0.02, 0.03]),
+        (TorqueModel::Quadratic, &[0.04]),
+        (TorqueModel::Constant, &[0.01, -0.02, 0.01]),
+    ] {
+        let settings = Settings { torque: model, sensor, ..Settings::default() };
+        let found = foreseen_bound_with(&body, omega, &times, 1e-3, &settings, coefficients).unwrap();
+        let count = coefficients.len();
+        let rates = |j: &Matrix3<f64>, others: &[f64], omega: Vector3<f64>| {
+            let torque = |_: f64, w: &Vector3<f64>| match model {
+                TorqueModel::Drag => j * w * -others[0],
+                TorqueModel::Drag3 => -Vector3::new(others[0], others[1], others[2]).component_mul(w),
+                TorqueModel::Quadratic => j * w * (-others[0] * w.norm()),
+                _ => Vector3::new(others[0], others[1], others[2]),
+            };
+            let (offset, scale) = (&others[count..count + 3], others[count + 3]);
+            let offset = Vector3::from_column_slice(offset);
+            motion(j, omega, &times, &torque).iter().map(|w| (w + offset) / (1.0 + scale)).collect::<Vec<_>>()
+        };
+        let others: Vec<f64> = coefficients.iter().copied().chain([0.0; 4]).collect();
+        let priors: Vec<Option<f64>> =
+            vec![None; count].into_iter().chain([Some(0.01), Some(0.01), Some(0.01), Some(0.02)]).collect();
+        let expected = bound(&j, omega, &others, &priors, 1e-3, &rates);
+        assert!(
+            (found - expected).amax() < 2e-3 * expected.amax(),
+            "{model:?}: {}",
+            (found - expected).amax() / expected.amax()
+        );
+    }
+    assert!(foreseen_bound_with(&body, omega, &times, 1e-3, &Settings::default(), &[0.1]).is_none());
+    let settings = Settings { prior: Some(Prior::relative(j, 1e-3)), ..Settings::default() };
+    let with = foreseen_bound_with(&body, omega, &times, 1e-3, &settings, &[]).unwrap();
+    assert!(with.trace() < plain.trace());
+}
+
+/// Where a torque can hide what the record tells of the tensor, its coefficients are named.
+#[test]
+fn torques_that_a_record_cannot_tell_are_named() {
+    let mut random = Random::new(97);
+    let times = sampled(50, 4);
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let quiet = Gyroscope { noise: 1e-3, ..Gyroscope::default() };
+    let mut refused = 0;
+    for wobble in [0.3, 0.1, 0.05, 0.03] {
+        let omega = Vector3::new(wobble, wobble, 1.0);
+        let rates =
+            simulate_with(&body, omega, &times, &Disturbances::default(), &quiet, &mut random).unwrap();
+        let record = Record::from_samples(&times, &rates).unwrap();
+        let with = |torque| fit(&record, &Settings { torque, ..Settings::default() });
+        match with(TorqueModel::Drag6) {
+            Err(error @ FitError::Untold { .. }) => {
+                let text = error.to_string();
+                println!("{wobble}: {text}");
+                assert!(text.starts_with("the record cannot tell drag_"), "{text}");
+                assert!(text.contains("ask for a simpler torque, or record longer"), "{text}");
+                assert!(with(TorqueModel::None).is_ok());
+                refused += 1;
+            }
+            other => println!("{wobble}: {:?}", other.map(|e| e.sigma_principal)),
+        }
+    }
+    assert!(refused > 0);
+}

@@ -1,0 +1,124 @@
+//! The inertia of a wheel from a body that is known; segments whose sensors differ.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod measured;
+
+use nalgebra::Vector3;
+use polhode::inertia::Inertia;
+use polhode::num::Random;
+use polhode_files::record::{self, Reading};
+use polhode_fit::{
+    Disturbances, FitError, Gyroscope, Record, Segment, SensorPriors, Settings, TorqueModel, calibrate_wheel,
+    fit, simulate_with,
+};
+
+use measured::{random_rotation, sampled, turned};
+
+/// A wheel of 0.012 kg m² that runs up along an axis that is none of the body's.
+const WHEEL: f64 = 0.012;
+
+fn spun(
+    body: &Inertia,
+    acting: &Disturbances,
+    gyroscope: &Gyroscope,
+    seconds: usize,
+    random: &mut Random,
+) -> Record {
+    let times = sampled(50, seconds);
+    let axis = Vector3::new(0.6, 0.0, 0.8);
+    // from 5 rad/s, 0.5 rad/s² more
+    let acting =
+        Disturbances { wheel: axis * (5.0 * WHEEL), wheel_rate: axis * (0.5 * WHEEL), ..acting.clone() };
+    let omega = random.normal_vector().normalize();
+    let rates = simulate_with(body, omega, &times, &acting, gyroscope, random).unwrap();
+    let speeds = times.iter().map(|t| axis * (5.0 + 0.5 * t)).collect();
+    let mut record = Record::default();
+    record.segments.push(Segment::new("proof", times, rates).unwrap().with_wheel(speeds).unwrap());
+    record
+}
+
+/// Errors over their deviations scatter by 1, over 60 records to √(1/120) = 0.09; 95 % of them lie within 1.96, to 0.028.
+#[test]
+fn a_wheel_is_calibrated_to_its_deviation() {
+    let mut random = Random::new(81);
+    let free = Disturbances::default();
+    let drag = Disturbances { relative_drag: 0.02, ..Disturbances::default() };
+    let turbulent = Disturbances { torque_noise: 3e-3, ..Disturbances::default() };
+    let quiet = Gyroscope { noise: 1e-3, ..Gyroscope::default() };
+    let off = Gyroscope { offset: Vector3::new(0.01, -0.02, 0.01), ..quiet.clone() };
+    let plain = Settings::default();
+    let with_drag = Settings { torque: TorqueModel::Drag, ..Settings::default() };
+    let sensor = SensorPriors { offset: Some(0.02), ..SensorPriors::default() };
+    let with_offset = Settings { sensor, ..Settings::default() };
+    for (name, acting, gyroscope, settings) in [
+        ("free", &free, &quiet, &plain),
+        ("drag", &drag, &quiet, &with_drag),
+        ("torque noise", &turbulent, &quiet, &plain),
+        ("offset", &free, &off, &with_offset),
+    ] {
+        let (mut squares, mut covered, count) = (0.0, 0, 60);
+        for _ in 0..count {
+            let body = Inertia::from_tensor(turned([1.0, 2.0, 2.6], &random_rotation(&mut random))).unwrap();
+            let record = spun(&body, acting, gyroscope, 10, &mut random);
+            let wheel = calibrate_wheel(&record, &body, settings).unwrap();
+            let z = (wheel.inertia - WHEEL) / wheel.sigma;
+            squares += z * z;
+            covered += usize::from(z.abs() < 1.96);
+        }
+        let scatter = (squares / f64::from(count)).sqrt();
+        println!("{name}: errors over deviations {scatter:.3}, coverage {covered} of {count}");
+        assert!((0.63..1.37).contains(&scatter), "{name}: {scatter}");
+        assert!(covered >= 50, "{name}: {covered}");
+    }
+}
+
+#[test]
+fn what_cannot_be_calibrated_is_refused() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let quiet = Gyroscope { noise: 1e-3, ..Gyroscope::default() };
+    let record = spun(&body, &Disturbances::default(), &quiet, 10, &mut Random::new(82));
+    let bare =
+        |segment: &Segment| Segment::new("bare", segment.times().to_vec(), segment.rates().to_vec()).unwrap();
+    let mut none = Record::default();
+    none.segments.push(bare(&record.segments[0]));
+    assert_eq!(calibrate_wheel(&none, &body, &Settings::default()), Err(FitError::NoWheelSpeed));
+    let mut still = none.clone();
+    let count = still.segments[0].times().len();
+    still.segments[0] = still.segments[0].clone().with_wheel(vec![Vector3::zeros(); count]).unwrap();
+    assert_eq!(calibrate_wheel(&still, &body, &Settings::default()), Err(FitError::NoWheelSpeed));
+    let mut pushed = record.clone();
+    pushed.segments[0] = pushed.segments[0].clone().with_torque(vec![Vector3::x(); count]).unwrap();
+    assert_eq!(calibrate_wheel(&pushed, &body, &Settings::default()), Err(FitError::WheelWithTorques));
+
+    // one segment with a wheel, one without
+    let mixed = record.join(none);
+    for error in [
+        fit(&mixed, &Settings::default()).unwrap_err(),
+        calibrate_wheel(&mixed, &body, &Settings::default()).unwrap_err(),
+    ] {
+        let text = error.to_string();
+        assert!(text.contains("segment 1 (proof, from 0 s) has wheel momenta"), "{text}");
+        assert!(text.contains("segment 2 (bare, from 0 s) has none"), "{text}");
+    }
+}
+
+#[test]
+fn a_named_unit_beside_a_guessed_one_is_refused() {
+    let read = |unit: &str, name: &str| {
+        let mut text = format!("t,wx{unit},wy{unit},wz{unit}\n");
+        for i in 0..100 {
+            text += &format!("{},{},{},2\n", 0.01 * f64::from(i), i % 7, i % 5);
+        }
+        record::read(&text, name, Reading::default()).unwrap()
+    };
+    let mixed = read(" (deg/s)", "a.csv").join(read("", "b.csv"));
+    let text = fit(&mixed, &Settings::default()).unwrap_err().to_string();
+    assert!(text.contains("segment 1 (a.csv, from 0 s) is in deg/s by its header"), "{text}");
+    assert!(text.contains("segment 2 (b.csv, from 0 s) names no unit"), "{text}");
+    for same in
+        [read(" (deg/s)", "a.csv").join(read(" (rad/s)", "b.csv")), read("", "a.csv").join(read("", "b.csv"))]
+    {
+        let error = fit(&same, &Settings::default()).err();
+        assert!(!matches!(error, Some(FitError::MixedUnits { .. })), "{error:?}");
+    }
+}

@@ -1,0 +1,227 @@
+//! Free rotation found in whole recordings: held, thrown and caught, with drag, noise and spikes.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use nalgebra::Vector3;
+use polhode::inertia::Inertia;
+use polhode::num::Random;
+use polhode_fit::{
+    Disturbances, FitError, FlightLimit, Gyroscope, Record, Settings, during, fit, flights, simulate_with,
+};
+
+const STEP: f64 = 0.01;
+const BODY: [f64; 3] = [1.0, 2.0, 2.6];
+
+/// Rates of a hand that turns the body to and fro: three sines a component, about `size` rad/s.
+struct Hand {
+    sines: [[(f64, f64, f64); 3]; 3],
+}
+
+impl Hand {
+    fn new(size: f64, random: &mut Random) -> Hand {
+        let mut sine = || {
+            let frequency = 4.0 + 12.0 * random.uniform();
+            (size * (0.3 + 0.7 * random.uniform()), frequency, 7.0 * random.uniform())
+        };
+        Hand { sines: core::array::from_fn(|_| core::array::from_fn(|_| sine())) }
+    }
+
+    fn rate(&self, t: f64) -> Vector3<f64> {
+        Vector3::from_fn(|k, _| {
+            self.sines[k].iter().map(|(size, frequency, phase)| size * libm::sin(frequency * t + phase)).sum()
+        })
+    }
+}
+
+/// What happens for a while, s.
+enum Part {
+    Still(f64),
+    Held(f64),
+    Thrown(f64, Vector3<f64>),
+}
+
+/// Times, rates, and the spans of the throws, s.
+#[derive(Default)]
+struct Recording {
+    times: Vec<f64>,
+    rates: Vec<Vector3<f64>>,
+    throws: Vec<(f64, f64)>,
+}
+
+impl Recording {
+    fn new(parts: &[Part], drag: f64, gyroscope: &Gyroscope, seed: u64) -> Recording {
+        let body = Inertia::from_moments(BODY).unwrap();
+        let mut random = Random::new(seed);
+        let hand = Hand::new(1.5, &mut random);
+        let mut all = Recording::default();
+        for part in parts {
+            let start = all.times.len() as f64 * STEP;
+            let (Part::Still(span) | Part::Held(span) | Part::Thrown(span, _)) = part;
+            let own: Vec<f64> = (0..(span / STEP) as usize).map(|i| i as f64 * STEP).collect();
+            let read = match part {
+                Part::Thrown(_, omega) => {
+                    all.throws.push((start, start + span));
+                    let air = Disturbances { relative_drag: drag, ..Disturbances::default() };
+                    simulate_with(&body, *omega, &own, &air, gyroscope, &mut random).unwrap()
+                }
+                Part::Still(_) => own.iter().map(|_| random.normal_vector() * gyroscope.noise).collect(),
+                Part::Held(_) => own
+                    .iter()
+                    .map(|t| hand.rate(start + t) + random.normal_vector() * gyroscope.noise)
+                    .collect(),
+            };
+            all.times.extend(own.iter().map(|t| start + t));
+            all.rates.extend(read);
+        }
+        all
+    }
+}
+
+fn throw(k: usize) -> Vector3<f64> {
+    let starts = [[2.0, 9.0, 4.0], [8.0, 1.0, 3.0], [1.0, 4.0, 9.0], [-5.0, 6.0, 2.0], [3.0, -9.0, 1.0]];
+    starts[k % starts.len()].into()
+}
+
+fn tosses(count: usize) -> Vec<Part> {
+    let toss = |k: usize| [Part::Held(1.3), Part::Thrown(0.9, throw(k))];
+    let parts = (0..count).flat_map(toss);
+    core::iter::once(Part::Still(2.0)).chain(parts).chain([Part::Held(1.0), Part::Still(1.0)]).collect()
+}
+
+fn noise(sigma: f64) -> Gyroscope {
+    Gyroscope { noise: sigma, ..Gyroscope::default() }
+}
+
+#[test]
+fn each_throw_of_a_recording_is_found_and_nothing_else() {
+    let spiky = Gyroscope { noise: 5e-3, spikes: 0.005, spike_size: 3.0, ..Gyroscope::default() };
+    for (name, drag, gyroscope) in [
+        ("quiet", 0.0, noise(1e-3)),
+        ("noisy", 0.0, noise(3e-2)),
+        ("in air", 0.2, noise(5e-3)),
+        ("with spikes", 0.1, spiky),
+    ] {
+        for seed in 1..=3 {
+            let Recording { times, rates, throws } = Recording::new(&tosses(5), drag, &gyroscope, seed);
+            let record = Record::from_samples(&times, &rates).unwrap();
+            let found = flights(&record, &Settings::default()).unwrap();
+            assert!(!found.whole);
+            assert_eq!(found.list.len(), throws.len(), "{name} {seed}: {:?}", found.list);
+            for (flight, (start, end)) in found.list.iter().zip(&throws) {
+                // half a radian at either end
+                let margin = 0.06;
+                assert!(
+                    flight.start > start - margin && flight.start < start + 2.0 * margin,
+                    "{name} {seed}: {flight:?}"
+                );
+                assert!(
+                    flight.end < end + margin && flight.end > end - 2.0 * margin,
+                    "{name} {seed}: {flight:?}"
+                );
+                for limit in [flight.before, flight.after] {
+                    assert!(matches!(limit, FlightLimit::Torque { share } if share > 0.02), "{flight:?}");
+                }
+                assert!((flight.samples as f64 * STEP - (flight.end - flight.start + STEP)).abs() < 1e-9);
+            }
+            let estimate = fit(&during(&record, &found.list), &Settings::default()).unwrap();
+            for (k, moment) in BODY.iter().enumerate() {
+                let off = (estimate.principal[k] - moment / 5.6).abs() / estimate.sigma_principal[k];
+                assert!(off < 5.0, "{name} {seed}: I{} is {off} deviations off", k + 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_free_record_is_one_flight_and_stays_as_it_is() {
+    let body = Inertia::from_moments(BODY).unwrap();
+    let times: Vec<f64> = (0..3000).map(|i| f64::from(i) * STEP).collect();
+    let none = Disturbances::default();
+    let spiky = Gyroscope { noise: 1e-2, spikes: 0.02, spike_size: 0.5, ..Gyroscope::default() };
+    let off = Gyroscope {
+        noise: 1e-2,
+        offset: Vector3::new(0.01, -0.01, 0.02),
+        scale: 0.02,
+        ..Gyroscope::default()
+    };
+    let disturbed = [
+        ("quiet", none.clone(), noise(1e-4)),
+        ("drowned", none.clone(), noise(0.1)),
+        ("drag", Disturbances { relative_drag: 0.1, ..none.clone() }, noise(1e-3)),
+        ("torque", Disturbances { torque: Vector3::new(0.1, 0.0, 0.05), ..none.clone() }, noise(1e-3)),
+        ("torque noise", Disturbances { torque_noise: 0.02, ..none.clone() }, noise(1e-3)),
+        ("spikes", none.clone(), spiky),
+        ("sensor", none.clone(), off),
+    ];
+    for (name, disturbances, gyroscope) in disturbed {
+        for omega in [Vector3::new(0.3, 1.0, 0.4), Vector3::new(1.0, 0.02, 0.0), Vector3::new(0.0, 0.0, 1.0)]
+        {
+            let mut random = Random::new(5);
+            let rates = simulate_with(&body, omega, &times, &disturbances, &gyroscope, &mut random).unwrap();
+            let record = Record::from_samples(&times, &rates).unwrap();
+            let found = flights(&record, &Settings::default()).unwrap();
+            assert!(found.whole && found.list.len() == 1, "{name} {omega:?}: {found:?}");
+            let flight = found.list[0];
+            assert_eq!((flight.before, flight.after), (FlightLimit::Edge, FlightLimit::Edge));
+            assert_eq!((flight.start, flight.end, flight.samples), (0.0, times[2999], 3000));
+            assert_eq!(during(&record, &found.list), record, "{name}");
+        }
+    }
+}
+
+#[test]
+fn flights_reach_the_ends_of_segments() {
+    // thrown before the sensor was switched on, and a gap within the second throw
+    let parts = [Part::Thrown(0.8, throw(0)), Part::Held(1.0), Part::Thrown(1.6, throw(1)), Part::Held(1.0)];
+    let Recording { mut times, mut rates, .. } = Recording::new(&parts, 0.0, &noise(2e-3), 11);
+    times.drain(260..280);
+    rates.drain(260..280);
+    let record = Record::from_samples(&times, &rates).unwrap();
+    assert_eq!(record.segments.len(), 2);
+    let found = flights(&record, &Settings::default()).unwrap();
+    let limits: Vec<(usize, bool, bool)> = found
+        .list
+        .iter()
+        .map(|f| (f.segment, f.before == FlightLimit::Edge, f.after == FlightLimit::Edge))
+        .collect();
+    assert_eq!(limits, [(0, true, false), (0, false, true), (1, true, false)]);
+    assert_eq!(found.list[0].start, 0.0);
+    assert_eq!((found.list[1].end, found.list[2].start), (times[259], times[260]));
+    let turned = found.list[0].turned;
+    let expected = throw(0).norm() * 0.8;
+    assert!(turned > 0.7 * expected && turned < 1.3 * expected, "{turned}");
+}
+
+#[test]
+fn a_body_that_is_never_let_go_has_no_flight() {
+    for seed in 1..=5 {
+        let parts = [Part::Still(1.0), Part::Held(9.0), Part::Still(2.0), Part::Held(5.0)];
+        let Recording { times, rates, .. } = Recording::new(&parts, 0.0, &noise(2e-3), seed);
+        let record = Record::from_samples(&times, &rates).unwrap();
+        let error = flights(&record, &Settings::default()).unwrap_err();
+        let FitError::NoFlight { share, torque, most } = error.clone() else { panic!("{error:?}") };
+        assert!(share > 0.1 && share <= 1.0 && most == 0.02, "{share}");
+        assert!(torque.is_none_or(|torque| torque > most && torque < 10.0), "{torque:?}");
+        let says = "the body rotates freely nowhere in the record: torques beyond 0.3 tr(J) |w|^2 act in ";
+        assert!(error.to_string().starts_with(says), "{error}");
+    }
+}
+
+#[test]
+fn neither_units_nor_the_axes_of_the_sensor_change_the_flights() {
+    let Recording { times, rates, throws } = Recording::new(&tosses(3), 0.1, &noise(5e-3), 4);
+    let found = |times: &[f64], rates: &[Vector3<f64>]| {
+        flights(&Record::from_samples(times, rates).unwrap(), &Settings::default()).unwrap().list
+    };
+    let spans = |list: &[polhode_fit::Flight], unit: f64| -> Vec<(f64, f64)> {
+        list.iter().map(|f| (f.start * unit, f.end * unit)).collect()
+    };
+    let own = spans(&found(&times, &rates), 1.0);
+    assert_eq!(own.len(), throws.len());
+    let (slow, fast): (Vec<f64>, Vec<Vector3<f64>>) =
+        (times.iter().map(|t| t * 1024.0).collect(), rates.iter().map(|w| w / 1024.0).collect());
+    assert_eq!(spans(&found(&slow, &fast), 1.0 / 1024.0), own);
+    let cyclic: Vec<Vector3<f64>> = rates.iter().map(|w| Vector3::new(w.z, w.x, w.y)).collect();
+    for ((a, b), (c, d)) in spans(&found(&times, &cyclic), 1.0).iter().zip(&own) {
+        assert!((a - c).abs() < 0.021 && (b - d).abs() < 0.021, "{a} {b} {c} {d}");
+    }
+}

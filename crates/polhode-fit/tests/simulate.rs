@@ -1,0 +1,198 @@
+//! Simulated records against closed forms of the motion and against the stated errors of the sensor.
+#![allow(clippy::unwrap_used)]
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::inertia::Inertia;
+use polhode::num::Random;
+use polhode_fit::{Disturbances, Gyroscope, SimulationError, simulate, simulate_with};
+
+fn grid(until: f64, count: usize) -> Vec<f64> {
+    (0..=count).map(|i| until * i as f64 / count as f64).collect()
+}
+
+fn undisturbed(body: &Inertia, omega: Vector3<f64>, times: &[f64], with: &Gyroscope) -> Vec<Vector3<f64>> {
+    simulate_with(body, omega, times, &Disturbances::default(), with, &mut Random::new(3)).unwrap()
+}
+
+fn moved(body: &Inertia, omega: Vector3<f64>, times: &[f64], by: &Disturbances) -> Vec<Vector3<f64>> {
+    simulate_with(body, omega, times, by, &Gyroscope::default(), &mut Random::new(3)).unwrap()
+}
+
+/// With u = (1 − e^(−kt))/k, ω(t) = e^(−kt) ω_free(u) solves J ω' + ω × J ω = −k J ω.
+#[test]
+fn relative_drag_is_free_motion_on_a_clock_that_slows_down() {
+    let tensor = Matrix3::new(2.0, 0.3, -0.1, 0.3, 1.7, 0.2, -0.1, 0.2, 1.1);
+    let body = Inertia::from_tensor(tensor * 1e-5).unwrap();
+    let omega = Vector3::new(3.0, -8.0, 6.0);
+    for k in [1e-3, 0.2, 3.0] {
+        let times: Vec<f64> = grid(10.0, 317).into_iter().map(|t| t - 0.4).collect();
+        let drag = Disturbances { relative_drag: k, ..Disturbances::default() };
+        let found = moved(&body, omega, &times, &drag);
+        let clock: Vec<f64> = times.iter().map(|t| -libm::expm1(-k * t) / k).collect();
+        let free = simulate(&body, omega, &clock, 0.0, &mut Random::new(1)).unwrap();
+        for ((t, found), free) in times.iter().zip(&found).zip(&free) {
+            let expected = free * libm::exp(-k * t);
+            let error = (found - expected).norm() / expected.norm();
+            assert!(error < 1e-12, "k {k}, t {t}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn torque_and_viscous_drag_change_a_spin_as_they_must() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let times = grid(30.0, 50);
+    let spin = Vector3::new(0.0, 0.0, 2.0);
+    let torque = Disturbances { torque: Vector3::new(0.0, 0.0, 0.3), ..Disturbances::default() };
+    let drag = Disturbances { drag: Vector3::new(0.1, 0.2, 0.3), ..Disturbances::default() };
+    let (torque, drag) = (moved(&body, spin, &times, &torque), moved(&body, spin, &times, &drag));
+    for (i, t) in times.iter().enumerate() {
+        assert!((torque[i].z - (2.0 + 0.3 / 2.6 * t)).abs() < 1e-13);
+        assert!((drag[i].z - 2.0 * libm::exp(-0.3 / 2.6 * t)).abs() < 1e-14);
+    }
+    // a torque on a body at rest
+    let rest = moved(
+        &body,
+        Vector3::zeros(),
+        &times,
+        &Disturbances { torque: Vector3::new(0.5, 0.0, 0.0), ..Disturbances::default() },
+    );
+    assert!((rest[50].x - 15.0).abs() < 1e-13, "{}", rest[50].x);
+}
+
+/// The transverse rate of a symmetric body with a wheel h on its axis turns at ((I₃ − I₁) ω₃ + h)/I₁.
+#[test]
+fn a_wheel_on_the_axis_shifts_the_nutation() {
+    let body = Inertia::from_moments([2.0, 2.0, 3.0]).unwrap();
+    let wheel = Disturbances { wheel: Vector3::new(0.0, 0.0, 1.5), ..Disturbances::default() };
+    let times = grid(40.0, 80);
+    let found = moved(&body, Vector3::new(0.4, 0.0, 1.0), &times, &wheel);
+    let rate = ((3.0 - 2.0) * 1.0 + 1.5) / 2.0;
+    for (t, w) in times.iter().zip(&found) {
+        let expected = Vector3::new(0.4 * libm::cos(rate * t), 0.4 * libm::sin(rate * t), 1.0);
+        assert!((w - expected).norm() < 1e-12, "{t}: {w} {expected}");
+    }
+    // a wheel that spins up takes its momentum from the body
+    let ramp = Disturbances { wheel_rate: Vector3::new(0.0, 0.0, 0.6), ..Disturbances::default() };
+    let found = moved(&body, Vector3::new(0.0, 0.0, 1.0), &times, &ramp);
+    for (t, w) in times.iter().zip(&found) {
+        assert!((w.z - (1.0 - 0.2 * t)).abs() < 1e-13);
+    }
+}
+
+/// ω of a ball is its start plus a Wiener process; the variance of its sample variance is 2/n.
+#[test]
+fn white_torque_makes_a_ball_walk() {
+    let body = Inertia::from_moments([2.0; 3]).unwrap();
+    let by = Disturbances { torque_noise: 0.3, ..Disturbances::default() };
+    let mut random = Random::new(8);
+    let (mut half, mut whole, mut both) = (0.0, 0.0, 0.0);
+    for _ in 0..1000 {
+        let w =
+            simulate_with(&body, Vector3::zeros(), &[0.0, 2.0, 4.0], &by, &Gyroscope::default(), &mut random)
+                .unwrap();
+        half += w[1].norm_squared() / 3000.0;
+        whole += w[2].norm_squared() / 3000.0;
+        both += w[1].dot(&(w[2] - w[1])) / 3000.0;
+    }
+    let unit = 0.15 * 0.15;
+    let near = |found: f64, expected: f64| {
+        (found - expected * unit).abs() < 4.0 * unit * 4.0 * (2.0_f64 / 3000.0).sqrt()
+    };
+    assert!(near(half, 2.0) && near(whole, 4.0) && near(both, 0.0), "{half} {whole} {both}");
+}
+
+#[test]
+fn the_sensor_errs_as_it_is_told_to() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let omega = Vector3::new(0.3, 1.0, 0.4);
+    let times = grid(20.0, 4000);
+    let none = Gyroscope::default();
+    let exact = undisturbed(&body, omega, &times, &none);
+    let linear = Gyroscope {
+        offset: Vector3::new(0.1, -0.2, 0.3),
+        scale: 0.02,
+        axis_scales: Vector3::new(0.01, 0.0, -0.03),
+        misalignment: Vector3::new(0.01, 0.02, -0.03),
+        ..none.clone()
+    };
+    let lean = Matrix3::new(1.0, 0.01, 0.02, 0.01, 1.0, -0.03, 0.02, -0.03, 1.0);
+    let scales = Matrix3::from_diagonal(&Vector3::new(1.01, 1.0, 0.97)) * 1.02;
+    for (w, read) in exact.iter().zip(undisturbed(&body, omega, &times, &linear)) {
+        assert!((scales * lean * w + linear.offset - read).norm() < 1e-15);
+    }
+    // each axis is late by its own time
+    let skew = Vector3::new(0.0, 0.004, -0.002);
+    let late = undisturbed(&body, omega, &times, &Gyroscope { skew, ..none.clone() });
+    for k in 0..3 {
+        let shifted: Vec<f64> = times.iter().map(|t| t + skew[k]).collect();
+        let shifted = undisturbed(&body, omega, &shifted, &none);
+        assert!(late.iter().zip(&shifted).all(|(a, b)| a[k] == b[k]));
+    }
+    let quantum = 0.0625;
+    let stepped = undisturbed(&body, omega, &times, &Gyroscope { quantum, ..none.clone() });
+    for (w, read) in exact.iter().zip(&stepped) {
+        assert!((w - read).amax() <= 0.5 * quantum && (read / quantum).iter().all(|x| x.fract() == 0.0));
+    }
+    // the noise does not depend on what else is wrong
+    let noisy = undisturbed(&body, omega, &times, &Gyroscope { noise: 0.1, ..none.clone() });
+    let both = Gyroscope { noise: 0.1, spikes: 0.02, spike_size: 50.0, ..none.clone() };
+    let spiked = undisturbed(&body, omega, &times, &both);
+    let hit: Vec<Vector3<f64>> =
+        noisy.iter().zip(&spiked).map(|(a, b)| b - a).filter(|d| d.norm() > 0.0).collect();
+    assert!((40..=120).contains(&hit.len()), "{} spikes", hit.len()); // 80 ± 9
+    assert!(hit.iter().all(|d| (d.norm() - 50.0).abs() < 1e-12 && (d.amax() - 50.0).abs() < 1e-12));
+    let noise: Vec<Vector3<f64>> = exact.iter().zip(&noisy).map(|(a, b)| b - a).collect();
+    let variance = noise.iter().map(|n| n.norm_squared()).sum::<f64>() / (3.0 * noise.len() as f64);
+    assert!((variance / 0.01 - 1.0).abs() < 4.0 * (2.0_f64 / 12_000.0).sqrt(), "{variance}");
+    // increments of the walk
+    let walking = undisturbed(&body, omega, &times, &Gyroscope { offset_walk: 0.2, ..none.clone() });
+    let walk: Vec<Vector3<f64>> = exact.iter().zip(&walking).map(|(a, b)| b - a).collect();
+    let steps = walk.windows(2).map(|p| (p[1] - p[0]).norm_squared()).sum::<f64>() / 3.0;
+    assert!(walk[0].norm() == 0.0 && (steps / (0.04 * 20.0) - 1.0).abs() < 0.15, "{steps}");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_record_and_another_body_of_the_same_shape_the_same_rates() {
+    let make = |mass: f64, seed: u64| {
+        let body = Inertia::from_moments([1.0, 2.0, 2.6].map(|i| i * mass)).unwrap();
+        let by = Disturbances {
+            relative_drag: 0.1,
+            drag: Vector3::new(0.01, 0.0, 0.02) * mass,
+            torque: Vector3::new(0.0, 0.01, 0.0) * mass,
+            torque_noise: 0.01 * mass,
+            wheel: Vector3::new(0.0, 0.5, 0.0) * mass,
+            wheel_rate: Vector3::new(0.01, 0.0, 0.0) * mass,
+        };
+        let sensor = Gyroscope { noise: 0.01, ..Gyroscope::default() };
+        let start = Vector3::new(0.3, 1.0, 0.4);
+        simulate_with(&body, start, &grid(10.0, 200), &by, &sensor, &mut Random::new(seed)).unwrap()
+    };
+    assert_eq!(make(1.0, 5), make(1.0, 5));
+    assert_ne!(make(1.0, 5), make(1.0, 6));
+    assert_eq!(make(1.0, 5), make(libm::scalbn(1.0, -160), 5));
+}
+
+#[test]
+fn what_cannot_be_simulated_is_refused_by_name() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let refused = |omega: f64, time: f64, by: &Disturbances, with: &Gyroscope| {
+        let omega = Vector3::new(omega, 1.0, 0.4);
+        simulate_with(&body, omega, &[0.0, time], by, with, &mut Random::new(1)).unwrap_err().to_string()
+    };
+    let (free, good) = (Disturbances::default(), Gyroscope::default());
+    assert!(refused(f64::NAN, 1.0, &free, &good).contains("NaN"));
+    assert!(refused(0.1, f64::INFINITY, &free, &good).contains("time"));
+    let noise = Gyroscope { noise: -0.1, ..good.clone() };
+    assert_eq!(refused(0.1, 1.0, &free, &noise), "the noise is -0.1; give a finite number of at least 0");
+    let spikes = Gyroscope { spikes: 1.5, ..good.clone() };
+    assert_eq!(refused(0.1, 1.0, &free, &spikes), "the share of spikes is 1.5; give a share from 0 to 1");
+    let offset = Gyroscope { offset: Vector3::new(0.0, f64::NAN, 0.0), ..good.clone() };
+    assert!(refused(0.1, 1.0, &free, &offset).starts_with("the offset is NaN"));
+    let drag = Disturbances { relative_drag: -1.0, ..free.clone() };
+    assert!(refused(0.1, 1.0, &drag, &good).starts_with("the relative drag is -1"));
+    let torque = Disturbances { torque: Vector3::new(1e9, 0.0, 1e8), ..free.clone() };
+    assert!(refused(0.1, 1e9, &torque, &good).contains("cannot be followed beyond"));
+    let far = simulate_with(&body, Vector3::x(), &[1e9], &torque, &good, &mut Random::new(1));
+    assert!(matches!(far, Err(SimulationError::TooFast { .. })));
+}

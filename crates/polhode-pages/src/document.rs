@@ -1,0 +1,151 @@
+//! A document of a few kinds of parts, as HTML and as Markdown.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use polhode_files::error::Error;
+use polhode_files::text::escaped_html as escaped;
+
+/// How a document is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    Html,
+    Markdown,
+}
+
+impl Form {
+    /// By the ending of the file that `flag` names.
+    pub fn of(flag: &str, path: &Path) -> Result<Self, Error> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("html" | "htm") => Ok(Self::Html),
+            Some("md" | "markdown") => Ok(Self::Markdown),
+            _ => {
+                let value = path.display().to_string();
+                Err(Error::input(
+                    flag,
+                    &value,
+                    "a page is HTML or Markdown",
+                    "let the name end in .html or .md",
+                ))
+            }
+        }
+    }
+
+    pub fn write(self, title: &str, parts: &[Part]) -> String {
+        match self {
+            Self::Html => html(title, parts),
+            Self::Markdown => markdown(title, parts),
+        }
+    }
+}
+
+/// A part.
+pub enum Part {
+    Heading(String),
+    Paragraph(String),
+    List(Vec<String>),
+    /// Head and rows; the first column is text, the others numbers.
+    Table(Vec<String>, Vec<Vec<String>>),
+    /// A drawing, and what it shows.
+    Figure(String, String),
+}
+
+const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#111;background:#fff}\
+h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2rem}\
+table{display:block;overflow-x:auto;border-collapse:collapse;margin:1rem 0}td,th{padding:.2rem .7rem;text-align:right;border-bottom:1px solid #ddd}\
+td:first-child,th:first-child{text-align:left}td{font-variant-numeric:tabular-nums}\
+figure{margin:1rem 0}figure svg{max-width:100%;height:auto}figcaption{font-size:.9rem;color:#444}\
+.warning{border-left:4px solid #d55e00;padding-left:.8rem}";
+
+fn html(title: &str, parts: &[Part]) -> String {
+    let title = escaped(title);
+    let mut text = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+    );
+    for part in parts {
+        let _ = match part {
+            Part::Heading(heading) => writeln!(text, "<h2>{}</h2>", escaped(heading)),
+            Part::Paragraph(words) => writeln!(text, "<p>{}</p>", escaped(words)),
+            Part::List(items) => {
+                let items: String = items.iter().map(|i| format!("<li>{}</li>\n", escaped(i))).collect();
+                writeln!(text, "<ul class=\"warning\">\n{items}</ul>")
+            }
+            Part::Table(head, rows) => {
+                let row = |cells: &[String], tag: &str| {
+                    let cells: String =
+                        cells.iter().map(|c| format!("<{tag}>{}</{tag}>", escaped(c))).collect();
+                    format!("<tr>{cells}</tr>\n")
+                };
+                let rows: String = rows.iter().map(|cells| row(cells, "td")).collect();
+                writeln!(
+                    text,
+                    "<table>\n<thead>{}</thead>\n<tbody>\n{rows}</tbody>\n</table>",
+                    row(head, "th")
+                )
+            }
+            Part::Figure(svg, caption) => writeln!(
+                text,
+                "<figure role=\"img\" aria-label=\"{0}\">\n{svg}\n<figcaption>{0}</figcaption>\n</figure>",
+                escaped(caption)
+            ),
+        };
+    }
+    text + "</body>\n</html>\n"
+}
+
+/// Drawings stand in it as SVG, which Markdown passes on.
+fn markdown(title: &str, parts: &[Part]) -> String {
+    let mut text = format!("# {title}\n");
+    for part in parts {
+        let _ = match part {
+            Part::Heading(heading) => writeln!(text, "\n## {heading}"),
+            Part::Paragraph(words) => writeln!(text, "\n{words}"),
+            Part::List(items) => {
+                let items: String = items.iter().map(|item| format!("- {item}\n")).collect();
+                write!(text, "\n{items}")
+            }
+            Part::Table(head, rows) => {
+                let row = |cells: &[String]| {
+                    let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
+                    format!("| {} |\n", cells.join(" | "))
+                };
+                let rule: Vec<String> =
+                    (0..head.len()).map(|k| if k == 0 { ":---" } else { "---:" }.into()).collect();
+                let rows: String = rows.iter().map(|cells| row(cells)).collect();
+                write!(text, "\n{}{}{rows}", row(head), row(&rule))
+            }
+            Part::Figure(svg, caption) => {
+                let lines: String = svg.lines().filter(|line| !line.trim().is_empty()).collect();
+                writeln!(text, "\n<figure>{lines}</figure>\n\n{caption}")
+            }
+        };
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_forms_hold_every_part_and_no_text_is_markup() {
+        let parts = [
+            Part::Heading("a < b".into()),
+            Part::Paragraph("c & d".into()),
+            Part::List(vec!["\"e\"".into()]),
+            Part::Table(vec!["name".into(), "x|y".into()], vec![vec!["f".into(), "1".into()]]),
+            Part::Figure("<svg>\n\n</svg>".into(), "g".into()),
+        ];
+        let page = html("t", &parts);
+        for piece in ["<h2>a &lt; b</h2>", "c &amp; d", "&quot;e&quot;", "<td>f</td><td>1</td>", "<svg>"] {
+            assert!(page.contains(piece), "{piece}: {page}");
+        }
+        let page = markdown("t", &parts);
+        for piece in ["## a < b", "- \"e\"", "| name | x\\|y |\n| :--- | ---: |\n| f | 1 |", "<svg></svg>"] {
+            assert!(page.contains(piece), "{piece}: {page}");
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! Records of measured angular velocity: checked row by row, split where they have gaps.
+
+mod clean;
+mod error;
+mod quantum;
+mod rows;
+mod segment;
+mod spikes;
+
+use nalgebra::Vector3;
+
+use crate::units::RateUnit;
+use clean::{Cleaned, Finding, cleaned};
+pub use error::RecordError;
+#[doc(hidden)]
+pub use rows::Rows;
+#[doc(hidden)]
+pub use segment::Inputs;
+use segment::NAMES;
+pub use segment::Segment;
+pub use spikes::Spike;
+use spikes::spikes;
+
+/// Measured angular velocities of one body: segments that share one tensor, each with a motion of its own.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::record::Record;
+/// let rates = [Vector3::new(0.1, 2.0, 0.3), Vector3::new(0.3, 2.0, 0.3), Vector3::new(0.5, 2.0, 0.3)];
+/// let record = Record::from_samples(&[0.0, 0.01, 0.01], &rates)?;
+/// assert_eq!((record.samples(), record.merged()), (2, 1)); // rows of the same time are averaged
+/// assert_eq!(record.segments[0].rates()[1].x, 0.4);
+/// # Ok::<(), polhode::record::RecordError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Record {
+    /// Its segments.
+    pub segments: Vec<Segment>,
+    /// What was found among the rows, and when, s.
+    findings: Vec<(f64, Finding)>,
+    skipped: Vec<RecordError>,
+    /// File and name of each column that was not read.
+    unused: Vec<(String, String)>,
+}
+impl Record {
+    /// From times (s) and angular velocities (rad/s, sensor axes).
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::record::Record;
+    /// // a gap of more than eight intervals parts two segments
+    /// let times = [0.0, 0.01, 0.02, 0.5, 0.51];
+    /// let record = Record::from_samples(&times, &[Vector3::new(0.1, 2.0, 0.3); 5])?;
+    /// assert_eq!((record.segments.len(), record.gaps(), record.samples()), (2, 1, 5));
+    /// # Ok::<(), polhode::record::RecordError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Lists of different lengths, values that are not finite, times that decrease, no samples.
+    pub fn from_samples(times: &[f64], rates: &[Vector3<f64>]) -> Result<Record, RecordError> {
+        if times.len() != rates.len() {
+            return Err(RecordError::Lengths { times: times.len(), rates: rates.len() });
+        }
+        let rows =
+            times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
+        Record::cleaned(
+            "samples",
+            Rows {
+                rows,
+                names: NAMES.map(String::from),
+                columns: [1, 2, 3, 4],
+                rate_unit: Some(RateUnit::default()),
+                unused: Vec::new(),
+                skipped: Vec::new(),
+            },
+        )
+    }
+    /// From rows of a file, called `file` in messages.
+    ///
+    /// # Errors
+    /// Values that are not finite, times that decrease, no rows.
+    #[doc(hidden)]
+    pub fn cleaned(file: &str, mut rows: Rows) -> Result<Record, RecordError> {
+        let skipped = core::mem::take(&mut rows.skipped);
+        let unused = core::mem::take(&mut rows.unused).into_iter().map(|name| (file.into(), name)).collect();
+        let Cleaned { segments, findings } = cleaned(file, rows)?;
+        Ok(Record { segments, findings, skipped, unused })
+    }
+
+    /// Why rows of the text were left out, one by one.
+    pub fn skipped(&self) -> &[RecordError] {
+        &self.skipped
+    }
+
+    /// File and name of each column of a text that was not read.
+    pub fn unused_columns(&self) -> &[(String, String)] {
+        &self.unused
+    }
+
+    /// Takes columns that the caller has read by itself off the [list](Self::unused_columns) of those that were not.
+    #[must_use]
+    pub fn with_used(mut self, uses: impl Fn(&str) -> bool) -> Record {
+        self.unused.retain(|(_, name)| !uses(name));
+        self
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.segments.iter().map(|s| s.times.len()).sum()
+    }
+
+    /// What is known of its files, without samples.
+    fn of_none(&self) -> Record {
+        Record { skipped: self.skipped.clone(), unused: self.unused.clone(), ..Record::default() }
+    }
+
+    /// The spikes of all segments, and the record without them, where there are any.
+    #[doc(hidden)]
+    pub fn without_spikes(&self) -> Option<(Vec<Spike>, Record)> {
+        let each: Vec<Vec<usize>> = self.segments.iter().map(|segment| spikes(segment.rates())).collect();
+        if each.iter().all(Vec::is_empty) {
+            return None;
+        }
+        let mut all = Vec::new();
+        let mut record = Record { findings: self.findings.clone(), ..self.of_none() };
+        for (k, (segment, spikes)) in self.segments.iter().zip(each).enumerate() {
+            record.segments.push(segment.without(&spikes));
+            all.extend(spikes.into_iter().map(|sample| Spike {
+                segment: k,
+                sample,
+                time: segment.times[sample],
+                line: segment.lines()[sample],
+            }));
+        }
+        Some((all, record))
+    }
+
+    /// The step of each component of the readings, rad/s; 0 where they have none.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::record::Record;
+    /// let times: Vec<f64> = (0..100).map(f64::from).collect();
+    /// let rates: Vec<_> = (0..100).map(|i| Vector3::new(0.25 * f64::from(i % 9), 1.0, 0.0)).collect();
+    /// assert_eq!(Record::from_samples(&times, &rates)?.quanta(), Vector3::new(0.25, 0.0, 0.0));
+    /// # Ok::<(), polhode::record::RecordError>(())
+    /// ```
+    pub fn quanta(&self) -> Vector3<f64> {
+        quantum::quanta(self.segments.iter().flat_map(|s| &s.rates))
+    }
+
+    /// Variance of the rounding of a component of the readings to steps of `quanta`, (rad/s)².
+    #[doc(hidden)]
+    pub fn rounding(&self, quanta: &Vector3<f64>) -> f64 {
+        quantum::rounding(&self.segments, quanta)
+    }
+
+    /// Number of samples that were merged into one of the same time.
+    pub fn merged(&self) -> usize {
+        self.count(Finding::Merged)
+    }
+
+    /// Number of samples left out because a component stood at the end of the sensor's range.
+    pub fn saturated(&self) -> usize {
+        self.count(Finding::Saturated)
+    }
+
+    /// Number of places where the record was split because of a gap.
+    pub fn gaps(&self) -> usize {
+        self.count(Finding::Gap)
+    }
+
+    fn count(&self, what: Finding) -> usize {
+        self.findings.iter().filter(|(_, finding)| *finding == what).count()
+    }
+
+    /// The parts that lie in the windows (start, end), s, both ends included. Windows that overlap count as one, so that no
+    /// sample serves twice.
+    ///
+    /// # Errors
+    /// A window that is not ascending, or without samples.
+    pub fn windows(&self, windows: &[(f64, f64)]) -> Result<Record, RecordError> {
+        if let Some(&(start, end)) =
+            windows.iter().find(|(start, end)| !(start.is_finite() && end.is_finite() && start < end))
+        {
+            return Err(RecordError::Window { start, end });
+        }
+        let mut cut = self.of_none();
+        for (start, end) in joined(windows) {
+            cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
+            let before = cut.segments.len();
+            for s in &self.segments {
+                let (a, b) =
+                    (s.times.partition_point(|&t| t < start), s.times.partition_point(|&t| t <= end));
+                if a < b {
+                    cut.segments.push(s.part(a..b));
+                }
+            }
+            if cut.segments.len() == before {
+                let first = self.segments.first().and_then(|s| s.times.first()).copied().unwrap_or(0.0);
+                let last = self.segments.last().and_then(|s| s.times.last()).copied().unwrap_or(0.0);
+                let file = self.segments.first().map_or(String::new(), |s| s.source.clone());
+                return Err(RecordError::Empty { file, window: Some((start, end)), span: (first, last) });
+            }
+        }
+        Ok(cut)
+    }
+
+    /// The parts from `start` to `end` (s, both included) of the segment of each span, a segment each.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn spans(&self, spans: impl IntoIterator<Item = (usize, f64, f64)>) -> Record {
+        let mut cut = self.of_none();
+        for (segment, start, end) in spans {
+            let Some(s) = self.segments.get(segment) else { continue };
+            let inside = |t: &f64| (start..=end).contains(t);
+            let low = s.times.partition_point(|&t| t < start);
+            let high = s.times.partition_point(|&t| t <= end);
+            if low < high {
+                cut.segments.push(s.part(low..high));
+            }
+            cut.findings.extend(self.findings.iter().filter(|(t, _)| inside(t)));
+        }
+        cut
+    }
+
+    /// This record and another of the same body.
+    #[must_use]
+    pub fn join(mut self, other: Record) -> Record {
+        self.segments.extend(other.segments);
+        self.findings.extend(other.findings);
+        self.skipped.extend(other.skipped);
+        self.unused.extend(other.unused);
+        self
+    }
+}
+/// The windows with those that overlap made one, in the order of their starts.
+fn joined(windows: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut sorted = windows.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut joined: Vec<(f64, f64)> = Vec::new();
+    for (start, end) in sorted {
+        match joined.last_mut() {
+            Some(last) if start < last.1 => last.1 = last.1.max(end),
+            _ => joined.push((start, end)),
+        }
+    }
+    joined
+}
