@@ -9,7 +9,9 @@ use polhode_files::text::escaped_html as escaped;
 /// How a document is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
+    /// A page for browsers.
     Html,
+    /// Plain text.
     Markdown,
 }
 
@@ -32,6 +34,7 @@ impl Form {
         }
     }
 
+    /// The text of the document.
     pub fn write(self, title: &str, parts: &[Part]) -> String {
         match self {
             Self::Html => html(title, parts),
@@ -42,8 +45,11 @@ impl Form {
 
 /// A part.
 pub enum Part {
+    /// Of a chapter.
     Heading(String),
+    /// Plain text.
     Paragraph(String),
+    /// Points, one below the other.
     List(Vec<String>),
     /// Head and rows; the first column is text, the others numbers.
     Table(Vec<String>, Vec<Vec<String>>),

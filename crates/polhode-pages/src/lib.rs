@@ -1,6 +1,5 @@
 //! Tables, figures and documents, written whole or not at all.
-
-#![allow(missing_docs)]
+#![doc = include_str!("../README.md")]
 
 pub mod document;
 pub mod figure;

@@ -7,21 +7,28 @@ use super::style::{BLACK, Colour, GREY, LINE, TITLE, WHITE};
 /// A line: its colour, its width, its dashes if it has any.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
+    /// Its colour.
     pub colour: Colour,
+    /// Pixels.
     pub width: f64,
+    /// Dash and gap, pixels.
     pub dash: Option<[f64; 2]>,
+    /// From 0 to 1.
     pub opacity: f64,
 }
 
 impl Stroke {
+    /// A solid line.
     pub fn new(colour: Colour, width: f64) -> Self {
         Self { colour, width, dash: None, opacity: 1.0 }
     }
 
+    /// With this dash and gap, pixels.
     pub fn dashed(self, dash: Option<[f64; 2]>) -> Self {
         Self { dash, ..self }
     }
 
+    /// With this opacity, from 0 to 1.
     pub fn opacity(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
@@ -30,6 +37,7 @@ impl Stroke {
 /// What an area is filled with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fill {
+    /// One colour, and its opacity.
     Flat(Colour, f64),
     /// White at the light, grey at the edge: a ball.
     Shaded,
@@ -38,8 +46,11 @@ pub enum Fill {
 /// Where a text stands from its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
+    /// Begins there.
     Start,
+    /// Its middle is there.
     Middle,
+    /// Ends there.
     End,
 }
 
@@ -107,13 +118,16 @@ pub(super) struct Item {
 /// A white page.
 #[derive(Clone, Debug)]
 pub struct Canvas {
+    /// Pixels.
     pub width: f64,
+    /// Pixels.
     pub height: f64,
     pub(super) items: Vec<Item>,
     class: Option<&'static str>,
 }
 
 impl Canvas {
+    /// An empty page; sizes in pixels.
     pub fn new(width: f64, height: f64) -> Self {
         Self { width, height, items: Vec::new(), class: None }
     }
@@ -152,6 +166,7 @@ impl Canvas {
         self.area(vec![[left, top], [right, top], [right, bottom], [left, bottom]], fill, stroke);
     }
 
+    /// A disk or its rim.
     pub fn circle(&mut self, centre: [f64; 2], radius: f64, fill: Option<Fill>, stroke: Option<Stroke>) {
         self.push(Shape::Circle { centre, radius, stroke, fill });
     }

@@ -41,6 +41,7 @@ enum Look {
 pub struct Drawing {
     /// File name without ending.
     pub name: &'static str,
+    /// Its text.
     pub svg: String,
 }
 
@@ -106,6 +107,7 @@ pub struct Figure {
 }
 
 impl Series {
+    /// A curve through points, with a mark at each.
     pub fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), points, spread: Vec::new(), look: Look::Marked, colour: None }
     }

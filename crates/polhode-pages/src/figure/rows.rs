@@ -24,7 +24,9 @@ pub struct Values {
 /// A row: its name, and its values by panel and kind.
 #[derive(Clone, Debug)]
 pub struct Group {
+    /// Its name.
     pub name: String,
+    /// By panel and kind.
     pub values: Vec<Vec<Values>>,
 }
 
@@ -39,10 +41,12 @@ pub struct RowPlot {
     pub panels: Vec<String>,
     /// Heading of the column of what has no value, in the first panel.
     pub lost: String,
+    /// From the top down.
     pub rows: Vec<Group>,
 }
 
 impl RowPlot {
+    /// Drawn.
     pub fn page(&self) -> Canvas {
         let title = lines(&self.title, COLUMN - 20.0, TITLE);
         let head = LINE * (title.len() + 1) as f64 + 30.0;

@@ -9,7 +9,9 @@ type V = Vector3<f64>;
 
 /// A view with the unit of length in pixels.
 pub struct View {
+    /// Where the origin stands on the page, pixels.
     pub centre: [f64; 2],
+    /// Pixels of the unit of length.
     pub unit: f64,
     right: V,
     up: V,

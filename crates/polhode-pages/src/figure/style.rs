@@ -7,10 +7,15 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Colour(pub u8, pub u8, pub u8);
 
+/// Of axes, words and the first curve.
 pub const BLACK: Colour = Colour(0, 0, 0);
+/// Of the page.
 pub const WHITE: Colour = Colour(255, 255, 255);
+/// Of the third curve.
 pub const BLUE: Colour = Colour(0, 114, 178);
+/// Of the fourth curve.
 pub const GREEN: Colour = Colour(0, 158, 115);
+/// Of the second curve.
 pub const ORANGE: Colour = Colour(213, 94, 0);
 /// Of guides, leaders and what lies behind.
 pub const GREY: Colour = Colour(95, 95, 95);
@@ -33,11 +38,15 @@ pub const COLOURS: [Colour; 9] = [
 /// Outline of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
+    /// A circle.
     Circle,
+    /// A square.
     Square,
+    /// A triangle with its tip above.
     Triangle,
-    /// With its tip below.
+    /// A triangle with its tip below.
     Falling,
+    /// A square on its corner.
     Diamond,
 }
 
@@ -59,24 +68,32 @@ pub const COLUMN: f64 = 500.0;
 /// Height of a plot with its title and axes.
 pub const HEIGHT: f64 = 400.0;
 
-/// Sizes of letters, pixels.
+/// Size of the letters of titles, pixels.
 pub const TITLE: f64 = 15.0;
+/// Of the names of axes.
 pub const AXIS: f64 = 14.0;
+/// Of the numbers at axes.
 pub const LABEL: f64 = 13.0;
+/// Of the names of curves.
 pub const NAME: f64 = 13.0;
 
-/// Distance of the lines of a text, and of names beside curves.
+/// Distance of the lines of a text, pixels.
 pub const LINE: f64 = 19.0;
+/// Distance of names beside curves, pixels.
 pub const NAMES: f64 = 15.0;
 
-/// Widths of lines, pixels.
+/// Width of curves, pixels.
 pub const CURVE: f64 = 1.8;
+/// Width of envelopes, pixels.
 pub const WIDE: f64 = 3.6;
+/// Width of axes and grids, pixels.
 pub const THIN: f64 = 1.0;
 
-/// Dash and gap of dashed curves, of guides, and of what lies behind a sphere.
+/// Dash and gap of dashed curves, pixels.
 pub const DASHED: [f64; 2] = [7.0, 4.0];
+/// Of guides.
 pub const DOTTED: [f64; 2] = [1.5, 3.5];
+/// Of what lies behind a sphere.
 pub const HIDDEN: [f64; 2] = [4.0, 4.0];
 
 /// Whether the k-th curve is dashed.

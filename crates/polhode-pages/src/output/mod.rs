@@ -17,7 +17,10 @@ pub use staging::{MARK, Staging};
 ///
 /// It is opened before the work, so that a place that cannot be written is found out first.
 pub enum Output {
+    /// A file, and the flag that names it.
+    #[allow(missing_docs, reason = "the variant says what they are")]
     File { file: Replacement, flag: &'static str, path: PathBuf },
+    /// Standard output.
     Standard(BufWriter<Stdout>),
 }
 

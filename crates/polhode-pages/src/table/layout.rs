@@ -22,6 +22,7 @@ pub struct Shown {
 /// A view: the rows of another table that hold `value` in `column`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Part {
+    /// Name of that table.
     pub table: String,
     column: String,
     value: String,

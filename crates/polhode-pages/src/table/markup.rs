@@ -6,6 +6,7 @@ use super::rounded::rounded;
 use super::{Cell, Column, Table};
 
 impl Table {
+    /// Rounded, as Markdown.
     pub fn markdown(&self) -> String {
         let shown = self.shown();
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));

@@ -116,6 +116,7 @@ pub struct Column {
 }
 
 impl Column {
+    /// A quantity by its name in CSV, its unit and its meaning.
     pub fn new(name: &'static str, unit: &'static str, meaning: &'static str) -> Self {
         Self {
             name: name.into(),
@@ -171,6 +172,7 @@ macro_rules! row {
 pub use crate::row;
 
 impl Table {
+    /// A table without rows.
     pub fn new(name: impl Into<String>, caption: impl Into<String>, columns: Vec<Column>) -> Self {
         Self { name: name.into(), caption: caption.into(), columns, rows: Vec::new(), part: None }
     }
@@ -216,6 +218,7 @@ impl Table {
         self.columns.iter().position(|column| column.name == name)
     }
 
+    /// Its rows, with a cell for each column.
     pub fn rows(&self) -> &[Vec<Cell>] {
         &self.rows
     }
@@ -335,6 +338,7 @@ impl Format {
         }
     }
 
+    /// The text of `table`.
     pub fn write(self, table: &Table) -> String {
         match self {
             Self::Table => table.terminal(),
