@@ -4,14 +4,14 @@
 
 mod fixtures;
 
-use fixtures::{FreeCase, free_body};
+use fixtures::{BRINK, BY_REGIME, FreeCase, PUBLISHED, free_body};
 use polhode::body::{Body, Point, State, Time};
 use polhode::flow::{AtRest, Flow, FreeBody, FreeMotion, Mode, TimeError};
 use polhode::inertia::Inertia;
 use polhode::num::{Dd, Precise, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 
-const FILES: [&str; 3] = ["fixtures.csv", "reference.csv", "brink.csv"];
+const FILES: [&str; 3] = [BY_REGIME, PUBLISHED, BRINK];
 
 fn motion(case: &FreeCase) -> FreeMotion {
     // some published problems have moments that no body has
@@ -202,7 +202,7 @@ fn the_flow_of_a_splitting_agrees_with_the_motion() {
 #[test]
 fn small_deviations_grow_with_all_their_digits() {
     let mut checked = 0;
-    for case in free_body("brink.csv") {
+    for case in free_body(BRINK) {
         let motion = motion(&case);
         let found = motion.point_at_dd(Dd::from(case.t)).momentum_body;
         let scale = Dd::of(motion.body().scale());

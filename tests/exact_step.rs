@@ -4,7 +4,7 @@
 
 mod fixtures;
 
-use fixtures::free_body;
+use fixtures::{PUBLISHED, free_body};
 use polhode::body::{Body, Clock, Point, State, Time};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
@@ -104,7 +104,7 @@ fn half_decades() -> impl Iterator<Item = f64> {
 
 #[test]
 fn the_dyadic_body_is_followed_for_eight_million_steps() {
-    for case in free_body("reference.csv").into_iter().filter(|c| c.scenario == "E2" && c.t <= 1e6) {
+    for case in free_body(PUBLISHED).into_iter().filter(|c| c.scenario == "E2" && c.t <= 1e6) {
         let mut run = Following::from_attitude(case.attitude, case.moments, case.start, 0.125);
         let steps = (case.t / 0.125) as u64;
         run.advance(steps - steps.min(70));

@@ -17,7 +17,7 @@ use polhode_pages::table::{Column, Table, row};
 use crate::experiment::{Context, Report};
 use crate::measured::LOST;
 
-const FIXTURES: &str = include_str!("../../../tests/data/free_body/fixtures.csv");
+const FIXTURES: &str = include_str!("../../data/free_body.csv");
 
 /// What is promised: attitude in rad, angular velocity relative.
 const PROMISE: f64 = 1e-14;

@@ -15,7 +15,7 @@ use crate::experiment::{Context, Report};
 use crate::measured::{LOST, StepTime};
 
 /// Figures that the programs themselves give, with what they were asked.
-const FIGURES: &str = include_str!("../../../tests/data/programs/figures.csv");
+const FIGURES: &str = include_str!("../../data/programs.csv");
 
 const BODY: &str = "textbook";
 

@@ -1,4 +1,4 @@
-"""Writes fixtures.csv, reference.csv and brink.csv: the exact torque-free rigid body.
+"""Writes reference.csv, brink.csv and experiments/data/free_body.csv: the exact torque-free rigid body.
 
     python3 tests/data/free_body/generate.py        (python 3.11, mpmath 1.3)
 
@@ -461,5 +461,5 @@ def write(name, about, cases):
 if __name__ == "__main__":
     check_known()
     write("reference.csv", "Published and tabulated free-body problems", references())
-    write("fixtures.csv", "Exact torque-free rotation of a rigid body by regime", scenarios())
+    write("../../../experiments/data/free_body.csv", "Exact torque-free rotation of a rigid body by regime", scenarios())
     write("brink.csv", "Exact torque-free rotation of a rigid body that turns about its middle axis but for a deviation", brink())

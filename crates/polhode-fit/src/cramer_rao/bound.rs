@@ -59,7 +59,8 @@ impl<'a> Motions<'a> {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::{inertia::Inertia, fit::foreseen_bound};
+/// use polhode::inertia::Inertia;
+/// use polhode_fit::foreseen_bound;
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
 /// let tumble = foreseen_bound(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3).ok_or("tumbles")?;

@@ -98,7 +98,7 @@ pub struct Flights {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode_fit::{Record, Settings, fit, flights, simulate};
+/// use polhode_fit::{Record, Settings, during, fit, flights, simulate};
 /// use polhode::inertia::Inertia;
 /// use polhode::num::Random;
 ///

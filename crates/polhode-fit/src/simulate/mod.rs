@@ -45,7 +45,8 @@ pub enum SimulationError {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use polhode::{fit::simulate, inertia::Inertia, num::Random};
+/// use polhode::{inertia::Inertia, num::Random};
+/// use polhode_fit::simulate;
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let times: Vec<f64> = (0..500).map(|i| f64::from(i) / 100.0).collect();
 /// let exact = simulate(&body, Vector3::new(0.1, 1.0, 0.2), &times, 0.0, &mut Random::new(1))?;
