@@ -110,5 +110,6 @@ pub use nalgebra;
 pub use run::{Run, Schedule};
 
 #[doc = include_str!("../README.md")]
+#[doc = include_str!("../docs/crate.md")]
 #[cfg(doctest)]
 struct Readme;
