@@ -32,6 +32,7 @@
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
+//! | [`truth`] | the true motion of a body, how far a run departs from it, and what became of the run |
 //! | [`advise`] | which method with which step, from short runs on the body itself |
 //! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how large its error is |
 //! | [`catalogue`] | named bodies with their sources |
@@ -84,6 +85,7 @@ pub mod observe;
 pub mod record;
 pub mod rotation;
 pub mod run;
+pub mod truth;
 pub mod units;
 
 /// A chapter for each kind of user, and what stands behind the exact motion.

@@ -8,9 +8,6 @@ use super::trial::{Trial, trial};
 use super::{Advice, AdviseError, Choice, Demand, Predicted, Setting};
 use crate::body::{Body, Point};
 
-/// The turn, rad, over which each candidate is tried first.
-const SHORT: f64 = 512.0;
-
 /// Steps of a candidate's longest run.
 const AFFORDABLE: f64 = 1e6;
 
@@ -32,9 +29,6 @@ pub(super) struct Calibration<'a> {
     start: Point<f64>,
     demand: &'a Demand,
     reference: Reference,
-    /// Levels of the short runs and of the longest that can be judged.
-    short: u32,
-    longest: u32,
     conditioning: f64,
     /// The least time of a setting that meets the demand so far, s.
     quickest: f64,
@@ -52,34 +46,14 @@ impl<'a> Calibration<'a> {
         body: &'a Body,
         start: Point<f64>,
         demand: &'a Demand,
-        mut reference: Reference,
+        reference: Reference,
     ) -> Result<Self, AdviseError> {
-        let longest = reference.longest();
-        let turn = |level| reference.horizon(level) * reference.rate();
-        let short = (longest..longest + 200).find(|level| turn(*level) <= SHORT).unwrap_or(longest);
-        let wanted = demand.attitude_error;
-        let (horizon, looks) = (reference.horizon(longest), reference.looks(longest));
-        let truth = reference.truth(longest).ok_or(AdviseError::NoReference)?;
-        if let Some(k) = truth.doubt.iter().position(|doubt| *doubt > 0.05 * wanted) {
-            let agree_until = horizon * k as f64 / looks as f64;
-            return Err(AdviseError::Chaotic { demand: wanted, agree_until });
-        }
-        let level = if reference.closed().is_some() { 0 } else { short };
-        let conditioning = reference.conditioning(level).ok_or(AdviseError::NoReference)?;
+        let conditioning = reference.conditioning()?;
+        let (wanted, until) = (demand.attitude_error, demand.until);
         if conditioning > wanted {
-            let until = demand.until;
             return Err(AdviseError::Conditioning { demand: wanted, attainable: conditioning, until });
         }
-        Ok(Calibration {
-            body,
-            start,
-            demand,
-            reference,
-            short,
-            longest,
-            conditioning,
-            quickest: f64::INFINITY,
-        })
+        Ok(Calibration { body, start, demand, reference, conditioning, quickest: f64::INFINITY })
     }
 
     pub(super) fn advice(mut self) -> Result<Advice, AdviseError> {
@@ -136,7 +110,9 @@ impl<'a> Calibration<'a> {
     /// The closed form, where there is one and it is wanted.
     fn closed_form(&self) -> Vec<Choice> {
         let excluded = self.demand.excluded.iter().any(|name| name == "exact");
-        let Some(motion) = self.reference.closed().filter(|_| !excluded) else { return Vec::new() };
+        let Some(motion) = self.reference.truth().closed_form().filter(|_| !excluded) else {
+            return Vec::new();
+        };
         let begun = Instant::now();
         let Ok(state) = motion.at(self.demand.until) else { return Vec::new() };
         let seconds = begun.elapsed().as_secs_f64();
@@ -162,7 +138,7 @@ impl<'a> Calibration<'a> {
         let horizon = self.reference.horizon(level);
         let steps = if candidate.is_adaptive() || candidate.is_exact() { 1.0 } else { horizon / value };
         let from = (self.body, self.start, self.demand.start_time);
-        let truth = self.reference.truth(level)?;
+        let truth = self.reference.points(level).ok()?;
         trial(prepared.method(), from, truth, (horizon, steps))
     }
 
@@ -179,7 +155,7 @@ impl<'a> Calibration<'a> {
             method: candidate.name.clone(),
             setting: candidate.setting(value, until, steps),
             steps: (!candidate.is_adaptive()).then_some(steps),
-            attitude_error: run.attitude_at(until, self.reference.rate(), candidate.drifts()),
+            attitude_error: run.attitude_at(until, self.reference.rate, candidate.drifts()),
             energy_error: run.energy_at(until, candidate.drifts()),
             seconds: Predicted { value: run.setup + seconds, factor: run.scatter },
             whole_time: level == 0,
@@ -195,7 +171,7 @@ impl<'a> Calibration<'a> {
 
     /// A setting from short runs, or the smallest attitude error that was seen.
     fn first(&mut self, candidate: &Candidate) -> Result<Found, Option<f64>> {
-        let (mut value, level) = (candidate.coarse(self.reference.rate()), self.short);
+        let (mut value, level) = (candidate.coarse(self.reference.rate), self.reference.short);
         let factor = if candidate.is_adaptive() { 0.01 } else { 0.5 };
         let (mut nearest, mut before, mut plausible): (Option<f64>, Option<f64>, Option<Found>) =
             Default::default();
@@ -261,9 +237,9 @@ impl<'a> Calibration<'a> {
             value = if candidate.is_adaptive() {
                 larger
             } else {
-                larger.min(candidate.coarse(self.reference.rate()))
+                larger.min(candidate.coarse(self.reference.rate))
             };
-            if value >= larger.max(candidate.coarse(self.reference.rate())) && taken.is_some() {
+            if value >= larger.max(candidate.coarse(self.reference.rate)) && taken.is_some() {
                 break;
             }
         }
@@ -272,11 +248,11 @@ impl<'a> Calibration<'a> {
 
     /// The level of the longest run at `value` that is affordable and can be judged.
     fn affordable(&self, candidate: &Candidate, value: f64) -> u32 {
-        let step = if candidate.is_adaptive() { 0.25 / self.reference.rate() } else { value };
+        let step = if candidate.is_adaptive() { 0.25 / self.reference.rate } else { value };
         let steps = |level| self.reference.horizon(level) / step;
-        (self.longest..=self.short.max(self.longest))
+        (self.reference.longest..=self.reference.short.max(self.reference.longest))
             .find(|level| steps(*level) <= AFFORDABLE)
-            .unwrap_or(self.short)
+            .unwrap_or(self.reference.short)
     }
 }
 

@@ -1,18 +1,17 @@
 //! What a choice really does.
 
-use super::reference::Reference;
+use super::reference::truth;
 use super::{AdviseError, Choice, Demand, Setting};
-use crate::body::{Body, Clock, Point, State};
+use crate::body::{Body, Clock, State};
 use crate::method::method;
 use crate::num::Dd;
-use crate::rotation::rotation_angle;
 use crate::run::{Run, Watch};
+use crate::truth::evenly;
 
-/// Looks at a motion in closed form: not those of the runs behind the advice.
+/// Looks at the motion: not those of the runs behind the advice.
 const LOOKS: u64 = 97;
 
-/// Runs `choice` over the whole time of `demand` and compares it with the closed form, else with a run in double-double: the
-/// largest attitude error that was seen, rad.
+/// Runs `choice` over the whole time of `demand` and compares it with the [true motion](crate::truth): the largest attitude error that was seen, rad.
 ///
 /// # Errors
 /// A demand or a start as in [`advise`](super::advise), a method that does not exist or whose run fails, or a time too long for
@@ -32,24 +31,19 @@ const LOOKS: u64 = 97;
 pub fn check(body: &Body, start: &State, demand: &Demand, choice: &Choice) -> Result<f64, AdviseError> {
     demand.check()?;
     let start = body.enter(start)?.to_f64();
-    let mut reference = Reference::new(body, start.to_dd(), demand.start_time, demand.until);
-    if reference.closed().is_none() && reference.longest() > 0 {
-        let reach = reference.horizon(reference.longest());
-        return Err(AdviseError::TooLong { until: demand.until, reach });
-    }
-    let looks = if reference.closed().is_some() { LOOKS } else { reference.looks(0) };
+    let truth = truth(body, start, demand, &evenly(demand.until, LOOKS as u32))?;
     let (name, step, steps) = match choice.setting {
-        Setting::Nothing => (None, demand.until / looks as f64, looks),
+        Setting::Nothing => (None, demand.until / LOOKS as f64, LOOKS),
         Setting::Step(h) => (Some(choice.method.clone()), h, choice.steps.unwrap_or(1)),
         Setting::Tolerance { tolerance, .. } => {
-            (Some(format!("{}:{tolerance:e}", choice.method)), demand.until / looks as f64, looks)
+            (Some(format!("{}:{tolerance:e}", choice.method)), demand.until / LOOKS as f64, LOOKS)
         }
     };
     let clock = Clock { start: demand.start_time, step };
     let mut worst = 0.0_f64;
     let Some(name) = name else {
-        let Some(motion) = reference.closed() else { return Err(AdviseError::NoReference) };
-        for k in 1..=looks {
+        let Some(motion) = truth.closed_form() else { return Err(AdviseError::NoReference) };
+        for k in 1..=LOOKS {
             let t = clock.elapsed(k).hi();
             let (Ok(state), exact) = (motion.at(t), motion.point_at_dd(Dd::from(t))) else { continue };
             worst = worst.max(state.rotation().angle_to(&body.leave(&exact).rotation()));
@@ -60,21 +54,9 @@ pub fn check(body: &Body, start: &State, demand: &Demand, choice: &Choice) -> Re
     let method = method(&name).map_err(|error| unusable(error.to_string()))?;
     let run = Run::from_point(&method, body, start, clock).map_err(|error| unusable(error.to_string()))?;
     let mut run = run.watching(Watch::Never);
-    for k in 1..=looks {
-        let at = steps * k / looks;
-        let on_time = steps.is_multiple_of(looks) || k == looks;
-        let Some(exact) = exact(&mut reference, clock.elapsed(at), (k, on_time)) else { continue };
-        let seen = run.advance_to(at)?.point.to_dd();
-        worst = worst.max(rotation_angle(seen.attitude, exact.attitude).hi());
+    for k in 1..=LOOKS {
+        let sample = run.advance_to(steps * k / LOOKS)?;
+        worst = worst.max(truth.attitude_error(&sample.point.to_dd(), sample.elapsed)?);
     }
     Ok(worst)
-}
-
-/// The motion when `elapsed` has passed, which is look `k`, if that is known there.
-fn exact(reference: &mut Reference, elapsed: Dd, (k, on_time): (u64, bool)) -> Option<Point<Dd>> {
-    match reference.closed() {
-        Some(motion) => Some(motion.point_at_dd(elapsed)),
-        None if on_time => reference.truth(0)?.points.get(k as usize - 1).copied(),
-        None => None,
-    }
 }

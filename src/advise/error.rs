@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::body::StateError;
 use crate::num::Shown;
 use crate::run::RunError;
+use crate::truth::TruthError;
 
 /// Why there is no advice.
 #[derive(Clone, Debug, Error)]
@@ -103,10 +104,24 @@ pub enum AdviseError {
         /// What was said.
         why: String,
     },
+    /// The true motion is not known for another reason.
+    #[error(transparent)]
+    Truth(TruthError),
     /// The run of a choice failed.
     #[error(transparent)]
     Run(#[from] RunError),
     /// Everything is excluded.
     #[error("no method is left: those that take the forces on the body are excluded")]
     NoCandidate,
+}
+
+impl From<TruthError> for AdviseError {
+    fn from(error: TruthError) -> Self {
+        match error {
+            TruthError::State(error) => AdviseError::State(error),
+            TruthError::NotFollowed(_) => AdviseError::NoReference,
+            TruthError::TooLong { until, reach, .. } => AdviseError::TooLong { until, reach },
+            error => AdviseError::Truth(error),
+        }
+    }
 }

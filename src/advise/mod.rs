@@ -1,7 +1,7 @@
 //! Which method, with which step: from short runs of every candidate on the body itself.
 //!
 //! Each candidate of the catalogue runs over a part of the time, in steps that are halved until its error, which is measured
-//! against the closed form or against two runs in double-double, tells the step that the demand needs. The quickest of them
+//! against the [true motion](crate::truth), tells the step that the demand needs. The quickest of them
 //! then run over as much of the time as is affordable, in steps about twice as long as needed, and the step follows from what
 //! they showed and from the order of the method. Processor times are measured in the same runs.
 
@@ -115,9 +115,6 @@ impl Demand {
 pub fn advise(body: &Body, start: &State, demand: &Demand) -> Result<Advice, AdviseError> {
     demand.check()?;
     let start = body.enter(start)?.to_f64();
-    let reference = Reference::new(body, start.to_dd(), demand.start_time, demand.until);
-    if reference.rate() == 0.0 {
-        return Err(AdviseError::AtRest);
-    }
+    let reference = Reference::new(body, start, demand)?;
     Calibration::new(body, start, demand, reference)?.advice()
 }

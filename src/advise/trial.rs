@@ -3,12 +3,12 @@
 use std::time::Instant;
 
 use super::Predicted;
-use super::reference::Truth;
 use crate::body::{Body, Clock, Conserved, Point};
 use crate::method::AnyMethod;
+use crate::num::Dd;
 use crate::observe::Monitor;
-use crate::rotation::rotation_angle;
 use crate::run::SOLVED;
+use crate::truth::attitude_error;
 
 /// What a run over a horizon showed.
 #[derive(Clone, Copy, Debug)]
@@ -33,14 +33,14 @@ pub(super) struct Trial {
     pub(super) steps: u64,
 }
 
-/// Runs `method` over `horizon` with at least `steps` steps, from look to look of `truth`. `None` where it fails.
+/// Runs `method` over `horizon` with at least `steps` steps, from look to look at the points `truth` of the motion. `None` where it fails.
 pub(super) fn trial(
     method: &dyn AnyMethod,
     (body, start, start_time): (&Body, Point<f64>, f64),
-    truth: &Truth,
+    truth: &[Point<Dd>],
     (horizon, steps): (f64, f64),
 ) -> Option<Trial> {
-    let looks = truth.points.len();
+    let looks = truth.len();
     let apart = horizon / looks as f64;
     let n = libm::ceil(steps / looks as f64).max(1.0);
     let clock = Clock { start: start_time, step: apart / n };
@@ -53,7 +53,7 @@ pub(super) fn trial(
     let conserved = body.conserved().contains(&Conserved::Energy);
     let (mut attitude, mut energy, mut before) = (0.0_f64, 0.0_f64, (0.0, 0.0));
     let mut prices = Vec::new();
-    for (k, exact) in truth.points.iter().enumerate() {
+    for (k, exact) in truth.iter().enumerate() {
         let begun = Instant::now();
         step.advance(&mut x, n as u64);
         prices.push(begun.elapsed().as_secs_f64() / apart);
@@ -61,7 +61,7 @@ pub(super) fn trial(
         if !seen.is_finite() || step.stuck().is_some() || step.worst_residual() > SOLVED {
             return None;
         }
-        attitude = attitude.max(rotation_angle(seen.to_dd().attitude, exact.attitude).hi());
+        attitude = attitude.max(attitude_error(seen.attitude, exact.attitude));
         if conserved {
             energy = energy.max(monitor.energy_change(&seen).abs());
         }
@@ -74,17 +74,8 @@ pub(super) fn trial(
     let quantile = |share: usize| prices[(prices.len() - 1) * share / 4];
     let (price, scatter) = (quantile(2), quantile(3) / quantile(1));
     let (energy, (attitude_before, energy_before)) = (conserved.then_some(energy), before);
-    Some(Trial {
-        horizon,
-        attitude,
-        attitude_before,
-        energy,
-        energy_before,
-        setup,
-        price,
-        scatter,
-        steps: n as u64,
-    })
+    let steps = n as u64;
+    Some(Trial { horizon, attitude, attitude_before, energy, energy_before, setup, price, scatter, steps })
 }
 
 /// Between two looks the error may be larger than at them by about this factor.

@@ -160,6 +160,12 @@ impl Cost {
         Cost { kicks: n, ..Cost::NOTHING }
     }
 
+    /// Evaluations of all kinds together.
+    #[must_use]
+    pub const fn evaluations(self) -> u32 {
+        self.right_sides + self.turns + self.additions + self.free_flows + self.solves + self.kicks
+    }
+
     const NOTHING: Cost = Cost { right_sides: 0, turns: 0, additions: 0, free_flows: 0, solves: 0, kicks: 0 };
 }
 

@@ -4,19 +4,19 @@ use crate::rotation::Vec3;
 
 /// Changes of sign of the momentum along the middle axis.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Flips {
+pub(crate) struct Flips {
     axis: usize,
     pub(super) positive: Option<bool>,
-    pub(super) count: u64,
+    pub(crate) count: u64,
 }
 
 impl Flips {
-    pub(super) fn new(axis: usize) -> Self {
+    pub(crate) fn new(axis: usize) -> Self {
         Flips { axis, positive: None, count: 0 }
     }
 
     #[inline]
-    pub(super) fn observe(&mut self, m: Vec3<f64>) {
+    pub(crate) fn observe(&mut self, m: Vec3<f64>) {
         let component = m[self.axis];
         if component == 0.0 {
             return;

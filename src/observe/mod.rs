@@ -11,6 +11,7 @@ mod monitor;
 
 pub use drift::{Drift, secular_drift};
 pub use errors::Errors;
+pub(crate) use flips::Flips;
 pub use invariants::Invariants;
 pub use monitor::Monitor;
 pub(crate) use monitor::{BLOCK, Memory};

@@ -88,6 +88,21 @@ pub enum RunError {
     },
 }
 
+impl RunError {
+    /// The last finite sample of a run that failed on its way; `None` where it could not start, or left the range of numbers in
+    /// the units of the body.
+    #[must_use]
+    pub fn last(&self) -> Option<&Sample> {
+        match self {
+            RunError::Diverged { last }
+            | RunError::Force { last, .. }
+            | RunError::Stuck { last, .. }
+            | RunError::Unsolved { last, .. } => Some(last),
+            _ => None,
+        }
+    }
+}
+
 fn left(stuck: &Stuck) -> String {
     match stuck.estimate {
         Some(estimate) => format!("still has an error of {estimate:.1e} times the tolerance"),
