@@ -2,10 +2,10 @@
 
 use polhode::body::Problem;
 use polhode::method::schemes::{self, Pairs, Part, Stages};
-use polhode::method::{Claimed, Claims, ExactFlow, Kicks, Splitting, catalogue};
+use polhode::method::{ADAPTIVE, Claimed, Claims, ExactFlow, Kicks, Splitting, catalogue};
 use polhode_pages::table::{Cell, Column, Table, row};
 
-/// One row a method, from its claims.
+/// One row a method of the catalogue, from its claims for free motion; the closed form first.
 pub fn table() -> Table {
     let mut table = Table::new(
         "methods",
@@ -58,7 +58,7 @@ fn cells(name: String, order: Option<u32>, claims: &Claims, cost: String, source
     ]
 }
 
-/// One row a scheme.
+/// One row a scheme that can be named behind the `@` of a method.
 pub fn schemes() -> Table {
     let mut table = Table::new(
         "schemes",
@@ -105,4 +105,10 @@ pub fn schemes() -> Table {
         ]);
     }
     table
+}
+
+/// Whether the method chooses its steps: `dop853`, `tsit5`, and `taylor` but for `taylor:20`, whose argument is an order.
+pub fn is_adaptive(name: &str) -> bool {
+    let (base, argument) = name.split_once(':').unwrap_or((name, ""));
+    ADAPTIVE.contains(&base) && argument.parse::<u32>().is_err()
 }

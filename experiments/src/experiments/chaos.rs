@@ -11,12 +11,12 @@ use polhode::inertia::Inertia;
 use polhode::method::{AdaptiveTaylor, AnyMethod as _, Step, method};
 use polhode::num::{Dd, Precise};
 use polhode::rotation::{Quat, Vec3};
+use polhode::truth::{AGREEMENT, Care, Ending, Truth, evenly};
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::figure::{Figure, Scale, Series, sheet};
 use polhode_pages::table::{Cell, Column, Table, row};
 
 use crate::experiment::{Context, Report};
-use crate::measured::{Care, Ending, Motion};
 
 /// A start of the top with the moments 0.5, 0.85, 1 kg m² and the weight moment 1 N m along the axis of the largest.
 struct Orbit {
@@ -83,7 +83,9 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let (mut motions, mut truths) = (Vec::new(), Vec::new());
         for found in context.in_parallel(vec![true, false], |follows| {
             if follows {
-                Motion::evenly(&body, &start, 0.0, held, held as u32).map(|motion| (Some(motion), None))
+                let times = evenly(held, held as u32);
+                let truth = Truth::from_point(&body, start.to_f64(), 0.0, &times, AGREEMENT);
+                truth.map(|truth| (Some(truth), None)).map_err(unexpected)
             } else {
                 true_exponent(&body, start, span).map(|exponent| (None, Some(exponent)))
             }
@@ -100,7 +102,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             }
         }
         let rows = context.in_parallel(parts, |(name, h)| of_run(&body, start, motion, (name, h), span));
-        let known = motion.reference().known_until();
+        let known = motion.known_until();
         let top = [Cell::Empty, Cell::Empty, truth.mean.into(), truth.half_width.into(), known.into()];
         let name: [Cell; 3] = row![orbit.name, "double-double", None::<f64>];
         table.push(name.into_iter().chain(top).chain([Cell::Empty]));
@@ -211,7 +213,7 @@ impl Found {
             self.exponent.mean,
             self.exponent.half_width,
             self.until,
-            self.ending.words(0.0),
+            self.ending.to_string(),
         ]
         .to_vec()
     }
@@ -220,17 +222,15 @@ impl Found {
 fn of_run<'a>(
     body: &Body,
     start: Point<Dd>,
-    motion: &Motion,
+    motion: &Truth,
     (name, h): (&'a str, f64),
     span: f64,
 ) -> Result<(&'a str, f64, Found), Error> {
     let of_name = method(name).map_err(unexpected)?;
-    let held = motion.measure(of_name.as_ref(), h, Care { until_lost: true, ..Care::FULL });
-    let held = held.map_err(unexpected)?;
-    let until = match held.ending {
-        Ending::Held => motion.reference().known_until(),
-        Ending::Lost(t) | Ending::Diverged(t) | Ending::Unsolved(t) | Ending::Stuck(t) => t,
-    };
+    let mut care = Care::default();
+    care.until_lost = true;
+    let held = motion.judge(of_name.as_ref(), h, care).map_err(unexpected)?;
+    let until = held.ending.time().unwrap_or(motion.known_until());
     let long = polhode::run::Run::from_point(of_name.as_ref(), body, start.to_f64(), Clock::new(h));
     let long = long.map_err(unexpected)?.advance_to((span / h) as u64).map_err(unexpected)?;
     let exponent = exponent::<f64>(

@@ -6,11 +6,12 @@ use polhode::method::{Claimed, method};
 use polhode::num::{Dd, Precise};
 use polhode::rotation::Vec3;
 use polhode::run::{Run, RunError, Sample, Schedule, Watch};
+use polhode::truth::Ending;
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::figure::{Figure, Scale, Series, sheet, ten_to};
 use polhode_pages::table::{Column, Table, row};
 
-use super::followed::Ending;
+use super::followed::status;
 use crate::experiment::{Context, Report};
 
 const BODY: &str = "textbook";
@@ -182,7 +183,7 @@ fn follow(name: &str, power: u32) -> Result<Followed, Error> {
         }
         begun = end;
     }
-    Ok(Followed { intervals, order, ending: ending.to_string() })
+    Ok(Followed { intervals, order, ending: status(ending) })
 }
 
 /// Steps at the ends of the intervals.

@@ -11,7 +11,9 @@ use polhode::run::Run;
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Cell, Column, Table, row};
 
-use super::followed::{Effort, Ending, Followed, follow, rows_of_methods};
+use super::followed::{
+    Followed, columns_of_effort, columns_of_ending, effort, follow, is_whole, rows_of_methods, status,
+};
 use crate::experiment::{Context, Report};
 
 const BODIES: [&str; 7] = ["textbook", "toutatis", "racket", "t-handle", "phone", "water", "spacecraft"];
@@ -92,8 +94,8 @@ fn columns() -> Vec<Column> {
         Column::new("flips_exact", "", "the same of the exact motion").hidden(),
         Column::new("flips_right", "", "whether they agree").heading("flips").latex("flips"),
     ];
-    columns.extend(Ending::columns());
-    columns.extend(Effort::columns());
+    columns.extend(columns_of_ending());
+    columns.extend(columns_of_effort());
     columns
 }
 
@@ -130,13 +132,14 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
     let exact = FreeMotion::from_point(body.inertia(), run.start().to_dd());
     let speed = nalgebra::Vector3::from(named.omega_body).norm();
     let motion = |elapsed| Some(exact.point_at_dd(elapsed));
-    let Followed { last, ending, attitude_error, times, energy_changes } = follow(&mut run, steps, motion)?;
+    let Followed { last, ending, attitude_error, times, energy_changes } =
+        follow(&mut run, (steps, h), motion)?;
     // what a run that failed leaves behind is no error of the method
-    let of_whole = |error: Option<f64>| error.filter(|_| ending.is_whole());
+    let of_whole = |error: Option<f64>| error.filter(|_| is_whole(ending));
     let angles: Vec<f64> = times.iter().map(|t| t * speed).collect();
-    let slope = secular_drift(&angles, &energy_changes).filter(|_| ending.is_whole());
+    let slope = secular_drift(&angles, &energy_changes).filter(|_| is_whole(ending));
     let flips = exact.flips(last.elapsed);
-    let effort = Effort::of(&run, method, Problem::Free, last.steps);
+    let [evaluations, rejected] = effort(&run, method, Problem::Free, last.steps);
     Ok(row![
         named.name,
         method.name(),
@@ -151,11 +154,11 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
         slope.map(|d| d.half_width),
         last.flips,
         flips,
-        ending.is_whole().then_some(if last.flips == Some(flips) { "right" } else { "wrong" }),
-        ending.to_string(),
+        is_whole(ending).then_some(if last.flips == Some(flips) { "right" } else { "wrong" }),
+        status(ending),
         last.elapsed.hi(),
-        effort.evaluations,
-        effort.rejected,
+        evaluations,
+        rejected,
     ]
     .to_vec())
 }

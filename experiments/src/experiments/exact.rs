@@ -10,12 +10,12 @@ use polhode::flow::{Flow, FreeBody, FreeMotion};
 use polhode::inertia::Inertia;
 use polhode::num::{Dd, Precise, Random};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
+use polhode::truth::LOST;
 use polhode_files::error::Error;
 use polhode_pages::figure::{Figure, Series};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
-use crate::measured::LOST;
 
 const FIXTURES: &str = include_str!("../../data/free_body.csv");
 

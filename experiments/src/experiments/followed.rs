@@ -1,18 +1,13 @@
 //! What experiments that follow runs share: a run to its end, wherever that is, its attitude error, and the figure.
 
-use std::fmt;
-
 use polhode::body::{Point, Problem};
 use polhode::method::Claimed;
 use polhode::num::Dd;
-use polhode::rotation::rotation_angle;
-use polhode::run::{Run, RunError, Sample, Schedule};
+use polhode::run::{Run, Sample, Schedule};
+use polhode::truth::{Ending, LOST, attitude_error};
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::Drawing;
-use polhode_pages::figure::{Group, RowPlot, Values};
+use polhode_pages::figure::{Drawing, Group, RowPlot, Values};
 use polhode_pages::table::{Cell, Column, Table};
-
-use crate::measured::LOST;
 
 /// Looks at the energy for its secular slope.
 const LOOKS: u64 = 512;
@@ -34,42 +29,22 @@ pub(super) struct Followed {
     pub(super) energy_changes: Vec<f64>,
 }
 
+/// Columns that say how a run ended, and when.
+pub(super) fn columns_of_ending() -> [Column; 2] {
+    let meaning =
+        "ok; lost: the attitude was first seen more than 1 rad off; diverged or unsolved: the run ended";
+    [Column::new("status", "", meaning), Column::new("time_reached", "s", "time of the row").hidden()]
+}
+
+/// Whether a run came to its end.
+pub(super) fn is_whole(ending: Ending) -> bool {
+    matches!(ending, Ending::Held | Ending::Lost(_))
+}
+
 /// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Ending {
-    /// With an attitude that is known.
-    Held,
-    /// With one that was first seen to be more than a radian off at this time, s.
-    Lost(f64),
-    /// With a state that is not finite after this time, s.
-    Diverged(f64),
-    /// With an implicit step that has no solution after this time, s.
-    Unsolved(f64),
-}
-
-impl Ending {
-    /// Columns that say how a run ended, and when.
-    pub(super) fn columns() -> [Column; 2] {
-        let meaning =
-            "ok; lost: the attitude was first seen more than 1 rad off; diverged or unsolved: the run ended";
-        [Column::new("status", "", meaning), Column::new("time_reached", "s", "time of the row").hidden()]
-    }
-
-    /// Whether the run came to its end.
-    pub(super) fn is_whole(self) -> bool {
-        matches!(self, Ending::Held | Ending::Lost(_))
-    }
-}
-
-impl fmt::Display for Ending {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Ending::Held => f.write_str("ok"),
-            Ending::Lost(t) => write!(f, "lost at t = {} s", rounded(*t)),
-            Ending::Diverged(t) => write!(f, "diverged at t = {} s", rounded(*t)),
-            Ending::Unsolved(t) => write!(f, "unsolved at t = {} s", rounded(*t)),
-        }
-    }
+pub(super) fn status(ending: Ending) -> String {
+    let at = |t| format!("{} at t = {} s", ending.word(), rounded(t));
+    ending.time().map_or(ending.word().into(), at)
 }
 
 /// To two digits: a loss is seen at one look out of many only.
@@ -78,10 +53,10 @@ fn rounded(t: f64) -> String {
     if (1e-3..1e6).contains(&t) { t.to_string() } else { format!("{t:e}") }
 }
 
-/// Follows `run` for `steps` steps or until it fails; `exact` is the motion, where it is known.
+/// Follows `run` for `steps` steps of `h` s or until it fails; `exact` is the motion, where it is known.
 pub(super) fn follow(
     run: &mut Run,
-    steps: u64,
+    (steps, h): (u64, f64),
     exact: impl Fn(Dd) -> Option<Point<Dd>>,
 ) -> Result<Followed, Error> {
     let mut seen = Followed {
@@ -91,26 +66,22 @@ pub(super) fn follow(
         times: Vec::new(),
         energy_changes: Vec::new(),
     };
-    let error = |sample: &Sample| exact(sample.elapsed).map(|exact| attitude_error(sample, &exact));
+    let error =
+        |at: &Sample| exact(at.elapsed).map(|exact| attitude_error(at.point.attitude, exact.attitude));
     for (look, sample) in run.samples(Schedule::every((steps / LOOKS).max(1), steps)).skip(1).enumerate() {
-        let failed = |last: &Sample| last.elapsed.hi();
         seen.last = match sample {
             Ok(sample) => sample,
-            Err(RunError::Diverged { last }) => {
-                seen.ending = Ending::Diverged(failed(&last));
-                *last
+            Err(error) => {
+                let last = error.last().copied().unwrap_or(seen.last);
+                seen.ending = Ending::of(&error, h).ok_or_else(|| unexpected(error))?;
+                last
             }
-            Err(RunError::Unsolved { last, .. }) => {
-                seen.ending = Ending::Unsolved(failed(&last));
-                *last
-            }
-            Err(error) => return Err(unexpected(error)),
         };
         if seen.ending == Ending::Held
             && look % ATTITUDE_EVERY == 0
             && error(&seen.last).is_some_and(|error| error > LOST)
         {
-            seen.ending = Ending::Lost(failed(&seen.last));
+            seen.ending = Ending::Lost(seen.last.elapsed.hi());
         }
         seen.times.push(seen.last.elapsed.hi());
         seen.energy_changes.push(seen.last.energy_change);
@@ -124,31 +95,26 @@ pub(super) fn follow(
     Ok(seen)
 }
 
-/// What a run has cost.
-pub(super) struct Effort {
-    /// Evaluations of the right-hand side: those that a method counts that chooses its steps, else as many for each step as the
-    /// method claims. `None` where a step is made of other work.
-    pub(super) evaluations: Option<u64>,
-    /// Steps that were tried and rejected; `None` where steps are as given.
-    pub(super) rejected: Option<u64>,
+/// Columns of what a run has cost.
+pub(super) fn columns_of_effort() -> [Column; 2] {
+    let evaluations = "evaluations of the right-hand side; empty where a step is made of other work";
+    let rejected = "steps tried and rejected; empty where steps are as given";
+    [
+        Column::new("evaluations", "", evaluations).hidden(),
+        Column::new("rejected_steps", "", rejected).hidden(),
+    ]
 }
 
-impl Effort {
-    /// Of `steps` steps of `method`, taken by `run`.
-    pub(super) fn of(run: &Run, method: &(impl Claimed + ?Sized), problem: Problem, steps: u64) -> Self {
-        match run.work() {
-            Some(work) => Effort { evaluations: Some(work.evaluations), rejected: Some(work.rejected) },
-            None => Effort { evaluations: claimed_evaluations(method, problem, steps), rejected: None },
-        }
-    }
-
-    pub(super) fn columns() -> [Column; 2] {
-        let evaluations = "evaluations of the right-hand side; empty where a step is made of other work";
-        [
-            Column::new("evaluations", "", evaluations).hidden(),
-            Column::new("rejected_steps", "", "steps tried and rejected; empty where steps are as given")
-                .hidden(),
-        ]
+/// What `steps` steps of `method`, taken by `run`, have cost: what a method counts that chooses its steps, else what it claims.
+pub(super) fn effort(
+    run: &Run,
+    method: &(impl Claimed + ?Sized),
+    problem: Problem,
+    steps: u64,
+) -> [Option<u64>; 2] {
+    match run.work() {
+        Some(work) => [Some(work.evaluations), Some(work.rejected)],
+        None => [claimed_evaluations(method, problem, steps), None],
     }
 }
 
@@ -160,11 +126,6 @@ pub(super) fn claimed_evaluations(
 ) -> Option<u64> {
     let cost = method.claims(problem)?.cost;
     (cost.right_sides > 0).then(|| u64::from(cost.right_sides) * steps)
-}
-
-/// Angle between the attitude of a sample and that of the exact motion at its time, rad.
-pub(super) fn attitude_error(sample: &Sample, exact: &Point<Dd>) -> f64 {
-    rotation_angle(sample.point.to_dd().attitude, exact.attitude).hi()
 }
 
 /// A row for each method with the errors on all bodies at a coarse and a fine step, of a table with the columns `body`, `method`,

@@ -11,7 +11,9 @@ use polhode::run::Run;
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Cell, Column, Table, row};
 
-use super::followed::{Effort, Ending, Followed, follow, rows_of_methods};
+use super::followed::{
+    Followed, columns_of_effort, columns_of_ending, effort, follow, is_whole, rows_of_methods, status,
+};
 use crate::experiment::{Context, Report};
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
@@ -77,8 +79,8 @@ fn columns() -> Vec<Column> {
             .heading("±")
             .digits(2),
     ];
-    columns.extend(Ending::columns());
-    columns.extend(Effort::columns());
+    columns.extend(columns_of_ending());
+    columns.extend(columns_of_effort());
     columns
 }
 
@@ -123,15 +125,16 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
         Err(error) => return Err(unexpected(error)),
     };
     let motion = |elapsed| exact.as_ref().map(|exact| exact.point_at_dd(elapsed));
-    let Followed { last, ending, attitude_error, times, energy_changes } = follow(&mut run, steps, motion)?;
+    let Followed { last, ending, attitude_error, times, energy_changes } =
+        follow(&mut run, (steps, h), motion)?;
     // what a run that failed leaves behind is no error of the method
-    let of_whole = |error: Option<f64>| error.filter(|_| ending.is_whole());
-    let slope = secular_drift(&times, &energy_changes).filter(|_| ending.is_whole());
+    let of_whole = |error: Option<f64>| error.filter(|_| is_whole(ending));
+    let slope = secular_drift(&times, &energy_changes).filter(|_| is_whole(ending));
     let scale = kinetic_energy(&body, &run.start().to_dd()) + Vector3::from(top.weight_moment).norm();
     let exchanged = exact.as_ref().map(|exact| exchanged_energy(&body, exact, last.elapsed.hi()));
     let over_exchanged =
         of_whole(last.worst.energy).zip(exchanged).map(|(energy, exchanged)| energy * scale / exchanged);
-    let effort = Effort::of(&run, method, Problem::Gravity, last.steps);
+    let [evaluations, rejected] = effort(&run, method, Problem::Gravity, last.steps);
     Ok(row![
         top.name,
         method.name(),
@@ -143,10 +146,10 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
         attitude_error,
         slope.map(|d| d.slope),
         slope.map(|d| d.half_width),
-        ending.to_string(),
+        status(ending),
         last.elapsed.hi(),
-        effort.evaluations,
-        effort.rejected,
+        evaluations,
+        rejected,
     ]
     .to_vec())
 }

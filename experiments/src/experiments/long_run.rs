@@ -7,13 +7,13 @@ use polhode::catalogue;
 use polhode::flow::FreeMotion;
 use polhode::method::method;
 use polhode::run::{Run, Schedule};
+use polhode::truth::{Ending, LOST, attitude_error};
 use polhode_files::error::Error;
 use polhode_pages::figure::{Figure, Series, ten_to};
 use polhode_pages::table::{Cell, Column, Table, row};
 
-use super::followed::{Ending, attitude_error};
+use super::followed::status;
 use crate::experiment::{Context, Report};
-use crate::measured::LOST;
 
 const METHODS: [&str; 8] = [
     "rk4",
@@ -134,7 +134,7 @@ fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
     let (mut rows, mut ending) = (Vec::new(), Ending::Held);
     for sample in run.samples(Schedule::logarithmic(steps, 4)).skip(1) {
         let sample = sample.map_err(|e| failed(&e))?;
-        let attitude = attitude_error(&sample, &exact.point_at_dd(sample.elapsed));
+        let attitude = attitude_error(sample.point.attitude, exact.point_at_dd(sample.elapsed).attitude);
         if ending == Ending::Held && attitude > LOST {
             ending = Ending::Lost(sample.elapsed.hi());
         }
@@ -148,7 +148,7 @@ fn follow(name: &str, steps: u64) -> Result<(Vec<Vec<Cell>>, f64), Error> {
                 worst.momentum_norm,
                 worst.momentum_vector,
                 (ending == Ending::Held).then_some(attitude),
-                ending.to_string()
+                status(ending)
             ]
             .to_vec(),
         );

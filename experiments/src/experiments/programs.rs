@@ -7,12 +7,13 @@ use polhode::method::{AnyMethod, method};
 use polhode::num::Dd;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, Watch};
+use polhode::truth::LOST;
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Column, Table, row};
 use serde::Deserialize;
 
 use crate::experiment::{Context, Report};
-use crate::measured::{LOST, StepTime};
+use crate::timing::StepTime;
 
 /// Figures that the programs themselves give, with what they were asked.
 const FIGURES: &str = include_str!("../../data/programs.csv");

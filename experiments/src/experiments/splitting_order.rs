@@ -6,12 +6,12 @@ use polhode::inertia::Inertia;
 use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, Splitting, TwoAxes, TwoTurn};
 use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
+use polhode::truth::{AGREEMENT, Care, Truth, evenly};
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::figure::{Figure, Series};
 use polhode_pages::table::{Cell, Column, Table, row};
 
 use crate::experiment::{Context, Report};
-use crate::measured::{Care, Motion};
 
 /// A body, and its angular velocity at the start, rad/s, of about 1.
 struct Subject {
@@ -207,7 +207,8 @@ fn of_body(subject: &Subject, body: &Body, start: &Point<Dd>, plan: Plan) -> Res
     const LOOKS: u32 = 1000;
     let Plan { coarse, span } = plan;
     let fine_step = 0.5 * coarse;
-    let motion = Motion::evenly(body, start, 0.0, span, LOOKS)?;
+    let truth =
+        Truth::from_point(body, start.to_f64(), 0.0, &evenly(span, LOOKS), AGREEMENT).map_err(unexpected)?;
     let moments: Vec3<f64> = body.rotor().moments();
     let momentum = |x: &Point<Dd>| x.momentum_body.map(|m| m.hi());
     let (m, mut found) = (momentum(start), Vec::new());
@@ -216,7 +217,7 @@ fn of_body(subject: &Subject, body: &Body, start: &Point<Dd>, plan: Plan) -> Res
         let method = split.method();
         let mut measured = Vec::new();
         for h in [coarse, fine_step] {
-            let run = motion.measure(method.as_ref(), h, Care::FULL).map_err(unexpected)?;
+            let run = truth.judge(method.as_ref(), h, Care::default()).map_err(unexpected)?;
             let late = run.looks.iter().filter(|look| look.elapsed >= 0.5 * span);
             let squares = late.map(|look| look.attitude_error / look.elapsed).map(|rate| rate * rate);
             let count = squares.clone().count().max(1) as f64;
@@ -229,8 +230,8 @@ fn of_body(subject: &Subject, body: &Body, start: &Point<Dd>, plan: Plan) -> Res
         let order = |coarse: f64, fine: f64| (fine > 0.0).then(|| libm::log2(coarse / fine));
         let swing = |x: Point<Dd>| (split.term(momentum(&x), moments) - split.term(m, moments)).abs();
         let mut largest = 0.0_f64;
-        for time in motion.reference().times() {
-            let x = motion.reference().point_at(Dd::from(time)).map_err(unexpected)?;
+        for time in truth.times() {
+            let x = truth.point_at(Dd::from(time)).map_err(unexpected)?;
             largest = largest.max(swing(x));
         }
         let square = fine_step * fine_step;

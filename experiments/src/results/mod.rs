@@ -39,6 +39,7 @@ const EXAMPLES: &str = "Examples:
   polhode experiment run order drift --scale smoke
   polhode experiment run order drift --scale smoke --report results.html";
 
+/// The subcommands of `polhode experiment`.
 #[derive(Subcommand)]
 pub enum ExperimentCommand {
     /// List the experiments and the question of each
@@ -100,6 +101,10 @@ pub enum ExperimentCommand {
 }
 
 impl ExperimentCommand {
+    /// Does it.
+    ///
+    /// # Errors
+    /// A name that is no experiment, a place that cannot be read or written, an experiment or a comparison that fails.
     pub fn run(self) -> Result<(), Error> {
         match self {
             Self::List { format } => list(format),

@@ -8,7 +8,7 @@ use polhode::body::Body;
 use polhode::inertia::Inertia;
 use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
-use polhode_experiments::measured::Motion;
+use polhode::truth::{AGREEMENT, Truth, evenly};
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::output::Output;
 
@@ -132,8 +132,9 @@ fn trajectory(case: &Case) -> Result<String, Error> {
     };
     let attitude = Quat::from_components(case.attitude);
     let start = body.enter_omega(attitude, Vec3(case.omega)).map_err(unexpected)?;
-    let motion = Motion::evenly(&body, &start, 0.0, case.every * f64::from(case.rows), case.rows)?;
-    if motion.reference().times().count() != case.rows as usize {
+    let times = evenly(case.every * f64::from(case.rows), case.rows);
+    let truth = Truth::from_point(&body, start.to_f64(), 0.0, &times, AGREEMENT).map_err(unexpected)?;
+    if truth.times().count() != times.len() {
         return Err(Error::Failed(format!("{}: the motion is not known to its end", case.name)));
     }
     let listed = |values: [f64; 3]| values.map(|x| format!("{x:?}")).join(",");
@@ -148,7 +149,7 @@ fn trajectory(case: &Case) -> Result<String, Error> {
     let mut before: Option<Quat<f64>> = None;
     for row in 0..=case.rows {
         let t = case.every * f64::from(row);
-        let state = body.leave(&motion.reference().point_at(Dd::from(t)).map_err(unexpected)?);
+        let state = body.leave(&truth.point_at(Dd::from(t)).map_err(unexpected)?);
         let q = state.attitude;
         // q and -q are one attitude; programs that interpolate want neighbours of one sign
         let turned = before.is_some_and(|b| {

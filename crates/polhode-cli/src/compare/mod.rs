@@ -8,7 +8,9 @@ use clap::Args;
 use polhode::body::{Body, Clock};
 use polhode::method::{ADAPTIVE, AnyMethod};
 use polhode::run::{RunError, Schedule, ScheduleError};
-use polhode_experiments::measured::{Care, Ending, Measured, Motion, StepTime, is_adaptive};
+use polhode::truth::{AGREEMENT, Care, Ending, Judged, Truth, TruthError, evenly};
+use polhode_experiments::methods::is_adaptive;
+use polhode_experiments::timing::StepTime;
 use polhode_files::error::{Error, warn};
 use polhode_files::moment::duration;
 use polhode_files::numbers::{list, positive};
@@ -120,8 +122,13 @@ impl Compare {
             Ok((Output::to_file("--figure", path)?, picture))
         });
         let figure_file = figure_file.transpose()?;
-        let motion = Motion::evenly(&body, &start, self.start_time, span, LOOKS)?;
-        let known = motion.reference().known_until();
+        let times = evenly(span, LOOKS);
+        let truth = Truth::from_point(&body, start.to_f64(), self.start_time, &times, AGREEMENT);
+        let truth = truth.map_err(|error| match error {
+            TruthError::NotFollowed(_) => Error::Input(error.to_string()),
+            error => Error::Input(format!("--until: {:?}: {error}", times.last().copied().unwrap_or(span))),
+        })?;
+        let known = truth.known_until();
         if known < span {
             let (until, known) = (short(self.until), short(self.start_time + known));
             warn(&format!(
@@ -136,11 +143,11 @@ impl Compare {
             "attitude error (rad)",
         );
         for entry in &entries {
-            let (measured, time) = self.measured(&motion, entry)?;
-            let steps = measured.last.steps as f64;
+            let (judged, time) = self.judged(&truth, entry)?;
+            let steps = judged.last.steps as f64;
             let spent = (time.seconds * steps, time.seconds / time.rk4 * steps);
-            table.push(self.row(&motion, entry, &measured, spent));
-            if let Some(error) = measured.attitude_error() {
+            table.push(self.row(&truth, entry, &judged, spent));
+            if let Some(error) = judged.attitude_error() {
                 match figure.series.iter_mut().find(|series| series.name == entry.family) {
                     Some(series) => series.points.push((spent.1, error)),
                     None => figure.series.push(Series::new(entry.family.clone(), vec![(spent.1, error)])),
@@ -148,7 +155,7 @@ impl Compare {
             }
         }
         for trajectory in &trajectories {
-            table.push(self.foreign(&motion, trajectory)?);
+            table.push(self.foreign(&truth, trajectory)?);
         }
         for series in &mut figure.series {
             series.points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -240,43 +247,43 @@ impl Compare {
         })
     }
 
-    fn measured(&self, motion: &Motion, entry: &Entry) -> Result<(Measured, StepTime), Error> {
-        let step = entry.step.unwrap_or(motion.interval());
-        let measured =
-            motion.measure(entry.method.as_ref(), step, Care::FULL).map_err(|error| match error {
+    fn judged(&self, truth: &Truth, entry: &Entry) -> Result<(Judged, StepTime), Error> {
+        let step = entry.step.or(truth.times().next()).unwrap_or(self.until - self.start_time);
+        let judged =
+            truth.judge(entry.method.as_ref(), step, Care::default()).map_err(|error| match error {
                 RunError::Step(error) => Error::Input(format!("--methods: {error}")),
                 error => Error::Failed(format!("{}: {error}", entry.method.name())),
             })?;
-        Ok((measured, motion.step_time(entry.method.as_ref(), step)?))
+        Ok((judged, StepTime::of(entry.method.as_ref(), truth, step)?))
     }
 
     fn row(
         &self,
-        motion: &Motion,
+        truth: &Truth,
         entry: &Entry,
-        measured: &Measured,
+        judged: &Judged,
         (seconds, rk4_steps): (f64, f64),
     ) -> Vec<Cell> {
-        let Measured { last, ending, evaluations, .. } = measured;
-        let known = motion.reference().known_until();
+        let Judged { last, ending, evaluations, .. } = judged;
+        let known = truth.known_until();
         let whole = last.elapsed.hi() <= known * (1.0 + 1e-12);
         let flips = last.flips.filter(|_| whole && matches!(ending, Ending::Held | Ending::Lost(_)));
-        let exact = flips.and_then(|_| motion.reference().flips_until(known));
+        let exact = flips.and_then(|_| truth.flips(known));
         let right = match (flips, exact) {
             (Some(flips), Some(exact)) => Some(if flips == exact { "right" } else { "wrong" }),
             _ => None,
         };
         let worst = last.worst;
-        let attitude = measured.attitude_error();
+        let attitude = judged.attitude_error();
         row![
             entry.method.name(),
             entry.step,
             entry.tolerance,
             attitude,
-            measured.largest_attitude_error(known),
+            judged.largest_attitude_error(known),
             attitude.map(|_| self.start_time + known),
             worst.energy,
-            motion.exchanged_energy_error(&worst),
+            truth.exchanged_energy_error(&worst),
             worst.momentum_norm,
             worst.momentum_vector,
             worst.momentum_z,
@@ -287,14 +294,14 @@ impl Compare {
             last.flips,
             exact,
             right,
-            ending.words(self.start_time),
+            ending.by_clock(self.start_time).to_string(),
         ]
         .to_vec()
     }
 
-    fn foreign(&self, motion: &Motion, trajectory: &Trajectory) -> Result<Vec<Cell>, Error> {
-        let found = trajectory.against(motion, self.start_time)?;
-        let columns = columns(motion.body());
+    fn foreign(&self, truth: &Truth, trajectory: &Trajectory) -> Result<Vec<Cell>, Error> {
+        let found = trajectory.against(truth, self.start_time)?;
+        let columns = columns(truth.body());
         let mut row = vec![Cell::Empty; columns.len()];
         let mut set = |name: &str, value: Cell| {
             if let Some(place) = columns.iter().position(|column| column.name == name) {
@@ -302,10 +309,10 @@ impl Compare {
             }
         };
         set("method", trajectory.name.clone().into());
-        set("status", found.ending.words(self.start_time).into());
+        set("status", found.ending.by_clock(self.start_time).to_string().into());
         if let Some((worst, flips, exact)) = found.invariants {
             set("energy_error", worst.energy.into());
-            set("exchanged_energy_error", motion.exchanged_energy_error(&worst).into());
+            set("exchanged_energy_error", truth.exchanged_energy_error(&worst).into());
             set("momentum_error", worst.momentum_norm.into());
             set("momentum_vector_error", worst.momentum_vector.into());
             set("momentum_z_error", worst.momentum_z.into());

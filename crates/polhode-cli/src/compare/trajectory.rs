@@ -6,7 +6,7 @@ use polhode::body::{Clock, State};
 use polhode::num::Dd;
 use polhode::observe::{Errors, Monitor};
 use polhode::rotation::{Quat, Vec3};
-use polhode_experiments::measured::{Ending, LOST, Motion};
+use polhode::truth::{Ending, LOST, Truth};
 use polhode_files::error::{Error, unexpected};
 use polhode_files::numbers::number;
 use polhode_files::read;
@@ -123,9 +123,9 @@ impl Trajectory {
     }
 
     /// How far it is from the true motion, whose clock starts at `start_time`.
-    pub(super) fn against(&self, motion: &Motion, start_time: f64) -> Result<Off, Error> {
-        let known = motion.reference().known_until();
-        let invariants = self.invariants(motion, start_time)?;
+    pub(super) fn against(&self, truth: &Truth, start_time: f64) -> Result<Off, Error> {
+        let known = truth.known_until();
+        let invariants = self.invariants(truth, start_time)?;
         let mut off = Off { attitude_error: 0.0, at: None, ending: Ending::Held, invariants };
         for row in &self.rows {
             let elapsed = Dd::from(row.t) - Dd::from(start_time);
@@ -134,8 +134,8 @@ impl Trajectory {
             }
             let attitude = Quat::from_components(row.attitude);
             let state = State { attitude, momentum_body: Vec3::zero() };
-            let point = motion.body().enter(&state).map_err(unexpected)?;
-            off.attitude_error = motion.attitude_error(&point, elapsed).map_err(unexpected)?;
+            let point = truth.body().enter(&state).map_err(unexpected)?;
+            off.attitude_error = truth.attitude_error(&point, elapsed).map_err(unexpected)?;
             off.at = Some(elapsed.hi());
             if off.attitude_error > LOST {
                 off.ending = Ending::Lost(elapsed.hi());
@@ -145,23 +145,23 @@ impl Trajectory {
         Ok(off)
     }
 
-    /// Invariants and flips at the rows, against the start of the motion.
+    /// Invariants and flips at the rows, against the start of the truth.
     fn invariants(
         &self,
-        motion: &Motion,
+        truth: &Truth,
         start_time: f64,
     ) -> Result<Option<(Errors, u64, Option<u64>)>, Error> {
         // what is conserved here does not depend on time
         let clock = Clock { start: start_time, step: 1.0 };
-        let mut monitor = Monitor::new(motion.body(), clock, motion.start());
+        let mut monitor = Monitor::new(truth.body(), clock, &truth.start());
         for row in &self.rows {
             let Some(omega) = row.omega_body else { return Ok(None) };
             let refused = |error| Error::Input(format!("{}: t = {}: {error}", self.name, short(row.t)));
             let attitude = Quat::from_components(row.attitude);
-            let point = motion.body().enter_omega(attitude, Vec3(omega)).map_err(refused)?;
+            let point = truth.body().enter_omega(attitude, Vec3(omega)).map_err(refused)?;
             monitor.observe(&[point.to_f64()]);
         }
         let last = self.rows.last().map_or(0.0, |row| row.t - start_time);
-        Ok(Some((monitor.worst(), monitor.flips(), motion.reference().flips_at(last))))
+        Ok(Some((monitor.worst(), monitor.flips(), truth.flips(last))))
     }
 }

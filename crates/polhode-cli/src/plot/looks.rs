@@ -8,7 +8,7 @@ use polhode::num::Dd;
 use polhode::observe::{Errors, Monitor};
 use polhode::rotation::Quat;
 use polhode::run::{Run, RunError, Schedule, ScheduleError};
-use polhode_experiments::measured::is_adaptive;
+use polhode_experiments::methods::is_adaptive;
 use polhode_files::error::{Error, warn};
 use polhode_files::text::short;
 

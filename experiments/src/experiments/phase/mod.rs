@@ -14,11 +14,11 @@ use polhode::method::{AxisOrder, Claimed, TwoAxes, method};
 use polhode::num::{Dd, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode::run::{Run, Watch};
+use polhode::truth::attitude_error;
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::figure::{Figure, Series, sheet};
 use polhode_pages::table::{Cell, Column, Table, row};
 
-use super::followed::attitude_error;
 use crate::experiment::{Context, Report};
 use measured::Look;
 
@@ -213,7 +213,7 @@ fn examine(named: &NamedBody, name: &str, steps: u64, panels: u32) -> Result<Fou
         disagreement,
         closed.map(apart),
         angle_at(&motion, last.elapsed, predicted),
-        attitude_error(&last, &motion.point_at_dd(last.elapsed)),
+        attitude_error(last.point.attitude, motion.point_at_dd(last.elapsed).attitude),
         rest,
     ];
     Ok(Found { row: row.to_vec(), looks, predicted, method: name, order, body: named.name, disagreement })

@@ -3,11 +3,13 @@
 use polhode::body::Clock;
 use polhode::method::{AnyMethod, catalogue, method};
 use polhode::run::Watch;
+use polhode::truth::{Care, Ending, Judged, LOST, Truth};
 use polhode_files::error::{Error, unexpected};
 
 use super::cases::Case;
 use super::contest::{Contestant, Quantiles, Run};
-use crate::measured::{Care, Ending, LOST, Measured, Motion, StepTime, evaluations, is_adaptive};
+use crate::methods::is_adaptive;
+use crate::timing::StepTime;
 
 /// Schemes beside the catalogue; those that a force does not admit are left out there.
 const SCHEMES: [&str; 19] = [
@@ -94,7 +96,7 @@ pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, E
                 }
             }
         } else {
-            let of_step = evaluations(of_name.as_ref(), &case.body) as f64;
+            let of_step = f64::from(claims.cost.evaluations());
             let cost = of_step + f64::from((SOLUTION - 1) * claims.cost.solves);
             for k in COARSEST.. {
                 let step = 100.0 * libm::exp2(-f64::from(k));
@@ -129,16 +131,17 @@ impl Entry {
     pub(super) fn measure(
         &self,
         case: &Case,
-        motions: &[Motion],
+        motions: &[Truth],
         known_time: &mut Option<StepTime>,
     ) -> Result<Found, Error> {
         let (unit, horizons) = (case.unit, case.horizons);
         // one that chooses its steps is read at the looks of the first horizon
         let step = self.step.unwrap_or(horizons[0] * unit / 32.0);
-        let run = |motion: &Motion, horizon: f64| {
-            let until = horizon * unit * (1.0 + 1e-9);
-            let care = Care { watch: Watch::AtSamples, until_lost: true, until };
-            motion.measure(self.method.as_ref(), step, care).map_err(unexpected)
+        let run = |motion: &Truth, horizon: f64| {
+            let mut care = Care::default();
+            (care.watch, care.until_lost) = (Watch::AtSamples, true);
+            care.until = horizon * unit * (1.0 + 1e-9);
+            motion.judge(self.method.as_ref(), step, care).map_err(unexpected)
         };
         let common = horizons.iter().copied().filter(|horizon| *horizon <= LONG).fold(0.0, f64::max);
         let mut all = motions.iter().map(|motion| run(motion, common)).collect::<Result<Vec<_>, _>>()?;
@@ -159,7 +162,7 @@ impl Entry {
         let varies = self.step.is_none() || claims.is_some_and(|claims| claims.cost.solves > 0);
         let time = match (*known_time, motions.first()) {
             (Some(time), _) if !varies => time,
-            (_, Some(motion)) => motion.step_time(self.method.as_ref(), step)?,
+            (_, Some(motion)) => StepTime::of(self.method.as_ref(), motion, step)?,
             (_, None) => return Err(unexpected("a case has no starts")),
         };
         *known_time = Some(time);
@@ -181,18 +184,17 @@ impl Entry {
     }
 
     /// Evaluations per unit of time.
-    fn per_unit(&self, case: &Case, measured: &Measured) -> f64 {
-        let of_step = evaluations(self.method.as_ref(), &case.body) as f64;
-        let solves = self.method.claims(case.body.problem()).map_or(0, |claims| claims.cost.solves);
-        let weighed = 1.0 + f64::from((SOLUTION - 1) * solves) / of_step;
+    fn per_unit(&self, case: &Case, measured: &Judged) -> f64 {
+        let cost = self.method.claims(case.body.problem()).map(|claims| claims.cost).unwrap_or_default();
+        let weighed = 1.0 + f64::from((SOLUTION - 1) * cost.solves) / f64::from(cost.evaluations());
         let last = measured.looks.last().map(|look| look.evaluations as f64 / (look.elapsed / case.unit));
         last.map(|cost| cost * weighed).filter(|cost| *cost > 0.0).unwrap_or(f64::INFINITY)
     }
 }
 
 /// The largest attitude error of each run up to `horizon` s; `None` where the runs end before.
-fn errors_of(runs: &[Measured], horizon: f64, end: f64) -> Vec<Option<f64>> {
-    let error = |measured: &Measured| {
+fn errors_of(runs: &[Judged], horizon: f64, end: f64) -> Vec<Option<f64>> {
+    let error = |measured: &Judged| {
         let seen = measured.largest_attitude_error(horizon).filter(|error| *error <= LOST);
         (horizon <= end).then(|| seen.unwrap_or(f64::INFINITY))
     };

@@ -7,7 +7,8 @@ mod entry;
 mod panel;
 mod tables;
 
-use polhode_files::error::Error;
+use polhode::truth::{AGREEMENT, Truth};
+use polhode_files::error::{Error, unexpected};
 use polhode_pages::figure::{Figure, sheet};
 
 use self::cases::Case;
@@ -15,7 +16,6 @@ use self::contest::Currency;
 use self::entry::{Budget, contestant, families};
 use self::tables::{Contest, costs, error_row, is_free, winners};
 use crate::experiment::{Context, Report};
-use crate::measured::Motion;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let cases = cases::all(context.scale)?;
@@ -76,12 +76,14 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
 }
 
 /// The true motion from every start of every case.
-fn motions(context: &Context, cases: &[Case]) -> Result<Vec<Vec<Motion>>, Error> {
+fn motions(context: &Context, cases: &[Case]) -> Result<Vec<Vec<Truth>>, Error> {
     let starts = cases.iter().flat_map(|case| case.starts.iter().map(move |start| (case, start)));
     // those without a closed form stand last and take longest: first, so that no core waits at the end
     let parts: Vec<_> = starts.rev().collect();
-    let found =
-        context.in_parallel(parts, |(case, start)| Motion::new(&case.body, start, 0.0, &case.looks()));
+    let found = context.in_parallel(parts, |(case, start)| {
+        let truth = Truth::from_point(&case.body, start.to_f64(), 0.0, &case.looks(), AGREEMENT);
+        truth.map_err(unexpected)
+    });
     let mut found = found.into_iter().rev();
     cases.iter().map(|case| found.by_ref().take(case.starts.len()).collect()).collect()
 }

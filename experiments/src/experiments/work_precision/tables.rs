@@ -1,11 +1,11 @@
 //! Rows for readers and for programs.
 
+use polhode::truth::Truth;
 use polhode_pages::table::{Cell, Column, Table, row};
 
 use super::cases::{Case, Kind};
 use super::contest::{CLOSED_FORM, Contestant, Currency, Quantiles, ranked};
 use super::entry::{Entry, FEW, Found};
-use crate::measured::{Ending, Motion};
 
 /// Accuracies that winners are named for, rad.
 const ACCURACIES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
@@ -23,7 +23,7 @@ const CLOSE: f64 = 4.0;
 /// A case with its references and all runs.
 pub(super) struct Contest<'a> {
     pub(super) case: &'a Case,
-    pub(super) motions: &'a [Motion],
+    pub(super) motions: &'a [Truth],
     pub(super) contestants: Vec<Contestant>,
 }
 
@@ -32,8 +32,7 @@ impl Contest<'_> {
     pub(super) fn starts(&self, horizon: usize) -> Vec<usize> {
         let end = self.case.horizons[horizon];
         let asked = if end > 1e4 { FEW.min(self.motions.len()) } else { self.motions.len() };
-        let known =
-            |k: &usize| self.motions[*k].reference().known_until() >= end * self.case.unit * (1.0 - 1e-9);
+        let known = |k: &usize| self.motions[*k].known_until() >= end * self.case.unit * (1.0 - 1e-9);
         let found: Vec<usize> = (0..asked).filter(known).collect();
         if 2 * found.len() >= asked { found } else { Vec::new() }
     }
@@ -114,8 +113,7 @@ pub(super) fn error_row(case: &Case, entry: &Entry, found: &Found) -> Vec<Cell> 
             errors.map(|errors| errors.high).into(),
         ]);
     }
-    let status = if found.ending == Ending::Held { "ok".into() } else { found.ending.words(0.0) };
-    cells.extend(row![found.energy, found.held.1, found.held.0, status]);
+    cells.extend(row![found.energy, found.held.1, found.held.0, found.ending.to_string()]);
     cells
 }
 

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use polhode::body::{Body, Clock, Point};
 use polhode::method::{AnyMethod, Step, method};
+use polhode::truth::Truth;
 use polhode_files::error::{Error, unexpected};
 
 /// Bursts of each; the least counts, because whatever else the machine does only adds.
@@ -12,7 +13,7 @@ const BURSTS: u32 = 9;
 /// Length of a burst, s.
 const BURST: f64 = 2e-4;
 
-/// Time of one step.
+/// Processor time of one step, beside that of `rk4` in the same moments.
 #[derive(Clone, Copy, Debug)]
 pub struct StepTime {
     /// Of the method, s.
@@ -42,6 +43,16 @@ impl StepTime {
         }
         let [seconds, rk4] = contestants.map(|contestant| contestant.least);
         Ok(StepTime { seconds, rk4 })
+    }
+
+    /// Of `timed` on the body of `truth` from its start, by steps of `step` s; of a method that chooses its steps, an interval of
+    /// output.
+    ///
+    /// # Errors
+    /// As [`measure`](Self::measure).
+    pub fn of(timed: &dyn AnyMethod, truth: &Truth, step: f64) -> Result<Self, Error> {
+        let clock = Clock { start: truth.start_time(), step };
+        StepTime::measure(timed, truth.body(), truth.start(), clock)
     }
 }
 
