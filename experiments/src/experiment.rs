@@ -23,8 +23,8 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// One of three values.
-    pub fn pick<T>(self, smoke: T, standard: T, paper: T) -> T {
+    /// The value of the three that belongs to this scale.
+    pub(crate) fn pick<T>(self, smoke: T, standard: T, paper: T) -> T {
         match self {
             Self::Smoke => smoke,
             Self::Standard => standard,
@@ -40,40 +40,44 @@ impl fmt::Display for Scale {
 }
 
 /// An experiment by name.
-pub struct Experiment {
-    pub name: &'static str,
+pub(crate) struct Experiment {
+    /// On the command line.
+    pub(crate) name: &'static str,
     /// What it asks.
-    pub question: &'static str,
-    pub run: fn(&Context) -> Result<Report, Error>,
+    pub(crate) question: &'static str,
+    /// The work.
+    pub(crate) run: fn(&Context) -> Result<Report, Error>,
 }
 
 /// What an experiment found.
 #[derive(Default)]
-pub struct Report {
+pub(crate) struct Report {
     /// Deterministic rows, in full precision.
-    pub tables: Vec<Table>,
+    pub(crate) tables: Vec<Table>,
     /// Rows that only programs read, the same at every scale: CSV alone.
-    pub data: Vec<Table>,
+    pub(crate) data: Vec<Table>,
     /// Parts of them for readers; where there are none, the tables themselves are shown.
-    pub views: Vec<Table>,
-    pub figures: Vec<Figure>,
+    pub(crate) views: Vec<Table>,
+    /// Figures that are plots.
+    pub(crate) figures: Vec<Figure>,
     /// Figures that are not plots.
-    pub drawings: Vec<Drawing>,
+    pub(crate) drawings: Vec<Drawing>,
     /// Times, which depend on the machine.
-    pub timing: Option<Table>,
+    pub(crate) timing: Option<Table>,
     /// Rows of times that only programs read.
-    pub times: Vec<Table>,
+    pub(crate) times: Vec<Table>,
     /// Of the random numbers, if there were any.
-    pub seed: Option<u64>,
+    pub(crate) seed: Option<u64>,
     /// Claims that did not hold: the results are written all the same, and the command fails.
-    pub failures: Vec<String>,
+    pub(crate) failures: Vec<String>,
     /// Wall time of the run.
-    pub took: Duration,
+    pub(crate) took: Duration,
 }
 
 /// What an experiment is told.
-pub struct Context {
-    pub scale: Scale,
+pub(crate) struct Context {
+    /// How large it is.
+    pub(crate) scale: Scale,
     bar: ProgressBar,
 }
 
@@ -89,7 +93,11 @@ impl Context {
     }
 
     /// `work` on each of `parts`, on as many threads as there are cores; results in the order of the parts.
-    pub fn in_parallel<T: Send, R: Send>(&self, parts: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
+    pub(crate) fn in_parallel<T: Send, R: Send>(
+        &self,
+        parts: Vec<T>,
+        work: impl Fn(T) -> R + Sync,
+    ) -> Vec<R> {
         self.bar.set_length(parts.len() as u64);
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         parallel::map(parts, cores, |part| {
@@ -107,7 +115,7 @@ impl Context {
 
 impl Experiment {
     /// Does the work.
-    pub fn report(&self, scale: Scale) -> Result<Report, Error> {
+    pub(crate) fn report(&self, scale: Scale) -> Result<Report, Error> {
         let context = Context::new(self.name, scale);
         let start = Instant::now();
         let mut report = (self.run)(&context)?;
