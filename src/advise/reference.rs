@@ -18,7 +18,7 @@ const SHORT: f64 = 512.0;
 const AGREEMENT: f64 = 0.05;
 
 /// Of how far runs in double-double lead, the part that is waited for.
-const BEARABLE: f64 = 0.25;
+const BEARABLE: f64 = 0.5;
 
 /// The motion from one start.
 #[derive(Debug)]

@@ -16,8 +16,8 @@ pub const AGREEMENT: f64 = 1e-13;
 /// twice as much, looks at the flips there.
 const ANGLE: f64 = 0.25;
 
-/// Intervals of a run, and series of its own, at most.
-const MOST_STEPS: u64 = 1 << 18;
+/// Intervals of a run, and series of its own, at most: a minute or a few, by force.
+const MOST_STEPS: u64 = 1 << 17;
 
 /// Steps of the Runge–Kutta method in an interval, for forces that no series takes.
 const FINE: u64 = 16;
@@ -86,7 +86,7 @@ impl Follower {
             let second = pass(Steps::Anew);
             let spawned = thread::Builder::new().spawn_scoped(scope, move || {
                 // nobody receives any more once the runs have parted
-                let _ = times.iter().map(second).try_for_each(|look| send.send(look));
+                let _ = times.iter().map(second).all(|look| send.send(look).is_ok());
             });
             let second: Box<dyn Iterator<Item = Result<Followed, TruthError>>> = match spawned {
                 Ok(_) => Box::new(sent.into_iter()),

@@ -100,13 +100,11 @@ impl Truth {
     }
 
     /// The body that moves.
-    #[must_use]
     pub fn body(&self) -> &Body {
         &self.body
     }
 
     /// The start in the solver frame.
-    #[must_use]
     pub fn start(&self) -> Point<f64> {
         self.start
     }
