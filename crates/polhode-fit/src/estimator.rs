@@ -1,34 +1,35 @@
 //! The estimator: from a record to a physical tensor.
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::record::Record;
-use polhode::record::Spike;
+use polhode::record::{Record, Spike};
 
-use super::error::FitError;
-use super::physical::constraint::ActiveConstraint;
-use super::physical::coordinates::{Coordinates, ENTRIES, Form, tensor};
-use super::physical::failure::SolverFailure;
-use super::physical::nearest::{Normal, nearest};
-use super::physical::prior::{Prior, Told};
-use super::report::averages;
-use super::report::columns::{dissipation, is_drag, is_torque, named};
-use super::report::estimate::Estimate;
-use super::report::facts::Facts;
-use super::report::identifiability::Identifiability;
-use super::report::nuisance::Agreement;
-use super::report::torque_free::trends;
-use super::settings::{Settings, TorqueModel, TorqueNoise, TorqueScope};
-use super::weak::completed::completed;
-use super::weak::joint::Joint;
-use super::weak::ladder::{Demand, climb};
-use super::weak::mistaken_units::{Better, better_unit, suspicious};
-use super::weak::model::{Column, Kind, STEPS, sensor_columns, walk_columns};
-use super::weak::noise;
-use super::weak::normalised::{Normalised, normalised};
-use super::weak::radius::Failure;
-use super::weak::rounds::{Noise, ROUNDS};
-use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
-use super::weak::weak_estimate::WeakEstimate;
+use crate::columns::dissipation::dissipation;
+use crate::columns::model::{Column, Kind, STEPS, is_drag, is_torque, named, sensor_columns, walk_columns};
+use crate::error::FitError;
+use crate::physical::constraint::ActiveConstraint;
+use crate::physical::coordinates::{Coordinates, ENTRIES, Form, tensor};
+use crate::physical::failure::SolverFailure;
+use crate::physical::nearest::{Normal, nearest};
+use crate::physical::prior::{Prior, Told};
+use crate::report::averages;
+use crate::report::estimate::Estimate;
+use crate::report::facts::Facts;
+use crate::report::identifiability::Identifiability;
+use crate::report::nuisance::Agreement;
+use crate::report::torque_free::trends;
+use crate::settings::Settings;
+use crate::settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
+use crate::signal::noise;
+use crate::signal::normalised::{Normalised, normalised};
+use crate::signal::stretch::Stretch;
+use crate::signal::test_functions::SAMPLES_PER_TEST;
+use crate::solve::completed::completed;
+use crate::solve::joint::Joint;
+use crate::solve::ladder::{Demand, Halt, climb};
+use crate::solve::other_units::{Better, better_unit, suspicious};
+use crate::solve::radius::Failure;
+use crate::solve::rounds::{Noise, ROUNDS};
+use crate::solve::weak_estimate::WeakEstimate;
 
 /// Fits one tensor to all segments of a record.
 ///
@@ -94,11 +95,13 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         alone: &alone,
         units: settings.check_units && input.is_none(),
     };
-    let mut chosen = climb(&stretches, demand, variance).map_err(|failure| match failure {
-        Failure::Dense => settings.radius.map_or_else(singular, |radius| FitError::Dense { radius }),
-        Failure::TooShort => too_short(record, settings, &stretches, rms),
-        Failure::Singular => singular(),
-        Failure::Units(misfit, better) => mistaken(misfit, &better),
+    let mut chosen = climb(&stretches, demand, variance).map_err(|halt| match halt {
+        Halt::Failure(Failure::Dense) => {
+            settings.radius.map_or_else(singular, |radius| FitError::Dense { radius })
+        }
+        Halt::Failure(Failure::TooShort) => too_short(record, settings, &stretches, rms),
+        Halt::Failure(Failure::Singular) => singular(),
+        Halt::Units(misfit, better) => mistaken(misfit, &better),
     })?;
     let weak = &chosen.weak;
     let misfit = weak.misfit(variance);

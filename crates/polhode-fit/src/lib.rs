@@ -33,23 +33,26 @@
 //! The tensor comes from rounds of linear least squares with one small semidefinite program at their end, which is solved
 //! by outer approximation; it is not refined by maximum likelihood.
 
-mod banded;
-mod cramer_rao;
+mod bound;
+mod columns;
 mod error;
 mod estimator;
 mod flights;
 mod physical;
-mod quadrature;
 mod report;
 mod settings;
+mod signal;
 mod simulate;
-mod weak;
+mod solve;
+mod verdict;
 mod wheel;
 
-pub use cramer_rao::{foreseen_bound, foreseen_bound_with};
+pub use bound::motions::foreseen_bound;
+pub use bound::planned::foreseen_bound_with;
 pub use error::{Clash, FitError};
 pub use estimator::fit;
-pub use flights::{Flight, FlightLimit, Flights, during, flights};
+pub use flights::flight::{Flight, FlightLimit};
+pub use flights::{Flights, during, flights};
 pub use physical::certificate::Certificate;
 pub use physical::constraint::{ActiveConstraint, Constraint};
 pub use physical::failure::SolverFailure;
@@ -62,12 +65,14 @@ pub use report::estimate::{Estimate, Residuals};
 pub use report::identifiability::{Identifiability, PrincipalAxis, Undetermined};
 pub use report::motion::FittedMotion;
 pub use report::nuisance::{Agreement, Nuisance, SegmentSummary, Systematic, Torque};
-pub use report::scale::Known;
 pub use report::torque_free::{InvariantTrend, Whiteness};
 pub use report::warning::Warning;
-pub use settings::{SensorPriors, Settings, TorqueModel, TorqueNoise, TorqueScope};
+pub use settings::Settings;
+pub use settings::known::Known;
+pub use settings::sensor::SensorPriors;
+pub use settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
 pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_with};
-pub use weak::mistaken_units::MistakenUnit;
+pub use verdict::mistaken_unit::MistakenUnit;
 pub use wheel::{WheelCalibration, calibrate_wheel};
 
 /// A chapter for those who measure.

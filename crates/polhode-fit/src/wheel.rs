@@ -3,17 +3,16 @@
 use polhode::inertia::Inertia;
 use polhode::record::{Record, Segment};
 
-use super::error::FitError;
-use super::estimator::{noise_of, read_variance};
-use super::physical::coordinates::coordinates;
-use super::physical::failure::SolverFailure;
-use super::report::columns::{named, unit};
-use super::report::nuisance::Nuisance;
-use super::settings::{Settings, TorqueModel};
-use super::weak::held::held;
-use super::weak::ladder::columns_of;
-use super::weak::model::{Column, Kind, STEPS, sensor_columns, walk_columns};
-use super::weak::normalised::{Normalised, normalised};
+use crate::columns::model::{Column, Kind, STEPS, columns_of, named, sensor_columns, unit, walk_columns};
+use crate::error::FitError;
+use crate::estimator::{noise_of, read_variance};
+use crate::physical::coordinates::coordinates;
+use crate::physical::failure::SolverFailure;
+use crate::report::nuisance::Nuisance;
+use crate::settings::Settings;
+use crate::settings::torque::TorqueModel;
+use crate::signal::normalised::{Normalised, normalised};
+use crate::solve::held::held;
 
 /// The moment of inertia of a wheel about its axis, and what it was found from.
 #[non_exhaustive]

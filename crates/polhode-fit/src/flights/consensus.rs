@@ -1,6 +1,6 @@
 //! One tensor that many short windows of a record agree on.
 
-use super::equations::{LOCAL, Normal, Reduced, Test, UNKNOWNS, Vector};
+use crate::flights::equations::{LOCAL, Normal, Reduced, Test, UNKNOWNS, Vector};
 use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
 use crate::physical::law::LARGEST_SHARE;
 

@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis};
-use crate::weak::test_functions::{Seen, Stretch, TestFunctions};
+use crate::signal::stretch::Stretch;
+use crate::signal::test_functions::{Seen, TestFunctions};
 
 /// Unknowns: five of the tensor, drag along each sensor axis, the factor of known inputs, a constant torque.
 pub(super) const UNKNOWNS: usize = 12;

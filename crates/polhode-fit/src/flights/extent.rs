@@ -2,9 +2,9 @@
 
 use core::ops::Range;
 
-use super::FlightLimit;
-use super::consensus::{MOST_TORQUE, precisions};
-use super::equations::{LOCAL, Normal, Test, Vector};
+use crate::flights::consensus::{MOST_TORQUE, precisions};
+use crate::flights::equations::{LOCAL, Normal, Test, Vector};
+use crate::flights::flight::FlightLimit;
 use crate::physical::coordinates::Coordinates;
 
 /// Precision of the common tensor in the fit of one flight, against which its own tests stand.

@@ -7,7 +7,7 @@ use clarabel::solver::{
 };
 use nalgebra::DVector;
 
-use super::failure::SolverFailure;
+use crate::physical::failure::SolverFailure;
 
 /// Conditions a·x ≤ b and second-order cones, gathered for the solver.
 pub(crate) struct Conditions {

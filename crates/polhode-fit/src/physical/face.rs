@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use super::certificate::{CERTIFIED, Certificate, STATIONARY};
-use super::constraint::ActiveConstraint;
-use super::coordinates::{Coordinates, eigen};
-use super::failure::SolverFailure;
-use super::law::LARGEST_SHARE;
-use super::program::{Program, Wall};
+use crate::physical::certificate::{CERTIFIED, Certificate, STATIONARY};
+use crate::physical::constraint::ActiveConstraint;
+use crate::physical::coordinates::{Coordinates, eigen};
+use crate::physical::failure::SolverFailure;
+use crate::physical::law::LARGEST_SHARE;
+use crate::physical::program::{Program, Wall};
 
 /// The answer of the program.
 pub(crate) struct Nearest {

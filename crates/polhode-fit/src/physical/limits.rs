@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::conic::Conditions;
-use super::constraint::Constraint;
-use super::coordinates::{Coordinates, eigen, pair, tensor};
-use super::failure::SolverFailure;
-use super::law::{CUTS, LARGEST_SHARE};
 use crate::error::{Clash, FitError};
+use crate::physical::conic::Conditions;
+use crate::physical::constraint::Constraint;
+use crate::physical::coordinates::{Coordinates, eigen, pair, tensor};
+use crate::physical::failure::SolverFailure;
+use crate::physical::law::{CUTS, LARGEST_SHARE};
 
 /// Limits on the moment of inertia about an axis, as shares of the trace, that are known beforehand.
 ///

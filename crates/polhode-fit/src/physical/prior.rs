@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
 
-use super::coordinates::{Coordinates, ENTRIES, Form, basis, coordinates, eigen};
-use super::nearest::Normal;
 use crate::error::FitError;
+use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis, coordinates, eigen};
+use crate::physical::nearest::Normal;
 
 /// An inertia tensor that is known beforehand, as from a CAD model, with the covariance of its entries: a normal
 /// distribution that a fit joins with what the record tells.

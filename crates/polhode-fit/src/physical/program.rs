@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use super::conic::Conditions;
-use super::constraint::Constraint;
-use super::coordinates::{basis, eigen, symmetric};
-use super::dissipation::Dissipation;
-use super::failure::SolverFailure;
-use super::law::{CUTS, LARGEST_SHARE};
+use crate::physical::conic::Conditions;
+use crate::physical::constraint::Constraint;
+use crate::physical::coordinates::{basis, eigen, symmetric};
+use crate::physical::dissipation::Dissipation;
+use crate::physical::failure::SolverFailure;
+use crate::physical::law::{CUTS, LARGEST_SHARE};
 
 /// Violation of the law that ends the cuts.
 const VIOLATION: f64 = 1e-9;

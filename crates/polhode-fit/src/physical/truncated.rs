@@ -7,10 +7,10 @@
 use nalgebra::{DMatrix, DVector};
 use polhode::num::Random;
 
-use super::coordinates::{Coordinates, eigen, tensor};
-use super::dissipation::Dissipation;
-use super::law::LARGEST_SHARE;
-use super::limits::Limit;
+use crate::physical::coordinates::{Coordinates, eigen, tensor};
+use crate::physical::dissipation::Dissipation;
+use crate::physical::law::LARGEST_SHARE;
+use crate::physical::limits::Limit;
 
 /// Points that are drawn.
 const DRAWN: usize = 10_000;

@@ -8,10 +8,11 @@ use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::identifiability::{VAGUE, direction};
 use crate::physical::coordinates::eigen;
-use crate::weak::noise::SURE;
-use crate::weak::test_functions::{Seen, Stretch, TestFunctions};
+use crate::report::identifiability::{VAGUE, direction};
+use crate::signal::noise::SURE;
+use crate::signal::stretch::Stretch;
+use crate::signal::test_functions::{Seen, TestFunctions};
 
 /// An axis that is principal to within a bound, if no torque acted on the body.
 #[non_exhaustive]

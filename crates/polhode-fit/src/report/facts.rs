@@ -1,19 +1,12 @@
 //! The report, drawn from the record, its weak estimate and the nearest physical tensor.
 
+use crate::report::scale::scale_of;
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use polhode::inertia::{Inertia, InertiaShape};
-use polhode::record::Record;
-use polhode::record::Spike;
+use polhode::record::{Record, Spike};
 
-use super::columns::{is_torque, nuisances};
-use super::estimate::{Estimate, Residuals};
-use super::identifiability::Identifiability;
-use super::nuisance::{Agreement, Nuisance, Torque};
-use super::segments::summaries;
-use super::systematic::systematic;
-use super::torque_free::{InvariantTrend, Whiteness, trends};
-use super::warnings::{Grounds, warnings};
-use crate::cramer_rao::Motions;
+use crate::bound::motions::Motions;
+use crate::columns::model::{Column, Kind, Unknowns, is_torque};
 use crate::error::FitError;
 use crate::physical::constraint::{ActiveConstraint, Constraint};
 use crate::physical::coordinates::{Coordinates, ENTRIES, Form, eigen, entries_of_coordinates, pair, tensor};
@@ -24,13 +17,21 @@ use crate::physical::law::LARGEST_SHARE;
 use crate::physical::nearest::Normal;
 use crate::physical::prior::{Prior, Told};
 use crate::physical::truncated::spread;
-use crate::settings::{Settings, TorqueModel, TorqueNoise};
-use crate::weak::joint::Joint;
-use crate::weak::ladder::Chosen;
-use crate::weak::mistaken_units::Better;
-use crate::weak::model::{Column, Kind, Unknowns};
-use crate::weak::noise::SURE;
-use crate::weak::test_functions::Stretch;
+use crate::report::estimate::{Estimate, Residuals};
+use crate::report::identifiability::Identifiability;
+use crate::report::nuisance::{Agreement, Nuisance, Torque};
+use crate::report::nuisances::nuisances;
+use crate::report::segments::summaries;
+use crate::report::systematic::systematic;
+use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
+use crate::report::warnings::{Grounds, warnings};
+use crate::settings::Settings;
+use crate::settings::torque::{TorqueModel, TorqueNoise};
+use crate::signal::noise::SURE;
+use crate::signal::stretch::Stretch;
+use crate::solve::joint::Joint;
+use crate::solve::ladder::Chosen;
+use crate::solve::other_units::Better;
 
 /// What the report is drawn from.
 pub(crate) struct Facts<'a> {
@@ -190,7 +191,7 @@ impl Facts<'_> {
         let Some(known) = self.settings.known else {
             return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, &at.x));
         };
-        let scale = known.scale(self.stretches, self.rms, j, self.variance);
+        let scale = scale_of(known, self.stretches, self.rms, j, self.variance);
         let trace = scale.trace;
         if let Some(prior) = prior {
             let (expected, sigma) = (prior.trace, prior.size_deviation());

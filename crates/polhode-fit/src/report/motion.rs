@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::record::{Record, Segment};
 
-use super::estimate::Estimate;
-use super::nuisance::Nuisance;
+use crate::report::estimate::Estimate;
+use crate::report::nuisance::Nuisance;
 
 /// One segment of a record, measured and fitted.
 #[non_exhaustive]

@@ -2,13 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{named, unit};
-use super::nuisance::Systematic;
+use crate::columns::model::{Column, Kind, named, unit, walk_columns};
 use crate::physical::coordinates::{pair, tensor};
-use crate::weak::model::{Column, Kind, walk_columns};
-use crate::weak::stacked::responses;
-use crate::weak::test_functions::Stretch;
-use crate::weak::weak_estimate::WeakEstimate;
+use crate::report::nuisance::Systematic;
+use crate::signal::stretch::Stretch;
+use crate::solve::stacked::responses;
+use crate::solve::weak_estimate::WeakEstimate;
 
 /// Each error with its size: an offset of 0.01 rad/s, 1 per cent of scale, 0.01 rad of alignment, 1 ms of delay.
 const ERRORS: [(Kind, f64); 12] = [

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::weak::test_functions::Stretch;
+use crate::signal::stretch::Stretch;
 
 /// Relative change per second of a quantity that a free body keeps.
 #[non_exhaustive]

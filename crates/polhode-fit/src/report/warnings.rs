@@ -2,11 +2,11 @@
 
 use polhode::record::Record;
 
-use super::estimate::Estimate;
-use super::warning::Warning;
-use crate::settings::TorqueModel;
-use crate::weak::mistaken_units::Better;
-use crate::weak::weak_estimate::WeakEstimate;
+use crate::report::estimate::Estimate;
+use crate::report::warning::Warning;
+use crate::settings::torque::TorqueModel;
+use crate::solve::other_units::Better;
+use crate::solve::weak_estimate::WeakEstimate;
 
 /// Standard deviations by which noise alone does not carry five numbers off the physical tensors.
 const FAR: f64 = 6.0;

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::num::Random;
 
-use super::{SimulationError, check};
+use crate::simulate::{SimulationError, check};
 
 /// Errors of a rate sensor; the default has none.
 ///

@@ -6,7 +6,7 @@ use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 
-use super::{SimulationError, check};
+use crate::simulate::{SimulationError, check};
 
 /// What acts on a simulated body, in its own axes; the default is the free body.
 ///

@@ -1,0 +1,177 @@
+//! The weak estimate of a record: where its rounds ended.
+
+use faer::Mat;
+use nalgebra::Vector3;
+
+use crate::columns::model::{Column, Unknowns};
+use crate::physical::coordinates::{Coordinates, Form, eigen, pair, tensor};
+use crate::physical::law::LARGEST_SHARE;
+use crate::signal::covariance::{Covariance, Levels};
+use crate::signal::noise::SURE;
+use crate::signal::stretch::Stretch;
+use crate::solve::driven::take_out;
+use crate::solve::linearised::{Linearised, residuals, rows};
+use crate::solve::stacked::Stacked;
+
+/// Standard deviations by which the last round may still move the tensor.
+pub(crate) const STILL: f64 = 0.01;
+/// The same beyond which there is no answer.
+pub(crate) const RESTLESS: f64 = 0.5;
+/// Misfit that noise does not explain.
+pub(crate) const TORQUES: f64 = 4.0;
+
+/// How far beyond the law, as a share of the trace, torques may carry an estimate that the law is to bring back.
+const BEYOND: f64 = 0.05;
+
+/// The weak estimate of a record: where its rounds ended.
+pub(crate) struct WeakEstimate {
+    pub(crate) radius: f64,
+    pub(crate) columns: Vec<Column>,
+    pub(crate) at: Unknowns,
+    /// Standard deviations by which a further round would move x; infinite where no round could be made, and this is
+    /// good for one question only: what is undetermined.
+    pub(crate) moved: f64,
+    /// Upper triangular, Rᵀ R = H at a motion free of noise.
+    pub(crate) root: Form,
+    /// The equations of all stretches; `None` where no round could be made.
+    pub(crate) stacked: Option<Stacked>,
+    /// D of the mean rates; zero where R is taken at a motion that stands out of the noise.
+    pub(crate) doubt: Form,
+    /// Sum of squares of the whitened residuals.
+    pub(crate) squares: f64,
+    /// Equations beyond the columns without a prior.
+    pub(crate) rows: usize,
+    /// Each stretch that is long enough.
+    pub(crate) parts: Vec<Part>,
+}
+
+/// The equations of one stretch.
+pub(crate) struct Part {
+    pub(crate) stretch: usize,
+    pub(crate) linearised: Linearised,
+    /// Its rows whitened.
+    pub(crate) rows: Vec<f64>,
+    pub(crate) levels: Levels,
+    /// log |C|.
+    pub(crate) log_determinant: f64,
+    /// The noise of the samples so far.
+    pub(crate) noise: Vec<Vector3<f64>>,
+}
+
+impl Part {
+    /// The rows of the same samples with other columns, whitened alike.
+    pub(crate) fn with_columns(
+        &self,
+        stretch: &Stretch,
+        columns: &[Column],
+        at: &Unknowns,
+    ) -> Option<Vec<f64>> {
+        // the rows first: what they are made of is gone when the covariance needs its room
+        let tests = &self.linearised.tests;
+        let mut rows = rows(stretch, &self.noise, columns, at, tests);
+        let factor = self.covariance(stretch).into_factor(self.levels)?;
+        take_out(&mut rows, columns, &self.linearised.terms.j, &factor, self.levels, tests);
+        factor.forward(&mut rows, columns.len() + 6);
+        Some(rows)
+    }
+
+    /// The covariance of its equations, which is not kept.
+    pub(crate) fn covariance(&self, stretch: &Stretch) -> Covariance {
+        self.linearised.covariance(stretch, &self.noise)
+    }
+
+    /// Three for each centre, whitened.
+    pub(crate) fn residuals(&self, at: &Unknowns) -> Vec<f64> {
+        residuals(&self.rows, self.linearised.width, &self.linearised.origin, at)
+    }
+
+    /// Centres of the test functions.
+    pub(crate) fn centres(&self) -> Vec<f64> {
+        self.linearised.tests.centres()
+    }
+}
+
+impl WeakEstimate {
+    /// The coordinates of the tensor.
+    pub(crate) fn x(&self) -> Coordinates {
+        self.at.x
+    }
+
+    /// Whether the rounds ended near enough to a fixed point.
+    pub(crate) fn settled(&self) -> bool {
+        self.moved <= RESTLESS
+    }
+
+    /// Whether they stood still there.
+    pub(crate) fn still(&self) -> bool {
+        self.moved <= STILL
+    }
+
+    /// Whether a body may have this tensor, or one near it: J = n nᵀ solves the equations of any spin about n, with
+    /// residuals and covariance that vanish together, and rounds may end there.
+    pub(crate) fn possible(&self, variance: f64) -> bool {
+        let (moments, axes) = eigen(tensor(&self.at.x));
+        let top = axes.column(2).into_owned();
+        let share = self.root.transpose().solve_lower_triangular(&pair(&top, &top));
+        let excess = variance * self.misfit(variance).max(1.0);
+        let deviation = share.map_or(f64::INFINITY, |g| g.norm() * excess.sqrt());
+        moments[2] - LARGEST_SHARE <= (SURE * deviation).max(BEYOND)
+    }
+
+    /// Equations beyond the unknowns.
+    pub(crate) fn dof(&self) -> usize {
+        self.rows.saturating_sub(5)
+    }
+
+    /// Mean square of the residuals over the noise.
+    pub(crate) fn misfit(&self, variance: f64) -> f64 {
+        self.squares / variance / self.dof().max(1) as f64
+    }
+
+    /// Misfit beyond which noise alone does not carry it.
+    pub(crate) fn expected_misfit(&self) -> f64 {
+        1.0 + 5.0 * (2.0 / self.dof().max(1) as f64).sqrt()
+    }
+
+    /// Levels of the noise of each stretch that is long enough.
+    pub(crate) fn levels(&self) -> Vec<Levels> {
+        self.parts.iter().map(|part| part.levels).collect()
+    }
+
+    /// R as it would be without some of the columns.
+    pub(crate) fn without(&self, left_out: &[usize], deviation: f64) -> Option<Form> {
+        let stacked = self.stacked.as_ref()?;
+        let kept: Vec<usize> = (0..self.columns.len()).filter(|k| !left_out.contains(k)).collect();
+        let columns: Vec<Column> = kept.iter().map(|&k| self.columns[k]).collect();
+        let origin = Unknowns { x: stacked.origin.x, c: kept.iter().map(|&k| stacked.origin.c[k]).collect() };
+        let width = self.columns.len() + 6;
+        let rows: Vec<Vec<f64>> = self
+            .parts
+            .iter()
+            .map(|part| {
+                let each = part.rows.chunks_exact(width);
+                let kept = |row: &[f64]| {
+                    let own = kept.iter().map(|&k| row[k]);
+                    own.chain(row[width - 6..].iter().copied()).collect::<Vec<f64>>()
+                };
+                each.flat_map(kept).collect()
+            })
+            .collect();
+        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        Some(Stacked::new(&rows, &columns, &origin, deviation).root)
+    }
+
+    /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
+    /// without its squares.
+    pub(crate) fn spectrum(&self) -> Option<(Coordinates, Form)> {
+        let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
+        let (values, directions) = (svd.S().column_vector(), svd.V());
+        let mut pairs: [(f64, Coordinates); 5] = core::array::from_fn(|k| {
+            let direction = Coordinates::from_fn(|i, _| directions[(i, k)]);
+            let sure = values[k] * values[k] - (self.doubt * direction).norm_squared();
+            (sure.max(0.0).sqrt(), direction)
+        });
+        pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Some((Coordinates::from_fn(|k, _| pairs[k].0), Form::from_fn(|i, k| pairs[k].1[i])))
+    }
+}

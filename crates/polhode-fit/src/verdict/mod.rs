@@ -1,0 +1,3 @@
+//! What the record says of the fit.
+
+pub(crate) mod mistaken_unit;
