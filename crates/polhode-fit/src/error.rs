@@ -7,7 +7,7 @@ use crate::physical::constraint::Constraint;
 use crate::physical::failure::SolverFailure;
 use crate::report::averages::AverageAxis;
 use crate::report::identifiability::Identifiability;
-use crate::signal::test_functions::TESTS_PER_RADIUS;
+use crate::thresholds::test_functions::TESTS_PER_RADIUS;
 use crate::verdict::mistaken_unit::{MistakenUnit, alternatives};
 
 /// Two constraints that no physically valid tensor meets together.

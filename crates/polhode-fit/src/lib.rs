@@ -44,6 +44,7 @@ mod settings;
 mod signal;
 mod simulate;
 mod solve;
+mod thresholds;
 mod verdict;
 mod wheel;
 
@@ -75,8 +76,11 @@ pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_
 pub use verdict::mistaken_unit::MistakenUnit;
 pub use wheel::{WheelCalibration, calibrate_wheel};
 
-/// A chapter for those who measure.
+/// Chapters for those who measure.
 pub mod guide {
+    #[doc = include_str!("../thresholds.md")]
+    pub mod thresholds {}
+
     #[doc = include_str!("../records.md")]
     pub mod records {}
 }

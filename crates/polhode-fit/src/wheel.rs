@@ -3,7 +3,10 @@
 use polhode::inertia::Inertia;
 use polhode::record::{Record, Segment};
 
-use crate::columns::model::{Column, Kind, STEPS, columns_of, named, sensor_columns, unit, walk_columns};
+use crate::columns::column::Column;
+use crate::columns::effect::Class;
+use crate::columns::input::Input;
+use crate::columns::sets::{sensor_columns, torque_columns, walk_columns};
 use crate::error::FitError;
 use crate::estimator::{noise_of, read_variance};
 use crate::physical::coordinates::coordinates;
@@ -13,6 +16,7 @@ use crate::settings::Settings;
 use crate::settings::torque::TorqueModel;
 use crate::signal::normalised::{Normalised, normalised};
 use crate::solve::held::held;
+use crate::thresholds::walk::STEPS;
 
 /// The moment of inertia of a wheel about its axis, and what it was found from.
 #[non_exhaustive]
@@ -83,9 +87,9 @@ pub fn calibrate_wheel(
     let scale = input.filter(|_| rest.segments.iter().all(|s| s.wheel().is_some()));
     let scale = scale.ok_or(FitError::NoWheelSpeed)?;
     let variance = read_variance(settings, &rest, &stretches, rms)?;
-    let mut columns = vec![Column::new(Kind::Input, None)];
+    let mut columns = vec![Column::new(Input, None)];
     if settings.torque != TorqueModel::Auto {
-        columns.extend(columns_of(settings.torque));
+        columns.extend(torque_columns(settings.torque));
     }
     columns.extend(sensor_columns(&settings.sensor, rms));
     columns.extend(
@@ -102,13 +106,13 @@ pub fn calibrate_wheel(
         .ok_or(FitError::Solver(SolverFailure::Covariance))?;
     let deviation = found.misfit.max(1.0).sqrt();
     let per_unit = trace / scale;
-    let listed = (1..columns.len()).filter(|&k| !matches!(columns[k].kind, Kind::Walk { .. }));
+    let listed = (1..columns.len()).filter(|&k| columns[k].class() != Class::Step);
     let nuisances = listed.map(|k| {
-        let kind = columns[k].kind;
-        let ((name, unit_name, _), unit) = (named(kind), unit(kind, rms));
+        let label = columns[k].label();
+        let unit = label.factor(rms);
         Nuisance {
-            name,
-            unit: unit_name,
+            name: label.name,
+            unit: label.unit,
             value: found.values[k] * unit,
             sigma: found.sigmas[k] * deviation * unit,
             prior: columns[k].prior.map(|prior| prior * unit),

@@ -1,5 +1,6 @@
 //! The Cramér–Rao bound of measured motions, and of a planned one.
 
+use crate::thresholds::bound::OPEN;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 
@@ -88,7 +89,7 @@ pub fn foreseen_bound(
     let information = of_tensor(&euler.information(&times, &start))?;
     let (spectrum, _) = eigen(information);
     // what a pure spin leaves open is zero up to the rounding of sums of squares
-    if spectrum[0].is_nan() || spectrum[0] <= 1e-12 * spectrum[4] {
+    if spectrum[0].is_nan() || spectrum[0] <= OPEN * spectrum[4] {
         return None;
     }
     let bound = (information / (deviation * deviation)).cholesky()?.inverse();

@@ -1,5 +1,6 @@
 //! The motion of a given tensor that is nearest to a stretch of samples.
 
+use crate::thresholds::bound::{CHANGE, DAMPING, LEFT, STARTS, STEPS, STILL, SURE, WIDTH};
 use core::ops::Range;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -60,11 +61,6 @@ impl Distance {
     }
 }
 
-/// Steps towards the motion nearest to one window of samples.
-const STEPS: usize = 12;
-/// A fall of the sum of squares, in units of the variance, that no longer matters: a tenth of a standard deviation.
-const STILL: f64 = 0.01;
-
 /// The start of the motion nearest to the samples of a window by Levenberg's damped steps, the tensor held.
 fn descend(
     euler: &Euler,
@@ -88,18 +84,11 @@ fn descend(
             (start, now) = (there, next);
             damping *= 0.1;
         } else {
-            damping = (10.0 * damping).max(1e-4);
+            damping = (CHANGE * damping).max(DAMPING);
         }
     }
     Some((start, now.sum)).filter(|(_, sum)| sum.is_finite())
 }
-
-/// Where in a stretch to start, as a share of its samples, and the radius of the first window.
-const STARTS: [(f64, f64); 6] = [(0.5, 1.0), (0.25, 1.0), (0.75, 1.0), (0.5, 2.0), (0.25, 2.0), (0.75, 2.0)];
-/// Duration of the samples that the search sees as one.
-const WIDTH: f64 = 0.1;
-/// Share of what noise does not explain that a motion may leave, too.
-const LEFT: f64 = 0.05;
 
 /// The motion of a given tensor that explains the samples of a stretch; `None` if none was found.
 ///
@@ -114,7 +103,7 @@ pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Optio
     // noise of 3n components, and five standard deviations of the sum of their squares
     let components = 3.0 * s.rates.len() as f64;
     let noise = variance * components;
-    let slack = 5.0 * variance * (2.0 * components).sqrt();
+    let slack = SURE * variance * (2.0 * components).sqrt();
     STARTS.iter().find_map(|&(share, first)| {
         let at = (share * s.times.len() as f64) as usize;
         let mut start = Start { time: s.times[at], rate: local_cubic(s, at, first)? };

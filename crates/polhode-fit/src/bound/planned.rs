@@ -1,19 +1,16 @@
 //! The Cramér–Rao bound of a record that is planned, with torques and errors of the sensor among the unknowns.
 
-use crate::columns::model::terms_of;
+use crate::thresholds::bound::{OPEN, PARTS_OF_PLAN, STEP_OF_PLAN};
+use crate::thresholds::walk::STEPS;
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 
-use crate::columns::model::{
-    Column, Kind, STEPS, Unknowns, columns_of, distortion, sensor_columns, unit, walk_columns,
-};
-use crate::physical::coordinates::{Form, basis, coordinates, eigen, entries_of_coordinates, symmetric};
+use crate::columns::column::{Column, Unknowns, terms_of};
+use crate::columns::sets::{sensor_columns, torque_columns, walk_columns};
+use crate::physical::coordinates::{Form, basis, coordinates, eigen, entries_of_coordinates};
 use crate::settings::Settings;
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative, slope};
-
-/// Largest turn of one step of the integrator: errors of order 1e-7.
-const STEP: f64 = 0.05;
 
 /// The bound of [`foreseen_bound`](super::foreseen_bound) for a fit with `settings`: their torque, with `coefficients` in
 /// the order of [`Torque::coefficients`](crate::Torque::coefficients) as it acts, their errors of the sensor, and
@@ -50,12 +47,12 @@ pub fn foreseen_bound_with(
     let first = *times.first()?;
     let scaled: Vec<f64> = times.iter().map(|t| (t - first) * rate).collect();
     let stretch = Stretch::new(scaled.clone(), vec![Vector3::zeros(); scaled.len()]);
-    let mut columns = columns_of(settings.torque);
+    let mut columns = torque_columns(settings.torque);
     if columns.len() != coefficients.len() {
         return None;
     }
     let mut values: Vec<f64> =
-        columns.iter().zip(coefficients).map(|(c, v)| v / unit(c.kind, rate)).collect();
+        columns.iter().zip(coefficients).map(|(c, v)| v / c.label().factor(rate)).collect();
     columns.extend(sensor_columns(&settings.sensor, rate));
     if let Some(walk) = settings.offset_walk {
         columns.extend(walk_columns(core::slice::from_ref(&stretch), walk / rate / rate.sqrt(), STEPS));
@@ -85,7 +82,7 @@ pub fn foreseen_bound_with(
     let left = Form::from_fn(|i, k| left[(i, k)]);
     let (spectrum, _) = eigen(left);
     // what a pure spin leaves open is zero up to the rounding of sums of squares
-    if spectrum[0].is_nan() || spectrum[0] <= 1e-12 * spectrum[4] {
+    if spectrum[0].is_nan() || spectrum[0] <= OPEN * spectrum[4] {
         return None;
     }
     let bound = left.cholesky()?.inverse();
@@ -119,12 +116,8 @@ impl Law<'_> {
             add(k, -self.inverse * own);
         }
         for (k, column) in self.columns.iter().enumerate() {
-            match column.kind {
-                Kind::Drag => add(5 + k, -w),
-                Kind::Quadratic => add(5 + k, -w * size),
-                Kind::Viscous(entry) => add(5 + k, -self.inverse * symmetric(entry) * w),
-                Kind::Constant(axis) => add(5 + k, self.inverse * Vector3::ith(axis, 1.0)),
-                _ => {}
+            if let Some(own) = column.effect().acceleration(&self.inverse, w) {
+                add(5 + k, own);
             }
         }
         (rate, ds)
@@ -138,7 +131,7 @@ impl Law<'_> {
         let (mut w, mut time) = (start, 0.0);
         let mut sum = DMatrix::zeros(size, size);
         for &next in times {
-            let parts = ((next - time) * w.norm().max(1.0) / STEP).ceil().clamp(1.0, 1000.0);
+            let parts = ((next - time) * w.norm().max(1.0) / STEP_OF_PLAN).ceil().clamp(1.0, PARTS_OF_PLAN);
             let h = (next - time) / parts;
             for _ in 0..parts as usize {
                 let (w1, s1) = self.derivative(&w, &s);
@@ -160,14 +153,7 @@ impl Law<'_> {
         let mut read = s.clone();
         let slope = self.derivative(w, s).0;
         for (k, column) in self.columns.iter().enumerate() {
-            let own = match column.kind {
-                Kind::Offset(axis) => Vector3::ith(axis, 1.0),
-                Kind::Walk { axis, from, until } => {
-                    Vector3::ith(axis, ((time - from) / (until - from)).clamp(0.0, 1.0))
-                }
-                Kind::Skew(axis) => Vector3::ith(axis, -slope[axis]),
-                kind => distortion(kind).map_or(Vector3::zeros(), |q| -q * w),
-            };
+            let own = column.effect().change_of_reading(w, &slope, time).unwrap_or_else(Vector3::zeros);
             let whole = read.column(5 + k) + own;
             read.set_column(5 + k, &whole);
         }

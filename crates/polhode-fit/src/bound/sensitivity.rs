@@ -1,5 +1,6 @@
 //! How a free motion depends on its tensor and its start, by the variational equations.
 
+use crate::thresholds::bound::{PARTS, STEP};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::physical::coordinates::{Form, basis};
@@ -7,9 +8,6 @@ use crate::signal::terms::cross_derivative;
 
 /// ∂ω/∂(x, ω₀), or ∂ω/∂ω₀ alone where N is 3.
 pub(super) type Sensitivity<const N: usize> = SMatrix<f64, 3, N>;
-
-/// Largest turn of one step of the integrator, in units of the Jacobian's norm: errors of order 1e-6, plenty for a bound.
-const STEP: f64 = 0.1;
 
 pub(super) struct Euler {
     j: Matrix3<f64>,
@@ -40,7 +38,7 @@ impl Euler {
     /// The classical Runge–Kutta step, in as many parts as the rate asks for.
     fn advance<const N: usize>(&self, w: &mut Vector3<f64>, s: &mut Sensitivity<N>, time: f64) {
         let speed = (self.inverse * cross_derivative(&self.j, w)).norm();
-        let parts = (speed * time.abs() / STEP).ceil().clamp(1.0, 100.0);
+        let parts = (speed * time.abs() / STEP).ceil().clamp(1.0, PARTS);
         let h = time / parts;
         for _ in 0..parts as usize {
             let (w1, s1) = self.derivative(w, s);

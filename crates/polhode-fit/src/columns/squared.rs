@@ -1,15 +1,16 @@
-//! Drag that grows with the square of the rate: sums of |ω| ω against the test functions.
+//! Sums for drag that grows with the square of the rate: those of |ω| ω against the test functions.
 
 use crate::signal::terms::slope;
 use nalgebra::Vector3;
 
-use crate::columns::model::{Column, Kind, distortion};
+use crate::columns::column::Column;
+use crate::columns::quadratic::Quadratic;
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::Terms;
 use crate::signal::test_functions::{Seen, TestFunctions};
 
 /// Σ w φ |ω| ω of each test function, ω = P y − b.
-pub(crate) struct Quadratic {
+pub(crate) struct Squared {
     /// At the readings less the noise.
     pub(crate) motion: Vec<Vector3<f64>>,
     /// The same, with the noise to first order.
@@ -18,7 +19,7 @@ pub(crate) struct Quadratic {
     pub(crate) sensor: Vec<Vec<Vector3<f64>>>,
 }
 
-impl Quadratic {
+impl Squared {
     /// `None` where no column asks for it.
     pub(crate) fn new(
         stretch: &Stretch,
@@ -27,14 +28,14 @@ impl Quadratic {
         tests: &TestFunctions,
         columns: &[Column],
     ) -> Option<Self> {
-        let asked = |column: &Column| column.kind == Kind::Quadratic && column.acts_on(stretch);
+        let quadratic = Column::new(Quadratic, None);
+        let asked = |column: &Column| column.is_alike(&quadratic) && column.acts_on(stretch);
         if !columns.iter().any(asked) {
             return None;
         }
         let none = || vec![Vector3::zeros(); tests.count];
-        let of_sensor =
-            |column: &Column| matches!(column.kind, Kind::Offset(_)) || distortion(column.kind).is_some();
-        let mut sums = Quadratic {
+        let of_sensor = |column: &Column| column.effect().change_of_rate(&Vector3::zeros()).is_some();
+        let mut sums = Squared {
             motion: none(),
             readings: none(),
             sensor: columns.iter().map(|c| if of_sensor(c) { none() } else { Vec::new() }).collect(),
@@ -46,10 +47,7 @@ impl Quadratic {
             let linear = value + slope * (terms.sensor * n);
             let changes: Vec<Option<Vector3<f64>>> = columns
                 .iter()
-                .map(|column| match column.kind {
-                    Kind::Offset(k) => Some(slope * -Vector3::ith(k, 1.0)),
-                    kind => distortion(kind).map(|q| slope * (q * reading)),
-                })
+                .map(|column| column.effect().change_of_rate(&reading).map(|change| slope * change))
                 .collect();
             for (m, _, by) in Seen::new(tests, stretch.times[i]).each() {
                 let by = by * stretch.weights[i];

@@ -13,6 +13,9 @@ mod extent;
 pub(crate) mod flight;
 
 use crate::flights::flight::{Flight, FlightLimit};
+use crate::solve::other_units::Support;
+use crate::thresholds::flights::{ALMOST_ALL, MOST_TORQUE};
+use crate::thresholds::noise::LEAST;
 
 use nalgebra::Vector3;
 use polhode::record::{Record, Segment};
@@ -22,9 +25,9 @@ use crate::settings::Settings;
 use crate::signal::noise;
 use crate::signal::normalised::{Normalised, normalised};
 use crate::signal::stretch::Stretch;
-use crate::signal::test_functions::SAMPLES_PER_TEST;
 use crate::solve::other_units::better_unit;
-use consensus::{Contradiction, MOST_TORQUE, NoConsensus, consensus};
+use crate::thresholds::test_functions::SAMPLES_PER_TEST;
+use consensus::{Contradiction, NoConsensus, consensus};
 use equations::{Test, tests};
 use extent::{Extent, extent, runs};
 
@@ -33,9 +36,6 @@ use extent::{Extent, extent, runs};
 pub fn during(record: &Record, flights: &[Flight]) -> Record {
     record.spans(flights.iter().map(|flight| (flight.segment, flight.start, flight.end)))
 }
-
-/// Share of the turning tests that a record in a wrong unit contradicts.
-const ALMOST_ALL: f64 = 0.9;
 
 /// The flights of a record.
 #[non_exhaustive]
@@ -91,7 +91,7 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
         None => noise::variance(&stretches),
     };
     // readings of a noiseless record carry at least the quadrature's error
-    let variance = variance.max(1e-20);
+    let variance = variance.max(LEAST);
     let speed = speed(&stretches);
     let radius = radius(&stretches, speed);
     let all: Vec<Vec<Test>> = stretches.iter().map(|stretch| tests(stretch, radius)).collect();
@@ -102,7 +102,7 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
         // in a wrong unit of rate or time nothing is free
         let suspect = settings.check_units && contradiction.share() > ALMOST_ALL;
         let better = if suspect { better_unit(&stretches, None, variance) } else { None };
-        match better.filter(|b| b.credible && !b.vague) {
+        match better.filter(|b| b.support == Support::Named) {
             Some(b) => FitError::Units {
                 factor: b.factor,
                 mistakes: b.mistakes,

@@ -1,5 +1,6 @@
 //! The nearest physical tensor within limits.
 
+use crate::thresholds::limits::PARALLEL;
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::FitError;
@@ -51,7 +52,7 @@ pub(crate) fn nearest(
         let share = Row { base: 1.0 / 3.0 + told.centre.dot(&p), g: program.gradient(&p) };
         // of limits about one axis the tighter one, since two of them could not be told apart
         let twins =
-            || limits.iter().enumerate().filter(|(_, b)| b.axis.normalize().dot(&n).abs() > 1.0 - 1e-12);
+            || limits.iter().enumerate().filter(|(_, b)| b.axis.normalize().dot(&n).abs() > 1.0 - PARALLEL);
         let tighter = |of: fn(&Limit) -> Option<f64>, sign: f64| {
             let value = of(limit)?;
             let outdoes = |(i, b): (usize, &Limit)| {

@@ -1,5 +1,6 @@
 //! A tensor that is known beforehand, with its uncertainty.
 
+use crate::thresholds::limits::SYMMETRIC;
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
 
 use crate::error::FitError;
@@ -64,7 +65,7 @@ impl Prior {
         }
         let scaled = self.covariance / (trace * trace);
         let least = if scaled.iter().all(|v| v.is_finite()) { eigen(scaled).0[0] } else { f64::NAN };
-        let symmetric = (scaled - scaled.transpose()).amax() <= 1e-9 * scaled.amax();
+        let symmetric = (scaled - scaled.transpose()).amax() <= SYMMETRIC * scaled.amax();
         if !(least > 0.0 && symmetric) {
             return Err(FitError::PriorCovariance { least: least * trace * trace, symmetric });
         }

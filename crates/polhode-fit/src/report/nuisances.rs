@@ -1,6 +1,7 @@
 //! Names, units and values of what was estimated beside the tensor.
 
-use crate::columns::model::{Column, Kind, named, unit};
+use crate::columns::column::Column;
+use crate::columns::effect::Class;
 use crate::report::nuisance::Nuisance;
 use crate::solve::weak_estimate::WeakEstimate;
 
@@ -18,18 +19,17 @@ pub(crate) fn nuisances(
     let fitted = |segment: usize| weak.parts.iter().any(|part| part.stretch == segment);
     let each = weak.columns.iter().zip(values).enumerate();
     // steps of a walk are many, and none of them matters
-    let listed = each.filter(|(_, (column, _))| {
-        column.segment.is_none_or(fitted) && !matches!(column.kind, Kind::Walk { .. })
-    });
+    let listed =
+        each.filter(|(_, (column, _))| column.segment.is_none_or(fitted) && column.class() != Class::Step);
     listed
         .map(|(k, (column, value))| {
-            let (name, unit_name, _) = named(column.kind);
-            let unit = unit(column.kind, rms);
+            let label = column.label();
+            let unit = label.factor(rms);
             let own = held.iter().find(|(place, _)| *place == k).map(|(_, sigma)| *sigma);
             let sigma = own.unwrap_or_else(|| factor.row(k).norm() * variance.sqrt());
             let nuisance = Nuisance {
-                name,
-                unit: unit_name,
+                name: label.name,
+                unit: label.unit,
                 value: value * unit,
                 sigma: sigma * unit,
                 prior: column.prior.map(|prior| prior * unit),

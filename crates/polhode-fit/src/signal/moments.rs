@@ -1,6 +1,7 @@
 //! Sums of a stretch against its test functions. They hold all that the weak equations ask of the samples, whatever the
 //! tensor, the torque and the errors of the sensor are.
 
+use crate::thresholds::groups::{GROUPS, LONGEST};
 use core::ops::Range;
 
 use multiversion::multiversion;
@@ -182,11 +183,6 @@ pub(crate) struct Group {
     /// Σ w².
     pub(crate) square: f64,
 }
-
-/// Groups per half width of a test function: sums over its smooth support are then exact to a millionth.
-const GROUPS: f64 = 12.0;
-/// Longest group, in which the body turns by less than this angle.
-const LONGEST: f64 = 0.15;
 
 /// Groups of a stretch for test functions of half width `radius`.
 pub(crate) fn groups(stretch: &Stretch, noise: &[Vector3<f64>], radius: f64) -> impl Iterator<Item = Group> {

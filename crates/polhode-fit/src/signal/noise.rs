@@ -1,9 +1,7 @@
 //! The noise of a sensor from its own samples.
 
 use crate::signal::stretch::Stretch;
-
-/// Standard deviations of a mean within which the true one is taken to lie.
-pub(crate) const SURE: f64 = 5.0;
+use crate::thresholds::noise::OUTLYING;
 
 /// Variance of one component, from what local cubics leave of five neighbouring samples.
 ///
@@ -27,7 +25,7 @@ pub(crate) fn variance(stretches: &[Stretch]) -> f64 {
     let middle = squares.len() / 2;
     let median =
         if squares.is_empty() { 0.0 } else { *squares.select_nth_unstable_by(middle, f64::total_cmp).1 };
-    let limit = if median > 0.0 { 30.0 * median } else { f64::INFINITY };
+    let limit = if median > 0.0 { OUTLYING * median } else { f64::INFINITY };
     let (mut sum, mut count) = (0.0, 0.0);
     for square in squares.into_iter().filter(|square| *square <= limit) {
         sum += square;

@@ -6,7 +6,7 @@ use polhode::units::RateUnit;
 
 use crate::error::FitError;
 use crate::signal::stretch::{KnownInputs, Stretch};
-use crate::signal::test_functions::SAMPLES_PER_TEST;
+use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 
 /// A record in units of its own mean square rate and of the time in which the body turns by one radian.
 pub(crate) struct Normalised {

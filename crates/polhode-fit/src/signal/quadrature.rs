@@ -1,5 +1,6 @@
 //! Weights of order 4 on irregular samples.
 
+use crate::thresholds::quadrature::NEAREST;
 /// Weights w with Σ w_i f(t_i) ≈ ∫ f over the span of ascending `times`: each interval integrates the cubic
 /// through its two ends and one more sample on each side.
 ///
@@ -11,11 +12,11 @@ pub(crate) fn weights(times: &[f64]) -> Vec<f64> {
     for i in 0..n.saturating_sub(1) {
         let (a, b) = (times[i], times[i + 1]);
         let h = b - a;
-        let before = (0..i).rev().find(|&k| a - times[k] >= 0.25 * h);
-        let after = (i + 2..n).find(|&k| times[k] - b >= 0.25 * h);
+        let before = (0..i).rev().find(|&k| a - times[k] >= NEAREST * h);
+        let after = (i + 2..n).find(|&k| times[k] - b >= NEAREST * h);
         // at an end both come from the same side
         let second = |from: usize, up: bool| {
-            let far = |k: &usize| (times[*k] - times[from]).abs() >= 0.25 * h;
+            let far = |k: &usize| (times[*k] - times[from]).abs() >= NEAREST * h;
             if up { (from + 1..n).find(far) } else { (0..from).rev().find(far) }
         };
         let (p, q) = match (before, after) {

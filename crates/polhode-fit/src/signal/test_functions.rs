@@ -1,5 +1,6 @@
 //! Test functions of compact support on a stretch of samples, and their weights in sums over samples.
 
+use crate::thresholds::test_functions::{ROUNDED, SAMPLES_PER_TEST, TESTS_PER_RADIUS, TIE};
 use std::sync::Arc;
 
 use multiversion::multiversion;
@@ -7,11 +8,6 @@ use nalgebra::{Matrix3, Matrix4, Vector4};
 
 use crate::signal::banded::Banded;
 use crate::signal::stretch::Stretch;
-
-/// Test functions per radius.
-pub(crate) const TESTS_PER_RADIUS: f64 = 4.0;
-/// Fewest samples in the support of one test function.
-pub(crate) const SAMPLES_PER_TEST: f64 = 8.0;
 
 /// The test functions of one stretch: φ = (1 − u²)⁴, u = (t − centre)/radius, centres evenly spaced.
 #[derive(Clone, Debug)]
@@ -44,15 +40,15 @@ impl TestFunctions {
         let duration = stretch.duration();
         let samples = stretch.times.len() as f64;
         // a radius that was cut from this very duration may exceed half of it by rounding
-        if 2.0 * radius > duration * (1.0 + 1e-9) || samples * 2.0 * radius < SAMPLES_PER_TEST * duration {
+        if 2.0 * radius > duration * (1.0 + ROUNDED) || samples * 2.0 * radius < SAMPLES_PER_TEST * duration {
             return None;
         }
         let room = (duration - 2.0 * radius).max(0.0);
         // nudged off the ties, so that a change of units cannot change the count
-        let steps = (TESTS_PER_RADIUS * room / radius + 1e-6).round();
+        let steps = (TESTS_PER_RADIUS * room / radius + TIE).round();
         let count = steps as usize + 1;
         let spacing = if count > 1 { room / steps } else { radius };
-        let overlap = if count > 1 { (2.0 * radius / spacing - 1e-9) as usize } else { 0 };
+        let overlap = if count > 1 { (2.0 * radius / spacing - ROUNDED) as usize } else { 0 };
         let mut tests = TestFunctions {
             first: stretch.times[0] + radius,
             spacing,

@@ -1,5 +1,6 @@
 //! The motion of a body with drag, torques and a wheel.
 
+use crate::thresholds::simulate::{IMPULSES, LAST_TERM, STEPS, TERMS, TERMS_OF_IMPULSES};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::StateError;
 use polhode::flow::FreeMotion;
@@ -26,16 +27,6 @@ pub struct Disturbances {
     /// Its change, N m.
     pub wheel_rate: Vector3<f64>,
 }
-
-/// Impulses of the torque's noise for each sample.
-const IMPULSES: usize = 4;
-/// Terms of the power series in time, and those between impulses, which are near one another.
-const TERMS: usize = 24;
-const TERMS_OF_IMPULSES: usize = 10;
-/// Size of the last term against the momentum, where a step ends.
-const LAST_TERM: f64 = 1e-17;
-/// Steps after which a motion counts as too fast, for each sample.
-const STEPS: usize = 1000;
 
 impl Disturbances {
     pub(super) fn check(&self) -> Result<(), SimulationError> {

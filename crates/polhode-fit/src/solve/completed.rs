@@ -2,12 +2,13 @@
 
 use nalgebra::SMatrix;
 
-use crate::columns::model::Unknowns;
+use crate::columns::column::Unknowns;
 use crate::physical::coordinates::{Coordinates, Form};
 use crate::signal::stretch::Stretch;
 use crate::solve::rounds::Rounds;
 use crate::solve::stacked::Pull;
-use crate::solve::weak_estimate::{RESTLESS, TORQUES, WeakEstimate};
+use crate::solve::weak_estimate::WeakEstimate;
+use crate::thresholds::rounds::{RESTLESS, TORQUES};
 
 /// What a record and a prior tell together where the record alone leaves something open.
 pub(crate) struct Completed {

@@ -7,7 +7,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::columns::model::{Column, distortion};
+use crate::columns::column::Column;
 use crate::physical::coordinates::basis;
 use crate::signal::banded::Banded;
 use crate::signal::covariance::{Levels, torque_shape};
@@ -53,7 +53,7 @@ pub(crate) fn take_out(
     let width = columns.len() + 6;
     let r = rows.chunks_exact(width).map(|row| row[width - 1]).collect();
     let of_columns = columns.iter().enumerate();
-    let by_column = of_columns.filter_map(|(k, c)| Some((k, j * distortion(c.kind)? * inverse)));
+    let by_column = of_columns.filter_map(|(k, c)| Some((k, j * c.effect().distortion()? * inverse)));
     let by_tensor = (0..5).map(|k| (columns.len() + k, basis(k) * inverse));
     let maps: Vec<(usize, Matrix3<f64>)> = by_column.chain(by_tensor).collect();
     for (m, effect) in effect(r, factor, levels, j, tests).into_iter().enumerate() {

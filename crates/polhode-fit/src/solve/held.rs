@@ -1,8 +1,9 @@
 //! Rounds of the weak equations with the tensor held: what a record of a known body tells of the columns.
 
+use crate::thresholds::noise::DEVIATIONS;
 use nalgebra::Vector3;
 
-use crate::columns::model::{Column, Unknowns};
+use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::Coordinates;
 use crate::signal::covariance::{Covariance, Levels};
 use crate::signal::stretch::Stretch;
@@ -10,9 +11,9 @@ use crate::signal::test_functions::TestFunctions;
 use crate::solve::levels::{Choice, likeliest};
 use crate::solve::linearised::{Linearised, Whitened};
 use crate::solve::radius::candidates;
-use crate::solve::rounds::{Noise, ROUNDS};
+use crate::solve::rounds::Noise;
 use crate::solve::stacked::Stacked;
-use crate::solve::weak_estimate::STILL;
+use crate::thresholds::rounds::{ROUNDS, STILL};
 
 /// The columns that explain a record with a given tensor.
 pub(crate) struct Held {
@@ -86,7 +87,7 @@ fn at(
         }
         let misfit = stacked.squares_at(&x) / variance / stacked.rows.max(1) as f64;
         let (dof, several) = (stacked.rows, used.len() > 1);
-        let unexplained = misfit > 1.0 + 5.0 * (2.0 / dof.max(1) as f64).sqrt();
+        let unexplained = misfit > 1.0 + DEVIATIONS * (2.0 / dof.max(1) as f64).sqrt();
         if moved <= STILL && !fitted && unexplained {
             // what noise of the rates does not explain is torque noise
             fitted = true;

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::columns::model::{Column, Unknowns};
+use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::Coordinates;
 use crate::physical::nearest::Normal;
 use crate::solve::weak_estimate::WeakEstimate;

@@ -1,25 +1,18 @@
 //! The torque that a record asks for: one rung after the other, each on its gain of likelihood.
 
-use crate::columns::model::{Column, columns_of};
+use crate::columns::column::Column;
+use crate::columns::sets::torque_columns;
 use crate::physical::coordinates::Coordinates;
 use crate::settings::torque::TorqueModel;
 use crate::signal::covariance::Levels;
 use crate::signal::stretch::Stretch;
 use crate::solve::levels::{Choice, likeliest};
-use crate::solve::other_units::{Better, better_unit, suspicious};
+use crate::solve::other_units::{Better, Support, better_unit, suspicious};
 use crate::solve::radius::{Failure, descended, estimate};
 use crate::solve::rounds::Noise;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::WeakEstimate;
-
-/// Gain of log-likelihood that the first coefficient of a torque must bring; noise alone brings it once in 600 records.
-const FIRST: f64 = 5.0;
-/// What each further coefficient must bring beyond that.
-const FURTHER: f64 = 1.5;
-
-/// Share of the gain asked for that the equations of an estimate without a torque must promise before it is fitted: the
-/// torque noise falls in a fit, so that its gain grows.
-const HOPE: f64 = 0.5;
+use crate::thresholds::ladder::{FIRST, FURTHER, HOPE};
 
 /// Why there is no torque to choose.
 pub(crate) enum Halt {
@@ -68,12 +61,12 @@ impl Demand<'_> {
 
     /// The columns of a torque, for each stretch where it has its own.
     fn torques(&self, model: TorqueModel) -> Vec<Column> {
-        let shared = columns_of(model);
+        let shared = torque_columns(model);
         if self.alone.is_empty() {
             return shared;
         }
         let of = |&segment: &usize| {
-            shared.iter().map(move |column| Column { segment: Some(segment), ..*column }).collect::<Vec<_>>()
+            shared.iter().map(move |column| column.of_segment(segment)).collect::<Vec<_>>()
         };
         self.alone.iter().flat_map(of).collect()
     }
@@ -81,102 +74,112 @@ impl Demand<'_> {
 
 /// The weak estimate that the demand asks for.
 pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) -> Result<Chosen, Halt> {
-    let mut better = None;
-    let mut chosen = choose(stretches, demand, variance, &mut better)?;
-    chosen.better = better;
-    Ok(chosen)
+    Ladder { stretches, demand, variance }.choose()
 }
 
-/// The weak estimate alone; `better` are units that explain the record where nothing but torques does in its own.
-fn choose(
-    stretches: &[Stretch],
-    demand: Demand<'_>,
+/// A weak estimate of one model, compared with no other.
+fn plain(weak: WeakEstimate, model: TorqueModel) -> Chosen {
+    Chosen { weak, model, gain: None, without: None, better: None }
+}
+
+struct Ladder<'a> {
+    stretches: &'a [Stretch],
+    demand: Demand<'a>,
     variance: f64,
-    better: &mut Option<Better>,
-) -> Result<Chosen, Halt> {
-    let plain = |weak, model| Chosen { weak, model, gain: None, without: None, better: None };
-    let free = matches!(demand.torque, TorqueModel::None | TorqueModel::Auto);
-    let descent = |model: TorqueModel, radius: Option<f64>| {
-        descended(stretches, radius, &demand.columns(model), variance, demand.noise)
-    };
-    if let Noise::Given(_) = demand.noise
-        && demand.torque != TorqueModel::Auto
-    {
-        return Ok(plain(descent(demand.torque, demand.radius)?, demand.torque));
-    }
-    // most records need neither torque nor torque noise
-    let base = if free { TorqueModel::None } else { demand.torque };
-    let first = estimate(stretches, demand.radius, &demand.columns(base), variance)?;
-    let explained = first.misfit(variance) <= first.expected_misfit();
-    if demand.units && (!explained || !first.settled() || suspicious(&first, variance)) {
-        *better = better_unit(stretches, Some(&first), variance);
-        // before the descents, which would not end soon either
-        if better.as_ref().is_some_and(|b| b.credible && !b.vague && (b.far || b.sure || b.sphere.is_some()))
-            && let Some(better) = better.take()
-        {
-            return Err(Halt::Units(first.misfit(variance), Box::new(better)));
-        }
-    }
-    if explained {
-        let restless = demand.noise == Noise::Fitted && has_torque_noise(stretches, &first, variance);
-        let asks = demand.torque == TorqueModel::Auto
-            && [TorqueModel::Drag, TorqueModel::Constant].into_iter().any(|model| {
-                gain_of(stretches, &first, &demand.columns(model), variance) > needed(&demand, model)
-            });
-        let done = match demand.noise {
-            Noise::Given(_) => false,
-            Noise::White | Noise::Fitted => !restless && !asks,
-        };
-        if done || !first.settled() {
-            return Ok(plain(first, base));
-        }
-    }
-    let radius = demand.radius;
-    if demand.torque != TorqueModel::Auto {
-        let weak = descent(base, radius)?;
-        let keep = first.still() && !weak.settled();
-        return Ok(plain(if keep { first } else { weak }, base));
-    }
-    // one radius for all, so that their likelihoods are those of the same equations
-    let drag = descent(TorqueModel::Drag, radius)?;
-    let radius = Some(drag.radius);
-    let none = descent(TorqueModel::None, radius)?;
-    let floor = likelihood(stretches, &none, variance);
-    let gain = gain_of(stretches, &none, &demand.columns(TorqueModel::Constant), variance);
-    let may_be_constant = !none.settled() || gain > HOPE * needed(&demand, TorqueModel::Constant);
-    let without = none.settled().then(|| none.x());
-    let mut best = plain(none, TorqueModel::None);
-    let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
-        let gain = likelihood(stretches, &weak, variance) - floor;
-        let more = demand.torques(model).len().saturating_sub(demand.torques(best.model).len()).max(1);
-        let asked = if best.model == TorqueModel::None { needed(&demand, model) } else { threshold(more) };
-        let before = likelihood(stretches, &best.weak, variance) - floor;
-        let better = weak.settled() && (!best.weak.settled() || gain - before > asked);
-        let gain = Some(gain).filter(|gain| gain.is_finite());
-        if better { Chosen { weak, model, gain, without, better: None } } else { best }
-    };
-    best = climb(best, TorqueModel::Drag, drag);
-    if may_be_constant && let Ok(constant) = descent(TorqueModel::Constant, radius) {
-        best = climb(best, TorqueModel::Constant, constant);
-    }
-    if best.model == TorqueModel::Drag
-        && may_be_drag3(stretches, &best.weak, &demand, variance)
-        && let Ok(drag) = descent(TorqueModel::Drag3, radius)
-    {
-        best = climb(best, TorqueModel::Drag3, drag);
-    }
-    // what a descent did not settle, plain rounds may have
-    if first.settled()
-        && (!best.weak.settled() || (explained && best.model == TorqueModel::None && !noisy(&best.weak)))
-    {
-        return Ok(plain(first, base));
-    }
-    Ok(best)
 }
 
-/// Whether torque noise has a part in an estimate.
-fn noisy(weak: &WeakEstimate) -> bool {
-    weak.levels().iter().any(|levels| levels.torque > 0.0)
+impl Ladder<'_> {
+    fn choose(&self) -> Result<Chosen, Halt> {
+        let demand = &self.demand;
+        if let Noise::Given(_) = demand.noise
+            && demand.torque != TorqueModel::Auto
+        {
+            return Ok(plain(self.descent(demand.torque, demand.radius)?, demand.torque));
+        }
+        // most records need neither torque nor torque noise
+        let base = if demand.torque == TorqueModel::Auto { TorqueModel::None } else { demand.torque };
+        let first = estimate(self.stretches, demand.radius, &demand.columns(base), self.variance)?;
+        let explained = first.misfit(self.variance) <= first.expected_misfit();
+        let better = self.other_units(&first, explained)?;
+        let chosen = if explained && (!first.settled() || self.is_enough(&first)) {
+            plain(first, base)
+        } else if demand.torque == TorqueModel::Auto {
+            self.highest(first, explained)?
+        } else {
+            let weak = self.descent(base, demand.radius)?;
+            let keep = first.still() && !weak.settled();
+            plain(if keep { first } else { weak }, base)
+        };
+        Ok(Chosen { better, ..chosen })
+    }
+
+    fn descent(&self, model: TorqueModel, radius: Option<f64>) -> Result<WeakEstimate, Failure> {
+        descended(self.stretches, radius, &self.demand.columns(model), self.variance, self.demand.noise)
+    }
+
+    /// Units that explain the record where nothing but torques does in its own; refused before the descents, which would
+    /// not end soon either, where they can be named.
+    fn other_units(&self, first: &WeakEstimate, explained: bool) -> Result<Option<Better>, Halt> {
+        let asks = self.demand.units && (!explained || !first.settled() || suspicious(first, self.variance));
+        match asks.then(|| better_unit(self.stretches, Some(first), self.variance)).flatten() {
+            Some(better) if better.support == Support::Named => {
+                Err(Halt::Units(first.misfit(self.variance), Box::new(better)))
+            }
+            better => Ok(better),
+        }
+    }
+
+    /// Whether an estimate that noise explains asks for neither torque nor torque noise.
+    fn is_enough(&self, first: &WeakEstimate) -> bool {
+        let demand = &self.demand;
+        let asks = |model| {
+            gain_of(self.stretches, first, &demand.columns(model), self.variance) > needed(demand, model)
+        };
+        match demand.noise {
+            Noise::Given(_) => return false,
+            Noise::Fitted if has_torque_noise(self.stretches, first, self.variance) => return false,
+            Noise::White | Noise::Fitted => {}
+        }
+        demand.torque != TorqueModel::Auto
+            || ![TorqueModel::Drag, TorqueModel::Constant].into_iter().any(asks)
+    }
+
+    /// The first rung that the next one does not surpass.
+    fn highest(&self, first: WeakEstimate, explained: bool) -> Result<Chosen, Failure> {
+        let (stretches, demand, variance) = (self.stretches, &self.demand, self.variance);
+        // one radius for all, so that their likelihoods are those of the same equations
+        let drag = self.descent(TorqueModel::Drag, demand.radius)?;
+        let radius = Some(drag.radius);
+        let none = self.descent(TorqueModel::None, radius)?;
+        let floor = likelihood(stretches, &none, variance);
+        let gain = gain_of(stretches, &none, &demand.columns(TorqueModel::Constant), variance);
+        let may_be_constant = !none.settled() || gain > HOPE * needed(demand, TorqueModel::Constant);
+        let without = none.settled().then(|| none.x());
+        let mut best = plain(none, TorqueModel::None);
+        let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
+            let gain = likelihood(stretches, &weak, variance) - floor;
+            let more = demand.torques(model).len().saturating_sub(demand.torques(best.model).len()).max(1);
+            let asked = if best.model == TorqueModel::None { needed(demand, model) } else { threshold(more) };
+            let before = likelihood(stretches, &best.weak, variance) - floor;
+            let better = weak.settled() && (!best.weak.settled() || gain - before > asked);
+            let gain = Some(gain).filter(|gain| gain.is_finite());
+            if better { Chosen { weak, model, gain, without, better: None } } else { best }
+        };
+        best = climb(best, TorqueModel::Drag, drag);
+        if may_be_constant && let Ok(constant) = self.descent(TorqueModel::Constant, radius) {
+            best = climb(best, TorqueModel::Constant, constant);
+        }
+        if best.model == TorqueModel::Drag
+            && may_be_drag3(stretches, &best.weak, demand, variance)
+            && let Ok(drag) = self.descent(TorqueModel::Drag3, radius)
+        {
+            best = climb(best, TorqueModel::Drag3, drag);
+        }
+        // what a descent did not settle, plain rounds may have
+        let is_plain = explained && best.model == TorqueModel::None && !best.weak.has_torque_noise();
+        let keep = first.settled() && (!best.weak.settled() || is_plain);
+        Ok(if keep { plain(first, TorqueModel::None) } else { best })
+    }
 }
 
 fn threshold(coefficients: usize) -> f64 {

@@ -1,20 +1,7 @@
 //! The torque noise of a stretch, and the noise of its rates, by restricted likelihood.
 
 use crate::signal::covariance::{Covariance, Levels, Shape};
-
-/// Gain of twice the log-likelihood up to which there is no torque noise: noise alone surpasses it once in forty records.
-const GAIN: f64 = 4.0;
-/// Decades of torque noise that are tried, from that whose share in the residuals is a thousandth of the noise's.
-const DECADES: usize = 12;
-/// Share of [`GAIN`] that one of these brings at least, if the likeliest torque noise between two of them brings all of it:
-/// a third while twice the log-likelihood is a parabola, more beyond.
-const BETWEEN: f64 = 0.25;
-/// Steps of the golden section within two decades.
-const SECTIONS: usize = 4;
-/// Decades to both sides of where it ends between which the likelihood is taken for a parabola.
-const STEP: f64 = 0.15;
-/// Gain of twice the log-likelihood for which the shape of the torque noise changes.
-const RESHAPED: f64 = 1.0;
+use crate::thresholds::levels::{BETWEEN, DECADES, FIRST_DECADE, GAIN, RESHAPED, SECTIONS, STEP};
 
 /// What may be fitted of the noise of a stretch.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +70,7 @@ impl Search<'_> {
             Some(near) => libm::log10(near.torque / near.white / unit),
             None => {
                 let mut best = (f64::INFINITY, 0.0);
-                for exponent in (0..=DECADES).map(|k| k as f64 - 3.0) {
+                for exponent in (0..=DECADES).map(|k| k as f64 - FIRST_DECADE) {
                     let Some(found) = at(exponent) else { continue };
                     if found.cost < best.0 {
                         best = (found.cost, exponent);

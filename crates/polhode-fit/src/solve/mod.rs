@@ -30,5 +30,6 @@ pub(crate) mod linearised;
 pub(crate) mod other_units;
 pub(crate) mod radius;
 pub(crate) mod rounds;
+pub(crate) mod rows;
 pub(crate) mod stacked;
 pub(crate) mod weak_estimate;

@@ -1,12 +1,16 @@
 //! Mistaken units of a record, found by Euler's equation: rates enter it squared, their derivatives linearly.
 
+use crate::thresholds::units::{
+    ANY, CREDIBLE, EQUAL, EXPLAINED, FAR, FARTHER, HOPELESS, LISTED, SAMPLES, SPHERICAL, SURELY,
+};
 use crate::verdict::mistaken_unit::MistakenUnit;
 use core::f64::consts::PI;
 
 use polhode::units::RateUnit::{self, DegreesPerSecond, RadiansPerSecond, RevolutionsPerMinute};
 use polhode::units::TimeUnit::{self, Microseconds, Milliseconds, Nanoseconds, Seconds};
 
-use crate::columns::model::{Column, columns_of};
+use crate::columns::column::Column;
+use crate::columns::sets::torque_columns;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::solve::radius;
@@ -37,6 +41,22 @@ const MISTAKES: [(f64, MistakenUnit); 12] = [
     (1e9, time(Seconds, Nanoseconds)),
 ];
 
+/// What the units that explain a record tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Support {
+    /// Few do, and the record determines the tensor in the best of them: they can be named.
+    Named,
+    /// Many do, or one of any size: a small wobble then is that of a body next to a sphere.
+    Any {
+        /// Whether the record determines the tensor in the best of them.
+        determined: bool,
+        /// Whether the misfit in the unit that was read is so much larger that no torque noise is likely to be its cause.
+        far: bool,
+    },
+    /// Few do, and the record determines the tensor in none of them.
+    Undetermined,
+}
+
 /// Units that explain the record better than the one it was read in.
 #[derive(Clone, Debug)]
 pub(crate) struct Better {
@@ -46,51 +66,12 @@ pub(crate) struct Better {
     pub(crate) mistakes: Vec<MistakenUnit>,
     /// Mean square of the residuals over the noise in that unit.
     pub(crate) misfit: f64,
-    /// Whether the record determines the tensor in the best of them.
-    pub(crate) credible: bool,
-    /// Whether many do, or one of any size: a small wobble then is that of a body next to a sphere.
-    pub(crate) vague: bool,
-    /// Whether the misfit in the unit that was read is so much larger that no torque noise is likely to be its cause.
-    pub(crate) far: bool,
-    /// Whether the noise of the rates alone explains the record in the best of them, and by no chance in the unit that was
-    /// read: torques would leave more in any unit.
-    pub(crate) sure: bool,
+    /// What they tell.
+    pub(crate) support: Support,
     /// Distance from the sphere, as a share of the trace, of the tensor in the unit that was read, where it is that which
     /// speaks against the unit.
     pub(crate) sphere: Option<f64>,
 }
-
-/// Differences of χ² up to which units explain a record equally well.
-const EQUAL: f64 = 50.0;
-
-/// A factor beyond those of all units.
-const ANY: f64 = 1e12;
-
-/// Units that a message lists.
-const LISTED: usize = 3;
-
-/// Largest misfit of a unit that explains a record.
-const EXPLAINED: f64 = 2.0;
-
-/// Misfit of the first rounds from which no unit comes to explain a record.
-const HOPELESS: f64 = 10.0 * EXPLAINED;
-
-/// Fall of the misfit that torque noise is not likely to hide.
-const FAR: f64 = 20.0;
-
-/// Standard deviations of the misfit of noise by which the unit that was read must explain less than one in which noise explains
-/// all.
-const SURELY: f64 = 10.0;
-
-/// Distance from the sphere, as a share of the trace, below which another unit is asked for: rates that are read too large
-/// by a factor make a body nearer to a sphere by the same factor.
-const SPHERICAL: f64 = 0.01;
-
-/// How much farther from the sphere the body must be in the other unit.
-const FARTHER: f64 = 20.0;
-
-/// Samples on which units are tried; one that explains them is tried on those of a pilot.
-const SAMPLES: usize = 1_500;
 
 /// Whether an estimate explains its record by a tensor so near to a sphere that a mistaken unit is more likely.
 pub(crate) fn suspicious(weak: &WeakEstimate, variance: f64) -> bool {
@@ -105,62 +86,18 @@ pub(crate) fn better_unit(
     weak: Option<&WeakEstimate>,
     variance: f64,
 ) -> Option<Better> {
-    let pilot = radius::pilot(stretches);
-    let drag = columns_of(TorqueModel::Drag);
-    let spherical = |weak: &WeakEstimate| suspicious(weak, variance).then(|| weak.x().norm());
-    let mut sphere = weak.and_then(spherical);
-    let short = radius::longest(stretches, SAMPLES);
-    let is_whole = samples(&short) == samples(&pilot);
-    let explains = |stretches: &[Stretch], factor: f64| {
-        let scaled: Vec<Stretch> = stretches
-            .iter()
-            .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
-            .collect();
-        let tried = radius::tried(&scaled, &drag, variance, HOPELESS);
-        tried.filter(|weak| weak.misfit(variance) < EXPLAINED)
-    };
-    let read = |stretches: &[Stretch]| radius::tried(stretches, &drag, variance, f64::INFINITY);
-    let by_noise = |weak: &Option<WeakEstimate>| {
-        weak.as_ref().is_some_and(|weak| weak.misfit(variance) <= weak.expected_misfit())
-    };
-    let mut quick = None;
-    if sphere.is_none() {
-        // what a part of the record does not gainsay the whole may not either; where it does, the units are tried first
-        let part = read(&short);
-        if by_noise(&part) || part.as_ref().and_then(spherical).is_some() {
-            let whole = read(&pilot);
-            sphere = whole.as_ref().and_then(spherical);
-            if sphere.is_none() && by_noise(&whole) {
-                return None;
-            }
-            quick = Some(whole);
-        }
-    }
-    let mut found: Vec<Found> = Vec::new();
-    let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
-    for (factor, mistake) in candidates.chain([(ANY, None)]) {
-        // rates that are read too small make a body that no tensor comes near to
-        if sphere.is_some() && factor >= 1.0 {
-            continue;
-        }
-        let tried = explains(&short, factor);
-        let whole = if is_whole { tried } else { tried.and_then(|_| explains(&pilot, factor)) };
-        let Some(other) = whole else { continue };
-        let (misfit, credible) = (other.misfit(variance), credible(&other, variance));
-        // next to a sphere the misfits are alike, and the shapes must tell
-        if sphere.is_none_or(|distance| credible && other.x().norm() >= FARTHER * distance) {
-            let by_noise = misfit <= other.expected_misfit();
-            found.push(Found { factor, mistake, misfit, dof: other.dof() as f64, credible, by_noise });
-        }
-    }
+    let trial = Trial::new(stretches, variance);
+    let read = trial.read(weak)?;
+    let sphere = read.sphere;
+    let mut found = trial.units(sphere);
     if found.is_empty() {
         return None;
     }
-    if sphere.is_none() && quick.is_none() {
-        quick = Some(read(&pilot));
-    }
-    let quick = quick.flatten();
-    if sphere.is_none() && by_noise(&quick) {
+    let quick = match read.quick {
+        None if sphere.is_none() => trial.as_read(&trial.pilot),
+        quick => quick.flatten(),
+    };
+    if sphere.is_none() && trial.is_noise(quick.as_ref()) {
         return None;
     }
     let quick = quick.map(|weak| weak.misfit(variance));
@@ -169,13 +106,13 @@ pub(crate) fn better_unit(
     }
     found.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     let best = found.first()?;
-    let as_read = if sphere.is_some() {
-        best.misfit
-    } else {
-        as_read([&short, &pilot], weak, &drag, quick, best.misfit, variance)?
+    let as_read = match sphere {
+        Some(_) => best.misfit,
+        None => as_read([&trial.short, &trial.pilot], weak, &trial.drag, quick, best.misfit, variance)?,
     };
-    let sure = best.by_noise && as_read - best.misfit > SURELY * (2.0 / best.dof).sqrt();
     let far = as_read > (FAR * best.misfit).max(EXPLAINED);
+    // the noise of the rates alone explains the record in the best of them: torques would leave more in any unit
+    let sure = best.by_noise && as_read - best.misfit > SURELY * (2.0 / best.dof).sqrt();
     if sphere.is_none() && !sure && !far {
         return None;
     }
@@ -183,17 +120,104 @@ pub(crate) fn better_unit(
     let mut units: Vec<&Found> = found.iter().filter(|f| sphere.is_some() || equal(f)).collect();
     units.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     let any = units.pop_if(|f| f.mistake.is_none()).is_some();
-    let vague = sphere.is_none() && (any || units.len() > LISTED);
+    let support = match sphere.is_none() && (any || units.len() > LISTED) {
+        true => Support::Any { determined: best.credible, far },
+        false if best.credible => Support::Named,
+        false => Support::Undetermined,
+    };
     units.first().map(|first| Better {
         factor: first.factor,
         mistakes: units.iter().take(LISTED).filter_map(|f| f.mistake).collect(),
         misfit: first.misfit,
-        credible: best.credible,
-        vague,
-        far,
-        sure,
+        support,
         sphere,
     })
+}
+
+/// A record in the unit that it was read in.
+struct AsRead {
+    /// Distance from the sphere of the tensor, where it is that which speaks against the unit.
+    sphere: Option<f64>,
+    /// The estimate of a first trial, where one was made.
+    quick: Option<Option<WeakEstimate>>,
+}
+
+/// The samples on which units are tried.
+struct Trial {
+    short: Vec<Stretch>,
+    pilot: Vec<Stretch>,
+    /// Drag slows a body in any unit.
+    drag: Vec<Column>,
+    variance: f64,
+}
+
+impl Trial {
+    fn new(stretches: &[Stretch], variance: f64) -> Trial {
+        Trial {
+            short: radius::longest(stretches, SAMPLES),
+            pilot: radius::pilot(stretches),
+            drag: torque_columns(TorqueModel::Drag),
+            variance,
+        }
+    }
+
+    fn as_read(&self, stretches: &[Stretch]) -> Option<WeakEstimate> {
+        radius::tried(stretches, &self.drag, self.variance, f64::INFINITY)
+    }
+
+    fn explains(&self, stretches: &[Stretch], factor: f64) -> Option<WeakEstimate> {
+        let scaled: Vec<Stretch> = stretches
+            .iter()
+            .map(|s| Stretch::new(s.times.iter().map(|t| t * factor).collect(), s.rates.clone()))
+            .collect();
+        let tried = radius::tried(&scaled, &self.drag, self.variance, HOPELESS);
+        tried.filter(|weak| weak.misfit(self.variance) < EXPLAINED)
+    }
+
+    fn is_noise(&self, weak: Option<&WeakEstimate>) -> bool {
+        weak.is_some_and(|weak| weak.misfit(self.variance) <= weak.expected_misfit())
+    }
+
+    /// What stands of the unit that was read; `None` where noise explains the record in it.
+    fn read(&self, weak: Option<&WeakEstimate>) -> Option<AsRead> {
+        let spherical = |weak: &WeakEstimate| suspicious(weak, self.variance).then(|| weak.x().norm());
+        let sphere = weak.and_then(spherical);
+        if sphere.is_some() {
+            return Some(AsRead { sphere, quick: None });
+        }
+        // what a part of the record does not gainsay the whole may not either; where it does, the units are tried first
+        let part = self.as_read(&self.short);
+        if !self.is_noise(part.as_ref()) && part.as_ref().and_then(spherical).is_none() {
+            return Some(AsRead { sphere, quick: None });
+        }
+        let whole = self.as_read(&self.pilot);
+        let sphere = whole.as_ref().and_then(spherical);
+        let explained = sphere.is_none() && self.is_noise(whole.as_ref());
+        (!explained).then_some(AsRead { sphere, quick: Some(whole) })
+    }
+
+    /// The units that explain the record.
+    fn units(&self, sphere: Option<f64>) -> Vec<Found> {
+        let is_whole = samples(&self.short) == samples(&self.pilot);
+        let mut found = Vec::new();
+        let candidates = MISTAKES.into_iter().map(|(factor, mistake)| (factor, Some(mistake)));
+        for (factor, mistake) in candidates.chain([(ANY, None)]) {
+            // rates that are read too small make a body that no tensor comes near to
+            if sphere.is_some() && factor >= 1.0 {
+                continue;
+            }
+            let tried = self.explains(&self.short, factor);
+            let whole = if is_whole { tried } else { tried.and_then(|_| self.explains(&self.pilot, factor)) };
+            let Some(other) = whole else { continue };
+            let (misfit, credible) = (other.misfit(self.variance), credible(&other, self.variance));
+            // next to a sphere the misfits are alike, and the shapes must tell
+            if sphere.is_none_or(|distance| credible && other.x().norm() >= FARTHER * distance) {
+                let by_noise = misfit <= other.expected_misfit();
+                found.push(Found { factor, mistake, misfit, dof: other.dof() as f64, credible, by_noise });
+            }
+        }
+        found
+    }
 }
 
 /// The least misfit in the unit that was read, or less where that is [`FAR`] from `best` as well; `quick` is that of a first
@@ -247,12 +271,9 @@ struct Found {
     by_noise: bool,
 }
 
-/// Largest standard deviation, relative to the distance from the sphere, of an estimate that supports its unit.
-const MAX_RELATIVE_SIGMA: f64 = 0.2;
-
 /// Whether the record determines the estimate: if rates are read too large, a nearly spherical tensor explains most motions.
 fn credible(weak: &WeakEstimate, variance: f64) -> bool {
     let Some((singular, _)) = weak.spectrum() else { return false };
     let deviation = (variance * weak.misfit(variance).max(1.0)).sqrt() / singular[4];
-    deviation <= MAX_RELATIVE_SIGMA * weak.x().norm()
+    deviation <= CREDIBLE * weak.x().norm()
 }

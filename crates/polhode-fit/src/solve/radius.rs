@@ -1,15 +1,17 @@
 //! The half width of the test functions: chosen by least predicted covariance, doubled where the rounds do not settle.
 
-use crate::columns::model::{Column, Unknowns};
+use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::{Coordinates, Form};
 use crate::signal::stretch::Stretch;
-use crate::signal::test_functions::{SAMPLES_PER_TEST, TestFunctions};
+use crate::signal::test_functions::TestFunctions;
 use crate::solve::linearised::{Linearised, Whitened};
 use crate::solve::rounds::{Noise, Rounds};
-use crate::solve::weak_estimate::{RESTLESS, TORQUES, WeakEstimate};
-
-/// Test functions per sample beyond which the covariance of their noise is all but singular.
-const DENSE: f64 = 0.9;
+use crate::solve::weak_estimate::WeakEstimate;
+use crate::thresholds::radius::{
+    CANDIDATES, COMPARED, DENSE, OF_SHORT, PILOT_SAMPLES, ROOM, SHORTEST, TRIED,
+};
+use crate::thresholds::rounds::{RESTLESS, TORQUES};
+use crate::thresholds::test_functions::{ROUNDED, SAMPLES_PER_TEST};
 
 /// Why there is no weak estimate.
 pub(crate) enum Failure {
@@ -33,13 +35,14 @@ pub(crate) fn candidates(stretches: &[Stretch]) -> Vec<f64> {
     let longest = stretches.iter().map(Stretch::duration).fold(0.0, f64::max);
     let samples: usize = stretches.iter().map(|s| s.times.len()).sum();
     let duration: f64 = stretches.iter().map(Stretch::duration).sum();
-    let lowest = (SAMPLES_PER_TEST * duration / samples as f64).max(0.5);
-    let mut radii: Vec<f64> = (0..6).scan(lowest, |r, _| Some(core::mem::replace(r, 2.0 * *r))).collect();
+    let lowest = (SAMPLES_PER_TEST * duration / samples as f64).max(SHORTEST);
+    let mut radii: Vec<f64> =
+        (0..CANDIDATES).scan(lowest, |r, _| Some(core::mem::replace(r, 2.0 * *r))).collect();
     let enough = |s: &Stretch, r: f64| s.times.len() as f64 * 2.0 * r >= SAMPLES_PER_TEST * s.duration();
-    radii.retain(|&r| stretches.iter().any(|s| 4.0 * r <= s.duration() && enough(s, r)));
+    radii.retain(|&r| stretches.iter().any(|s| ROOM * r <= s.duration() && enough(s, r)));
     if radii.is_empty() {
         let densest = stretches.iter().max_by_key(|s| s.times.len()).map_or(longest, Stretch::duration);
-        radii.push(0.25 * densest);
+        radii.push(OF_SHORT * densest);
     }
     radii
 }
@@ -61,7 +64,7 @@ fn compared_at<'a>(
             rounds.at = start;
         }
     } else {
-        for _ in 0..2 {
+        for _ in 0..COMPARED {
             if rounds.round(variance, true).is_none() {
                 break;
             }
@@ -147,9 +150,6 @@ fn choose_radius(
     Some((least_covariance(stretches, &radii, columns, variance, &compared), compared.at))
 }
 
-/// Samples on which the radius is chosen: more would not change it.
-const PILOT_SAMPLES: usize = 8_000;
-
 /// Refuses a radius whose equations are nearly as many as the samples.
 fn check_radius(stretches: &[Stretch], radius: f64) -> Result<(), Failure> {
     let dense = |s: &Stretch| {
@@ -180,7 +180,7 @@ pub(crate) fn estimate(
     // a weak wobble in strong noise may need longer test functions than its information alone asks for
     let mut radius = first;
     let mut best: Option<WeakEstimate> = None;
-    while radius <= largest * (1.0 + 1e-9) {
+    while radius <= largest * (1.0 + ROUNDED) {
         let mut rounds = Rounds::new(stretches, radius, columns, start.clone()).ok_or(Failure::TooShort)?;
         let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS);
         let weak = moved.and_then(|moved| rounds.finish(variance, moved));
@@ -218,8 +218,8 @@ pub(crate) fn descended(
             let (first, _) =
                 choose_radius(&pilot, columns, variance, Some(noise)).ok_or(Failure::TooShort)?;
             let all = candidates(&pilot);
-            let longer = all.iter().copied().filter(|r| *r > first * (1.0 + 1e-9));
-            let shorter = all.iter().rev().copied().filter(|r| *r < first * (1.0 - 1e-9));
+            let longer = all.iter().copied().filter(|r| *r > first * (1.0 + ROUNDED));
+            let shorter = all.iter().rev().copied().filter(|r| *r < first * (1.0 - ROUNDED));
             core::iter::once(first).chain(longer).chain(shorter).collect()
         }
     };
@@ -241,9 +241,6 @@ pub(crate) fn descended(
     let sphere = || Rounds::new(stretches, *radii.first()?, columns, origin.clone())?.at_sphere(variance);
     best.or_else(sphere).ok_or(Failure::Singular)
 }
-
-/// Radii at which a question is tried before it is dropped: the chosen one, and twice it.
-const TRIED: usize = 2;
 
 /// The weak estimate without torque noise, where rounds at one of two radii settle: enough to tell whether some unit
 /// explains a record. It is dropped where the first rounds leave a misfit of more than `most`.

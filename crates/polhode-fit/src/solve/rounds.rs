@@ -1,40 +1,21 @@
 //! Rounds of the weak equations at samples that each round moves further onto them.
 
-use crate::solve::weak_estimate::{STILL, TORQUES};
+use crate::thresholds::rounds::{
+    BOUNDLESS, DESCENT, FALL, FULL_ROUNDS, KEPT, NEGLIGIBLE, REACHED, RELAXED, ROUNDS, SAME, SHARES,
+    SIGNIFICANT_GAIN, STILL, TORQUES,
+};
 use nalgebra::Vector3;
 
-use crate::columns::model::{Column, Unknowns};
+use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
 use crate::signal::covariance::{Covariance, Levels};
-use crate::signal::noise::SURE;
 use crate::signal::stretch::Stretch;
 use crate::signal::test_functions::TestFunctions;
 use crate::solve::levels::{Choice, likeliest};
 use crate::solve::linearised::{Linearised, Whitened};
 use crate::solve::stacked::{Pull, Stacked};
 use crate::solve::weak_estimate::{Part, WeakEstimate};
-
-/// Most rounds at one radius; at low noise two or three do.
-pub(crate) const ROUNDS: usize = 12;
-/// Rounds that take their whole step.
-const FULL_ROUNDS: usize = 6;
-/// Shares of a step that are tried.
-const SHARES: usize = 30;
-/// Fall of χ² that no wobble of pure noise brings about: its chance is e⁻²⁵ for each frequency that is tried.
-const SIGNIFICANT_GAIN: f64 = 50.0;
-/// What a round may leave of the smallest moment: at none at all the covariance of the equations has no inverse.
-const KEPT: f64 = 0.1;
-
-/// Share of its torque noise that a round may take off at most.
-const FALL: f64 = 0.03;
-/// Rounds of a descent from boundless torque noise.
-const DESCENT: usize = 30;
-/// Relative change of a level of torque noise that no longer matters.
-const SAME: f64 = 0.05;
-/// Where a descent begins: the share of torque noise in the residuals over that of the noise of the rates.
-const BOUNDLESS: f64 = 1e5;
-/// Share below which torque noise counts as none.
-const NEGLIGIBLE: f64 = 1e-3;
+use crate::thresholds::noise::SURE;
 
 /// What of its noise a descent fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +124,7 @@ impl<'a> Rounds<'a> {
             None => stacked.ridge(variance)?,
         };
         // where torques act, full steps may end in going to and fro
-        let relax = if full || stacked.excess(variance) < TORQUES { 1.0 } else { 0.5 };
+        let relax = if full || stacked.excess(variance) < TORQUES { 1.0 } else { RELAXED };
         Some(self.advance(&parts, &whitened, &stacked, &next, relax, variance))
     }
 
@@ -178,7 +159,7 @@ impl<'a> Rounds<'a> {
         }
         // a step that ends where the moment vanishes keeps just that much at the first of them
         let shares = core::iter::successors(Some(1.0 - KEPT), |share| Some(0.5 * share));
-        shares.take(SHARES).find(|&share| smallest(share) >= 0.99 * least).unwrap_or(0.0)
+        shares.take(SHARES).find(|&share| smallest(share) >= REACHED * least).unwrap_or(0.0)
     }
 
     /// Rounds until the tensor stands still, and by how many standard deviations the last would have moved it.

@@ -1,16 +1,11 @@
 //! Rows of all stretches and priors stacked into one triangle.
 
+use crate::thresholds::stacked::{FLAT, RIDGE, TOGETHER};
 use faer::Mat;
 use nalgebra::{DMatrix, DVector, SMatrix};
 
-use crate::columns::model::{Column, Unknowns};
+use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::{Coordinates, Form};
-
-/// Standard deviation of a column without a prior: so far beyond what a record can show that it says nothing.
-const FLAT: f64 = 1e3;
-
-/// Rows that are brought to a triangle together, on the triangle of those before.
-const TOGETHER: usize = 16_384;
 
 /// Further equations W (x − centre) = 0 of the tensor alone.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +86,7 @@ impl Stacked {
     /// The x that makes |R (x − origin) + z|² + ridge |x|² least, with its columns.
     pub(crate) fn ridge(&self, ridge: f64) -> Option<Unknowns> {
         // far above the rounding of R, where the record tells nothing and has no noise either; only weights are at stake
-        let weight = ridge.sqrt().max(1e-7 * self.root.norm());
+        let weight = ridge.sqrt().max(RIDGE * self.root.norm());
         self.pulled(&Pull { root: Form::identity() * weight, centre: Coordinates::zeros() })
     }
 

@@ -1,27 +1,33 @@
 //! The weak estimate of a record: where its rounds ended.
 
+use crate::thresholds::noise::DEVIATIONS;
+use crate::thresholds::rounds::{BEYOND, RESTLESS, STILL, TORQUES};
 use faer::Mat;
 use nalgebra::Vector3;
 
-use crate::columns::model::{Column, Unknowns};
+use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::{Coordinates, Form, eigen, pair, tensor};
 use crate::physical::law::LARGEST_SHARE;
 use crate::signal::covariance::{Covariance, Levels};
-use crate::signal::noise::SURE;
 use crate::signal::stretch::Stretch;
 use crate::solve::driven::take_out;
-use crate::solve::linearised::{Linearised, residuals, rows};
+use crate::solve::linearised::{Linearised, residuals};
+use crate::solve::rows::rows;
 use crate::solve::stacked::Stacked;
+use crate::thresholds::noise::SURE;
 
-/// Standard deviations by which the last round may still move the tensor.
-pub(crate) const STILL: f64 = 0.01;
-/// The same beyond which there is no answer.
-pub(crate) const RESTLESS: f64 = 0.5;
-/// Misfit that noise does not explain.
-pub(crate) const TORQUES: f64 = 4.0;
-
-/// How far beyond the law, as a share of the trace, torques may carry an estimate that the law is to bring back.
-const BEYOND: f64 = 0.05;
+/// What explains a record in the unit that it was read in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Explanation {
+    /// The noise of the rates, and torques that have columns.
+    Noise,
+    /// Torques at random beside it.
+    TorqueNoise,
+    /// Torques that nothing in the fit stands for.
+    Torques,
+    /// Nothing: the rounds do not settle.
+    Nothing,
+}
 
 /// The weak estimate of a record: where its rounds ended.
 pub(crate) struct WeakEstimate {
@@ -118,6 +124,24 @@ impl WeakEstimate {
         moments[2] - LARGEST_SHARE <= (SURE * deviation).max(BEYOND)
     }
 
+    /// Whether torque noise has a part in it.
+    pub(crate) fn has_torque_noise(&self) -> bool {
+        self.parts.iter().any(|part| part.levels.torque > 0.0)
+    }
+
+    /// What explains the record with it.
+    pub(crate) fn explanation(&self, variance: f64) -> Explanation {
+        if self.has_torque_noise() {
+            Explanation::TorqueNoise
+        } else if !self.settled() {
+            Explanation::Nothing
+        } else if self.misfit(variance) > TORQUES {
+            Explanation::Torques
+        } else {
+            Explanation::Noise
+        }
+    }
+
     /// Equations beyond the unknowns.
     pub(crate) fn dof(&self) -> usize {
         self.rows.saturating_sub(5)
@@ -130,12 +154,7 @@ impl WeakEstimate {
 
     /// Misfit beyond which noise alone does not carry it.
     pub(crate) fn expected_misfit(&self) -> f64 {
-        1.0 + 5.0 * (2.0 / self.dof().max(1) as f64).sqrt()
-    }
-
-    /// Levels of the noise of each stretch that is long enough.
-    pub(crate) fn levels(&self) -> Vec<Levels> {
-        self.parts.iter().map(|part| part.levels).collect()
+        1.0 + DEVIATIONS * (2.0 / self.dof().max(1) as f64).sqrt()
     }
 
     /// R as it would be without some of the columns.
