@@ -2,11 +2,8 @@
 
 use crate::thresholds::noise::{LEAST, MOST};
 use crate::thresholds::walk::STEPS;
-use crate::verdict::judgement::Case;
-use crate::verdict::judgement::Supported;
-use crate::verdict::judgement::Verdict;
-use crate::verdict::prior::check_agreement;
-use crate::verdict::prior::with_prior;
+use crate::verdict::judgement::{Case, Supported, Verdict};
+use crate::verdict::prior::{check_agreement, with_prior};
 use nalgebra::Vector3;
 use polhode::record::{Record, Spike};
 

@@ -16,7 +16,7 @@
 //! let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
 //!
 //! let record = Record::from_samples(&times, &rates)?;
-//! let settings = Settings { known: Some(Known::Trace(5.6)), ..Settings::default() };
+//! let settings = Settings::default().with_known(Known::Trace(5.6));
 //! let estimate = fit(&record, &settings)?;
 //! for (k, truth) in [1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6].into_iter().enumerate() {
 //!     assert!((estimate.principal[k] - truth).abs() < 5.0 * estimate.sigma_principal[k]);
@@ -40,6 +40,7 @@ mod estimator;
 mod flights;
 mod physical;
 mod report;
+mod setters;
 mod settings;
 mod signal;
 mod simulate;
@@ -84,3 +85,7 @@ pub mod guide {
     #[doc = include_str!("../records.md")]
     pub mod records {}
 }
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

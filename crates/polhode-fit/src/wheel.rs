@@ -57,8 +57,8 @@ pub struct WheelCalibration {
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
 /// // a wheel of 0.01 kg m² about z, at 30 rad/s
-/// let wheel = Disturbances { wheel: Vector3::z() * 0.3, ..Disturbances::default() };
-/// let gyroscope = Gyroscope { noise: 1e-3, ..Gyroscope::default() };
+/// let wheel = Disturbances::default().with_wheel(Vector3::z() * 0.3);
+/// let gyroscope = Gyroscope::default().with_noise(1e-3);
 /// let omega = Vector3::new(0.3, 1.0, 0.4);
 /// let rates = simulate_with(&body, omega, &times, &wheel, &gyroscope, &mut Random::new(1))?;
 ///

@@ -25,8 +25,8 @@ use crate::signal::terms::{Terms, cross_derivative, slope};
 /// let omega = Vector3::new(0.3, 1.0, 0.4);
 /// let free = foreseen_bound(&body, omega, &times, 1e-3).ok_or("tumbles")?;
 /// // drag of 5 per cent a second, and an offset of the sensor of some 0.01 rad/s
-/// let sensor = SensorPriors { offset: Some(0.01), ..SensorPriors::default() };
-/// let settings = Settings { torque: TorqueModel::Drag, sensor, ..Settings::default() };
+/// let sensor = SensorPriors::default().with_offset(0.01);
+/// let settings = Settings::default().with_torque(TorqueModel::Drag).with_sensor(sensor);
 /// let real = foreseen_bound_with(&body, omega, &times, 1e-3, &settings, &[0.05]).ok_or("tumbles")?;
 /// assert!(real.trace() > free.trace());
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -21,7 +21,7 @@ use crate::physical::law::LARGEST_SHARE;
 /// # let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
 /// # let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
 /// let record = Record::from_samples(&times, &rates)?;
-/// let with = |limit| fit(&record, &Settings { limits: vec![limit], ..Settings::default() });
+/// let with = |limit| fit(&record, &Settings::default().with_limits(vec![limit]));
 /// let held = with(Limit { axis: Vector3::x(), at_least: Some(0.2), at_most: None })?;
 /// assert!((held.shape.tensor()[(0, 0)] - 0.2).abs() < 1e-12 && held.pull > 10.0);
 ///

@@ -20,7 +20,7 @@ use crate::physical::nearest::Normal;
 /// # let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-2, &mut Random::new(7))?;
 /// // the CAD model has each entry to two per cent, and the size
 /// let model = Inertia::from_moments([1.01, 1.98, 2.61])?;
-/// let settings = Settings { prior: Some(Prior::relative(model.tensor(), 0.02)), ..Settings::default() };
+/// let settings = Settings::default().with_prior(Prior::relative(model.tensor(), 0.02));
 /// let record = Record::from_samples(&times, &rates)?;
 /// let (with, without) = (fit(&record, &settings)?, fit(&record, &Settings::default())?);
 /// assert!(with.sigma_principal[0] < without.sigma_principal[0]);

@@ -1,5 +1,6 @@
 //! Which warnings an estimate needs.
 
+use crate::solve::weak_estimate::Convergence;
 use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN};
 use polhode::record::Record;
@@ -45,7 +46,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if misfit > (1.0 + DEVIATIONS * (2.0 / e.dof.max(1) as f64).sqrt()).max(RESIDUALS) {
         list.push(Warning::Residuals { times: misfit.sqrt(), noise: e.noise_sigma });
     }
-    if !weak.still() {
+    if weak.convergence() != Convergence::Still {
         list.push(Warning::NotConverged { moved: weak.moved });
     }
     if let Some(b) = better {

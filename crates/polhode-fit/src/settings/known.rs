@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 /// use polhode_fit::{Known, Settings};
 /// // from a pendulum: the moment about the z axis, kg m²
 /// let known = Known::Moment { axis: Vector3::z(), value: 2.4e-3 };
-/// let settings = Settings { known: Some(known), ..Settings::default() };
+/// let settings = Settings::default().with_known(known);
 /// assert_eq!(settings.known, Some(known));
 /// ```
 #[non_exhaustive]

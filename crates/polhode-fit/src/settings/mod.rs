@@ -7,6 +7,7 @@ pub(crate) mod torque;
 use crate::error::FitError;
 use crate::physical::limits::Limit;
 use crate::physical::prior::Prior;
+use crate::setters::setters;
 use crate::settings::known::Known;
 use crate::settings::sensor::SensorPriors;
 use crate::settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
@@ -18,14 +19,10 @@ use crate::settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
 /// use polhode_fit::{Known, Limit, Settings};
 /// // test functions of half width 0.5 s, at least 0.4 of the trace about z, and a trace of 5.6 kg m²
 /// let limit = Limit { axis: Vector3::z(), at_least: Some(0.4), at_most: None };
-/// let settings = Settings {
-///     radius: Some(0.5),
-///     limits: vec![limit],
-///     known: Some(Known::Trace(5.6)),
-///     ..Settings::default()
-/// };
+/// let settings = Settings::default().with_radius(0.5).with_limits(vec![limit]).with_known(Known::Trace(5.6));
 /// assert!(settings.noise.is_none() && settings.check_units);
 /// ```
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Half width of the test functions, s; chosen by least predicted covariance without it.
@@ -79,6 +76,26 @@ impl Default for Settings {
 }
 
 impl Settings {
+    setters! {
+        options {
+            radius => with_radius(f64),
+            noise => with_noise(f64),
+            prior => with_prior(Prior),
+            known => with_known(Known),
+            quantum => with_quantum(f64),
+            offset_walk => with_offset_walk(f64),
+        }
+        values {
+            limits => with_limits(Vec<Limit>),
+            check_units => with_check_units(bool),
+            torque => with_torque(TorqueModel),
+            torque_scope => with_torque_scope(TorqueScope),
+            torque_noise => with_torque_noise(TorqueNoise),
+            sensor => with_sensor(SensorPriors),
+            leave_out_spikes => with_leave_out_spikes(bool),
+        }
+    }
+
     /// Whether each value is one that a fit can use.
     pub(super) fn check(&self) -> Result<(), FitError> {
         let known = self.known.map(Known::value);

@@ -1,15 +1,17 @@
 //! What may be wrong with the sensor.
 
+use crate::setters::setters;
 /// Standard deviations of what may be wrong with the sensor, each a Gaussian prior about zero; `None` takes the sensor
 /// to be right.
 ///
 /// ```
 /// use polhode_fit::{SensorPriors, Settings};
 /// // an offset of some 0.02 rad/s on each axis, and a scale of 2 per cent
-/// let sensor = SensorPriors { offset: Some(0.02), scale: Some(0.02), ..SensorPriors::default() };
-/// let settings = Settings { sensor, ..Settings::default() };
+/// let sensor = SensorPriors::default().with_offset(0.02).with_scale(0.02);
+/// let settings = Settings::default().with_sensor(sensor);
 /// assert!(settings.sensor.skew.is_none());
 /// ```
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SensorPriors {
     /// Of the offset of each axis, rad/s.
@@ -25,6 +27,17 @@ pub struct SensorPriors {
 }
 
 impl SensorPriors {
+    setters! {
+        options {
+            offset => with_offset(f64),
+            scale => with_scale(f64),
+            axis_scales => with_axis_scales(f64),
+            misalignment => with_misalignment(f64),
+            skew => with_skew(f64),
+        }
+        values {}
+    }
+
     /// With their names.
     pub(crate) fn named(&self) -> [(&'static str, Option<f64>); 5] {
         [

@@ -1,5 +1,6 @@
 //! The motion of a body with drag, torques and a wheel.
 
+use crate::setters::setters;
 use crate::thresholds::simulate::{IMPULSES, LAST_TERM, STEPS, TERMS, TERMS_OF_IMPULSES};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::StateError;
@@ -12,6 +13,7 @@ use crate::simulate::{SimulationError, check};
 /// What acts on a simulated body, in its own axes; the default is the free body.
 ///
 /// p' = p × ω − k J ω − D ω + τ + white noise, with p = J ω + h and the momentum h(t) of a wheel.
+#[non_exhaustive]
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Disturbances {
     /// Drag k in proportion to the momentum of the body, 1/s.
@@ -29,6 +31,18 @@ pub struct Disturbances {
 }
 
 impl Disturbances {
+    setters! {
+        options {}
+        values {
+            relative_drag => with_relative_drag(f64),
+            drag => with_drag(Vector3<f64>),
+            torque => with_torque(Vector3<f64>),
+            torque_noise => with_torque_noise(f64),
+            wheel => with_wheel(Vector3<f64>),
+            wheel_rate => with_wheel_rate(Vector3<f64>),
+        }
+    }
+
     pub(super) fn check(&self) -> Result<(), SimulationError> {
         check("the relative drag", &[self.relative_drag], false)?;
         check("a drag", self.drag.as_slice(), false)?;

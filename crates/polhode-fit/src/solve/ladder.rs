@@ -11,7 +11,7 @@ use crate::solve::other_units::{Better, Support, better_unit, suspicious};
 use crate::solve::radius::{Failure, descended, estimate};
 use crate::solve::rounds::Noise;
 use crate::solve::stacked::Stacked;
-use crate::solve::weak_estimate::WeakEstimate;
+use crate::solve::weak_estimate::{Convergence, WeakEstimate};
 use crate::thresholds::ladder::{FIRST, FURTHER, HOPE};
 
 /// Why there is no torque to choose.
@@ -101,13 +101,13 @@ impl Ladder<'_> {
         let first = estimate(self.stretches, demand.radius, &demand.columns(base), self.variance)?;
         let explained = first.misfit(self.variance) <= first.expected_misfit();
         let better = self.other_units(&first, explained)?;
-        let chosen = if explained && (!first.settled() || self.is_enough(&first)) {
+        let chosen = if explained && (!first.has_settled() || self.is_enough(&first)) {
             plain(first, base)
         } else if demand.torque == TorqueModel::Auto {
             self.highest(first, explained)?
         } else {
             let weak = self.descent(base, demand.radius)?;
-            let keep = first.still() && !weak.settled();
+            let keep = first.convergence() == Convergence::Still && !weak.has_settled();
             plain(if keep { first } else { weak }, base)
         };
         Ok(Chosen { better, ..chosen })
@@ -120,7 +120,8 @@ impl Ladder<'_> {
     /// Units that explain the record where nothing but torques does in its own; refused before the descents, which would
     /// not end soon either, where they can be named.
     fn other_units(&self, first: &WeakEstimate, explained: bool) -> Result<Option<Better>, Halt> {
-        let asks = self.demand.units && (!explained || !first.settled() || suspicious(first, self.variance));
+        let asks =
+            self.demand.units && (!explained || !first.has_settled() || suspicious(first, self.variance));
         match asks.then(|| better_unit(self.stretches, Some(first), self.variance)).flatten() {
             Some(better) if better.support == Support::Named => {
                 Err(Halt::Units(first.misfit(self.variance), Box::new(better)))
@@ -153,15 +154,15 @@ impl Ladder<'_> {
         let none = self.descent(TorqueModel::None, radius)?;
         let floor = likelihood(stretches, &none, variance);
         let gain = gain_of(stretches, &none, &demand.columns(TorqueModel::Constant), variance);
-        let may_be_constant = !none.settled() || gain > HOPE * needed(demand, TorqueModel::Constant);
-        let without = none.settled().then(|| none.x());
+        let may_be_constant = !none.has_settled() || gain > HOPE * needed(demand, TorqueModel::Constant);
+        let without = none.has_settled().then(|| none.x());
         let mut best = plain(none, TorqueModel::None);
         let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
             let gain = likelihood(stretches, &weak, variance) - floor;
             let more = demand.torques(model).len().saturating_sub(demand.torques(best.model).len()).max(1);
             let asked = if best.model == TorqueModel::None { needed(demand, model) } else { threshold(more) };
             let before = likelihood(stretches, &best.weak, variance) - floor;
-            let better = weak.settled() && (!best.weak.settled() || gain - before > asked);
+            let better = weak.has_settled() && (!best.weak.has_settled() || gain - before > asked);
             let gain = Some(gain).filter(|gain| gain.is_finite());
             if better { Chosen { weak, model, gain, without, better: None } } else { best }
         };
@@ -177,7 +178,7 @@ impl Ladder<'_> {
         }
         // what a descent did not settle, plain rounds may have
         let is_plain = explained && best.model == TorqueModel::None && !best.weak.has_torque_noise();
-        let keep = first.settled() && (!best.weak.settled() || is_plain);
+        let keep = first.has_settled() && (!best.weak.has_settled() || is_plain);
         Ok(if keep { plain(first, TorqueModel::None) } else { best })
     }
 }
@@ -226,7 +227,7 @@ fn may_be_drag3(stretches: &[Stretch], weak: &WeakEstimate, demand: &Demand<'_>,
     let three = demand.torques(TorqueModel::Drag3);
     let more = three.len().saturating_sub(demand.torques(TorqueModel::Drag).len());
     let both: Vec<Column> = three.into_iter().chain(demand.columns(TorqueModel::Drag)).collect();
-    !weak.settled() || gain_of(stretches, weak, &both, variance) > HOPE * threshold(more)
+    !weak.has_settled() || gain_of(stretches, weak, &both, variance) > HOPE * threshold(more)
 }
 
 /// The equations of an estimate with further columns, which come first and are zero where it stands.

@@ -75,7 +75,7 @@ pub(crate) struct Better {
 
 /// Whether an estimate explains its record by a tensor so near to a sphere that a mistaken unit is more likely.
 pub(crate) fn suspicious(weak: &WeakEstimate, variance: f64) -> bool {
-    weak.settled() && weak.misfit(variance) < EXPLAINED && weak.x().norm() < SPHERICAL
+    weak.has_settled() && weak.misfit(variance) < EXPLAINED && weak.x().norm() < SPHERICAL
 }
 
 /// The units that explain the record, where there are such and the unit that it was read in is none of them: with the
@@ -246,7 +246,7 @@ fn as_read(
     if quick.is_none() {
         let share = samples(short) as f64 / samples(pilot).max(1) as f64;
         let part = descended(short);
-        let settled = part.iter().all(WeakEstimate::settled);
+        let settled = part.iter().all(WeakEstimate::has_settled);
         let bound = least(&part).filter(|_| settled).map(|misfit| misfit * share);
         if let Some(bound) = bound.filter(|bound| *bound > (FAR * best).max(EXPLAINED)) {
             return Some(bound);

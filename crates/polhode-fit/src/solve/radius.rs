@@ -6,7 +6,7 @@ use crate::signal::stretch::Stretch;
 use crate::signal::test_functions::TestFunctions;
 use crate::solve::linearised::{Linearised, Whitened};
 use crate::solve::rounds::{Noise, Rounds};
-use crate::solve::weak_estimate::WeakEstimate;
+use crate::solve::weak_estimate::{Convergence, WeakEstimate};
 use crate::thresholds::radius::{
     CANDIDATES, COMPARED, DENSE, OF_SHORT, PILOT_SAMPLES, ROOM, SHORTEST, TRIED,
 };
@@ -185,7 +185,7 @@ pub(crate) fn estimate(
         let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS);
         let weak = moved.and_then(|moved| rounds.finish(variance, moved));
         if let Some(weak) = weak.filter(|weak| weak.possible(variance)) {
-            if weak.still() {
+            if weak.convergence() == Convergence::Still {
                 return Ok(weak);
             }
             // mere noise comes to rest on a motion, if there is one; torques may not let it
@@ -230,7 +230,7 @@ pub(crate) fn descended(
         let moved = rounds.descend(variance, noise).filter(|&moved| moved <= RESTLESS);
         let weak = moved.and_then(|moved| rounds.finish(variance, moved));
         if let Some(weak) = weak.filter(|weak| weak.possible(variance)) {
-            if weak.still() {
+            if weak.convergence() == Convergence::Still {
                 return Ok(weak);
             }
             if best.as_ref().is_none_or(|b| weak.moved < b.moved) {

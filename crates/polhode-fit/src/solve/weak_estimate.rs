@@ -16,6 +16,17 @@ use crate::solve::rows::rows;
 use crate::solve::stacked::Stacked;
 use crate::thresholds::noise::SURE;
 
+/// How near rounds ended to a fixed point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Convergence {
+    /// They stood still there.
+    Still,
+    /// A further round would move the tensor by a part of its standard deviation.
+    Near,
+    /// They went on, and there is no answer.
+    None,
+}
+
 /// What explains a record in the unit that it was read in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Explanation {
@@ -103,14 +114,18 @@ impl WeakEstimate {
         self.at.x
     }
 
-    /// Whether the rounds ended near enough to a fixed point.
-    pub(crate) fn settled(&self) -> bool {
-        self.moved <= RESTLESS
+    /// How near the rounds ended to a fixed point.
+    pub(crate) fn convergence(&self) -> Convergence {
+        match self.moved {
+            moved if moved <= STILL => Convergence::Still,
+            moved if moved <= RESTLESS => Convergence::Near,
+            _ => Convergence::None,
+        }
     }
 
-    /// Whether they stood still there.
-    pub(crate) fn still(&self) -> bool {
-        self.moved <= STILL
+    /// Whether that is near enough for an answer.
+    pub(crate) fn has_settled(&self) -> bool {
+        self.convergence() != Convergence::None
     }
 
     /// Whether a body may have this tensor, or one near it: J = n nᵀ solves the equations of any spin about n, with
@@ -133,7 +148,7 @@ impl WeakEstimate {
     pub(crate) fn explanation(&self, variance: f64) -> Explanation {
         if self.has_torque_noise() {
             Explanation::TorqueNoise
-        } else if !self.settled() {
+        } else if !self.has_settled() {
             Explanation::Nothing
         } else if self.misfit(variance) > TORQUES {
             Explanation::Torques

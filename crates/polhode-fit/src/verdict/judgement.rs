@@ -89,7 +89,7 @@ impl Case<'_> {
         let enlarged = variance * misfit.max(1.0);
         let singular = || FitError::Solver(SolverFailure::Covariance);
         let identifiability = identify(weak, stretches, enlarged).ok_or_else(singular)?;
-        let is_open = !weak.settled() || !identifiability.complete();
+        let is_open = !weak.has_settled() || !identifiability.complete();
         let filling = prior.as_ref().filter(|_| is_open && !self.is_sized);
         let filled =
             filling.and_then(|prior| completed(stretches, weak, &prior.shape_root(), prior.x, variance));
@@ -100,7 +100,7 @@ impl Case<'_> {
                 Identifiability::new(&filled.alone, &scatter_of(stretches), &tensor(&filled.weak.x()));
             return Ok(Verdict::Completed(Supported { identifiability, prior, better }, filled));
         }
-        if hidden || (!weak.settled() && misfit > weak.expected_misfit()) {
+        if hidden || (!weak.has_settled() && misfit > weak.expected_misfit()) {
             return Ok(Verdict::Unsettled { factor });
         }
         let names = untold(weak, stretches, enlarged, &identifiability);
