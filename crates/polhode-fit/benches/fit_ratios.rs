@@ -22,8 +22,8 @@ const ROWS: [(&str, u32, f64, f64); 3] = [
 fn record(samples: u32, drag: f64) -> Option<Record> {
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).ok()?;
     let times: Vec<f64> = (0..samples).map(|i| f64::from(i) / 100.0).collect();
-    let disturbances = Disturbances { relative_drag: drag, ..Disturbances::default() };
-    let gyroscope = Gyroscope { noise: 1e-2, ..Gyroscope::default() };
+    let disturbances = Disturbances::default().with_relative_drag(drag);
+    let gyroscope = Gyroscope::default().with_noise(1e-2);
     let start = Vector3::new(0.3, 0.8, 0.5);
     let rates = simulate_with(&body, start, &times, &disturbances, &gyroscope, &mut Random::new(1)).ok()?;
     Record::from_samples(&times, &rates).ok()

@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let record = Record::from_samples(&times, &rates)?;
     // free motion gives the tensor up to a factor; one known number gives it in kg m²
-    let settings = Settings { known: Some(Known::Trace(5.6)), ..Settings::default() };
+    let settings = Settings::default().with_known(Known::Trace(5.6));
     let estimate = fit(&record, &settings)?;
     println!("share of the trace  standard deviation");
     for (moment, sigma) in estimate.principal.iter().zip(&estimate.sigma_principal) {

@@ -3,12 +3,12 @@
 use polhode::units::RateUnit;
 use thiserror::Error;
 
-use super::physical::constraint::Constraint;
-use super::physical::failure::SolverFailure;
-use super::report::averages::AverageAxis;
-use super::report::identifiability::Identifiability;
-use super::weak::mistaken_units::{MistakenUnit, alternatives};
-use super::weak::test_functions::TESTS_PER_RADIUS;
+use crate::physical::constraint::Constraint;
+use crate::physical::failure::SolverFailure;
+use crate::report::averages::AverageAxis;
+use crate::report::identifiability::Identifiability;
+use crate::thresholds::test_functions::TESTS_PER_RADIUS;
+use crate::verdict::mistaken_unit::{MistakenUnit, alternatives};
 
 /// Two constraints that no physically valid tensor meets together.
 #[non_exhaustive]

@@ -1,34 +1,34 @@
 //! The estimator: from a record to a physical tensor.
 
-use nalgebra::{Matrix3, Vector3};
-use polhode::record::Record;
-use polhode::record::Spike;
+use crate::thresholds::noise::{LEAST, MOST};
+use crate::thresholds::walk::STEPS;
+use crate::verdict::judgement::{Case, Supported, Verdict};
+use crate::verdict::prior::{check_agreement, with_prior};
+use nalgebra::Vector3;
+use polhode::record::{Record, Spike};
 
-use super::error::FitError;
-use super::physical::constraint::ActiveConstraint;
-use super::physical::coordinates::{Coordinates, ENTRIES, Form, tensor};
-use super::physical::failure::SolverFailure;
-use super::physical::nearest::{Normal, nearest};
-use super::physical::prior::{Prior, Told};
-use super::report::averages;
-use super::report::columns::{dissipation, is_drag, is_torque, named};
-use super::report::estimate::Estimate;
-use super::report::facts::Facts;
-use super::report::identifiability::Identifiability;
-use super::report::nuisance::Agreement;
-use super::report::torque_free::trends;
-use super::settings::{Settings, TorqueModel, TorqueNoise, TorqueScope};
-use super::weak::completed::completed;
-use super::weak::joint::Joint;
-use super::weak::ladder::{Demand, climb};
-use super::weak::mistaken_units::{Better, better_unit, suspicious};
-use super::weak::model::{Column, Kind, STEPS, sensor_columns, walk_columns};
-use super::weak::noise;
-use super::weak::normalised::{Normalised, normalised};
-use super::weak::radius::Failure;
-use super::weak::rounds::{Noise, ROUNDS};
-use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
-use super::weak::weak_estimate::WeakEstimate;
+use crate::columns::column::Column;
+use crate::columns::dissipation::dissipation;
+use crate::columns::effect::Class;
+use crate::columns::input::Input;
+use crate::columns::sets::{sensor_columns, walk_columns};
+use crate::error::FitError;
+use crate::physical::failure::SolverFailure;
+use crate::physical::nearest::nearest;
+use crate::report::estimate::Estimate;
+use crate::report::facts::Facts;
+use crate::report::nuisance::Agreement;
+use crate::settings::Settings;
+use crate::settings::torque::{TorqueNoise, TorqueScope};
+use crate::signal::noise;
+use crate::signal::normalised::{Normalised, normalised};
+use crate::signal::stretch::Stretch;
+use crate::solve::joint::Joint;
+use crate::solve::ladder::{Demand, Halt, climb};
+use crate::solve::other_units::Better;
+use crate::solve::radius::Failure;
+use crate::solve::rounds::Noise;
+use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 
 /// Fits one tensor to all segments of a record.
 ///
@@ -74,18 +74,8 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         return Err(FitError::TwoScales);
     }
     let variance = read_variance(settings, record, &stretches, rms)?;
-    let singular = || FitError::Solver(SolverFailure::Covariance);
-    let mut columns = sensor_columns(&settings.sensor, rms);
-    columns.extend(input.map(|_| Column::new(Kind::Input, None)));
-    if let Some(walk) = settings.offset_walk {
-        // per √(unit of time), which is one over the unit of rate
-        columns.extend(walk_columns(&stretches, walk / rms / rms.sqrt(), STEPS));
-    }
-    let long = |s: &&Stretch| s.times.len() >= 2 * SAMPLES_PER_TEST as usize;
-    let alone: Vec<usize> = match settings.torque_scope {
-        TorqueScope::Segment => stretches.iter().filter(long).map(|s| s.index).collect(),
-        TorqueScope::Record => Vec::new(),
-    };
+    let columns = columns_of(settings, &stretches, rms, input);
+    let alone = alone(settings, &stretches);
     let demand = Demand {
         radius: settings.radius.map(|r| r * rms),
         torque: settings.torque,
@@ -94,55 +84,32 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         alone: &alone,
         units: settings.check_units && input.is_none(),
     };
-    let mut chosen = climb(&stretches, demand, variance).map_err(|failure| match failure {
-        Failure::Dense => settings.radius.map_or_else(singular, |radius| FitError::Dense { radius }),
-        Failure::TooShort => too_short(record, settings, &stretches, rms),
-        Failure::Singular => singular(),
-        Failure::Units(misfit, better) => mistaken(misfit, &better),
+    let mut chosen = climb(&stretches, demand, variance).map_err(|halt| match halt {
+        Halt::Failure(failure) => without_estimate(failure, record, settings, &stretches, rms),
+        Halt::Units(misfit, better) => mistaken(misfit, &better),
     })?;
-    let weak = &chosen.weak;
-    let misfit = weak.misfit(variance);
-    // torque noise may hide a mistaken unit, which must then explain the record without any
-    let noisy = weak.levels().iter().any(|levels| levels.torque > 0.0);
-    let doubtful = misfit > 4.0 || noisy || !weak.settled();
-    let better = chosen.better.clone().filter(|_| doubtful).or_else(|| {
-        let asks = demand.units && suspicious(weak, variance);
-        asks.then(|| better_unit(&stretches, Some(weak), variance)).flatten()
-    });
-    // a unit of any size must not convince: there is a tensor next to the sphere for any small wobble in large enough a unit
-    if let Some(better) = better.as_ref().filter(|b| b.credible && !b.vague) {
-        return Err(mistaken(misfit, better));
-    }
-    // torque noise that explains what a unit would explain without any explains nothing
-    let hidden = noisy && better.as_ref().is_some_and(|b| b.vague && b.far);
-    let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
-    // what the noise does not explain enlarges the deviations
-    let mut identifiability = identify(weak, &stretches, variance * misfit.max(1.0)).ok_or_else(singular)?;
-    let open = !weak.settled() || !identifiability.complete();
-    let filled = prior.as_ref().filter(|_| open && input.is_none()).and_then(|prior| {
-        let filled = completed(&stretches, weak, &prior.shape_root(), prior.x, variance)?;
-        identifiability =
-            Identifiability::new(&filled.alone, &scatter_of(&stretches), &tensor(&filled.weak.x()));
-        Some(filled)
-    });
-    let agreed = filled.as_ref().map(|filled| Agreement { chi2: filled.chi2, dof: 5 });
-    let is_filled = filled.is_some();
-    if let Some(filled) = filled {
-        chosen.weak = filled.weak;
-    } else if hidden || (!weak.settled() && misfit > weak.expected_misfit()) {
-        return Err(unsettled(settings, &stretches, misfit, variance, rms, better.map(|b| b.factor)));
-    } else {
-        told_by(weak, settings, &stretches, variance * misfit.max(1.0), &identifiability)?;
-    }
+    let case = Case { stretches: &stretches, settings, variance, rms, is_sized: input.is_some() };
+    let (supported, completed) = match case.judge(&chosen)? {
+        Verdict::MistakenUnit(better) => return Err(mistaken(chosen.weak.misfit(variance), &better)),
+        Verdict::Unsettled { factor } => return Err(case.unsettled(&chosen.weak, factor)),
+        Verdict::UntoldTorque { names, rank } => return Err(FitError::Untold { names, rank }),
+        Verdict::Undetermined(what) => return Err(FitError::Unidentifiable(Box::new(what))),
+        Verdict::Completed(supported, by) => {
+            chosen.weak = by.weak;
+            (supported, Some(Agreement { chi2: by.chi2, dof: 5 }))
+        }
+        Verdict::Determined(supported) => (supported, None),
+    };
+    let Supported { identifiability, prior, better } = supported;
     let weak = &chosen.weak;
     let misfit = weak.misfit(variance);
     let information = || FitError::Solver(SolverFailure::Information);
-    let kept = |column: &Column| is_drag(column) || column.kind == Kind::Input;
+    let kept = |column: &Column| matches!(column.class(), Class::Drag | Class::Input);
     let joint = Joint::new(weak, kept, (variance * misfit.max(1.0)).sqrt()).ok_or_else(information)?;
     let dissipation = dissipation(&weak.columns, &joint.kept);
     let (told, agreed) = match &prior {
-        Some(prior) if !is_filled => with_prior(&joint, weak, prior, input)?,
-        _ => (joint.told.clone(), agreed),
+        Some(prior) if completed.is_none() => with_prior(&joint, weak, prior, input)?,
+        _ => (joint.told.clone(), completed),
     };
     if let Some((prior, agreed)) = prior.as_ref().zip(agreed) {
         check_agreement(prior, agreed, weak)?;
@@ -163,7 +130,43 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         prior: agreed,
         dissipation: &dissipation,
     };
-    facts.report(answer, identifiability, better.as_ref().filter(|b| b.credible))
+    facts.report(answer, identifiability, better.as_ref())
+}
+
+/// The columns that every model of the torque has beside its own.
+fn columns_of(settings: &Settings, stretches: &[Stretch], rms: f64, input: Option<f64>) -> Vec<Column> {
+    let mut columns = sensor_columns(&settings.sensor, rms);
+    columns.extend(input.map(|_| Column::new(Input, None)));
+    if let Some(walk) = settings.offset_walk {
+        // per √(unit of time), which is one over the unit of rate
+        columns.extend(walk_columns(stretches, walk / rms / rms.sqrt(), STEPS));
+    }
+    columns
+}
+
+/// The stretches that have torques of their own.
+fn alone(settings: &Settings, stretches: &[Stretch]) -> Vec<usize> {
+    let long = |s: &&Stretch| s.times.len() >= 2 * SAMPLES_PER_TEST as usize;
+    match settings.torque_scope {
+        TorqueScope::Segment => stretches.iter().filter(long).map(|s| s.index).collect(),
+        TorqueScope::Record => Vec::new(),
+    }
+}
+
+/// Why there is no weak estimate, in the words of the record.
+fn without_estimate(
+    failure: Failure,
+    record: &Record,
+    settings: &Settings,
+    stretches: &[Stretch],
+    rms: f64,
+) -> FitError {
+    let singular = FitError::Solver(SolverFailure::Covariance);
+    match failure {
+        Failure::Dense => settings.radius.map_or(singular, |radius| FitError::Dense { radius }),
+        Failure::TooShort => too_short(record, settings, stretches, rms),
+        Failure::Singular => singular,
+    }
 }
 
 /// Variance of the noise of a component of the rates, in units of the mean square rate.
@@ -187,9 +190,9 @@ pub(super) fn read_variance(
         None => variance.max(given),
     };
     // readings of a noiseless record carry at least the quadrature's error
-    let variance = variance.max(1e-20);
+    let variance = variance.max(LEAST);
     // the mean square is 1, of which the noise of three components is 3 σ²: a quarter is too much to fit
-    if 3.0 * variance > 0.25 {
+    if 3.0 * variance > MOST {
         return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
     }
     Ok(variance)
@@ -201,86 +204,6 @@ pub(super) fn noise_of(settings: &Settings, rms: f64, variance: f64) -> Noise {
         TorqueNoise::None => Noise::White,
         TorqueNoise::Given(density) => Noise::Given(density / (rms * rms * rms) / variance),
         TorqueNoise::Fitted => Noise::Fitted,
-    }
-}
-
-/// Chance of a distance between prior and record by which they exclude each other: χ² of 5 and of 6 degrees of freedom.
-const EXCLUDED: [f64; 2] = [35.888_186_879_672_87, 38.258_336_377_209_69]; // one in a million
-
-/// Standard deviations of a prior by which it may lie outside limits and law.
-const OUTSIDE: f64 = 6.0;
-
-/// A prior that limits and law allow.
-fn consistent(prior: &Prior, settings: &Settings) -> Result<Told, FitError> {
-    let prior = prior.told()?;
-    let alone = nearest(&prior.shape(), &settings.limits, &[])?;
-    let pulls = |c: &&ActiveConstraint| c.multiplier;
-    if let Some(active) = alone.active.iter().max_by(|a, b| pulls(a).total_cmp(&pulls(b)))
-        && alone.pull > OUTSIDE
-    {
-        return Err(FitError::PriorOutside { constraint: active.constraint, pull: alone.pull });
-    }
-    Ok(prior)
-}
-
-/// What the record tells, joined with the prior, and how they agree.
-fn with_prior(
-    joint: &Joint,
-    weak: &WeakEstimate,
-    prior: &Told,
-    input: Option<f64>,
-) -> Result<(Normal, Option<Agreement>), FitError> {
-    let place = joint.kept.iter().position(|&k| weak.columns[k].kind == Kind::Input);
-    let joined = prior.join(&joint.told, place.zip(input));
-    let (told, chi2, dof) = joined.ok_or(FitError::Solver(SolverFailure::Information))?;
-    Ok((told, Some(Agreement { chi2, dof })))
-}
-
-/// Refuses a prior and a record that exclude each other.
-fn check_agreement(
-    prior: &Told,
-    Agreement { chi2, dof }: Agreement,
-    weak: &WeakEstimate,
-) -> Result<(), FitError> {
-    if chi2 <= EXCLUDED[dof.clamp(5, 6) - 5] {
-        return Ok(());
-    }
-    let six = |x: &Coordinates| ENTRIES.map(|entry| tensor(x)[entry]);
-    Err(FitError::PriorContradicted { prior: six(&prior.x), record: six(&weak.x()), chi2, dof })
-}
-
-/// The rates are not constant, and still no tensor explains them.
-fn unsettled(
-    settings: &Settings,
-    stretches: &[Stretch],
-    misfit: f64,
-    variance: f64,
-    rms: f64,
-    factor: Option<f64>,
-) -> FitError {
-    let axes = averages::axes(stretches, variance);
-    let (fall, _) = trends(stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0));
-    let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
-        .then_some(-fall.rate * rms);
-    FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall }
-}
-
-/// Refuses a record that leaves the tensor open, or the torques that were asked for.
-fn told_by(
-    weak: &WeakEstimate,
-    settings: &Settings,
-    stretches: &[Stretch],
-    variance: f64,
-    identifiability: &Identifiability,
-) -> Result<(), FitError> {
-    let names = untold(weak, stretches, variance, identifiability);
-    // of a torque that was not asked for the message could ask for nothing simpler
-    if settings.torque != TorqueModel::Auto && !names.is_empty() {
-        return Err(FitError::Untold { names, rank: identifiability.rank });
-    }
-    match identifiability.complete() {
-        true => Ok(()),
-        false => Err(FitError::Unidentifiable(Box::new(identifiability.clone()))),
     }
 }
 
@@ -309,69 +232,4 @@ fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f
             needed: 2 * needed,
         },
     }
-}
-
-/// Standard deviation of a coefficient of torque, in units of the rate, beyond which the record says nothing of it.
-const UNTOLD: f64 = 1.0;
-
-/// Coefficients of torque that the record cannot tell: from the tensor, which it would determine without them, or at all.
-fn untold(
-    weak: &WeakEstimate,
-    stretches: &[Stretch],
-    variance: f64,
-    identifiability: &Identifiability,
-) -> Vec<&'static str> {
-    let Some(stacked) = &weak.stacked else { return Vec::new() };
-    let torques: Vec<usize> = (0..weak.columns.len()).filter(|&k| is_torque(&weak.columns[k])).collect();
-    if torques.is_empty() {
-        return Vec::new();
-    }
-    let mut names = Vec::new();
-    let mut name = |k: usize| {
-        let name = named(weak.columns[k].kind).0;
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    };
-    if identifiability.complete() {
-        let Some(factor) = stacked.joint_factor() else { return Vec::new() };
-        let fitted = |k: usize| {
-            weak.columns[k].segment.is_none_or(|s| weak.parts.iter().any(|part| part.stretch == s))
-        };
-        let vague = |k: usize| factor.row(k).norm() * variance.sqrt() > UNTOLD;
-        torques.iter().copied().filter(|&k| fitted(k) && vague(k)).for_each(&mut name);
-        return names;
-    }
-    let without = weak.without(&torques, variance.sqrt());
-    let known = without.and_then(|root| identify_by(&root, weak, stretches, variance));
-    if known.is_some_and(|known| known.complete()) {
-        torques.into_iter().for_each(&mut name);
-    }
-    names
-}
-
-fn identify_by(
-    root: &Form,
-    weak: &WeakEstimate,
-    stretches: &[Stretch],
-    variance: f64,
-) -> Option<Identifiability> {
-    let svd = (root / variance.sqrt()).svd(false, true);
-    let directions = svd.v_t?.transpose();
-    Some(Identifiability::new(&(svd.singular_values, directions), &scatter_of(stretches), &tensor(&weak.x())))
-}
-
-fn scatter_of(stretches: &[Stretch]) -> Matrix3<f64> {
-    let (mut scatter, mut count) = (Matrix3::zeros(), 0.0);
-    for w in stretches.iter().flat_map(|s| &s.rates) {
-        scatter += w * w.transpose();
-        count += 1.0;
-    }
-    scatter / count
-}
-
-fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
-    let (singular, directions) = weak.spectrum()?;
-    let spectrum = (singular / variance.sqrt(), directions);
-    Some(Identifiability::new(&spectrum, &scatter_of(stretches), &tensor(&weak.x())))
 }

@@ -16,7 +16,7 @@
 //! let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
 //!
 //! let record = Record::from_samples(&times, &rates)?;
-//! let settings = Settings { known: Some(Known::Trace(5.6)), ..Settings::default() };
+//! let settings = Settings::default().with_known(Known::Trace(5.6));
 //! let estimate = fit(&record, &settings)?;
 //! for (k, truth) in [1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6].into_iter().enumerate() {
 //!     assert!((estimate.principal[k] - truth).abs() < 5.0 * estimate.sigma_principal[k]);
@@ -33,23 +33,28 @@
 //! The tensor comes from rounds of linear least squares with one small semidefinite program at their end, which is solved
 //! by outer approximation; it is not refined by maximum likelihood.
 
-mod banded;
-mod cramer_rao;
+mod bound;
+mod columns;
 mod error;
 mod estimator;
 mod flights;
 mod physical;
-mod quadrature;
 mod report;
+mod setters;
 mod settings;
+mod signal;
 mod simulate;
-mod weak;
+mod solve;
+mod thresholds;
+mod verdict;
 mod wheel;
 
-pub use cramer_rao::{foreseen_bound, foreseen_bound_with};
+pub use bound::motions::foreseen_bound;
+pub use bound::planned::foreseen_bound_with;
 pub use error::{Clash, FitError};
 pub use estimator::fit;
-pub use flights::{Flight, FlightLimit, Flights, during, flights};
+pub use flights::flight::{Flight, FlightLimit};
+pub use flights::{Flights, during, flights};
 pub use physical::certificate::Certificate;
 pub use physical::constraint::{ActiveConstraint, Constraint};
 pub use physical::failure::SolverFailure;
@@ -62,16 +67,25 @@ pub use report::estimate::{Estimate, Residuals};
 pub use report::identifiability::{Identifiability, PrincipalAxis, Undetermined};
 pub use report::motion::FittedMotion;
 pub use report::nuisance::{Agreement, Nuisance, SegmentSummary, Systematic, Torque};
-pub use report::scale::Known;
 pub use report::torque_free::{InvariantTrend, Whiteness};
 pub use report::warning::Warning;
-pub use settings::{SensorPriors, Settings, TorqueModel, TorqueNoise, TorqueScope};
+pub use settings::Settings;
+pub use settings::known::Known;
+pub use settings::sensor::SensorPriors;
+pub use settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
 pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_with};
-pub use weak::mistaken_units::MistakenUnit;
+pub use verdict::mistaken_unit::MistakenUnit;
 pub use wheel::{WheelCalibration, calibrate_wheel};
 
-/// A chapter for those who measure.
+/// Chapters for those who measure.
 pub mod guide {
+    #[doc = include_str!("../thresholds.md")]
+    pub mod thresholds {}
+
     #[doc = include_str!("../records.md")]
     pub mod records {}
 }
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

@@ -3,17 +3,20 @@
 use polhode::inertia::Inertia;
 use polhode::record::{Record, Segment};
 
-use super::error::FitError;
-use super::estimator::{noise_of, read_variance};
-use super::physical::coordinates::coordinates;
-use super::physical::failure::SolverFailure;
-use super::report::columns::{named, unit};
-use super::report::nuisance::Nuisance;
-use super::settings::{Settings, TorqueModel};
-use super::weak::held::held;
-use super::weak::ladder::columns_of;
-use super::weak::model::{Column, Kind, STEPS, sensor_columns, walk_columns};
-use super::weak::normalised::{Normalised, normalised};
+use crate::columns::column::Column;
+use crate::columns::effect::Class;
+use crate::columns::input::Input;
+use crate::columns::sets::{sensor_columns, torque_columns, walk_columns};
+use crate::error::FitError;
+use crate::estimator::{noise_of, read_variance};
+use crate::physical::coordinates::coordinates;
+use crate::physical::failure::SolverFailure;
+use crate::report::nuisance::Nuisance;
+use crate::settings::Settings;
+use crate::settings::torque::TorqueModel;
+use crate::signal::normalised::{Normalised, normalised};
+use crate::solve::held::held;
+use crate::thresholds::walk::STEPS;
 
 /// The moment of inertia of a wheel about its axis, and what it was found from.
 #[non_exhaustive]
@@ -54,8 +57,8 @@ pub struct WheelCalibration {
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
 /// // a wheel of 0.01 kg m² about z, at 30 rad/s
-/// let wheel = Disturbances { wheel: Vector3::z() * 0.3, ..Disturbances::default() };
-/// let gyroscope = Gyroscope { noise: 1e-3, ..Gyroscope::default() };
+/// let wheel = Disturbances::default().with_wheel(Vector3::z() * 0.3);
+/// let gyroscope = Gyroscope::default().with_noise(1e-3);
 /// let omega = Vector3::new(0.3, 1.0, 0.4);
 /// let rates = simulate_with(&body, omega, &times, &wheel, &gyroscope, &mut Random::new(1))?;
 ///
@@ -84,9 +87,9 @@ pub fn calibrate_wheel(
     let scale = input.filter(|_| rest.segments.iter().all(|s| s.wheel().is_some()));
     let scale = scale.ok_or(FitError::NoWheelSpeed)?;
     let variance = read_variance(settings, &rest, &stretches, rms)?;
-    let mut columns = vec![Column::new(Kind::Input, None)];
+    let mut columns = vec![Column::new(Input, None)];
     if settings.torque != TorqueModel::Auto {
-        columns.extend(columns_of(settings.torque));
+        columns.extend(torque_columns(settings.torque));
     }
     columns.extend(sensor_columns(&settings.sensor, rms));
     columns.extend(
@@ -103,13 +106,13 @@ pub fn calibrate_wheel(
         .ok_or(FitError::Solver(SolverFailure::Covariance))?;
     let deviation = found.misfit.max(1.0).sqrt();
     let per_unit = trace / scale;
-    let listed = (1..columns.len()).filter(|&k| !matches!(columns[k].kind, Kind::Walk { .. }));
+    let listed = (1..columns.len()).filter(|&k| columns[k].class() != Class::Step);
     let nuisances = listed.map(|k| {
-        let kind = columns[k].kind;
-        let ((name, unit_name, _), unit) = (named(kind), unit(kind, rms));
+        let label = columns[k].label();
+        let unit = label.factor(rms);
         Nuisance {
-            name,
-            unit: unit_name,
+            name: label.name,
+            unit: label.unit,
             value: found.values[k] * unit,
             sigma: found.sigmas[k] * deviation * unit,
             prior: columns[k].prior.map(|prior| prior * unit),

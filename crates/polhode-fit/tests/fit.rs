@@ -199,7 +199,7 @@ fn where_no_free_motion_explains_the_samples_there_is_no_bound() {
     let speed = times.iter().map(|t| 1.0 + t / 320.0);
     let rates: Vec<_> = free.iter().zip(speed).map(|(w, s)| w * s + random.normal_vector() * 1e-3).collect();
     let known = Some(Known::TwiceEnergy(3.0));
-    let settings = Settings { known, ..Settings::default() };
+    let settings = Settings::default().with_known(known);
     let estimate = fit(&Record::from_samples(&times, &rates).unwrap(), &settings).unwrap();
     assert!(estimate.bound.is_none() && estimate.bound_ratio.is_none());
     let covariance = estimate.inertia_covariance.unwrap();
@@ -294,7 +294,7 @@ fn scale_from_what_is_known_besides() {
         Known::TwiceEnergy(omega.dot(&(body * omega))),
         Known::Moment { axis, value: body[(1, 1)] },
     ] {
-        let estimate = fit(&record, &Settings { known: Some(known), ..Settings::default() }).unwrap();
+        let estimate = fit(&record, &Settings::default().with_known(known)).unwrap();
         let e = entries(&(estimate.inertia.unwrap().tensor() - body));
         let c = estimate.inertia_covariance.unwrap();
         assert!(e.amax() < 0.02, "{known:?}: {e}");
@@ -315,7 +315,7 @@ fn a_scale_from_energy_or_momentum_scatters_as_it_claims() {
     let momentum = j * omega;
     let count = 40;
     for known in [Known::TwiceEnergy(omega.dot(&momentum)), Known::Momentum(momentum.norm())] {
-        let settings = Settings { known: Some(known), ..Settings::default() };
+        let settings = Settings::default().with_known(known);
         let (mut scatter, mut claim) = (SMatrix::<f64, 6, 1>::zeros(), SMatrix::<f64, 6, 1>::zeros());
         for seed in 0..count {
             let record = record(&j, omega, &times, 0.01, &mut Random::new(seed));
@@ -348,13 +348,13 @@ fn the_scale_knows_no_smallest_rate() {
             (Known::Momentum(momentum), Known::Momentum(momentum * factor)),
             (Known::TwiceEnergy(energy), Known::TwiceEnergy(energy * factor * factor)),
         ] {
-            let of = |record, known| fit(record, &Settings { known: Some(known), ..Settings::default() });
+            let of = |record, known| fit(record, &Settings::default().with_known(known));
             let (a, b) = (of(&record, here).unwrap(), of(&slow, there).unwrap());
             let (a, b) = (a.inertia_covariance.unwrap(), b.inertia_covariance.unwrap());
             assert!((b - a).amax() < 1e-8 * a.amax(), "{factor:e}, {there:?}: {b}");
             // a value that asks for a tensor no number can hold
             let known = Known::TwiceEnergy(energy);
-            match fit(&slow, &Settings { known: Some(known), ..Settings::default() }) {
+            match fit(&slow, &Settings::default().with_known(known)) {
                 Ok(e) => assert!(e.inertia_covariance.unwrap().iter().all(|v| v.is_finite()), "{factor:e}"),
                 Err(FitError::Setting { name: "the known quantity", .. }) => {}
                 Err(error) => panic!("{factor:e}: {error}"),

@@ -129,10 +129,10 @@ fn a_radius_without_room_is_refused() {
     let (_, times, rates) = example(1e-2);
     let record = Record::from_samples(&times, &rates).unwrap();
     for radius in [16.0, 0.05] {
-        let refused = fit(&record, &Settings { radius: Some(radius), ..Settings::default() });
+        let refused = fit(&record, &Settings::default().with_radius(radius));
         assert!(matches!(refused, Err(FitError::Radius { .. })), "{radius}");
     }
-    let given = fit(&record, &Settings { radius: Some(2.0), ..Settings::default() }).unwrap();
+    let given = fit(&record, &Settings::default().with_radius(2.0)).unwrap();
     assert!((given.radius - 2.0).abs() < 1e-12);
 }
 
@@ -148,7 +148,7 @@ fn tiny_and_huge_units_change_nothing_and_a_bad_noise_is_refused() {
     }
     let record = Record::from_samples(&times, &rates).unwrap();
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let settings = Settings { noise: Some(bad), ..Settings::default() };
+        let settings = Settings::default().with_noise(bad);
         assert!(matches!(fit(&record, &settings), Err(FitError::Setting { name: "the noise", .. })));
     }
 }
@@ -172,7 +172,7 @@ fn units_mistaken_by_57_are_named() {
         let record = record::read(&text(unit, factor), "toss.csv", Reading::default()).unwrap();
         let FitError::Units { mistakes, .. } = refusal(&record) else { panic!("{hint}") };
         assert_eq!(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>(), [hint]);
-        let unchecked = Settings { check_units: false, ..Settings::default() };
+        let unchecked = Settings::default().with_check_units(false);
         if let Ok(estimate) = fit(&record, &unchecked) {
             assert!(!estimate.warnings.is_empty());
         }
@@ -243,8 +243,8 @@ fn mistaken_units_are_found_where_torques_would_explain_the_record() {
     let moments = [1.0, 2.0, 2.6].map(|moment| moment / 5.6);
     let body = Inertia::from_moments(moments).unwrap();
     let times: Vec<f64> = (0..3000).map(|i| f64::from(i) / 50.0).collect();
-    let drag = Disturbances { relative_drag: 1e-2, ..Disturbances::default() };
-    let sensor = Gyroscope { noise: 1e-2, ..Gyroscope::default() };
+    let drag = Disturbances::default().with_relative_drag(1e-2);
+    let sensor = Gyroscope::default().with_noise(1e-2);
     let mut random = Random::new(7);
     for (of_times, of_rates) in [(1.0, 180.0 / std::f64::consts::PI), (1e3, 1.0)].repeat(3) {
         let omega = random.normal_vector().normalize();
@@ -282,7 +282,7 @@ fn contradictory_limits_are_named() {
     let (_, times, rates) = example(1e-2);
     let record = Record::from_samples(&times, &rates).unwrap();
     let limit = |axis, at_least, at_most| Limit { axis, at_least, at_most };
-    let with = |limits| fit(&record, &Settings { limits, ..Settings::default() });
+    let with = |limits| fit(&record, &Settings::default().with_limits(limits));
     let clash = with(vec![
         limit(Vector3::x(), None, Some(0.3)),
         limit(Vector3::y(), Some(0.1), None),
@@ -398,7 +398,7 @@ fn limits_that_contradict_the_record_are_seen_in_the_misfit() {
     let record = Record::from_samples(&times, &rates).unwrap();
     let limited = |at_least, at_most| {
         let limits = vec![Limit { axis: Vector3::x(), at_least, at_most }];
-        fit(&record, &Settings { limits, ..Settings::default() }).unwrap()
+        fit(&record, &Settings::default().with_limits(limits)).unwrap()
     };
     let free = limited(Some(0.1), None);
     assert_eq!(free.pull, 0.0);
@@ -426,9 +426,9 @@ fn settings_out_of_range_are_refused_with_their_rule() {
     let record = Record::from_samples(&times, &rates).unwrap();
     let with = |settings| fit(&record, &settings).expect_err("must be refused").to_string();
     for noise in [1e-200, 1e-160, 1e200] {
-        let message = with(Settings { noise: Some(noise), ..Settings::default() });
+        let message = with(Settings::default().with_noise(noise));
         assert!(message.contains("whose square neither underflows nor overflows"), "{message}");
     }
-    let message = with(Settings { radius: Some(0.0401), ..Settings::default() });
+    let message = with(Settings::default().with_radius(0.0401));
     assert!(message.contains("nearly as many equations as there are samples"), "{message}");
 }

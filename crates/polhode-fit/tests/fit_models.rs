@@ -29,7 +29,7 @@ fn with_noise(rates: &[Vector3<f64>], sigma: f64, random: &mut Random) -> Vec<Ve
 fn quadratic_drag_is_fitted_at_its_bound() {
     let mut random = Random::new(91);
     let times = sampled(20, 30);
-    let settings = Settings { torque: TorqueModel::Quadratic, ..Settings::default() };
+    let settings = Settings::default().with_torque(TorqueModel::Quadratic);
     for (drag, sigma) in [(0.02, 1e-3), (0.1, 1e-2)] {
         let (mut over, mut squares, mut covered, count) = (0.0, 0.0, 0, 16);
         for _ in 0..count {
@@ -80,7 +80,7 @@ fn each_segment_may_have_a_torque_of_its_own() {
             record.segments.push(Segment::new("toss", times.clone(), noisy).unwrap());
         }
         let apart =
-            Settings { torque: TorqueModel::Drag, torque_scope: TorqueScope::Segment, ..Settings::default() };
+            Settings::default().with_torque(TorqueModel::Drag).with_torque_scope(TorqueScope::Segment);
         let e = fit(&record, &apart).unwrap();
         assert_eq!(e.torque.coefficients.len(), 4);
         for (k, c) in e.torque.coefficients.iter().enumerate() {
@@ -95,8 +95,7 @@ fn each_segment_may_have_a_torque_of_its_own() {
         over += distance(&error, &e.free_covariance) / f64::from(5 * count);
         covered += usize::from(distance(&error, &e.free_covariance) < REGION);
         if trial == 0 {
-            let shared =
-                fit(&record, &Settings { torque_scope: TorqueScope::Record, ..apart.clone() }).unwrap();
+            let shared = fit(&record, &apart.clone().with_torque_scope(TorqueScope::Record)).unwrap();
             assert_eq!(shared.torque.coefficients.len(), 1);
             // what one coefficient does not explain is taken for torque noise
             assert!(shared.per_segment.iter().any(|s| s.torque_noise > 0.0), "{:?}", shared.per_segment);
@@ -105,7 +104,7 @@ fn each_segment_may_have_a_torque_of_its_own() {
             let mut one = Record::default();
             one.segments.push(record.segments[2].clone());
             let alone = fit(&one, &apart).unwrap();
-            let joint = fit(&one, &Settings { torque_scope: TorqueScope::Record, ..apart }).unwrap();
+            let joint = fit(&one, &apart.with_torque_scope(TorqueScope::Record)).unwrap();
             assert!((alone.shape.tensor() - joint.shape.tensor()).amax() < 1e-12);
             assert!(
                 (alone.torque.coefficients[0].sigma / joint.torque.coefficients[0].sigma - 1.0).abs() < 1e-9
@@ -140,14 +139,14 @@ fn coverage(gyroscope: &Gyroscope, settings: &Settings, rate: usize, count: usiz
 #[test]
 fn steps_of_the_readings_count_as_noise() {
     let degree = core::f64::consts::PI / 180.0;
-    let stepped = Gyroscope { noise: 1e-3, quantum: degree, ..Gyroscope::default() };
-    for settings in [Settings::default(), Settings { quantum: Some(degree), ..Settings::default() }] {
+    let stepped = Gyroscope::default().with_noise(1e-3).with_quantum(degree);
+    for settings in [Settings::default(), Settings::default().with_quantum(degree)] {
         let (covered, over) = coverage(&stepped, &settings, 100, 16, 93);
         println!("steps of 1 deg/s: covered {covered:.3}, errors over deviations {over:.3}");
         assert!(covered > 0.8, "{covered}");
     }
     // beside a noise that hides them they change nothing
-    let hidden = Gyroscope { noise: 1e-2, quantum: 1e-3, ..Gyroscope::default() };
+    let hidden = Gyroscope::default().with_noise(1e-2).with_quantum(1e-3);
     let (covered, over) = coverage(&hidden, &Settings::default(), 20, 16, 94);
     println!(
         "steps of 1e-3 rad/s under noise of 1e-2: covered {covered:.3}, errors over deviations {over:.3}"
@@ -157,8 +156,8 @@ fn steps_of_the_readings_count_as_noise() {
 
 #[test]
 fn an_offset_that_walks_is_covered_by_its_prior() {
-    let walking = Gyroscope { noise: 1e-3, offset_walk: 1e-3, ..Gyroscope::default() };
-    let settings = Settings { offset_walk: Some(1e-3), ..Settings::default() };
+    let walking = Gyroscope::default().with_noise(1e-3).with_offset_walk(1e-3);
+    let settings = Settings::default().with_offset_walk(1e-3);
     let (covered, over) = coverage(&walking, &settings, 20, 16, 95);
     let (without, _) = coverage(&walking, &Settings::default(), 20, 16, 95);
     println!("walk: covered {covered:.3}, errors over deviations {over:.3}; without the model {without:.3}");
@@ -177,14 +176,14 @@ fn the_bound_of_a_plan_is_that_of_differences() {
     let same = foreseen_bound_with(&body, omega, &times, 1e-3, &Settings::default(), &[]).unwrap();
     assert!((plain - same).amax() < 1e-4 * plain.amax());
 
-    let sensor = SensorPriors { offset: Some(0.01), scale: Some(0.02), ..SensorPriors::default() };
+    let sensor = SensorPriors::default().with_offset(0.01).with_scale(0.02);
     for (model, coefficients) in [
         (TorqueModel::Drag, &[0.05][..]),
         (TorqueModel::Drag3, &[0.01, 0.02, 0.03]),
         (TorqueModel::Quadratic, &[0.04]),
         (TorqueModel::Constant, &[0.01, -0.02, 0.01]),
     ] {
-        let settings = Settings { torque: model, sensor, ..Settings::default() };
+        let settings = Settings::default().with_torque(model).with_sensor(sensor);
         let found = foreseen_bound_with(&body, omega, &times, 1e-3, &settings, coefficients).unwrap();
         let count = coefficients.len();
         let rates = |j: &Matrix3<f64>, others: &[f64], omega: Vector3<f64>| {
@@ -209,7 +208,7 @@ fn the_bound_of_a_plan_is_that_of_differences() {
         );
     }
     assert!(foreseen_bound_with(&body, omega, &times, 1e-3, &Settings::default(), &[0.1]).is_none());
-    let settings = Settings { prior: Some(Prior::relative(j, 1e-3)), ..Settings::default() };
+    let settings = Settings::default().with_prior(Prior::relative(j, 1e-3));
     let with = foreseen_bound_with(&body, omega, &times, 1e-3, &settings, &[]).unwrap();
     assert!(with.trace() < plain.trace());
 }
@@ -220,14 +219,14 @@ fn torques_that_a_record_cannot_tell_are_named() {
     let mut random = Random::new(97);
     let times = sampled(50, 4);
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
-    let quiet = Gyroscope { noise: 1e-3, ..Gyroscope::default() };
+    let quiet = Gyroscope::default().with_noise(1e-3);
     let mut refused = 0;
     for wobble in [0.3, 0.1, 0.05, 0.03] {
         let omega = Vector3::new(wobble, wobble, 1.0);
         let rates =
             simulate_with(&body, omega, &times, &Disturbances::default(), &quiet, &mut random).unwrap();
         let record = Record::from_samples(&times, &rates).unwrap();
-        let with = |torque| fit(&record, &Settings { torque, ..Settings::default() });
+        let with = |torque| fit(&record, &Settings::default().with_torque(torque));
         match with(TorqueModel::Drag6) {
             Err(error @ FitError::Untold { .. }) => {
                 let text = error.to_string();

@@ -46,7 +46,7 @@ fn bodies_from_a_prior_are_covered_by_the_joint_covariance() {
         let body = drawn(&model, share, &mut random);
         let record = record(&body, 1e-2, &mut random);
         let prior = Prior::relative(model, share);
-        let e = fit(&record, &Settings { prior: Some(prior), ..Settings::default() }).unwrap();
+        let e = fit(&record, &Settings::default().with_prior(prior)).unwrap();
         let alone = fit(&record, &Settings::default()).unwrap();
         of_shape += distance(&entries(&(e.shape.tensor() - body / body.trace())), &e.free_covariance) / 5.0;
         let error = entries(&(e.inertia.expect("a size").tensor() - body));
@@ -90,7 +90,7 @@ fn a_prior_fills_what_a_pure_spin_leaves_open() {
         let alone = fit(&record, &Settings::default()).unwrap_err();
         assert!(matches!(&alone, FitError::Unidentifiable(what) if what.rank == 2), "{alone}");
         let prior = Prior::relative(model, share);
-        let e = fit(&record, &Settings { prior: Some(prior), ..Settings::default() }).unwrap();
+        let e = fit(&record, &Settings::default().with_prior(prior)).unwrap();
         // the axis to the mean rate's 0.01/√400 over the difference of two moments, which is a third of the trace at most
         let told = e.identifiability.deviations;
         assert!(e.identifiability.rank == 2 && told[1] < 5e-4 && told[2] > 0.1, "{told:?}");
@@ -114,7 +114,7 @@ fn record_and_prior_join_as_two_normal_distributions() {
     let record = record(&body, 3e-3, &mut random);
     let alone = fit(&record, &Settings::default()).unwrap();
     let prior = Prior::relative(model, 2e-3).shape_only();
-    let e = fit(&record, &Settings { prior: Some(prior), ..Settings::default() }).unwrap();
+    let e = fit(&record, &Settings::default().with_prior(prior)).unwrap();
     assert!(e.inertia.is_none());
     // entries of the shape as a function of those of the tensor
     let shape = |t: &SMatrix<f64, 6, 1>| t / (t[0] + t[1] + t[2]);
@@ -164,7 +164,7 @@ fn a_wheel_and_a_prior_share_the_size() {
     // each entry to one part in a hundred: the trace to √Σ I_kk² of it
     let prior = Prior::relative(j * 1.01, 0.01);
     let of_prior = 0.0101 * j.diagonal().norm();
-    let joined = Settings { prior: Some(prior), ..Settings::default() };
+    let joined = Settings::default().with_prior(prior);
     let of_wheel = sigma(&alone);
     let expected = of_wheel * of_prior / (of_wheel * of_wheel + of_prior * of_prior).sqrt();
     println!("{} {} {expected}", trace(&joined), sigma(&joined));
@@ -179,7 +179,7 @@ fn contradictions_are_named_with_their_numbers() {
     let body = turned(MOMENTS, &random_rotation(&mut random));
     let record = record(&body, 1e-3, &mut random);
     let with = |prior: Prior, settings: Settings| {
-        let error = fit(&record, &Settings { prior: Some(prior), ..settings }).unwrap_err();
+        let error = fit(&record, &settings.with_prior(prior)).unwrap_err();
         println!("{error}");
         (error.to_string(), error)
     };
@@ -193,14 +193,13 @@ fn contradictions_are_named_with_their_numbers() {
     assert!(matches!(error, FitError::PriorOutside { .. }));
     assert!(text.contains("the law I1 + I2 >= I3"), "{text}");
     let limit = Limit { axis: Vector3::z(), at_least: None, at_most: Some(0.1) };
-    let (text, _) =
-        with(Prior::relative(body, 0.01), Settings { limits: vec![limit], ..Settings::default() });
+    let (text, _) = with(Prior::relative(body, 0.01), Settings::default().with_limits(vec![limit]));
     assert!(text.contains("limit 1: moment about (0, 0, 1) <= 0.1"), "{text}");
     let known = Some(Known::Trace(8.0));
-    let (text, _) = with(Prior::relative(body, 0.01), Settings { known, ..Settings::default() });
+    let (text, _) = with(Prior::relative(body, 0.01), Settings::default().with_known(known));
     assert!(text.contains("has the trace 5.6000e0 +- ") && text.contains("gives 8.0000e0"), "{text}");
     let known = Some(Known::Trace(5.62));
-    let settings = Settings { known, prior: Some(Prior::relative(body, 0.01)), ..Settings::default() };
+    let settings = Settings::default().with_known(known).with_prior(Prior::relative(body, 0.01));
     assert!((fit(&record, &settings).unwrap().inertia.unwrap().tensor().trace() - 5.62).abs() < 1e-12);
     let (text, _) = with(Prior::relative(body, 0.0), Settings::default());
     assert!(text.contains("smallest eigenvalue is 0.000e0"), "{text}");

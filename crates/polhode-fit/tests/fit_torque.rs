@@ -83,7 +83,7 @@ fn with_drag(count: usize, rate: usize, drag: f64, sigma: f64, model: TorqueMode
         let bound = bound(&j, omega, &[drag], &[None], sigma, &rates);
         let noisy: Vec<_> =
             rates(&j, &[drag], omega).iter().map(|w| w + random.normal_vector() * sigma).collect();
-        let settings = Settings { torque: model, ..Settings::default() };
+        let settings = Settings::default().with_torque(model);
         trials.add(fit(&Record::from_samples(&times, &noisy).unwrap(), &settings), &j, &bound);
     }
     trials
@@ -117,7 +117,7 @@ fn drag_takes_energy() {
             let omega = random.normal_vector().normalize();
             let noisy: Vec<_> =
                 free(&j, omega, &times).iter().map(|w| w + random.normal_vector() * 1e-3).collect();
-            let settings = Settings { torque: model, ..Settings::default() };
+            let settings = Settings::default().with_torque(model);
             let e = fit(&Record::from_samples(&times, &noisy).unwrap(), &settings).unwrap();
             let drags = e.active_constraints.iter().filter(|c| c.constraint.to_string().contains("drag"));
             let held = drags.count();
@@ -156,7 +156,7 @@ fn a_driven_body_contradicts_drag() {
     let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &random_rotation(&mut random));
     let driven = motion(&j, Vector3::new(0.3, 1.0, 0.4), &times, &|_, w| j * w * 0.02);
     let noisy: Vec<_> = driven.iter().map(|w| w + random.normal_vector() * 1e-3).collect();
-    let settings = Settings { torque: TorqueModel::Drag, ..Settings::default() };
+    let settings = Settings::default().with_torque(TorqueModel::Drag);
     let e = fit(&Record::from_samples(&times, &noisy).unwrap(), &settings).unwrap();
     assert_eq!(e.torque.coefficients[0].value, 0.0);
     assert!(e.pull > 20.0, "{}", e.pull);
@@ -171,8 +171,8 @@ fn a_driven_body_contradicts_drag() {
 fn torque_noise_does_not_bias_the_moments() {
     let mut random = Random::new(66);
     let times = sampled(50, 60);
-    let acting = Disturbances { torque_noise: 3e-3, ..Disturbances::default() };
-    let sensor = Gyroscope { noise: 1e-2, ..Gyroscope::default() };
+    let acting = Disturbances::default().with_torque_noise(3e-3);
+    let sensor = Gyroscope::default().with_noise(1e-2);
     let (mut deviates, mut of_shape, count) = (Vector3::zeros(), 0.0, 40);
     for _ in 0..count {
         let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &random_rotation(&mut random));
@@ -231,9 +231,9 @@ fn free(j: &Matrix3<f64>, omega: Vector3<f64>, times: &[f64]) -> Vec<Vector3<f64
 
 /// Offsets of 0.01 rad/s with a prior of 0.02, a scale of 2 %, and both with drag.
 fn sensors(count: usize, rate: usize, sigma: f64) -> [Trials; 3] {
-    let with = |sensor| Settings { sensor, ..Settings::default() };
-    let offset = SensorPriors { offset: Some(0.02), ..SensorPriors::default() };
-    let scale = SensorPriors { scale: Some(0.02), ..SensorPriors::default() };
+    let with = |sensor| Settings::default().with_sensor(sensor);
+    let offset = SensorPriors::default().with_offset(0.02);
+    let scale = SensorPriors::default().with_scale(0.02);
     let offsets = |rates: Vec<Vector3<f64>>, b: &[f64]| {
         rates.iter().map(|w| w + Vector3::new(b[0], b[1], b[2])).collect::<Vec<_>>()
     };
@@ -267,11 +267,7 @@ fn sensors(count: usize, rate: usize, sigma: f64) -> [Trials; 3] {
                 (0.02, Some(0.02)),
                 (1e-3, None),
             ],
-            settings: Settings {
-                sensor: SensorPriors { scale: Some(0.02), ..offset },
-                torque: TorqueModel::Drag,
-                ..Settings::default()
-            },
+            settings: Settings::default().with_sensor(offset.with_scale(0.02)).with_torque(TorqueModel::Drag),
         }
         .trials(count, rate, sigma, 23),
     ]
@@ -343,7 +339,7 @@ fn a_wheel_gives_the_absolute_tensor() {
         let covariance = e.inertia_covariance.unwrap();
         sum += error.dot(&covariance.cholesky().expect("six entries").solve(&error));
         assert!(e.warnings.is_empty(), "{:?}", e.warnings);
-        let twice = Settings { known: Some(Known::Trace(5.6)), ..Settings::default() };
+        let twice = Settings::default().with_known(Known::Trace(5.6));
         assert!(matches!(fit(&record, &twice), Err(FitError::TwoScales)));
     }
     // the mean of χ²₆/6 over 16 trials scatters by √(2/96) = 0.14

@@ -27,8 +27,7 @@ fn spun(
     let times = sampled(50, seconds);
     let axis = Vector3::new(0.6, 0.0, 0.8);
     // from 5 rad/s, 0.5 rad/s² more
-    let acting =
-        Disturbances { wheel: axis * (5.0 * WHEEL), wheel_rate: axis * (0.5 * WHEEL), ..acting.clone() };
+    let acting = acting.clone().with_wheel(axis * (5.0 * WHEEL)).with_wheel_rate(axis * (0.5 * WHEEL));
     let omega = random.normal_vector().normalize();
     let rates = simulate_with(body, omega, &times, &acting, gyroscope, random).unwrap();
     let speeds = times.iter().map(|t| axis * (5.0 + 0.5 * t)).collect();
@@ -42,14 +41,14 @@ fn spun(
 fn a_wheel_is_calibrated_to_its_deviation() {
     let mut random = Random::new(81);
     let free = Disturbances::default();
-    let drag = Disturbances { relative_drag: 0.02, ..Disturbances::default() };
-    let turbulent = Disturbances { torque_noise: 3e-3, ..Disturbances::default() };
-    let quiet = Gyroscope { noise: 1e-3, ..Gyroscope::default() };
-    let off = Gyroscope { offset: Vector3::new(0.01, -0.02, 0.01), ..quiet.clone() };
+    let drag = Disturbances::default().with_relative_drag(0.02);
+    let turbulent = Disturbances::default().with_torque_noise(3e-3);
+    let quiet = Gyroscope::default().with_noise(1e-3);
+    let off = quiet.clone().with_offset(Vector3::new(0.01, -0.02, 0.01));
     let plain = Settings::default();
-    let with_drag = Settings { torque: TorqueModel::Drag, ..Settings::default() };
-    let sensor = SensorPriors { offset: Some(0.02), ..SensorPriors::default() };
-    let with_offset = Settings { sensor, ..Settings::default() };
+    let with_drag = Settings::default().with_torque(TorqueModel::Drag);
+    let sensor = SensorPriors::default().with_offset(0.02);
+    let with_offset = Settings::default().with_sensor(sensor);
     for (name, acting, gyroscope, settings) in [
         ("free", &free, &quiet, &plain),
         ("drag", &drag, &quiet, &with_drag),
@@ -75,7 +74,7 @@ fn a_wheel_is_calibrated_to_its_deviation() {
 #[test]
 fn what_cannot_be_calibrated_is_refused() {
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
-    let quiet = Gyroscope { noise: 1e-3, ..Gyroscope::default() };
+    let quiet = Gyroscope::default().with_noise(1e-3);
     let record = spun(&body, &Disturbances::default(), &quiet, 10, &mut Random::new(82));
     let bare =
         |segment: &Segment| Segment::new("bare", segment.times().to_vec(), segment.rates().to_vec()).unwrap();

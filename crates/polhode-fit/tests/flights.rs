@@ -60,7 +60,7 @@ impl Recording {
             let read = match part {
                 Part::Thrown(_, omega) => {
                     all.throws.push((start, start + span));
-                    let air = Disturbances { relative_drag: drag, ..Disturbances::default() };
+                    let air = Disturbances::default().with_relative_drag(drag);
                     simulate_with(&body, *omega, &own, &air, gyroscope, &mut random).unwrap()
                 }
                 Part::Still(_) => own.iter().map(|_| random.normal_vector() * gyroscope.noise).collect(),
@@ -88,12 +88,12 @@ fn tosses(count: usize) -> Vec<Part> {
 }
 
 fn noise(sigma: f64) -> Gyroscope {
-    Gyroscope { noise: sigma, ..Gyroscope::default() }
+    Gyroscope::default().with_noise(sigma)
 }
 
 #[test]
 fn each_throw_of_a_recording_is_found_and_nothing_else() {
-    let spiky = Gyroscope { noise: 5e-3, spikes: 0.005, spike_size: 3.0, ..Gyroscope::default() };
+    let spiky = Gyroscope::default().with_noise(5e-3).with_spikes(0.005).with_spike_size(3.0);
     for (name, drag, gyroscope) in [
         ("quiet", 0.0, noise(1e-3)),
         ("noisy", 0.0, noise(3e-2)),
@@ -136,19 +136,15 @@ fn a_free_record_is_one_flight_and_stays_as_it_is() {
     let body = Inertia::from_moments(BODY).unwrap();
     let times: Vec<f64> = (0..3000).map(|i| f64::from(i) * STEP).collect();
     let none = Disturbances::default();
-    let spiky = Gyroscope { noise: 1e-2, spikes: 0.02, spike_size: 0.5, ..Gyroscope::default() };
-    let off = Gyroscope {
-        noise: 1e-2,
-        offset: Vector3::new(0.01, -0.01, 0.02),
-        scale: 0.02,
-        ..Gyroscope::default()
-    };
+    let spiky = Gyroscope::default().with_noise(1e-2).with_spikes(0.02).with_spike_size(0.5);
+    let off =
+        Gyroscope::default().with_noise(1e-2).with_offset(Vector3::new(0.01, -0.01, 0.02)).with_scale(0.02);
     let disturbed = [
         ("quiet", none.clone(), noise(1e-4)),
         ("drowned", none.clone(), noise(0.1)),
-        ("drag", Disturbances { relative_drag: 0.1, ..none.clone() }, noise(1e-3)),
-        ("torque", Disturbances { torque: Vector3::new(0.1, 0.0, 0.05), ..none.clone() }, noise(1e-3)),
-        ("torque noise", Disturbances { torque_noise: 0.02, ..none.clone() }, noise(1e-3)),
+        ("drag", none.clone().with_relative_drag(0.1), noise(1e-3)),
+        ("torque", none.clone().with_torque(Vector3::new(0.1, 0.0, 0.05)), noise(1e-3)),
+        ("torque noise", none.clone().with_torque_noise(0.02), noise(1e-3)),
         ("spikes", none.clone(), spiky),
         ("sensor", none.clone(), off),
     ];

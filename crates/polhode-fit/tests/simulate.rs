@@ -26,7 +26,7 @@ fn relative_drag_is_free_motion_on_a_clock_that_slows_down() {
     let omega = Vector3::new(3.0, -8.0, 6.0);
     for k in [1e-3, 0.2, 3.0] {
         let times: Vec<f64> = grid(10.0, 317).into_iter().map(|t| t - 0.4).collect();
-        let drag = Disturbances { relative_drag: k, ..Disturbances::default() };
+        let drag = Disturbances::default().with_relative_drag(k);
         let found = moved(&body, omega, &times, &drag);
         let clock: Vec<f64> = times.iter().map(|t| -libm::expm1(-k * t) / k).collect();
         let free = simulate(&body, omega, &clock, 0.0, &mut Random::new(1)).unwrap();
@@ -43,8 +43,8 @@ fn torque_and_viscous_drag_change_a_spin_as_they_must() {
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
     let times = grid(30.0, 50);
     let spin = Vector3::new(0.0, 0.0, 2.0);
-    let torque = Disturbances { torque: Vector3::new(0.0, 0.0, 0.3), ..Disturbances::default() };
-    let drag = Disturbances { drag: Vector3::new(0.1, 0.2, 0.3), ..Disturbances::default() };
+    let torque = Disturbances::default().with_torque(Vector3::new(0.0, 0.0, 0.3));
+    let drag = Disturbances::default().with_drag(Vector3::new(0.1, 0.2, 0.3));
     let (torque, drag) = (moved(&body, spin, &times, &torque), moved(&body, spin, &times, &drag));
     for (i, t) in times.iter().enumerate() {
         assert!((torque[i].z - (2.0 + 0.3 / 2.6 * t)).abs() < 1e-13);
@@ -55,7 +55,7 @@ fn torque_and_viscous_drag_change_a_spin_as_they_must() {
         &body,
         Vector3::zeros(),
         &times,
-        &Disturbances { torque: Vector3::new(0.5, 0.0, 0.0), ..Disturbances::default() },
+        &Disturbances::default().with_torque(Vector3::new(0.5, 0.0, 0.0)),
     );
     assert!((rest[50].x - 15.0).abs() < 1e-13, "{}", rest[50].x);
 }
@@ -64,7 +64,7 @@ fn torque_and_viscous_drag_change_a_spin_as_they_must() {
 #[test]
 fn a_wheel_on_the_axis_shifts_the_nutation() {
     let body = Inertia::from_moments([2.0, 2.0, 3.0]).unwrap();
-    let wheel = Disturbances { wheel: Vector3::new(0.0, 0.0, 1.5), ..Disturbances::default() };
+    let wheel = Disturbances::default().with_wheel(Vector3::new(0.0, 0.0, 1.5));
     let times = grid(40.0, 80);
     let found = moved(&body, Vector3::new(0.4, 0.0, 1.0), &times, &wheel);
     let rate = ((3.0 - 2.0) * 1.0 + 1.5) / 2.0;
@@ -73,7 +73,7 @@ fn a_wheel_on_the_axis_shifts_the_nutation() {
         assert!((w - expected).norm() < 1e-12, "{t}: {w} {expected}");
     }
     // a wheel that spins up takes its momentum from the body
-    let ramp = Disturbances { wheel_rate: Vector3::new(0.0, 0.0, 0.6), ..Disturbances::default() };
+    let ramp = Disturbances::default().with_wheel_rate(Vector3::new(0.0, 0.0, 0.6));
     let found = moved(&body, Vector3::new(0.0, 0.0, 1.0), &times, &ramp);
     for (t, w) in times.iter().zip(&found) {
         assert!((w.z - (1.0 - 0.2 * t)).abs() < 1e-13);
@@ -84,7 +84,7 @@ fn a_wheel_on_the_axis_shifts_the_nutation() {
 #[test]
 fn white_torque_makes_a_ball_walk() {
     let body = Inertia::from_moments([2.0; 3]).unwrap();
-    let by = Disturbances { torque_noise: 0.3, ..Disturbances::default() };
+    let by = Disturbances::default().with_torque_noise(0.3);
     let mut random = Random::new(8);
     let (mut half, mut whole, mut both) = (0.0, 0.0, 0.0);
     for _ in 0..1000 {
@@ -109,13 +109,12 @@ fn the_sensor_errs_as_it_is_told_to() {
     let times = grid(20.0, 4000);
     let none = Gyroscope::default();
     let exact = undisturbed(&body, omega, &times, &none);
-    let linear = Gyroscope {
-        offset: Vector3::new(0.1, -0.2, 0.3),
-        scale: 0.02,
-        axis_scales: Vector3::new(0.01, 0.0, -0.03),
-        misalignment: Vector3::new(0.01, 0.02, -0.03),
-        ..none.clone()
-    };
+    let linear = none
+        .clone()
+        .with_offset(Vector3::new(0.1, -0.2, 0.3))
+        .with_scale(0.02)
+        .with_axis_scales(Vector3::new(0.01, 0.0, -0.03))
+        .with_misalignment(Vector3::new(0.01, 0.02, -0.03));
     let lean = Matrix3::new(1.0, 0.01, 0.02, 0.01, 1.0, -0.03, 0.02, -0.03, 1.0);
     let scales = Matrix3::from_diagonal(&Vector3::new(1.01, 1.0, 0.97)) * 1.02;
     for (w, read) in exact.iter().zip(undisturbed(&body, omega, &times, &linear)) {
@@ -123,20 +122,20 @@ fn the_sensor_errs_as_it_is_told_to() {
     }
     // each axis is late by its own time
     let skew = Vector3::new(0.0, 0.004, -0.002);
-    let late = undisturbed(&body, omega, &times, &Gyroscope { skew, ..none.clone() });
+    let late = undisturbed(&body, omega, &times, &none.clone().with_skew(skew));
     for k in 0..3 {
         let shifted: Vec<f64> = times.iter().map(|t| t + skew[k]).collect();
         let shifted = undisturbed(&body, omega, &shifted, &none);
         assert!(late.iter().zip(&shifted).all(|(a, b)| a[k] == b[k]));
     }
     let quantum = 0.0625;
-    let stepped = undisturbed(&body, omega, &times, &Gyroscope { quantum, ..none.clone() });
+    let stepped = undisturbed(&body, omega, &times, &none.clone().with_quantum(quantum));
     for (w, read) in exact.iter().zip(&stepped) {
         assert!((w - read).amax() <= 0.5 * quantum && (read / quantum).iter().all(|x| x.fract() == 0.0));
     }
     // the noise does not depend on what else is wrong
-    let noisy = undisturbed(&body, omega, &times, &Gyroscope { noise: 0.1, ..none.clone() });
-    let both = Gyroscope { noise: 0.1, spikes: 0.02, spike_size: 50.0, ..none.clone() };
+    let noisy = undisturbed(&body, omega, &times, &none.clone().with_noise(0.1));
+    let both = none.clone().with_noise(0.1).with_spikes(0.02).with_spike_size(50.0);
     let spiked = undisturbed(&body, omega, &times, &both);
     let hit: Vec<Vector3<f64>> =
         noisy.iter().zip(&spiked).map(|(a, b)| b - a).filter(|d| d.norm() > 0.0).collect();
@@ -146,7 +145,7 @@ fn the_sensor_errs_as_it_is_told_to() {
     let variance = noise.iter().map(|n| n.norm_squared()).sum::<f64>() / (3.0 * noise.len() as f64);
     assert!((variance / 0.01 - 1.0).abs() < 4.0 * (2.0_f64 / 12_000.0).sqrt(), "{variance}");
     // increments of the walk
-    let walking = undisturbed(&body, omega, &times, &Gyroscope { offset_walk: 0.2, ..none.clone() });
+    let walking = undisturbed(&body, omega, &times, &none.clone().with_offset_walk(0.2));
     let walk: Vec<Vector3<f64>> = exact.iter().zip(&walking).map(|(a, b)| b - a).collect();
     let steps = walk.windows(2).map(|p| (p[1] - p[0]).norm_squared()).sum::<f64>() / 3.0;
     assert!(walk[0].norm() == 0.0 && (steps / (0.04 * 20.0) - 1.0).abs() < 0.15, "{steps}");
@@ -156,15 +155,14 @@ fn the_sensor_errs_as_it_is_told_to() {
 fn the_same_seed_gives_the_same_record_and_another_body_of_the_same_shape_the_same_rates() {
     let make = |mass: f64, seed: u64| {
         let body = Inertia::from_moments([1.0, 2.0, 2.6].map(|i| i * mass)).unwrap();
-        let by = Disturbances {
-            relative_drag: 0.1,
-            drag: Vector3::new(0.01, 0.0, 0.02) * mass,
-            torque: Vector3::new(0.0, 0.01, 0.0) * mass,
-            torque_noise: 0.01 * mass,
-            wheel: Vector3::new(0.0, 0.5, 0.0) * mass,
-            wheel_rate: Vector3::new(0.01, 0.0, 0.0) * mass,
-        };
-        let sensor = Gyroscope { noise: 0.01, ..Gyroscope::default() };
+        let by = Disturbances::default()
+            .with_relative_drag(0.1)
+            .with_drag(Vector3::new(0.01, 0.0, 0.02) * mass)
+            .with_torque(Vector3::new(0.0, 0.01, 0.0) * mass)
+            .with_torque_noise(0.01 * mass)
+            .with_wheel(Vector3::new(0.0, 0.5, 0.0) * mass)
+            .with_wheel_rate(Vector3::new(0.01, 0.0, 0.0) * mass);
+        let sensor = Gyroscope::default().with_noise(0.01);
         let start = Vector3::new(0.3, 1.0, 0.4);
         simulate_with(&body, start, &grid(10.0, 200), &by, &sensor, &mut Random::new(seed)).unwrap()
     };
@@ -183,15 +181,15 @@ fn what_cannot_be_simulated_is_refused_by_name() {
     let (free, good) = (Disturbances::default(), Gyroscope::default());
     assert!(refused(f64::NAN, 1.0, &free, &good).contains("NaN"));
     assert!(refused(0.1, f64::INFINITY, &free, &good).contains("time"));
-    let noise = Gyroscope { noise: -0.1, ..good.clone() };
+    let noise = good.clone().with_noise(-0.1);
     assert_eq!(refused(0.1, 1.0, &free, &noise), "the noise is -0.1; give a finite number of at least 0");
-    let spikes = Gyroscope { spikes: 1.5, ..good.clone() };
+    let spikes = good.clone().with_spikes(1.5);
     assert_eq!(refused(0.1, 1.0, &free, &spikes), "the share of spikes is 1.5; give a share from 0 to 1");
-    let offset = Gyroscope { offset: Vector3::new(0.0, f64::NAN, 0.0), ..good.clone() };
+    let offset = good.clone().with_offset(Vector3::new(0.0, f64::NAN, 0.0));
     assert!(refused(0.1, 1.0, &free, &offset).starts_with("the offset is NaN"));
-    let drag = Disturbances { relative_drag: -1.0, ..free.clone() };
+    let drag = free.clone().with_relative_drag(-1.0);
     assert!(refused(0.1, 1.0, &drag, &good).starts_with("the relative drag is -1"));
-    let torque = Disturbances { torque: Vector3::new(1e9, 0.0, 1e8), ..free.clone() };
+    let torque = free.clone().with_torque(Vector3::new(1e9, 0.0, 1e8));
     assert!(refused(0.1, 1e9, &torque, &good).contains("cannot be followed beyond"));
     let far = simulate_with(&body, Vector3::x(), &[1e9], &torque, &good, &mut Random::new(1));
     assert!(matches!(far, Err(SimulationError::TooFast { .. })));

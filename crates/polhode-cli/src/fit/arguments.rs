@@ -96,13 +96,12 @@ impl SensorArguments {
     }
 
     pub(super) fn priors(&self) -> SensorPriors {
-        SensorPriors {
-            offset: self.gyro_bias,
-            scale: self.gyro_scale,
-            axis_scales: self.gyro_axis_scales,
-            misalignment: self.gyro_misalignment,
-            skew: self.gyro_skew,
-        }
+        SensorPriors::default()
+            .with_offset(self.gyro_bias)
+            .with_scale(self.gyro_scale)
+            .with_axis_scales(self.gyro_axis_scales)
+            .with_misalignment(self.gyro_misalignment)
+            .with_skew(self.gyro_skew)
     }
 }
 

@@ -123,27 +123,25 @@ impl Fit {
         };
         let least = self.at_least.iter().map(|b| Limit { at_least: Some(b[3]), ..limit(b) });
         let most = self.at_most.iter().map(|b| Limit { at_most: Some(b[3]), ..limit(b) });
-        let settings = Settings {
-            radius: self.radius,
-            noise: self.noise,
-            limits: least.chain(most).collect(),
-            prior: self.prior.prior(),
-            known: self.known.known()?,
-            check_units: !self.trust_units,
-            torque: self.torque.into(),
-            torque_scope: self.torque_per.into(),
-            quantum: self.sensor.quantum(),
-            offset_walk: self.sensor.walk(),
-            sensor: self.sensor.priors(),
-            ..Settings::default()
-        };
+        let settings = Settings::default()
+            .with_radius(self.radius)
+            .with_noise(self.noise)
+            .with_limits(least.chain(most).collect())
+            .with_prior(self.prior.prior())
+            .with_known(self.known.known()?)
+            .with_check_units(!self.trust_units)
+            .with_torque(self.torque.into())
+            .with_torque_scope(self.torque_per.into())
+            .with_quantum(self.sensor.quantum())
+            .with_offset_walk(self.sensor.walk())
+            .with_sensor(self.sensor.priors());
         let format = Format::of(self.format, self.out.as_deref())?;
         let names = report::unused(&record);
         if !names.is_empty() {
             warn(&format!("columns not used: {}", names.join(", ")));
         }
         if let (Some(axis), Some(body)) = (self.wheel.calibrated(), self.known.body()?) {
-            let settings = Settings { known: None, ..settings };
+            let settings = settings.with_known(None);
             return output.write_whole(&calibrate::report(
                 &record,
                 &body,

@@ -38,14 +38,13 @@ fn vector(given: Option<[f64; 3]>) -> Vector3<f64> {
 
 impl DisturbanceArguments {
     pub(super) fn disturbances(&self) -> Disturbances {
-        Disturbances {
-            relative_drag: self.relative_drag,
-            drag: vector(self.drag),
-            torque: vector(self.torque) + vector(self.known_torque),
-            torque_noise: self.torque_noise,
-            wheel: vector(self.wheel),
-            wheel_rate: vector(self.wheel_rate),
-        }
+        Disturbances::default()
+            .with_relative_drag(self.relative_drag)
+            .with_drag(vector(self.drag))
+            .with_torque(vector(self.torque) + vector(self.known_torque))
+            .with_torque_noise(self.torque_noise)
+            .with_wheel(vector(self.wheel))
+            .with_wheel_rate(vector(self.wheel_rate))
     }
 
     /// The torque that the record tells.
@@ -112,17 +111,16 @@ fn spikes(text: &str) -> Result<[f64; 2], String> {
 impl GyroscopeArguments {
     pub(super) fn gyroscope(&self) -> Gyroscope {
         let [spikes, spike_size] = self.spikes.unwrap_or_default();
-        Gyroscope {
-            noise: self.noise,
-            offset: vector(self.offset),
-            offset_walk: self.offset_walk,
-            scale: self.scale_error,
-            axis_scales: vector(self.axis_scale_errors),
-            misalignment: vector(self.misalignment),
-            skew: vector(self.skew),
-            quantum: self.quantum,
-            spikes,
-            spike_size,
-        }
+        Gyroscope::default()
+            .with_noise(self.noise)
+            .with_offset(vector(self.offset))
+            .with_offset_walk(self.offset_walk)
+            .with_scale(self.scale_error)
+            .with_axis_scales(vector(self.axis_scale_errors))
+            .with_misalignment(vector(self.misalignment))
+            .with_skew(vector(self.skew))
+            .with_quantum(self.quantum)
+            .with_spikes(spikes)
+            .with_spike_size(spike_size)
     }
 }

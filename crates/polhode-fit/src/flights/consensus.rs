@@ -1,23 +1,12 @@
 //! One tensor that many short windows of a record agree on.
 
-use super::equations::{LOCAL, Normal, Reduced, Test, UNKNOWNS, Vector};
+use crate::flights::equations::{LOCAL, Normal, Reduced, Test, UNKNOWNS, Vector};
 use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
 use crate::physical::law::LARGEST_SHARE;
-
-/// Tests of a window, and by how many the next one begins later.
-pub(super) const WINDOW: usize = 12;
-const STRIDE: usize = 2;
-/// Root mean square torque, over the trace times |ω|², that drag does not explain and a free window may have.
-pub(super) const MOST_TORQUE: f64 = 0.02;
-/// Deviation of the drag that is expected, as the share of the momentum lost in a turn by one radian.
-const DRAG: f64 = 0.03;
-/// Windows whose tensors are tried, and on how many windows.
-const TRIED: usize = 100;
-const JUDGES: usize = 5_000;
-/// Refinements of a tensor by the windows that agree with it.
-const REFINEMENTS: usize = 4;
-/// How far beyond the law, as a share of the trace, a tensor of short windows may be.
-const BEYOND: f64 = 0.03;
+use crate::thresholds::flights::{
+    BEYOND, COMMON_TORQUE, DRAG, GROSS, JUDGES, LASTING, MOST_TORQUE, REFINEMENTS, REWEIGHTED, STRIDE, SURE,
+    TRIED, WINDOW,
+};
 
 /// Precisions of the unknowns in a window, where `speed` is the rate of the motion: of the tensor one that only keeps
 /// undetermined numbers finite, about the sphere; no constant torque.
@@ -117,16 +106,6 @@ pub(super) fn consensus(all: &[Vec<Test>], speed: f64, variance: f64) -> Result<
     Ok(Consensus { x, free })
 }
 
-/// Largest torque, over the trace times |ω|², of a record that is free but for what a fit has columns for.
-const GROSS: f64 = 0.3;
-/// How far beyond what noise brings about a residual must be to count, and for how many tests in a row.
-const SURE: f64 = 3.0;
-const LASTING: usize = 4;
-/// What of a residual counts in full towards the tensor of a whole record.
-const USUAL: f64 = 0.05;
-/// Rounds of reweighting, by which residuals that stand out lose their weight.
-const ROUNDS: usize = 3;
-
 /// The tests of a whole record that no tensor, drag and constant torque explain.
 pub(super) struct Contradiction {
     /// Tests beyond what any small torque makes.
@@ -140,10 +119,10 @@ impl Contradiction {
         let turning = |test: &&Test| !test.is_slow(speed);
         let prior = Vector::from_fn(|k, _| if k == 8 { f64::EPSILON } else { 1.0 });
         let mut x = Vector::zeros();
-        for round in 0..ROUNDS {
+        for round in 0..REWEIGHTED {
             let mut normal = Normal::prior(&prior, &Vector::zeros());
             for test in all.iter().flatten().filter(turning) {
-                let scale = test.scale(USUAL, variance);
+                let scale = test.scale(COMMON_TORQUE, variance);
                 let excess =
                     if round == 0 { 0.0 } else { test.residual(&x).norm_squared() / (scale * scale) };
                 normal.add(test, scale * (1.0 + excess).sqrt(), UNKNOWNS);

@@ -1,9 +1,11 @@
 //! The weak equations of single test functions along a record, with everything that is linear in them.
 
+use crate::thresholds::flights::{NOISE_DEVIATIONS, NOISE_OF_SLOPE, NOISE_OF_VALUE, SLOW};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis};
-use crate::weak::test_functions::{Seen, Stretch, TestFunctions};
+use crate::signal::stretch::Stretch;
+use crate::signal::test_functions::{Seen, TestFunctions};
 
 /// Unknowns: five of the tensor, drag along each sensor axis, the factor of known inputs, a constant torque.
 pub(super) const UNKNOWNS: usize = 12;
@@ -30,14 +32,6 @@ pub(super) struct Test {
     /// Bound on the mean square of the residual by the noise of the rates, over its variance.
     noise: f64,
 }
-
-/// Largest tr J² of the share that φ' has in the noise, and of that of φ per |ω|².
-const NOISE_OF_SLOPE: f64 = 0.4;
-const NOISE_OF_VALUE: f64 = 0.3;
-/// Deviations of the noise that a residual may have.
-const NOISE_DEVIATIONS: f64 = 2.0;
-/// A rate below which the body counts as held, over the rate of its motion.
-const SLOW: f64 = 0.1;
 
 impl Test {
     /// Σ w φ |ω|², against which a torque is large or small.

@@ -1,26 +1,13 @@
 //! Where a flight begins and ends.
 
+use crate::thresholds::extent::{BESIDE, COMMON, ENDS, FEWEST, NOISE, ROUNDS, USUAL};
 use core::ops::Range;
 
-use super::FlightLimit;
-use super::consensus::{MOST_TORQUE, precisions};
-use super::equations::{LOCAL, Normal, Test, Vector};
+use crate::flights::consensus::precisions;
+use crate::flights::equations::{LOCAL, Normal, Test, Vector};
+use crate::flights::flight::FlightLimit;
 use crate::physical::coordinates::Coordinates;
-
-/// Precision of the common tensor in the fit of one flight, against which its own tests stand.
-const COMMON: f64 = 100.0;
-/// Medians of the residuals of a flight that one of its own may reach.
-const USUAL: f64 = 4.0;
-/// Deviations of the noise that it may reach beside.
-const NOISE: f64 = 1.5;
-/// Share of a flight within which an end of it is sought.
-const ENDS: f64 = 0.35;
-/// Rounds of trimming and fitting.
-const ROUNDS: usize = 6;
-/// Fewest tests of a flight.
-const FEWEST: usize = 4;
-/// Tests next to an end that tell why it is one: twice as far as the last of the flight reaches.
-const BESIDE: usize = 8;
+use crate::thresholds::flights::MOST_TORQUE;
 
 /// The tests of one flight, and what stands before and after it.
 pub(super) struct Extent {

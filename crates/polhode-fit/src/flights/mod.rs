@@ -10,75 +10,32 @@
 mod consensus;
 mod equations;
 mod extent;
+pub(crate) mod flight;
 
-use core::fmt;
+use crate::flights::flight::{Flight, FlightLimit};
+use crate::solve::other_units::Support;
+use crate::thresholds::flights::{ALMOST_ALL, MOST_TORQUE};
+use crate::thresholds::noise::LEAST;
 
 use nalgebra::Vector3;
 use polhode::record::{Record, Segment};
 
-use super::error::FitError;
-use super::settings::Settings;
-use super::weak::mistaken_units::better_unit;
-use super::weak::noise;
-use super::weak::normalised::{Normalised, normalised};
-use super::weak::test_functions::{SAMPLES_PER_TEST, Stretch};
-use consensus::{Contradiction, MOST_TORQUE, NoConsensus, consensus};
+use crate::error::FitError;
+use crate::settings::Settings;
+use crate::signal::noise;
+use crate::signal::normalised::{Normalised, normalised};
+use crate::signal::stretch::Stretch;
+use crate::solve::other_units::better_unit;
+use crate::thresholds::test_functions::SAMPLES_PER_TEST;
+use consensus::{Contradiction, NoConsensus, consensus};
 use equations::{Test, tests};
 use extent::{Extent, extent, runs};
-
-/// Why a flight does not reach further.
-#[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FlightLimit {
-    /// There the segment begins or ends.
-    Edge,
-    /// The body hardly turns there: it rests, or a hand holds it.
-    Slow,
-    /// A torque acts there.
-    Torque {
-        /// Its mean over a test function, over the trace of the tensor times |ω|².
-        share: f64,
-    },
-}
-
-impl fmt::Display for FlightLimit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Edge => f.write_str("no more samples"),
-            Self::Slow => f.write_str("hardly turns"),
-            Self::Torque { share } => write!(f, "torque {share:.2} tr(J) |w|^2"),
-        }
-    }
-}
-
-/// A span of free rotation, but for drag.
-#[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flight {
-    /// Index of its segment in the record.
-    pub segment: usize,
-    /// Time of its first sample, s.
-    pub start: f64,
-    /// Time of its last sample, s.
-    pub end: f64,
-    /// Number of its samples.
-    pub samples: usize,
-    /// Angle by which the body turned, rad.
-    pub turned: f64,
-    /// Why it does not begin earlier.
-    pub before: FlightLimit,
-    /// Why it does not end later.
-    pub after: FlightLimit,
-}
 
 /// The parts of `record` in which `flights` were found, one segment each.
 #[must_use]
 pub fn during(record: &Record, flights: &[Flight]) -> Record {
     record.spans(flights.iter().map(|flight| (flight.segment, flight.start, flight.end)))
 }
-
-/// Share of the turning tests that a record in a wrong unit contradicts.
-const ALMOST_ALL: f64 = 0.9;
 
 /// The flights of a record.
 #[non_exhaustive]
@@ -134,7 +91,7 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
         None => noise::variance(&stretches),
     };
     // readings of a noiseless record carry at least the quadrature's error
-    let variance = variance.max(1e-20);
+    let variance = variance.max(LEAST);
     let speed = speed(&stretches);
     let radius = radius(&stretches, speed);
     let all: Vec<Vec<Test>> = stretches.iter().map(|stretch| tests(stretch, radius)).collect();
@@ -145,7 +102,7 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
         // in a wrong unit of rate or time nothing is free
         let suspect = settings.check_units && contradiction.share() > ALMOST_ALL;
         let better = if suspect { better_unit(&stretches, None, variance) } else { None };
-        match better.filter(|b| b.credible && !b.vague) {
+        match better.filter(|b| b.support == Support::Named) {
             Some(b) => FitError::Units {
                 factor: b.factor,
                 mistakes: b.mistakes,

@@ -1,10 +1,5 @@
 //! What was checked of an answer.
 
-/// Largest violation, complementarity and negative multiplier of a certified answer.
-pub(crate) const CERTIFIED: f64 = 1e-9;
-/// Its largest residual of stationarity: a millionth of a standard deviation. Conditions of 1e10 reach no further.
-pub(crate) const STATIONARY: f64 = 1e-6;
-
 /// What the solver's answer was checked against: largest residuals of the optimality conditions, in whitened units.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]

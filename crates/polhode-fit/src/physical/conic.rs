@@ -1,5 +1,6 @@
 //! Quadratic programs with linear and second-order conditions: the one place that knows the solver.
 
+use crate::thresholds::program::SOLVER;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverError, SolverStatus,
@@ -7,7 +8,7 @@ use clarabel::solver::{
 };
 use nalgebra::DVector;
 
-use super::failure::SolverFailure;
+use crate::physical::failure::SolverFailure;
 
 /// Conditions a·x ≤ b and second-order cones, gathered for the solver.
 pub(crate) struct Conditions {
@@ -56,9 +57,9 @@ impl Conditions {
         cones.extend((0..self.second_order.len() / 3).map(|_| SecondOrderConeT(3)));
         let settings = DefaultSettings {
             verbose: false,
-            tol_gap_abs: 1e-11,
-            tol_gap_rel: 1e-11,
-            tol_feas: 1e-11,
+            tol_gap_abs: SOLVER,
+            tol_gap_rel: SOLVER,
+            tol_feas: SOLVER,
             ..DefaultSettings::default()
         };
         let mut solver =

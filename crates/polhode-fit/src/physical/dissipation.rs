@@ -2,8 +2,8 @@
 
 use nalgebra::{DVector, Matrix3};
 
-use super::constraint::Constraint;
-use super::coordinates::{ENTRIES, eigen, symmetric};
+use crate::physical::constraint::Constraint;
+use crate::physical::coordinates::{ENTRIES, eigen, symmetric};
 
 /// A condition on coefficients of drag, by their places among the unknowns of the program.
 #[derive(Clone, Debug)]

@@ -1,13 +1,15 @@
 //! Newton's method on the face that holds the answer, and the certificate.
 
+use crate::thresholds::program::{INWARDS, NEAR, NEWTON, ROUNDED};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use super::certificate::{CERTIFIED, Certificate, STATIONARY};
-use super::constraint::ActiveConstraint;
-use super::coordinates::{Coordinates, eigen};
-use super::failure::SolverFailure;
-use super::law::LARGEST_SHARE;
-use super::program::{Program, Wall};
+use crate::physical::certificate::Certificate;
+use crate::physical::constraint::ActiveConstraint;
+use crate::physical::coordinates::{Coordinates, eigen};
+use crate::physical::failure::SolverFailure;
+use crate::physical::law::LARGEST_SHARE;
+use crate::physical::program::{Program, Wall};
+use crate::thresholds::program::{CERTIFIED, STATIONARY};
 
 /// The answer of the program.
 pub(crate) struct Nearest {
@@ -27,7 +29,7 @@ type Frame = ([Vector3<f64>; 3], [f64; 3]);
 impl Program {
     /// Newton's method on the face that the solver's answer lies on, and the certificate.
     pub(super) fn polish(&self, start: DVector<f64>, rounds: usize) -> Result<Nearest, SolverFailure> {
-        let near = 1e-4 * (1.0 + start.norm());
+        let near = NEAR * (1.0 + start.norm());
         let mut faces: Vec<usize> = self
             .walls
             .iter()
@@ -120,7 +122,7 @@ impl Program {
         // each Z is kept in sensor axes: where two moments agree, their axes differ from step to step
         let mut zs = multipliers(&self.frames(start), faces, &self.least_multipliers(start, faces, held));
         let mut newton = none;
-        for _ in 0..12 {
+        for _ in 0..NEWTON {
             let frames = self.frames(&y);
             let gradients = self.gradients(&frames, faces, held);
             let mut values = Vec::with_capacity(equations);
@@ -162,7 +164,7 @@ impl Program {
             let found: Vec<f64> = (0..equations).map(|e| step[size + e] / sizes[e]).collect();
             zs = multipliers(&frames, faces, &found);
             newton = Newton { held: found[equations - held.len()..].to_vec(), zs: zs.clone(), y: y.clone() };
-            if move_.norm() <= 1e-15 * (1.0 + y.norm()) {
+            if move_.norm() <= ROUNDED * (1.0 + y.norm()) {
                 break;
             }
         }
@@ -225,7 +227,7 @@ impl Program {
         let mut x = Coordinates::from_column_slice(&unknowns.as_slice()[first..]);
         if faces.first().is_some_and(|face| *face > 0) {
             // the last rounding goes towards the sphere: the tensor handed out is physical, not nearly so
-            x *= ((LARGEST_SHARE - 1.0 / 3.0) / (largest_moment - 1.0 / 3.0)).min(1.0) * (1.0 - 1e-14);
+            x *= ((LARGEST_SHARE - 1.0 / 3.0) / (largest_moment - 1.0 / 3.0)).min(1.0) * (1.0 - INWARDS);
         }
         let others = unknowns.as_slice()[..first].to_vec();
         Ok(Nearest { x, others, active, pull: y.norm(), certificate })

@@ -3,7 +3,7 @@
 use polhode::inertia::InertiaError;
 use thiserror::Error;
 
-use super::certificate::Certificate;
+use crate::physical::certificate::Certificate;
 
 /// Why the program for the nearest physical tensor has no certified answer.
 #[non_exhaustive]

@@ -2,5 +2,3 @@
 
 /// The largest share of the trace that a moment can have: the other two together are not less.
 pub(crate) const LARGEST_SHARE: f64 = 0.5;
-/// Rounds of cuts; hard random problems took at most 13.
-pub(crate) const CUTS: usize = 40;

@@ -1,13 +1,14 @@
 //! What is known of the moments beforehand, and whether it agrees with itself and with the physical law.
 
+use crate::thresholds::limits::{ANYWHERE, MET, PUSHES, ROOM, ROUNDS};
 use nalgebra::Vector3;
 
-use super::conic::Conditions;
-use super::constraint::Constraint;
-use super::coordinates::{Coordinates, eigen, pair, tensor};
-use super::failure::SolverFailure;
-use super::law::{CUTS, LARGEST_SHARE};
 use crate::error::{Clash, FitError};
+use crate::physical::conic::Conditions;
+use crate::physical::constraint::Constraint;
+use crate::physical::coordinates::{Coordinates, eigen, pair, tensor};
+use crate::physical::failure::SolverFailure;
+use crate::physical::law::LARGEST_SHARE;
 
 /// Limits on the moment of inertia about an axis, as shares of the trace, that are known beforehand.
 ///
@@ -20,7 +21,7 @@ use crate::error::{Clash, FitError};
 /// # let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
 /// # let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-3, &mut Random::new(7))?;
 /// let record = Record::from_samples(&times, &rates)?;
-/// let with = |limit| fit(&record, &Settings { limits: vec![limit], ..Settings::default() });
+/// let with = |limit| fit(&record, &Settings::default().with_limits(vec![limit]));
 /// let held = with(Limit { axis: Vector3::x(), at_least: Some(0.2), at_most: None })?;
 /// assert!((held.shape.tensor()[(0, 0)] - 0.2).abs() < 1e-12 && held.pull > 10.0);
 ///
@@ -38,9 +39,6 @@ pub struct Limit {
     /// Largest share; physically not above ½.
     pub at_most: Option<f64>,
 }
-
-/// Room that limits must leave, as a share of the trace: on an edge where they meet, multipliers are not unique.
-const ROOM: f64 = 1e-6;
 
 /// One side of a limit as a constraint.
 pub(crate) fn side(index: usize, given: &Limit, upper: bool) -> Constraint {
@@ -84,7 +82,7 @@ pub(crate) fn feasible(limits: &[Limit]) -> Result<(), FitError> {
     }
     let mut cuts: Vec<Vector3<f64>> = (0..3).map(|k| Vector3::ith(k, 1.0)).collect();
     let six = |g: &Coordinates, t: f64| [g[0], g[1], g[2], g[3], g[4], t];
-    for _ in 0..10 * CUTS {
+    for _ in 0..ROUNDS {
         let mut conditions = Conditions::new(6);
         for (g, right, _) in &sides {
             conditions.nonnegative(&six(g, -1.0), *right);
@@ -96,7 +94,7 @@ pub(crate) fn feasible(limits: &[Limit]) -> Result<(), FitError> {
             // any physical tensor lies well inside; t below 0 only means room to spare
             for sign in [1.0, -1.0] {
                 let unit: [f64; 6] = core::array::from_fn(|i| if i == k { sign } else { 0.0 });
-                conditions.nonnegative(&unit, if k == 5 && sign > 0.0 { 1e3 } else { 1.0 });
+                conditions.nonnegative(&unit, if k == 5 && sign > 0.0 { ANYWHERE } else { 1.0 });
             }
         }
         let (answer, duals) = conditions
@@ -104,7 +102,7 @@ pub(crate) fn feasible(limits: &[Limit]) -> Result<(), FitError> {
             .map_err(FitError::Solver)?;
         let x = Coordinates::from_column_slice(&answer[..5]);
         let (moments, axes) = eigen(tensor(&x));
-        if moments[2] - LARGEST_SHARE > 0.1 * ROOM {
+        if moments[2] - LARGEST_SHARE > MET * ROOM {
             cuts.extend((0..3).map(|k| axes.column(k).into_owned()));
             continue;
         }
@@ -114,7 +112,7 @@ pub(crate) fn feasible(limits: &[Limit]) -> Result<(), FitError> {
         let mut order: Vec<usize> = (0..sides.len()).collect();
         order.sort_by(|&a, &b| duals[b].total_cmp(&duals[a]));
         let first = sides[order[0]].2;
-        let with = order.get(1).filter(|&&k| duals[k] > 1e-3).map(|&k| sides[k].2);
+        let with = order.get(1).filter(|&&k| duals[k] > PUSHES).map(|&k| sides[k].2);
         let second = with.unwrap_or(Constraint::Triangle);
         let clash = Box::new(Clash { first, second, gap: answer[5] });
         let error = if answer[5] > ROOM { FitError::Contradiction(clash) } else { FitError::NoRoom(clash) };

@@ -1,14 +1,15 @@
 //! The nearest physical tensor within limits.
 
+use crate::thresholds::limits::PARALLEL;
 use nalgebra::{DMatrix, DVector};
 
-use super::coordinates::pair;
-use super::dissipation::Dissipation;
-use super::face::Nearest;
-use super::law::LARGEST_SHARE;
-use super::limits::{Limit, check_limits, feasible, side};
-use super::program::{Program, Row};
 use crate::error::FitError;
+use crate::physical::coordinates::pair;
+use crate::physical::dissipation::Dissipation;
+use crate::physical::face::Nearest;
+use crate::physical::law::LARGEST_SHARE;
+use crate::physical::limits::{Limit, check_limits, feasible, side};
+use crate::physical::program::{Program, Row};
 
 /// A normal distribution of unknowns: its mean, and the upper triangular root R of its information Rᵀ R. The last five
 /// are the coordinates of the tensor.
@@ -51,7 +52,7 @@ pub(crate) fn nearest(
         let share = Row { base: 1.0 / 3.0 + told.centre.dot(&p), g: program.gradient(&p) };
         // of limits about one axis the tighter one, since two of them could not be told apart
         let twins =
-            || limits.iter().enumerate().filter(|(_, b)| b.axis.normalize().dot(&n).abs() > 1.0 - 1e-12);
+            || limits.iter().enumerate().filter(|(_, b)| b.axis.normalize().dot(&n).abs() > 1.0 - PARALLEL);
         let tighter = |of: fn(&Limit) -> Option<f64>, sign: f64| {
             let value = of(limit)?;
             let outdoes = |(i, b): (usize, &Limit)| {
@@ -82,10 +83,9 @@ pub(crate) fn nearest(
 
 #[cfg(test)]
 mod tests {
-    use super::super::coordinates::{Coordinates, Form};
     use super::*;
     use crate::physical::constraint::Constraint;
-    use crate::physical::coordinates::{basis, coordinates, eigen, tensor};
+    use crate::physical::coordinates::{Coordinates, Form, basis, coordinates, eigen, tensor};
     use nalgebra::{Matrix3, Vector3};
     use polhode::num::Random;
 
@@ -277,7 +277,7 @@ mod tests {
     /// all are negative, and beside a tensor that the law holds.
     #[test]
     fn a_matrix_of_drag_loses_its_negative_eigenvalues() {
-        use super::super::coordinates::ENTRIES;
+        use crate::physical::coordinates::ENTRIES;
         let mut next = numbers(17);
         let mut counts = [0; 4];
         for trial in 0..200 {

@@ -1,10 +1,11 @@
 //! A tensor that is known beforehand, with its uncertainty.
 
+use crate::thresholds::limits::SYMMETRIC;
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
 
-use super::coordinates::{Coordinates, ENTRIES, Form, basis, coordinates, eigen};
-use super::nearest::Normal;
 use crate::error::FitError;
+use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis, coordinates, eigen};
+use crate::physical::nearest::Normal;
 
 /// An inertia tensor that is known beforehand, as from a CAD model, with the covariance of its entries: a normal
 /// distribution that a fit joins with what the record tells.
@@ -19,7 +20,7 @@ use crate::error::FitError;
 /// # let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 1e-2, &mut Random::new(7))?;
 /// // the CAD model has each entry to two per cent, and the size
 /// let model = Inertia::from_moments([1.01, 1.98, 2.61])?;
-/// let settings = Settings { prior: Some(Prior::relative(model.tensor(), 0.02)), ..Settings::default() };
+/// let settings = Settings::default().with_prior(Prior::relative(model.tensor(), 0.02));
 /// let record = Record::from_samples(&times, &rates)?;
 /// let (with, without) = (fit(&record, &settings)?, fit(&record, &Settings::default())?);
 /// assert!(with.sigma_principal[0] < without.sigma_principal[0]);
@@ -64,7 +65,7 @@ impl Prior {
         }
         let scaled = self.covariance / (trace * trace);
         let least = if scaled.iter().all(|v| v.is_finite()) { eigen(scaled).0[0] } else { f64::NAN };
-        let symmetric = (scaled - scaled.transpose()).amax() <= 1e-9 * scaled.amax();
+        let symmetric = (scaled - scaled.transpose()).amax() <= SYMMETRIC * scaled.amax();
         if !(least > 0.0 && symmetric) {
             return Err(FitError::PriorCovariance { least: least * trace * trace, symmetric });
         }

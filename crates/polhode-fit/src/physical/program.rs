@@ -1,18 +1,15 @@
 //! The program min ½|y|², and its answer by the solver with cuts.
 
+use crate::thresholds::program::{SHARE, STALLED, VIOLATION};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use super::conic::Conditions;
-use super::constraint::Constraint;
-use super::coordinates::{basis, eigen, symmetric};
-use super::dissipation::Dissipation;
-use super::failure::SolverFailure;
-use super::law::{CUTS, LARGEST_SHARE};
-
-/// Violation of the law that ends the cuts.
-const VIOLATION: f64 = 1e-9;
-/// Size that a standard deviation of drag has in the program, as those of a tensor have: violations are measured by it.
-const SHARE: f64 = 1e-3;
+use crate::physical::conic::Conditions;
+use crate::physical::constraint::Constraint;
+use crate::physical::coordinates::{basis, eigen, symmetric};
+use crate::physical::dissipation::Dissipation;
+use crate::physical::failure::SolverFailure;
+use crate::physical::law::LARGEST_SHARE;
+use crate::thresholds::program::CUTS;
 
 /// A reading base + g·y that must not be positive.
 #[derive(Clone)]
@@ -159,7 +156,9 @@ impl Program {
             let beyond = self.walls.iter().zip(&spectra).map(|(wall, (values, _))| values[2] - wall.most);
             let violation = violated.iter().map(|row| row.at(&y)).chain(beyond).fold(f64::MIN, f64::max);
             // where the solver's own accuracy ends the descent, Newton's method and the certificate take over
-            if violation <= VIOLATION || (round > 0 && violation <= 1e-5 && violation > 0.5 * last) {
+            if violation <= VIOLATION
+                || (round > 0 && violation <= STALLED[0] && violation > STALLED[1] * last)
+            {
                 return Ok((y, round));
             }
             last = violation;

@@ -4,18 +4,14 @@
 //! exactly. What the record tells is the normal distribution about the unconstrained estimate, cut off at the walls; its
 //! mean square distance from the answer is what may be said of the answer.
 
+use crate::thresholds::spread::{DRAWN, INSIDE};
 use nalgebra::{DMatrix, DVector};
 use polhode::num::Random;
 
-use super::coordinates::{Coordinates, eigen, tensor};
-use super::dissipation::Dissipation;
-use super::law::LARGEST_SHARE;
-use super::limits::Limit;
-
-/// Points that are drawn.
-const DRAWN: usize = 10_000;
-/// Fewest points inside the walls that tell the spread.
-const INSIDE: usize = 200;
+use crate::physical::coordinates::{Coordinates, eigen, tensor};
+use crate::physical::dissipation::Dissipation;
+use crate::physical::law::LARGEST_SHARE;
+use crate::physical::limits::Limit;
 
 /// The mean of (z − answer)(z − answer)ᵀ over unknowns z that are allowed, z normal about `centre` with the factor `free`;
 /// `None` where hardly any of them is.

@@ -4,14 +4,17 @@
 //! v = ∫ φ' ω dt. Noise adds a multiple of 1 to M, which commutes with J. In the eigenframe of M, with eigenvalues λ,
 //! (λ_i − λ_j) J_ij is a component of J v, and no moment of a body exceeds half the trace: |J_ij| ≤ ½ |v| / |λ_i − λ_j|.
 
+use crate::thresholds::averages::{PARTS, UNEVEN};
 use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::identifiability::{VAGUE, direction};
 use crate::physical::coordinates::eigen;
-use crate::weak::noise::SURE;
-use crate::weak::test_functions::{Seen, Stretch, TestFunctions};
+use crate::report::identifiability::direction;
+use crate::signal::stretch::Stretch;
+use crate::signal::test_functions::{Seen, TestFunctions};
+use crate::thresholds::identifiability::VAGUE;
+use crate::thresholds::noise::SURE;
 
 /// An axis that is principal to within a bound, if no torque acted on the body.
 #[non_exhaustive]
@@ -33,11 +36,6 @@ impl fmt::Display for AverageAxis {
         )
     }
 }
-
-/// Parts of a stretch whose mean squares of the rates are compared.
-const PARTS: usize = 8;
-/// Largest difference of two of them, over their mean, that a body keeps up without a torque.
-const UNEVEN: f64 = 0.5;
 
 /// Whether the mean square of the rates stays the same along a stretch: a hand that holds the body changes it.
 fn steady(s: &Stretch) -> bool {

@@ -4,12 +4,12 @@ use nalgebra::{SMatrix, UnitQuaternion};
 use polhode::inertia::{Inertia, InertiaShape};
 use polhode::record::Spike;
 
-use super::identifiability::Identifiability;
-use super::nuisance::{Agreement, Nuisance, SegmentSummary, Systematic, Torque};
-use super::torque_free::{InvariantTrend, Whiteness};
-use super::warning::Warning;
 use crate::physical::certificate::Certificate;
 use crate::physical::constraint::ActiveConstraint;
+use crate::report::identifiability::Identifiability;
+use crate::report::nuisance::{Agreement, Nuisance, SegmentSummary, Systematic, Torque};
+use crate::report::torque_free::{InvariantTrend, Whiteness};
+use crate::report::warning::Warning;
 
 /// Whitened residuals of one segment: standard normal where model and noise are right.
 #[non_exhaustive]

@@ -1,19 +1,13 @@
 //! The report, drawn from the record, its weak estimate and the nearest physical tensor.
 
+use crate::report::scale::scale_of;
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use polhode::inertia::{Inertia, InertiaShape};
-use polhode::record::Record;
-use polhode::record::Spike;
+use polhode::record::{Record, Spike};
 
-use super::columns::{is_torque, nuisances};
-use super::estimate::{Estimate, Residuals};
-use super::identifiability::Identifiability;
-use super::nuisance::{Agreement, Nuisance, Torque};
-use super::segments::summaries;
-use super::systematic::systematic;
-use super::torque_free::{InvariantTrend, Whiteness, trends};
-use super::warnings::{Grounds, warnings};
-use crate::cramer_rao::Motions;
+use crate::bound::motions::Motions;
+use crate::columns::column::{Column, Unknowns};
+use crate::columns::effect::Class;
 use crate::error::FitError;
 use crate::physical::constraint::{ActiveConstraint, Constraint};
 use crate::physical::coordinates::{Coordinates, ENTRIES, Form, eigen, entries_of_coordinates, pair, tensor};
@@ -24,13 +18,21 @@ use crate::physical::law::LARGEST_SHARE;
 use crate::physical::nearest::Normal;
 use crate::physical::prior::{Prior, Told};
 use crate::physical::truncated::spread;
-use crate::settings::{Settings, TorqueModel, TorqueNoise};
-use crate::weak::joint::Joint;
-use crate::weak::ladder::Chosen;
-use crate::weak::mistaken_units::Better;
-use crate::weak::model::{Column, Kind, Unknowns};
-use crate::weak::noise::SURE;
-use crate::weak::test_functions::Stretch;
+use crate::report::estimate::{Estimate, Residuals};
+use crate::report::identifiability::Identifiability;
+use crate::report::nuisance::{Agreement, Nuisance, Torque};
+use crate::report::nuisances::nuisances;
+use crate::report::segments::summaries;
+use crate::report::systematic::systematic;
+use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
+use crate::report::warnings::{Grounds, warnings};
+use crate::settings::Settings;
+use crate::settings::torque::{TorqueModel, TorqueNoise};
+use crate::signal::stretch::Stretch;
+use crate::solve::joint::Joint;
+use crate::solve::ladder::Chosen;
+use crate::solve::other_units::Better;
+use crate::thresholds::noise::SURE;
 
 /// What the report is drawn from.
 pub(crate) struct Facts<'a> {
@@ -51,6 +53,18 @@ pub(crate) struct Facts<'a> {
     pub(crate) dissipation: &'a [Dissipation],
 }
 
+/// How far an answer may be off: factors of covariances.
+struct Deviations {
+    /// Of the tensor before law and limits are imposed.
+    free: Form,
+    /// Of the answer.
+    on_face: Form,
+    /// Covariance of the columns that are kept and the tensor.
+    together: DMatrix<f64>,
+    /// Standard deviations of the columns that are kept, by number, where a constraint holds the answer.
+    held: Vec<(usize, f64)>,
+}
+
 impl Facts<'_> {
     /// Everything that can be said of the answer.
     pub(crate) fn report(
@@ -60,37 +74,14 @@ impl Facts<'_> {
         better: Option<&Better>,
     ) -> Result<Estimate, FitError> {
         let weak = &self.chosen.weak;
-        let singular = || FitError::Solver(SolverFailure::Information);
-        let kept = self.joint.kept.len();
-        // R⁻¹, a factor of the covariance
-        let joint_factor = self.told.root.clone().try_inverse().ok_or_else(singular)?;
-        let free: Form = joint_factor.fixed_view::<5, 5>(kept, kept).into_owned();
-        // of an answer that is held, what the record tells inside the walls; far outside, what it tells without them
-        let answer = DVector::from_iterator(kept + 5, nearest.others.iter().chain(nearest.x.iter()).copied());
-        let cut = if nearest.active.is_empty() {
-            None
-        } else {
-            let limits = &self.settings.limits;
-            spread(&self.told.centre, &joint_factor, limits, self.dissipation, &answer)
-        };
-        let together = cut.clone().unwrap_or_else(|| &joint_factor * joint_factor.transpose());
-        let of_tensor = cut.as_ref().map(|m| m.fixed_view::<5, 5>(kept, kept).into_owned());
-        let on_face = of_tensor.and_then(|m| m.cholesky()).map_or(free, |factor| factor.l());
-        let held: Vec<(usize, f64)> = cut
-            .iter()
-            .flat_map(|m| self.joint.kept.iter().enumerate().map(|(place, &k)| (k, m[(place, place)].sqrt())))
-            .collect();
+        let Deviations { free, on_face, together, held } = self.deviations(&nearest)?;
         let shape = shape_of(&tensor(&nearest.x))?;
         let j = shape.tensor();
         let (moments, _) = eigen(j);
         let axes = Inertia::from_tensor(j).map_or(UnitQuaternion::identity(), |i| i.principal_axes());
         let v: [Vector3<f64>; 3] = core::array::from_fn(|k| axes * Vector3::ith(k, 1.0));
         let deviation = |g: Coordinates| (on_face.transpose() * g).norm();
-        let sigma_principal = core::array::from_fn(|k| deviation(pair(&v[k], &v[k])));
-        let sigma_axes = core::array::from_fn(|k| {
-            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-            deviation(pair(&v[a], &v[b])) / (moments[a] - moments[b]).abs()
-        });
+        let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
         let ratio = |k: usize| {
             let slope = (pair(&v[k], &v[k]) - pair(&v[2], &v[2]) * (moments[k] / moments[2])) / moments[2];
             (moments[k] / moments[2], deviation(slope))
@@ -152,18 +143,47 @@ impl Facts<'_> {
             warnings: Vec::new(),
             shape,
         };
-        let found = self.settings.torque == TorqueModel::Auto;
-        let grounds = Grounds {
-            record: self.record,
-            weak,
-            misfit: self.misfit,
-            better,
-            found,
-            noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
-            driven: self.input.is_some(),
-        };
+        let grounds = self.grounds(better);
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
+    }
+
+    /// What warnings are drawn from.
+    fn grounds<'b>(&'b self, better: Option<&'b Better>) -> Grounds<'b> {
+        Grounds {
+            record: self.record,
+            weak: &self.chosen.weak,
+            misfit: self.misfit,
+            better,
+            found: self.settings.torque == TorqueModel::Auto,
+            noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
+            driven: self.input.is_some(),
+        }
+    }
+
+    /// How far the answer and its columns may be off.
+    fn deviations(&self, nearest: &Nearest) -> Result<Deviations, FitError> {
+        let singular = || FitError::Solver(SolverFailure::Information);
+        let kept = self.joint.kept.len();
+        // R⁻¹, a factor of the covariance
+        let joint_factor = self.told.root.clone().try_inverse().ok_or_else(singular)?;
+        let free: Form = joint_factor.fixed_view::<5, 5>(kept, kept).into_owned();
+        // of an answer that is held, what the record tells inside the walls; far outside, what it tells without them
+        let answer = DVector::from_iterator(kept + 5, nearest.others.iter().chain(nearest.x.iter()).copied());
+        let cut = if nearest.active.is_empty() {
+            None
+        } else {
+            let limits = &self.settings.limits;
+            spread(&self.told.centre, &joint_factor, limits, self.dissipation, &answer)
+        };
+        let together = cut.clone().unwrap_or_else(|| &joint_factor * joint_factor.transpose());
+        let of_tensor = cut.as_ref().map(|m| m.fixed_view::<5, 5>(kept, kept).into_owned());
+        let on_face = of_tensor.and_then(|m| m.cholesky()).map_or(free, |factor| factor.l());
+        let held: Vec<(usize, f64)> = cut
+            .iter()
+            .flat_map(|m| self.joint.kept.iter().enumerate().map(|(place, &k)| (k, m[(place, place)].sqrt())))
+            .collect();
+        Ok(Deviations { free, on_face, together, held })
     }
 
     /// The multiplier of a drag per unit of it in 1/s.
@@ -190,7 +210,7 @@ impl Facts<'_> {
         let Some(known) = self.settings.known else {
             return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, &at.x));
         };
-        let scale = known.scale(self.stretches, self.rms, j, self.variance);
+        let scale = scale_of(known, self.stretches, self.rms, j, self.variance);
         let trace = scale.trace;
         if let Some(prior) = prior {
             let (expected, sigma) = (prior.trace, prior.size_deviation());
@@ -217,7 +237,7 @@ impl Facts<'_> {
         together: &DMatrix<f64>,
         at: &Unknowns,
     ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
-        let is_input = |&k: &usize| self.chosen.weak.columns[k].kind == Kind::Input;
+        let is_input = |&k: &usize| self.chosen.weak.columns[k].class() == Class::Input;
         let Some(place) = self.joint.kept.iter().position(is_input) else { return Ok((None, None)) };
         let u = at.c[self.joint.kept[place]];
         if u <= SURE * together[(place, place)].sqrt() {
@@ -244,8 +264,8 @@ impl Facts<'_> {
         let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms, held);
         let (torques, sensor): (Vec<_>, Vec<_>) = all
             .into_iter()
-            .filter(|(column, _)| column.kind != Kind::Input)
-            .partition(|(column, _)| is_torque(column));
+            .filter(|(column, _)| column.class() != Class::Input)
+            .partition(|(column, _)| column.class().is_torque());
         let values = |list: Vec<(Column, Nuisance)>| list.into_iter().map(|(_, n)| n).collect();
         let ratios_without = self.chosen.without.map(|x| {
             let (moments, _) = eigen(tensor(&x));
@@ -298,4 +318,15 @@ fn by_prior(
 /// A tensor as a checked shape.
 pub(crate) fn shape_of(j: &Matrix3<f64>) -> Result<InertiaShape, FitError> {
     InertiaShape::from_tensor(*j).map_err(|error| FitError::Solver(SolverFailure::Shape(error)))
+}
+
+/// Standard deviations of the principal moments, and of the turn about each principal axis.
+fn sigmas(factor: &Form, v: &[Vector3<f64>; 3], moments: &Vector3<f64>) -> ([f64; 3], [f64; 3]) {
+    let deviation = |g: Coordinates| (factor.transpose() * g).norm();
+    let sigma_principal = core::array::from_fn(|k| deviation(pair(&v[k], &v[k])));
+    let sigma_axes = core::array::from_fn(|k| {
+        let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+        deviation(pair(&v[a], &v[b])) / (moments[a] - moments[b]).abs()
+    });
+    (sigma_principal, sigma_axes)
 }

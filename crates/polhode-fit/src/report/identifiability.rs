@@ -1,14 +1,11 @@
 //! Which combinations of the five numbers a record determines, and which it does not.
 
+use crate::thresholds::identifiability::{PRINCIPAL, PURE, VAGUE};
 use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::physical::coordinates::{Coordinates, Form, eigen, trace_free};
-
-/// A combination of entries with a larger standard deviation (share of the trace) counts as undetermined: physically
-/// valid tensors differ by at most 0.4 from the sphere.
-pub(crate) const VAGUE: f64 = 0.1;
 
 /// A principal axis that a record determines, though not the tensor. Its `Display` is a sentence.
 #[non_exhaustive]
@@ -152,7 +149,7 @@ fn unknowns(
     }
     let common = common_frame(null);
     let frame = common.unwrap_or_else(|| eigen(*estimate).1);
-    if rank <= 2 && spread[1] <= 0.05 * spread[2] {
+    if rank <= 2 && spread[1] <= PURE * spread[2] {
         return (
             vec![Undetermined::TransverseRatio, Undetermined::SpinRatio, Undetermined::TransverseAxes],
             vec![PrincipalAxis { axis: main, number: 1 }],
@@ -161,7 +158,7 @@ fn unknowns(
     let known = (0..3)
         .map(|k| frame.column(k).into_owned())
         .enumerate()
-        .filter(|(_, v)| null.iter().all(|t| (t * v - v * v.dot(&(t * v))).norm() < 0.1))
+        .filter(|(_, v)| null.iter().all(|t| (t * v - v * v.dot(&(t * v))).norm() < PRINCIPAL))
         .map(|(k, axis)| PrincipalAxis { axis, number: k + 1 })
         .collect();
     if common.is_some() && rank == 3 {
@@ -199,5 +196,5 @@ fn common_frame(null: &[Matrix3<f64>]) -> Option<Matrix3<f64>> {
         let n = frame.transpose() * t * frame;
         n[(0, 1)].abs().max(n[(0, 2)].abs()).max(n[(1, 2)].abs())
     };
-    null.iter().all(|t| off(t) < 0.1).then_some(frame)
+    null.iter().all(|t| off(t) < PRINCIPAL).then_some(frame)
 }

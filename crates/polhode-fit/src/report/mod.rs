@@ -1,15 +1,15 @@
 //! The report: an estimate with its deviations, its scale, what the record leaves open, and what it contradicts.
 
 pub(crate) mod averages;
-pub(crate) mod columns;
 pub(crate) mod estimate;
 pub(crate) mod facts;
 pub(crate) mod identifiability;
 pub(crate) mod motion;
 pub(crate) mod nuisance;
+pub(crate) mod nuisances;
 pub(crate) mod scale;
 pub(crate) mod segments;
 pub(crate) mod systematic;
 pub(crate) mod torque_free;
 pub(crate) mod warning;
-mod warnings;
+pub(crate) mod warnings;

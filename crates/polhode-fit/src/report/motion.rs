@@ -1,10 +1,11 @@
 //! The motion that a fit stands for, beside the readings.
 
+use crate::thresholds::motion::{CHANGE, CLOSE, DAMPING, FIRST, GROWTH, PARTS, STEP, STEPS};
 use nalgebra::{Matrix3, Vector3};
 use polhode::record::{Record, Segment};
 
-use super::estimate::Estimate;
-use super::nuisance::Nuisance;
+use crate::report::estimate::Estimate;
+use crate::report::nuisance::Nuisance;
 
 /// One segment of a record, measured and fitted.
 #[non_exhaustive]
@@ -146,14 +147,6 @@ impl Inputs {
     }
 }
 
-/// Radians of the first window, and how much each is longer than the one before.
-const FIRST: f64 = 1.0;
-const GROWTH: f64 = 1.6;
-/// Steps of the search in each window.
-const STEPS: usize = 12;
-/// Longest step of the integrator, rad: errors of order 1e-7.
-const STEP: f64 = 0.05;
-
 impl Law {
     /// `None` where the tensor has no inverse.
     fn new(e: &Estimate, segment: usize) -> Option<Self> {
@@ -197,7 +190,7 @@ impl Law {
     /// From sample `i` to the next by the classical Runge–Kutta step, for p and its derivative with respect to the start.
     fn advance(&self, p: &mut Vector3<f64>, s: &mut Matrix3<f64>, time: f64, inputs: &Inputs, i: usize) {
         let speed = (self.inverse * (*p - inputs.at(i, 0.0).0)).norm();
-        let parts = (speed * time / STEP).ceil().clamp(1.0, 1000.0);
+        let parts = (speed * time / STEP).ceil().clamp(1.0, PARTS);
         let h = time / parts;
         for part in 0..parts as usize {
             let at = |share: f64| inputs.at(i, (part as f64 + share) / parts);
@@ -266,13 +259,13 @@ impl Law {
                     start += step;
                     (rates, normal, gradient, sum) = next;
                     damping *= 0.1;
-                    if gain < 1e-9 * sum {
+                    if gain < CLOSE * sum {
                         break;
                     }
-                } else if step.norm() < 1e-9 * speed {
+                } else if step.norm() < CLOSE * speed {
                     break;
                 } else {
-                    damping = f64::max(10.0 * damping, 1e-4);
+                    damping = f64::max(CHANGE * damping, DAMPING);
                 }
             }
             if count == times.len() {

@@ -1,6 +1,6 @@
 //! What was estimated beside the tensor, and what errors of the sensor would do to the moments.
 
-use crate::settings::TorqueModel;
+use crate::settings::torque::TorqueModel;
 
 /// A number that was estimated beside the tensor.
 #[non_exhaustive]

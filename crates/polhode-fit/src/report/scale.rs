@@ -1,72 +1,40 @@
 //! The absolute size of a tensor whose shape is known.
 
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use crate::settings::known::Known;
+use nalgebra::{Matrix3, SMatrix, SVector};
 
-use crate::cramer_rao::Motions;
+use crate::bound::motions::Motions;
 use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis, entries_of_coordinates, pair};
-use crate::weak::test_functions::Stretch;
+use crate::signal::stretch::Stretch;
 
-/// A quantity that is known besides the motion, in SI units: it gives the tensor its scale.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use polhode_fit::{Known, Settings};
-/// // from a pendulum: the moment about the z axis, kg m²
-/// let known = Known::Moment { axis: Vector3::z(), value: 2.4e-3 };
-/// let settings = Settings { known: Some(known), ..Settings::default() };
-/// assert_eq!(settings.known, Some(known));
-/// ```
-#[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Known {
-    /// The magnitude |L| of the angular momentum of every segment, kg m²/s.
-    Momentum(f64),
-    /// Twice the kinetic energy of every segment, kg m²/s².
-    TwiceEnergy(f64),
-    /// The moment about an axis (any non-zero vector in sensor axes), kg m².
-    Moment {
-        /// Any non-zero vector along the axis, sensor axes.
-        axis: Vector3<f64>,
-        /// The moment, kg m².
-        value: f64,
-    },
-    /// The trace of the tensor, kg m².
-    Trace(f64),
-}
-
-impl Known {
-    /// The given value.
-    pub(crate) fn value(self) -> f64 {
-        match self {
-            Known::Momentum(v) | Known::TwiceEnergy(v) | Known::Trace(v) | Known::Moment { value: v, .. } => {
-                v
-            }
+/// The trace that a known quantity gives to a tensor of shape `j` from rates in units of their root mean square `rms`, rad/s, whose noise has
+/// `variance` in those units.
+pub(crate) fn scale_of(
+    known: Known,
+    stretches: &[Stretch],
+    rms: f64,
+    j: &Matrix3<f64>,
+    variance: f64,
+) -> Scale {
+    match known {
+        Known::Trace(trace) => Scale { trace, slope: Coordinates::zeros(), mean: None },
+        Known::Moment { axis, value } => {
+            let n = axis.normalize();
+            let share = n.dot(&(j * n));
+            let trace = value / share;
+            Scale { trace, slope: pair(&n, &n) * (-trace / share), mean: None }
         }
-    }
-
-    /// The trace of a tensor of shape `j` from rates in units of their root mean square `rms`, rad/s, whose noise has
-    /// `variance` in those units.
-    pub(crate) fn scale(self, stretches: &[Stretch], rms: f64, j: &Matrix3<f64>, variance: f64) -> Scale {
-        match self {
-            Known::Trace(trace) => Scale { trace, slope: Coordinates::zeros(), mean: None },
-            Known::Moment { axis, value } => {
-                let n = axis.normalize();
-                let share = n.dot(&(j * n));
-                let trace = value / share;
-                Scale { trace, slope: pair(&n, &n) * (-trace / share), mean: None }
-            }
-            Known::TwiceEnergy(value) => {
-                let mean = Mean::new(stretches, *j, basis, variance);
-                // one by one, so that no square of a rate underflows
-                let trace = value / rms / rms / mean.value;
-                mean.scale(trace, 1.0)
-            }
-            Known::Momentum(value) => {
-                let change = |k| j * basis(k) + basis(k) * j;
-                let mean = Mean::new(stretches, j * j, change, variance);
-                let trace = value / rms / mean.value.sqrt();
-                mean.scale(trace, 0.5)
-            }
+        Known::TwiceEnergy(value) => {
+            let mean = Mean::new(stretches, *j, basis, variance);
+            // one by one, so that no square of a rate underflows
+            let trace = value / rms / rms / mean.value;
+            mean.scale(trace, 1.0)
+        }
+        Known::Momentum(value) => {
+            let change = |k| j * basis(k) + basis(k) * j;
+            let mean = Mean::new(stretches, j * j, change, variance);
+            let trace = value / rms / mean.value.sqrt();
+            mean.scale(trace, 0.5)
         }
     }
 }
@@ -157,6 +125,7 @@ impl Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
 
     /// Without motions the covariance holds for errors of shape and mean that are correlated as badly as they can be, in
     /// every direction, with the least trace of such bounds.
@@ -165,7 +134,7 @@ mod tests {
         let times: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i)).collect();
         let rates = times.iter().map(|t| Vector3::new(0.3, 1.0 - 0.1 * t, 0.2 * t)).collect();
         let j = Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45));
-        let scale = Known::TwiceEnergy(3.0).scale(&[Stretch::new(times, rates)], 1.0, &j, 1e-4);
+        let scale = scale_of(Known::TwiceEnergy(3.0), &[Stretch::new(times, rates)], 1.0, &j, 1e-4);
         let factor = Form::from_fn(|i, k| 1e-3 / (1.0 + ((3 * i + 2 * k) % 7) as f64));
         let shape = factor * factor.transpose();
         let of_shape = scale.covariance(&j, &shape, 0.0, None);

@@ -2,11 +2,11 @@
 
 use polhode::record::Record;
 
-use super::nuisance::SegmentSummary;
 use crate::physical::coordinates::Form;
-use crate::weak::covariance::Shape;
-use crate::weak::stacked::Stacked;
-use crate::weak::weak_estimate::{Part, WeakEstimate};
+use crate::report::nuisance::SegmentSummary;
+use crate::signal::covariance::Shape;
+use crate::solve::stacked::Stacked;
+use crate::solve::weak_estimate::{Part, WeakEstimate};
 
 /// One summary for each stretch of a weak estimate; `variance` is that of the noise in units of the rate `rms`.
 pub(crate) fn summaries(

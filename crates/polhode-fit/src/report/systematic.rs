@@ -1,38 +1,17 @@
 //! What errors of the sensor, and a wheel inside the body, that a fit takes to be zero would do to the moments.
 
+use crate::thresholds::errors::{MOST, WALK, WALK_STEPS, WHEEL};
 use nalgebra::Vector3;
 
-use super::columns::{named, unit};
-use super::nuisance::Systematic;
+use crate::columns::column::Column;
+use crate::columns::effect::Class;
+use crate::columns::rotor::Rotor;
+use crate::columns::sets::{reported_errors, walk_columns};
 use crate::physical::coordinates::{pair, tensor};
-use crate::weak::model::{Column, Kind, walk_columns};
-use crate::weak::stacked::responses;
-use crate::weak::test_functions::Stretch;
-use crate::weak::weak_estimate::WeakEstimate;
-
-/// Each error with its size: an offset of 0.01 rad/s, 1 per cent of scale, 0.01 rad of alignment, 1 ms of delay.
-const ERRORS: [(Kind, f64); 12] = [
-    (Kind::Scale, 0.01),
-    (Kind::AxisScale(0), 0.01),
-    (Kind::AxisScale(1), 0.01),
-    (Kind::AxisScale(2), 0.01),
-    (Kind::Misalignment(2), 0.01),
-    (Kind::Misalignment(1), 0.01),
-    (Kind::Misalignment(0), 0.01),
-    (Kind::Offset(0), 0.01),
-    (Kind::Offset(1), 0.01),
-    (Kind::Offset(2), 0.01),
-    (Kind::Skew(1), 1e-3),
-    (Kind::Skew(2), 1e-3),
-];
-/// Momentum of a wheel inside the body over that of the body.
-const WHEEL: f64 = 1e-3;
-/// Random walk of the offsets, rad/s per √s.
-const WALK: f64 = 1e-4;
-/// Steps of that walk in each segment: the slow ones matter.
-const WALK_STEPS: usize = 6;
-/// Columns of a walk beyond which it is not asked for: the segments are many, and each is short.
-const MOST: usize = 60;
+use crate::report::nuisance::Systematic;
+use crate::signal::stretch::Stretch;
+use crate::solve::stacked::responses;
+use crate::solve::weak_estimate::WeakEstimate;
 
 /// An error, and the columns that it is made of with the size of each; those of a random one are independent.
 struct Line {
@@ -44,13 +23,16 @@ struct Line {
 
 /// The errors that a fit with `weak.columns` takes to be zero, in the units of the fit.
 fn lines(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Line> {
-    let alone = |kind: Kind, size: f64, factor: f64| {
-        let (name, unit, _) = named(kind);
-        Line { name, unit, size, columns: vec![(Column::new(kind, None), size * factor)] }
+    let alone = |column: Column, size: f64, factor: f64| {
+        let label = column.label();
+        Line { name: label.name, unit: label.unit, size, columns: vec![(column, size * factor)] }
     };
-    let estimated = |kind: Kind| weak.columns.iter().any(|column| column.kind == kind);
-    let sensor = ERRORS.into_iter().filter(|(kind, _)| !estimated(*kind));
-    let mut lines: Vec<Line> = sensor.map(|(kind, size)| alone(kind, size, 1.0 / unit(kind, rms))).collect();
+    let estimated = |column: &Column| weak.columns.iter().any(|own| own.is_alike(column));
+    let sensor = reported_errors().into_iter().filter(|column| !estimated(column));
+    let line = |column: Column| {
+        Some(alone(column, column.effect().reported_size()?, 1.0 / column.label().factor(rms)))
+    };
+    let mut lines: Vec<Line> = sensor.filter_map(line).collect();
     let j = tensor(&weak.x());
     let (mut squares, mut count) = (0.0, 0.0);
     for rate in stretches.iter().flat_map(|stretch| &stretch.rates) {
@@ -58,11 +40,11 @@ fn lines(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Line> {
         count += 1.0;
     }
     let momentum = (squares / f64::max(count, 1.0)).sqrt();
-    lines.extend([0, 1, 2].map(|axis| alone(Kind::Rotor(axis), WHEEL, momentum)));
+    lines.extend([0, 1, 2].map(|axis| alone(Column::new(Rotor(axis), None), WHEEL, momentum)));
     let walk = walk_columns(stretches, WALK / rms / rms.sqrt(), WALK_STEPS);
-    let fitted = weak.columns.iter().any(|column| matches!(column.kind, Kind::Walk { .. }));
+    let fitted = weak.columns.iter().any(|column| column.class() == Class::Step);
     if walk.len() <= MOST && !fitted {
-        let step = |column: Column| column.prior.map(|size| (Column { prior: None, ..column }, size));
+        let step = |column: Column| column.prior.map(|size| (column.with_prior(None), size));
         let columns = walk.into_iter().filter_map(step).collect();
         lines.push(Line { name: "walk", unit: "rad/s/sqrt(s)", size: WALK, columns });
     }

@@ -1,8 +1,9 @@
 //! Whether the motion is torque-free, and the noise white.
 
+use crate::thresholds::trend::SIGNIFICANT;
 use nalgebra::Matrix3;
 
-use crate::weak::test_functions::Stretch;
+use crate::signal::stretch::Stretch;
 
 /// Relative change per second of a quantity that a free body keeps.
 #[non_exhaustive]
@@ -17,7 +18,7 @@ pub struct InvariantTrend {
 impl InvariantTrend {
     /// Whether it exceeds five standard deviations.
     pub fn significant(self) -> bool {
-        self.rate.abs() > 5.0 * self.sigma
+        self.rate.abs() > SIGNIFICANT * self.sigma
     }
 }
 
@@ -46,7 +47,7 @@ impl Whiteness {
 
     /// Whether it exceeds five standard deviations of white noise.
     pub fn significant(self) -> bool {
-        self.correlation.abs() > 5.0 * self.sigma
+        self.correlation.abs() > SIGNIFICANT * self.sigma
     }
 }
 

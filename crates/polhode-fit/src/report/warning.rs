@@ -2,10 +2,10 @@
 
 use core::fmt;
 
-use super::nuisance::Torque;
-use super::torque_free::{InvariantTrend, Whiteness};
 use crate::physical::constraint::ActiveConstraint;
-use crate::weak::mistaken_units::{MistakenUnit, alternatives};
+use crate::report::nuisance::Torque;
+use crate::report::torque_free::{InvariantTrend, Whiteness};
+use crate::verdict::mistaken_unit::{MistakenUnit, alternatives};
 
 /// What limits the use of an estimate. Its `Display` is a sentence.
 #[non_exhaustive]

@@ -1,15 +1,15 @@
 //! Which warnings an estimate needs.
 
+use crate::solve::weak_estimate::Convergence;
+use crate::thresholds::noise::DEVIATIONS;
+use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN};
 use polhode::record::Record;
 
-use super::estimate::Estimate;
-use super::warning::Warning;
-use crate::settings::TorqueModel;
-use crate::weak::mistaken_units::Better;
-use crate::weak::weak_estimate::WeakEstimate;
-
-/// Standard deviations by which noise alone does not carry five numbers off the physical tensors.
-const FAR: f64 = 6.0;
+use crate::report::estimate::Estimate;
+use crate::report::warning::Warning;
+use crate::settings::torque::TorqueModel;
+use crate::solve::other_units::Better;
+use crate::solve::weak_estimate::WeakEstimate;
 
 /// What warnings are drawn from, besides the estimate.
 pub(super) struct Grounds<'a> {
@@ -43,10 +43,10 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if short > 0 {
         list.push(Warning::ShortSegments { short, segments: record.segments.len() });
     }
-    if misfit > (1.0 + 5.0 * (2.0 / e.dof.max(1) as f64).sqrt()).max(1.2) {
+    if misfit > (1.0 + DEVIATIONS * (2.0 / e.dof.max(1) as f64).sqrt()).max(RESIDUALS) {
         list.push(Warning::Residuals { times: misfit.sqrt(), noise: e.noise_sigma });
     }
-    if !weak.still() {
+    if weak.convergence() != Convergence::Still {
         list.push(Warning::NotConverged { moved: weak.moved });
     }
     if let Some(b) = better {
@@ -78,7 +78,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);
     if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {
-        list.extend(e.residuals.iter().filter(|r| r.mean_square > 4.0 * median).map(|r| {
+        list.extend(e.residuals.iter().filter(|r| r.mean_square > NOISY * median).map(|r| {
             Warning::NoisySegment {
                 segment: r.segment,
                 start: record.segments[r.segment].times().first().copied().unwrap_or(0.0),
@@ -93,16 +93,16 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     // Frobenius, which no turn of the sensor changes
     let c = &e.free_covariance;
     let deviation = (c.trace() + c[(3, 3)] + c[(4, 4)] + c[(5, 5)]).sqrt();
-    if deviation > 5e-3 {
+    if deviation > UNCERTAIN {
         list.push(Warning::Uncertain { deviation });
     }
     for (low, high) in [(0, 1), (1, 2)] {
         let (a, b) = (e.sigma_principal[low], e.sigma_principal[high]);
-        if e.principal[high] - e.principal[low] < 3.0 * (a * a + b * b).sqrt() {
+        if e.principal[high] - e.principal[low] < APART * (a * a + b * b).sqrt() {
             list.push(Warning::EqualMoments { low: low + 1, high: high + 1 });
         }
     }
-    if e.dof < 20 {
+    if e.dof < FEW {
         list.push(Warning::FewEquations { dof: e.dof });
     }
     list

@@ -1,14 +1,16 @@
 //! A rate sensor and its errors.
 
+use crate::setters::setters;
 use nalgebra::{Matrix3, Vector3};
 use polhode::num::Random;
 
-use super::{SimulationError, check};
+use crate::simulate::{SimulationError, check};
 
 /// Errors of a rate sensor; the default has none.
 ///
 /// It reads `(1 + s) (1 + diag a) (1 + Γ) ω + b + walk + noise`, in steps of a quantum, with spikes on single components.
 /// Γ is symmetric: an antisymmetric part would turn the sensor as a whole, and with it the tensor that is fitted.
+#[non_exhaustive]
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gyroscope {
     /// Standard deviation of the white noise of each component, rad/s.
@@ -34,6 +36,22 @@ pub struct Gyroscope {
 }
 
 impl Gyroscope {
+    setters! {
+        options {}
+        values {
+            noise => with_noise(f64),
+            offset => with_offset(Vector3<f64>),
+            offset_walk => with_offset_walk(f64),
+            scale => with_scale(f64),
+            axis_scales => with_axis_scales(Vector3<f64>),
+            misalignment => with_misalignment(Vector3<f64>),
+            skew => with_skew(Vector3<f64>),
+            quantum => with_quantum(f64),
+            spikes => with_spikes(f64),
+            spike_size => with_spike_size(f64),
+        }
+    }
+
     pub(super) fn check(&self) -> Result<(), SimulationError> {
         check("the noise", &[self.noise], false)?;
         check("the offset", self.offset.as_slice(), true)?;

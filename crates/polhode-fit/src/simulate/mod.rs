@@ -63,7 +63,7 @@ pub fn simulate(
     sigma: f64,
     random: &mut Random,
 ) -> Result<Vec<Vector3<f64>>, SimulationError> {
-    let gyroscope = Gyroscope { noise: sigma, ..Gyroscope::default() };
+    let gyroscope = Gyroscope::default().with_noise(sigma);
     simulate_with(inertia, omega_body, times, &Disturbances::default(), &gyroscope, random)
 }
 
@@ -79,8 +79,8 @@ pub fn simulate(
 /// use polhode::{inertia::Inertia, num::Random};
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let omega = Vector3::new(0.1, 1.0, 0.2);
-/// let drag = Disturbances { relative_drag: 0.1, ..Disturbances::default() };
-/// let offset = Gyroscope { offset: Vector3::new(0.0, 0.0, 0.5), ..Gyroscope::default() };
+/// let drag = Disturbances::default().with_relative_drag(0.1);
+/// let offset = Gyroscope::default().with_offset(Vector3::new(0.0, 0.0, 0.5));
 /// let rates = simulate_with(&body, omega, &[0.0, 10.0], &drag, &offset, &mut Random::new(1))?;
 ///
 /// // |J ω| falls by the factor exp(−k t)

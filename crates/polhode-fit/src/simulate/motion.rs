@@ -1,16 +1,19 @@
 //! The motion of a body with drag, torques and a wheel.
 
+use crate::setters::setters;
+use crate::thresholds::simulate::{IMPULSES, LAST_TERM, STEPS, TERMS, TERMS_OF_IMPULSES};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::StateError;
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 
-use super::{SimulationError, check};
+use crate::simulate::{SimulationError, check};
 
 /// What acts on a simulated body, in its own axes; the default is the free body.
 ///
 /// p' = p × ω − k J ω − D ω + τ + white noise, with p = J ω + h and the momentum h(t) of a wheel.
+#[non_exhaustive]
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Disturbances {
     /// Drag k in proportion to the momentum of the body, 1/s.
@@ -27,17 +30,19 @@ pub struct Disturbances {
     pub wheel_rate: Vector3<f64>,
 }
 
-/// Impulses of the torque's noise for each sample.
-const IMPULSES: usize = 4;
-/// Terms of the power series in time, and those between impulses, which are near one another.
-const TERMS: usize = 24;
-const TERMS_OF_IMPULSES: usize = 10;
-/// Size of the last term against the momentum, where a step ends.
-const LAST_TERM: f64 = 1e-17;
-/// Steps after which a motion counts as too fast, for each sample.
-const STEPS: usize = 1000;
-
 impl Disturbances {
+    setters! {
+        options {}
+        values {
+            relative_drag => with_relative_drag(f64),
+            drag => with_drag(Vector3<f64>),
+            torque => with_torque(Vector3<f64>),
+            torque_noise => with_torque_noise(f64),
+            wheel => with_wheel(Vector3<f64>),
+            wheel_rate => with_wheel_rate(Vector3<f64>),
+        }
+    }
+
     pub(super) fn check(&self) -> Result<(), SimulationError> {
         check("the relative drag", &[self.relative_drag], false)?;
         check("a drag", self.drag.as_slice(), false)?;

@@ -143,32 +143,28 @@ impl Case {
         let wheel = share * momentum;
         Drawn {
             unknown_wheel: if self.wheel_known { Vector3::zeros() } else { share },
-            disturbances: Disturbances {
-                relative_drag: self.drag,
-                torque,
-                torque_noise: self.torque_noise,
-                wheel,
-                ..Disturbances::default()
-            },
-            gyroscope: Gyroscope {
-                noise,
-                offset,
-                offset_walk: self.offset_walk,
-                scale,
-                axis_scales,
-                misalignment,
-                skew: Vector3::new(0.0, self.skew, 2.0 * self.skew),
-                quantum: self.quantum,
-                spikes: self.spikes,
-                spike_size: 50.0 * noise,
-            },
+            disturbances: Disturbances::default()
+                .with_relative_drag(self.drag)
+                .with_torque(torque)
+                .with_torque_noise(self.torque_noise)
+                .with_wheel(wheel),
+            gyroscope: Gyroscope::default()
+                .with_noise(noise)
+                .with_offset(offset)
+                .with_offset_walk(self.offset_walk)
+                .with_scale(scale)
+                .with_axis_scales(axis_scales)
+                .with_misalignment(misalignment)
+                .with_skew(Vector3::new(0.0, self.skew, 2.0 * self.skew))
+                .with_quantum(self.quantum)
+                .with_spikes(self.spikes)
+                .with_spike_size(50.0 * noise),
         }
     }
 
     pub(super) fn settings(&self) -> Settings {
-        let sensor =
-            SensorPriors { offset: self.offset_prior, scale: self.scale_prior, ..SensorPriors::default() };
-        Settings { sensor, ..Settings::default() }
+        let sensor = SensorPriors::default().with_offset(self.offset_prior).with_scale(self.scale_prior);
+        Settings::default().with_sensor(sensor)
     }
 
     /// What the bound has to reckon with.

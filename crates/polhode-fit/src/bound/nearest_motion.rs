@@ -1,0 +1,142 @@
+//! The motion of a given tensor that is nearest to a stretch of samples.
+
+use crate::thresholds::bound::{CHANGE, DAMPING, LEFT, STARTS, STEPS, STILL, SURE, WIDTH};
+use core::ops::Range;
+
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+use crate::bound::sensitivity::{Euler, Sensitivity, Start};
+use crate::signal::stretch::Stretch;
+
+/// Means of neighbouring samples.
+struct Means {
+    times: Vec<f64>,
+    rates: Vec<Vector3<f64>>,
+    counts: Vec<f64>,
+}
+
+impl Means {
+    /// Over at most `width`; of zero width, the samples themselves.
+    fn new(s: &Stretch, width: f64) -> Means {
+        let mut means = Means { times: Vec::new(), rates: Vec::new(), counts: Vec::new() };
+        let mut low = 0;
+        while low < s.times.len() {
+            let high = s.times.partition_point(|&t| t <= s.times[low] + width).max(low + 1);
+            let count = (high - low) as f64;
+            // about the first, so that one sample stays as it is
+            let first = s.times[low];
+            means.times.push(first + s.times[low..high].iter().map(|t| t - first).sum::<f64>() / count);
+            means.rates.push(s.rates[low..high].iter().sum::<Vector3<f64>>() / count);
+            means.counts.push(count);
+            low = high;
+        }
+        means
+    }
+
+    /// Those at most `radius` from `time`.
+    fn around(&self, time: f64, radius: f64) -> Range<usize> {
+        let low = self.times.partition_point(|&t| t < time - radius);
+        low..self.times.partition_point(|&t| t <= time + radius)
+    }
+}
+
+/// How far a motion is from samples, and which way leads nearer.
+struct Distance {
+    information: Matrix3<f64>,
+    gradient: Vector3<f64>,
+    sum: f64,
+}
+
+impl Distance {
+    fn new(euler: &Euler, means: &Means, range: Range<usize>, start: &Start) -> Distance {
+        let mut distance = Distance { information: Matrix3::zeros(), gradient: Vector3::zeros(), sum: 0.0 };
+        let low = range.start;
+        euler.sweep(&means.times[range], start, |i, w, s: &Sensitivity<3>| {
+            let (count, residual) = (means.counts[low + i], means.rates[low + i] - w);
+            distance.information += s.transpose() * s * count;
+            distance.gradient += s.transpose() * residual * count;
+            distance.sum += residual.norm_squared() * count;
+        });
+        distance
+    }
+}
+
+/// The start of the motion nearest to the samples of a window by Levenberg's damped steps, the tensor held.
+fn descend(
+    euler: &Euler,
+    means: &Means,
+    range: Range<usize>,
+    mut start: Start,
+    variance: f64,
+) -> Option<(Start, f64)> {
+    let equations = 3.0 * range.len() as f64;
+    let mut now = Distance::new(euler, means, range.clone(), &start);
+    let mut damping = 0.0;
+    for _ in 0..STEPS {
+        let ridge = Matrix3::identity() * (damping * now.information.trace());
+        let step = (now.information + ridge).cholesky()?.solve(&now.gradient);
+        if step.dot(&now.gradient) <= STILL * variance.max(now.sum / equations) {
+            break;
+        }
+        let there = Start { rate: start.rate + step, ..start };
+        let next = Distance::new(euler, means, range.clone(), &there);
+        if next.sum < now.sum {
+            (start, now) = (there, next);
+            damping *= 0.1;
+        } else {
+            damping = (CHANGE * damping).max(DAMPING);
+        }
+    }
+    Some((start, now.sum)).filter(|(_, sum)| sum.is_finite())
+}
+
+/// The motion of a given tensor that explains the samples of a stretch; `None` if none was found.
+///
+/// The sum of squares over a whole stretch has many minima, one for each number of turns that the motion may be ahead or behind.
+/// A window within which the motion turns by little has one, and what it leaves uncertain of the motion in a window
+/// twice as long is small against a turn: each window starts where the one before has ended.
+pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Option<Start> {
+    let samples = Means::new(s, 0.0);
+    let coarse = Means::new(s, WIDTH);
+    let mean = s.rates.iter().sum::<Vector3<f64>>() / s.rates.len() as f64;
+    let variation: f64 = s.rates.iter().map(|w| (w - mean).norm_squared()).sum();
+    // noise of 3n components, and five standard deviations of the sum of their squares
+    let components = 3.0 * s.rates.len() as f64;
+    let noise = variance * components;
+    let slack = SURE * variance * (2.0 * components).sqrt();
+    STARTS.iter().find_map(|&(share, first)| {
+        let at = (share * s.times.len() as f64) as usize;
+        let mut start = Start { time: s.times[at], rate: local_cubic(s, at, first)? };
+        let mut radius = first;
+        loop {
+            let range = coarse.around(start.time, radius);
+            if range.len() >= 4 {
+                start = descend(euler, &coarse, range, start, variance)?.0;
+            }
+            if radius >= s.duration() || radius.is_infinite() {
+                break;
+            }
+            radius *= 2.0;
+        }
+        let (start, left) = descend(euler, &samples, 0..s.times.len(), start, variance)?;
+        (left - noise <= LEFT * (variation - noise).max(0.0) + slack).then_some(start)
+    })
+}
+
+/// Value at sample `at` of the cubic through all samples within `radius`, or the nearest few.
+fn local_cubic(s: &Stretch, at: usize, radius: f64) -> Option<Vector3<f64>> {
+    let t = s.times[at];
+    let low = s.times.partition_point(|&u| u < t - radius).min(at.saturating_sub(3));
+    let high = s.times.partition_point(|&u| u <= t + radius).max((at + 4).min(s.times.len()));
+    let unit = (s.times[high - 1] - s.times[low]).max(f64::MIN_POSITIVE);
+    let mut normal = SMatrix::<f64, 4, 4>::zeros();
+    let mut right = SMatrix::<f64, 4, 3>::zeros();
+    for i in low..high {
+        let u = (s.times[i] - t) / unit;
+        let powers = SMatrix::<f64, 4, 1>::new(1.0, u, u * u, u * u * u);
+        normal += powers * powers.transpose();
+        right += powers * s.rates[i].transpose();
+    }
+    let solution = normal.cholesky()?.solve(&right);
+    Some(solution.row(0).transpose())
+}

@@ -1,0 +1,139 @@
+//! How a free motion depends on its tensor and its start, by the variational equations.
+
+use crate::thresholds::bound::{PARTS, STEP};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+use crate::physical::coordinates::{Form, basis};
+use crate::signal::terms::cross_derivative;
+
+/// ∂ω/∂(x, ω₀), or ∂ω/∂ω₀ alone where N is 3.
+pub(super) type Sensitivity<const N: usize> = SMatrix<f64, 3, N>;
+
+pub(super) struct Euler {
+    j: Matrix3<f64>,
+    inverse: Matrix3<f64>,
+    bases: [Matrix3<f64>; 5],
+}
+
+impl Euler {
+    pub(super) fn new(j: Matrix3<f64>) -> Option<Euler> {
+        Some(Euler { j, inverse: j.try_inverse()?, bases: core::array::from_fn(basis) })
+    }
+
+    /// ω' and S'.
+    fn derivative<const N: usize>(
+        &self,
+        w: &Vector3<f64>,
+        s: &Sensitivity<N>,
+    ) -> (Vector3<f64>, Sensitivity<N>) {
+        let rate = -self.inverse * w.cross(&(self.j * w));
+        let mut ds = (self.inverse * -cross_derivative(&self.j, w)) * s;
+        for (k, b) in self.bases.iter().enumerate().take(N - 3) {
+            let own = self.inverse * (w.cross(&(b * w)) + b * rate);
+            ds.set_column(k, &(ds.column(k) - own));
+        }
+        (rate, ds)
+    }
+
+    /// The classical Runge–Kutta step, in as many parts as the rate asks for.
+    fn advance<const N: usize>(&self, w: &mut Vector3<f64>, s: &mut Sensitivity<N>, time: f64) {
+        let speed = (self.inverse * cross_derivative(&self.j, w)).norm();
+        let parts = (speed * time.abs() / STEP).ceil().clamp(1.0, PARTS);
+        let h = time / parts;
+        for _ in 0..parts as usize {
+            let (w1, s1) = self.derivative(w, s);
+            let (w2, s2) = self.derivative(&(*w + w1 * (0.5 * h)), &(*s + s1 * (0.5 * h)));
+            let (w3, s3) = self.derivative(&(*w + w2 * (0.5 * h)), &(*s + s2 * (0.5 * h)));
+            let (w4, s4) = self.derivative(&(*w + w3 * h), &(*s + s3 * h));
+            *w += (w1 + (w2 + w3) * 2.0 + w4) * (h / 6.0);
+            *s += (s1 + (s2 + s3) * 2.0 + s4) * (h / 6.0);
+        }
+    }
+
+    /// The motion through `start`, with its sensitivities: `visit` sees it at each of `times`.
+    pub(super) fn sweep<const N: usize>(
+        &self,
+        times: &[f64],
+        start: &Start,
+        mut visit: impl FnMut(usize, &Vector3<f64>, &Sensitivity<N>),
+    ) {
+        let identity = Sensitivity::from_fn(|i, k| if k + 3 == i + N { 1.0 } else { 0.0 });
+        let split = times.partition_point(|&t| t < start.time);
+        let mut go = |i: usize, last: &mut f64, w: &mut Vector3<f64>, s: &mut Sensitivity<N>| {
+            self.advance(w, s, times[i] - *last);
+            *last = times[i];
+            visit(i, w, s);
+        };
+        let (mut last, mut w, mut s) = (start.time, start.rate, identity);
+        (split..times.len()).for_each(|i| go(i, &mut last, &mut w, &mut s));
+        let (mut last, mut w, mut s) = (start.time, start.rate, identity);
+        (0..split).rev().for_each(|i| go(i, &mut last, &mut w, &mut s));
+    }
+
+    /// Σ Sᵀ S.
+    ///
+    /// Among samples within a step of the integrator, S is the cubic through the first and the last of them with their
+    /// slopes, which is as near to it as the integrator is.
+    pub(super) fn information(&self, times: &[f64], start: &Start) -> SMatrix<f64, 8, 8> {
+        let mut sum = SMatrix::zeros();
+        let speed = (self.inverse * cross_derivative(&self.j, &start.rate)).norm();
+        let nodes = nodes(times, STEP / speed);
+        let at: Vec<f64> = nodes.iter().map(|&node| times[node]).collect();
+        let (mut first, mut last): (Option<Node>, Option<Node>) = (None, None);
+        self.sweep(&at, start, |i, w, s: &Sensitivity<8>| {
+            sum += s.transpose() * s;
+            let slope = self.derivative(w, s).1;
+            // the sweep goes forth from the start, and then back from it
+            let before = last.replace((i, *s, slope)).filter(|(k, ..)| k.abs_diff(i) == 1);
+            let origin = first.get_or_insert((i, *s, slope));
+            if let Some((k, from, from_slope)) = before.or((origin.0 == i + 1).then_some(*origin)) {
+                let (low, high) = (nodes[i.min(k)], nodes[i.max(k)]);
+                let length = at[i] - at[k];
+                let parts = [from, from_slope * length, *s, slope * length];
+                let weights = times[low + 1..high].iter().map(|t| hermite((t - at[k]) / length));
+                let mut squares = SMatrix::<f64, 4, 4>::zeros();
+                weights.for_each(|h| squares += h * h.transpose());
+                for (a, first) in parts.iter().enumerate() {
+                    let own = (0..4).map(|b| parts[b] * squares[(a, b)]).sum::<Sensitivity<8>>();
+                    sum += first.transpose() * own;
+                }
+            }
+        });
+        sum
+    }
+}
+
+/// Index of a node, S there, and its slope.
+type Node = (usize, Sensitivity<8>, Sensitivity<8>);
+
+/// Samples of which the first and the last are two, each at most `width` from the one before, or the next sample.
+fn nodes(times: &[f64], width: f64) -> Vec<usize> {
+    let mut nodes = Vec::new();
+    let mut node = 0;
+    while node < times.len() {
+        nodes.push(node);
+        let within = times[node + 1..].iter().take_while(|t| **t <= times[node] + width).count();
+        node += within.max(1);
+    }
+    nodes
+}
+
+/// Weights of the first value, its slope, the last value and its slope, in the cubic through both.
+fn hermite(u: f64) -> SVector<f64, 4> {
+    let v = 1.0 - u;
+    SVector::from([(1.0 + 2.0 * u) * v * v, u * v * v, u * u * (3.0 - 2.0 * u), -u * u * v])
+}
+
+/// Where a motion is at one time.
+#[derive(Clone, Copy)]
+pub(super) struct Start {
+    pub(super) time: f64,
+    pub(super) rate: Vector3<f64>,
+}
+
+/// Information about x alone.
+pub(super) fn of_tensor(information: &SMatrix<f64, 8, 8>) -> Option<Form> {
+    let own = information.fixed_view::<3, 3>(5, 5).into_owned().cholesky()?;
+    let mixed = information.fixed_view::<3, 5>(5, 0).into_owned();
+    Some(information.fixed_view::<5, 5>(0, 0) - mixed.transpose() * own.solve(&mixed))
+}

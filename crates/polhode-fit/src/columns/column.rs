@@ -1,0 +1,117 @@
+//! A column of the weak equations: an unknown, its prior, and the stretch that it acts on.
+
+use crate::columns::axis_scale::AxisScale;
+use crate::columns::constant::Constant;
+use crate::columns::drag::Drag;
+use crate::columns::effect::{Class, Effect, Label};
+use crate::columns::input::Input;
+use crate::columns::misalignment::Misalignment;
+use crate::columns::offset::Offset;
+use crate::columns::quadratic::Quadratic;
+use crate::columns::rotor::Rotor;
+use crate::columns::scale::Scale;
+use crate::columns::skew::Skew;
+use crate::columns::viscous::Viscous;
+use crate::columns::walk::Walk;
+use crate::physical::coordinates::{Coordinates, tensor};
+use crate::signal::stretch::Stretch;
+use crate::signal::terms::Terms;
+
+macro_rules! kinds {
+    ($($name:ident),*) => {
+        /// Every unknown; what it does stands in its own file.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub(crate) enum Kind {
+            $(#[doc = concat!("See `", stringify!($name), "`.")] $name($name),)*
+        }
+
+        impl Kind {
+            fn effect(&self) -> &dyn Effect {
+                match self {
+                    $(Kind::$name(effect) => effect,)*
+                }
+            }
+        }
+
+        $(impl From<$name> for Kind {
+            fn from(effect: $name) -> Kind {
+                Kind::$name(effect)
+            }
+        })*
+    };
+}
+
+kinds!(Drag, Viscous, Quadratic, Constant, Offset, Scale, AxisScale, Misalignment, Skew, Walk, Rotor, Input);
+
+/// An unknown and the standard deviation of its prior about zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Column {
+    kind: Kind,
+    pub(crate) prior: Option<f64>,
+    /// The one stretch that it acts on, by its number in the record; without it all.
+    pub(crate) segment: Option<usize>,
+}
+
+impl Column {
+    /// Of all stretches.
+    pub(crate) fn new(kind: impl Into<Kind>, prior: Option<f64>) -> Column {
+        Column { kind: kind.into(), prior, segment: None }
+    }
+
+    /// With this prior, or none.
+    pub(crate) fn with_prior(self, prior: Option<f64>) -> Column {
+        Column { prior, ..self }
+    }
+
+    /// Of one stretch alone, by its number in the record.
+    pub(crate) fn of_segment(self, segment: usize) -> Column {
+        Column { segment: Some(segment), ..self }
+    }
+
+    /// What it does.
+    pub(crate) fn effect(&self) -> &dyn Effect {
+        self.kind.effect()
+    }
+
+    pub(crate) fn label(&self) -> Label {
+        self.effect().label()
+    }
+
+    pub(crate) fn class(&self) -> Class {
+        self.effect().class()
+    }
+
+    /// Whether both are the same unknown, whatever their priors and stretches are.
+    pub(crate) fn is_alike(&self, other: &Column) -> bool {
+        self.kind == other.kind
+    }
+
+    pub(crate) fn acts_on(&self, stretch: &Stretch) -> bool {
+        self.segment.is_none_or(|segment| segment == stretch.index)
+    }
+}
+
+/// Values of all unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Unknowns {
+    pub(crate) x: Coordinates,
+    /// One for each column.
+    pub(crate) c: Vec<f64>,
+}
+
+impl Unknowns {
+    pub(crate) fn at(x: Coordinates, columns: &[Column]) -> Self {
+        Unknowns { x, c: vec![0.0; columns.len()] }
+    }
+}
+
+/// Torque and sensor at `unknowns`, of the columns that act on a stretch.
+pub(crate) fn terms_of(columns: &[Column], unknowns: &Unknowns, stretch: &Stretch) -> Terms {
+    let mut terms = Terms::at(tensor(&unknowns.x));
+    let acting = columns.iter().zip(&unknowns.c).filter(|(column, _)| column.acts_on(stretch));
+    for (column, &value) in acting {
+        column.effect().add_to(&mut terms, value);
+    }
+    terms.viscous += terms.j * terms.drag;
+    terms
+}

@@ -1,0 +1,133 @@
+//! What the user may set.
+
+pub(crate) mod known;
+pub(crate) mod sensor;
+pub(crate) mod torque;
+
+use crate::error::FitError;
+use crate::physical::limits::Limit;
+use crate::physical::prior::Prior;
+use crate::setters::setters;
+use crate::settings::known::Known;
+use crate::settings::sensor::SensorPriors;
+use crate::settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
+
+/// What the user may set; the default leaves everything to the record.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode_fit::{Known, Limit, Settings};
+/// // test functions of half width 0.5 s, at least 0.4 of the trace about z, and a trace of 5.6 kg m²
+/// let limit = Limit { axis: Vector3::z(), at_least: Some(0.4), at_most: None };
+/// let settings = Settings::default().with_radius(0.5).with_limits(vec![limit]).with_known(Known::Trace(5.6));
+/// assert!(settings.noise.is_none() && settings.check_units);
+/// ```
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Half width of the test functions, s; chosen by least predicted covariance without it.
+    pub radius: Option<f64>,
+    /// Standard deviation of the noise of one component, rad/s, at least 1e-10 of the rates; read from the samples
+    /// without it.
+    pub noise: Option<f64>,
+    /// What is known of the moments beforehand.
+    pub limits: Vec<Limit>,
+    /// A tensor that is known beforehand: it is joined with the record, and supplies what the record leaves open.
+    pub prior: Option<Prior>,
+    /// What gives the absolute size.
+    pub known: Option<Known>,
+    /// Whether a unit that explains the record better is an error.
+    pub check_units: bool,
+    /// The torque that acts.
+    pub torque: TorqueModel,
+    /// What shares its coefficients.
+    pub torque_scope: TorqueScope,
+    /// Step of the readings, rad/s; found in the readings without it. Its rounding is noise of variance
+    /// q²/12, times the number of equal readings in a row.
+    pub quantum: Option<f64>,
+    /// Random walk of the offset of each axis: standard deviation after 1 s, rad/s per √s; none without it.
+    pub offset_walk: Option<f64>,
+    /// The torque noise.
+    pub torque_noise: TorqueNoise,
+    /// What may be wrong with the sensor.
+    pub sensor: SensorPriors,
+    /// Whether single samples that stand out of their neighbours are left out.
+    pub leave_out_spikes: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            radius: None,
+            noise: None,
+            limits: Vec::new(),
+            prior: None,
+            known: None,
+            check_units: true,
+            torque: TorqueModel::default(),
+            torque_scope: TorqueScope::default(),
+            quantum: None,
+            offset_walk: None,
+            torque_noise: TorqueNoise::default(),
+            sensor: SensorPriors::default(),
+            leave_out_spikes: true,
+        }
+    }
+}
+
+impl Settings {
+    setters! {
+        options {
+            radius => with_radius(f64),
+            noise => with_noise(f64),
+            prior => with_prior(Prior),
+            known => with_known(Known),
+            quantum => with_quantum(f64),
+            offset_walk => with_offset_walk(f64),
+        }
+        values {
+            limits => with_limits(Vec<Limit>),
+            check_units => with_check_units(bool),
+            torque => with_torque(TorqueModel),
+            torque_scope => with_torque_scope(TorqueScope),
+            torque_noise => with_torque_noise(TorqueNoise),
+            sensor => with_sensor(SensorPriors),
+            leave_out_spikes => with_leave_out_spikes(bool),
+        }
+    }
+
+    /// Whether each value is one that a fit can use.
+    pub(super) fn check(&self) -> Result<(), FitError> {
+        let known = self.known.map(Known::value);
+        let density = match self.torque_noise {
+            TorqueNoise::Given(density) => Some(density),
+            TorqueNoise::None | TorqueNoise::Fitted => None,
+        };
+        let own = [
+            ("the radius", self.radius),
+            ("the noise", self.noise),
+            ("the known quantity", known),
+            ("the torque noise", density),
+            ("the quantum", self.quantum),
+            ("the walk of the offset", self.offset_walk),
+        ];
+        for (name, value) in own.into_iter().chain(self.sensor.named()) {
+            if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+                return Err(FitError::Setting { name, value });
+            }
+        }
+        if let Some(prior) = &self.prior {
+            prior.check()?;
+        }
+        if let Some(Known::Moment { axis, .. }) = self.known {
+            let size = axis.norm();
+            if !(size > 0.0 && size.is_finite()) {
+                return Err(FitError::Setting {
+                    name: "the length of the axis of the known moment",
+                    value: size,
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,48 @@
+//! The torque that a fit reckons with.
+
+/// A torque that acts on the body besides what the record measures. Coefficients are per trace of the tensor, so that
+/// they need no absolute scale.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TorqueModel {
+    /// None: the body is free.
+    None,
+    /// Drag that slows every rotation alike: τ = −k J ω, k ≥ 0 in 1/s.
+    Drag,
+    /// Viscous drag with a coefficient for each sensor axis: τ = −D ω, D diagonal.
+    Drag3,
+    /// Viscous drag with a symmetric matrix: τ = −D ω, six coefficients.
+    Drag6,
+    /// Drag that grows with the square of the rate: τ = −c |ω| J ω, c ≥ 0, per radian.
+    Quadratic,
+    /// A torque that is constant in body axes.
+    Constant,
+    /// The first of no torque, [`Drag`](Self::Drag) or [`Constant`](Self::Constant), and [`Drag3`](Self::Drag3) that
+    /// the next one does not surpass in restricted likelihood.
+    #[default]
+    Auto,
+}
+
+/// What shares the coefficients of a torque.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TorqueScope {
+    /// All segments of a record.
+    #[default]
+    Record,
+    /// Each segment has its own.
+    Segment,
+}
+
+/// White torque noise: what acts on the body at random, as turbulence does.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum TorqueNoise {
+    /// None.
+    None,
+    /// A white angular acceleration ξ of this power spectral density, (rad/s²)² s, and the torque J ξ.
+    Given(f64),
+    /// By restricted likelihood, for each segment: a torque J ξ, or one that is alike along all axes.
+    #[default]
+    Fitted,
+}

@@ -1,0 +1,204 @@
+//! The covariance of the weak equations of one stretch by the noise of the rates and by torque noise: a narrow band.
+
+use multiversion::multiversion;
+use nalgebra::{Matrix3, Vector3};
+
+use crate::physical::coordinates::ENTRIES;
+use crate::signal::banded::{Banded, REGISTER, likelihood};
+use crate::signal::moments::{Group, groups};
+use crate::signal::stretch::Stretch;
+use crate::signal::terms::{Terms, cross_derivative};
+use crate::signal::test_functions::{Seen, TestFunctions};
+
+/// Variances of the noise of the rates and of the torque noise, over the variance of the noise of the record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Levels {
+    pub(crate) white: f64,
+    pub(crate) torque: f64,
+    pub(crate) shape: Shape,
+}
+
+/// Along which axes torque noise acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// As the moments of inertia: J ξ with white ξ, an angular acceleration that is alike along all axes.
+    Moments,
+    /// Alike along all axes, with the same mean square as the other at a sphere.
+    Alike,
+}
+
+impl Levels {
+    pub(crate) const WHITE: Levels = Levels { white: 1.0, torque: 0.0, shape: Shape::Moments };
+}
+
+/// The covariance of the components of torque noise of level 1.
+pub(crate) fn torque_shape(shape: Shape, j: &Matrix3<f64>) -> Matrix3<f64> {
+    match shape {
+        Shape::Moments => j * j,
+        Shape::Alike => Matrix3::identity() / 9.0,
+    }
+}
+
+/// The covariance of the equations of one stretch at any levels of noise.
+#[derive(Clone)]
+pub(crate) struct Covariance {
+    tests: TestFunctions,
+    j: Matrix3<f64>,
+    /// By the noise of the rates, per its variance.
+    noise: Banded,
+}
+
+impl Covariance {
+    /// Of equations that were linearised at the samples of `stretch` less their `noise`.
+    pub(crate) fn new(
+        stretch: &Stretch,
+        noise: &[Vector3<f64>],
+        terms: &Terms,
+        tests: &TestFunctions,
+    ) -> Self {
+        let noise = of_rates(groups(stretch, noise, tests.radius), terms, tests);
+        Covariance { tests: tests.clone(), j: terms.j, noise }
+    }
+
+    /// Its factor; `None` where it is not positive, as for a tensor far from physical.
+    pub(crate) fn factor(&self, levels: Levels) -> Option<Banded> {
+        self.clone().into_factor(levels)
+    }
+
+    /// The same, in the place of the covariance.
+    pub(crate) fn into_factor(mut self, levels: Levels) -> Option<Banded> {
+        if levels != Levels::WHITE {
+            let torque = self.of_torque(levels);
+            for j in 0..3 * self.tests.count {
+                let used = self.used(j);
+                let column = self.noise.column_mut(j);
+                for (entry, torque) in column[..used].iter_mut().zip(&torque[j % 3]) {
+                    *entry = *entry * levels.white + torque;
+                }
+            }
+        }
+        self.noise.factor().then_some(self.noise)
+    }
+
+    /// log |C| and eᵀ C⁻¹ e of residuals `e`.
+    pub(crate) fn likelihood(&self, e: &[f64], levels: Levels) -> Option<(f64, f64)> {
+        let torque = self.of_torque(levels);
+        likelihood(3 * self.tests.reach + 2, e, |j, into| {
+            let each = self.noise.column(j).iter().zip(&torque[j % 3]);
+            for (entry, (noise, torque)) in into[..self.used(j)].iter_mut().zip(each) {
+                *entry = noise * levels.white + torque;
+            }
+        })
+    }
+
+    /// Mean variances of the residuals by noise of the rates and by torque noise of level 1.
+    pub(crate) fn mean_variances(&self) -> (f64, f64) {
+        let size = 3 * self.tests.count;
+        let white = (0..size).map(|i| self.noise.get(i, i)).sum::<f64>() / size as f64;
+        (white, self.tests.overlaps().first().copied().unwrap_or(0.0) / 9.0)
+    }
+
+    /// How many entries of a column the matrix has.
+    fn used(&self, column: usize) -> usize {
+        (3 * self.tests.count - column).min(3 * self.tests.reach + 3)
+    }
+
+    /// What torque noise adds to the columns of each test, from their diagonals down.
+    fn of_torque(&self, levels: Levels) -> [Vec<f64>; 3] {
+        let shape = torque_shape(levels.shape, &self.j);
+        [0, 1, 2].map(|q| {
+            let mut column = vec![0.0; 3 * self.tests.reach + 3];
+            for (row, overlap) in self.tests.overlaps().iter().enumerate() {
+                for p in if row == 0 { q } else { 0 }..3 {
+                    column[3 * row + p - q] = levels.torque * shape[(p, q)] * overlap;
+                }
+            }
+            column
+        })
+    }
+}
+
+/// Room for the rows of all tests that overlap at one time, and for a column from any of them on.
+const BLOCKS: usize = 64;
+
+/// Σ A Aᵀ with A = −φ' J + φ K by pairs of tests.
+fn of_rates(groups: impl Iterator<Item = Group>, terms: &Terms, tests: &TestFunctions) -> Banded {
+    let mut sum = Banded::zeros(3 * tests.count, 3 * tests.reach + 2);
+    let jj = terms.j * terms.j;
+    // K is linear in the rate
+    let per_rate: [Matrix3<f64>; 3] =
+        core::array::from_fn(|a| cross_derivative(&terms.j, &terms.sensor.column(a).into_owned()));
+    let pairs: [Matrix3<f64>; 6] = core::array::from_fn(|entry| {
+        let (a, b) = ENTRIES[entry];
+        let product = per_rate[a] * per_rate[b].transpose();
+        if a == b { product } else { product + product.transpose() }
+    });
+    for group in groups {
+        let k = terms.by_rate(&terms.rate(&group.reading), &group.wheel);
+        let mut kk = k * k.transpose();
+        for (pair, (a, b)) in pairs.iter().zip(ENTRIES) {
+            kk += pair * group.scatter[(a, b)];
+        }
+        let products = Products {
+            jj: jj * group.square,
+            jk: terms.j * k.transpose() * group.square,
+            kk: kk * group.square,
+        };
+        add_pairs(&mut sum, tests, group.time, &products);
+    }
+    sum
+}
+
+/// J J, J Kᵀ and K Kᵀ of a group of samples.
+struct Products {
+    jj: Matrix3<f64>,
+    jk: Matrix3<f64>,
+    kk: Matrix3<f64>,
+}
+
+/// Adds A Aᵀ of a group of samples at `time`.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn add_pairs(sum: &mut Banded, tests: &TestFunctions, time: f64, products: &Products) {
+    let Products { jj, jk, kk } = products;
+    let kj = jk.transpose();
+    let seen = Seen::new(tests, time);
+    let rows = 3 * seen.count;
+    // the blocks of all tests in a column of this one: one multiplies its φ', the other its φ
+    let (mut slopes, mut values) = ([0.0; BLOCKS], [0.0; BLOCKS]);
+    for k in 0..rows {
+        (slopes[k], values[k]) = (seen.slope[k / 3], seen.value[k / 3]);
+    }
+    let (mut by_slope, mut by_value) = ([[0.0; BLOCKS]; 3], [[0.0; BLOCKS]; 3]);
+    for q in 0..3 {
+        let column = |m: &Matrix3<f64>| {
+            let (x, y, z) = (m[(0, q)], m[(1, q)], m[(2, q)]);
+            let mut column = [0.0; BLOCKS / 2];
+            for three in column.chunks_exact_mut(3) {
+                three.copy_from_slice(&[x, y, z]);
+            }
+            column
+        };
+        let (jj, kj, jk, kk) = (column(jj), column(&kj), column(jk), column(kk));
+        for k in 0..BLOCKS / 2 {
+            by_slope[q][k] = kj[k] * values[k] - jj[k] * slopes[k];
+            by_value[q][k] = kk[k] * values[k] - jk[k] * slopes[k];
+        }
+    }
+    for row in 0..seen.count {
+        let (c, d) = (seen.slope[row], seen.value[row]);
+        for q in 0..3 {
+            let from = 3 * row + q;
+            // whole registers: behind the last row stand zeros
+            let column = sum.column_mut(3 * (seen.first + row) + q);
+            // tests that only touch add nothing
+            let used = ((rows - from).div_ceil(REGISTER) * REGISTER).min(column.len());
+            let values = by_value[q][from..from + used].chunks_exact(REGISTER);
+            let slopes = by_slope[q][from..from + used].chunks_exact(REGISTER);
+            for ((into, value), slope) in column[..used].chunks_exact_mut(REGISTER).zip(values).zip(slopes) {
+                for k in 0..REGISTER {
+                    into[k] += value[k] * d - slope[k] * c;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Sums of a stretch against its test functions. They hold all that the weak equations ask of the samples, whatever the
+//! tensor, the torque and the errors of the sensor are.
+
+use crate::thresholds::groups::{GROUPS, LONGEST};
+use core::ops::Range;
+
+use multiversion::multiversion;
+use nalgebra::{Matrix3, Vector3};
+
+use crate::signal::stretch::{KnownInputs, Stretch};
+use crate::signal::test_functions::{LANES, Seen, TestFunctions};
+
+/// Sums against one test function φ with the weights w of the samples.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sums {
+    /// Σ w φ' y.
+    pub(crate) slope: Vector3<f64>,
+    /// Σ w φ y.
+    pub(crate) value: Vector3<f64>,
+    /// Σ w φ y yᵀ.
+    pub(crate) square: Matrix3<f64>,
+    /// Σ w φ y hᵀ.
+    pub(crate) mixed: Matrix3<f64>,
+}
+
+/// Sums that do not depend on the rates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inputs {
+    /// Σ w φ' h.
+    pub(crate) slope: Vector3<f64>,
+    /// Σ w φ h.
+    pub(crate) value: Vector3<f64>,
+    /// Σ w φ τ.
+    pub(crate) torque: Vector3<f64>,
+}
+
+/// Sums against each test function.
+pub(crate) struct Moments {
+    sums: Running,
+    /// Of wheel momenta and known torques, where the record has them.
+    pub(crate) inputs: Vec<Inputs>,
+    /// Σ w φ y hᵀ and Σ w φ ω hᵀ, where the record has wheel momenta.
+    mixed: Vec<[Matrix3<f64>; 2]>,
+}
+
+/// The six different entries of v vᵀ.
+fn products(v: &Vector3<f64>) -> [f64; 6] {
+    [v.x * v.x, v.y * v.y, v.z * v.z, v.x * v.y, v.x * v.z, v.y * v.z]
+}
+
+fn full(s: &[f64; 6]) -> Matrix3<f64> {
+    Matrix3::new(s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2])
+}
+
+/// Numbers of a sample that are summed with φ': y, ω; and with φ: 1, y, ω, y yᵀ − n nᵀ, ω ωᵀ.
+const WITH_SLOPE: usize = 6;
+const WITH_VALUE: usize = 19;
+
+/// Sums over samples, those of one kind side by side for all tests, and room behind them.
+type Running = [Vec<f64>; WITH_SLOPE + WITH_VALUE];
+
+/// The same of the tests that are seen together, in whole registers.
+#[repr(align(64))]
+struct Near([f64; LANES]);
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn add(stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions, sums: &mut Running) {
+    // each at a place of its own, so that the compiler adds test to test and not kind to kind
+    let mut near: [Box<Near>; WITH_SLOPE + WITH_VALUE] =
+        core::array::from_fn(|_| Box::new(Near([0.0; LANES])));
+    let mut first = 0;
+    for (i, n) in noise.iter().enumerate() {
+        let (y, weight) = (stretch.rates[i], stretch.weights[i]);
+        let w = y - n;
+        let seen = Seen::new(tests, stretch.times[i]);
+        if seen.first != first {
+            hand_over(&mut near, first, sums);
+            first = seen.first;
+        }
+        let (of_readings, of_noise, of_motion) = (products(&y), products(n), products(&w));
+        let mut slope = [0.0; WITH_SLOPE];
+        let mut value = [weight; WITH_VALUE];
+        for k in 0..3 {
+            slope[k] = weight * y[k];
+            slope[3 + k] = weight * w[k];
+        }
+        value[1..7].copy_from_slice(&slope);
+        for k in 0..6 {
+            value[7 + k] *= of_readings[k] - of_noise[k];
+            value[13 + k] *= of_motion[k];
+        }
+        for (near, number) in near[..WITH_SLOPE].iter_mut().zip(&slope) {
+            for k in 0..LANES {
+                near.0[k] += seen.slope[k] * number;
+            }
+        }
+        for (near, number) in near[WITH_SLOPE..].iter_mut().zip(&value) {
+            for k in 0..LANES {
+                near.0[k] += seen.value[k] * number;
+            }
+        }
+    }
+    hand_over(&mut near, first, sums);
+}
+
+/// Moves the sums of the tests from `first` on to those of all.
+fn hand_over(near: &mut [Box<Near>], first: usize, sums: &mut Running) {
+    for (near, sums) in near.iter_mut().zip(sums) {
+        for (near, sum) in near.0.iter_mut().zip(&mut sums[first..first + LANES]) {
+            *sum += *near;
+            *near = 0.0;
+        }
+    }
+}
+
+impl Moments {
+    pub(crate) fn new(stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions) -> Moments {
+        let mut sums: Running = core::array::from_fn(|_| tests.room());
+        add(stretch, noise, tests, &mut sums);
+        let mut moments = Moments { sums, inputs: Vec::new(), mixed: Vec::new() };
+        moments.add_inputs(stretch, noise, tests);
+        moments
+    }
+
+    /// Σ w φ.
+    pub(crate) fn area(&self, m: usize) -> f64 {
+        self.sums[WITH_SLOPE][m]
+    }
+
+    /// At the readings; in the squares n nᵀ is taken off, which makes the equations linear in the noise n.
+    pub(crate) fn readings(&self, m: usize) -> Sums {
+        self.of(m, [0, 1, 7], 0)
+    }
+
+    /// At the readings less the noise.
+    pub(crate) fn motion(&self, m: usize) -> Sums {
+        self.of(m, [3, 4, 13], 1)
+    }
+
+    /// The sums of one kind, of which the slopes, the values and the squares begin at these places.
+    fn of(&self, m: usize, [slope, value, square]: [usize; 3], mixed: usize) -> Sums {
+        let three = |first: usize| Vector3::from([0, 1, 2].map(|k| self.sums[first + k][m]));
+        Sums {
+            slope: three(slope),
+            value: three(WITH_SLOPE + value),
+            square: full(&core::array::from_fn(|k| self.sums[WITH_SLOPE + square + k][m])),
+            mixed: self.mixed.get(m).map_or(Matrix3::zeros(), |both| both[mixed]),
+        }
+    }
+
+    fn add_inputs(&mut self, stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions) {
+        let Some(inputs) = &stretch.inputs else { return };
+        let none = Inputs { slope: Vector3::zeros(), value: Vector3::zeros(), torque: Vector3::zeros() };
+        self.inputs = vec![none; tests.count];
+        self.mixed = vec![[Matrix3::zeros(); 2]; tests.count];
+        for (i, n) in noise.iter().enumerate() {
+            let (y, weight) = (stretch.rates[i], stretch.weights[i]);
+            let (h, torque) = (inputs.wheel[i], inputs.torque[i]);
+            for (m, slope, value) in Seen::new(tests, stretch.times[i]).each() {
+                let (slope, value) = (weight * slope, weight * value);
+                self.inputs[m].slope += h * slope;
+                self.inputs[m].value += h * value;
+                self.inputs[m].torque += torque * value;
+                self.mixed[m][0] += y * h.transpose() * value;
+                self.mixed[m][1] += (y - n) * h.transpose() * value;
+            }
+        }
+    }
+}
+
+/// Neighbouring samples seen as one, in the covariance of the equations: the test functions hardly differ among them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Group {
+    pub(crate) time: f64,
+    /// Mean of the readings less the noise.
+    pub(crate) reading: Vector3<f64>,
+    /// Mean of the squares δ δᵀ of what the samples differ from that mean.
+    pub(crate) scatter: Matrix3<f64>,
+    /// Mean wheel momentum.
+    pub(crate) wheel: Vector3<f64>,
+    /// Σ w.
+    pub(crate) weight: f64,
+    /// Σ w².
+    pub(crate) square: f64,
+}
+
+/// Groups of a stretch for test functions of half width `radius`.
+pub(crate) fn groups(stretch: &Stretch, noise: &[Vector3<f64>], radius: f64) -> impl Iterator<Item = Group> {
+    let width = (radius / GROUPS).min(LONGEST);
+    let mut low = 0;
+    core::iter::from_fn(move || {
+        let end = stretch.times.get(low)? + width;
+        let range = low..low + stretch.times[low..].iter().take_while(|t| **t < end).count().max(1);
+        low = range.end;
+        Some(group(stretch, noise, range))
+    })
+}
+
+/// The samples of a range as one.
+fn group(stretch: &Stretch, noise: &[Vector3<f64>], range: Range<usize>) -> Group {
+    let share = 1.0 / range.len() as f64;
+    let first = stretch.times[range.start];
+    let (mut time, mut weight, mut square) = (0.0, 0.0, 0.0);
+    for (t, w) in stretch.times[range.clone()].iter().zip(&stretch.weights[range.clone()]) {
+        time += t - first;
+        weight += w;
+        square += w * w;
+    }
+    let motion = || stretch.rates[range.clone()].iter().zip(&noise[range.clone()]).map(|(y, n)| y - n);
+    let reading = motion().sum::<Vector3<f64>>() * share;
+    let mut scatter = [0.0; 6];
+    for w in motion() {
+        scatter.iter_mut().zip(products(&(w - reading))).for_each(|(sum, product)| *sum += product);
+    }
+    let wheel = |inputs: &KnownInputs| inputs.wheel[range.clone()].iter().sum::<Vector3<f64>>() * share;
+    Group {
+        time: first + time * share,
+        reading,
+        scatter: full(&scatter) * share,
+        wheel: stretch.inputs.as_ref().map_or(Vector3::zeros(), wheel),
+        weight,
+        square,
+    }
+}

@@ -1,0 +1,46 @@
+//! A stretch of samples without gaps, in the units of its record.
+
+use nalgebra::Vector3;
+
+use crate::signal::quadrature;
+
+/// One stretch of samples without gaps, in units of the root mean square rate and its inverse.
+#[derive(Clone, Debug)]
+pub(crate) struct Stretch {
+    pub(crate) times: Vec<f64>,
+    pub(crate) rates: Vec<Vector3<f64>>,
+    pub(crate) weights: Vec<f64>,
+    /// What acts on the body and is known.
+    pub(crate) inputs: Option<KnownInputs>,
+    /// Its number in the record.
+    pub(crate) index: usize,
+}
+
+/// Wheel momenta and torques at the times of a stretch, in units of the unit rate and its square.
+#[derive(Clone, Debug)]
+pub(crate) struct KnownInputs {
+    pub(crate) wheel: Vec<Vector3<f64>>,
+    pub(crate) torque: Vec<Vector3<f64>>,
+}
+
+impl Stretch {
+    pub(crate) fn new(times: Vec<f64>, rates: Vec<Vector3<f64>>) -> Self {
+        let weights = quadrature::weights(&times);
+        Stretch { times, rates, weights, inputs: None, index: 0 }
+    }
+
+    pub(crate) fn duration(&self) -> f64 {
+        self.times.last().zip(self.times.first()).map_or(0.0, |(b, a)| b - a)
+    }
+
+    /// Its first `count` samples.
+    pub(crate) fn head(&self, count: usize) -> Stretch {
+        let head = |of: &[Vector3<f64>]| of[..count].to_vec();
+        let inputs = self.inputs.as_ref();
+        Stretch {
+            inputs: inputs.map(|i| KnownInputs { wheel: head(&i.wheel), torque: head(&i.torque) }),
+            index: self.index,
+            ..Stretch::new(self.times[..count].to_vec(), head(&self.rates))
+        }
+    }
+}

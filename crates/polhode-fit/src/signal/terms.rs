@@ -1,0 +1,66 @@
+//! Torque and sensor at which the weak equations are linearised.
+//!
+//! J ω' + ω × J ω + D ω + c |ω| J ω − τ₀ = 0 with ω = P y − b of the readings y.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// [ω]ₓ B − [B ω]ₓ: the derivative of ω × B ω.
+pub(crate) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
+    w.cross_matrix() * b - (b * w).cross_matrix()
+}
+
+/// The derivative of |ω| ω.
+pub(crate) fn slope(w: &Vector3<f64>) -> Matrix3<f64> {
+    let size = w.norm();
+    if size == 0.0 { Matrix3::zeros() } else { Matrix3::identity() * size + w * w.transpose() / size }
+}
+
+/// What the unknowns make of torque and sensor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Terms {
+    pub(crate) j: Matrix3<f64>,
+    /// k.
+    pub(crate) drag: f64,
+    /// c.
+    pub(crate) quadratic: f64,
+    /// D, with k J.
+    pub(crate) viscous: Matrix3<f64>,
+    /// τ₀.
+    pub(crate) constant: Vector3<f64>,
+    /// P.
+    pub(crate) sensor: Matrix3<f64>,
+    /// b.
+    pub(crate) offset: Vector3<f64>,
+    /// Delay of each axis.
+    pub(crate) skew: Vector3<f64>,
+    /// One over the trace.
+    pub(crate) input: f64,
+}
+
+impl Terms {
+    /// Of a tensor alone.
+    pub(crate) fn at(j: Matrix3<f64>) -> Terms {
+        Terms {
+            j,
+            drag: 0.0,
+            quadratic: 0.0,
+            viscous: Matrix3::zeros(),
+            constant: Vector3::zeros(),
+            sensor: Matrix3::identity(),
+            offset: Vector3::zeros(),
+            skew: Vector3::zeros(),
+            input: 0.0,
+        }
+    }
+
+    /// ω of a reading.
+    pub(crate) fn rate(&self, reading: &Vector3<f64>) -> Vector3<f64> {
+        self.sensor * reading - self.offset
+    }
+
+    /// The derivative of ω × (J ω + u h) + D ω + c |ω| J ω.
+    pub(crate) fn by_rate(&self, w: &Vector3<f64>, wheel: &Vector3<f64>) -> Matrix3<f64> {
+        let own = cross_derivative(&self.j, w) + self.viscous - wheel.cross_matrix() * self.input;
+        if self.quadratic == 0.0 { own } else { own + self.j * slope(w) * self.quadratic }
+    }
+}

@@ -1,0 +1,106 @@
+//! Rounds of the weak equations with the tensor held: what a record of a known body tells of the columns.
+
+use crate::thresholds::noise::DEVIATIONS;
+use nalgebra::Vector3;
+
+use crate::columns::column::{Column, Unknowns};
+use crate::physical::coordinates::Coordinates;
+use crate::signal::covariance::{Covariance, Levels};
+use crate::signal::stretch::Stretch;
+use crate::signal::test_functions::TestFunctions;
+use crate::solve::levels::{Choice, likeliest};
+use crate::solve::linearised::{Linearised, Whitened};
+use crate::solve::radius::candidates;
+use crate::solve::rounds::Noise;
+use crate::solve::stacked::Stacked;
+use crate::thresholds::rounds::{ROUNDS, STILL};
+
+/// The columns that explain a record with a given tensor.
+pub(crate) struct Held {
+    pub(crate) values: Vec<f64>,
+    /// Their standard deviations, where the noise explains the residuals.
+    pub(crate) sigmas: Vec<f64>,
+    /// Mean square of the residuals over the noise.
+    pub(crate) misfit: f64,
+    pub(crate) dof: usize,
+    pub(crate) radius: f64,
+    /// Of each stretch that is long enough, by its number.
+    pub(crate) levels: Vec<(usize, Levels)>,
+}
+
+/// At the radius of the smallest deviation of the first column, or the given one.
+pub(crate) fn held(
+    stretches: &[Stretch],
+    x: Coordinates,
+    columns: &[Column],
+    variance: f64,
+    noise: Noise,
+    radius: Option<f64>,
+) -> Option<Held> {
+    let radii = radius.map_or_else(|| candidates(stretches), |radius| vec![radius]);
+    let all = radii.iter().filter_map(|&radius| at(stretches, x, columns, variance, noise, radius));
+    let spread = |held: &Held| held.sigmas[0] * held.misfit.max(1.0).sqrt();
+    all.filter(|held| spread(held).is_finite()).min_by(|a, b| spread(a).total_cmp(&spread(b)))
+}
+
+fn at(
+    stretches: &[Stretch],
+    x: Coordinates,
+    columns: &[Column],
+    variance: f64,
+    noise: Noise,
+    radius: f64,
+) -> Option<Held> {
+    let tests = stretches.iter().enumerate();
+    let used: Vec<(usize, &Stretch, TestFunctions)> =
+        tests.filter_map(|(k, s)| TestFunctions::new(s, radius).map(|tests| (k, s, tests))).collect();
+    let mut at = Unknowns::at(x, columns);
+    let mut samples: Vec<_> =
+        used.iter().map(|(_, s, _)| vec![Vector3::<f64>::zeros(); s.times.len()]).collect();
+    let mut levels: Vec<Levels> = vec![Levels::WHITE; used.len()];
+    if let Noise::Given(torque) = noise {
+        levels.iter_mut().for_each(|levels| levels.torque = torque);
+    }
+    let (mut best, mut fitted) = (None, noise != Noise::Fitted);
+    for _ in 0..2 * ROUNDS {
+        let each = used.iter().zip(&samples);
+        let parts: Vec<Linearised> = each
+            .map(|((_, s, tests), noise)| Linearised::new(s, noise, columns, at.clone(), tests.clone()))
+            .collect();
+        let each = parts.iter().zip(&used).zip(&samples);
+        let covariances: Vec<Covariance> =
+            each.map(|((part, (_, s, _)), noise)| part.covariance(s, noise)).collect();
+        let each = parts.iter().zip(&covariances).zip(&levels);
+        let whitened = each.map(|((part, covariance), levels)| {
+            Some(part.whitened(covariance.factor(*levels)?, *levels, None))
+        });
+        let whitened: Vec<Whitened> = whitened.collect::<Option<_>>()?;
+        let rows: Vec<&[f64]> = whitened.iter().map(|part| part.rows.as_slice()).collect();
+        let stacked = Stacked::new(&rows, columns, &at, variance.sqrt());
+        let next = stacked.with_columns(x)?;
+        let inverse = stacked.own.clone().try_inverse()?;
+        let steps = next.c.iter().zip(&at.c).enumerate();
+        let sigmas: Vec<f64> = (0..columns.len()).map(|k| inverse.row(k).norm() * variance.sqrt()).collect();
+        let moved = steps.map(|(k, (new, old))| ((new - old) / sigmas[k]).abs()).fold(0.0, f64::max);
+        for (((part, white), (_, s, _)), old) in parts.iter().zip(&whitened).zip(&used).zip(&mut samples) {
+            white.carry(part, s, old, &next, 1.0);
+        }
+        let misfit = stacked.squares_at(&x) / variance / stacked.rows.max(1) as f64;
+        let (dof, several) = (stacked.rows, used.len() > 1);
+        let unexplained = misfit > 1.0 + DEVIATIONS * (2.0 / dof.max(1) as f64).sqrt();
+        if moved <= STILL && !fitted && unexplained {
+            // what noise of the rates does not explain is torque noise
+            fitted = true;
+            for ((part, covariance), levels) in parts.iter().zip(&covariances).zip(&mut levels) {
+                let choice = Choice { white: several };
+                *levels = likeliest(covariance, &part.residuals(&next), variance, 1.0, choice, None)?;
+            }
+        } else if moved <= STILL {
+            let levels = used.iter().zip(&levels).map(|((k, ..), levels)| (*k, *levels)).collect();
+            best = Some(Held { values: next.c, sigmas, misfit, dof, radius, levels });
+            break;
+        }
+        at = next;
+    }
+    best
+}

@@ -1,0 +1,246 @@
+//! The torque that a record asks for: one rung after the other, each on its gain of likelihood.
+
+use crate::columns::column::Column;
+use crate::columns::sets::torque_columns;
+use crate::physical::coordinates::Coordinates;
+use crate::settings::torque::TorqueModel;
+use crate::signal::covariance::Levels;
+use crate::signal::stretch::Stretch;
+use crate::solve::levels::{Choice, likeliest};
+use crate::solve::other_units::{Better, Support, better_unit, suspicious};
+use crate::solve::radius::{Failure, descended, estimate};
+use crate::solve::rounds::Noise;
+use crate::solve::stacked::Stacked;
+use crate::solve::weak_estimate::{Convergence, WeakEstimate};
+use crate::thresholds::ladder::{FIRST, FURTHER, HOPE};
+
+/// Why there is no torque to choose.
+pub(crate) enum Halt {
+    /// There is no weak estimate.
+    Failure(Failure),
+    /// Another unit explains what this one does not: the misfit in the unit that was read, and the other.
+    Units(f64, Box<Better>),
+}
+
+impl From<Failure> for Halt {
+    fn from(failure: Failure) -> Self {
+        Halt::Failure(failure)
+    }
+}
+
+/// A weak estimate with the torque it was made with.
+pub(crate) struct Chosen {
+    pub(crate) weak: WeakEstimate,
+    pub(crate) model: TorqueModel,
+    /// Gain of log-likelihood over no torque.
+    pub(crate) gain: Option<f64>,
+    /// Coordinates without the torque.
+    pub(crate) without: Option<Coordinates>,
+    /// Units that explain better what has no explanation without torques.
+    pub(crate) better: Option<Better>,
+}
+
+/// What a fit is asked to reckon with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Demand<'a> {
+    pub(crate) radius: Option<f64>,
+    pub(crate) torque: TorqueModel,
+    pub(crate) noise: Noise,
+    /// Columns that every model has.
+    pub(crate) columns: &'a [Column],
+    /// The stretches that have torques of their own; none where all share theirs.
+    pub(crate) alone: &'a [usize],
+    /// Whether to ask for mistaken units.
+    pub(crate) units: bool,
+}
+
+impl Demand<'_> {
+    fn columns(&self, model: TorqueModel) -> Vec<Column> {
+        self.torques(model).into_iter().chain(self.columns.iter().copied()).collect()
+    }
+
+    /// The columns of a torque, for each stretch where it has its own.
+    fn torques(&self, model: TorqueModel) -> Vec<Column> {
+        let shared = torque_columns(model);
+        if self.alone.is_empty() {
+            return shared;
+        }
+        let of = |&segment: &usize| {
+            shared.iter().map(move |column| column.of_segment(segment)).collect::<Vec<_>>()
+        };
+        self.alone.iter().flat_map(of).collect()
+    }
+}
+
+/// The weak estimate that the demand asks for.
+pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) -> Result<Chosen, Halt> {
+    Ladder { stretches, demand, variance }.choose()
+}
+
+/// A weak estimate of one model, compared with no other.
+fn plain(weak: WeakEstimate, model: TorqueModel) -> Chosen {
+    Chosen { weak, model, gain: None, without: None, better: None }
+}
+
+struct Ladder<'a> {
+    stretches: &'a [Stretch],
+    demand: Demand<'a>,
+    variance: f64,
+}
+
+impl Ladder<'_> {
+    fn choose(&self) -> Result<Chosen, Halt> {
+        let demand = &self.demand;
+        if let Noise::Given(_) = demand.noise
+            && demand.torque != TorqueModel::Auto
+        {
+            return Ok(plain(self.descent(demand.torque, demand.radius)?, demand.torque));
+        }
+        // most records need neither torque nor torque noise
+        let base = if demand.torque == TorqueModel::Auto { TorqueModel::None } else { demand.torque };
+        let first = estimate(self.stretches, demand.radius, &demand.columns(base), self.variance)?;
+        let explained = first.misfit(self.variance) <= first.expected_misfit();
+        let better = self.other_units(&first, explained)?;
+        let chosen = if explained && (!first.has_settled() || self.is_enough(&first)) {
+            plain(first, base)
+        } else if demand.torque == TorqueModel::Auto {
+            self.highest(first, explained)?
+        } else {
+            let weak = self.descent(base, demand.radius)?;
+            let keep = first.convergence() == Convergence::Still && !weak.has_settled();
+            plain(if keep { first } else { weak }, base)
+        };
+        Ok(Chosen { better, ..chosen })
+    }
+
+    fn descent(&self, model: TorqueModel, radius: Option<f64>) -> Result<WeakEstimate, Failure> {
+        descended(self.stretches, radius, &self.demand.columns(model), self.variance, self.demand.noise)
+    }
+
+    /// Units that explain the record where nothing but torques does in its own; refused before the descents, which would
+    /// not end soon either, where they can be named.
+    fn other_units(&self, first: &WeakEstimate, explained: bool) -> Result<Option<Better>, Halt> {
+        let asks =
+            self.demand.units && (!explained || !first.has_settled() || suspicious(first, self.variance));
+        match asks.then(|| better_unit(self.stretches, Some(first), self.variance)).flatten() {
+            Some(better) if better.support == Support::Named => {
+                Err(Halt::Units(first.misfit(self.variance), Box::new(better)))
+            }
+            better => Ok(better),
+        }
+    }
+
+    /// Whether an estimate that noise explains asks for neither torque nor torque noise.
+    fn is_enough(&self, first: &WeakEstimate) -> bool {
+        let demand = &self.demand;
+        let asks = |model| {
+            gain_of(self.stretches, first, &demand.columns(model), self.variance) > needed(demand, model)
+        };
+        match demand.noise {
+            Noise::Given(_) => return false,
+            Noise::Fitted if has_torque_noise(self.stretches, first, self.variance) => return false,
+            Noise::White | Noise::Fitted => {}
+        }
+        demand.torque != TorqueModel::Auto
+            || ![TorqueModel::Drag, TorqueModel::Constant].into_iter().any(asks)
+    }
+
+    /// The first rung that the next one does not surpass.
+    fn highest(&self, first: WeakEstimate, explained: bool) -> Result<Chosen, Failure> {
+        let (stretches, demand, variance) = (self.stretches, &self.demand, self.variance);
+        // one radius for all, so that their likelihoods are those of the same equations
+        let drag = self.descent(TorqueModel::Drag, demand.radius)?;
+        let radius = Some(drag.radius);
+        let none = self.descent(TorqueModel::None, radius)?;
+        let floor = likelihood(stretches, &none, variance);
+        let gain = gain_of(stretches, &none, &demand.columns(TorqueModel::Constant), variance);
+        let may_be_constant = !none.has_settled() || gain > HOPE * needed(demand, TorqueModel::Constant);
+        let without = none.has_settled().then(|| none.x());
+        let mut best = plain(none, TorqueModel::None);
+        let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
+            let gain = likelihood(stretches, &weak, variance) - floor;
+            let more = demand.torques(model).len().saturating_sub(demand.torques(best.model).len()).max(1);
+            let asked = if best.model == TorqueModel::None { needed(demand, model) } else { threshold(more) };
+            let before = likelihood(stretches, &best.weak, variance) - floor;
+            let better = weak.has_settled() && (!best.weak.has_settled() || gain - before > asked);
+            let gain = Some(gain).filter(|gain| gain.is_finite());
+            if better { Chosen { weak, model, gain, without, better: None } } else { best }
+        };
+        best = climb(best, TorqueModel::Drag, drag);
+        if may_be_constant && let Ok(constant) = self.descent(TorqueModel::Constant, radius) {
+            best = climb(best, TorqueModel::Constant, constant);
+        }
+        if best.model == TorqueModel::Drag
+            && may_be_drag3(stretches, &best.weak, demand, variance)
+            && let Ok(drag) = self.descent(TorqueModel::Drag3, radius)
+        {
+            best = climb(best, TorqueModel::Drag3, drag);
+        }
+        // what a descent did not settle, plain rounds may have
+        let is_plain = explained && best.model == TorqueModel::None && !best.weak.has_torque_noise();
+        let keep = first.has_settled() && (!best.weak.has_settled() || is_plain);
+        Ok(if keep { plain(first, TorqueModel::None) } else { best })
+    }
+}
+
+fn threshold(coefficients: usize) -> f64 {
+    FIRST + FURTHER * (coefficients.max(1) - 1) as f64
+}
+
+fn needed(demand: &Demand<'_>, model: TorqueModel) -> f64 {
+    threshold(demand.torques(model).len())
+}
+
+/// Log-likelihood of an estimate, the unknowns at their best; estimates at one radius can be compared.
+///
+/// It is that of the samples: the determinants are over those without torque noise, since residuals and covariance
+/// that both shrink with the tensor tell nothing.
+fn likelihood(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> f64 {
+    let mut sum = weak.squares / variance;
+    for part in &weak.parts {
+        let white = part.covariance(&stretches[part.stretch]).into_factor(Levels::WHITE);
+        let Some(white) = white else { return f64::NEG_INFINITY };
+        sum += part.log_determinant - white.log_determinant();
+    }
+    if weak.parts.is_empty() { f64::NEG_INFINITY } else { -0.5 * sum }
+}
+
+/// Whether the residuals of an estimate without torque noise ask for some.
+fn has_torque_noise(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> bool {
+    let free = weak.dof().max(1) as f64 / weak.rows.max(1) as f64;
+    let choice = Choice { white: false };
+    weak.parts.iter().any(|part| {
+        let e = part.linearised.residuals(&weak.at);
+        likeliest(&part.covariance(&stretches[part.stretch]), &e, variance, free, choice, None)
+            .is_some_and(|levels| levels.torque > 0.0)
+    })
+}
+
+/// Gain of log-likelihood that `columns` would bring to the equations of an estimate that has only the last of them.
+fn gain_of(stretches: &[Stretch], weak: &WeakEstimate, columns: &[Column], variance: f64) -> f64 {
+    let with = with_columns(stretches, weak, columns, variance);
+    with.map_or(0.0, |with| 0.5 * (weak.squares - with.squares) / variance)
+}
+
+/// Whether drag about three axes may be worth a fit beside the drag of an estimate.
+fn may_be_drag3(stretches: &[Stretch], weak: &WeakEstimate, demand: &Demand<'_>, variance: f64) -> bool {
+    let three = demand.torques(TorqueModel::Drag3);
+    let more = three.len().saturating_sub(demand.torques(TorqueModel::Drag).len());
+    let both: Vec<Column> = three.into_iter().chain(demand.columns(TorqueModel::Drag)).collect();
+    !weak.has_settled() || gain_of(stretches, weak, &both, variance) > HOPE * threshold(more)
+}
+
+/// The equations of an estimate with further columns, which come first and are zero where it stands.
+fn with_columns(
+    stretches: &[Stretch],
+    weak: &WeakEstimate,
+    columns: &[Column],
+    variance: f64,
+) -> Option<Stacked> {
+    let mut at = weak.at.clone();
+    at.c = vec![0.0; columns.len() - at.c.len()].into_iter().chain(at.c).collect();
+    let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], columns, &at));
+    let whitened: Vec<Vec<f64>> = parts.collect::<Option<_>>()?;
+    let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
+    Some(Stacked::new(&rows, columns, &at, variance.sqrt()))
+}

@@ -1,0 +1,137 @@
+//! The torque noise of a stretch, and the noise of its rates, by restricted likelihood.
+
+use crate::signal::covariance::{Covariance, Levels, Shape};
+use crate::thresholds::levels::{BETWEEN, DECADES, FIRST_DECADE, GAIN, RESHAPED, SECTIONS, STEP};
+
+/// What may be fitted of the noise of a stretch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Choice {
+    /// Whether the noise of the rates may differ from that of the record.
+    pub(crate) white: bool,
+}
+
+/// The likeliest levels for residuals `e` (not whitened) of variance `variance`; `free` is the share of the residuals
+/// that the estimate has not fitted away, `last` what the search begins at.
+pub(crate) fn likeliest(
+    part: &Covariance,
+    e: &[f64],
+    variance: f64,
+    free: f64,
+    choice: Choice,
+    last: Option<Levels>,
+) -> Option<Levels> {
+    let search = |shape| Search { part, e, variance, free, white: choice.white, shape };
+    let none = search(Shape::Moments).at(0.0);
+    let near = last.filter(|last| last.torque > 0.0);
+    let mut best: Option<Found> = None;
+    // the shape of before first
+    let first = near.map_or(Shape::Moments, |last| last.shape);
+    let second = if first == Shape::Moments { Shape::Alike } else { Shape::Moments };
+    for shape in [first, second] {
+        let Some(found) = search(shape).most_likely(near, none.as_ref()) else { continue };
+        if best.as_ref().is_none_or(|b| found.cost < b.cost - RESHAPED) {
+            best = Some(found);
+        }
+    }
+    let best = match (best, none) {
+        (Some(best), Some(none)) if none.cost - best.cost <= GAIN => Some(none),
+        (best, none) => best.or(none),
+    }?;
+    Some(best.levels)
+}
+
+/// Levels and twice their negative log-likelihood.
+struct Found {
+    levels: Levels,
+    cost: f64,
+    /// What more torque noise costs at least.
+    floor: f64,
+}
+
+struct Search<'a> {
+    part: &'a Covariance,
+    e: &'a [f64],
+    variance: f64,
+    free: f64,
+    white: bool,
+    shape: Shape,
+}
+
+impl Search<'_> {
+    /// The likeliest torque noise of this shape; within a decade of `near`, where that is given, and else `None` where it
+    /// does not bring the gain over `none` that is asked for.
+    fn most_likely(&self, near: Option<Levels>, none: Option<&Found>) -> Option<Found> {
+        let (noise, torque) = self.part.mean_variances();
+        // per level of the noise of the rates
+        let unit = noise / torque;
+        let at = |exponent: f64| self.at(unit * libm::pow(10.0, exponent));
+        let cost = |exponent: f64| at(exponent).map_or(f64::INFINITY, |found| found.cost);
+        let middle = match near {
+            Some(near) => libm::log10(near.torque / near.white / unit),
+            None => {
+                let mut best = (f64::INFINITY, 0.0);
+                for exponent in (0..=DECADES).map(|k| k as f64 - FIRST_DECADE) {
+                    let Some(found) = at(exponent) else { continue };
+                    if found.cost < best.0 {
+                        best = (found.cost, exponent);
+                    }
+                    if found.floor > best.0 {
+                        break;
+                    }
+                }
+                if none.is_some_and(|none| none.cost - best.0 <= BETWEEN * GAIN) {
+                    return None;
+                }
+                best.1
+            }
+        };
+        at(vertex(cost, golden(cost, middle - 1.0, middle + 1.0)))
+    }
+
+    /// The likeliest noise of the rates with torque noise of `ratio` times its level.
+    fn at(&self, ratio: f64) -> Option<Found> {
+        let (determinant, squares) =
+            self.part.likelihood(self.e, Levels { white: 1.0, torque: ratio, shape: self.shape })?;
+        let count = self.e.len() as f64;
+        let squares = squares / self.variance / self.free;
+        // what the samples themselves say of their noise counts as much as the residuals do
+        let (white, equations) =
+            if self.white { ((squares + count) / (2.0 * count), 2.0 * count) } else { (1.0, count) };
+        let own = if self.white { count } else { 0.0 };
+        let cost = determinant + equations * libm::log(white) + (squares + own) / white;
+        // the determinant grows with the torque noise; squares are not negative, nor is the noise of the rates below half
+        let floor = determinant + own * 2.0 * (1.0 - core::f64::consts::LN_2);
+        Some(Found { levels: Levels { white, torque: white * ratio, shape: self.shape }, cost, floor })
+    }
+}
+
+/// Where a function with one minimum between `low` and `high` is least.
+fn golden(cost: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    const SHARE: f64 = 0.618_033_988_749_894_8;
+    let (mut a, mut b) = (high - SHARE * (high - low), low + SHARE * (high - low));
+    let (mut at_a, mut at_b) = (cost(a), cost(b));
+    for _ in 0..SECTIONS {
+        if at_a < at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - SHARE * (high - low);
+            at_a = cost(a);
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + SHARE * (high - low);
+            at_b = cost(b);
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// The vertex of the parabola about `middle`, where that is a minimum: a golden section alone ends at one of a few places, and
+/// descents would go to and fro between two of them.
+fn vertex(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
+    let [below, least, above] = [-STEP, 0.0, STEP].map(|step| cost(middle + step));
+    let (slope, curvature) = (below - above, below - 2.0 * least + above);
+    if slope.is_finite() && curvature > 0.0 {
+        middle + STEP * (0.5 * slope / curvature).clamp(-1.0, 1.0)
+    } else {
+        middle
+    }
+}

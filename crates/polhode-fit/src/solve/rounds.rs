@@ -1,0 +1,356 @@
+//! Rounds of the weak equations at samples that each round moves further onto them.
+
+use crate::thresholds::rounds::{
+    BOUNDLESS, DESCENT, FALL, FULL_ROUNDS, KEPT, NEGLIGIBLE, REACHED, RELAXED, ROUNDS, SAME, SHARES,
+    SIGNIFICANT_GAIN, STILL, TORQUES,
+};
+use nalgebra::Vector3;
+
+use crate::columns::column::{Column, Unknowns};
+use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
+use crate::signal::covariance::{Covariance, Levels};
+use crate::signal::stretch::Stretch;
+use crate::signal::test_functions::TestFunctions;
+use crate::solve::levels::{Choice, likeliest};
+use crate::solve::linearised::{Linearised, Whitened};
+use crate::solve::stacked::{Pull, Stacked};
+use crate::solve::weak_estimate::{Part, WeakEstimate};
+use crate::thresholds::noise::SURE;
+
+/// What of its noise a descent fits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Noise {
+    /// No torque noise.
+    White,
+    /// Torque noise of a given level.
+    Given(f64),
+    /// Torque noise by restricted likelihood, and the noise of the rates of each of several stretches.
+    Fitted,
+}
+
+/// The rows of the equations of one stretch whitened, and nothing else of them.
+fn whitened_rows(
+    stretch: &Stretch,
+    noise: &[Vector3<f64>],
+    part: Linearised,
+    levels: Levels,
+) -> Option<Vec<f64>> {
+    let factor = part.covariance(stretch, noise).into_factor(levels)?;
+    let mut rows = part.rows;
+    factor.forward(&mut rows, part.width);
+    Some(rows)
+}
+
+pub(crate) struct Rounds<'a> {
+    used: Vec<(usize, &'a Stretch, TestFunctions)>,
+    columns: &'a [Column],
+    noise: Vec<Vec<Vector3<f64>>>,
+    levels: Vec<Levels>,
+    pub(crate) at: Unknowns,
+    pull: Option<Pull>,
+    /// Whether the effect of torque noise is taken out of the derivatives.
+    driven: bool,
+}
+
+impl<'a> Rounds<'a> {
+    pub(crate) fn new(
+        stretches: &'a [Stretch],
+        radius: f64,
+        columns: &'a [Column],
+        at: Unknowns,
+    ) -> Option<Self> {
+        let used: Vec<_> = stretches
+            .iter()
+            .enumerate()
+            .filter_map(|(k, s)| TestFunctions::new(s, radius).map(|tests| (k, s, tests)))
+            .collect();
+        let rows: usize = used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
+        if rows < 6 {
+            return None;
+        }
+        let noise = used.iter().map(|(_, s, _)| vec![Vector3::zeros(); s.times.len()]).collect();
+        let levels = vec![Levels::WHITE; used.len()];
+        Some(Rounds { used, columns, noise, levels, at, pull: None, driven: false })
+    }
+
+    /// With what is known of the tensor beforehand, in units of the noise of the rates.
+    pub(crate) fn with_pull(self, pull: Pull) -> Self {
+        Rounds { pull: Some(pull), ..self }
+    }
+
+    /// The equations of each stretch at the samples so far.
+    pub(crate) fn linearise(&self) -> Vec<Linearised> {
+        let each = self.used.iter().zip(&self.noise);
+        each.map(|((_, s, tests), n)| Linearised::new(s, n, self.columns, self.at.clone(), tests.clone()))
+            .collect()
+    }
+
+    /// The covariances of these equations.
+    fn covariances(&self, parts: &[Linearised]) -> Vec<Covariance> {
+        let each = self.used.iter().zip(&self.noise).zip(parts);
+        each.map(|(((_, s, _), noise), part)| part.covariance(s, noise)).collect()
+    }
+
+    /// These equations whitened.
+    pub(crate) fn whiten(&self, parts: &[Linearised]) -> Option<Vec<Whitened>> {
+        let each = self.used.iter().zip(&self.noise).zip(parts).zip(&self.levels);
+        let whitened = each.map(|((((_, s, _), noise), part), levels)| {
+            let factor = part.covariance(s, noise).into_factor(*levels)?;
+            Some(part.whitened(factor, *levels, self.driven.then_some(self.columns)))
+        });
+        whitened.collect()
+    }
+
+    pub(crate) fn stack(&self, whitened: &[Whitened], variance: f64) -> Stacked {
+        let rows: Vec<&[f64]> = whitened.iter().map(|w| w.rows.as_slice()).collect();
+        Stacked::new(&rows, self.columns, &self.at, variance.sqrt())
+    }
+
+    /// Mean square of what the equations leave at these samples over that of the noise, where it is more than 1.
+    pub(crate) fn excess(&self, variance: f64) -> Option<f64> {
+        let whitened = self.whiten(&self.linearise())?;
+        Some(self.stack(&whitened, variance).excess(variance))
+    }
+
+    /// One round, and by how many standard deviations it would move the tensor if it took its whole step.
+    ///
+    /// A ridge as weak as one reading keeps x finite before it is known that the record determines it.
+    pub(crate) fn round(&mut self, variance: f64, full: bool) -> Option<f64> {
+        let parts = self.linearise();
+        let whitened = self.whiten(&parts)?;
+        let stacked = self.stack(&whitened, variance);
+        let next = match &self.pull {
+            Some(pull) => stacked.pulled(pull)?,
+            None => stacked.ridge(variance)?,
+        };
+        // where torques act, full steps may end in going to and fro
+        let relax = if full || stacked.excess(variance) < TORQUES { 1.0 } else { RELAXED };
+        Some(self.advance(&parts, &whitened, &stacked, &next, relax, variance))
+    }
+
+    fn advance(
+        &mut self,
+        parts: &[Linearised],
+        whitened: &[Whitened],
+        stacked: &Stacked,
+        next: &Unknowns,
+        relax: f64,
+        variance: f64,
+    ) -> f64 {
+        let step = next.x - self.at.x;
+        let relax = relax * self.room(&step);
+        let used = self.used.iter().map(|(_, s, _)| *s);
+        for (((part, white), s), noise) in parts.iter().zip(whitened).zip(used).zip(&mut self.noise) {
+            white.carry(part, s, noise, next, relax);
+        }
+        self.at.x += step * relax;
+        for (c, next) in self.at.c.iter_mut().zip(&next.c) {
+            *c += (next - *c) * relax;
+        }
+        (stacked.root * step).norm() / (variance * stacked.excess(variance)).sqrt()
+    }
+
+    /// The share of `step` after which the smallest moment is not yet lost.
+    fn room(&self, step: &Coordinates) -> f64 {
+        let smallest = |share: f64| eigen(tensor(&(self.at.x + step * share))).0[0];
+        let least = KEPT * smallest(0.0);
+        if smallest(1.0) >= least {
+            return 1.0;
+        }
+        // a step that ends where the moment vanishes keeps just that much at the first of them
+        let shares = core::iter::successors(Some(1.0 - KEPT), |share| Some(0.5 * share));
+        shares.take(SHARES).find(|&share| smallest(share) >= REACHED * least).unwrap_or(0.0)
+    }
+
+    /// Rounds until the tensor stands still, and by how many standard deviations the last would have moved it.
+    pub(crate) fn settle(&mut self, variance: f64) -> Option<f64> {
+        let mut moved = f64::INFINITY;
+        for round in 0..ROUNDS {
+            moved = self.round(variance, round < FULL_ROUNDS)?;
+            if moved <= STILL {
+                break;
+            }
+        }
+        Some(moved)
+    }
+
+    /// Rounds from boundless torque noise, where the equations are those of convex least squares, down to the likeliest.
+    pub(crate) fn descend(&mut self, variance: f64, noise: Noise) -> Option<f64> {
+        let several = self.used.len() > 1;
+        let mut moved = f64::INFINITY;
+        for round in 0..DESCENT {
+            let parts = self.linearise();
+            let covariances = self.covariances(&parts);
+            if round == 0 {
+                let boundless = |part: &Covariance| {
+                    let (noise, torque) = part.mean_variances();
+                    Levels { torque: BOUNDLESS * noise / torque, ..Levels::WHITE }
+                };
+                self.levels = covariances.iter().map(boundless).collect();
+            }
+            let each = parts.iter().zip(&covariances).zip(&self.levels);
+            let whitened = each.map(|((part, covariance), levels)| {
+                let driven = self.driven.then_some(self.columns);
+                Some(part.whitened(covariance.factor(*levels)?, *levels, driven))
+            });
+            let whitened: Vec<Whitened> = whitened.collect::<Option<_>>()?;
+            let stacked = self.stack(&whitened, variance);
+            let next = stacked.ridge(variance)?;
+            moved = self.advance(&parts, &whitened, &stacked, &next, 1.0, variance);
+            let fitted = (stacked.rows.saturating_sub(5).max(1)) as f64 / stacked.rows.max(1) as f64;
+            let mut changed = false;
+            for ((part, covariance), levels) in parts.iter().zip(&covariances).zip(&mut self.levels) {
+                let (own, torque) = covariance.mean_variances();
+                let floor = FALL * levels.torque;
+                let target = match noise {
+                    Noise::White => Levels::WHITE,
+                    Noise::Given(torque) => Levels { torque, ..Levels::WHITE },
+                    Noise::Fitted => {
+                        let choice = Choice { white: several };
+                        let last = (round > 0).then_some(*levels);
+                        likeliest(covariance, &part.residuals(&next), variance, fitted, choice, last)?
+                    }
+                };
+                let mut new = Levels { torque: target.torque.max(floor), ..target };
+                if new.torque * torque < NEGLIGIBLE * own * new.white && target.torque < new.torque {
+                    new.torque = target.torque;
+                }
+                changed |= (new.torque - levels.torque).abs() > SAME * levels.torque;
+                *levels = new;
+            }
+            let done = moved <= STILL && !changed;
+            let torques = self.levels.iter().any(|levels| levels.torque > 0.0);
+            if done && (self.driven || !torques) {
+                break;
+            }
+            // not on the way down, where the problem is to stay convex
+            self.driven |= !changed && torques;
+        }
+        Some(moved)
+    }
+
+    /// With the levels that other rounds of the same stretches have found.
+    pub(crate) fn with_levels(mut self, other: &Rounds<'_>) -> Self {
+        self.driven = other.driven;
+        let of = |stretch: usize| other.used.iter().position(|(k, ..)| *k == stretch);
+        for ((k, ..), levels) in self.used.iter().zip(&mut self.levels) {
+            if let Some(at) = of(*k) {
+                *levels = other.levels[at];
+            }
+        }
+        self
+    }
+
+    pub(crate) fn finish(self, variance: f64, moved: f64) -> Option<WeakEstimate> {
+        let of_sphere = self.squares_of_sphere(variance)?;
+        let parts = self.linearise();
+        let whitened = self.whiten(&parts)?;
+        let stacked = self.stack(&whitened, variance);
+        let best = self.pull.as_ref().map_or_else(|| stacked.minimiser(), |pull| stacked.pulled(pull));
+        let at = best.unwrap_or_else(|| self.at.clone());
+        // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
+        // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
+        let gain = (of_sphere - stacked.squares) / (variance * stacked.excess(variance));
+        let (root, doubt) = if gain > SIGNIFICANT_GAIN {
+            (stacked.root, Form::zeros())
+        } else {
+            self.constant_rates(variance)?
+        };
+        let radius = self.used.first()?.2.radius;
+        let each = self.used.into_iter().zip(parts).zip(whitened).zip(self.noise);
+        Some(WeakEstimate {
+            radius,
+            columns: self.columns.to_vec(),
+            at,
+            moved,
+            root,
+            doubt,
+            squares: stacked.squares,
+            rows: stacked.rows,
+            stacked: Some(stacked),
+            parts: each
+                .map(|((((k, _, _), linearised), whitened), noise)| Part {
+                    stretch: k,
+                    linearised,
+                    levels: whitened.levels,
+                    log_determinant: whitened.log_determinant(),
+                    rows: whitened.rows,
+                    noise,
+                })
+                .collect(),
+        })
+    }
+
+    /// What can be said without any tensor to go by: the information of constant rates, weighted as for a sphere.
+    pub(crate) fn at_sphere(mut self, variance: f64) -> Option<WeakEstimate> {
+        self.at = Unknowns::at(Coordinates::zeros(), self.columns);
+        let ((root, doubt), squares) = (self.constant_rates(variance)?, self.squares_of_sphere(variance)?);
+        let rows = self.used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
+        Some(WeakEstimate {
+            radius: self.used.first()?.2.radius,
+            columns: self.columns.to_vec(),
+            at: self.at,
+            moved: f64::INFINITY,
+            root,
+            doubt,
+            squares,
+            rows,
+            stacked: None,
+            parts: Vec::new(),
+        })
+    }
+
+    /// What the weak equations of the sphere leave, whose rates are constant but for the columns.
+    fn squares_of_sphere(&self, variance: f64) -> Option<f64> {
+        let origin = Unknowns { x: Coordinates::zeros(), c: self.at.c.clone() };
+        let mut all = Vec::new();
+        for ((_, s, tests), levels) in self.used.iter().zip(&self.levels) {
+            let raw = vec![Vector3::zeros(); s.times.len()];
+            let part = Linearised::new(s, &raw, self.columns, origin.clone(), tests.clone());
+            all.push(whitened_rows(s, &raw, part, *levels)?);
+        }
+        let rows: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
+        Some(Stacked::new(&rows, self.columns, &origin, variance.sqrt()).squares_at(&origin.x))
+    }
+
+    /// R of motions that keep their mean rates, and D.
+    fn constant_rates(&self, variance: f64) -> Option<(Form, Form)> {
+        let (mut at_means, mut displaced) = (Vec::new(), Vec::new());
+        let width = self.columns.len() + 6;
+        for ((_, s, tests), levels) in self.used.iter().zip(&self.levels) {
+            let count = s.rates.len() as f64;
+            let mean = s.rates.iter().sum::<Vector3<f64>>() / count;
+            let at = |rate: Vector3<f64>| {
+                let noise: Vec<_> = s.rates.iter().map(|w| w - rate).collect();
+                let part = Linearised::new(s, &noise, self.columns, self.at.clone(), tests.clone());
+                whitened_rows(s, &noise, part, *levels)
+            };
+            at_means.push(at(mean)?);
+            let sure = SURE * (variance / count).sqrt();
+            for axis in 0..3 {
+                let step = Vector3::ith(axis, sure);
+                let (above, below) = (at(mean + step)?, at(mean - step)?);
+                let rows = above.chunks_exact(width).zip(below.chunks_exact(width));
+                let tensor = self.columns.len()..width;
+                let difference = |(a, b): (&[f64], &[f64])| {
+                    let pairs = a[tensor.clone()].iter().zip(&b[tensor.clone()]);
+                    pairs.map(|(a, b)| 0.5 * (a - b)).collect::<Vec<f64>>()
+                };
+                displaced.push(rows.flat_map(difference).collect::<Vec<f64>>());
+            }
+        }
+        let root = |rows: &[Vec<f64>], columns: &[Column]| {
+            let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+            let at = Unknowns { x: self.at.x, c: self.at.c[..columns.len()].to_vec() };
+            Stacked::new(&rows, columns, &at, variance.sqrt()).root
+        };
+        Some((root(&at_means, self.columns), root(&displaced, &[])))
+    }
+
+    /// V.
+    pub(crate) fn inflation(&self, parts: &[Linearised], whitened: &[Whitened]) -> Form {
+        let samples = self.used.iter().map(|(_, s, _)| *s).zip(&self.noise);
+        let each = parts.iter().zip(whitened).zip(samples);
+        each.map(|((p, w), (s, noise))| p.inflation(w, s, noise)).sum()
+    }
+}

@@ -1,0 +1,201 @@
+//! Rows of all stretches and priors stacked into one triangle.
+
+use crate::thresholds::stacked::{FLAT, RIDGE, TOGETHER};
+use faer::Mat;
+use nalgebra::{DMatrix, DVector, SMatrix};
+
+use crate::columns::column::{Column, Unknowns};
+use crate::physical::coordinates::{Coordinates, Form};
+
+/// Further equations W (x − centre) = 0 of the tensor alone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pull {
+    pub(crate) root: Form,
+    pub(crate) centre: Coordinates,
+}
+
+/// min |R (x − origin) + z|²: what all stretches say together, each column at its best for x.
+pub(crate) struct Stacked {
+    pub(crate) origin: Unknowns,
+    /// Upper triangular, Rᵀ R = H.
+    pub(crate) root: Form,
+    z: Coordinates,
+    /// Rows of the columns: their own triangle, their part in x, and their right-hand side.
+    pub(crate) own: DMatrix<f64>,
+    pub(crate) shared: DMatrix<f64>,
+    right: DVector<f64>,
+    /// Sum of squares of the whitened residuals that no x removes.
+    pub(crate) squares: f64,
+    /// Equations beyond the columns without a prior.
+    pub(crate) rows: usize,
+}
+
+impl Stacked {
+    /// The triangle of all whitened rows, without forming their squares. `deviation` is that of the noise.
+    pub(crate) fn new(rows: &[&[f64]], columns: &[Column], origin: &Unknowns, deviation: f64) -> Stacked {
+        let count = columns.len();
+        let width = count + 6;
+        let equations: usize = rows.iter().map(|rows| rows.len() / width).sum();
+        let small = triangles(rows, columns, width);
+        let all: Vec<&[f64]> =
+            small.as_ref().map_or(rows.to_vec(), |s| s.iter().map(Vec::as_slice).collect());
+        let height: usize = all.iter().map(|rows| rows.len() / width).sum();
+        let mut each = all.iter().flat_map(|rows| rows.chunks_exact(width));
+        let mut r = Mat::<f64>::zeros(0, width);
+        for part in 0..=height / TOGETHER {
+            let first = r.nrows();
+            let own = TOGETHER.min(height - part * TOGETHER);
+            let priors = if part == height / TOGETHER { count } else { 0 };
+            let mut stack = Mat::<f64>::zeros((first + own + priors).max(width), width);
+            stack.as_mut().subrows_mut(0, first).copy_from(&r);
+            for (i, row) in each.by_ref().take(own).enumerate() {
+                for (k, value) in row.iter().enumerate() {
+                    stack[(first + i, k)] = *value;
+                }
+            }
+            for (k, column) in columns.iter().enumerate().take(priors) {
+                let weight = deviation / column.prior.unwrap_or(FLAT);
+                stack[(first + own + k, k)] = weight;
+                stack[(first + own + k, width - 1)] = weight * origin.c[k];
+            }
+            r = stack.qr().thin_R().to_owned();
+        }
+        let flat = columns.iter().filter(|column| column.prior.is_none()).count();
+        let left = r[(width - 1, width - 1)];
+        Stacked {
+            origin: origin.clone(),
+            root: Form::from_fn(|i, k| if i <= k { r[(count + i, count + k)] } else { 0.0 }),
+            z: Coordinates::from_fn(|i, _| r[(count + i, width - 1)]),
+            own: DMatrix::from_fn(count, count, |i, k| if i <= k { r[(i, k)] } else { 0.0 }),
+            shared: DMatrix::from_fn(count, 5, |i, k| r[(i, count + k)]),
+            right: DVector::from_fn(count, |i, _| r[(i, width - 1)]),
+            squares: left * left,
+            rows: equations - flat.min(equations),
+        }
+    }
+
+    /// Mean square of what is left over that of the noise, where it is more than 1.
+    pub(crate) fn excess(&self, variance: f64) -> f64 {
+        (self.squares / variance / self.rows.saturating_sub(5).max(1) as f64).max(1.0)
+    }
+
+    pub(crate) fn information(&self) -> Form {
+        self.root.transpose() * self.root
+    }
+
+    /// The x that makes |R (x − origin) + z|² + ridge |x|² least, with its columns.
+    pub(crate) fn ridge(&self, ridge: f64) -> Option<Unknowns> {
+        // far above the rounding of R, where the record tells nothing and has no noise either; only weights are at stake
+        let weight = ridge.sqrt().max(RIDGE * self.root.norm());
+        self.pulled(&Pull { root: Form::identity() * weight, centre: Coordinates::zeros() })
+    }
+
+    /// The x that makes |R (x − origin) + z|² + |W (x − centre)|² least, with its columns.
+    pub(crate) fn pulled(&self, pull: &Pull) -> Option<Unknowns> {
+        let mut stack = SMatrix::<f64, 10, 6>::zeros();
+        stack.fixed_view_mut::<5, 5>(0, 0).copy_from(&self.root);
+        stack.fixed_view_mut::<5, 1>(0, 5).copy_from(&self.z);
+        stack.fixed_view_mut::<5, 5>(5, 0).copy_from(&pull.root);
+        stack.fixed_view_mut::<5, 1>(5, 5).copy_from(&(pull.root * (self.origin.x - pull.centre)));
+        let r = stack.qr().r();
+        let step = r.fixed_view::<5, 5>(0, 0).solve_upper_triangular(&-r.fixed_view::<5, 1>(0, 5))?;
+        self.with_columns(self.origin.x + step)
+    }
+
+    /// The x that makes |R (x − origin) + z| least, with its columns.
+    pub(crate) fn minimiser(&self) -> Option<Unknowns> {
+        self.with_columns(self.origin.x + self.root.solve_upper_triangular(&-self.z)?)
+    }
+
+    /// The columns that are best for `x`.
+    pub(crate) fn with_columns(&self, x: Coordinates) -> Option<Unknowns> {
+        let step = DVector::from_column_slice((x - self.origin.x).as_slice());
+        let moved = self.own.solve_upper_triangular(&-(&self.right + &self.shared * step))?;
+        let c: Vec<f64> = self.origin.c.iter().zip(moved.iter()).map(|(c, m)| c + m).collect();
+        (x.iter().chain(&c).all(|v| v.is_finite())).then_some(Unknowns { x, c })
+    }
+
+    /// A factor F of the covariance F Fᵀ of (c, x), per variance of the noise.
+    pub(crate) fn joint_factor(&self) -> Option<DMatrix<f64>> {
+        let count = self.own.nrows();
+        let mut r = DMatrix::zeros(count + 5, count + 5);
+        r.view_mut((0, 0), (count, count)).copy_from(&self.own);
+        r.view_mut((0, count), (count, 5)).copy_from(&self.shared);
+        r.view_mut((count, count), (5, 5)).copy_from(&self.root);
+        r.try_inverse()
+    }
+
+    /// |R (x − origin) + z|² + squares at `x`, the columns at their best.
+    pub(crate) fn squares_at(&self, x: &Coordinates) -> f64 {
+        (self.root * (x - self.origin.x) + self.z).norm_squared() + self.squares
+    }
+}
+
+/// How far each of the first `errors` columns moves x where the others are to make up for it, per its unit; the rest are as in
+/// [`Stacked::new`].
+pub(crate) fn responses(
+    rows: &[&[f64]],
+    columns: &[Column],
+    errors: usize,
+    deviation: f64,
+) -> Option<Vec<Coordinates>> {
+    let (wide, own) = (columns.len() + 6, columns.len() - errors);
+    let small = triangles(rows, columns, wide);
+    let all: Vec<&[f64]> = small.as_ref().map_or(rows.to_vec(), |s| s.iter().map(Vec::as_slice).collect());
+    // the errors are the right-hand sides, in the place of the residual
+    let place = |k: usize| if k < errors { own + 5 + k } else { k - errors };
+    let mut r = Mat::<f64>::zeros(0, wide - 1);
+    let mut each = all.iter().flat_map(|rows| rows.chunks_exact(wide)).peekable();
+    let mut priors =
+        columns[errors..].iter().map(|column| deviation / column.prior.unwrap_or(FLAT)).enumerate();
+    loop {
+        let part: Vec<&[f64]> = each.by_ref().take(TOGETHER).collect();
+        let weights: Vec<(usize, f64)> =
+            if each.peek().is_none() { priors.by_ref().collect() } else { Vec::new() };
+        let first = r.nrows();
+        let height = first + part.len() + weights.len();
+        let mut stack = Mat::<f64>::zeros(height.max(wide - 1), wide - 1);
+        stack.as_mut().subrows_mut(0, first).copy_from(&r);
+        for (i, row) in part.iter().enumerate() {
+            for (k, value) in row[..wide - 1].iter().enumerate() {
+                stack[(first + i, place(k))] = *value;
+            }
+        }
+        for (k, weight) in weights {
+            stack[(first + part.len() + k, k)] = weight;
+        }
+        r = stack.qr().thin_R().to_owned();
+        if each.peek().is_none() {
+            break;
+        }
+    }
+    let root = Form::from_fn(|i, k| if i <= k { r[(own + i, own + k)] } else { 0.0 });
+    let moved =
+        |k: usize| root.solve_upper_triangular(&Coordinates::from_fn(|i, _| r[(own + i, own + 5 + k)]));
+    (0..errors).map(moved).collect()
+}
+
+/// The triangle of each stretch, where some have columns of their own: those of the others then cost nothing.
+fn triangles(rows: &[&[f64]], columns: &[Column], width: usize) -> Option<Vec<Vec<f64>>> {
+    let alone = columns.iter().any(|column| column.segment.is_some()) && rows.len() > 1;
+    alone.then(|| rows.iter().map(|rows| triangle(rows, width)).collect())
+}
+
+/// Rows of `width` numbers as the rows of their triangle: the columns that are zero in all of them are left out of it.
+fn triangle(rows: &[f64], width: usize) -> Vec<f64> {
+    let used: Vec<usize> =
+        (0..width).filter(|&k| rows.chunks_exact(width).any(|row| row[k] != 0.0)).collect();
+    if rows.len() / width <= used.len() {
+        return rows.to_vec();
+    }
+    let full = Mat::from_fn(rows.len() / width, used.len(), |i, k| rows[i * width + used[k]]);
+    let qr = full.qr();
+    let r = qr.thin_R();
+    let mut small = vec![0.0; used.len() * width];
+    for i in 0..used.len() {
+        for k in i..used.len() {
+            small[i * width + used[k]] = r[(i, k)];
+        }
+    }
+    small
+}

@@ -1,0 +1,211 @@
+//! The weak estimate of a record: where its rounds ended.
+
+use crate::thresholds::noise::DEVIATIONS;
+use crate::thresholds::rounds::{BEYOND, RESTLESS, STILL, TORQUES};
+use faer::Mat;
+use nalgebra::Vector3;
+
+use crate::columns::column::{Column, Unknowns};
+use crate::physical::coordinates::{Coordinates, Form, eigen, pair, tensor};
+use crate::physical::law::LARGEST_SHARE;
+use crate::signal::covariance::{Covariance, Levels};
+use crate::signal::stretch::Stretch;
+use crate::solve::driven::take_out;
+use crate::solve::linearised::{Linearised, residuals};
+use crate::solve::rows::rows;
+use crate::solve::stacked::Stacked;
+use crate::thresholds::noise::SURE;
+
+/// How near rounds ended to a fixed point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Convergence {
+    /// They stood still there.
+    Still,
+    /// A further round would move the tensor by a part of its standard deviation.
+    Near,
+    /// They went on, and there is no answer.
+    None,
+}
+
+/// What explains a record in the unit that it was read in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Explanation {
+    /// The noise of the rates, and torques that have columns.
+    Noise,
+    /// Torques at random beside it.
+    TorqueNoise,
+    /// Torques that nothing in the fit stands for.
+    Torques,
+    /// Nothing: the rounds do not settle.
+    Nothing,
+}
+
+/// The weak estimate of a record: where its rounds ended.
+pub(crate) struct WeakEstimate {
+    pub(crate) radius: f64,
+    pub(crate) columns: Vec<Column>,
+    pub(crate) at: Unknowns,
+    /// Standard deviations by which a further round would move x; infinite where no round could be made, and this is
+    /// good for one question only: what is undetermined.
+    pub(crate) moved: f64,
+    /// Upper triangular, Rᵀ R = H at a motion free of noise.
+    pub(crate) root: Form,
+    /// The equations of all stretches; `None` where no round could be made.
+    pub(crate) stacked: Option<Stacked>,
+    /// D of the mean rates; zero where R is taken at a motion that stands out of the noise.
+    pub(crate) doubt: Form,
+    /// Sum of squares of the whitened residuals.
+    pub(crate) squares: f64,
+    /// Equations beyond the columns without a prior.
+    pub(crate) rows: usize,
+    /// Each stretch that is long enough.
+    pub(crate) parts: Vec<Part>,
+}
+
+/// The equations of one stretch.
+pub(crate) struct Part {
+    pub(crate) stretch: usize,
+    pub(crate) linearised: Linearised,
+    /// Its rows whitened.
+    pub(crate) rows: Vec<f64>,
+    pub(crate) levels: Levels,
+    /// log |C|.
+    pub(crate) log_determinant: f64,
+    /// The noise of the samples so far.
+    pub(crate) noise: Vec<Vector3<f64>>,
+}
+
+impl Part {
+    /// The rows of the same samples with other columns, whitened alike.
+    pub(crate) fn with_columns(
+        &self,
+        stretch: &Stretch,
+        columns: &[Column],
+        at: &Unknowns,
+    ) -> Option<Vec<f64>> {
+        // the rows first: what they are made of is gone when the covariance needs its room
+        let tests = &self.linearised.tests;
+        let mut rows = rows(stretch, &self.noise, columns, at, tests);
+        let factor = self.covariance(stretch).into_factor(self.levels)?;
+        take_out(&mut rows, columns, &self.linearised.terms.j, &factor, self.levels, tests);
+        factor.forward(&mut rows, columns.len() + 6);
+        Some(rows)
+    }
+
+    /// The covariance of its equations, which is not kept.
+    pub(crate) fn covariance(&self, stretch: &Stretch) -> Covariance {
+        self.linearised.covariance(stretch, &self.noise)
+    }
+
+    /// Three for each centre, whitened.
+    pub(crate) fn residuals(&self, at: &Unknowns) -> Vec<f64> {
+        residuals(&self.rows, self.linearised.width, &self.linearised.origin, at)
+    }
+
+    /// Centres of the test functions.
+    pub(crate) fn centres(&self) -> Vec<f64> {
+        self.linearised.tests.centres()
+    }
+}
+
+impl WeakEstimate {
+    /// The coordinates of the tensor.
+    pub(crate) fn x(&self) -> Coordinates {
+        self.at.x
+    }
+
+    /// How near the rounds ended to a fixed point.
+    pub(crate) fn convergence(&self) -> Convergence {
+        match self.moved {
+            moved if moved <= STILL => Convergence::Still,
+            moved if moved <= RESTLESS => Convergence::Near,
+            _ => Convergence::None,
+        }
+    }
+
+    /// Whether that is near enough for an answer.
+    pub(crate) fn has_settled(&self) -> bool {
+        self.convergence() != Convergence::None
+    }
+
+    /// Whether a body may have this tensor, or one near it: J = n nᵀ solves the equations of any spin about n, with
+    /// residuals and covariance that vanish together, and rounds may end there.
+    pub(crate) fn possible(&self, variance: f64) -> bool {
+        let (moments, axes) = eigen(tensor(&self.at.x));
+        let top = axes.column(2).into_owned();
+        let share = self.root.transpose().solve_lower_triangular(&pair(&top, &top));
+        let excess = variance * self.misfit(variance).max(1.0);
+        let deviation = share.map_or(f64::INFINITY, |g| g.norm() * excess.sqrt());
+        moments[2] - LARGEST_SHARE <= (SURE * deviation).max(BEYOND)
+    }
+
+    /// Whether torque noise has a part in it.
+    pub(crate) fn has_torque_noise(&self) -> bool {
+        self.parts.iter().any(|part| part.levels.torque > 0.0)
+    }
+
+    /// What explains the record with it.
+    pub(crate) fn explanation(&self, variance: f64) -> Explanation {
+        if self.has_torque_noise() {
+            Explanation::TorqueNoise
+        } else if !self.has_settled() {
+            Explanation::Nothing
+        } else if self.misfit(variance) > TORQUES {
+            Explanation::Torques
+        } else {
+            Explanation::Noise
+        }
+    }
+
+    /// Equations beyond the unknowns.
+    pub(crate) fn dof(&self) -> usize {
+        self.rows.saturating_sub(5)
+    }
+
+    /// Mean square of the residuals over the noise.
+    pub(crate) fn misfit(&self, variance: f64) -> f64 {
+        self.squares / variance / self.dof().max(1) as f64
+    }
+
+    /// Misfit beyond which noise alone does not carry it.
+    pub(crate) fn expected_misfit(&self) -> f64 {
+        1.0 + DEVIATIONS * (2.0 / self.dof().max(1) as f64).sqrt()
+    }
+
+    /// R as it would be without some of the columns.
+    pub(crate) fn without(&self, left_out: &[usize], deviation: f64) -> Option<Form> {
+        let stacked = self.stacked.as_ref()?;
+        let kept: Vec<usize> = (0..self.columns.len()).filter(|k| !left_out.contains(k)).collect();
+        let columns: Vec<Column> = kept.iter().map(|&k| self.columns[k]).collect();
+        let origin = Unknowns { x: stacked.origin.x, c: kept.iter().map(|&k| stacked.origin.c[k]).collect() };
+        let width = self.columns.len() + 6;
+        let rows: Vec<Vec<f64>> = self
+            .parts
+            .iter()
+            .map(|part| {
+                let each = part.rows.chunks_exact(width);
+                let kept = |row: &[f64]| {
+                    let own = kept.iter().map(|&k| row[k]);
+                    own.chain(row[width - 6..].iter().copied()).collect::<Vec<f64>>()
+                };
+                each.flat_map(kept).collect()
+            })
+            .collect();
+        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        Some(Stacked::new(&rows, &columns, &origin, deviation).root)
+    }
+
+    /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
+    /// without its squares.
+    pub(crate) fn spectrum(&self) -> Option<(Coordinates, Form)> {
+        let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
+        let (values, directions) = (svd.S().column_vector(), svd.V());
+        let mut pairs: [(f64, Coordinates); 5] = core::array::from_fn(|k| {
+            let direction = Coordinates::from_fn(|i, _| directions[(i, k)]);
+            let sure = values[k] * values[k] - (self.doubt * direction).norm_squared();
+            (sure.max(0.0).sqrt(), direction)
+        });
+        pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Some((Coordinates::from_fn(|k, _| pairs[k].0), Form::from_fn(|i, k| pairs[k].1[i])))
+    }
+}

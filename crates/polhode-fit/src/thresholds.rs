@@ -1,0 +1,384 @@
+//! Every threshold of the crate: its value, what it means, and the test whose result shows it.
+//!
+//! *unmeasured* is one that no test or experiment of this repository has set; *derived* follows from a distribution or
+//! from rounding. Sizes of arrays, coefficients of formulas and mathematical constants stand where they are used.
+
+/// No test or experiment has set it.
+#[cfg(test)]
+const UNMEASURED: &str = "unmeasured";
+/// It follows from a distribution or from rounding.
+#[cfg(test)]
+const DERIVED: &str = "derived";
+
+/// One row of the table.
+#[cfg(test)]
+struct Threshold {
+    place: &'static str,
+    name: &'static str,
+    value: &'static str,
+    meaning: &'static str,
+    source: &'static str,
+}
+
+macro_rules! thresholds {
+    ($($place:ident: $about:literal { $($name:ident: $kind:ty = $value:expr, $meaning:literal, $source:expr;)* })*) => {
+        $(#[doc = $about] pub(crate) mod $place { $(#[doc = $meaning] pub(crate) const $name: $kind = $value;)* })*
+        #[cfg(test)]
+        const TABLE: &[Threshold] = &[$($(Threshold {
+            place: stringify!($place),
+            name: stringify!($name),
+            value: stringify!($value),
+            meaning: $meaning,
+            source: $source,
+        },)*)*];
+    };
+}
+
+thresholds! {
+    test_functions: "the test functions and the sums over samples" {
+        TESTS_PER_RADIUS: f64 = 4.0, "test functions per half width", UNMEASURED;
+        SAMPLES_PER_TEST: f64 = 8.0, "fewest samples in the support of one test function", UNMEASURED;
+        ROUNDED: f64 = 1e-9, "relative excess of a radius over half of a duration that rounding makes", DERIVED;
+        TIE: f64 = 1e-6,
+            "nudge by which a number of tests is rounded, so that a change of units cannot change it", DERIVED;
+    }
+    groups: "neighbouring samples that the covariance sees as one" {
+        GROUPS: f64 = 12.0, "groups per half width of a test function: sums are then exact to a millionth", UNMEASURED;
+        LONGEST: f64 = 0.15, "longest group, rad of the motion", UNMEASURED;
+    }
+    quadrature: "weights on irregular samples" {
+        NEAREST: f64 = 0.25,
+            "distance of a neighbour, over the interval, below which it is passed over", "cubics_are_integrated_exactly_on_irregular_samples";
+    }
+    noise: "the noise of the rates" {
+        SURE: f64 = 5.0, "standard deviations of a mean within which the true one is taken to lie", DERIVED;
+        OUTLYING: f64 = 30.0, "medians of a squared difference beyond which it is a blow: a chance of 1e-15", DERIVED;
+        LEAST: f64 = 1e-20,
+            "variance over the mean square rate that the error of the quadrature alone brings", "without_noise_the_tensor_is_exact_to_the_quadrature";
+        MOST: f64 = 0.25,
+            "share of the mean square rate that is too much noise to fit", "zero_rates_and_mere_noise_are_no_rotation";
+        DEVIATIONS: f64 = 5.0, "standard deviations of the misfit of mere noise that noise explains", DERIVED;
+    }
+    rounds: "rounds of least squares" {
+        ROUNDS: usize = 12, "most rounds at one radius; at low noise two or three do", UNMEASURED;
+        FULL_ROUNDS: usize = 6, "rounds that take their whole step", UNMEASURED;
+        RELAXED: f64 = 0.5, "share of a later step where torques act: full ones may go to and fro", UNMEASURED;
+        SHARES: usize = 30, "halvings of a step that loses the smallest moment", UNMEASURED;
+        KEPT: f64 = 0.1, "share of the smallest moment that a round leaves at least", UNMEASURED;
+        REACHED: f64 = 0.99, "share of that which counts as reached", UNMEASURED;
+        STILL: f64 = 0.01, "standard deviations by which the last round may still move the tensor", UNMEASURED;
+        RESTLESS: f64 = 0.5, "the same beyond which there is no answer", UNMEASURED;
+        TORQUES: f64 = 4.0, "misfit that noise does not explain", "torque_is_seen_in_the_drifts";
+        SIGNIFICANT_GAIN: f64 = 50.0,
+            "fall of chi squared that no wobble of noise brings: a chance of exp(-25) for each frequency", DERIVED;
+        FALL: f64 = 0.03, "share of its torque noise that a round of a descent leaves at least", UNMEASURED;
+        DESCENT: usize = 30, "rounds of a descent from boundless torque noise", UNMEASURED;
+        SAME: f64 = 0.05, "relative change of a level of torque noise that no longer matters", UNMEASURED;
+        BOUNDLESS: f64 = 1e5, "torque noise over noise of the rates where a descent begins", UNMEASURED;
+        NEGLIGIBLE: f64 = 1e-3, "the same below which torque noise counts as none", UNMEASURED;
+        BEYOND: f64 = 0.05, "share of the trace by which torques may carry an estimate beyond the law", UNMEASURED;
+    }
+    stacked: "least squares of all stretches" {
+        FLAT: f64 = 1e3, "standard deviation of a column without a prior: it says nothing", UNMEASURED;
+        TOGETHER: usize = 16_384, "rows that are brought to a triangle together; memory alone", UNMEASURED;
+        RIDGE: f64 = 1e-7, "least ridge over the size of the triangle, far above its rounding", UNMEASURED;
+    }
+    levels: "levels of torque noise by restricted likelihood" {
+        GAIN: f64 = 4.0,
+            "gain of twice the log-likelihood up to which there is none: noise surpasses it once in 40 records", UNMEASURED;
+        DECADES: usize = 12, "decades of torque noise that are tried", UNMEASURED;
+        FIRST_DECADE: f64 = 3.0, "the first of them: a thousandth of the noise of the rates", UNMEASURED;
+        BETWEEN: f64 = 0.25,
+            "share of GAIN that one of these brings if the likeliest between two of them brings all of it", UNMEASURED;
+        SECTIONS: usize = 4, "steps of the golden section within two decades", UNMEASURED;
+        STEP: f64 = 0.15, "decades to both sides between which the likelihood is taken for a parabola", UNMEASURED;
+        RESHAPED: f64 = 1.0,
+            "gain of twice the log-likelihood for which the shape of the torque noise changes", UNMEASURED;
+    }
+    ladder: "the choice of a torque" {
+        FIRST: f64 = 5.0,
+            "gain of log-likelihood of a first coefficient; noise brings it once in 600 records", UNMEASURED;
+        FURTHER: f64 = 1.5, "the same of each further coefficient, beyond that", UNMEASURED;
+        HOPE: f64 = 0.5, "share of it that the equations without a torque must promise before it is fitted", UNMEASURED;
+    }
+    units: "mistaken units" {
+        EQUAL: f64 = 50.0, "difference of chi squared up to which units explain a record equally well", UNMEASURED;
+        ANY: f64 = 1e12, "a factor beyond those of all units", "a_drowned_spin_tells_its_axis_and_no_mistake_of_units";
+        LISTED: usize = 3, "units that a message lists; more of them tell none", UNMEASURED;
+        EXPLAINED: f64 = 2.0,
+            "largest misfit of a unit that explains a record", "mistaken_units_are_named_where_no_tensor_settles";
+        HOPELESS: f64 = 10.0 * EXPLAINED,
+            "misfit of the first rounds from which no unit comes to explain a record", UNMEASURED;
+        FAR: f64 = 20.0,
+            "fall of the misfit that torque noise is not likely to hide", "mistaken_units_are_found_where_torques_would_explain_the_record";
+        SURELY: f64 = 10.0,
+            "standard deviations by which the unit that was read must explain less than one that noise explains", UNMEASURED;
+        SPHERICAL: f64 = 0.01,
+            "distance from the sphere, over the trace, below which another unit is asked for", UNMEASURED;
+        FARTHER: f64 = 20.0, "how much farther from the sphere the body must be in the other unit", UNMEASURED;
+        SAMPLES: usize = 1_500, "samples on which units are tried first", UNMEASURED;
+        CREDIBLE: f64 = 0.2,
+            "largest deviation of an estimate that supports its unit, over its distance from the sphere", UNMEASURED;
+    }
+    radius: "the half width of the test functions" {
+        SHORTEST: f64 = 0.5, "shortest radius, rad of the motion", UNMEASURED;
+        CANDIDATES: usize = 6, "radii to choose from, each twice the one before", UNMEASURED;
+        ROOM: f64 = 4.0, "radii that a stretch must hold", UNMEASURED;
+        OF_SHORT: f64 = 0.25, "radius of a record with no room for any, over its duration", UNMEASURED;
+        COMPARED: usize = 2, "rounds after which radii are compared", UNMEASURED;
+        DENSE: f64 = 0.9,
+            "equations over samples beyond which their covariance is all but singular", "a_radius_without_room_is_refused";
+        PILOT_SAMPLES: usize = 8_000, "samples on which the radius is chosen: more would not change it", UNMEASURED;
+        TRIED: usize = 2, "radii at which a unit is tried before it is dropped", UNMEASURED;
+    }
+    walk: "columns of a random walk of the offsets" {
+        STEPS: usize = 20, "steps of the walk in one stretch", UNMEASURED;
+        SHORTEST: f64 = 0.5, "shortest of them, rad of the motion", UNMEASURED;
+    }
+    judgement: "refusals" {
+        EXCLUDED: [f64; 2] = [35.888_186_879_672_87, 38.258_336_377_209_69],
+            "chi squared of 5 and 6 degrees of freedom with a chance of 1e-6: prior and record exclude each other", DERIVED;
+        OUTSIDE: f64 = 6.0,
+            "standard deviations of a prior by which it may lie outside limits and law", "contradictions_are_named_with_their_numbers";
+        UNTOLD: f64 = 1.0,
+            "deviation of a torque, in units of the rate, beyond which the record says nothing of it", "torques_that_a_record_cannot_tell_are_named";
+    }
+    warnings: "warnings" {
+        FAR: f64 = 6.0,
+            "standard deviations by which noise alone does not carry five numbers off the physical tensors", "limits_that_contradict_the_record_are_seen_in_the_misfit";
+        RESIDUALS: f64 = 1.2, "misfit that is worth a warning", UNMEASURED;
+        NOISY: f64 = 4.0,
+            "mean square residual of a segment over that of the median segment that is worth one", UNMEASURED;
+        UNCERTAIN: f64 = 5e-3,
+            "deviation of the tensor, over the trace, beyond which the covariance is only approximate", UNMEASURED;
+        APART: f64 = 3.0, "standard deviations that two moments must be apart to have axes of their own", UNMEASURED;
+        FEW: usize = 20, "degrees of freedom below which chi squared is no check", UNMEASURED;
+    }
+    trend: "trends of what a free body keeps, and whiteness" {
+        SIGNIFICANT: f64 = 5.0,
+            "standard deviations of a trend or a correlation that count", "torque_is_seen_in_the_drifts";
+    }
+    identifiability: "what a record determines" {
+        VAGUE: f64 = 0.1,
+            "deviation of an undetermined number, over the trace: tensors differ by 0.4 at most", "pure_spin_tells_an_axis_and_no_ratio";
+        PURE: f64 = 0.05, "mean square rate across the spin, over that along it, of a pure spin", UNMEASURED;
+        PRINCIPAL: f64 = 0.1,
+            "largest part of a null tensor that a principal axis leaves off it", "two_pure_spins_tell_all_axes_and_no_ratio";
+    }
+    averages: "axes from averages" {
+        PARTS: usize = 8, "parts of a stretch whose mean square rates are compared", UNMEASURED;
+        UNEVEN: f64 = 0.5, "largest difference of two of them, over their mean, without a torque", UNMEASURED;
+    }
+    errors: "sizes of the errors of the sensor in the report" {
+        OFFSET: f64 = 0.01, "offset of an axis, rad/s", UNMEASURED;
+        SCALE: f64 = 0.01, "relative error of scale", UNMEASURED;
+        ALIGNMENT: f64 = 0.01, "error of a right angle, rad", UNMEASURED;
+        DELAY: f64 = 1e-3, "delay of an axis, s", UNMEASURED;
+        WHEEL: f64 = 1e-3, "momentum of a wheel over that of the body", UNMEASURED;
+        WALK: f64 = 1e-4, "random walk of the offsets, rad/s per root of a second", UNMEASURED;
+        WALK_STEPS: usize = 6, "steps of that walk in each segment: the slow ones matter", UNMEASURED;
+        MOST: usize = 60, "columns of a walk beyond which it is not asked for", UNMEASURED;
+    }
+    motion: "the fitted motion in the report" {
+        FIRST: f64 = 1.0, "first window, rad", UNMEASURED;
+        GROWTH: f64 = 1.6, "how much longer each window is than the one before", UNMEASURED;
+        STEPS: usize = 12, "steps of the search in each window", UNMEASURED;
+        STEP: f64 = 0.05, "longest step of the integrator, rad: errors of order 1e-7", UNMEASURED;
+        PARTS: f64 = 1000.0, "most steps of the integrator between two samples", UNMEASURED;
+        CLOSE: f64 = 1e-9, "relative gain, and relative step, at which the search ends", UNMEASURED;
+        DAMPING: f64 = 1e-4, "first damping of a step that does not help", UNMEASURED;
+        CHANGE: f64 = 10.0, "factor by which damping grows; its tenth is that by which it falls", UNMEASURED;
+    }
+    program: "the nearest physical tensor" {
+        CUTS: usize = 40,
+            "rounds of cuts; hard random programs took at most 13", "hard_random_programs_end_certified_and_no_feasible_tensor_is_nearer";
+        VIOLATION: f64 = 1e-9, "violation of the law that ends the cuts", "answers_are_those_of_a_semidefinite_program";
+        STALLED: [f64; 2] = [1e-5, 0.5],
+            "violation, and share of the one before, at which the accuracy of the solver ends the cuts", UNMEASURED;
+        SHARE: f64 = 1e-3, "size of a standard deviation of drag in the program", UNMEASURED;
+        SOLVER: f64 = 1e-11, "tolerance of the solver", UNMEASURED;
+        NEAR: f64 = 1e-4, "distance of a wall that the answer may lie on", UNMEASURED;
+        NEWTON: usize = 12, "steps of Newton's method on a face", UNMEASURED;
+        ROUNDED: f64 = 1e-15, "step at which it ends", DERIVED;
+        CERTIFIED: f64 = 1e-9,
+            "largest violation, complementarity and negative multiplier of a certified answer", "hard_random_programs_end_certified_and_no_feasible_tensor_is_nearer";
+        STATIONARY: f64 = 1e-6,
+            "its largest residual of stationarity, standard deviations", "answers_are_those_of_a_semidefinite_program";
+        INWARDS: f64 = 1e-14, "relative step towards the sphere that makes an answer on the law physical", DERIVED;
+    }
+    limits: "limits that the user sets" {
+        ROOM: f64 = 1e-6,
+            "room that limits must leave, as a share of the trace", "limits_hold_and_contradictions_are_named";
+        MET: f64 = 0.1, "share of that by which a tensor may break the law", UNMEASURED;
+        ROUNDS: usize = 400, "rounds of cuts until limits are checked", UNMEASURED;
+        PUSHES: f64 = 1e-3, "multiplier of a limit that takes part in a clash", UNMEASURED;
+        ANYWHERE: f64 = 1e3, "relaxation beyond any", UNMEASURED;
+        PARALLEL: f64 = 1e-12, "how far the cosine of the angle of two axes may be from 1 if they are one", DERIVED;
+        SYMMETRIC: f64 = 1e-9, "relative asymmetry of a covariance that is rounding", DERIVED;
+    }
+    spread: "the spread of an answer that a wall holds" {
+        DRAWN: usize = 10_000, "points that are drawn", "half_a_normal_distribution_keeps_its_mean_square";
+        INSIDE: usize = 200, "fewest of them inside the walls that tell the spread", "far_outside_nothing_is_said";
+    }
+    bound: "the Cramér–Rao bound" {
+        STEPS: usize = 12, "steps towards the motion nearest to one window", UNMEASURED;
+        STILL: f64 = 0.01, "fall of the sum of squares, over the variance, that no longer matters", UNMEASURED;
+        DAMPING: f64 = 1e-4, "first damping of a step that does not help", UNMEASURED;
+        CHANGE: f64 = 10.0, "factor by which damping grows; its tenth is that by which it falls", UNMEASURED;
+        STARTS: [(f64, f64); 6] = [(0.5, 1.0), (0.25, 1.0), (0.75, 1.0), (0.5, 2.0), (0.25, 2.0), (0.75, 2.0)],
+            "where to start, over the samples, and the first radius, rad", "the_bound_of_random_records_is_that_of_their_motion";
+        WIDTH: f64 = 0.1, "duration of the samples that the search sees as one, rad", UNMEASURED;
+        LEFT: f64 = 0.05,
+            "share of what noise does not explain that a motion may leave", "where_no_free_motion_explains_the_samples_there_is_no_bound";
+        SURE: f64 = 5.0, "standard deviations of the sum of squares that it may leave beside", DERIVED;
+        STEP: f64 = 0.1,
+            "longest step of the integrator for a free motion, rad: errors of order 1e-6", "the_bound_is_that_of_the_exact_motion";
+        PARTS: f64 = 100.0, "most such steps between two samples", UNMEASURED;
+        STEP_OF_PLAN: f64 = 0.05,
+            "the same for a motion under torques: errors of order 1e-7", "the_bound_of_a_plan_is_that_of_differences";
+        PARTS_OF_PLAN: f64 = 1000.0, "most such steps between two samples", UNMEASURED;
+        OPEN: f64 = 1e-12, "relative eigenvalue of the information that is rounding", DERIVED;
+    }
+    flights: "flights in a recording" {
+        ALMOST_ALL: f64 = 0.9, "share of the turning tests that a record in a wrong unit contradicts", UNMEASURED;
+        SLOW: f64 = 0.1, "rate below which the body counts as held, over the rate of its motion", UNMEASURED;
+        NOISE_OF_SLOPE: f64 = 0.4,
+            "largest tr J^2 of the share that the derivative of a test has in the noise", DERIVED;
+        NOISE_OF_VALUE: f64 = 0.3, "the same of the test itself, per squared rate", DERIVED;
+        NOISE_DEVIATIONS: f64 = 2.0, "deviations of the noise that a residual may have", UNMEASURED;
+        WINDOW: usize = 12, "tests of a window", UNMEASURED;
+        STRIDE: usize = 2, "tests by which the next window begins later", UNMEASURED;
+        MOST_TORQUE: f64 = 0.02,
+            "torque of a free window that drag does not explain, over tr(J) |w|^2", "each_throw_of_a_recording_is_found_and_nothing_else";
+        DRAG: f64 = 0.03, "deviation of the drag that is expected: momentum lost in a turn by one radian", UNMEASURED;
+        TRIED: usize = 100, "windows whose tensors are tried", UNMEASURED;
+        JUDGES: usize = 5_000, "windows on which they are tried", UNMEASURED;
+        REFINEMENTS: usize = 4, "refinements of a tensor by the windows that agree with it", UNMEASURED;
+        BEYOND: f64 = 0.03, "share of the trace by which a tensor of short windows may break the law", UNMEASURED;
+        GROSS: f64 = 0.3,
+            "largest torque of a record that is free as a whole, over tr(J) |w|^2", "a_free_record_is_one_flight_and_stays_as_it_is";
+        SURE: f64 = 3.0, "deviations of the noise beyond which a residual counts", UNMEASURED;
+        LASTING: usize = 4, "tests in a row for which it must", UNMEASURED;
+        COMMON_TORQUE: f64 = 0.05, "residual that counts in full towards the tensor of a whole record", UNMEASURED;
+        REWEIGHTED: usize = 3, "rounds of reweighting of a whole record", UNMEASURED;
+    }
+    extent: "the ends of a flight" {
+        COMMON: f64 = 100.0, "precision of the common tensor in the fit of one flight", UNMEASURED;
+        USUAL: f64 = 4.0, "medians of the residuals of a flight that one of its own may reach", UNMEASURED;
+        NOISE: f64 = 1.5, "deviations of the noise that it may reach beside", UNMEASURED;
+        ENDS: f64 = 0.35, "share of a flight within which an end of it is sought", "flights_reach_the_ends_of_segments";
+        ROUNDS: usize = 6, "rounds of trimming and fitting", UNMEASURED;
+        FEWEST: usize = 4, "fewest tests of a flight", UNMEASURED;
+        BESIDE: usize = 8, "tests next to an end that tell why it is one", UNMEASURED;
+    }
+    simulate: "simulated motions" {
+        IMPULSES: usize = 4, "impulses of the noise of a torque for each sample", "white_torque_makes_a_ball_walk";
+        TERMS: usize = 24,
+            "terms of the power series in time", "relative_drag_is_free_motion_on_a_clock_that_slows_down";
+        TERMS_OF_IMPULSES: usize = 10, "the same between impulses, which are near one another", UNMEASURED;
+        LAST_TERM: f64 = 1e-17,
+            "last term over the momentum, where a step ends", "relative_drag_is_free_motion_on_a_clock_that_slows_down";
+        STEPS: usize = 1000,
+            "steps for each sample after which a motion is too fast", "what_cannot_be_simulated_is_refused_by_name";
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    /// Constants that are no thresholds: sizes of arrays, coefficients and counts of a formula, the law itself.
+    const NO_THRESHOLDS: &[&str] = &[
+        "banded REGISTER",
+        "banded WIDEST",
+        "coordinates HALF_ROOT",
+        "coordinates SIXTH_ROOT",
+        "covariance BLOCKS",
+        "equations LOCAL",
+        "equations OTHERS",
+        "equations UNKNOWNS",
+        "law LARGEST_SHARE",
+        "levels SHARE",
+        "moments WITH_SLOPE",
+        "moments WITH_VALUE",
+        "other_units MISTAKES",
+        "test_functions LANES",
+        "test_functions MOST",
+        "test_functions PARTS",
+        "test_functions SUMS",
+    ];
+
+    fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() { sources(&path, found) } else { found.push(path) }
+        }
+    }
+
+    fn root() -> &'static Path {
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+    }
+
+    #[test]
+    fn no_threshold_stands_outside_of_the_table() {
+        let mut files = Vec::new();
+        sources(&root().join("src"), &mut files);
+        let mut found = Vec::new();
+        for file in files.iter().filter(|f| !f.ends_with("thresholds.rs")) {
+            let text = std::fs::read_to_string(file).unwrap();
+            let code = text.split("#[cfg(test)]\nmod tests").next().unwrap();
+            for line in code.lines().map(str::trim_start) {
+                let Some((before, after)) = line.split_once("const ") else { continue };
+                let Some((name, kind)) = after.split_once(": ") else { continue };
+                let number = ["f64", "usize", "[f64", "[(f64"].iter().any(|k| kind.starts_with(k));
+                let number = number && name.len() > 1 && !name.contains(char::is_lowercase);
+                if number && (before.is_empty() || before.starts_with("pub")) {
+                    found.push(format!("{} {name}", file.file_stem().unwrap().to_string_lossy()));
+                }
+            }
+        }
+        found.sort();
+        assert_eq!(found, NO_THRESHOLDS, "a threshold belongs into the table of thresholds.rs");
+    }
+
+    #[test]
+    fn sources_of_thresholds_are_tests_of_this_crate() {
+        let mut files = Vec::new();
+        sources(&root().join("src"), &mut files);
+        sources(&root().join("tests"), &mut files);
+        let text: String = files
+            .iter()
+            .filter(|f| f.extension().is_some_and(|e| e == "rs") && !f.ends_with("thresholds.rs"))
+            .map(|f| std::fs::read_to_string(f).unwrap())
+            .collect();
+        for row in TABLE.iter().filter(|row| ![UNMEASURED, DERIVED].contains(&row.source)) {
+            assert!(
+                text.contains(&format!("fn {}(", row.source)),
+                "{}::{}: {}",
+                row.place,
+                row.name,
+                row.source
+            );
+        }
+    }
+
+    /// The page thresholds.md is this table; `POLHODE_BLESS=1` writes it anew.
+    #[test]
+    fn the_page_of_thresholds_is_the_table() {
+        let mut page = String::from(
+            "# Thresholds\n\n`unmeasured`: no test or experiment of the repository has set it. `derived`: it follows from a \
+             distribution or from rounding.\n\n| threshold | value | meaning | shown by |\n|---|---|---|---|\n",
+        );
+        for row in TABLE {
+            let Threshold { place, name, value, meaning, source } = row;
+            page +=
+                &format!("| `{place}::{name}` | `{value}` | {} | {source} |\n", meaning.replace('|', "\\|"));
+        }
+        let path = root().join("thresholds.md");
+        if std::env::var_os("POLHODE_BLESS").is_some() {
+            std::fs::write(&path, &page).unwrap();
+        }
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), page, "POLHODE_BLESS=1 writes the page anew");
+    }
+}

@@ -1,0 +1,200 @@
+//! What a record says of its fit: computed once, and matched.
+
+use nalgebra::Matrix3;
+
+use crate::error::FitError;
+use crate::physical::coordinates::{Form, tensor};
+use crate::physical::failure::SolverFailure;
+use crate::physical::prior::Told;
+use crate::report::averages;
+use crate::report::identifiability::Identifiability;
+use crate::report::torque_free::trends;
+use crate::settings::Settings;
+use crate::settings::torque::TorqueModel;
+use crate::signal::stretch::Stretch;
+use crate::solve::completed::{Completed, completed};
+use crate::solve::ladder::Chosen;
+use crate::solve::other_units::{Better, Support, better_unit, suspicious};
+use crate::solve::weak_estimate::{Explanation, WeakEstimate};
+use crate::thresholds::judgement::UNTOLD;
+use crate::thresholds::rounds::ROUNDS;
+use crate::verdict::prior::consistent;
+
+/// What a record says of its fit.
+pub(crate) enum Verdict {
+    /// Units that can be named explain it, the one that it was read in does not.
+    MistakenUnit(Better),
+    /// The rates change, and no tensor explains them.
+    Unsettled {
+        /// Factor on rate × time from which on units would, if they do.
+        factor: Option<f64>,
+    },
+    /// It cannot tell coefficients of the torque that was asked for.
+    UntoldTorque {
+        names: Vec<&'static str>,
+        /// How many of the five numbers of the tensor are determined with them.
+        rank: usize,
+    },
+    /// It leaves numbers of the tensor open.
+    Undetermined(Identifiability),
+    /// It leaves numbers open that a prior supplies.
+    Completed(Supported, Completed),
+    /// It determines the tensor.
+    Determined(Supported),
+}
+
+/// What an answer rests on beside the weak estimate.
+pub(crate) struct Supported {
+    pub(crate) identifiability: Identifiability,
+    pub(crate) prior: Option<Told>,
+    /// Units that explain the record as well, and are worth a warning.
+    pub(crate) better: Option<Better>,
+}
+
+/// A record that is judged, in its own units.
+pub(crate) struct Case<'a> {
+    pub(crate) stretches: &'a [Stretch],
+    pub(crate) settings: &'a Settings,
+    pub(crate) variance: f64,
+    /// Unit of the rates, rad/s.
+    pub(crate) rms: f64,
+    /// Whether wheels or torques of the record give the tensor its size.
+    pub(crate) is_sized: bool,
+}
+
+impl Case<'_> {
+    /// The verdict on what was chosen.
+    pub(crate) fn judge(&self, chosen: &Chosen) -> Result<Verdict, FitError> {
+        let Case { stretches, settings, variance, .. } = *self;
+        let weak = &chosen.weak;
+        let misfit = weak.misfit(variance);
+        // a unit of any size must not convince: there is a tensor next to the sphere for any small wobble in large enough
+        // a unit
+        let better = match self.other_units(chosen) {
+            Some(better) if better.support == Support::Named => return Ok(Verdict::MistakenUnit(better)),
+            better => better,
+        };
+        let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
+        // what the noise does not explain enlarges the deviations
+        let enlarged = variance * misfit.max(1.0);
+        let singular = || FitError::Solver(SolverFailure::Covariance);
+        let identifiability = identify(weak, stretches, enlarged).ok_or_else(singular)?;
+        let is_open = !weak.has_settled() || !identifiability.complete();
+        let filling = prior.as_ref().filter(|_| is_open && !self.is_sized);
+        let filled =
+            filling.and_then(|prior| completed(stretches, weak, &prior.shape_root(), prior.x, variance));
+        let (factor, support) = (better.as_ref().map(|b| b.factor), better.as_ref().map(|b| b.support));
+        let better = better.filter(|b| matches!(b.support, Support::Any { determined: true, .. }));
+        if let Some(filled) = filled {
+            let identifiability =
+                Identifiability::new(&filled.alone, &scatter_of(stretches), &tensor(&filled.weak.x()));
+            return Ok(Verdict::Completed(Supported { identifiability, prior, better }, filled));
+        }
+        let is_explained = match (support, weak.explanation(variance)) {
+            // torque noise that explains what a unit would explain without any explains nothing
+            (Some(Support::Any { far: true, .. }), Explanation::TorqueNoise) => false,
+            _ => weak.has_settled() || misfit <= weak.expected_misfit(),
+        };
+        if !is_explained {
+            return Ok(Verdict::Unsettled { factor });
+        }
+        let names = untold(weak, stretches, enlarged, &identifiability);
+        // of a torque that was not asked for the message could ask for nothing simpler
+        if settings.torque != TorqueModel::Auto && !names.is_empty() {
+            return Ok(Verdict::UntoldTorque { names, rank: identifiability.rank });
+        }
+        match identifiability.complete() {
+            true => Ok(Verdict::Determined(Supported { identifiability, prior, better })),
+            false => Ok(Verdict::Undetermined(identifiability)),
+        }
+    }
+
+    /// Units that explain the record better: those that were found on the way, where more than noise is to explain it, or
+    /// those in which a body next to a sphere is an ordinary one.
+    fn other_units(&self, chosen: &Chosen) -> Option<Better> {
+        let weak = &chosen.weak;
+        // torque noise may hide a mistaken unit, which must then explain the record without any
+        let found = match weak.explanation(self.variance) {
+            Explanation::Noise => None,
+            Explanation::TorqueNoise | Explanation::Torques | Explanation::Nothing => chosen.better.clone(),
+        };
+        found.or_else(|| {
+            let asks = self.settings.check_units && !self.is_sized && suspicious(weak, self.variance);
+            asks.then(|| better_unit(self.stretches, Some(weak), self.variance)).flatten()
+        })
+    }
+
+    /// The rates are not constant, and still no tensor explains them.
+    pub(crate) fn unsettled(&self, weak: &WeakEstimate, factor: Option<f64>) -> FitError {
+        let Case { stretches, settings, variance, rms, .. } = *self;
+        let misfit = weak.misfit(variance);
+        let axes = averages::axes(stretches, variance);
+        let (fall, _) = trends(stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0));
+        let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
+            .then_some(-fall.rate * rms);
+        FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall }
+    }
+}
+
+/// Coefficients of torque that the record cannot tell: from the tensor, which it would determine without them, or at all.
+fn untold(
+    weak: &WeakEstimate,
+    stretches: &[Stretch],
+    variance: f64,
+    identifiability: &Identifiability,
+) -> Vec<&'static str> {
+    let Some(stacked) = &weak.stacked else { return Vec::new() };
+    let torques: Vec<usize> =
+        (0..weak.columns.len()).filter(|&k| weak.columns[k].class().is_torque()).collect();
+    if torques.is_empty() {
+        return Vec::new();
+    }
+    let mut names = Vec::new();
+    let mut name = |k: usize| {
+        let name = weak.columns[k].label().name;
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    };
+    if identifiability.complete() {
+        let Some(factor) = stacked.joint_factor() else { return Vec::new() };
+        let fitted = |k: usize| {
+            weak.columns[k].segment.is_none_or(|s| weak.parts.iter().any(|part| part.stretch == s))
+        };
+        let vague = |k: usize| factor.row(k).norm() * variance.sqrt() > UNTOLD;
+        torques.iter().copied().filter(|&k| fitted(k) && vague(k)).for_each(&mut name);
+        return names;
+    }
+    let without = weak.without(&torques, variance.sqrt());
+    let known = without.and_then(|root| identify_by(&root, weak, stretches, variance));
+    if known.is_some_and(|known| known.complete()) {
+        torques.into_iter().for_each(&mut name);
+    }
+    names
+}
+
+fn identify_by(
+    root: &Form,
+    weak: &WeakEstimate,
+    stretches: &[Stretch],
+    variance: f64,
+) -> Option<Identifiability> {
+    let svd = (root / variance.sqrt()).svd(false, true);
+    let directions = svd.v_t?.transpose();
+    Some(Identifiability::new(&(svd.singular_values, directions), &scatter_of(stretches), &tensor(&weak.x())))
+}
+
+fn scatter_of(stretches: &[Stretch]) -> Matrix3<f64> {
+    let (mut scatter, mut count) = (Matrix3::zeros(), 0.0);
+    for w in stretches.iter().flat_map(|s| &s.rates) {
+        scatter += w * w.transpose();
+        count += 1.0;
+    }
+    scatter / count
+}
+
+fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option<Identifiability> {
+    let (singular, directions) = weak.spectrum()?;
+    let spectrum = (singular / variance.sqrt(), directions);
+    Some(Identifiability::new(&spectrum, &scatter_of(stretches), &tensor(&weak.x())))
+}
