@@ -38,16 +38,13 @@ pub fn check(body: &Body, start: &State, demand: &Demand, choice: &Choice) -> Re
         return Err(AdviseError::TooLong { until: demand.until, reach });
     }
     let looks = if reference.closed().is_some() { LOOKS } else { reference.looks(0) };
-    let (name, step, steps) = match choice.setting {
-        Setting::Nothing => (None, demand.until / looks as f64, looks),
-        Setting::Step(h) => (Some(choice.method.clone()), h, choice.steps.unwrap_or(1)),
-        Setting::Tolerance { tolerance, .. } => {
-            (Some(format!("{}:{tolerance:e}", choice.method)), demand.until / looks as f64, looks)
-        }
+    let (step, steps) = match choice.setting {
+        Setting::Step(h) => (h, choice.steps.unwrap_or(1)),
+        _ => (demand.until / looks as f64, looks),
     };
     let clock = Clock { start: demand.start_time, step };
     let mut worst = 0.0_f64;
-    let Some(name) = name else {
+    if choice.setting == Setting::Nothing {
         let Some(motion) = reference.closed() else { return Err(AdviseError::NoReference) };
         for k in 1..=looks {
             let t = clock.elapsed(k).hi();
@@ -56,8 +53,11 @@ pub fn check(body: &Body, start: &State, demand: &Demand, choice: &Choice) -> Re
         }
         return Ok(worst);
     };
-    let unusable = |why: String| AdviseError::Unusable { method: name.clone(), why };
-    let method = method(&name).map_err(|error| unusable(error.to_string()))?;
+    let unusable = |why: String| AdviseError::Unusable { method: choice.method.clone(), why };
+    let mut method = method(&choice.method).map_err(|error| unusable(error.to_string()))?;
+    if let Setting::Tolerance { tolerance, .. } = choice.setting {
+        method = method.with_tolerance(tolerance).map_err(|error| unusable(error.to_string()))?;
+    }
     let run = Run::from_point(&method, body, start, clock).map_err(|error| unusable(error.to_string()))?;
     let mut run = run.watching(Watch::Never);
     for k in 1..=looks {

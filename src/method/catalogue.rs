@@ -1,5 +1,7 @@
 //! Methods by name: the dynamic outside of the static inside.
 
+use core::fmt;
+
 use thiserror::Error;
 
 use super::map::Stepper;
@@ -8,8 +10,8 @@ use super::{
     AdaptiveTaylor, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, Dop853, DormandPrince853, Embedded,
     ExactFlow, ExactStep, ExplicitEuler, FreePart, Gauss, ImplicitMidpoint, Kicks, LieGroup, LieNewmark,
     Method, MomentumEuler, MujocoRk4, Pair, PreprocessedDmv, ProjectedRk4, Richardson, Rk4, Rk8, SchemeError,
-    SemiImplicitEuler, Splitting, Step, Symmetric, SymmetricProjection, Taylor, Tsit5, Tsitouras54, TwoAxes,
-    TwoTurn, VariationalCayley,
+    SemiImplicitEuler, Splitting, Step, Symmetric, SymmetricProjection, Taylor, ToleranceError, Tsit5,
+    Tsitouras54, TwoAxes, TwoTurn, VariationalCayley, embedded,
 };
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::num::{Dd, Shown};
@@ -38,6 +40,12 @@ impl<M: Method<f64> + Method<Dd> + Claimed + Send + Sync> AnyMethod for M {
     }
 }
 
+impl fmt::Debug for dyn AnyMethod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name())
+    }
+}
+
 impl Claimed for Box<dyn AnyMethod> {
     fn name(&self) -> String {
         (**self).name()
@@ -47,6 +55,12 @@ impl Claimed for Box<dyn AnyMethod> {
     }
     fn needs_series(&self) -> bool {
         (**self).needs_series()
+    }
+    fn tolerance(&self) -> Option<f64> {
+        (**self).tolerance()
+    }
+    fn with_tolerance(&self, tolerance: f64) -> Result<Box<dyn AnyMethod>, ToleranceError> {
+        (**self).with_tolerance(tolerance)
     }
 }
 
@@ -190,9 +204,6 @@ pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
     ]
 }
 
-/// Bases that choose their steps by a tolerance, which is their argument, as in `dop853:1e-12`.
-pub const ADAPTIVE: [&str; 3] = ["taylor", "dop853", "tsit5"];
-
 /// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in
 /// `lie-poisson:321@kahan-li-8`.
 ///
@@ -287,31 +298,30 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
             match argument {
                 None => plain(AdaptiveTaylor::to_rounding(), chosen),
                 Some(text) => {
-                    let refused = |_| asked.refused(TAYLOR_RULE);
+                    let refused = || asked.refused(TAYLOR_RULE);
                     match (text.parse(), text.parse()) {
-                        (Ok(order), _) => plain(Taylor::of_order(order).map_err(refused)?, chosen),
+                        (Ok(order), _) => plain(Taylor::of_order(order).map_err(|_| refused())?, chosen),
                         (_, Ok(tolerance)) => {
-                            plain(AdaptiveTaylor::of_tolerance(tolerance).map_err(refused)?, chosen)
+                            plain(AdaptiveTaylor::of_tolerance(tolerance).map_err(|_| refused())?, chosen)
                         }
-                        _ => Err(asked.refused(TAYLOR_RULE)),
+                        _ => Err(refused()),
                     }
                 }
             }
         }
-        "dop853" => embedded::<DormandPrince853>(&asked),
-        "tsit5" => embedded::<Tsitouras54>(&asked),
+        "dop853" => pair::<DormandPrince853>(&asked),
+        "tsit5" => pair::<Tsitouras54>(&asked),
         "rk8" => plain(Rk8, asked.scheme_alone()?),
         _ => Err(UnknownMethod::Name { name: name.into() }),
     }
 }
 
-fn embedded<P: Pair>(asked: &Asked<'_>) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
+fn pair<P: Pair>(asked: &Asked<'_>) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
     let chosen = asked.scheme()?;
     let Some(text) = asked.argument else {
         return plain(Embedded::<P>::default(), chosen);
     };
-    let refused =
-        || asked.refused("a tolerance from 1e-15, some roundings of a double, to 1e-3, such as dop853:1e-12");
+    let refused = || asked.refused(embedded::ALLOWED);
     let tolerance = text.parse().map_err(|_| refused())?;
     plain(Embedded::<P>::of_tolerance(tolerance).map_err(|_| refused())?, chosen)
 }

@@ -3,6 +3,7 @@
 use core::fmt;
 use core::ops::{Add, Mul};
 
+use super::{AnyMethod, ToleranceError};
 use crate::body::Problem;
 
 /// Name and claims of a method.
@@ -17,6 +18,29 @@ pub trait Claimed {
     fn needs_series(&self) -> bool {
         false
     }
+
+    /// What the error of discretisation stays below in each step, relative to the state, of a method that chooses its steps; the
+    /// rounding of a double also stands for that of any other scalar. `None` where the step is that of the run.
+    fn tolerance(&self) -> Option<f64> {
+        None
+    }
+
+    /// The same method with the tolerance `tolerance`.
+    ///
+    /// # Errors
+    /// A method that does not choose its steps, or a tolerance that it does not take.
+    ///
+    /// ```
+    /// use polhode::method;
+    /// let found = method("dop853")?;
+    /// assert_eq!(found.with_tolerance(1e-12)?.tolerance(), Some(1e-12));
+    /// assert!(found.with_tolerance(0.1).is_err());
+    /// assert!(method("rk4")?.with_tolerance(1e-12).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn with_tolerance(&self, _tolerance: f64) -> Result<Box<dyn AnyMethod>, ToleranceError> {
+        Err(ToleranceError::FixedSteps { method: self.name() })
+    }
 }
 
 /// The claims of a method for one kind of motion.
@@ -25,11 +49,8 @@ pub trait Claimed {
 #[non_exhaustive]
 pub struct Claims {
     /// Order of convergence of attitude and momentum; `None` where there is no error of discretisation but below the
-    /// tolerance.
+    /// [tolerance](Claimed::tolerance).
     pub order: Option<u32>,
-    /// What the error of discretisation stays below in each step that the method chooses, relative to the state; the rounding
-    /// of a double also stands for that of any other scalar. `None` where the step is that of the run.
-    pub tolerance: Option<f64>,
     /// Φ_{−h} ∘ Φ_h = 1.
     pub symmetric: bool,
     /// Without torque the map of momenta keeps the Lie–Poisson bracket.
@@ -46,10 +67,10 @@ pub struct Claims {
 }
 
 impl Claims {
-    /// Of a method that is neither symmetric nor Poisson nor symplectic and has no tolerance; where it is or has, set the field.
+    /// Of a method that is neither symmetric nor Poisson nor symplectic; where it is, set the field.
     pub const fn new(order: Option<u32>, kept: Kept, cost: Cost, source: &'static str) -> Claims {
         let [symmetric, poisson, symplectic] = [false; 3];
-        Claims { order, tolerance: None, symmetric, poisson, symplectic, kept, cost, source }
+        Claims { order, symmetric, poisson, symplectic, kept, cost, source }
     }
 }
 

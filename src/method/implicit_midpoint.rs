@@ -59,7 +59,6 @@ impl Claimed for ImplicitMidpoint {
         };
         Some(Claims {
             order: Some(2),
-            tolerance: None,
             symmetric: true,
             poisson: false,
             symplectic: false,

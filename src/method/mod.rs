@@ -34,20 +34,21 @@ mod splitting;
 mod stagnation;
 mod symmetric_projection;
 mod taylor;
+mod tolerance;
 mod turns;
 mod two_turn;
 mod variational_cayley;
 
 pub use axis_order::{AxisOrder, AxisOrderError};
 pub use axis_split::AxisSplit;
-pub use catalogue::{ADAPTIVE, AnyMethod, StepError, UnknownMethod, catalogue, method};
+pub use catalogue::{AnyMethod, StepError, UnknownMethod, catalogue, method};
 pub use claims::{Claimed, Claims, Cost, Energy, Kept};
 pub use collocation::{Gauss, GaussMap, GaussOrderError};
 pub use composed::{Composed, Symmetric};
 pub use dmv::Dmv;
 pub use embedded::{
-    Control, Dop853, DormandPrince853, Embedded, EmbeddedMap, Pair, Rk8, Rk8Map, Stage, Terms,
-    ToleranceError, Tsit5, Tsitouras54,
+    Control, Dop853, DormandPrince853, Embedded, EmbeddedMap, Pair, Rk8, Rk8Map, Stage, Terms, Tsit5,
+    Tsitouras54,
 };
 pub use exact_flow::ExactFlow;
 pub use exact_step::ExactStep;
@@ -67,7 +68,8 @@ pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
 pub use single_turn::{Buss, BussMap};
 pub use splitting::{FreePart, SchemeError, Splitting};
 pub use symmetric_projection::{SymmetricProjection, SymmetricProjectionMap};
-pub use taylor::{AdaptiveTaylor, AdaptiveTaylorMap, Taylor, TaylorError, TaylorMap};
+pub use taylor::{AdaptiveTaylor, AdaptiveTaylorMap, Taylor, TaylorMap, TaylorOrderError};
+pub use tolerance::ToleranceError;
 pub use two_turn::{TwoAxes, TwoAxesError, TwoTurn};
 pub use variational_cayley::{VariationalCayley, VariationalCayleyMap};
 

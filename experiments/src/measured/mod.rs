@@ -4,7 +4,7 @@ mod reference;
 mod timing;
 
 use polhode::body::{Body, Clock, Point};
-use polhode::method::{ADAPTIVE, AnyMethod, StepError};
+use polhode::method::{AnyMethod, StepError};
 use polhode::num::Dd;
 use polhode::observe::Errors;
 use polhode::run::{Run, RunError, Sample, Watch};
@@ -240,12 +240,6 @@ impl Ending {
 /// To four digits.
 fn rounded(t: f64) -> f64 {
     format!("{t:.3e}").parse().unwrap_or(t)
-}
-
-/// Whether the method chooses its steps: `dop853`, `tsit5`, and `taylor` but for `taylor:20`, whose argument is an order.
-pub fn is_adaptive(name: &str) -> bool {
-    let (base, argument) = name.split_once(':').unwrap_or((name, ""));
-    ADAPTIVE.contains(&base) && argument.parse::<u32>().is_err()
 }
 
 /// Evaluations in a step, of all kinds together.

@@ -13,10 +13,9 @@ pub use adaptive::EmbeddedMap;
 pub use dop853::DormandPrince853;
 pub use pair::{Control, Pair, Stage, Terms};
 pub use rk8::{Rk8, Rk8Map};
-use thiserror::Error;
 pub use tsit5::Tsitouras54;
 
-use super::{Claimed, Claims, Cost, Kept, Method};
+use super::{AnyMethod, Claimed, Claims, Cost, Kept, Method, ToleranceError};
 use crate::body::{Field, Problem, Rotor};
 use crate::num::{Dd, Real};
 
@@ -25,6 +24,10 @@ const TIGHTEST: f64 = 1e-15;
 
 /// The largest tolerance.
 const LOOSEST: f64 = 1e-3;
+
+/// The two in words.
+pub(super) const ALLOWED: &str =
+    "a tolerance from 1e-15, some roundings of a double, to 1e-3, such as dop853:1e-12";
 
 /// An embedded Runge–Kutta pair with steps of its own by a tolerance: [`Dop853`] and [`Tsit5`].
 ///
@@ -69,18 +72,6 @@ pub type Dop853 = Embedded<DormandPrince853>;
 /// sides a step. Its tolerance is 1e-6 unless another is given.
 pub type Tsit5 = Embedded<Tsitouras54>;
 
-/// There is no such tolerance.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error(
-    "{tolerance:e} is no tolerance of {method}; it must be from {TIGHTEST:e}, some roundings of a double, to {LOOSEST:e}"
-)]
-pub struct ToleranceError {
-    /// Name of the method.
-    pub method: &'static str,
-    /// What was asked for.
-    pub tolerance: f64,
-}
-
 impl<P: Pair> Embedded<P> {
     /// With the tolerance `tolerance`, relative to the state.
     ///
@@ -90,7 +81,7 @@ impl<P: Pair> Embedded<P> {
         if (TIGHTEST..=LOOSEST).contains(&tolerance) {
             Ok(Embedded { tolerance, pair: PhantomData })
         } else {
-            Err(ToleranceError { method: P::NAME, tolerance })
+            Err(ToleranceError::OutOfRange { method: P::NAME, tolerance, allowed: ALLOWED })
         }
     }
 }
@@ -111,8 +102,13 @@ impl<P: Pair> Claimed for Embedded<P> {
     }
     fn claims(&self, _: Problem) -> Option<Claims> {
         let cost = Cost::right_sides(P::STAGES.len() as u32 + 1);
-        let tolerance = Some(self.tolerance);
-        Some(Claims { tolerance, ..Claims::new(None, Kept::NOTHING, cost, P::SOURCE) })
+        Some(Claims::new(None, Kept::NOTHING, cost, P::SOURCE))
+    }
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+    fn with_tolerance(&self, tolerance: f64) -> Result<Box<dyn AnyMethod>, ToleranceError> {
+        Ok(Box::new(Self::of_tolerance(tolerance)?))
     }
 }
 
