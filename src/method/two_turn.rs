@@ -5,12 +5,12 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-use super::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
 use super::schemes::{Pairs, STRANG, Scheme, Stages};
-use super::turns::Turns;
 use super::{Cost, Energy, FreePart, Map, Method, SideBySide, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
 use crate::flow::{Casimir, Flow};
+use crate::method::solve::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
+use crate::method::solve::turns::Turns;
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 

@@ -1,9 +1,9 @@
 //! The variational integrator on SO(3) with the Cayley map.
 
-use super::implicit_midpoint::cayley_turn;
-use super::stagnation::iterate;
 use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Gyroscopic, Point, Rotor, Time};
+use crate::method::solve::cayley::cayley_turn;
+use crate::method::solve::stagnation::iterate;
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
