@@ -36,7 +36,7 @@
 //! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how large its error is |
 //! | [`catalogue`] | named bodies with their sources |
 //! | [`record`] | measured angular velocities: samples in segments without gaps |
-//! | [`units`] | units of times and rates by name |
+//! | [`units`] | units of times and rates by name; dates |
 //! | [`guide`] | a chapter for each kind of user; your own force, your own method; the exact motion |
 //!
 //! Each of those that hold code uses only those above it. The types that most programs need are also at the root:

@@ -1214,7 +1214,7 @@ fn every_method_is_equivariant_under_relabelled_axes() {
 /// τ·e = −dU/dε of a turn by ε about e, by central differences of order 6 in double-double.
 #[test]
 fn torques_are_gradients_of_their_potentials() {
-    let gradient = |e| Force::gravity_gradient(&inertia(), 0.8, e).unwrap();
+    let gradient = |e| Force::gravity_gradient(0.8, e).unwrap();
     let free = Body::free(inertia());
     let vertical = potential().body;
     for body in [heavy().body, vertical, free.clone().with(gradient(0.0)), free.with(gradient(0.3))] {

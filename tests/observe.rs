@@ -140,7 +140,7 @@ fn errors_under_gravity_are_measured_by_kinetic_energy_and_weight_moment() {
 #[test]
 fn jacobis_constant_is_measured_by_the_forces_and_the_turning_orbit() {
     let inertia = Inertia::from_moments(MOMENTS).unwrap();
-    let gradient = Force::gravity_gradient(&inertia, 0.5, 0.0).unwrap();
+    let gradient = Force::gravity_gradient(0.5, 0.0).unwrap();
     let body = Body::free(inertia).with(gradient);
     let mut run = Run::new(&method("rk4").unwrap(), &body, &start_of(&body), 0.05).unwrap();
     // of points, whose attitude is as the method left it; a state is normalised when it enters

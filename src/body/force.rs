@@ -10,6 +10,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::Time;
+use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real, Series, Shown};
 use crate::rotation::{Quat, Vec3};
 
@@ -92,6 +93,19 @@ pub struct Force {
     pub(crate) law: Law,
     /// The same law on power series; none of a closure.
     pub(crate) series: Option<SeriesLaw>,
+    /// What it takes from the body that it acts on.
+    pub(super) role: Role,
+}
+
+/// What a force takes from the body that it acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Role {
+    /// Nothing: the law says it all.
+    Law,
+    /// The solver frame, in which the torque of uniform gravity is linear in the vertical: by the weight moment, N m.
+    Gravity(Vec3<f64>),
+    /// The tensor: by the mean motion, rad/s, and the eccentricity.
+    Gradient([f64; 2]),
 }
 
 #[derive(Clone)]
@@ -166,7 +180,7 @@ impl Force {
     {
         let law = Arc::new(potential);
         let series = Some(SeriesLaw::Potential(law.clone()));
-        Force { name: name.into(), law: Law::Potential(law), series }
+        Force { name: name.into(), law: Law::Potential(law), series, role: Role::Law }
     }
 
     /// The torque `torque`, called `name` in messages.
@@ -176,7 +190,7 @@ impl Force {
     {
         let law = Arc::new(torque);
         let series = Some(SeriesLaw::Torque(law.clone()));
-        Force { name: name.into(), law: Law::Torque(law), series }
+        Force { name: name.into(), law: Law::Torque(law), series, role: Role::Law }
     }
 
     /// A potential by two closures of the attitude, body → space: energy in J, and torque in N m, body axes.
@@ -190,7 +204,7 @@ impl Force {
         T: Fn(UnitQuaternion<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
         let law = Law::Potential(Arc::new(PotentialFn { energy, torque }));
-        Force { name: name.into(), law, series: None }
+        Force { name: name.into(), law, series: None, role: Role::Law }
     }
 
     /// A torque, N m, body axes, by a closure of the time (s), the attitude (body → space) and the angular velocity
@@ -214,7 +228,21 @@ impl Force {
     where
         T: Fn(f64, UnitQuaternion<f64>, Vector3<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
-        Force { name: name.into(), law: Law::Torque(Arc::new(TorqueFn(torque))), series: None }
+        let law = Law::Torque(Arc::new(TorqueFn(torque)));
+        Force { name: name.into(), law, series: None, role: Role::Law }
+    }
+
+    /// The same force, which takes `role` from the body.
+    pub(super) fn taking(self, role: Role) -> Self {
+        Force { role, ..self }
+    }
+
+    /// The same force as it acts on a body with the inertia `inertia`.
+    pub(super) fn on(self, inertia: &Inertia) -> Self {
+        match self.role {
+            Role::Gradient(orbit) => Force::gradient_on(inertia.tensor(), orbit),
+            Role::Law | Role::Gravity(_) => self,
+        }
     }
 
     /// Its name.

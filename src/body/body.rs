@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::field::{Evaluated, Field, Forces, Witness};
+use super::force::Role;
 use super::{Conserved, Exit, Force, Gravity, Point, Rotor, State, Time};
 use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real, Shown};
@@ -89,7 +90,7 @@ impl Body {
     /// A body with a fixed point, the origin, under uniform gravity along −Z of space.
     ///
     /// `inertia` is about the fixed point; `weight_moment` is the weight M g times the centre of mass, N m, in body
-    /// axes. The potential is U = c·Γ and the torque Γ × c, Γ = Qᵀ e_z. Without weight moment the body is free.
+    /// axes: [`Force::gravity`], checked beside the inertia. Without weight moment the body is free.
     ///
     /// # Errors
     /// Components that are not finite, or a size that is out of range beside the inertia.
@@ -109,19 +110,39 @@ impl Body {
         if given == Vec3::zero() {
             return Ok(Body::free(inertia));
         }
-        let scaled = Vec3(given.0.map(|c| c / inertia.scale()));
-        if !(clear(scaled.magnitude()) && clear(given.magnitude())) {
-            let (weight_moment, moment) = (given.magnitude(), inertia.scale());
-            return Err(StateError::WeightOutOfRange { weight_moment, moment });
-        }
-        let weight_moment = inertia.frame().rotate_back(Vec3::of(scaled));
-        Ok(Body { gravity: Some(Gravity { weight_moment }), ..Body::free(inertia) })
+        let (weight, moment) = (given.magnitude(), inertia.scale());
+        let body = Body::free(inertia);
+        let gravity = body.gravity_of(given);
+        let error = StateError::WeightOutOfRange { weight_moment: weight, moment };
+        Ok(Body { gravity: Some(gravity.ok_or(error)?), ..body })
     }
 
     /// The same body with one more force; all add up.
+    ///
+    /// The gravity gradient takes the inertia of this body. A weight whose moment is too large or too small beside the inertia for
+    /// the solver frame acts as any potential does.
     pub fn with(mut self, force: Force) -> Self {
-        self.forces.push(force);
+        let weight = match force.role {
+            Role::Gravity(given) if given == Vec3::zero() => return self,
+            Role::Gravity(given) => self.gravity_of(given),
+            Role::Law | Role::Gradient(_) => None,
+        };
+        match (weight, self.gravity) {
+            (Some(more), Some(Gravity { weight_moment })) => {
+                let weight_moment = weight_moment + more.weight_moment;
+                self.gravity = (weight_moment != Vec3::zero()).then_some(Gravity { weight_moment });
+            }
+            (Some(weight), None) => self.gravity = Some(weight),
+            (None, _) => self.forces.push(force.on(&self.inertia)),
+        }
         self
+    }
+
+    /// Uniform gravity in the solver frame by the weight moment, N m, body axes; `None` out of range.
+    fn gravity_of(&self, weight_moment: Vec3<f64>) -> Option<Gravity<Dd>> {
+        let scaled = Vec3(weight_moment.0.map(|c| c / self.scale()));
+        let in_range = clear(scaled.magnitude()) && clear(weight_moment.magnitude());
+        in_range.then(|| Gravity { weight_moment: self.inertia.frame().rotate_back(Vec3::of(scaled)) })
     }
 
     /// Its inertia.
@@ -129,7 +150,7 @@ impl Body {
         &self.inertia
     }
 
-    /// The forces that act besides uniform gravity.
+    /// The forces that act besides uniform gravity, which is [`gravity`](Self::gravity).
     pub fn forces(&self) -> &[Force] {
         &self.forces
     }

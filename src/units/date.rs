@@ -19,11 +19,11 @@ const MONTHS: [&str; 12] =
 /// TT and TDB; leap seconds are not counted.
 ///
 /// ```
-/// use polhode::body::Date;
+/// use polhode::units::Date;
 /// let epoch: Date = "1992-11-09T12:00".parse()?;
 /// let later: Date = "2448937.25".parse()?; // six hours after the noon of the next day
 /// assert_eq!(later.seconds_since(&epoch), 108_000.0);
-/// # Ok::<(), polhode::body::DateError>(())
+/// # Ok::<(), polhode::units::DateError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]

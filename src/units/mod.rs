@@ -1,4 +1,8 @@
-//! Units of times and rates, by the names that files use.
+//! Units of times and rates, by the names that files use, and dates.
+
+mod date;
+
+pub use date::{Date, DateError};
 
 use crate::num::Shown;
 
