@@ -2,7 +2,7 @@
 
 use super::{Demand, Setting};
 use crate::body::{Body, Problem};
-use crate::method::{AnyMethod, Claimed, Claims, Energy, ToleranceError, catalogue, method};
+use crate::method::{AnyMethod, Claimed, Claims, Energy, ToleranceError, method, without_projections};
 
 /// Methods of higher order than those of the catalogue.
 const BESIDES: [&str; 24] = [
@@ -47,7 +47,7 @@ impl Candidate {
     pub(super) fn all(body: &Body, demand: &Demand) -> Vec<Self> {
         let problem = body.problem();
         let besides = BESIDES.iter().filter_map(|name| method(name).ok());
-        let all = catalogue().into_iter().chain(besides);
+        let all = without_projections().into_iter().chain(besides);
         let taken = all.filter_map(|method| {
             let claims = method.claims(problem)?;
             let name = method.name();

@@ -1,4 +1,4 @@
-//! One turn a step about a mean angular velocity.
+//! `buss-2` and `buss-2-augmented`: one turn a step about a mean angular velocity.
 
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};

@@ -1,4 +1,4 @@
-//! The exact motion of the free body in equal steps, by products, divisions and square roots.
+//! `exact-step`: the exact motion of the free body in equal steps, by products, divisions and square roots.
 
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method};
 use crate::body::{Field, Phase, Point, Problem, Rotor, Time};

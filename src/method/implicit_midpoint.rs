@@ -1,4 +1,4 @@
-//! The implicit midpoint rule on m, with the Cayley map on the attitude.
+//! `implicit-midpoint`: the implicit midpoint rule on m, with the Cayley map on the attitude.
 
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method, Symmetric};
 use crate::body::{Field, Gyroscopic, Point, Problem, Rotor, Time, vertical};

@@ -1,4 +1,4 @@
-//! The exact flow of the free body as a part of a splitting.
+//! `kick-drift`: the exact flow of the free body as a part of a splitting.
 
 use super::exact_step::{ExactStep, ExactStepMap};
 use super::schemes::Scheme;

@@ -1,4 +1,4 @@
-//! Newmark's method on the group of rotations.
+//! `lie-newmark`: Newmark's method on the group of rotations.
 
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method};
 use crate::body::{Field, Gyroscopic, Point, Problem, Rotor, Time};

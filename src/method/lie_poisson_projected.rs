@@ -1,4 +1,5 @@
-//! A symmetric map between two equal shifts, which return it to the energy and the |m| that it began with.
+//! `lie-poisson-projected`: a symmetric map between two equal shifts, which return it to the energy and the |m| that
+//! it began with.
 
 use super::{Claimed, Claims, Cost, Energy, FreePart, Kept, Map, Method, Symmetric};
 use crate::body::{Field, Point, Problem, Rotor, Time};

@@ -37,8 +37,8 @@ pub use buss_2::{Buss, BussMap};
 pub use combine::{Composed, FreePart, Kicks, SchemeError, Splitting, Symmetric, schemes};
 pub(crate) use contract::lanes::Block;
 pub use contract::{
-    AnyMethod, Claimed, Claims, Cost, Energy, Kept, Map, Method, SideBySide, Step, StepError, Stuck,
-    ToleranceError, UnknownMethod, Work, catalogue, method,
+    AnyMethod, Claimed, Claims, Cost, Energy, Kept, Listing, Map, Method, SideBySide, Step, StepError, Stuck,
+    ToleranceError, UnknownMethod, Work, catalogue, listing, method, without_projections,
 };
 pub use dmv::{DmvOrderError, PreprocessedDmv};
 pub use dop853::{Dop853, DormandPrince853};

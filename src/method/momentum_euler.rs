@@ -1,4 +1,4 @@
-//! The step of game engines that keeps |m|.
+//! `momentum-euler`: the step of game engines that keeps |m|.
 
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};

@@ -1,4 +1,4 @@
-//! The Runge–Kutta step of MuJoCo.
+//! `mujoco-rk4`: the Runge–Kutta step of MuJoCo.
 
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};

@@ -1,4 +1,4 @@
-//! The discrete Moser–Veselov map of the free body, on quaternions; with kicks around it, RATTLE.
+//! `rattle`: the discrete Moser–Veselov map of the free body, on quaternions; with kicks around it, RATTLE.
 //!
 //! # Notation
 //! | letter | meaning |

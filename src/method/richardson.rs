@@ -1,4 +1,4 @@
-//! The step of LAMMPS's rigid bodies: one Richardson extrapolation of the attitude between half kicks.
+//! `richardson`: the step of LAMMPS's rigid bodies: one Richardson extrapolation of the attitude between half kicks.
 
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};

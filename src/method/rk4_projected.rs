@@ -1,4 +1,4 @@
-//! A Runge–Kutta step, projected onto the energy and the momentum that it began with.
+//! `rk4-projected`: a Runge–Kutta step, projected onto the energy and the momentum that it began with.
 
 use super::rk4::Rk4Map;
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method, Rk4};

@@ -1,4 +1,4 @@
-//! The weights of order 8 of DOP853 with steps as given.
+//! `rk8`: the weights of order 8 of DOP853 with steps as given.
 
 use crate::body::{Field, Phase, Point, Problem, Rotor, Time};
 use crate::method::dop853::{STAGES, WEIGHTS};

@@ -1,4 +1,5 @@
-//! The coefficients of order 5(4) of Tsitouras, Comput. Math. Appl. 62 (2011) 770, table 1, with dense output of order 4.
+//! `tsit5`: the coefficients of order 5(4) of Tsitouras, Comput. Math. Appl. 62 (2011) 770, table 1, with dense output
+//! of order 4.
 //!
 //! They are printed with some 16 digits and meet the conditions of order 5 within 2e-14: enough for every tolerance that there
 //! is. In the tables stages count from 0.

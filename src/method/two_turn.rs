@@ -1,4 +1,4 @@
-//! Two turns and a turn about L: the splitting of the kinetic energy modulo |m|².
+//! `two-turn`: two turns and a turn about L: the splitting of the kinetic energy modulo |m|².
 
 use core::fmt;
 use core::str::FromStr;

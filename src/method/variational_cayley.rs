@@ -1,4 +1,4 @@
-//! The variational integrator on SO(3) with the Cayley map.
+//! `variational-cayley`: the variational integrator on SO(3) with the Cayley map.
 
 use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Gyroscopic, Point, Rotor, Time};

@@ -82,10 +82,17 @@ pub(crate) fn at_tolerance(name: &str, tolerance: f64) -> Result<Box<dyn AnyMeth
     match found.with_tolerance(tolerance) {
         Err(ToleranceError::FixedSteps { .. }) => Err(Unusable::FixedSteps),
         _ if name.contains(':') => Err(Unusable::Twice),
-        Err(ToleranceError::OutOfRange { allowed, .. }) => Err(Unusable::OutOfRange(allowed.into())),
+        Err(ToleranceError::OutOfRange { method, range, .. }) => {
+            Err(Unusable::OutOfRange(allowed(method, range)))
+        }
         Err(error) => Err(Unusable::OutOfRange(error.to_string())),
         Ok(found) => Ok(found),
     }
+}
+
+/// Which tolerances a method takes.
+pub(crate) fn allowed(method: &str, range: &str) -> String {
+    format!("a tolerance {range}, such as {method}:1e-12")
 }
 
 /// Why the method `name` cannot take what `flag` gives.

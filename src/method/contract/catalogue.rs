@@ -3,13 +3,25 @@
 use crate::method::schemes::SUZUKI_4;
 use crate::method::{
     AdaptiveTaylor, AnyMethod, AxisSplit, Buss, Dmv, Dop853, ExactFlow, ExactStep, ExplicitEuler, Gauss,
-    ImplicitMidpoint, Kicks, LieGroup, LieNewmark, MomentumEuler, MujocoRk4, PreprocessedDmv, Richardson,
-    Rk4, Rk8, SemiImplicitEuler, Splitting, Tsit5, TwoTurn, VariationalCayley,
+    ImplicitMidpoint, Kicks, LieGroup, LieNewmark, MomentumEuler, MujocoRk4, PreprocessedDmv, ProjectedRk4,
+    Richardson, Rk4, Rk8, SemiImplicitEuler, Splitting, SymmetricProjection, Tsit5, TwoTurn,
+    VariationalCayley,
 };
 
-/// Every method, in the order in which tables show them.
+/// Every method, in the order in which tables show them; of those that take an argument or a scheme the usual ones.
 #[must_use]
 pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
+    let mut all = without_projections();
+    all.push(Box::new(ProjectedRk4));
+    all.push(Box::new(SymmetricProjection::new(AxisSplit { axes: None })));
+    all
+}
+
+/// The catalogue without the two methods that project each step onto energy and |m|. Those show what conservation alone is worth,
+/// and no program takes them: experiments, advice and audits go without.
+#[doc(hidden)]
+#[must_use]
+pub fn without_projections() -> Vec<Box<dyn AnyMethod>> {
     vec![
         Box::new(ExplicitEuler),
         Box::new(SemiImplicitEuler),

@@ -2,7 +2,6 @@
 
 use thiserror::Error;
 
-use crate::method::runge_kutta::ALLOWED;
 use crate::method::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use crate::method::{
     AdaptiveTaylor, AnyMethod, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, DormandPrince853,
@@ -130,7 +129,8 @@ fn pair<P: Pair>(asked: &Asked<'_>) -> Result<Box<dyn AnyMethod>, UnknownMethod>
     let Some(text) = asked.argument else {
         return plain(Embedded::<P>::default(), chosen);
     };
-    let refused = || asked.refused(ALLOWED);
+    let refused =
+        || asked.refused("a tolerance from 1e-15, some roundings of a double, to 1e-3, such as dop853:1e-12");
     let tolerance = text.parse().map_err(|_| refused())?;
     plain(Embedded::<P>::of_tolerance(tolerance).map_err(|_| refused())?, chosen)
 }

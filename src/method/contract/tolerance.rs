@@ -13,13 +13,13 @@ pub enum ToleranceError {
         method: String,
     },
     /// The tolerance is too small, too large, or no number.
-    #[error("{tolerance:e} is no tolerance of {method}; allowed: {allowed}")]
+    #[error("{tolerance:e} is no tolerance of {method}; it must be {range}")]
     OutOfRange {
         /// Name of the method.
         method: &'static str,
         /// What was asked for.
         tolerance: f64,
-        /// What would have been right.
-        allowed: &'static str,
+        /// From which one to which, in words.
+        range: &'static str,
     },
 }

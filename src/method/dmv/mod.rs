@@ -1,4 +1,4 @@
-//! The discrete Moser–Veselov map of any even order: plain steps of a body with slightly other moments and clock.
+//! `dmv`: the discrete Moser–Veselov map of any even order: plain steps of a body with slightly other moments and clock.
 
 mod series;
 

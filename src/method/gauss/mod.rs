@@ -1,4 +1,4 @@
-//! Collocation at Gauss's nodes: a polynomial that satisfies the equations of motion at the nodes of a step.
+//! `gauss`: collocation at Gauss's nodes: a polynomial that satisfies the equations of motion at the nodes of a step.
 
 mod tableau;
 

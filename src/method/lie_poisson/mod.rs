@@ -1,4 +1,4 @@
-//! The variational Lie–Poisson splitting: three turns about the principal axes.
+//! `lie-poisson` and `no-squish`: the variational Lie–Poisson splitting: three turns about the principal axes.
 
 mod axis_order;
 

@@ -15,8 +15,7 @@ const TIGHTEST: f64 = 1e-15;
 const LOOSEST: f64 = 1e-3;
 
 /// The two in words.
-pub(in crate::method) const ALLOWED: &str =
-    "a tolerance from 1e-15, some roundings of a double, to 1e-3, such as dop853:1e-12";
+const RANGE: &str = "from 1e-15, some roundings of a double, to 1e-3";
 
 /// An embedded Runge–Kutta pair with steps of its own by a tolerance: [`Dop853`](crate::method::Dop853) and
 /// [`Tsit5`](crate::method::Tsit5).
@@ -63,7 +62,7 @@ impl<P: Pair> Embedded<P> {
         if (TIGHTEST..=LOOSEST).contains(&tolerance) {
             Ok(Embedded { tolerance, pair: PhantomData })
         } else {
-            Err(ToleranceError::OutOfRange { method: P::NAME, tolerance, allowed: ALLOWED })
+            Err(ToleranceError::OutOfRange { method: P::NAME, tolerance, range: RANGE })
         }
     }
 }

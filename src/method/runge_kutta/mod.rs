@@ -6,7 +6,6 @@ mod equations;
 mod pair;
 
 pub use adaptive::EmbeddedMap;
-pub(super) use embedded::ALLOWED;
 pub use embedded::Embedded;
 pub(super) use equations::{Equations, claims};
 pub(super) use pair::sum;

@@ -11,8 +11,7 @@ use crate::rotation::Vec3;
 const LOOSEST: f64 = 1e-3;
 
 /// From the rounding of a double to the largest, in words.
-const ALLOWED: &str =
-    "a tolerance from 1.2e-16, as the rounding of a double is 1.1e-16, to 1e-3, such as taylor:1e-12";
+const RANGE: &str = "from 1.2e-16, as the rounding of a double is 1.1e-16, to 1e-3";
 
 /// Taylor's method with order and steps by a tolerance, in a step relative to the state: by default the rounding of the scalar.
 ///
@@ -58,7 +57,7 @@ impl AdaptiveTaylor {
         if (f64::ROUNDOFF..=LOOSEST).contains(&tolerance) {
             Ok(AdaptiveTaylor { tolerance: Some(tolerance) })
         } else {
-            Err(ToleranceError::OutOfRange { method: "taylor", tolerance, allowed: ALLOWED })
+            Err(ToleranceError::OutOfRange { method: "taylor", tolerance, range: RANGE })
         }
     }
 

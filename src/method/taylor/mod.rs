@@ -1,4 +1,4 @@
-//! Taylor's method: the power series of the motion in time, with steps as given or of its own.
+//! `taylor`: Taylor's method: the power series of the motion in time, with steps as given or of its own.
 
 mod adaptive;
 mod motion_series;

@@ -18,7 +18,7 @@ use polhode_pages::output::{Output, emit};
 use polhode_pages::table::{Cell, Column, Format, Table, row};
 
 use crate::flags::motion::MotionArguments;
-use crate::methods::{adaptive, named, not_taken};
+use crate::methods::{adaptive, allowed, named, not_taken};
 use crate::plot::Picture;
 use trajectory::Trajectory;
 
@@ -200,8 +200,8 @@ impl Compare {
                 (Some(Positives(tolerances)), None) => {
                     for &tolerance in tolerances {
                         let method = method.with_tolerance(tolerance).map_err(|error| match error {
-                            ToleranceError::OutOfRange { allowed, .. } => {
-                                not_taken("--tolerances", tolerance, name, allowed)
+                            ToleranceError::OutOfRange { method, range, .. } => {
+                                not_taken("--tolerances", tolerance, name, &allowed(method, range))
                             }
                             error => Error::Input(format!("--tolerances: {error}")),
                         })?;

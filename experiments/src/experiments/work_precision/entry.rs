@@ -1,7 +1,7 @@
 //! Which methods run at which steps, and what a run from every start of a case shows.
 
 use polhode::body::Clock;
-use polhode::method::{AnyMethod, Claimed, catalogue, method};
+use polhode::method::{AnyMethod, Claimed, method, without_projections};
 use polhode::run::Watch;
 use polhode_files::error::{Error, unexpected};
 
@@ -77,7 +77,7 @@ pub(super) struct Found {
 
 /// Every method that takes the case, each from coarse to fine.
 pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, Error> {
-    let mut names: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
+    let mut names: Vec<String> = without_projections().iter().map(|method| method.name()).collect();
     names.extend(SCHEMES.map(String::from));
     // without torque kick-drift is exact-step, whatever its scheme
     names.retain(|name| !(case.is_free() && name.starts_with("kick-drift")));
