@@ -27,7 +27,7 @@ const LOOKS: u64 = 97;
 /// demand.excluded = vec!["exact".into()];
 /// let advice = advise(&body, &start, &demand)?;
 /// assert!(check(&body, &start, &demand, &advice.best)? < 1e-8);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn check(body: &Body, start: &State, demand: &Demand, choice: &Choice) -> Result<f64, AdviseError> {
     demand.check()?;

@@ -102,7 +102,7 @@ impl Body {
     /// let top = Body::heavy(Inertia::from_moments([1.0, 1.0, 0.25])?, Vector3::new(0.0, 0.0, 2.0))?;
     /// let start = top.state(UnitQuaternion::identity(), Vector3::new(0.0, 0.0, 4.0))?;
     /// assert_eq!(top.energy(&start), 4.0); // 2 J of spin, 2 J of height
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     pub fn heavy(inertia: Inertia, weight_moment: Vector3<f64>) -> Result<Self, StateError> {
         let given = Vec3::from(weight_moment);
@@ -268,7 +268,7 @@ impl Body {
     /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
     /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.5, 1.0, -0.25))?;
     /// assert_eq!(start.momentum(), Vector3::new(0.5, 2.0, -0.75));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     pub fn state(
         &self,

@@ -42,7 +42,7 @@ use crate::rotation::{Quat, Vec3};
 /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("magnet", Magnet(0.5)));
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.0, 1.0, 0.0))?;
 /// assert_eq!(body.energy(&start), 1.0); // 1 J of spin; the magnet lies across the field
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub trait Potential<S: Real>: Send + Sync {
     /// Potential energy, J, at the time `at` and the attitude `attitude`, body → space. With methods that do not keep |q|
@@ -222,7 +222,7 @@ impl Force {
     /// let start = body.state(UnitQuaternion::identity(), Vector3::zeros())?;
     /// let end = Run::new(&method("rk4")?, &body, &start, 0.125)?.advance_to(8)?;
     /// assert!((end.omega_body.z - 0.25).abs() < 0.01); // the last stage, at t = 1 s, feels no push
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     pub fn torque_fn<T>(name: impl Into<String>, torque: T) -> Self
     where

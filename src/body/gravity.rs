@@ -66,7 +66,7 @@ impl Force {
     /// let top = Body::free(Inertia::from_moments([1.0, 1.0, 0.25])?).with(weight);
     /// let start = top.state(UnitQuaternion::identity(), Vector3::new(0.0, 0.0, 4.0))?;
     /// assert_eq!((top.problem(), top.energy(&start)), (Problem::Gravity, 4.0)); // 2 J of spin, 2 J of height
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     pub fn gravity(weight_moment: Vector3<f64>) -> Result<Self, ForceError> {
         const NAME: &str = "uniform gravity";

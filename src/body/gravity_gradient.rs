@@ -42,7 +42,7 @@ impl Force {
     /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(gradient);
     /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.0, 0.0, 0.001))?;
     /// assert!((body.energy(&start) - (1.25e-6 + 1.5e-6)).abs() < 1e-20); // the axis of 1 kg m² along r
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     pub fn gravity_gradient(mean_motion: f64, eccentricity: f64) -> Result<Self, ForceError> {
         let mean_motion = finite(NAME, "the mean motion", mean_motion)?;

@@ -25,7 +25,7 @@ pub use gravity::{Gravity, vertical};
 pub(crate) use point::RENORMALIZE_EVERY;
 pub use point::{Phase, Point};
 #[cfg(any(test, feature = "random"))]
-pub use population::{Attitudes, Member, NoMember, Population, Tensors};
+pub use population::{AttitudeSpread, Member, NoMember, Population, Tensors};
 pub use rotor::Rotor;
 pub(crate) use rotor::{Gyroscopic, kinetic_energy};
 pub use state::State;

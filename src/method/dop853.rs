@@ -1,6 +1,5 @@
-//! `dop853`: the coefficients of order 8 of Dormand and Prince with the error estimate 5, 3 and the dense output of order
-//! 7 of Hairer,
-//! Norsett and Wanner, Solving Ordinary Differential Equations I (1993), II.5 and II.6.
+//! `dop853`: the coefficients of order 8 of Dormand and Prince with the error estimate 5, 3 and the dense output of
+//! order 7 of Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (1993), II.5 and II.6.
 //!
 //! Notation: stage n, counted from 1, is the rate at the time `c_n h` and the state `x + h Σ a_nj k_j`; in the tables stages
 //! count from 0. The digits are those of the authors' code dop853.f, some 30: the conditions of order 8 are met within 5e-28.

@@ -17,7 +17,7 @@ use crate::num::{Dd, Real};
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
 /// let end = Run::new(&ExplicitEuler, &body, &start, 0.1)?.advance_to(100)?;
 /// assert!(end.worst.of(Conserved::Energy).is_some_and(|error| error > 0.1));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExplicitEuler;

@@ -28,7 +28,7 @@ use crate::rotation::{Quat, Vec3};
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
 /// let end = Run::new(&ImplicitMidpoint, &body, &start, 0.1)?.advance_to(1000)?;
 /// assert!(end.worst.of(Conserved::Momentum).is_some_and(|error| error < 1e-13));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImplicitMidpoint;

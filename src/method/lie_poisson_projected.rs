@@ -29,7 +29,7 @@ const ITERATIONS: u32 = 50;
 /// let end = Run::new(&method, &body, &start, 0.1)?.advance_to(1000)?;
 /// assert!(end.worst.of(Conserved::Energy).is_some_and(|error| error < 1e-13));
 /// assert!(end.worst.of(Conserved::Momentum).is_some_and(|error| error > 1e-9));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SymmetricProjection<A> {

@@ -24,7 +24,7 @@ use crate::rotation::Vec3;
 /// assert!(end.worst.of(Conserved::MomentumNorm).is_some_and(|error| error < 1e-12));
 /// let separatrix = start.momentum().norm_squared() / (2.0 * 2.0);
 /// assert!((end.energy / separatrix - 1.0).abs() < 0.05);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MomentumEuler;

@@ -37,7 +37,7 @@ pub type Rattle = Splitting<Dmv, Kicks>;
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
 /// let end = Run::new(&Rattle::strang(Dmv, Kicks), &body, &start, 0.1)?.advance_to(1000)?;
 /// assert!(end.worst.of(Conserved::Energy).is_some_and(|error| error < 1e-13));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dmv;

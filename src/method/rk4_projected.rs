@@ -26,7 +26,7 @@ const ITERATIONS: u32 = 20;
 /// let end = Run::new(&ProjectedRk4, &body, &start, 0.1)?.advance_to(1000)?;
 /// assert!(end.worst.of(Conserved::Energy).is_some_and(|error| error < 1e-13));
 /// assert!(end.worst.of(Conserved::Momentum).is_some_and(|error| error > 1e-9));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProjectedRk4;

@@ -23,7 +23,7 @@ const COUNT: usize = STAGES.len() + 1;
 /// let end = Run::new(&Rk8, &body, &start, 0.125)?.advance_to(80)?;
 /// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(10.0)?;
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-10);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rk8;

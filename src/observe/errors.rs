@@ -48,7 +48,7 @@ impl Errors {
     /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
     /// let end = Run::new(&method("rattle")?, &body, &start, 0.1)?.advance_to(1000)?;
     /// assert!(end.worst.of(Conserved::MomentumNorm).is_some_and(|error| error < 1e-14));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     #[must_use]
     pub fn of(&self, quantity: Conserved) -> Option<f64> {

@@ -36,7 +36,7 @@ pub trait Claimed {
     /// assert_eq!(found.with_tolerance(1e-12)?.tolerance(), Some(1e-12));
     /// assert!(found.with_tolerance(0.1).is_err());
     /// assert!(method("rk4")?.with_tolerance(1e-12).is_err());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     fn with_tolerance(&self, _tolerance: f64) -> Result<Box<dyn AnyMethod>, ToleranceError> {
         Err(ToleranceError::FixedSteps { method: self.name() })

@@ -58,7 +58,7 @@ use crate::num::{Dd, Real};
 /// let start = top.state(tilted, Vector3::new(0.0, 0.0, 20.0))?;
 /// let end = Run::new(&KickFirst, &top, &start, 0.001)?.advance_to(1000)?;
 /// assert!(end.worst.of(Conserved::MomentumZ).is_some_and(|error| error < 1e-13));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub trait Method<S: Real> {
     /// The map for one duration, with everything that does not change from step to step worked out.
@@ -89,7 +89,7 @@ pub trait Method<S: Real> {
 /// let mut x = body.enter(&start)?.to_f64();
 /// Dmv.map(Dd::of(0.1), &body.rotor(), &Free).apply(Time::from_seconds(0.0), &mut x);
 /// assert!((body.leave(&x).momentum_space() - start.momentum_space()).norm() < 1e-15);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub trait Map<S: Real>: Send + 'static {
     /// x ← Φ_h(x), from the time `at` on. Cannot fail; an implicit map keeps its worst residual instead.

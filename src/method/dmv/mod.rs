@@ -29,7 +29,7 @@ use crate::num::{Dd, Precise};
 /// let end = Run::new(&method, &body, &start, 0.1)?.advance_to(1000)?;
 /// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(100.0)?;
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PreprocessedDmv {

@@ -36,7 +36,7 @@ use crate::rotation::Vec3;
 /// assert!(end.worst.of(Conserved::Energy).is_some_and(|error| error < 1e-14));
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-9);
 /// assert!(Gauss::of_order(5).is_err());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gauss {

@@ -61,7 +61,7 @@ impl Exponential {
 ///     assert!(end.worst.of(Conserved::Momentum).is_some_and(|error| error < 1e-13));
 ///     assert!(end.worst.of(Conserved::Energy).is_some_and(|error| error > 1e-9));
 /// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]

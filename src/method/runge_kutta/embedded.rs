@@ -45,7 +45,7 @@ const RANGE: &str = "from 1e-15, some roundings of a double, to 1e-3";
 /// assert!(run.work().is_some_and(|work| work.evaluations < 700));
 /// let end = Run::new(&Tsit5::of_tolerance(1e-6)?, &body, &start, 10.0)?.advance_to(1)?;
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-5);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Embedded<P> {

@@ -35,7 +35,7 @@ const RANGE: &str = "from 1.2e-16, as the rounding of a double is 1.1e-16, to 1e
 /// let end = Run::new(&AdaptiveTaylor::to_rounding(), &body, &start, 100.0)?.advance_to(1)?;
 /// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(100.0)?;
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-13);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptiveTaylor {

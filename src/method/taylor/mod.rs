@@ -33,7 +33,7 @@ const SOURCE: &str = "Jorba and Zou, Experimental Math. 14 (2005) 99";
 /// let end = Run::new(&Taylor::of_order(20)?, &body, &start, 0.5)?.advance_to(200)?;
 /// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(100.0)?;
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Taylor {
