@@ -336,3 +336,39 @@ fn a_run_ends_at_the_last_point_whose_errors_are_numbers() {
         assert!(invariants.momentum_norm() == last.point.to_dd().momentum_body.norm());
     }
 }
+
+/// Errors are relative: those of a body that turns 2^-100 times as fast, in steps 2^100 times as long, are the same bits.
+#[test]
+fn the_errors_of_a_slow_body_are_those_of_a_fast_one() {
+    let body = Body::free(Inertia::from_moments(MOMENTS).unwrap());
+    let worst = |name: &str, power: i32| {
+        let start =
+            body.state(UnitQuaternion::identity(), OMEGA.map(|w| libm::scalbn(w, -power)).into()).unwrap();
+        let step = libm::scalbn(0.125, power);
+        Run::new(&method(name).unwrap(), &body, &start, step).unwrap().advance_to(STEPS).unwrap().worst
+    };
+    for name in ["lie-poisson", "rattle", "rk4"] {
+        let fast = worst(name, 0);
+        assert!(
+            fast.energy.is_some_and(|error| error > 0.0)
+                && fast.momentum_norm.is_some_and(|error| error > 0.0)
+        );
+        for power in [17, 60, 100] {
+            assert_eq!(worst(name, power), fast, "{name}: 2^-{power}");
+        }
+    }
+}
+
+#[test]
+fn a_run_taken_up_after_steps_that_nobody_watched_counts_no_flips() {
+    let body = Body::free(Inertia::from_moments(MOMENTS).unwrap());
+    let start = body.state(UnitQuaternion::identity(), OMEGA.into()).unwrap();
+    let rattle = method("rattle").unwrap();
+    for (watch, counts) in [(Watch::EveryStep, true), (Watch::Never, false)] {
+        let mut run = Run::new(&rattle, &body, &start, 0.125).unwrap().watching(watch);
+        run.advance_to(STEPS).unwrap();
+        let checkpoint = run.checkpoint().to_string().parse().unwrap();
+        let mut resumed = Run::resume(&rattle, &body, &checkpoint).unwrap().watching(Watch::EveryStep);
+        assert_eq!(resumed.advance_to(2 * STEPS).unwrap().flips.is_some(), counts, "{watch}");
+    }
+}
