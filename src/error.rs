@@ -87,7 +87,7 @@ from!(
     crate::method::TwoAxesError,
     crate::method::UnknownMethod,
     crate::method::schemes::UnknownScheme,
-    crate::num::dd::ParseDdError,
+    crate::num::ParseDdError,
     crate::record::RecordError,
     crate::rotation::EulerSequenceError,
     crate::run::CheckpointError,

@@ -1,5 +1,7 @@
 //! Methods: one step of size h is a map Φ_h that moves a point; its claims are data, and the laws in `tests/laws.rs`
 //! execute every one of them, also those that say no.
+//!
+#![doc = include_str!("../../docs/methods.md")]
 
 mod buss_2;
 mod combine;
@@ -33,7 +35,7 @@ mod tsit5;
 mod two_turn;
 mod variational_cayley;
 
-pub use buss_2::{Buss, BussMap};
+pub use buss_2::Buss;
 pub use combine::{Composed, FreePart, Kicks, SchemeError, Splitting, Symmetric, schemes};
 pub(crate) use contract::lanes::Block;
 pub use contract::{
@@ -44,24 +46,24 @@ pub use dmv::{DmvOrderError, PreprocessedDmv};
 pub use dop853::{Dop853, DormandPrince853};
 pub use exact_step::ExactStep;
 pub use explicit_euler::ExplicitEuler;
-pub use gauss::{Gauss, GaussMap, GaussOrderError};
+pub use gauss::{Gauss, GaussOrderError};
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use kick_drift::{ExactFlow, KickDrift};
-pub use lie_group::{LieGroup, LieGroupMap};
-pub use lie_newmark::{LieNewmark, LieNewmarkMap};
+pub use lie_group::LieGroup;
+pub use lie_newmark::LieNewmark;
 pub use lie_poisson::{AxisOrder, AxisOrderError, AxisSplit, LiePoisson};
-pub use lie_poisson_projected::{SymmetricProjection, SymmetricProjectionMap};
-pub use momentum_euler::{MomentumEuler, MomentumEulerMap};
-pub use mujoco_rk4::{MujocoRk4, MujocoRk4Map};
+pub use lie_poisson_projected::SymmetricProjection;
+pub use momentum_euler::MomentumEuler;
+pub use mujoco_rk4::MujocoRk4;
 pub use rattle::{Dmv, Rattle};
-pub use richardson::{Richardson, RichardsonMap};
+pub use richardson::Richardson;
 pub use rk4::Rk4;
-pub use rk4_projected::{ProjectedRk4, ProjectedRk4Map};
-pub use rk8::{Rk8, Rk8Map};
-pub use runge_kutta::{Control, Embedded, EmbeddedMap, Pair, Stage, Terms};
+pub use rk4_projected::ProjectedRk4;
+pub use rk8::Rk8;
+pub use runge_kutta::{Control, Embedded, Pair, Stage, Terms};
 pub use semi_implicit_euler::SemiImplicitEuler;
 pub use solve::modified_energy::PhaseErrorRates;
-pub use taylor::{AdaptiveTaylor, AdaptiveTaylorMap, Taylor, TaylorMap, TaylorOrderError};
+pub use taylor::{AdaptiveTaylor, Taylor, TaylorOrderError};
 pub use tsit5::{Tsit5, Tsitouras54};
 pub use two_turn::{TwoAxes, TwoAxesError, TwoTurn};
-pub use variational_cayley::{VariationalCayley, VariationalCayleyMap};
+pub use variational_cayley::VariationalCayley;

@@ -5,7 +5,6 @@ mod embedded;
 mod equations;
 mod pair;
 
-pub use adaptive::EmbeddedMap;
 pub use embedded::Embedded;
 pub(super) use equations::{Equations, claims};
 pub(super) use pair::sum;

@@ -3,7 +3,7 @@
 mod adaptive;
 mod motion_series;
 
-pub use adaptive::{AdaptiveTaylor, AdaptiveTaylorMap};
+pub use adaptive::AdaptiveTaylor;
 
 use thiserror::Error;
 
