@@ -98,8 +98,10 @@ fn by_brute_force(body: &Body, start: &State, demand: &Demand, most: f64) -> Opt
     let steps = (0..60).map(|k| (libm::ceil(0.5 * radians).max(1.0) * libm::exp2(0.5 * f64::from(k))) as u64);
     // methods that are exact for the body are excluded, as closed forms
     let steps_err = |name: &&&str| {
-        let claims = method(name).ok().and_then(|method| method.claims(body.problem()));
-        claims.is_some_and(|claims| claims.order.is_some() || claims.tolerance.is_some())
+        method(name).is_ok_and(|method| {
+            let claims = method.claims(body.problem());
+            claims.is_some_and(|claims| claims.order.is_some() || method.tolerance().is_some())
+        })
     };
     let fixed = FIXED
         .iter()

@@ -6,7 +6,7 @@
 use polhode::body::Body;
 use polhode::catalogue;
 use polhode::flow::FreeMotion;
-use polhode::method::catalogue;
+use polhode::method::without_projections;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Schedule};
 
@@ -16,7 +16,7 @@ fn main() {
     let body = Body::free(dyadic.inertia);
     let start = body.state(Default::default(), dyadic.omega_body.into()).expect("a valid start");
     println!("method,steps,energy_error,momentum_error,momentum_vector_error,attitude_error,status");
-    for method in catalogue() {
+    for method in without_projections() {
         let mut run = Run::new(&method, &body, &start, 1.0 / 64.0).expect("a valid run");
         let exact = FreeMotion::from_point(body.inertia(), run.start().to_dd());
         for sample in run.samples(Schedule::logarithmic(total, 1)) {

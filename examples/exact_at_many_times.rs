@@ -4,7 +4,7 @@
 use polhode::nalgebra::{UnitQuaternion, Vector3};
 use polhode::{FreeMotion, Inertia};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> Result<(), polhode::Error> {
     // Toutatis: moments up to scale, rotation in degrees a day (Takahashi, Busch and Scheeres 2013)
     let inertia = Inertia::from_moments([1.0, 3.0836, 3.235])?;
     let omega_body = Vector3::new(-98.5_f64, 14.5, 33.7).map(f64::to_radians);
@@ -20,6 +20,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 #[test]
-fn it_runs() -> Result<(), Box<dyn std::error::Error>> {
+fn it_runs() -> Result<(), polhode::Error> {
     main()
 }

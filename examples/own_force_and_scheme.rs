@@ -26,7 +26,7 @@ const A: &[Dd] = &[Dd::sum(1.351_207_191_959_657_5, 8.427_417_755_451_76e-17)];
 const STAGES: Stages = Stages::Alternating { first: Part::B, a: A, b: B, pairs: Pairs::Any };
 const RUTH_4: Scheme = Scheme { name: "ruth-4", order: 4, source: "Forest and Ruth 1990", stages: STAGES };
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> Result<(), polhode::Error> {
     let body =
         Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("spring", Spring(0.5)));
     let start = body.state(Default::default(), [0.1, 0.7, 0.3].into())?;
@@ -37,11 +37,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 #[test]
-fn the_scheme_has_its_order_in_the_field_of_the_force() -> Result<(), Box<dyn std::error::Error>> {
+fn the_scheme_has_its_order_in_the_field_of_the_force() -> Result<(), polhode::Error> {
     let body =
         Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("spring", Spring(0.5)));
     let start = body.state(Default::default(), [0.1, 0.7, 0.3].into())?;
-    let worst = |h: f64| -> Result<f64, Box<dyn std::error::Error>> {
+    let worst = |h: f64| -> Result<f64, polhode::Error> {
         let mut run = Run::new(&Splitting::kicked(ExactFlow, RUTH_4)?, &body, &start, h)?;
         Ok(run.advance_to((50.0 / h) as u64)?.worst.of(Conserved::Energy).unwrap_or(f64::NAN))
     };

@@ -3,7 +3,7 @@
 use polhode::body::Conserved;
 use polhode::{Body, Inertia, Run, Schedule, method};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> Result<(), polhode::Error> {
     // moments in kg m², angular velocity in rad/s along the body axes: a spin about the unstable axis
     let body = Body::free(Inertia::from_moments([0.4e-4, 1.1e-4, 1.3e-4])?);
     let start = body.state(Default::default(), [1e-3, 20.0, 1e-3].into())?;
@@ -19,6 +19,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 #[test]
-fn it_runs() -> Result<(), Box<dyn std::error::Error>> {
+fn it_runs() -> Result<(), polhode::Error> {
     main()
 }

@@ -82,7 +82,7 @@ pub fn tops() -> Vec<NamedBody> {
 /// let wheel = polhode::catalogue::top("bicycle-wheel").ok_or("not in the catalogue")?;
 /// let motion = LagrangeTop::from_omega(&wheel.body()?, Default::default(), wheel.omega_body.into())?;
 /// assert!(motion.nutation_period().is_none()); // upright, it sleeps
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn top(name: &str) -> Option<NamedBody> {
     top_entries().into_iter().find(|top| top.entry.name == name).and_then(Top::build)

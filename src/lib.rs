@@ -17,7 +17,7 @@
 //! let error = |quantity| after.worst.of(quantity);
 //! assert!(error(Conserved::Energy).is_some_and(|error| error < 1e-5)); // it swings, and does not grow
 //! assert!(error(Conserved::Momentum).is_some_and(|error| error < 1e-13)); // L in space: rounding alone
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # Ok::<(), polhode::Error>(())
 //! ```
 //!
 //! # Map
@@ -37,11 +37,11 @@
 //! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how large its error is |
 //! | [`catalogue`] | named bodies with their sources |
 //! | [`record`] | measured angular velocities: samples in segments without gaps |
-//! | [`units`] | units of times and rates by name |
+//! | [`units`] | units of times and rates by name; dates |
 //! | [`guide`] | a chapter for each kind of user; your own force, your own method; the exact motion |
 //!
 //! Each of those that hold code uses only those above it. The types that most programs need are also at the root:
-//! [`Body`], [`Inertia`], [`State`], [`FreeMotion`], [`Run`], [`Schedule`] and [`method()`](method()).
+//! [`Body`], [`Inertia`], [`State`], [`FreeMotion`], [`Run`], [`Schedule`], [`method()`](method()) and [`struct@Error`].
 //!
 //! # Features
 //!
@@ -68,7 +68,7 @@
 //!
 //! # Errors
 //!
-//! Functions that take what users type return typed errors with the value and the law it breaks. The same input gives
+//! Functions that take what users type return typed errors with the value and the law it breaks; [`struct@Error`] holds any of them. The same input gives
 //! the same bits on any processor.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -77,6 +77,7 @@ pub mod advise;
 pub mod audit;
 pub mod body;
 pub mod catalogue;
+mod error;
 pub mod flow;
 pub mod inertia;
 pub mod method;
@@ -105,6 +106,7 @@ pub mod guide {
 }
 
 pub use body::{Body, State};
+pub use error::Error;
 pub use flow::FreeMotion;
 pub use inertia::Inertia;
 pub use method::method;

@@ -7,14 +7,17 @@ mod motions;
 use motions::{free, magnet, run, satellite, started, thruster, top};
 use polhode::body::{Body, State};
 use polhode::inertia::Inertia;
-use polhode::method::{ADAPTIVE, method};
+use polhode::method::{AnyMethod, Claimed, catalogue, method};
 use polhode::run::{Run, Watch};
+
+fn adaptive_methods() -> impl Iterator<Item = Box<dyn AnyMethod>> {
+    catalogue().into_iter().filter(|method| method.tolerance().is_some())
+}
 
 /// Every adaptive method with its usual tolerance and with a tight one, each with the motions that it is for.
 fn adaptive() -> Vec<(String, Vec<(Body, State)>)> {
-    let names = ADAPTIVE
-        .iter()
-        .flat_map(|base| [(*base).to_owned(), format!("{base}:1e-9"), format!("{base}:1e-12")]);
+    let names = adaptive_methods()
+        .flat_map(|base| [base.name(), format!("{}:1e-9", base.name()), format!("{}:1e-12", base.name())]);
     let with_cases = |name: String| {
         let mut cases = vec![free(), top(), magnet(), satellite()];
         if !method(&name).unwrap().needs_series() {
@@ -67,11 +70,12 @@ fn a_run_is_taken_up_within_and_between_its_steps() {
 /// Motions of any speed, on bodies of any size.
 #[test]
 fn speeds_and_sizes_at_the_ends_of_the_range_change_nothing_but_the_scale() {
-    for name in ADAPTIVE {
+    for method in adaptive_methods() {
+        let name = method.name();
         let turned = |size: f64, speed: f64| {
             let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0].map(|i| i * size)).unwrap());
             let case = started(body, [0.4, 1.0, -0.3].map(|w| w * speed));
-            run(name, &case, 64.0 / speed).advance_to(2).unwrap().state.attitude
+            run(&name, &case, 64.0 / speed).advance_to(2).unwrap().state.attitude
         };
         let expected = turned(1.0, 1.0);
         for (size, speed) in [(-150, 40), (110, -60), (0, 100), (0, -100)] {
@@ -101,4 +105,29 @@ fn work_grows_with_the_steps_alone() {
             assert!(apart <= 8 + u64::from(cost.right_sides) + once.rejected, "{name}: {once:?}, {cost}");
         }
     }
+}
+
+/// What a name says is what the method says, and a tolerance is of those alone that choose their steps.
+#[test]
+fn a_tolerance_is_a_property_and_not_a_spelling() {
+    for (name, tolerance) in
+        [("taylor:20", None), ("rk4", None), ("tsit5:1e-9", Some(1e-9)), ("dop853:0.001", Some(1e-3))]
+    {
+        let found = method(name).unwrap();
+        assert_eq!(found.tolerance(), tolerance, "{name}");
+        let tightened = found.with_tolerance(1e-10);
+        assert_eq!(tightened.is_ok(), tolerance.is_some(), "{name}");
+        if let Ok(tightened) = tightened {
+            let base = name.split(':').next().unwrap();
+            assert_eq!(tightened.name(), method(&format!("{base}:1e-10")).unwrap().name());
+        }
+    }
+    let names: Vec<String> = adaptive_methods().map(|method| method.name()).collect();
+    assert_eq!(names, ["tsit5", "dop853", "taylor"]);
+    let refused =
+        |name: &str, tolerance| method(name).unwrap().with_tolerance(tolerance).unwrap_err().to_string();
+    assert_eq!(refused("rattle", 1e-9), "method \"rattle\" does not choose its steps and takes no tolerance");
+    assert!(
+        refused("taylor", f64::NAN).starts_with("NaN is no tolerance of taylor; it must be from 1.2e-16")
+    );
 }

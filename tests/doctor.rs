@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-use polhode::inertia::{Amount, Evidence, Inertia, InertiaError, MassProperties, Solid, Verdict, diagnose};
+use polhode::inertia::{Amount, Evidence, Inertia, InertiaError, MassProperties, Solid, Validity, diagnose};
 
 /// A body, and what a user may know of it.
 struct Patient {
@@ -171,7 +171,7 @@ fn the_true_cause_comes_first() {
             failures.push(format!("{name}: no cause found, {:?}", found.verdict));
             continue;
         };
-        assert_ne!(found.verdict, Verdict::Valid);
+        assert_ne!(found.verdict, Validity::Valid);
         let back = (first.corrected - truth).amax() / truth.amax();
         if first.cause.name() != cause || back > 1e-9 {
             let listed: Vec<String> =
@@ -192,7 +192,7 @@ fn the_healthy_are_left_alone() {
             let found = diagnose(patient.body.tensor(), &evidence).unwrap();
             assert_eq!(
                 found.verdict,
-                Verdict::Valid,
+                Validity::Valid,
                 "{:?}",
                 found.causes.first().map(|c| c.cause.to_string())
             );
@@ -214,7 +214,7 @@ fn the_healthy_are_left_alone() {
             let body = solid.with(Amount::Mass(1.5)).unwrap().turned(UnitQuaternion::new_normalize(q));
             let found =
                 diagnose(body.tensor(), &Evidence { mass: Some(1.5), ..Evidence::default() }).unwrap();
-            assert_eq!(found.verdict, Verdict::Valid, "{solid:?} {k}");
+            assert_eq!(found.verdict, Validity::Valid, "{solid:?} {k}");
             assert!(found.distance < 1e-15 * body.tensor().amax());
         }
     }
@@ -330,7 +330,7 @@ fn extremes_of_size_and_zeros_are_refused_in_words() {
         ..Evidence::default()
     };
     let nothing = diagnose(Matrix3::zeros(), &evidence).unwrap();
-    assert_eq!(nothing.verdict, Verdict::Invalid);
+    assert_eq!(nothing.verdict, Validity::Invalid);
     assert_eq!(nothing.violation, Some(InertiaError::NotPositive { moments: [0.0; 3] }));
     assert!(nothing.causes.is_empty());
 }

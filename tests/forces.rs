@@ -22,9 +22,7 @@ fn run(name: &str, body: &Body, omega: [f64; 3], h: f64) -> Run {
 
 /// A satellite, tilted, on an orbit with the eccentricity `e`.
 fn satellite(e: f64) -> Body {
-    let inertia = inertia([10.0, 25.0, 30.0]);
-    let gradient = Force::gravity_gradient(&inertia, 0.001, e).unwrap();
-    Body::free(inertia).with(gradient)
+    Body::free(inertia([10.0, 25.0, 30.0])).with(Force::gravity_gradient(0.001, e).unwrap())
 }
 
 const TUMBLING: [f64; 3] = [2e-4, -3e-4, 1.2e-3];
@@ -192,7 +190,7 @@ fn fixtures() -> Vec<Fixture> {
         let inertia = inertia([1, 2, 3].map(double));
         let parameters = [11, 12, 13].map(double);
         let force = match fields[0] {
-            "gradient" => Force::gravity_gradient(&inertia, parameters[0], parameters[1]),
+            "gradient" => Force::gravity_gradient(parameters[0], parameters[1]),
             "body" => Force::constant_torque_body(parameters.into()),
             "space" => Force::constant_torque_space(parameters.into()),
             "drag" => Force::drag(parameters[0], parameters[1]),
@@ -287,7 +285,7 @@ fn nystrom_schemes_are_far_more_accurate_than_suzukis_at_equal_cost() {
 #[test]
 fn what_is_conserved_together_is_what_each_conserves() {
     let moments = inertia([1.0, 2.0, 2.5]);
-    let gradient = |n| Force::gravity_gradient(&moments, n, 0.0).unwrap();
+    let gradient = |n| Force::gravity_gradient(n, 0.0).unwrap();
     let heavy = Body::heavy(moments.clone(), [0.1, 0.0, 0.2].into()).unwrap();
     let jacobi = |rate| Conserved::Jacobi { rate };
     let free = Body::free(moments.clone());
@@ -297,7 +295,68 @@ fn what_is_conserved_together_is_what_each_conserves() {
     // gravity along z turns with the orbit: Jacobi's constant is left
     assert_eq!(heavy.with(gradient(0.5)).conserved(), [jacobi(0.5)]);
     assert_eq!(free.clone().with(gradient(0.5)).with(gradient(0.25)).conserved(), []);
-    assert_eq!(free.with(gradient(0.5)).with(Force::drag(0.1, 0.0).unwrap()).conserved(), []);
+    assert_eq!(free.clone().with(gradient(0.5)).with(Force::drag(0.1, 0.0).unwrap()).conserved(), []);
+    // a magnet along space x keeps the energy alone: Jacobi's constant needs L_z too
+    let magnet = Force::potential_fn(
+        "magnet",
+        |q| -(q * Vector3::z()).x,
+        |q| Vector3::z().cross(&(q.inverse() * Vector3::x())),
+    );
+    assert_eq!(free.clone().with(magnet.clone()).conserved(), [Conserved::Energy]);
+    assert_eq!(free.with(gradient(0.5)).with(magnet).conserved(), []);
+}
+
+#[test]
+fn the_gravity_gradient_is_that_of_the_body_on_which_it_acts() {
+    let gradient = Force::gravity_gradient(0.001, 0.0).unwrap();
+    let point = Point::new(Quat::new(0.8, Vec3([0.1, -0.5, 0.3])).map(Dd::of).normalized(), Vec3::zero());
+    let torque = |moments: [f64; 3], force: &Force| {
+        let body = Body::free(inertia(moments)).with(force.clone());
+        body.torque_of(Time::from_seconds(100.0), &point) * Dd::of(body.scale())
+    };
+    let small = Body::free(inertia([1.0, 2.0, 2.5])).with(gradient.clone());
+    // taken from another body, it is that of the new one all the same
+    let moved = torque([100.0, 150.0, 170.0], &small.forces()[0]);
+    let own = torque([100.0, 150.0, 170.0], &gradient);
+    assert_eq!(moved, own);
+    assert!((own - torque([1.0, 2.0, 2.5], &gradient) * Dd::of(50.0)).magnitude() > 1e-6);
+}
+
+#[test]
+fn weight_is_a_force_like_any_other() {
+    let weight = Vector3::new(0.1, -0.2, 0.4);
+    let free = || Body::free(inertia([1.0, 2.0, 2.5]));
+    let heavy = Body::heavy(inertia([1.0, 2.0, 2.5]), weight).unwrap();
+    let with = free().with(Force::gravity(weight).unwrap());
+    assert_eq!((with.problem(), with.conserved()), (Problem::Gravity, heavy.conserved()));
+    let end = |body: &Body| run("implicit-midpoint", body, [0.4, 1.0, -0.3], 0.125).advance_to(100).unwrap();
+    assert_eq!(end(&with).point, end(&heavy).point);
+    // two weights are one, and opposite ones none
+    let half = || Force::gravity(weight * 0.5).unwrap();
+    assert_eq!(end(&free().with(half()).with(half())).point, end(&heavy).point);
+    let none = free().with(Force::gravity(weight).unwrap()).with(Force::gravity(-weight).unwrap());
+    assert_eq!(none.problem(), Problem::Free);
+    assert_eq!(free().with(Force::gravity(Vector3::zeros()).unwrap()).problem(), Problem::Free);
+    // beside drag it acts as it does beside the drag of a heavy body
+    let drag = || Force::drag(0.01, 0.0).unwrap();
+    assert_eq!(end(&with.with(drag())).point, end(&heavy.with(drag())).point);
+    // out of range of the solver frame it acts as any potential does
+    let faint = free().with(Force::gravity(Vector3::z() * 1e-250).unwrap());
+    assert_eq!(faint.problem(), Problem::Potential);
+    assert_eq!(faint.conserved(), [Conserved::Energy, Conserved::MomentumZ]);
+}
+
+#[test]
+fn the_error_of_jacobis_constant_is_that_of_its_own_rate() {
+    let body = satellite(0.0);
+    let worst = run("kick-drift", &body, TUMBLING, 100.0).advance_to(10).unwrap().worst;
+    assert_eq!(worst.of(Conserved::Jacobi { rate: 0.001 }), worst.jacobi);
+    assert!(worst.jacobi.is_some());
+    assert_eq!(worst.of(Conserved::Jacobi { rate: 123.0 }), None);
+    let resumed = run("kick-drift", &body, TUMBLING, 100.0);
+    let checkpoint = resumed.checkpoint().to_string().parse().unwrap();
+    let resumed = Run::resume(&method("kick-drift").unwrap(), &body, &checkpoint).unwrap();
+    assert!(resumed.sample().worst.of(Conserved::Jacobi { rate: 0.001 }).is_some());
 }
 
 #[test]
@@ -369,7 +428,7 @@ fn a_force_that_is_not_finite_ends_the_run_with_its_name_and_time() {
 fn a_run_that_diverges_is_not_blamed_on_its_force() {
     // steps of several radians: what overflows is the state, and the forces with it
     let inertia = inertia([10.0, 20.0, 30.0]);
-    let gradient = Force::gravity_gradient(&inertia, 0.5, 0.0).unwrap();
+    let gradient = Force::gravity_gradient(0.5, 0.0).unwrap();
     for force in [gradient, Force::drag(0.1, 2.0).unwrap()] {
         let body = Body::free(inertia.clone()).with(force);
         for name in ["explicit-euler", "rk4", "rk8"] {
@@ -396,22 +455,25 @@ fn a_potential_whose_energy_alone_is_not_finite_is_named() {
 
 #[test]
 fn parameters_that_no_force_has_are_refused() {
-    let moments = inertia([1.0, 2.0, 2.5]);
     let refused = |result: Result<Force, ForceError>| result.map(|_| ()).unwrap_err().to_string();
     assert_eq!(
         refused(Force::drag(-0.1, 0.0)),
         "c1 of the drag is -0.1; drag takes energy from the body, so its coefficients are at least 0: change the sign"
     );
     assert_eq!(
-        refused(Force::gravity_gradient(&moments, 0.001, 1.0)),
+        refused(Force::gravity_gradient(0.001, 1.0)),
         "the eccentricity is 1; that of an elliptic orbit is in [0, 1), and 0 is a circle"
     );
-    assert!(Force::gravity_gradient(&moments, 0.001, -0.1).is_err());
-    assert!(Force::gravity_gradient(&moments, 0.001, f64::NAN).is_err());
+    assert!(Force::gravity_gradient(0.001, -0.1).is_err());
+    assert!(Force::gravity_gradient(0.001, f64::NAN).is_err());
     assert_eq!(
-        refused(Force::gravity_gradient(&moments, f64::INFINITY, 0.0)),
+        refused(Force::gravity_gradient(f64::INFINITY, 0.0)),
         "the mean motion of the gravity gradient is inf; it must be a finite number"
     );
     assert!(Force::constant_torque_body(Vector3::new(0.0, f64::NAN, 0.0)).is_err());
     assert!(Force::constant_torque_space(Vector3::new(0.0, f64::INFINITY, 0.0)).is_err());
+    assert_eq!(
+        refused(Force::gravity(Vector3::new(0.0, f64::NAN, 0.0))),
+        "a component of the weight moment of the uniform gravity is NaN; it must be a finite number"
+    );
 }

@@ -585,12 +585,12 @@ fn records() {
 }
 
 /// Forces of any parameters; those built in that are refused are left out.
-fn forces(draw: &mut Draw, inertia: &Inertia) -> Result<Vec<Force>, String> {
+fn forces(draw: &mut Draw) -> Result<Vec<Force>, String> {
     let made = [
         Force::drag(draw.any(), draw.any()),
         Force::constant_torque_body(draw.vector()),
         Force::constant_torque_space(draw.vector()),
-        Force::gravity_gradient(inertia, draw.any(), draw.share() * 1.1),
+        Force::gravity_gradient(draw.any(), draw.share() * 1.1),
     ];
     let mut kept = Vec::new();
     for force in made {
@@ -639,7 +639,7 @@ fn bodies_and_runs() {
             Err(error) => return refused(&error),
         };
         if draw.one_in(3) {
-            for force in forces(draw, &inertia)? {
+            for force in forces(draw)? {
                 body = body.with(force);
             }
         }

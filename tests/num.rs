@@ -5,7 +5,7 @@
 mod cases;
 
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
-use polhode::num::{Compensated, Dd, Expansion, Precise, Real, sum, trig};
+use polhode::num::{Compensated, Dd, Expansion, Precise, Real, add_carried, trig};
 use proptest::prelude::*;
 
 // ---------------------------------------------------------------------------------------- fixtures
@@ -486,7 +486,7 @@ fn jacobi_stays_on_its_curve_where_no_digit_of_the_place_is_left() {
 fn what_a_sum_cannot_hold_is_carried_to_the_next() {
     let (mut total, mut carry) = (1.0, 0.0);
     for _ in 0..1000 {
-        sum::add_carried(&mut total, &mut carry, 1e-17);
+        add_carried(&mut total, &mut carry, 1e-17);
     }
     assert_eq!(Dd::sum(total, carry).hi(), 1.0 + 1e-14);
     assert!((Dd::sum(total, carry) - Dd::sum(1.0, 1e-14)).magnitude() < 1e-29);

@@ -140,7 +140,7 @@ fn errors_under_gravity_are_measured_by_kinetic_energy_and_weight_moment() {
 #[test]
 fn jacobis_constant_is_measured_by_the_forces_and_the_turning_orbit() {
     let inertia = Inertia::from_moments(MOMENTS).unwrap();
-    let gradient = Force::gravity_gradient(&inertia, 0.5, 0.0).unwrap();
+    let gradient = Force::gravity_gradient(0.5, 0.0).unwrap();
     let body = Body::free(inertia).with(gradient);
     let mut run = Run::new(&method("rk4").unwrap(), &body, &start_of(&body), 0.05).unwrap();
     // of points, whose attitude is as the method left it; a state is normalised when it enters
@@ -334,5 +334,41 @@ fn a_run_ends_at_the_last_point_whose_errors_are_numbers() {
         let invariants = Invariants::of(&body, Time::from_dd(last.time), &last.point);
         assert_eq!(invariants.momentum_norm().hi() * body.scale(), last.momentum_norm);
         assert!(invariants.momentum_norm() == last.point.to_dd().momentum_body.norm());
+    }
+}
+
+/// Errors are relative: those of a body that turns 2^-100 times as fast, in steps 2^100 times as long, are the same bits.
+#[test]
+fn the_errors_of_a_slow_body_are_those_of_a_fast_one() {
+    let body = Body::free(Inertia::from_moments(MOMENTS).unwrap());
+    let worst = |name: &str, power: i32| {
+        let start =
+            body.state(UnitQuaternion::identity(), OMEGA.map(|w| libm::scalbn(w, -power)).into()).unwrap();
+        let step = libm::scalbn(0.125, power);
+        Run::new(&method(name).unwrap(), &body, &start, step).unwrap().advance_to(STEPS).unwrap().worst
+    };
+    for name in ["lie-poisson", "rattle", "rk4"] {
+        let fast = worst(name, 0);
+        assert!(
+            fast.energy.is_some_and(|error| error > 0.0)
+                && fast.momentum_norm.is_some_and(|error| error > 0.0)
+        );
+        for power in [17, 60, 100] {
+            assert_eq!(worst(name, power), fast, "{name}: 2^-{power}");
+        }
+    }
+}
+
+#[test]
+fn a_run_taken_up_after_steps_that_nobody_watched_counts_no_flips() {
+    let body = Body::free(Inertia::from_moments(MOMENTS).unwrap());
+    let start = body.state(UnitQuaternion::identity(), OMEGA.into()).unwrap();
+    let rattle = method("rattle").unwrap();
+    for (watch, counts) in [(Watch::EveryStep, true), (Watch::Never, false)] {
+        let mut run = Run::new(&rattle, &body, &start, 0.125).unwrap().watching(watch);
+        run.advance_to(STEPS).unwrap();
+        let checkpoint = run.checkpoint().to_string().parse().unwrap();
+        let mut resumed = Run::resume(&rattle, &body, &checkpoint).unwrap().watching(Watch::EveryStep);
+        assert_eq!(resumed.advance_to(2 * STEPS).unwrap().flips.is_some(), counts, "{watch}");
     }
 }

@@ -3,7 +3,7 @@
 #![cfg(feature = "random")]
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use polhode::body::{Attitudes, Member, Population, Tensors};
+use polhode::body::{AttitudeSpread, Member, Population, Tensors};
 use polhode::inertia::Inertia;
 use polhode::num::{Covariance, Distribution};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
@@ -11,7 +11,8 @@ use polhode::rotation::{Quat, Vec3, rotation_angle};
 const COUNT: u64 = 20_000;
 
 fn with_inertia(inertia: Tensors) -> Population {
-    let (attitude, omega_body) = (Attitudes::Fixed(Quat::identity()), Distribution::Fixed([0.4, 1.0, -0.3]));
+    let (attitude, omega_body) =
+        (AttitudeSpread::Fixed(Quat::identity()), Distribution::Fixed([0.4, 1.0, -0.3]));
     Population::Independent { attitude, omega_body, inertia: Box::new(inertia) }
 }
 
@@ -91,7 +92,7 @@ fn attitudes_are_spread_as_stated() {
     };
     let pi = core::f64::consts::PI;
     // the angle of a uniform rotation has the density (1 − cos θ)/π: mean π/2 + 2/π, mean square π²/3 + 2
-    let uniform = of(Attitudes::Uniform);
+    let uniform = of(AttitudeSpread::Uniform);
     let angle = |member: &Member| rotation_angle(Quat::identity(), member.attitude);
     let expected = pi / 2.0 + 2.0 / pi;
     close(mean(&uniform, angle), expected, (pi * pi / 3.0 + 2.0 - expected * expected).sqrt());
@@ -105,7 +106,7 @@ fn attitudes_are_spread_as_stated() {
     }
     // rotation vectors in body axes, multiplied from the right
     let about = Quat::from_components([0.5, 0.5, -0.5, 0.5]);
-    let near = of(Attitudes::Near { mean: about, turn: Distribution::Fixed([0.0, 0.0, 0.2]) });
+    let near = of(AttitudeSpread::Near { mean: about, turn: Distribution::Fixed([0.0, 0.0, 0.2]) });
     let turn = about.conjugate() * near[3].attitude;
     assert!((turn.v.0[2] - libm::sin(0.1)).abs() < 1e-16 && turn.v.0[0].abs() < 1e-16);
     assert!((turn.w - libm::cos(0.1)).abs() < 1e-15);
@@ -163,7 +164,7 @@ fn a_member_is_the_same_whichever_were_drawn_before() {
     assert_ne!(population.member(6, 1).unwrap().inertia, forward[1].inertia);
     // how often the inertia is drawn changes nothing of the start
     let spread = |inertia| Population::Independent {
-        attitude: Attitudes::Uniform,
+        attitude: AttitudeSpread::Uniform,
         omega_body: Distribution::uniform([[0.0, 1.0]; 3]).unwrap(),
         inertia: Box::new(inertia),
     };

@@ -2,7 +2,7 @@
 
 use polhode::body::Problem;
 use polhode::method::schemes::{self, Pairs, Part, Stages};
-use polhode::method::{ADAPTIVE, Claimed, Claims, ExactFlow, Kicks, Splitting, catalogue};
+use polhode::method::{Claimed, Claims, ExactFlow, Kicks, Splitting, catalogue, listing};
 use polhode_pages::table::{Cell, Column, Table, row};
 
 /// One row a method of the catalogue, from its claims for free motion; the closed form first.
@@ -22,6 +22,8 @@ pub fn table() -> Table {
             Column::new("symplectic", "", "whether the symplectic form of attitude and momentum is kept"),
             Column::new("cost", "", "work per step"),
             Column::new("source", "", "where it comes from"),
+            Column::new("formula", "", "one step of size h, from (m, q) to (m', q')").hidden(),
+            Column::new("file", "", "where it is written, from the root of the sources").hidden(),
         ],
     );
     // the closed form is the free flow of kick-drift from the start on, whatever the time
@@ -40,9 +42,10 @@ pub fn table() -> Table {
     table
 }
 
-fn cells(name: String, order: Option<u32>, claims: &Claims, cost: String, source: &str) -> [Cell; 11] {
+fn cells(name: String, order: Option<u32>, claims: &Claims, cost: String, source: &str) -> [Cell; 13] {
     let yes = |kept: bool| if kept { "yes" } else { "no" };
     let kept = claims.kept;
+    let listing = listing(&name);
     row![
         name,
         order.map(u64::from),
@@ -55,6 +58,8 @@ fn cells(name: String, order: Option<u32>, claims: &Claims, cost: String, source
         yes(claims.symplectic),
         cost,
         source,
+        listing.map(|listing| listing.formula),
+        listing.map(|listing| listing.file),
     ]
 }
 
@@ -105,10 +110,4 @@ pub fn schemes() -> Table {
         ]);
     }
     table
-}
-
-/// Whether the method chooses its steps: `dop853`, `tsit5`, and `taylor` but for `taylor:20`, whose argument is an order.
-pub fn is_adaptive(name: &str) -> bool {
-    let (base, argument) = name.split_once(':').unwrap_or((name, ""));
-    ADAPTIVE.contains(&base) && argument.parse::<u32>().is_err()
 }

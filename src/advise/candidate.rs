@@ -2,7 +2,7 @@
 
 use super::{Demand, Setting};
 use crate::body::{Body, Problem};
-use crate::method::{ADAPTIVE, AnyMethod, Claims, Energy, UnknownMethod, catalogue, method};
+use crate::method::{AnyMethod, Claimed, Claims, Energy, ToleranceError, method, without_projections};
 
 /// Methods of higher order than those of the catalogue.
 const BESIDES: [&str; 24] = [
@@ -38,7 +38,7 @@ const COARSE: f64 = 1e-4;
 /// A method that may be advised.
 pub(super) struct Candidate {
     pub(super) name: String,
-    method: Option<Box<dyn AnyMethod>>,
+    method: Box<dyn AnyMethod>,
     pub(super) claims: Claims,
 }
 
@@ -47,25 +47,19 @@ impl Candidate {
     pub(super) fn all(body: &Body, demand: &Demand) -> Vec<Self> {
         let problem = body.problem();
         let besides = BESIDES.iter().filter_map(|name| method(name).ok());
-        let all = catalogue().into_iter().chain(besides);
+        let all = without_projections().into_iter().chain(besides);
         let taken = all.filter_map(|method| {
             let claims = method.claims(problem)?;
             let name = method.name();
             let base = name.split([':', '@']).next().unwrap_or_default();
-            let exact = claims.order.is_none() && claims.tolerance.is_none();
+            let exact = claims.order.is_none() && method.tolerance().is_none();
             let excluded = demand
                 .excluded
                 .iter()
                 .any(|other| *other == name || *other == base || (exact && other == "exact"));
             // without a force, one name for the steps along the one orbit is enough
             let twice = problem == Problem::Free && exact && base == "kick-drift";
-            let adaptive = ADAPTIVE.contains(&base) && claims.tolerance.is_some();
-            let method = (!adaptive).then_some(method);
-            (!excluded && !twice).then(|| Candidate {
-                name: if adaptive { base.into() } else { name.clone() },
-                method,
-                claims,
-            })
+            (!excluded && !twice).then(|| Candidate { name: name.clone(), method, claims })
         });
         let mut all: Vec<Self> = taken.collect();
         // the quick ones first: they tell which need not be tried in short steps
@@ -75,7 +69,7 @@ impl Candidate {
 
     /// Whether the method chooses its steps.
     pub(super) fn is_adaptive(&self) -> bool {
-        self.method.is_none()
+        self.method.tolerance().is_some()
     }
 
     /// Whether it has no error of discretisation.
@@ -102,10 +96,11 @@ impl Candidate {
     ///
     /// # Errors
     /// A tolerance that it does not take.
-    pub(super) fn at(&self, value: f64) -> Result<Prepared<'_>, UnknownMethod> {
-        match &self.method {
-            Some(method) => Ok(Prepared::Given(method.as_ref())),
-            None => Ok(Prepared::Made(method(&format!("{}:{value:e}", self.name))?)),
+    pub(super) fn at(&self, value: f64) -> Result<Prepared<'_>, ToleranceError> {
+        if self.is_adaptive() {
+            Ok(Prepared::Made(self.method.with_tolerance(value)?))
+        } else {
+            Ok(Prepared::Given(self.method.as_ref()))
         }
     }
 

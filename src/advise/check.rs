@@ -26,22 +26,19 @@ const LOOKS: u64 = 97;
 /// demand.excluded = vec!["exact".into()];
 /// let advice = advise(&body, &start, &demand)?;
 /// assert!(check(&body, &start, &demand, &advice.best)? < 1e-8);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn check(body: &Body, start: &State, demand: &Demand, choice: &Choice) -> Result<f64, AdviseError> {
     demand.check()?;
     let start = body.enter(start)?.to_f64();
     let truth = truth(body, start, demand, &evenly(demand.until, LOOKS as u32))?;
-    let (name, step, steps) = match choice.setting {
-        Setting::Nothing => (None, demand.until / LOOKS as f64, LOOKS),
-        Setting::Step(h) => (Some(choice.method.clone()), h, choice.steps.unwrap_or(1)),
-        Setting::Tolerance { tolerance, .. } => {
-            (Some(format!("{}:{tolerance:e}", choice.method)), demand.until / LOOKS as f64, LOOKS)
-        }
+    let (step, steps) = match choice.setting {
+        Setting::Step(h) => (h, choice.steps.unwrap_or(1)),
+        _ => (demand.until / LOOKS as f64, LOOKS),
     };
     let clock = Clock { start: demand.start_time, step };
     let mut worst = 0.0_f64;
-    let Some(name) = name else {
+    if choice.setting == Setting::Nothing {
         let Some(motion) = truth.closed_form() else { return Err(AdviseError::NoReference) };
         for k in 1..=LOOKS {
             let t = clock.elapsed(k).hi();
@@ -49,9 +46,12 @@ pub fn check(body: &Body, start: &State, demand: &Demand, choice: &Choice) -> Re
             worst = worst.max(state.rotation().angle_to(&body.leave(&exact).rotation()));
         }
         return Ok(worst);
-    };
-    let unusable = |why: String| AdviseError::Unusable { method: name.clone(), why };
-    let method = method(&name).map_err(|error| unusable(error.to_string()))?;
+    }
+    let unusable = |why: String| AdviseError::Unusable { method: choice.method.clone(), why };
+    let mut method = method(&choice.method).map_err(|error| unusable(error.to_string()))?;
+    if let Setting::Tolerance { tolerance, .. } = choice.setting {
+        method = method.with_tolerance(tolerance).map_err(|error| unusable(error.to_string()))?;
+    }
     let run = Run::from_point(&method, body, start, clock).map_err(|error| unusable(error.to_string()))?;
     let mut run = run.watching(Watch::Never);
     for k in 1..=LOOKS {

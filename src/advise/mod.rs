@@ -110,7 +110,7 @@ impl Demand {
 /// let end = Run::new(&method(&advice.best.method)?, &body, &start, h)?.advance_to(steps)?;
 /// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(1000.0)?;
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-6);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn advise(body: &Body, start: &State, demand: &Demand) -> Result<Advice, AdviseError> {
     demand.check()?;

@@ -299,8 +299,13 @@ impl Case<'_> {
         let tied = if found.is_empty() { 0 } else { self.tied(&found) };
         found[..tied].sort_by_key(|found| Reverse(self.preference(&found.reading)));
         let first = found.into_iter().next()?;
-        (distance(&best.defects, &first.defects) > -2.0 * libm::log(CONVICTED)).then_some(first)
+        convicts(&best.defects, &first.defects).then_some(first)
     }
+}
+
+/// Whether a mistake is named that leaves `mistaken` where the best reading leaves `best`.
+fn convicts(best: &Defects, mistaken: &Defects) -> bool {
+    distance(best, mistaken) > -2.0 * libm::log(CONVICTED)
 }
 
 /// Logarithm of the variances that are left.
@@ -314,4 +319,22 @@ fn size(defects: &Defects) -> f64 {
 
 fn distance(defects: &Defects, best: &Defects) -> f64 {
     size(defects) - size(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mistake_is_named_where_it_leaves_less_than_a_fifth() {
+        let left = |attitude: f64, rates| Defects { attitude: Some(attitude), rates };
+        let best = left(1e-2, None);
+        assert!(convicts(&best, &left(1.9e-3, None)));
+        for share in [0.21, 0.3, 0.5, 0.9] {
+            assert!(!convicts(&best, &left(share * 1e-2, None)), "{share}");
+        }
+        // of attitude and rates together
+        assert!(convicts(&left(1e-2, Some(1e-2)), &left(5e-3, Some(3e-3))));
+        assert!(!convicts(&left(1e-2, Some(1e-2)), &left(5e-3, Some(5e-3))));
+    }
 }

@@ -60,7 +60,7 @@ pub use verdict::{
 /// let verdict = audit(&record, &Question::new(Some(body)))?;
 /// assert_eq!(verdict.judgement, Judgement::Right);
 /// assert_eq!(verdict.reading.attitude, Some(Direction::SpaceToBody));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn audit(record: &Trajectory, question: &Question) -> Result<Verdict, AuditError> {
     question.check()?;

@@ -6,7 +6,7 @@ use super::motion::motion;
 use super::states::{Quantities, Row, states};
 use super::{Reading, Trajectory};
 use crate::body::{Body, Clock, Conserved};
-use crate::method::{AnyMethod, Claimed, catalogue, method};
+use crate::method::{AnyMethod, Claimed, method, without_projections};
 use crate::rotation::{Quat, Vec3};
 use crate::run::{Run, Watch};
 
@@ -71,7 +71,7 @@ pub(super) fn signature(
     let keeps_energy = body.conserved().contains(&Conserved::Energy);
     let mut best: Option<Signature> = None;
     let named = OTHERS.iter().filter_map(|name| method(name).ok());
-    let methods: Vec<Box<dyn AnyMethod>> = catalogue().into_iter().chain(named).collect();
+    let methods: Vec<Box<dyn AnyMethod>> = without_projections().into_iter().chain(named).collect();
     for steps in STEPS {
         for method in &methods {
             for &n in steps {

@@ -10,6 +10,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::Time;
+use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real, Series, Shown};
 use crate::rotation::{Quat, Vec3};
 
@@ -41,7 +42,7 @@ use crate::rotation::{Quat, Vec3};
 /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("magnet", Magnet(0.5)));
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.0, 1.0, 0.0))?;
 /// assert_eq!(body.energy(&start), 1.0); // 1 J of spin; the magnet lies across the field
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub trait Potential<S: Real>: Send + Sync {
     /// Potential energy, J, at the time `at` and the attitude `attitude`, body → space. With methods that do not keep |q|
@@ -92,6 +93,19 @@ pub struct Force {
     pub(crate) law: Law,
     /// The same law on power series; none of a closure.
     pub(crate) series: Option<SeriesLaw>,
+    /// What it takes from the body that it acts on.
+    pub(super) role: Role,
+}
+
+/// What a force takes from the body that it acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Role {
+    /// Nothing: the law says it all.
+    Law,
+    /// The solver frame, in which the torque of uniform gravity is linear in the vertical: by the weight moment, N m.
+    Gravity(Vec3<f64>),
+    /// The tensor: by the mean motion, rad/s, and the eccentricity.
+    Gradient([f64; 2]),
 }
 
 #[derive(Clone)]
@@ -166,7 +180,7 @@ impl Force {
     {
         let law = Arc::new(potential);
         let series = Some(SeriesLaw::Potential(law.clone()));
-        Force { name: name.into(), law: Law::Potential(law), series }
+        Force { name: name.into(), law: Law::Potential(law), series, role: Role::Law }
     }
 
     /// The torque `torque`, called `name` in messages.
@@ -176,7 +190,7 @@ impl Force {
     {
         let law = Arc::new(torque);
         let series = Some(SeriesLaw::Torque(law.clone()));
-        Force { name: name.into(), law: Law::Torque(law), series }
+        Force { name: name.into(), law: Law::Torque(law), series, role: Role::Law }
     }
 
     /// A potential by two closures of the attitude, body → space: energy in J, and torque in N m, body axes.
@@ -190,7 +204,7 @@ impl Force {
         T: Fn(UnitQuaternion<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
         let law = Law::Potential(Arc::new(PotentialFn { energy, torque }));
-        Force { name: name.into(), law, series: None }
+        Force { name: name.into(), law, series: None, role: Role::Law }
     }
 
     /// A torque, N m, body axes, by a closure of the time (s), the attitude (body → space) and the angular velocity
@@ -208,13 +222,27 @@ impl Force {
     /// let start = body.state(UnitQuaternion::identity(), Vector3::zeros())?;
     /// let end = Run::new(&method("rk4")?, &body, &start, 0.125)?.advance_to(8)?;
     /// assert!((end.omega_body.z - 0.25).abs() < 0.01); // the last stage, at t = 1 s, feels no push
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     pub fn torque_fn<T>(name: impl Into<String>, torque: T) -> Self
     where
         T: Fn(f64, UnitQuaternion<f64>, Vector3<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
-        Force { name: name.into(), law: Law::Torque(Arc::new(TorqueFn(torque))), series: None }
+        let law = Law::Torque(Arc::new(TorqueFn(torque)));
+        Force { name: name.into(), law, series: None, role: Role::Law }
+    }
+
+    /// The same force, which takes `role` from the body.
+    pub(super) fn taking(self, role: Role) -> Self {
+        Force { role, ..self }
+    }
+
+    /// The same force as it acts on a body with the inertia `inertia`.
+    pub(super) fn on(self, inertia: &Inertia) -> Self {
+        match self.role {
+            Role::Gradient(orbit) => Force::gradient_on(inertia.tensor(), orbit),
+            Role::Law | Role::Gravity(_) => self,
+        }
     }
 
     /// Its name.

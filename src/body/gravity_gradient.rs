@@ -4,11 +4,12 @@ use core::cmp::Ordering;
 
 use nalgebra::Matrix3;
 
-use super::force::finite;
+use super::force::{Role, finite};
 use super::{Conserved, Force, ForceError, Potential, Time};
-use crate::inertia::Inertia;
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
+
+const NAME: &str = "gravity gradient";
 
 /// Torque and potential of the gravity gradient to first order in the size of the body over the distance.
 ///
@@ -24,8 +25,8 @@ struct GravityGradient {
 }
 
 impl Force {
-    /// The gravity gradient on a body with the inertia `inertia` about its centre of mass, on an orbit with the mean
-    /// motion `mean_motion` (rad/s) and the eccentricity `eccentricity`, 0 for a circle.
+    /// The gravity gradient on an orbit with the mean motion `mean_motion` (rad/s) and the eccentricity `eccentricity`, 0 for a
+    /// circle. The inertia is that of the [body](super::Body::with) on which it acts, about its centre of mass.
     ///
     /// The orbit lies in the x–y plane of space, counter-clockwise about +z, with the perigee on +x at t = 0. On a circular
     /// orbit [Jacobi's constant](Conserved::Jacobi) E − n L_z is conserved, on an elliptic one nothing is.
@@ -37,24 +38,26 @@ impl Force {
     /// use nalgebra::{UnitQuaternion, Vector3};
     /// use polhode::body::{Body, Force};
     /// use polhode::inertia::Inertia;
-    /// let inertia = Inertia::from_moments([1.0, 2.0, 2.5])?;
-    /// let gradient = Force::gravity_gradient(&inertia, 0.001, 0.0)?;
-    /// let body = Body::free(inertia).with(gradient);
+    /// let gradient = Force::gravity_gradient(0.001, 0.0)?;
+    /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(gradient);
     /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.0, 0.0, 0.001))?;
     /// assert!((body.energy(&start) - (1.25e-6 + 1.5e-6)).abs() < 1e-20); // the axis of 1 kg m² along r
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
-    pub fn gravity_gradient(
-        inertia: &Inertia,
-        mean_motion: f64,
-        eccentricity: f64,
-    ) -> Result<Self, ForceError> {
-        const NAME: &str = "gravity gradient";
+    pub fn gravity_gradient(mean_motion: f64, eccentricity: f64) -> Result<Self, ForceError> {
         let mean_motion = finite(NAME, "the mean motion", mean_motion)?;
         if !(0.0..1.0).contains(&eccentricity) {
             return Err(ForceError::Eccentricity { eccentricity });
         }
-        Ok(Force::potential(NAME, GravityGradient { tensor: inertia.tensor(), mean_motion, eccentricity }))
+        // until it acts on a body there is no mass to act on
+        Ok(Force::gradient_on(Matrix3::zeros(), [mean_motion, eccentricity]))
+    }
+
+    /// The same on a body with the tensor `tensor`, kg m², body axes.
+    pub(super) fn gradient_on(tensor: Matrix3<f64>, orbit: [f64; 2]) -> Self {
+        let [mean_motion, eccentricity] = orbit;
+        let law = GravityGradient { tensor, mean_motion, eccentricity };
+        Force::potential(NAME, law).taking(Role::Gradient(orbit))
     }
 }
 

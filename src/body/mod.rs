@@ -1,12 +1,12 @@
 //! Bodies: inertia and forces, states of rotation, and the solver frame of kernels.
 
+#[allow(clippy::module_inception)]
+mod body;
 mod constant_torque;
-mod date;
 mod drag;
 mod exit;
 mod field;
 mod force;
-mod frame;
 mod gravity;
 mod gravity_gradient;
 mod point;
@@ -16,17 +16,16 @@ mod rotor;
 mod state;
 mod time;
 
-pub use date::{Date, DateError};
+pub use body::{Body, Problem, StateError};
 pub(crate) use exit::Exit;
 pub(crate) use field::{Evaluated, Forces, Witness};
 pub use field::{Field, Free};
 pub use force::{Conserved, Force, ForceError, Potential, Torque};
-pub use frame::{Body, Problem, StateError};
 pub use gravity::{Gravity, vertical};
 pub(crate) use point::RENORMALIZE_EVERY;
 pub use point::{Phase, Point};
 #[cfg(any(test, feature = "random"))]
-pub use population::{Attitudes, Member, NoMember, Population, Tensors};
+pub use population::{AttitudeSpread, Member, NoMember, Population, Tensors};
 pub use rotor::Rotor;
 pub(crate) use rotor::{Gyroscopic, kinetic_energy};
 pub use state::State;

@@ -26,7 +26,7 @@ use crate::rotation::{Quat, Vec3};
 /// let point = body.enter(&start)?;
 /// assert_eq!(point.momentum_body[1].hi() * body.scale(), start.momentum()[1]);
 /// assert_eq!(body.leave(&point), start);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]

@@ -17,12 +17,12 @@ const MOST_DRAWS: u32 = 10_000;
 /// distribution cut off at the triangle inequalities.
 ///
 /// ```
-/// use polhode::body::{Attitudes, Population, Tensors};
+/// use polhode::body::{AttitudeSpread, Population, Tensors};
 /// use polhode::inertia::Inertia;
 /// use polhode::num::{Covariance, Distribution};
 /// use polhode::rotation::Quat;
 /// let uncertain = Population::Independent {
-///     attitude: Attitudes::Near { mean: Quat::identity(), turn: Distribution::uniform([[-0.1, 0.1]; 3])? },
+///     attitude: AttitudeSpread::Near { mean: Quat::identity(), turn: Distribution::uniform([[-0.1, 0.1]; 3])? },
 ///     omega_body: Distribution::Normal { mean: [0.4, 1.0, -0.3], covariance: Covariance::independent([0.01; 3])? },
 ///     // 20 % of each moment: many a draw has no third side to its triangle
 ///     inertia: Box::new(Tensors::moments(Inertia::from_moments([1.0, 2.0, 2.5])?, [0.2; 3])?),
@@ -31,7 +31,7 @@ const MOST_DRAWS: u32 = 10_000;
 /// let [a, b, c] = member.inertia.principal_moments();
 /// assert!(a + b >= c && member.draws >= 1);
 /// assert_eq!(member.omega_body, uncertain.member(2026, 17)?.omega_body);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -39,7 +39,7 @@ pub enum Population {
     /// Attitude, angular velocity and inertia that are independent of each other.
     Independent {
         /// Attitude at the start.
-        attitude: Attitudes,
+        attitude: AttitudeSpread,
         /// Angular velocity at the start, body axes, rad/s.
         omega_body: Distribution<3>,
         /// Inertia.
@@ -61,7 +61,7 @@ pub enum Population {
 /// A distribution of attitudes.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub enum Attitudes {
+pub enum AttitudeSpread {
     /// Always the same; a quaternion of any norm but zero.
     Fixed(Quat<f64>),
     /// A mean, turned by a rotation vector (rad, body axes).
@@ -168,7 +168,7 @@ impl Tensors {
     }
 }
 
-impl Attitudes {
+impl AttitudeSpread {
     fn draw(&self, random: &mut Random) -> Quat<f64> {
         match self {
             Self::Fixed(attitude) => *attitude,

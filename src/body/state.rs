@@ -17,7 +17,7 @@ use crate::rotation::{Quat, Vec3};
 /// assert_eq!(start.momentum(), Vector3::new(5.0, 20.0, -7.5));
 /// assert_eq!(body.omega_body(&start), Vector3::new(0.5, 1.0, -0.25));
 /// assert_eq!(body.energy(&start), 12.1875);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]

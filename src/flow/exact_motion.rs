@@ -17,7 +17,7 @@ use crate::num::Dd;
 /// let start = top.state(UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5), Vector3::new(0.0, 0.0, 20.0))?;
 /// let later = ExactMotion::new(&top, &start)?.at(1e6)?;
 /// assert!((top.energy(&later) / top.energy(&start) - 1.0).abs() < 1e-14);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 #[must_use]
@@ -104,7 +104,7 @@ impl ExactMotion {
     /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
     /// let motion = ExactMotion::new(&body, &start)?;
     /// assert!(motion.check_time(-1e20).is_ok() && motion.check_time(2.0 * motion.reach()).is_err());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     pub fn check_time(&self, t: f64) -> Result<(), TimeError> {
         TimeError::check(t, self.reach())

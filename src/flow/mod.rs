@@ -39,7 +39,7 @@ use crate::num::Real;
 /// flow.flow(now, Dd::of(0.5), &mut twice);
 /// flow.flow(now.later(Dd::of(0.5)), Dd::of(1.5), &mut twice);
 /// assert!((once.momentum_body - twice.momentum_body).magnitude() < 1e-29);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub trait Flow<S: Real> {
     /// Moves `x` by the time `t` (s) from the time `at` on; negative times go back. What rounding takes is carried in `x`.

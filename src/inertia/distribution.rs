@@ -16,7 +16,7 @@ use crate::num::{Compensated, Real, Shown};
 /// Why a distribution has no mass properties.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum DistributionError {
+pub enum MassDistributionError {
     /// The density is negative or not a number somewhere.
     #[error(
         "density is {} at ({}, {}, {}); it must be finite and not negative",
@@ -88,13 +88,13 @@ impl Region {
     /// assert_eq!(body.class(), Class::Solid(Symmetry::Spherical));
     /// let factor = body.principal_moments()[0] / (body.mass() * 4.0);
     /// assert!((factor - 16.0 / 45.0).abs() < 1e-12); // 0.4 if it were homogeneous
-    /// # Ok::<(), polhode::inertia::DistributionError>(())
+    /// # Ok::<(), polhode::inertia::MassDistributionError>(())
     /// ```
     pub fn filled(
         &self,
         density: impl Fn(Vector3<f64>) -> f64,
         tolerance: f64,
-    ) -> Result<MassProperties, DistributionError> {
+    ) -> Result<MassProperties, MassDistributionError> {
         self.check()?;
         let region = *self;
         integrate_mass(
@@ -104,7 +104,7 @@ impl Region {
                 if rho >= 0.0 && rho.is_finite() {
                     Ok((at, rho * volume))
                 } else {
-                    Err(DistributionError::Density { density: rho, at })
+                    Err(MassDistributionError::Density { density: rho, at })
                 }
             },
             tolerance,
@@ -188,12 +188,12 @@ fn spherical(r: f64, u: [f64; 3]) -> (Vector3<f64>, f64) {
 ///     1e-13,
 /// )?;
 /// assert!((half_hoop.center_of_mass().y - 2.0 / core::f64::consts::PI).abs() < 1e-14);
-/// # Ok::<(), polhode::inertia::DistributionError>(())
+/// # Ok::<(), polhode::inertia::MassDistributionError>(())
 /// ```
 pub fn integrate_mass(
-    element: impl Fn([f64; 3]) -> Result<(Vector3<f64>, f64), DistributionError>,
+    element: impl Fn([f64; 3]) -> Result<(Vector3<f64>, f64), MassDistributionError>,
     tolerance: f64,
-) -> Result<MassProperties, DistributionError> {
+) -> Result<MassProperties, MassDistributionError> {
     let mut nodes = 8;
     let mut before = with_nodes(&element, nodes)?;
     loop {
@@ -204,7 +204,7 @@ pub fn integrate_mass(
             return Ok(now);
         }
         if nodes == 128 {
-            return Err(DistributionError::NotConverged { nodes, change, tolerance });
+            return Err(MassDistributionError::NotConverged { nodes, change, tolerance });
         }
         before = now;
     }
@@ -221,9 +221,9 @@ fn relative_change(a: &MassProperties, b: &MassProperties) -> f64 {
 }
 
 fn with_nodes(
-    element: impl Fn([f64; 3]) -> Result<(Vector3<f64>, f64), DistributionError>,
+    element: impl Fn([f64; 3]) -> Result<(Vector3<f64>, f64), MassDistributionError>,
     nodes: usize,
-) -> Result<MassProperties, DistributionError> {
+) -> Result<MassProperties, MassDistributionError> {
     let rule = gauss_legendre(nodes);
     let mut sums = [Compensated::new(0.0); 10]; // mass, first and second moments
     for &(x, wx) in &rule {

@@ -13,8 +13,8 @@ mod symmetric;
 mod symmetry;
 mod tensor;
 
-pub use distribution::{DistributionError, Region, integrate_mass};
-pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Oddity, Twin, Verdict, diagnose};
+pub use distribution::{MassDistributionError, Region, integrate_mass};
+pub use doctor::{Cause, Diagnosis, Entry, Evidence, Explanation, Misfit, Oddity, Twin, Validity, diagnose};
 pub use error::{InertiaError, MassError};
 pub use mass::{Amount, MassProperties};
 pub use mesh::{Boundary, Closing, Edge, FLOAT_WELD, Mesh, MeshError, Repair, Surface, SurfaceBuilder};

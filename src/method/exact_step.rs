@@ -1,4 +1,4 @@
-//! The exact motion of the free body in equal steps, by products, divisions and square roots.
+//! `exact-step`: the exact motion of the free body in equal steps, by products, divisions and square roots.
 
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method};
 use crate::body::{Field, Phase, Point, Problem, Rotor, Time};
@@ -34,7 +34,7 @@ const RENEW_EVERY: u64 = 64;
 /// let end = Run::new(&ExactStep, &body, &start, 0.25)?.advance_to(100_000)?;
 /// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(25_000.0)?;
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-13);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExactStep;

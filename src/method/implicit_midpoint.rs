@@ -1,9 +1,10 @@
-//! The implicit midpoint rule on m, with the Cayley map on the attitude.
+//! `implicit-midpoint`: the implicit midpoint rule on m, with the Cayley map on the attitude.
 
-use super::quadratic::Quadratic;
-use super::stagnation::iterate;
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method, Symmetric};
 use crate::body::{Field, Gyroscopic, Point, Problem, Rotor, Time, vertical};
+use crate::method::solve::cayley::cayley_turn;
+use crate::method::solve::quadratic::Quadratic;
+use crate::method::solve::stagnation::iterate;
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -27,7 +28,7 @@ use crate::rotation::{Quat, Vec3};
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
 /// let end = Run::new(&ImplicitMidpoint, &body, &start, 0.1)?.advance_to(1000)?;
 /// assert!(end.worst.of(Conserved::Momentum).is_some_and(|error| error < 1e-13));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImplicitMidpoint;
@@ -59,7 +60,6 @@ impl Claimed for ImplicitMidpoint {
         };
         Some(Claims {
             order: Some(2),
-            tolerance: None,
             symmetric: true,
             poisson: false,
             symplectic: false,
@@ -152,15 +152,4 @@ fn half_turn<S: Real>(c: Vec3<S>) -> Quat<S> {
 #[inline]
 fn middle_vertical<S: Real>(up: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
     (up + up.cross(c) + c * c.dot(up)) * (S::of(1.0) / (S::of(1.0) + c.norm_squared()))
-}
-
-/// `q ← q ∘ (1, c)/√(1 + |c|²)`, rounding carried: `p₀ − 1 = −|c|²/(α + √α)` has no cancellation.
-#[inline]
-pub(super) fn cayley_turn<S: Real>(x: &mut Point<S>, c: Vec3<S>) {
-    let squared = c.norm_squared();
-    let alpha = S::of(1.0) + squared;
-    let root = alpha.sqrt();
-    let less_one = Quat::new(-(squared / (alpha + root)), c * (S::of(1.0) / root));
-    x.add_attitude(x.attitude * less_one);
-    x.renormalize_at_times();
 }

@@ -1,9 +1,9 @@
-//! Newmark's method on the group of rotations.
+//! `lie-newmark`: Newmark's method on the group of rotations.
 
-use super::implicit_midpoint::cayley_turn;
-use super::quadratic::Quadratic;
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method};
 use crate::body::{Field, Gyroscopic, Point, Problem, Rotor, Time};
+use crate::method::solve::cayley::cayley_turn;
+use crate::method::solve::quadratic::Quadratic;
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 

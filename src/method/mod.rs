@@ -1,82 +1,69 @@
 //! Methods: one step of size h is a map Φ_h that moves a point; its claims are data, and the laws in `tests/laws.rs`
 //! execute every one of them, also those that say no.
+//!
+#![doc = include_str!("../../docs/methods.md")]
 
-mod axis_order;
-mod axis_split;
-mod catalogue;
-mod claims;
-mod collocation;
-mod composed;
+mod buss_2;
+mod combine;
+mod commutator_free_4;
+mod contract;
+mod crouch_grossman_3;
 mod dmv;
-mod dmv_series;
-mod embedded;
-mod exact_flow;
+mod dop853;
 mod exact_step;
-mod exponential;
-mod game_engine;
+mod explicit_euler;
+mod gauss;
 mod implicit_midpoint;
-mod kicks;
-mod lanes;
-mod length;
+mod kick_drift;
 mod lie_group;
 mod lie_newmark;
-mod map;
-mod modified_energy;
-mod preprocessed_dmv;
-mod processor;
-mod projected;
-mod quadratic;
+mod lie_poisson;
+mod lie_poisson_projected;
+mod momentum_euler;
+mod mujoco_rk4;
+mod rattle;
 mod richardson;
+mod rk4;
+mod rk4_projected;
+mod rk8;
+mod rkmk4;
 mod runge_kutta;
-pub mod schemes;
-mod single_turn;
-mod splitting;
-mod stagnation;
-mod symmetric_projection;
+mod semi_implicit_euler;
+mod solve;
 mod taylor;
-mod turns;
+mod tsit5;
 mod two_turn;
 mod variational_cayley;
 
-pub use axis_order::{AxisOrder, AxisOrderError};
-pub use axis_split::AxisSplit;
-pub use catalogue::{ADAPTIVE, AnyMethod, StepError, UnknownMethod, catalogue, method};
-pub use claims::{Claimed, Claims, Cost, Energy, Kept};
-pub use collocation::{Gauss, GaussMap, GaussOrderError};
-pub use composed::{Composed, Symmetric};
-pub use dmv::Dmv;
-pub use embedded::{
-    Control, Dop853, DormandPrince853, Embedded, EmbeddedMap, Pair, Rk8, Rk8Map, Stage, Terms,
-    ToleranceError, Tsit5, Tsitouras54,
+pub use buss_2::Buss;
+pub use combine::{Composed, FreePart, Kicks, SchemeError, Splitting, Symmetric, schemes};
+pub(crate) use contract::lanes::Block;
+pub use contract::{
+    AnyMethod, Claimed, Claims, Cost, Energy, Kept, Listing, Map, Method, SideBySide, Step, StepError, Stuck,
+    ToleranceError, UnknownMethod, Work, catalogue, listing, method, without_projections,
 };
-pub use exact_flow::ExactFlow;
+pub use dmv::{DmvOrderError, PreprocessedDmv};
+pub use dop853::{Dop853, DormandPrince853};
 pub use exact_step::ExactStep;
-pub use game_engine::{MomentumEuler, MomentumEulerMap};
+pub use explicit_euler::ExplicitEuler;
+pub use gauss::{Gauss, GaussOrderError};
 pub use implicit_midpoint::ImplicitMidpoint;
-pub use kicks::Kicks;
-pub(crate) use lanes::Block;
-pub use lanes::SideBySide;
-pub use lie_group::{LieGroup, LieGroupMap, MujocoRk4, MujocoRk4Map};
-pub use lie_newmark::{LieNewmark, LieNewmarkMap};
-pub use map::{Map, Method, Step, Stuck, Work};
-pub use modified_energy::PhaseErrorRates;
-pub use preprocessed_dmv::{DmvOrderError, PreprocessedDmv};
-pub use projected::{ProjectedRk4, ProjectedRk4Map};
-pub use richardson::{Richardson, RichardsonMap};
-pub use runge_kutta::{ExplicitEuler, Rk4, SemiImplicitEuler};
-pub use single_turn::{Buss, BussMap};
-pub use splitting::{FreePart, SchemeError, Splitting};
-pub use symmetric_projection::{SymmetricProjection, SymmetricProjectionMap};
-pub use taylor::{AdaptiveTaylor, AdaptiveTaylorMap, Taylor, TaylorError, TaylorMap};
+pub use kick_drift::{ExactFlow, KickDrift};
+pub use lie_group::LieGroup;
+pub use lie_newmark::LieNewmark;
+pub use lie_poisson::{AxisOrder, AxisOrderError, AxisSplit, LiePoisson};
+pub use lie_poisson_projected::SymmetricProjection;
+pub use momentum_euler::MomentumEuler;
+pub use mujoco_rk4::MujocoRk4;
+pub use rattle::{Dmv, Rattle};
+pub use richardson::Richardson;
+pub use rk4::Rk4;
+pub use rk4_projected::ProjectedRk4;
+pub use rk8::Rk8;
+pub use runge_kutta::{Control, Embedded, Pair, Stage, Terms};
+pub use semi_implicit_euler::SemiImplicitEuler;
+pub use solve::modified_energy::PhaseErrorRates;
+pub use taylor::{AdaptiveTaylor, Taylor, TaylorOrderError};
+pub use tsit5::{Tsit5, Tsitouras54};
 pub use two_turn::{TwoAxes, TwoAxesError, TwoTurn};
-pub use variational_cayley::{VariationalCayley, VariationalCayleyMap};
-
-/// Turns about the principal axes, with [kicks](Kicks) around them.
-pub type LiePoisson = Splitting<AxisSplit, Kicks>;
-
-/// The discrete Moser–Veselov map with [kicks](Kicks) around it.
-pub type Rattle = Splitting<Dmv, Kicks>;
-
-/// The exact free flow with [kicks](Kicks) around it. The name is the field's: *drift* is the free motion between two kicks,
-/// elsewhere in this crate the [secular growth of an error](crate::observe::Drift).
-pub type KickDrift = Splitting<ExactFlow, Kicks>;
+pub use variational_cayley::VariationalCayley;

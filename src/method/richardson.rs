@@ -1,8 +1,8 @@
-//! The step of LAMMPS's rigid bodies: one Richardson extrapolation of the attitude between half kicks.
+//! `richardson`: the step of LAMMPS's rigid bodies: one Richardson extrapolation of the attitude between half kicks.
 
-use super::exponential::turn_with_impulse;
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};
+use crate::method::solve::exponential::turn_with_impulse;
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
 

@@ -1,16 +1,16 @@
-//! Two turns and a turn about L: the splitting of the kinetic energy modulo |m|².
+//! `two-turn`: two turns and a turn about L: the splitting of the kinetic energy modulo |m|².
 
 use core::fmt;
 use core::str::FromStr;
 
 use thiserror::Error;
 
-use super::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
 use super::schemes::{Pairs, STRANG, Scheme, Stages};
-use super::turns::Turns;
 use super::{Cost, Energy, FreePart, Map, Method, SideBySide, Symmetric};
 use crate::body::{Field, Point, Rotor, Time};
 use crate::flow::{Casimir, Flow};
+use crate::method::solve::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
+use crate::method::solve::turns::Turns;
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 

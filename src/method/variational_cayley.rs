@@ -1,9 +1,9 @@
-//! The variational integrator on SO(3) with the Cayley map.
+//! `variational-cayley`: the variational integrator on SO(3) with the Cayley map.
 
-use super::implicit_midpoint::cayley_turn;
-use super::stagnation::iterate;
 use super::{Cost, Energy, FreePart, Map, Method, Symmetric};
 use crate::body::{Field, Gyroscopic, Point, Rotor, Time};
+use crate::method::solve::cayley::cayley_turn;
+use crate::method::solve::stagnation::iterate;
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
@@ -25,7 +25,7 @@ use crate::rotation::Vec3;
 /// let end = Run::new(&method, &body, &start, 0.1)?.advance_to(1000)?;
 /// assert!(end.worst.of(Conserved::Momentum).is_some_and(|error| error < 1e-13));
 /// assert!(end.worst.of(Conserved::Energy).is_some_and(|error| 1e-6 < error && error < 1e-2));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VariationalCayley;

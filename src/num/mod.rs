@@ -1,37 +1,37 @@
 //! Numbers: the scalars that every kernel is written over, and functions of them. No physics.
 //!
-//! * [`real`]: the two traits, [`Real`] for explicit kernels and [`Precise`] for what must compare or round;
-//! * [`dd`]: double-double numbers [`Dd`], 106 bits, for constants, references and invariants;
+//! * the two traits, [`Real`] for explicit kernels and [`Precise`] for what must compare or round;
+//! * [`Dd`]: double-double numbers, 106 bits, for constants, references and invariants;
 //! * [`trig`]: sine and cosine in `f64`, the same bits on every CPU;
-//! * [`series`]: truncated power series;
-//! * [`sum`]: compensated sums;
-//! * [`expansion`]: exact sums and products of a few numbers;
+//! * [`Series`]: truncated power series;
+//! * [`Compensated`]: compensated sums;
+//! * [`Expansion`]: exact sums and products of a few numbers;
 //! * [`elliptic`]: elliptic integrals and functions;
-//! * `random`, `distribution`: seeded random numbers and vectors (feature `random`).
+//! * `Random`, `Distribution`, `Covariance`: seeded random numbers and vectors (feature `random`).
 //!
 //! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
 //! same input gives the same bits on every CPU and at every optimisation level.
 
 pub(crate) mod complex;
-pub mod dd;
+pub(crate) mod dd;
 #[cfg(any(test, feature = "random"))]
-pub mod distribution;
+mod distribution;
 #[doc(hidden)]
 pub mod eigen;
 pub mod elliptic;
 pub(crate) mod error_free;
-pub mod expansion;
+mod expansion;
 pub(crate) mod exponential;
 mod lanes;
 #[cfg(any(test, feature = "random"))]
-pub mod random;
-pub mod real;
-pub mod series;
+mod random;
+mod real;
+pub(crate) mod series;
 mod shown;
-pub mod sum;
+pub(crate) mod sum;
 pub mod trig;
 
-pub use dd::Dd;
+pub use dd::{Dd, ParseDdError};
 #[cfg(any(test, feature = "random"))]
 pub use distribution::{Covariance, Distribution, DistributionError};
 pub use expansion::Expansion;
@@ -44,3 +44,5 @@ pub use series::Series;
 #[doc(hidden)]
 pub use shown::{Computed, Shown};
 pub use sum::Compensated;
+#[doc(hidden)]
+pub use sum::add_carried;

@@ -30,6 +30,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn numbers_keep_their_digits_and_are_short() {
+        for (x, expected) in [(5e-324, "5e-324"), (1e300, "1e300"), (0.25, "0.25"), (3.0, "3"), (-0.0, "-0")]
+        {
+            assert_eq!(Shown(x).to_string(), expected);
+        }
+    }
+
+    #[test]
     fn computed_numbers_lose_their_noise_and_no_digit_else() {
         for (x, expected) in [
             (0.1 + 0.2, "0.3"),

@@ -21,14 +21,22 @@ pub struct Errors {
     pub momentum_z: Option<f64>,
     /// |J − J₀| / (W + n |L₀|) of Jacobi's constant J = E − n L_z; where the energy is not conserved.
     pub jacobi: Option<f64>,
+    /// n of that constant, rad/s.
+    pub jacobi_rate: Option<f64>,
 }
 
 impl Errors {
     /// No error is evaluated.
-    pub(crate) const NONE: Errors =
-        Errors { energy: None, momentum_norm: None, momentum_vector: None, momentum_z: None, jacobi: None };
+    pub(crate) const NONE: Errors = Errors {
+        energy: None,
+        momentum_norm: None,
+        momentum_vector: None,
+        momentum_z: None,
+        jacobi: None,
+        jacobi_rate: None,
+    };
 
-    /// The error of `quantity`; `None` where the motion does not conserve it.
+    /// The error of `quantity`; `None` where the motion does not conserve it, as with Jacobi's constant of another rate.
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
@@ -40,7 +48,7 @@ impl Errors {
     /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
     /// let end = Run::new(&method("rattle")?, &body, &start, 0.1)?.advance_to(1000)?;
     /// assert!(end.worst.of(Conserved::MomentumNorm).is_some_and(|error| error < 1e-14));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     #[must_use]
     pub fn of(&self, quantity: Conserved) -> Option<f64> {
@@ -49,7 +57,7 @@ impl Errors {
             Conserved::MomentumNorm => self.momentum_norm,
             Conserved::Momentum => self.momentum_vector,
             Conserved::MomentumZ => self.momentum_z.or(self.momentum_vector),
-            Conserved::Jacobi { .. } => self.jacobi,
+            Conserved::Jacobi { rate } => self.jacobi.filter(|_| self.jacobi_rate == Some(rate)),
         }
     }
 
@@ -59,7 +67,7 @@ impl Errors {
 
     pub(crate) fn from_parts(parts: [Option<f64>; 5]) -> Self {
         let [energy, momentum_norm, momentum_vector, momentum_z, jacobi] = parts;
-        Errors { energy, momentum_norm, momentum_vector, momentum_z, jacobi }
+        Errors { energy, momentum_norm, momentum_vector, momentum_z, jacobi, jacobi_rate: None }
     }
 
     pub(super) fn max(self, other: Self) -> Self {
@@ -67,7 +75,7 @@ impl Errors {
         for (worst, other) in worst.iter_mut().zip(other.parts()) {
             *worst = worst.zip(other).map(|(a, b)| a.max(b));
         }
-        Errors::from_parts(worst)
+        Errors { jacobi_rate: self.jacobi_rate, ..Errors::from_parts(worst) }
     }
 
     pub(crate) fn is_finite(self) -> bool {

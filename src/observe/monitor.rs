@@ -146,6 +146,7 @@ impl Monitor {
             jacobi: forced
                 .jacobi
                 .map(|n| relative((energy() - momentum()[2] * n).magnitude(), forced.jacobi_scale, &kinetic)),
+            jacobi_rate: forced.jacobi,
         }
     }
 
@@ -182,12 +183,13 @@ impl Monitor {
     /// What a checkpoint holds of a monitor.
     pub(crate) fn memory(&self) -> Memory {
         let Flips { positive, count, .. } = self.flips;
-        Memory { worst: self.worst, flips: count, positive }
+        // the rate of Jacobi's constant is that of the body
+        Memory { worst: Errors { jacobi_rate: None, ..self.worst }, flips: count, positive }
     }
 
     /// Continues from a checkpoint.
     pub(crate) fn remember(&mut self, memory: Memory) {
-        self.worst = memory.worst;
+        self.worst = Errors { jacobi_rate: self.worst.jacobi_rate, ..memory.worst };
         self.flips.count = memory.flips;
         self.flips.positive = memory.positive;
     }

@@ -59,7 +59,7 @@ pub enum HalvingError {
 /// let errors = halvings(&method("rk4")?, &body, &body.enter(&start)?, 1.0, 5..8)?;
 /// let attitude: Vec<_> = errors.iter().map(|error| (error.h, error.attitude_error)).collect();
 /// assert!(observed_order(&attitude).is_some_and(|order| (order - 4.0).abs() < 0.1));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn halvings(
     method: &dyn AnyMethod,

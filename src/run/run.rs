@@ -28,7 +28,7 @@ const CHUNK: u64 = 4096;
 ///     assert!(worst.of(Conserved::Energy).is_some_and(|error| error < 1e-6));
 ///     assert!(worst.of(Conserved::MomentumNorm).is_some_and(|error| error < 1e-14));
 /// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[must_use]
 pub struct Run {
@@ -138,7 +138,7 @@ impl Run {
     /// let text = straight.checkpoint().to_string();
     /// let mut resumed = Run::resume(&rattle, &body, &text.parse()?)?;
     /// assert_eq!(resumed.advance_to(2000)?.state, straight.advance_to(2000)?.state);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {

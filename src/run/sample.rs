@@ -45,7 +45,7 @@ impl fmt::Display for Watch {
 /// assert_eq!((sample.steps, sample.time.hi()), (40, 10.0));
 /// assert!((sample.omega_body.norm() - 1.0).abs() < 0.5); // rad/s
 /// assert!(sample.errors.of(Conserved::Energy) <= sample.worst.of(Conserved::Energy));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]

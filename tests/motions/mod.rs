@@ -39,7 +39,7 @@ pub(crate) fn magnet() -> (Body, State) {
 
 pub(crate) fn satellite() -> (Body, State) {
     let inertia = Inertia::from_moments([10.0, 25.0, 30.0]).unwrap();
-    let gradient = Force::gravity_gradient(&inertia, 0.001, 0.3).unwrap();
+    let gradient = Force::gravity_gradient(0.001, 0.3).unwrap();
     started(Body::free(inertia).with(gradient), [2e-4, -3e-4, 1.2e-3])
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::method::{AnyMethod, UnknownMethod, catalogue, method};
+use polhode::method::{AnyMethod, Claimed, ToleranceError, UnknownMethod, catalogue, method};
 use polhode_experiments::methods::{schemes, table};
 use polhode_files::error::Error;
 use polhode_pages::output::emit;
@@ -53,4 +53,50 @@ pub(crate) fn unknown(flag: &str, error: UnknownMethod) -> Error {
         }
         error => Error::Input(format!("{flag}: {error}")),
     }
+}
+
+/// Names of the methods that choose their steps, the most accurate first.
+pub(crate) fn adaptive() -> String {
+    let mut names: Vec<String> = catalogue()
+        .iter()
+        .filter(|method| method.tolerance().is_some())
+        .map(|method| method.name())
+        .collect();
+    names.reverse();
+    names.join(", ")
+}
+
+/// Why a tolerance that stands beside the name of a method cannot be used.
+pub(crate) enum Unusable {
+    Unknown(UnknownMethod),
+    FixedSteps,
+    /// The name has one already.
+    Twice,
+    /// Which tolerances the method takes.
+    OutOfRange(String),
+}
+
+/// The method `name` at a tolerance that stands beside its name.
+pub(crate) fn at_tolerance(name: &str, tolerance: f64) -> Result<Box<dyn AnyMethod>, Unusable> {
+    let found = method(name).map_err(Unusable::Unknown)?;
+    match found.with_tolerance(tolerance) {
+        Err(ToleranceError::FixedSteps { .. }) => Err(Unusable::FixedSteps),
+        _ if name.contains(':') => Err(Unusable::Twice),
+        Err(ToleranceError::OutOfRange { method, range, .. }) => {
+            Err(Unusable::OutOfRange(allowed(method, range)))
+        }
+        Err(error) => Err(Unusable::OutOfRange(error.to_string())),
+        Ok(found) => Ok(found),
+    }
+}
+
+/// Which tolerances a method takes.
+pub(crate) fn allowed(method: &str, range: &str) -> String {
+    format!("a tolerance {range}, such as {method}:1e-12")
+}
+
+/// Why the method `name` cannot take what `flag` gives.
+pub(crate) fn not_taken(flag: &str, tolerance: f64, name: &str, allowed: &str) -> Error {
+    let rule = format!("--method {name} cannot take it");
+    Error::input(flag, &format!("{tolerance:e}"), &rule, &format!("allowed: {allowed}"))
 }

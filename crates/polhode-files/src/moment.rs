@@ -1,6 +1,6 @@
 //! One time as it is written: a number of seconds, a number with a unit, or a date.
 
-use polhode::body::Date;
+use polhode::units::Date;
 
 use crate::numbers::number;
 
@@ -83,7 +83,7 @@ pub fn seconds(text: &str, epoch: Option<&Date>) -> Result<f64, String> {
     }
     match epoch {
         Some(epoch) => {
-            let date: Date = text.parse().map_err(|error: polhode::body::DateError| error.to_string())?;
+            let date: Date = text.parse().map_err(|error: polhode::units::DateError| error.to_string())?;
             Ok(date.seconds_since(epoch))
         }
         None => duration(text).map_err(|error| match text.parse::<Date>() {

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read, stdin};
 use std::path::PathBuf;
 
-use polhode::body::Date;
+use polhode::units::Date;
 
 use crate::error::Error;
 use crate::moment::{is_moment, seconds};

@@ -5,7 +5,7 @@ use std::time::Instant;
 use polhode::body::{Body, Clock, Problem};
 use polhode::catalogue::{self, NamedBody};
 use polhode::flow::FreeMotion;
-use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, catalogue};
+use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, without_projections};
 use polhode::observe::secular_drift;
 use polhode::run::Run;
 use polhode_files::error::{Error, unexpected};
@@ -111,7 +111,7 @@ fn step_sizes(body: &NamedBody) -> Vec<f64> {
 
 /// The catalogue, and for the textbook body the splitting in two orders that others use.
 fn methods(body: &NamedBody) -> Vec<Box<dyn AnyMethod>> {
-    let mut methods = catalogue();
+    let mut methods = without_projections();
     // without torque kick-drift is exact-step, whatever its scheme
     methods
         .retain(|method| method.claims(Problem::Free).is_some() && !method.name().starts_with("kick-drift"));

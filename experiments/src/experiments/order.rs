@@ -2,7 +2,7 @@
 
 use polhode::body::{Body, Problem};
 use polhode::catalogue;
-use polhode::method::{AnyMethod, catalogue};
+use polhode::method::{AnyMethod, without_projections};
 use polhode::run::{Halving, halvings};
 use polhode_files::error::Error;
 use polhode_pages::figure::{Figure, Series};
@@ -30,7 +30,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         errors.map(|errors| (method, errors)).map_err(|error| failed(&error))
     };
     let order = |method: &dyn AnyMethod| method.claims(Problem::Free).and_then(|claims| claims.order);
-    let stepping = catalogue().into_iter().filter(|method| order(method).is_some()).collect();
+    let stepping = without_projections().into_iter().filter(|method| order(method).is_some()).collect();
     let series = context.in_parallel(stepping, measure);
 
     let mut errors = Table::new(

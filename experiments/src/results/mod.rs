@@ -2,6 +2,7 @@
 
 mod check;
 mod committed;
+mod methods;
 mod page;
 mod provenance;
 mod publish;
@@ -85,8 +86,8 @@ pub enum ExperimentCommand {
         #[arg(long)]
         accept: bool,
     },
-    /// Write tables of the committed results of paper scale into README.md and
-    /// paper/generated
+    /// Write tables of the committed results of paper scale into README.md,
+    /// docs/methods.md and paper/generated
     ///
     /// Works on files of the repository, in whose root it runs: the results are in experiments/results.
     #[command(after_help = PUBLISH_EXAMPLES)]

@@ -6,7 +6,7 @@
 //! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both, in the article without sources;
 //! `work-precision/which` the quickest methods by kind of problem, `work-precision/claim` whether any is quicker than the
 //! general-purpose ones everywhere, and `generated/work-precision-curves.csv` cost against accuracy. `generated/style` is the
-//! style of figures for LaTeX.
+//! style of figures for LaTeX. The page docs/methods.md is the catalogue with what was measured of each method.
 //! Nothing is read or written outside of the root, whatever the results and the markers say.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,6 +20,7 @@ use polhode_pages::table::{Column, Table};
 
 use super::RESULTS;
 use super::committed::{NAMES, REMEDY, Results, is_name, within};
+use super::methods::{PAGE, page};
 use crate::methods;
 
 const GENERATED: &str = "generated/";
@@ -27,7 +28,7 @@ const METHODS: &str = "methods";
 const ORIGIN: &str = "origin";
 const STYLE: &str = "style";
 
-/// Fills README.md and paper/generated below `root`, after taking over the results of the folder `from`, if given.
+/// Fills README.md, docs/methods.md where it stands, and paper/generated below `root`, after taking over the results of the folder `from`, if given.
 pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
     if let Some(from) = from {
         take_over(root, from)?;
@@ -40,6 +41,10 @@ pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
     let readme = with_blocks_filled(&readme, &results)?;
     let generated = within(root, root.join("paper").join(GENERATED))?;
     let mut files = BTreeMap::new();
+    let docs = root.join(PAGE);
+    if docs.is_file() {
+        files.insert(within(root, docs)?, page(&results)?);
+    }
     for name in named_by_article(root)? {
         let (file, text) = for_article(&name, &results)?;
         files.insert(within(root, generated.join(file))?, text);

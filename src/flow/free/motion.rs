@@ -23,7 +23,7 @@ use crate::rotation::Vec3;
 /// let (start, later) = (motion.at(0.0)?, motion.at(1e9)?);
 /// let (before, after) = (start.rotation() * start.momentum(), later.rotation() * later.momentum());
 /// assert!((before - after).norm() < 1e-14); // L is fixed in space
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 #[must_use]
@@ -96,7 +96,7 @@ impl FreeMotion {
     /// let motion = FreeMotion::from_omega(&racket, UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
     /// let states = motion.at_many(&[-2.0, 0.0, 1e6])?;
     /// assert_eq!(states[2], motion.at(1e6)?);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     ///
     /// # Errors
@@ -141,7 +141,7 @@ impl FreeMotion {
     /// let spin = motion.pure_spin().ok_or("it is steady")?;
     /// assert_eq!((spin.rank, spin.stability, spin.axis.y), (1, Stability::Unstable, -1.0));
     /// assert!((spin.growth_rate - 3.0 / 3_f64.sqrt()).abs() < 1e-15); // e-fold in 0.58 s
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     #[must_use]
     pub fn pure_spin(&self) -> Option<PureSpin> {

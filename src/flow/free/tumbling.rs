@@ -33,7 +33,7 @@ use crate::rotation::{Quat, Vec3};
 /// let motion = FreeMotion::from_point(&ratios, published.point(&ratios)?);
 /// let found = motion.tumbling().ok_or("it tumbles")?;
 /// assert!((found.rotation_period / 263.0 - 1.0).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TumblingElements {

@@ -95,7 +95,7 @@ pub enum LagrangeError {
 /// assert!((later.momentum().z - 15.0).abs() < 1e-12); // the spin about the axis stays
 /// let [upper, lower] = top.turning_points();
 /// assert!((upper - 0.5).abs() < 1e-12 && lower > upper); // it falls from the cusp
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 #[must_use]

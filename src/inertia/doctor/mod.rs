@@ -36,7 +36,7 @@ pub struct Evidence {
 /// The outcome of an examination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Verdict {
+pub enum Validity {
     /// No law is broken, and no likelier tensor is near.
     Valid,
     /// The tensor is physically valid, but a common mistake explains it better than the body described, or it is odd.
@@ -45,14 +45,14 @@ pub enum Verdict {
     Invalid,
 }
 
-impl Verdict {
+impl Validity {
     /// In one lowercase word.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Verdict::Valid => "valid",
-            Verdict::Suspicious => "suspicious",
-            Verdict::Invalid => "invalid",
+            Validity::Valid => "valid",
+            Validity::Suspicious => "suspicious",
+            Validity::Invalid => "invalid",
         }
     }
 }
@@ -94,12 +94,12 @@ pub struct Misfit {
 ///
 /// ```
 /// use nalgebra::Matrix3;
-/// use polhode::inertia::{Cause, Evidence, Verdict, diagnose};
+/// use polhode::inertia::{Cause, Evidence, Validity, diagnose};
 ///
 /// // a designer's +∫ x y dm typed where tensor entries belong
 /// let typed = Matrix3::new(0.75, 0.3125, 0.3125, 0.3125, 0.75, 0.3125, 0.3125, 0.3125, 0.75);
 /// let found = diagnose(typed, &Evidence::default())?;
-/// assert_eq!(found.verdict, Verdict::Invalid);
+/// assert_eq!(found.verdict, Validity::Invalid);
 /// assert_eq!(
 ///     found.violation.unwrap().to_string(),
 ///     "principal moments 0.4375, 0.4375, 1.375 violate I1 + I2 >= I3 by 0.5 (36.364 % of the largest); no mass distribution has them"
@@ -113,7 +113,7 @@ pub struct Misfit {
 #[non_exhaustive]
 pub struct Diagnosis {
     /// The outcome.
-    pub verdict: Verdict,
+    pub verdict: Validity,
     /// The law of inertia tensors that is broken, with its numbers.
     pub violation: Option<InertiaError>,
     /// The worst second moment that the extents leave no room for.
@@ -148,14 +148,14 @@ pub struct Diagnosis {
 ///
 /// ```
 /// use nalgebra::{Matrix3, Vector3};
-/// use polhode::inertia::{Cause, Evidence, Verdict, diagnose};
+/// use polhode::inertia::{Cause, Evidence, Validity, diagnose};
 /// // a cube of 12 kg and 1 m, its tensor taken about a point 1 m below its centre
 /// let tensor = Matrix3::from_diagonal(&Vector3::new(14.0, 14.0, 2.0));
 /// let center_of_mass = Some(Vector3::new(0.0, 0.0, 1.0));
 /// let evidence =
 ///     Evidence { mass: Some(12.0), center_of_mass, extents: Some([1.0; 3]), ..Evidence::default() };
 /// let found = diagnose(tensor, &evidence)?;
-/// assert_eq!(found.verdict, Verdict::Invalid); // no such mass distribution fits into the cube
+/// assert_eq!(found.verdict, Validity::Invalid); // no such mass distribution fits into the cube
 /// assert_eq!((&found.causes[0].cause, found.causes[0].corrected[(0, 0)]), (&Cause::AboutOrigin, 2.0));
 /// # Ok::<(), polhode::inertia::MassError>(())
 /// ```
@@ -210,9 +210,9 @@ pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, 
         causes.clear();
     }
     let verdict = match (broken, causes.is_empty() && oddity.is_none()) {
-        (true, _) => Verdict::Invalid,
-        (false, false) => Verdict::Suspicious,
-        (false, true) => Verdict::Valid,
+        (true, _) => Validity::Invalid,
+        (false, false) => Validity::Suspicious,
+        (false, true) => Validity::Valid,
     };
     let (nearest, distance) = nearest::nearest_valid(&tensor);
     let principal_moments = spectrum.moments.map(|i| i.hi() * spectrum.scale);

@@ -41,7 +41,7 @@ use welded::Welded;
 ///     open.to_string(),
 ///     "the mesh is open; edges with one triangle only: 3, the first is edge (0, 1, 0)-(1, 0, 0) of triangle 1"
 /// );
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]

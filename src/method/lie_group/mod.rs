@@ -1,14 +1,13 @@
 //! Explicit Runge–Kutta methods on the group of rotations: each stage is a product of exponentials.
 
-mod mujoco;
 mod tableau;
 
-pub use self::mujoco::{MujocoRk4, MujocoRk4Map};
 pub use self::tableau::LieGroup;
 use self::tableau::{Exponential, MOST_STAGES};
-use super::exponential::{exponential, turn_with_impulse};
+pub(super) use self::tableau::{of, with_bracket};
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};
+use crate::method::solve::exponential::{exponential, turn_with_impulse};
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
 

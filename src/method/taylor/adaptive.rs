@@ -1,11 +1,17 @@
 //! Taylor's method with steps of its own.
 
 use super::motion_series::MotionSeries;
-use super::{LOOSEST, SOURCE, TaylorError, add_change, unit};
+use super::{SOURCE, add_change, unit};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::{Claimed, Claims, Cost, Kept, Map, Method, Work};
+use crate::method::{AnyMethod, Claimed, Claims, Cost, Kept, Map, Method, ToleranceError, Work};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
+
+/// The largest tolerance.
+const LOOSEST: f64 = 1e-3;
+
+/// From the rounding of a double to the largest, in words.
+const RANGE: &str = "from 1.2e-16, as the rounding of a double is 1.1e-16, to 1e-3";
 
 /// Taylor's method with order and steps by a tolerance, in a step relative to the state: by default the rounding of the scalar.
 ///
@@ -29,7 +35,7 @@ use crate::rotation::Vec3;
 /// let end = Run::new(&AdaptiveTaylor::to_rounding(), &body, &start, 100.0)?.advance_to(1)?;
 /// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(100.0)?;
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-13);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptiveTaylor {
@@ -47,11 +53,11 @@ impl AdaptiveTaylor {
     ///
     /// # Errors
     /// A tolerance below the rounding of a double, 1.1e-16, or above 1e-3.
-    pub fn of_tolerance(tolerance: f64) -> Result<Self, TaylorError> {
+    pub fn of_tolerance(tolerance: f64) -> Result<Self, ToleranceError> {
         if (f64::ROUNDOFF..=LOOSEST).contains(&tolerance) {
             Ok(AdaptiveTaylor { tolerance: Some(tolerance) })
         } else {
-            Err(TaylorError::Tolerance { tolerance })
+            Err(ToleranceError::OutOfRange { method: "taylor", tolerance, range: RANGE })
         }
     }
 
@@ -68,7 +74,13 @@ impl Claimed for AdaptiveTaylor {
     fn claims(&self, _: Problem) -> Option<Claims> {
         let tolerance = self.tolerance.unwrap_or(f64::ROUNDOFF);
         let cost = Cost::right_sides(AdaptiveTaylor::order(tolerance));
-        Some(Claims { tolerance: Some(tolerance), ..Claims::new(None, Kept::NOTHING, cost, SOURCE) })
+        Some(Claims::new(None, Kept::NOTHING, cost, SOURCE))
+    }
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance.unwrap_or(f64::ROUNDOFF))
+    }
+    fn with_tolerance(&self, tolerance: f64) -> Result<Box<dyn AnyMethod>, ToleranceError> {
+        Ok(Box::new(Self::of_tolerance(tolerance)?))
     }
     fn needs_series(&self) -> bool {
         true

@@ -1,9 +1,9 @@
-//! Taylor's method: the power series of the motion in time, with steps as given or of its own.
+//! `taylor`: Taylor's method: the power series of the motion in time, with steps as given or of its own.
 
 mod adaptive;
 mod motion_series;
 
-pub use adaptive::{AdaptiveTaylor, AdaptiveTaylorMap};
+pub use adaptive::AdaptiveTaylor;
 
 use thiserror::Error;
 
@@ -14,9 +14,6 @@ use crate::num::{Dd, Real};
 
 /// The orders that there are.
 const ORDERS: core::ops::RangeInclusive<u32> = 8..=40;
-
-/// The largest tolerance.
-const LOOSEST: f64 = 1e-3;
 
 const SOURCE: &str = "Jorba and Zou, Experimental Math. 14 (2005) 99";
 
@@ -36,32 +33,19 @@ const SOURCE: &str = "Jorba and Zou, Experimental Math. 14 (2005) 99";
 /// let end = Run::new(&Taylor::of_order(20)?, &body, &start, 0.5)?.advance_to(200)?;
 /// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(100.0)?;
 /// assert!(end.state.rotation().angle_to(&exact.rotation()) < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Taylor {
     order: u32,
 }
 
-/// There is no such order or tolerance.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum TaylorError {
-    /// The order is outside the range.
-    #[error("there is no Taylor method of order {order}; there are the orders from {} to {}", ORDERS.start(), ORDERS.end())]
-    Order {
-        /// What was asked for.
-        order: u32,
-    },
-    /// The tolerance is below the rounding of a double, too large, or no number.
-    #[error(
-        "{tolerance:e} is no tolerance of Taylor's method; it must be from {:e}, the rounding of a double, to {LOOSEST:e}",
-        f64::ROUNDOFF
-    )]
-    Tolerance {
-        /// What was asked for.
-        tolerance: f64,
-    },
+/// There is no such order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("there is no Taylor method of order {order}; there are the orders from {} to {}", ORDERS.start(), ORDERS.end())]
+pub struct TaylorOrderError {
+    /// What was asked for.
+    pub order: u32,
 }
 
 impl Taylor {
@@ -69,8 +53,8 @@ impl Taylor {
     ///
     /// # Errors
     /// An order that is not from 8 to 40.
-    pub fn of_order(order: u32) -> Result<Self, TaylorError> {
-        if ORDERS.contains(&order) { Ok(Taylor { order }) } else { Err(TaylorError::Order { order }) }
+    pub fn of_order(order: u32) -> Result<Self, TaylorOrderError> {
+        if ORDERS.contains(&order) { Ok(Taylor { order }) } else { Err(TaylorOrderError { order }) }
     }
 }
 

@@ -3,7 +3,7 @@
 use core::array::from_fn;
 
 use crate::body::{Field, Gyroscopic, Phase, Point, Rotor, Time, vertical};
-use crate::method::length::length;
+use crate::method::solve::length::length;
 use crate::num::{Dd, Real, Series};
 use crate::rotation::{Quat, Vec3};
 

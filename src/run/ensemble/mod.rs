@@ -62,7 +62,7 @@ pub struct Observed {
 /// let inertia = Inertia::from_moments([1.0, 2.0, 2.75])?;
 /// let alone = FreeMotion::from_omega(&inertia, UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
 /// assert_eq!(latest[50], alone.at(1e6)?);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[must_use]
 pub struct Ensemble {
@@ -227,7 +227,7 @@ impl Ensemble {
     /// })?;
     /// let energy = tally.errors(0, Conserved::Energy).ok_or("observed")?;
     /// assert!(energy.largest() < 1e-5 && energy.quantile(0.5) < energy.largest());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     pub fn advance<E: From<EnsembleError>>(
         &self,

@@ -6,10 +6,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use polhode::body::{Body, Clock};
-use polhode::method::{ADAPTIVE, AnyMethod};
+use polhode::method::{AnyMethod, Claimed, ToleranceError};
 use polhode::run::{RunError, Schedule, ScheduleError};
 use polhode::truth::{AGREEMENT, Care, Ending, Judged, Truth, TruthError, evenly};
-use polhode_experiments::methods::is_adaptive;
 use polhode_experiments::timing::StepTime;
 use polhode_files::error::{Error, warn};
 use polhode_files::moment::duration;
@@ -20,7 +19,7 @@ use polhode_pages::output::{Output, emit};
 use polhode_pages::table::{Cell, Column, Format, Table, row};
 
 use crate::flags::motion::MotionArguments;
-use crate::methods::named;
+use crate::methods::{adaptive, allowed, named, not_taken};
 use crate::plot::Picture;
 use trajectory::Trajectory;
 
@@ -190,7 +189,7 @@ impl Compare {
                 return Err(Error::input("--methods", name, rule, "leave it out; exact-step takes steps"));
             }
             let method = named("--methods", name)?;
-            if !is_adaptive(name) {
+            if method.tolerance().is_none() {
                 let Some(Positives(steps)) = &self.steps else {
                     let rule = format!("missing: {name} needs steps in seconds");
                     return Err(Error::input("--steps", "", &rule, "give --steps h1,h2,..."));
@@ -202,11 +201,16 @@ impl Compare {
                 }
                 continue;
             }
-            let given = name.split_once(':').and_then(|(_, tolerance)| tolerance.parse().ok());
+            let given = method.tolerance().filter(|_| name.contains(':'));
             match (&self.tolerances, given) {
                 (Some(Positives(tolerances)), None) => {
                     for &tolerance in tolerances {
-                        let method = named("--tolerances", &format!("{name}:{tolerance:e}"))?;
+                        let method = method.with_tolerance(tolerance).map_err(|error| match error {
+                            ToleranceError::OutOfRange { method, range, .. } => {
+                                not_taken("--tolerances", tolerance, name, &allowed(method, range))
+                            }
+                            error => Error::Input(format!("--tolerances: {error}")),
+                        })?;
                         let (family, tolerance) = (name.to_owned(), Some(tolerance));
                         entries.push(Entry { method, family, step: None, tolerance });
                     }
@@ -221,7 +225,7 @@ impl Compare {
             (&self.tolerances, entries.iter().all(|entry| entry.step.is_some()))
         {
             let rule = "none of the methods chooses its steps";
-            let remedy = format!("leave it out, or take one of {}", ADAPTIVE.join(", "));
+            let remedy = format!("leave it out, or take one of {}", adaptive());
             let value: Vec<String> = tolerances.iter().map(|tolerance| format!("{tolerance:e}")).collect();
             return Err(Error::input("--tolerances", &value.join(","), rule, &remedy));
         }

@@ -117,12 +117,11 @@ pub(super) fn propagate(
         bar.inc(rows.members() as u64);
         Ok(())
     };
-    let done = match (&spec.plan.motion, spec.plan.method()?) {
-        (Motion::Stepped { clock, steps, .. }, Some(method)) => {
+    let done = match &spec.plan.motion {
+        Motion::Stepped { method, clock, steps, .. } => {
             ensemble.advance(method.as_ref(), *clock, steps, each)
         }
-        (Motion::Exact { elapsed }, _) => ensemble.at(elapsed, each),
-        (Motion::Stepped { .. }, None) => Ok(()),
+        Motion::Exact { elapsed } => ensemble.at(elapsed, each),
     };
     bar.finish_and_clear();
     match done {

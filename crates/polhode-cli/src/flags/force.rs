@@ -59,7 +59,7 @@ impl Forces {
     /// What is wrong with one of them, and its name.
     pub(crate) fn act_on(&self, mut body: Body) -> Result<Body, (&'static str, ForceError)> {
         if let Some([mean_motion, eccentricity]) = self.gravity_gradient {
-            let force = Force::gravity_gradient(body.inertia(), mean_motion, eccentricity)
+            let force = Force::gravity_gradient(mean_motion, eccentricity)
                 .map_err(|error| ("gravity-gradient", error))?;
             body = body.with(force);
         }

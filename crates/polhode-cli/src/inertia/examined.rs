@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::inertia::{Diagnosis, Evidence, InertiaError, MassError, MassProperties, Verdict, diagnose};
+use polhode::inertia::{Diagnosis, Evidence, InertiaError, MassError, MassProperties, Validity, diagnose};
 use polhode_files::given::Given;
 use polhode_files::text::{rounded, visible};
 
@@ -32,9 +32,9 @@ impl Worth {
 
     pub(super) fn name(self) -> &'static str {
         match self {
-            Worth::Valid => Verdict::Valid.name(),
-            Worth::Suspicious => Verdict::Suspicious.name(),
-            Worth::Invalid => Verdict::Invalid.name(),
+            Worth::Valid => Validity::Valid.name(),
+            Worth::Suspicious => Validity::Suspicious.name(),
+            Worth::Invalid => Validity::Invalid.name(),
             Worth::Massless => "massless",
         }
     }
@@ -61,8 +61,8 @@ impl Examined {
             twin: given.twin,
         };
         let mut diagnosis = diagnose(given.tensor, &evidence)?;
-        if given.computed && diagnosis.verdict == Verdict::Suspicious {
-            diagnosis.verdict = Verdict::Valid;
+        if given.computed && diagnosis.verdict == Validity::Suspicious {
+            diagnosis.verdict = Validity::Valid;
             diagnosis.causes.clear();
             diagnosis.oddity = None;
         }
@@ -112,8 +112,8 @@ impl Examined {
             None => Worth::Invalid,
             Some(_) if is_zero(&self.given.tensor) => Worth::Invalid,
             Some(found) => match found.verdict {
-                Verdict::Valid => Worth::Valid,
-                Verdict::Suspicious => Worth::Suspicious,
+                Validity::Valid => Worth::Valid,
+                Validity::Suspicious => Worth::Suspicious,
                 _ => Worth::Invalid,
             },
         }
@@ -136,7 +136,7 @@ impl Examined {
         }
         match &found.oddity {
             Some(oddity) => Some(oddity.to_string()),
-            None if found.verdict == Verdict::Suspicious => {
+            None if found.verdict == Validity::Suspicious => {
                 Some("valid, but hardly of the body described".into())
             }
             None => None,

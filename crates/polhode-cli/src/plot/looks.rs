@@ -3,17 +3,16 @@
 use nalgebra::Vector3;
 use polhode::body::{Body, Clock, Point, Problem, State};
 use polhode::flow::{ExactMotion, FreeMotion, LagrangeTop};
-use polhode::method::ADAPTIVE;
+use polhode::method::Claimed;
 use polhode::num::Dd;
 use polhode::observe::{Errors, Monitor};
 use polhode::rotation::Quat;
 use polhode::run::{Run, RunError, Schedule, ScheduleError};
-use polhode_experiments::methods::is_adaptive;
 use polhode_files::error::{Error, warn};
 use polhode_files::text::short;
 
 use super::{Kind, Plot};
-use crate::methods::named;
+use crate::methods::{Unusable, adaptive, at_tolerance, named, not_taken, unknown};
 
 /// Points of a curve: at least so many, and at most.
 const FEWEST: u64 = 600;
@@ -171,18 +170,15 @@ impl Looks {
     }
 
     fn follow_method(&mut self, plot: &Plot, start: Point<Dd>) -> Result<(), Error> {
-        let adaptive = is_adaptive(&plot.method);
-        let name = match plot.tolerance {
-            None => plot.method.clone(),
-            Some(tolerance) if ADAPTIVE.contains(&plot.method.as_str()) => {
-                format!("{}:{tolerance:e}", plot.method)
-            }
-            Some(tolerance) => {
-                named("--method", &plot.method)?;
-                return Err(without_tolerance(plot, tolerance));
-            }
+        let method = match plot.tolerance {
+            None => named("--method", &plot.method)?,
+            Some(tolerance) => at_tolerance(&plot.method, tolerance).map_err(|why| match why {
+                Unusable::Unknown(error) => unknown("--method", error),
+                Unusable::FixedSteps | Unusable::Twice => without_tolerance(plot, tolerance),
+                Unusable::OutOfRange(allowed) => not_taken("--tolerance", tolerance, &plot.method, &allowed),
+            })?,
         };
-        let method = named("--method", &name)?;
+        let adaptive = method.tolerance().is_some();
         let speed = self.body.omega_of(&start).norm();
         let regular = (PER_RADIAN * speed * plot.until).clamp(FEWEST as f64, MOST as f64);
         let interval = adaptive.then(|| plot.until / libm::ceil(regular));
@@ -266,7 +262,7 @@ fn whole_steps(plot: &Plot, clock: Clock) -> Result<u64, Error> {
 
 fn without_tolerance(plot: &Plot, tolerance: f64) -> Error {
     let rule = format!("--method {} takes no --tolerance", plot.method);
-    let remedy = format!("leave it out, or take one of {}", ADAPTIVE.join(", "));
+    let remedy = format!("leave it out, or take one of {}", adaptive());
     Error::input("--tolerance", &format!("{tolerance:e}"), &rule, &remedy)
 }
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use polhode::body::{Body, Clock, Point, Problem, Time};
 use polhode::flow::ExactMotion;
-use polhode::method::{ADAPTIVE, AnyMethod, StepError, UnknownMethod, method};
+use polhode::method::{AnyMethod, Claimed, StepError};
 use polhode::num::Dd;
 use polhode::observe::Monitor;
 use polhode::rotation::rotation_angle;
@@ -19,7 +19,7 @@ use polhode_pages::table::{Format, Rows};
 
 use crate::flags::motion::MotionArguments;
 use crate::flags::times::{OutputTimes, TimeArguments};
-use crate::methods::unknown;
+use crate::methods::{Unusable, adaptive, at_tolerance, named, not_taken, unknown};
 use columns::{Columns, Reading};
 
 const USAGE: &str = "polhode propagate <BODY> [START] <TIMES> [OPTIONS]
@@ -157,7 +157,8 @@ impl Propagate {
         columns: Columns,
     ) -> Result<(), Error> {
         let method = self.stepping_method()?;
-        let regular = if self.is_adaptive() { self.times.every().filter(|every| *every > 0.0) } else { None };
+        let adaptive = method.tolerance().is_some();
+        let regular = if adaptive { self.times.every().filter(|every| *every > 0.0) } else { None };
         let Some(h) = self.step.or(regular) else {
             return Err(Error::Input(format!(
                 "--step: missing; --method {} needs a step in seconds",
@@ -175,7 +176,7 @@ impl Propagate {
             run = run.watching(Watch::Never);
         }
         let speed = body.omega_of(&start).norm();
-        if h * speed > 1.0 && !self.is_adaptive() {
+        if h * speed > 1.0 && !adaptive {
             warn(&format!(
                 "--step: '{h:?}': turns the body by {:?} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
                 h * speed
@@ -251,47 +252,25 @@ impl Propagate {
         )))
     }
 
-    /// Whether the method chooses its steps: an order, as of taylor:20, is of steps as given.
-    fn is_adaptive(&self) -> bool {
-        let (base, argument) = self.method.split_once(':').unwrap_or((&self.method, ""));
-        ADAPTIVE.contains(&base) && argument.parse::<u32>().is_err()
-    }
-
     fn without_tolerance(&self, tolerance: f64) -> Error {
         let rule = format!("--method {} does not choose its steps", self.method);
-        let remedy = format!("leave it out, or take one of {}", ADAPTIVE.join(", "));
+        let remedy = format!("leave it out, or take one of {}", adaptive());
         Error::input("--tolerance", &format!("{tolerance:e}"), &rule, &remedy)
     }
 
     fn stepping_method(&self) -> Result<Box<dyn AnyMethod>, Error> {
-        let found = match self.tolerance {
-            None => method(&self.method),
-            Some(tolerance) if ADAPTIVE.contains(&self.method.as_str()) => {
-                let named = method(&format!("{}:{tolerance:e}", self.method));
-                return named.map_err(|error| match error {
-                    UnknownMethod::Argument { rule, .. } => Error::input(
-                        "--tolerance",
-                        &format!("{tolerance:e}"),
-                        &format!("--method {} cannot take it", self.method),
-                        &format!("allowed: {rule}"),
-                    ),
-                    error => Error::Input(format!("--tolerance: {error}")),
-                });
-            }
-            Some(tolerance) => match method(&self.method) {
-                Ok(_) if self.is_adaptive() => {
-                    return Err(Error::input(
-                        "--tolerance",
-                        &format!("{tolerance:e}"),
-                        &format!("--method {} has a tolerance already", self.method),
-                        "give one of the two",
-                    ));
-                }
-                Ok(_) => return Err(self.without_tolerance(tolerance)),
-                error => error,
-            },
-        };
-        found.map_err(|error| unknown("--method", error))
+        let Some(tolerance) = self.tolerance else { return named("--method", &self.method) };
+        at_tolerance(&self.method, tolerance).map_err(|why| match why {
+            Unusable::Unknown(error) => unknown("--method", error),
+            Unusable::FixedSteps => self.without_tolerance(tolerance),
+            Unusable::Twice => Error::input(
+                "--tolerance",
+                &format!("{tolerance:e}"),
+                &format!("--method {} has a tolerance already", self.method),
+                "give one of the two",
+            ),
+            Unusable::OutOfRange(allowed) => not_taken("--tolerance", tolerance, &self.method, &allowed),
+        })
     }
 
     /// Why no steps lead to the times that were asked for.

@@ -1,6 +1,6 @@
 //! Times of rows: numbers in a unit, counts since 1970, dates; and what lines before the header say of the columns.
 
-use polhode::body::Date;
+use polhode::units::Date;
 use polhode::units::{RateUnit, TimeUnit};
 
 /// Reads the times of one text.

@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use polhode::body::{Body, State};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
-use polhode::method::{Claimed as _, catalogue};
+use polhode::method::{Claimed as _, without_projections};
 use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode::run::{Run, Watch};
@@ -62,7 +62,7 @@ impl Motion {
         let start = body.state(attitude(random), direction * speed).map_err(unexpected)?;
         let count = 100 + random.below(400);
         let mut interval = libm::exp10(random.between(-2.3, -0.5)) / speed;
-        let methods = catalogue();
+        let methods = without_projections();
         let chosen = methods.get(random.below(2 * methods.len() as u64) as usize);
         loop {
             let exact = exact(&body, &start, interval, count)?;

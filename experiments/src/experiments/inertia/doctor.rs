@@ -1,7 +1,7 @@
 //! How often a mistake in a tensor is noticed, and how often its true cause is named first.
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::inertia::{Amount, Evidence, MassProperties, Solid, Verdict, diagnose};
+use polhode::inertia::{Amount, Evidence, MassProperties, Solid, Validity, diagnose};
 use polhode::num::Random;
 use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row};
@@ -114,8 +114,8 @@ pub(super) fn rates(context: &Context, random: &Random, failures: &mut Vec<Strin
             let right = found.causes.first().is_some_and(|first| {
                 first.cause.name() == word && (first.corrected - truth).amax() < 1e-9 * truth.amax()
             });
-            noticed += u64::from(found.verdict != Verdict::Valid);
-            condemned += u64::from(found.verdict == Verdict::Invalid);
+            noticed += u64::from(found.verdict != Validity::Valid);
+            condemned += u64::from(found.verdict == Validity::Invalid);
             first += u64::from(right);
         }
         Ok::<_, Error>((name, known, noticed, first, condemned))

@@ -1,7 +1,7 @@
 //! Tensors of real robots, broken in the ways that public reports show.
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::inertia::{Diagnosis, Evidence, Twin, Verdict, diagnose};
+use polhode::inertia::{Diagnosis, Evidence, Twin, Validity, diagnose};
 use polhode::num::Random;
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Column, Table, row};
@@ -82,7 +82,7 @@ struct Counts {
 impl Counts {
     fn add(&mut self, found: &Diagnosis, word: &str, truth: &Matrix3<f64>) {
         self.links += 1;
-        if found.verdict == Verdict::Valid {
+        if found.verdict == Validity::Valid {
             return;
         }
         self.noticed += 1;
@@ -131,7 +131,7 @@ pub(super) fn rates(context: &Context, random: &Random, failures: &mut Vec<Strin
     );
     for link in &links {
         let found = diagnose(link.tensor, &link.known()).map_err(|error| failed(&error))?;
-        if found.verdict != Verdict::Valid {
+        if found.verdict != Validity::Valid {
             failures.push(format!("a sound link of {} kg is called {}", link.mass, found.verdict.name()));
         }
     }

@@ -129,7 +129,7 @@ pub(super) fn all(scale: Scale) -> Result<Vec<Case>, Error> {
     let in_orbit = [FREE[4], FREE[2]];
     for (name, moments) in &in_orbit[..if orbiting.is_empty() { 0 } else { scale.pick(0, 1, 2) }] {
         let inertia = Inertia::from_moments(*moments).map_err(unexpected)?;
-        let force = Force::gravity_gradient(&inertia, MEAN_MOTION, 0.0).map_err(unexpected)?;
+        let force = Force::gravity_gradient(MEAN_MOTION, 0.0).map_err(unexpected)?;
         let body = Body::free(inertia).with(force);
         let starts = drawn(cases.len(), members, |random| (anywhere(random, 1.0), any_attitude(random)));
         let how = format!("circular orbit at {MEAN_MOTION} rad/s, ω = 1 rad/s in all directions");

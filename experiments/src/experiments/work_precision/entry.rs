@@ -1,14 +1,13 @@
 //! Which methods run at which steps, and what a run from every start of a case shows.
 
 use polhode::body::Clock;
-use polhode::method::{AnyMethod, catalogue, method};
+use polhode::method::{AnyMethod, Claimed, method, without_projections};
 use polhode::run::Watch;
 use polhode::truth::{Care, Ending, Judged, LOST, Truth};
 use polhode_files::error::{Error, unexpected};
 
 use super::cases::Case;
 use super::contest::{Contestant, Quantiles, Run};
-use crate::methods::is_adaptive;
 use crate::timing::StepTime;
 
 /// Schemes beside the catalogue; those that a force does not admit are left out there.
@@ -35,7 +34,7 @@ const SCHEMES: [&str; 19] = [
 ];
 
 /// Tolerances of methods that choose their steps.
-const TOLERANCES: [&str; 7] = ["1e-3", "1e-5", "1e-7", "1e-9", "1e-11", "1e-13", "1e-15"];
+const TOLERANCES: [f64; 7] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15];
 
 /// Steps are 100 units over 2^k, from this k on.
 const COARSEST: i32 = 5;
@@ -79,7 +78,7 @@ pub(super) struct Found {
 
 /// Every method that takes the case, each from coarse to fine.
 pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, Error> {
-    let mut names: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
+    let mut names: Vec<String> = without_projections().iter().map(|method| method.name()).collect();
     names.extend(SCHEMES.map(String::from));
     // without torque kick-drift is exact-step, whatever its scheme
     names.retain(|name| !(case.is_free() && name.starts_with("kick-drift")));
@@ -88,10 +87,10 @@ pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, E
         let of_name = method(&name).map_err(unexpected)?;
         let Some(claims) = of_name.claims(case.body.problem()) else { continue };
         let mut family = Vec::new();
-        if is_adaptive(&name) {
+        if of_name.tolerance().is_some() {
             for tolerance in TOLERANCES.iter().step_by(budget.tolerances) {
                 // the tightest ones are not those of every method
-                if let Ok(method) = method(&format!("{name}:{tolerance}")) {
+                if let Ok(method) = of_name.with_tolerance(*tolerance) {
                     family.push(Entry { method, step: None });
                 }
             }
@@ -120,9 +119,10 @@ pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, E
 /// The runs of one family.
 pub(super) fn contestant(family: &[Entry], found: &[Found]) -> Option<Contestant> {
     // one name for all tolerances
-    let name = family.first()?.method.name();
+    let method = &family.first()?.method;
+    let name = method.name();
     let base = name.split(':').next().unwrap_or(&name).to_owned();
-    let name = if is_adaptive(&name) { base } else { name };
+    let name = if method.tolerance().is_some() { base } else { name };
     Some(Contestant { name, runs: found.iter().map(|found| found.run.clone()).collect() })
 }
 

@@ -1,10 +1,11 @@
 //! What is done with the members: times, and the method by which they get there.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use polhode::body::{Body, Clock};
 use polhode::flow::ExactMotion;
-use polhode::method::{ADAPTIVE, AnyMethod, UnknownMethod, method};
+use polhode::method::{AnyMethod, Claimed, method};
 use polhode::run::Schedule;
 use polhode_files::error::{Error, unexpected};
 use polhode_files::toml_file::Section;
@@ -13,7 +14,7 @@ use toml::de::DeValue;
 
 use super::nominal::Nominal;
 use crate::flags::times::{Regular, of_file, regular};
-use crate::methods::unknown;
+use crate::methods::{Unusable, adaptive, at_tolerance, unknown};
 
 const KEYS: [&str; 12] = [
     "members",
@@ -45,7 +46,7 @@ pub(in crate::ensemble) enum Motion {
     /// In closed form; times since the start, s.
     Exact { elapsed: Vec<f64> },
     /// By a method, and the number of steps to each row.
-    Stepped { method: String, clock: Clock, steps: Vec<u64> },
+    Stepped { name: String, method: Arc<dyn AnyMethod>, clock: Clock, steps: Vec<u64> },
 }
 
 impl Plan {
@@ -54,10 +55,13 @@ impl Plan {
         let start = run.seconds("start_time")?.unwrap_or(0.0);
         let every = run.seconds("every")?;
         let times = times(run, start, every)?;
-        let name = method_of(run)?;
-        let name = name.as_str();
+        let name = run.text("method")?.unwrap_or("exact");
+        let tolerance = run.positive("tolerance")?;
         let step = run.seconds("step")?;
         let motion = if name == "exact" {
+            if tolerance.is_some() {
+                return Err(run.at("tolerance", &without_tolerance(name)));
+            }
             if step.is_some() {
                 return Err(
                     run.at("step", "method exact takes no step; leave it out, or name a stepping method")
@@ -66,9 +70,8 @@ impl Plan {
             let elapsed = times.iter().map(|t| t - start).collect();
             Motion::Exact { elapsed }
         } else {
-            let found =
-                method(name).map_err(|error| unknown(&run.file.line(run.place_of("method")), error))?;
-            let regular = every.filter(|every| is_adaptive(name) && *every > 0.0);
+            let found = method_of(run, name, tolerance)?;
+            let regular = every.filter(|every| found.tolerance().is_some() && *every > 0.0);
             let missing = || run.at("step", &format!("missing; method {name} needs a step in seconds"));
             let clock = Clock { start, step: step.or(regular).ok_or_else(missing)? };
             if let Some(inertia) = &nominal.inertia {
@@ -91,7 +94,8 @@ impl Plan {
                 let key = if run.value("times_file").is_some() { "times_file" } else { "times" };
                 return Err(run.at(key, &format!("{rule}; sort them, or use method exact")));
             }
-            Motion::Stepped { method: name.into(), clock, steps }
+            let name = tolerance.map_or(name.into(), |tolerance| format!("{name}:{tolerance:e}"));
+            Motion::Stepped { name, method: found.into(), clock, steps }
         };
         let errors = match run.value("errors").map(toml::Spanned::get_ref) {
             None => true,
@@ -130,49 +134,33 @@ impl Plan {
     }
 
     /// The method, where there is one.
-    pub(in crate::ensemble) fn method(&self) -> Result<Option<Box<dyn AnyMethod>>, Error> {
-        match &self.motion {
-            Motion::Exact { .. } => Ok(None),
-            Motion::Stepped { method: name, .. } => method(name).map(Some).map_err(unexpected),
-        }
-    }
-
-    /// Its name.
     pub(in crate::ensemble) fn method_name(&self) -> &str {
         match &self.motion {
             Motion::Exact { .. } => "exact",
-            Motion::Stepped { method, .. } => method,
+            Motion::Stepped { name, .. } => name,
         }
     }
 }
 
-/// The name of the method, with the tolerance where one is given.
-fn method_of(run: &Section<'_>) -> Result<String, Error> {
-    let name = run.text("method")?.unwrap_or("exact");
-    let Some(tolerance) = run.positive("tolerance")? else { return Ok(name.into()) };
-    if ADAPTIVE.contains(&name) {
-        let named = format!("{name}:{tolerance:e}");
-        return match method(&named) {
-            Err(UnknownMethod::Argument { rule, .. }) => {
-                let refused = format!("method {name} cannot take {tolerance:e}; allowed: {rule}");
-                Err(run.at("tolerance", &refused))
+/// The method `name`, at the tolerance where one is given.
+fn method_of(run: &Section<'_>, name: &str, tolerance: Option<f64>) -> Result<Box<dyn AnyMethod>, Error> {
+    let unknown = |error| unknown(&run.file.line(run.place_of("method")), error);
+    let Some(tolerance) = tolerance else { return method(name).map_err(unknown) };
+    at_tolerance(name, tolerance).map_err(|why| {
+        let rule = match why {
+            Unusable::Unknown(error) => return unknown(error),
+            Unusable::FixedSteps => without_tolerance(name),
+            Unusable::Twice => format!("method {name} has one already; give one of the two"),
+            Unusable::OutOfRange(allowed) => {
+                format!("method {name} cannot take {tolerance:e}; allowed: {allowed}")
             }
-            _ => Ok(named),
         };
-    }
-    let rule = if is_adaptive(name) {
-        format!("method {name} has one already; give one of the two")
-    } else {
-        let adaptive = ADAPTIVE.join(", ");
-        format!("method {name} does not choose its steps; leave it out, or take one of {adaptive}")
-    };
-    Err(run.at("tolerance", &rule))
+        run.at("tolerance", &rule)
+    })
 }
 
-/// Whether a method chooses its steps: an order, as of taylor:20, is of steps as given.
-fn is_adaptive(name: &str) -> bool {
-    let (base, argument) = name.split_once(':').unwrap_or((name, ""));
-    ADAPTIVE.contains(&base) && argument.parse::<u32>().is_err()
+fn without_tolerance(name: &str) -> String {
+    format!("method {name} does not choose its steps; leave it out, or take one of {}", adaptive())
 }
 
 /// The times in a file that stands beside the specification.

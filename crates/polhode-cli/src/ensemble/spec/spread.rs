@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use polhode::body::{Attitudes, Population, Tensors};
+use polhode::body::{AttitudeSpread, Population, Tensors};
 use polhode::num::{Covariance, Distribution, DistributionError};
 use polhode_files::error::Error;
 use polhode_files::toml_file::Section;
@@ -152,13 +152,13 @@ impl Sources<'_> {
         Distribution::uniform(ranges).map(Some).map_err(|error| range.at(key, &error.to_string()))
     }
 
-    fn attitude(&self, nominal: &Nominal) -> Result<Attitudes, Error> {
+    fn attitude(&self, nominal: &Nominal) -> Result<AttitudeSpread, Error> {
         if let Some(range) = &self.range
             && let Some(DeValue::String(name)) = range.value("attitude").map(Spanned::get_ref)
         {
             self.once(["attitude"; 3])?;
             return match name.as_ref() {
-                "all" => Ok(Attitudes::Uniform),
+                "all" => Ok(AttitudeSpread::Uniform),
                 _ => Err(range.at(
                     "attitude",
                     "needed is \"all\", or [[low, high], ...] of the rotation vector in rad",
@@ -167,7 +167,7 @@ impl Sources<'_> {
         }
         let turn = self.vector("attitude", [0.0; 3])?;
         let mean = nominal.attitude;
-        Ok(turn.map_or(Attitudes::Fixed(mean), |turn| Attitudes::Near { mean, turn }))
+        Ok(turn.map_or(AttitudeSpread::Fixed(mean), |turn| AttitudeSpread::Near { mean, turn }))
     }
 
     fn inertia(&self, nominal: &Nominal, inertia: polhode::inertia::Inertia) -> Result<Tensors, Error> {

@@ -5,7 +5,7 @@ mod regular;
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::body::Date;
+use polhode::units::Date;
 use polhode_files::error::Error;
 use polhode_files::moment::{duration, epoch, is_moment, seconds};
 use polhode_files::times::{Asked, Column, Source};

@@ -1,0 +1,389 @@
+//! A body and what acts on it, with the conversions between a user's axes and the solver frame.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use thiserror::Error;
+
+use super::field::{Evaluated, Field, Forces, Witness};
+use super::force::Role;
+use super::{Conserved, Exit, Force, Gravity, Point, Rotor, State, Time};
+use crate::inertia::Inertia;
+use crate::num::{Dd, Precise, Real, Shown};
+use crate::rotation::{Quat, Vec3};
+
+/// Why a start is not usable.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum StateError {
+    /// A component is not a finite number.
+    #[error("{quantity} has the component {value}; every component must be a finite number")]
+    NotFinite {
+        /// Which quantity.
+        quantity: &'static str,
+        /// The offending value.
+        value: f64,
+    },
+    /// The quaternion of the attitude is zero.
+    #[error("the attitude is the zero quaternion, which has no direction; any other norm is fine")]
+    NoAttitude,
+    /// The spin is too large or too small for its energy to be a double.
+    #[error(
+        "{quantity} {} {unit} with this inertia puts the energy outside the range of a double; change the units", Shown(*value)
+    )]
+    OutOfRange {
+        /// Angular velocity or momentum, which was given.
+        quantity: &'static str,
+        /// Its largest component.
+        value: f64,
+        /// In which unit.
+        unit: &'static str,
+    },
+    /// The weight moment is too large or too small beside the inertia.
+    #[error(
+        "weight moment {} N m beside moments of inertia of {}: the rate of falling is outside the range \
+         of a double; change the units",
+        Shown(*weight_moment), Shown(*moment)
+    )]
+    WeightOutOfRange {
+        /// Size of the weight moment, N m.
+        weight_moment: f64,
+        /// Largest moment of inertia, to a power of two.
+        moment: f64,
+    },
+}
+
+/// Kinds of motion, by what acts on the body; the claims of a method differ between them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Problem {
+    /// Nothing acts.
+    Free,
+    /// Uniform gravity about a fixed point, whose torque is linear in the vertical.
+    Gravity,
+    /// Torques that come from potentials.
+    Potential,
+    /// Any torque.
+    Torque,
+}
+
+/// A rigid body and what acts on it: nothing, uniform gravity about a fixed point, or any [forces](Force).
+///
+/// A user's [`State`] refers to the body axes that the inertia was given in. Kernels work on a [`Point`] in the solver
+/// frame: along principal axes, with moments and momenta divided by a power of two, so that fourth powers neither over- nor
+/// underflow and a change of the unit of mass by a power of two changes no bit. [`enter`](Body::enter) and
+/// [`leave`](Body::leave) convert between the two.
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct Body {
+    inertia: Inertia,
+    /// In the solver frame.
+    gravity: Option<Gravity<Dd>>,
+    forces: Vec<Force>,
+    witness: Option<Witness>,
+}
+
+impl Body {
+    /// A body on which no torque acts.
+    pub fn free(inertia: Inertia) -> Self {
+        Body { inertia, gravity: None, forces: Vec::new(), witness: None }
+    }
+
+    /// A body with a fixed point, the origin, under uniform gravity along −Z of space.
+    ///
+    /// `inertia` is about the fixed point; `weight_moment` is the weight M g times the centre of mass, N m, in body
+    /// axes: [`Force::gravity`], checked beside the inertia. Without weight moment the body is free.
+    ///
+    /// # Errors
+    /// Components that are not finite, or a size that is out of range beside the inertia.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::body::Body;
+    /// use polhode::inertia::Inertia;
+    /// let top = Body::heavy(Inertia::from_moments([1.0, 1.0, 0.25])?, Vector3::new(0.0, 0.0, 2.0))?;
+    /// let start = top.state(UnitQuaternion::identity(), Vector3::new(0.0, 0.0, 4.0))?;
+    /// assert_eq!(top.energy(&start), 4.0); // 2 J of spin, 2 J of height
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    pub fn heavy(inertia: Inertia, weight_moment: Vector3<f64>) -> Result<Self, StateError> {
+        let given = Vec3::from(weight_moment);
+        check("weight moment", &given.0)?;
+        if given == Vec3::zero() {
+            return Ok(Body::free(inertia));
+        }
+        let (weight, moment) = (given.magnitude(), inertia.scale());
+        let body = Body::free(inertia);
+        let gravity = body.gravity_of(given);
+        let error = StateError::WeightOutOfRange { weight_moment: weight, moment };
+        Ok(Body { gravity: Some(gravity.ok_or(error)?), ..body })
+    }
+
+    /// The same body with one more force; all add up.
+    ///
+    /// The gravity gradient takes the inertia of this body. A weight whose moment is too large or too small beside the inertia for
+    /// the solver frame acts as any potential does.
+    pub fn with(mut self, force: Force) -> Self {
+        let weight = match force.role {
+            Role::Gravity(given) if given == Vec3::zero() => return self,
+            Role::Gravity(given) => self.gravity_of(given),
+            Role::Law | Role::Gradient(_) => None,
+        };
+        match (weight, self.gravity) {
+            (Some(more), Some(Gravity { weight_moment })) => {
+                let weight_moment = weight_moment + more.weight_moment;
+                self.gravity = (weight_moment != Vec3::zero()).then_some(Gravity { weight_moment });
+            }
+            (Some(weight), None) => self.gravity = Some(weight),
+            (None, _) => self.forces.push(force.on(&self.inertia)),
+        }
+        self
+    }
+
+    /// Uniform gravity in the solver frame by the weight moment, N m, body axes; `None` out of range.
+    fn gravity_of(&self, weight_moment: Vec3<f64>) -> Option<Gravity<Dd>> {
+        let scaled = Vec3(weight_moment.0.map(|c| c / self.scale()));
+        let in_range = clear(scaled.magnitude()) && clear(weight_moment.magnitude());
+        in_range.then(|| Gravity { weight_moment: self.inertia.frame().rotate_back(Vec3::of(scaled)) })
+    }
+
+    /// Its inertia.
+    pub fn inertia(&self) -> &Inertia {
+        &self.inertia
+    }
+
+    /// The forces that act besides uniform gravity, which is [`gravity`](Self::gravity).
+    pub fn forces(&self) -> &[Force] {
+        &self.forces
+    }
+
+    /// What kind of motion it makes.
+    pub fn problem(&self) -> Problem {
+        match (&self.gravity, self.forces.is_empty()) {
+            (None, true) => Problem::Free,
+            (Some(_), true) => Problem::Gravity,
+            _ if self.forces.iter().all(Force::has_potential) => Problem::Potential,
+            _ => Problem::Torque,
+        }
+    }
+
+    /// What the motion conserves, in exact arithmetic.
+    pub fn conserved(&self) -> Vec<Conserved> {
+        let free =
+            vec![Conserved::Energy, Conserved::MomentumNorm, Conserved::Momentum, Conserved::MomentumZ];
+        let gravity = self.gravity.map(|_| vec![Conserved::Energy, Conserved::MomentumZ]);
+        let forces = self.forces.iter().map(Force::conserved);
+        gravity.into_iter().chain(forces).fold(free, |a, b| {
+            let mut both = Vec::new();
+            for quantity in a.iter().chain(&b) {
+                if follows(*quantity, &a) && follows(*quantity, &b) && !both.contains(quantity) {
+                    both.push(*quantity);
+                }
+            }
+            both
+        })
+    }
+
+    /// Uniform gravity with the weight moment in the solver frame, divided by the [scale](Self::scale); `None` without it.
+    #[must_use]
+    pub fn gravity<S: Real>(&self) -> Option<Gravity<S>> {
+        self.gravity.map(|g| Gravity { weight_moment: g.weight_moment.map(S::from_dd) })
+    }
+
+    /// The constants that kernels read.
+    pub fn rotor(&self) -> Rotor {
+        Rotor::of_moments(Vec3(self.inertia.scaled_moments()))
+    }
+
+    /// The same body; a force that is not finite is reported to `witness`.
+    pub(crate) fn witnessed(&self, witness: Witness) -> Body {
+        Body { witness: Some(witness), ..self.clone() }
+    }
+
+    /// Every force in the solver frame, in one value.
+    pub(crate) fn field<S: Evaluated>(&self) -> Forces<S> {
+        let frame = (!self.inertia.is_along_principal_axes()).then(|| self.inertia.frame());
+        Forces::new(self.gravity(), &self.forces, frame, self.scale(), self.witness.clone())
+    }
+
+    /// Kinetic and potential energy, J, at the time 0, where a potential depends on the time.
+    #[must_use]
+    pub fn energy(&self, x: &State) -> f64 {
+        self.energy_at(0.0, x)
+    }
+
+    /// Kinetic and potential energy, J, at the time `t`, s.
+    #[must_use]
+    pub fn energy_at(&self, t: f64, x: &State) -> f64 {
+        self.energy_of(Time::from_seconds(t), &self.inside(x)).hi()
+    }
+
+    /// Kinetic and potential energy, J, of a point of the solver frame.
+    pub fn energy_of<S: Precise>(&self, at: Time, x: &Point<S>) -> Dd {
+        self.scaled_energy(at, &x.to_dd()) * self.scale()
+    }
+
+    /// Torque of all that acts, in the solver frame, divided by the [scale](Self::scale).
+    pub fn torque_of(&self, at: Time, x: &Point<Dd>) -> Vec3<Dd> {
+        let omega = x.momentum_body.times(self.rotor().inverse_moments());
+        self.field().torque(at, x.attitude, omega)
+    }
+
+    /// Kinetic and potential energy, divided by the scale.
+    pub(crate) fn scaled_energy(&self, at: Time, x: &Point<Dd>) -> Dd {
+        let kinetic = self.rotor().kinetic_energy(x.momentum_body);
+        if self.problem() == Problem::Free {
+            return kinetic;
+        }
+        kinetic + self.field().energy(at, x.attitude)
+    }
+
+    /// Σ (|U| + |τ|) over the forces besides gravity at the point `x`, divided by the scale.
+    pub(crate) fn size_of_forces(&self, at: Time, x: &Point<Dd>) -> Dd {
+        let omega = x.momentum_body.times(self.rotor().inverse_moments());
+        let sizes = self.forces.iter().map(|force| {
+            let alone = Body { gravity: None, forces: vec![force.clone()], ..self.clone() }.field::<Dd>();
+            let torque = alone.torque_besides_gravity(at, x.attitude, omega).norm();
+            alone.energy_besides_gravity(at, x.attitude).abs() + torque
+        });
+        sizes.fold(Dd::ZERO, |sum, size| sum + size)
+    }
+
+    /// The name of a force whose potential energy is not finite.
+    pub(crate) fn force_without_energy(&self, at: Time, x: &Point<Dd>) -> Option<&str> {
+        let of = |force: &&Force| {
+            let alone = Body { gravity: None, forces: vec![(*force).clone()], ..self.clone() };
+            !alone.field::<Dd>().energy(at, x.attitude).hi().is_finite()
+        };
+        self.forces.iter().find(of).map(Force::name)
+    }
+
+    /// The state with angular velocity `omega_body` (rad/s, body axes): m = I ω.
+    ///
+    /// # Errors
+    /// Components that are not finite, a quaternion of zeros, or a spin whose energy is no finite double.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::body::Body;
+    /// use polhode::inertia::Inertia;
+    /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+    /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.5, 1.0, -0.25))?;
+    /// assert_eq!(start.momentum(), Vector3::new(0.5, 2.0, -0.75));
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    pub fn state(
+        &self,
+        attitude: UnitQuaternion<f64>,
+        omega_body: Vector3<f64>,
+    ) -> Result<State, StateError> {
+        let inside = self.enter_omega(attitude.into(), omega_body.into())?;
+        Ok(self.leave(&inside))
+    }
+
+    /// The exact point of the solver frame with angular velocity `omega_body`, rad/s, body axes; the attitude may have any
+    /// norm but zero.
+    ///
+    /// # Errors
+    /// As [`state`](Self::state).
+    pub fn enter_omega(&self, attitude: Quat<f64>, omega_body: Vec3<f64>) -> Result<Point<Dd>, StateError> {
+        let attitude = unit(attitude)?;
+        check("angular velocity", &omega_body.0)?;
+        let inside =
+            Point::new(self.inertia.attitude_of_axes(attitude), self.inertia.scaled_momentum(omega_body));
+        let value = omega_body.magnitude();
+        let error = StateError::OutOfRange { quantity: "angular velocity", value, unit: "rad/s" };
+        if self.is_in_range(&inside) { Ok(inside) } else { Err(error) }
+    }
+
+    /// The state `x` in the solver frame: principal axes, divided by the power of two; the attitude may have any norm but
+    /// zero, and is normalised.
+    ///
+    /// # Errors
+    /// As [`state`](Self::state).
+    pub fn enter(&self, x: &State) -> Result<Point<Dd>, StateError> {
+        let attitude = unit(x.attitude)?;
+        check("momentum", &x.momentum_body.0)?;
+        let inside = Point::new(self.inertia.attitude_of_axes(attitude), self.momentum_inside(x));
+        let value = x.momentum_body.magnitude();
+        let error = StateError::OutOfRange { quantity: "momentum", value, unit: "kg m^2/s" };
+        if self.is_in_range(&inside) { Ok(inside) } else { Err(error) }
+    }
+
+    /// The state `x` in the solver frame, with an attitude of norm 1 where it has a direction.
+    fn inside(&self, x: &State) -> Point<Dd> {
+        let attitude = unit(x.attitude).unwrap_or(Quat::of(x.attitude));
+        Point::new(self.inertia.attitude_of_axes(attitude), self.momentum_inside(x))
+    }
+
+    /// The momentum of `x` in the solver frame.
+    fn momentum_inside(&self, x: &State) -> Vec3<Dd> {
+        let scale = self.inertia.scale();
+        self.inertia.along_axes(x.momentum_body.map(|m| Dd::of(m / scale)))
+    }
+
+    /// The point `x` of the solver frame as a state in body axes.
+    pub fn leave<S: Precise>(&self, x: &Point<S>) -> State {
+        Exit::of(self).state(x.phase())
+    }
+
+    /// Angular velocity ω = I⁻¹ m in body axes, rad/s.
+    #[must_use]
+    pub fn omega_body(&self, x: &State) -> Vector3<f64> {
+        self.omega_of(&self.inside(x))
+    }
+
+    /// Angular velocity in body axes, rad/s, of a point of the solver frame.
+    pub fn omega_of<S: Precise>(&self, x: &Point<S>) -> Vector3<f64> {
+        Exit::of(self).omega(self.rotor().inverse_moments(), x.momentum_body)
+    }
+
+    /// Moments, momenta and energies of the solver frame times this power of two are those in the user's units.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.inertia.scale()
+    }
+
+    /// Whether the energy is a double, with room for the errors of its products.
+    fn is_in_range(&self, inside: &Point<Dd>) -> bool {
+        let omega = inside.momentum_body.times(self.rotor().inverse_moments());
+        let twice_energy = inside.momentum_body.dot(omega).hi();
+        let energy = twice_energy * self.inertia.scale();
+        let clear = |x: f64| x == 0.0 || clear(x);
+        let at_rest = omega.0.iter().all(|w| w.hi() == 0.0);
+        clear(twice_energy) && clear(energy) && (at_rest || energy != 0.0)
+    }
+}
+
+/// Whether `quantity` is conserved where all of `conserved` are.
+fn follows(quantity: Conserved, conserved: &[Conserved]) -> bool {
+    let has = |other| conserved.contains(&other);
+    has(quantity)
+        || match quantity {
+            Conserved::MomentumNorm | Conserved::MomentumZ => has(Conserved::Momentum),
+            Conserved::Jacobi { .. } => has(Conserved::Energy) && follows(Conserved::MomentumZ, conserved),
+            Conserved::Energy | Conserved::Momentum => false,
+        }
+}
+
+/// Dekker products of squares need the exponent to stay clear of both ends.
+fn clear(x: f64) -> bool {
+    (1e-240..1e240).contains(&x.abs())
+}
+
+/// The attitude with norm 1, to the digits of double-double.
+fn unit(attitude: Quat<f64>) -> Result<Quat<Dd>, StateError> {
+    check("attitude", &attitude.components())?;
+    let largest = attitude.magnitude();
+    if largest == 0.0 {
+        return Err(StateError::NoAttitude);
+    }
+    // the power of two keeps the squares in range
+    let near_one = attitude.map(|x| libm::scalbn(x, -libm::ilogb(largest)));
+    Ok(Quat::of(near_one).normalized())
+}
+
+fn check(quantity: &'static str, components: &[f64]) -> Result<(), StateError> {
+    match components.iter().find(|value| !value.is_finite()) {
+        Some(&value) => Err(StateError::NotFinite { quantity, value }),
+        None => Ok(()),
+    }
+}

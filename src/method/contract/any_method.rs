@@ -1,0 +1,163 @@
+//! Methods whose type is known only at run time: the dynamic outside of the static inside.
+
+use core::fmt;
+
+use thiserror::Error;
+
+use super::map::Stepper;
+use crate::body::{Body, Clock, Evaluated, Free, Problem};
+use crate::method::{Claimed, Claims, Method, Step, ToleranceError};
+use crate::num::{Dd, Shown};
+
+/// A method whose type is known only at run time.
+pub trait AnyMethod: Claimed + Send + Sync {
+    /// Whole steps of `clock` for `body`, in `f64`.
+    ///
+    /// # Errors
+    /// A step that is zero or not finite, or a body that the method is not for.
+    fn prepare_f64(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<f64>>, StepError>;
+
+    /// The same in double-double, for measuring below the rounding of `f64`.
+    ///
+    /// # Errors
+    /// As [`prepare_f64`](Self::prepare_f64).
+    fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError>;
+}
+
+impl<M: Method<f64> + Method<Dd> + Claimed + Send + Sync> AnyMethod for M {
+    fn prepare_f64(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<f64>>, StepError> {
+        prepare(self, clock, body)
+    }
+    fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError> {
+        prepare(self, clock, body)
+    }
+}
+
+impl fmt::Debug for dyn AnyMethod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name())
+    }
+}
+
+impl Claimed for Box<dyn AnyMethod> {
+    fn name(&self) -> String {
+        (**self).name()
+    }
+    fn claims(&self, problem: Problem) -> Option<Claims> {
+        (**self).claims(problem)
+    }
+    fn needs_series(&self) -> bool {
+        (**self).needs_series()
+    }
+    fn tolerance(&self) -> Option<f64> {
+        (**self).tolerance()
+    }
+    fn with_tolerance(&self, tolerance: f64) -> Result<Box<dyn AnyMethod>, ToleranceError> {
+        (**self).with_tolerance(tolerance)
+    }
+}
+
+impl AnyMethod for Box<dyn AnyMethod> {
+    fn prepare_f64(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<f64>>, StepError> {
+        (**self).prepare_f64(clock, body)
+    }
+    fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError> {
+        (**self).prepare_dd(clock, body)
+    }
+}
+
+/// Steps of `method`, compiled for what acts on `body`.
+fn prepare<S, M>(method: &M, clock: Clock, body: &Body) -> Result<Box<dyn Step<S>>, StepError>
+where
+    S: Evaluated,
+    M: Method<S> + Claimed,
+{
+    if !(clock.step.is_finite() && clock.step != 0.0) {
+        return Err(StepError::NotAStep { h: clock.step });
+    }
+    if !clock.start.is_finite() {
+        return Err(StepError::NotATime { t: clock.start });
+    }
+    let problem = body.problem();
+    if method.claims(problem).is_none() {
+        let what =
+            match body.forces().iter().find(|force| problem != Problem::Torque || !force.has_potential()) {
+                Some(force) => force.name().into(),
+                None => "gravity".into(),
+            };
+        if problem == Problem::Potential && method.claims(Problem::Gravity).is_some() {
+            return Err(StepError::NoGradient { method: method.name(), force: what });
+        }
+        return Err(StepError::Refused { method: method.name(), force: what, problem });
+    }
+    if method.needs_series()
+        && let Some(force) = body.forces().iter().find(|force| force.series.is_none())
+    {
+        return Err(StepError::Closure { method: method.name(), force: force.name().into() });
+    }
+    let (h, rotor) = (Dd::from(clock.step), body.rotor());
+    Ok(match (problem, body.gravity::<S>()) {
+        (Problem::Free, _) => Box::new(Stepper::new(method.map(h, &rotor, &Free), clock)),
+        (Problem::Gravity, Some(gravity)) => Box::new(Stepper::new(method.map(h, &rotor, &gravity), clock)),
+        _ => Box::new(Stepper::new(method.map(h, &rotor, &body.field::<S>()), clock)),
+    })
+}
+
+/// Why a method cannot take steps of this size, or of this body.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum StepError {
+    /// The step is zero or not finite.
+    #[error("step {} is not usable; it must be a finite number of seconds other than 0", Shown(*h))]
+    NotAStep {
+        /// The step asked for, s.
+        h: f64,
+    },
+    /// The time of the start is not finite.
+    #[error("start time {} is not usable; it must be a finite number of seconds", Shown(*t))]
+    NotATime {
+        /// The time asked for, s.
+        t: f64,
+    },
+    /// The method needs the derivative of the torque, and a force other than gravity acts.
+    #[error(
+        "method {method:?} takes the derivative of the torque, which is known of uniform gravity alone, and {force} acts; take \
+         kick-drift@srkn-6b, for one"
+    )]
+    NoGradient {
+        /// Name of the method.
+        method: String,
+        /// Name of the force.
+        force: String,
+    },
+    /// The method does not support the forces on the body.
+    #[error("method {method:?} cannot take {force}, {}", remedy(*.problem))]
+    Refused {
+        /// Name of the method.
+        method: String,
+        /// Name of the force.
+        force: String,
+        /// The kind of motion that it makes.
+        problem: Problem,
+    },
+    /// The method evaluates forces on power series, and one is a closure in `f64`.
+    #[error(
+        "method {method:?} cannot take {force}, a closure in f64: it evaluates laws on power series; write the law for every \
+         Real, or take rk4 or, for a potential, kick-drift"
+    )]
+    Closure {
+        /// Name of the method.
+        method: String,
+        /// Name of the force.
+        force: String,
+    },
+}
+
+fn remedy(problem: Problem) -> &'static str {
+    match problem {
+        Problem::Torque => {
+            "a torque without potential: it is for free motion and potentials; take rk4 or implicit-midpoint"
+        }
+        _ => "a potential: it is for free motion; take kick-drift, for one",
+    }
+}

@@ -1,0 +1,133 @@
+//! `lie-poisson` and `no-squish`: the variational Lie–Poisson splitting: three turns about the principal axes.
+
+mod axis_order;
+
+pub use axis_order::{AxisOrder, AxisOrderError};
+
+use super::schemes::{STRANG, Scheme, Stages};
+use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric};
+use crate::body::{Field, Point, Rotor, Time};
+use crate::method::solve::turns::Turns;
+use crate::num::{Dd, Precise};
+
+/// Turns about the principal axes, with [kicks](Kicks) around them.
+pub type LiePoisson = Splitting<AxisSplit, Kicks>;
+
+/// Strang splitting of the kinetic energy by axes.
+///
+/// Φ_h = R_a(h/2) R_b(h/2) R_c(h) R_b(h/2) R_a(h/2), R_i the exact turn of `m_i²/(2 I_i)`.
+/// A product of exact flows: keeps |m|, L and the Lie–Poisson bracket, and the energy within O(h²) for
+/// exponentially long times. The order of the axes changes the size of that oscillation up to a hundredfold.
+///
+/// ```
+/// use polhode::method::{AxisSplit, Claimed, Kicks, LiePoisson};
+/// let outermost_z = AxisSplit { axes: Some("321".parse()?) };
+/// assert_eq!(LiePoisson::strang(outermost_z, Kicks).name(), "lie-poisson:321");
+/// # Ok::<(), polhode::method::AxisOrderError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AxisSplit {
+    /// Outermost axis first; `None` takes that with the smallest leading error of the attitude on the
+    /// [orbit](AxisOrder::best_for_orbit) of the start, and under forces and in compositions the [best](AxisOrder::best) for the
+    /// energy.
+    pub axes: Option<AxisOrder>,
+}
+
+impl Symmetric for AxisSplit {}
+
+impl FreePart for AxisSplit {
+    fn name(&self) -> String {
+        match self.axes {
+            Some(order) => format!("lie-poisson:{order}"),
+            None => "lie-poisson".into(),
+        }
+    }
+    fn order(&self) -> Option<u32> {
+        Some(2)
+    }
+    fn energy(&self) -> Energy {
+        Energy::Bounded
+    }
+    fn cost(&self) -> Cost {
+        Cost::turns(5)
+    }
+    fn free_cost(&self, scheme: &Scheme) -> Option<Cost> {
+        match scheme.stages {
+            Stages::Composition(_) => Some(Cost::turns(4) * scheme.lengths()?.len() as u32),
+            _ => None,
+        }
+    }
+    fn source(&self) -> &'static str {
+        "McLachlan, Phys. Rev. Lett. 71 (1993) 3043; Touma and Wisdom, Astron. J. 107 (1994) 1189"
+    }
+}
+
+impl<S: Precise> Method<S> for AxisSplit {
+    type Map<F: Field<S>> = AxisSplitMap<S>;
+
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> AxisSplitMap<S> {
+        AxisSplitMap::new(self.axes, vec![Dd::ONE], h, rotor)
+    }
+
+    fn free_map<F: Field<S>>(&self, scheme: &Scheme, h: Dd, rotor: &Rotor, _: &F) -> Option<AxisSplitMap<S>> {
+        let _ = self.free_cost(scheme)?;
+        let mut map = AxisSplitMap::new(self.axes, scheme.lengths()?, h, rotor);
+        map.free_to_choose = self.axes.is_none() && *scheme == STRANG;
+        Some(map)
+    }
+}
+
+/// A prepared [`AxisSplit`].
+#[derive(Clone, Debug)]
+pub struct AxisSplitMap<S> {
+    rotor: Rotor,
+    /// Of the steps that make up one, in shares of it.
+    shares: Vec<Dd>,
+    h: Dd,
+    /// Whether the axes may be chosen by the orbit when the motion is opened.
+    free_to_choose: bool,
+    turns: Turns<S>,
+}
+
+impl<S: Precise> AxisSplitMap<S> {
+    fn new(axes: Option<AxisOrder>, shares: Vec<Dd>, h: Dd, rotor: &Rotor) -> Self {
+        let order = axes.unwrap_or_else(|| AxisOrder::best(rotor.moments()));
+        let turns = turns(order, rotor, h, &shares);
+        AxisSplitMap { rotor: *rotor, shares, h, free_to_choose: false, turns }
+    }
+}
+
+fn turns<S: Precise>(order: AxisOrder, rotor: &Rotor, h: Dd, shares: &[Dd]) -> Turns<S> {
+    let inverse = rotor.inverse_moments::<Dd>();
+    Turns::three(order.axes(), order.axes().map(|axis| inverse[axis] * h), shares)
+}
+
+impl<S: Precise> Map<S> for AxisSplitMap<S> {
+    #[inline]
+    fn apply(&mut self, _: Time, x: &mut Point<S>) {
+        self.turns.apply(x);
+    }
+
+    fn open(&mut self, _: Time, x: &mut Point<S>) {
+        if self.free_to_choose {
+            let m = x.momentum_body.map(S::to_f64);
+            let order = AxisOrder::best_for_orbit(m, self.rotor.moments());
+            self.turns = turns(order, &self.rotor, self.h, &self.shares);
+        }
+        self.turns.open(x);
+    }
+
+    #[inline]
+    fn advance(&mut self, _: Time, x: &mut Point<S>) {
+        self.turns.advance(x);
+    }
+
+    fn side_by_side(&self) -> Option<SideBySide<S>> {
+        self.turns.side_by_side()
+    }
+
+    #[inline]
+    fn close(&mut self, _: Time, x: &mut Point<S>) {
+        self.turns.close(x);
+    }
+}

@@ -1,0 +1,218 @@
+//! What a splitting of the kinetic energy does to the motion: the leading term of its modified energy, and what follows
+//! for the attitude.
+//!
+//! # Notation
+//! A splitting of order 2 follows the exact motion of `H̃ = H + h² H₃ + …`. With s_i = m_i², H₃ of turns about principal
+//! axes is `Σ κ_i s_j s_k`, (i, j, k) the three axes.
+//!
+//! | letter | meaning |
+//! |---|---|
+//! | E, G | energy and \|m\| of the orbit |
+//! | T, Ω_J = 2π/T | period of the momentum in the body, its angular frequency |
+//! | Ω_G | mean rate at which the body turns about L beyond that |
+//! | ⟨·⟩ | mean over the orbit |
+//!
+//! # Error of the attitude
+//! In action-angle variables (J, θ; G, g) of the free body the modified energy is H(J, G) + h²⟨H₃⟩, and the start has the
+//! action J + h² (H₃(m₀) − ⟨H₃⟩)/Ω_J. Its frequencies differ from the true ones by
+//!
+//! ```text
+//! δΩ_J = h² (Ω_J ∂_E⟨H₃⟩ + ∂_EΩ_J (H₃(m₀) − ⟨H₃⟩))
+//! δΩ_G = h² ((∂_G + Ω_G ∂_E)⟨H₃⟩ + ∂_EΩ_G (H₃(m₀) − ⟨H₃⟩))
+//! ```
+//!
+//! and the attitude runs away at the rate ρ ω + (δΩ_G − Ω_G ρ) L/G with ρ = δΩ_J/Ω_J: time along the polhode, and a turn
+//! about L. ⟨H₃⟩ is homogeneous of degree 4 in m, which gives its derivative in G. Derived here by first-order averaging;
+//! tests/two_turns.rs compares it with runs.
+
+use core::cmp::Ordering;
+
+use crate::num::elliptic::Modulus;
+use crate::rotation::Vec3;
+
+/// H₃ of turns about the principal axes: the coefficients of s₂s₃, s₁s₃ and s₁s₂, s_i = m_i².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::method) struct ModifiedEnergy(pub(in crate::method) [f64; 3]);
+
+/// An orbit of the free momentum, with the means that the leading error is made of.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::method) struct Orbit {
+    start: Vec3<f64>,
+    energy: f64,
+    norm: f64,
+    here: Means,
+    /// Change of the means with the energy.
+    slope: Means,
+    /// ⟨p₁²⟩, ⟨p₂²⟩, ⟨p₃²⟩, ⟨p₂p₃⟩, ⟨p₁p₃⟩, ⟨p₁p₂⟩ of the products p₁ = s₂s₃, …
+    squares: [f64; 6],
+    /// ⟨ω²⟩.
+    omega_squared: f64,
+}
+
+/// The leading error of the attitude of a splitting of order 2, in its two parts: the attitude of step n is that of the exact
+/// motion at the time t + τ, turned about L by ψ, with τ and ψ proportional to t but for an oscillation of the size of h².
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PhaseErrorRates {
+    /// τ/t over h², 1/s²: the shift in time along the polhode.
+    pub shift: f64,
+    /// ψ/t over h², rad/s³: the twist about L.
+    pub twist: f64,
+}
+
+/// Means over one orbit, or how they change.
+#[derive(Clone, Copy, Debug)]
+struct Means {
+    period: f64,
+    /// Ω_G.
+    turn: f64,
+    /// ⟨s₂s₃⟩, ⟨s₁s₃⟩, ⟨s₁s₂⟩.
+    products: [f64; 3],
+}
+
+/// Points over half a period of the momentum: the mean of a smooth periodic function converges exponentially.
+const POINTS: usize = 48;
+
+/// Step of the derivative in the energy, as a share of the distance to the next orbit of another kind.
+const SHARE: f64 = 1e-3;
+
+impl ModifiedEnergy {
+    /// At the momentum `m`.
+    pub(in crate::method) fn at(self, m: Vec3<f64>) -> f64 {
+        let s = m.0.map(|m| m * m);
+        self.0[0] * s[1] * s[2] + self.0[1] * s[0] * s[2] + self.0[2] * s[0] * s[1]
+    }
+
+    /// Root mean square over the orbit of the rate at which the attitude runs away, over h², rad/s³, for the start at the
+    /// momentum that the orbit was made from.
+    pub(in crate::method) fn attitude_error_rate(self, orbit: &Orbit) -> f64 {
+        let apart = self.at(orbit.start) - self.mean(&orbit.here);
+        self.rate(orbit, apart, apart * apart)
+    }
+
+    /// The two parts of the same error, for the same start.
+    pub(in crate::method) fn phase_error_rates(self, orbit: &Orbit) -> PhaseErrorRates {
+        let apart = self.at(orbit.start) - self.mean(&orbit.here);
+        let [shift, twist] = self.parts(orbit).map(|[constant, slope]| constant + slope * apart);
+        PhaseErrorRates { shift, twist }
+    }
+
+    /// The same as a root mean square over all starts on the orbit.
+    fn mean_attitude_error_rate(self, orbit: &Orbit) -> f64 {
+        let [k1, k2, k3] = self.0;
+        let [s11, s22, s33, s23, s13, s12] = orbit.squares;
+        let square = k1 * k1 * s11 + k2 * k2 * s22 + k3 * k3 * s33;
+        let square = square + 2.0 * (k2 * k3 * s23 + k1 * k3 * s13 + k1 * k2 * s12);
+        let mean = self.mean(&orbit.here);
+        self.rate(orbit, 0.0, (square - mean * mean).max(0.0))
+    }
+
+    /// ⟨H₃⟩.
+    fn mean(self, means: &Means) -> f64 {
+        self.0.iter().zip(means.products).map(|(k, s)| k * s).sum()
+    }
+
+    /// ρ and δΩ_G − Ω_G ρ as constant + slope times H₃(m₀) − ⟨H₃⟩, over h².
+    fn parts(self, orbit: &Orbit) -> [[f64; 2]; 2] {
+        let (here, slope) = (&orbit.here, &orbit.slope);
+        let (f, f_e) = (self.mean(here), self.mean(slope));
+        let f_g = (4.0 * f - 2.0 * orbit.energy * f_e) / orbit.norm;
+        // ∂_EΩ_J / Ω_J = −∂_E T / T
+        let rho = [f_e, -slope.period / here.period];
+        let turn = [f_g + here.turn * f_e, slope.turn];
+        [rho, [0, 1].map(|k| turn[k] - here.turn * rho[k])]
+    }
+
+    /// Of the given H₃(m₀) − ⟨H₃⟩ and its square, or the means of both.
+    fn rate(self, orbit: &Orbit, apart: f64, apart_squared: f64) -> f64 {
+        let [rho, about] = self.parts(orbit);
+        let product = |a: [f64; 2], b: [f64; 2]| {
+            a[0] * b[0] + (a[0] * b[1] + a[1] * b[0]) * apart + a[1] * b[1] * apart_squared
+        };
+        let along_l = 2.0 * orbit.energy / orbit.norm; // ω·L/G
+        let square = product(rho, rho) * orbit.omega_squared
+            + 2.0 * product(rho, about) * along_l
+            + product(about, about);
+        square.max(0.0).sqrt()
+    }
+}
+
+/// Of the splittings `candidates`, each with its leading term, that with the smallest leading error of the attitude on the
+/// orbit through the momentum `m`; `None` where there is no such orbit.
+pub(in crate::method) fn of_least_error<C>(
+    candidates: impl IntoIterator<Item = (C, ModifiedEnergy)>,
+    m: Vec3<f64>,
+    moments: Vec3<f64>,
+) -> Option<C> {
+    let orbit = Orbit::through(m, moments)?;
+    let rated =
+        candidates.into_iter().map(|(candidate, term)| (term.mean_attitude_error_rate(&orbit), candidate));
+    rated.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
+}
+
+impl Orbit {
+    /// Of the body with the moments `moments` through the momentum `m`; `None` for a pure spin, a sphere, a body at rest,
+    /// and next to the separatrix, where no mean is worth much.
+    pub(in crate::method) fn through(m: Vec3<f64>, moments: Vec3<f64>) -> Option<Orbit> {
+        let norm = m.norm();
+        let energy = 0.5 * (m[0] * m[0] / moments[0] + m[1] * m[1] / moments[1] + m[2] * m[2] / moments[2]);
+        // orbits change their kind at the energies of pure spins
+        let spins = moments.0.map(|i| 0.5 * norm * norm / i);
+        let room = spins.iter().map(|spin| (energy - spin).abs()).fold(f64::INFINITY, f64::min);
+        let step = SHARE * room;
+        if step.partial_cmp(&(f64::EPSILON * energy)) != Some(Ordering::Greater) {
+            return None;
+        }
+        let at = |energy| Orbit::of(m, energy, norm, moments);
+        let (below, here, above) = (at(energy - step).here, at(energy), at(energy + step).here);
+        let slope = |below: f64, above: f64| (above - below) / (2.0 * step);
+        let slope = Means {
+            period: slope(below.period, above.period),
+            turn: slope(below.turn, above.turn),
+            products: [0, 1, 2].map(|k| slope(below.products[k], above.products[k])),
+        };
+        let finite = |means: &Means| {
+            means.period.is_finite() && means.turn.is_finite() && means.products.iter().all(|s| s.is_finite())
+        };
+        (finite(&here.here) && finite(&slope)).then_some(Orbit { slope, ..here })
+    }
+
+    /// The means of the orbit with the energy `energy` and |m| = `norm`, not of a pure spin; the slopes are left out.
+    fn of(start: Vec3<f64>, energy: f64, norm: f64, moments: Vec3<f64>) -> Orbit {
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
+        let [small, middle, large] = order;
+        // G² − 2E I_k: positive of the smallest moment, negative of the largest
+        let delta = |k: usize| norm * norm - 2.0 * energy * moments[k];
+        let (a, b, c) = if delta(middle) <= 0.0 { (small, middle, large) } else { (large, middle, small) };
+        let (ia, ib, ic) = (moments[a], moments[b], moments[c]);
+        let [a2, b2, c2] = [ia * delta(c) / (ia - ic), ib * delta(a) / (ib - ia), ic * delta(a) / (ic - ia)];
+        let parameter = delta(a) * (ic - ib) / (-delta(c) * (ib - ia));
+        let modulus = Modulus::new(1.0 - parameter);
+        let quarter = modulus.quarter_period();
+        let rate = ((ic - ia) / (ia * ic)).abs() * (a2 * c2 / b2).sqrt();
+        let mut here = Means { period: 4.0 * quarter / rate, turn: 0.0, products: [0.0; 3] };
+        let (mut squares, mut omega_squared) = ([0.0; 6], 0.0);
+        for n in 0..POINTS {
+            // half a period from −K to K, symmetric
+            let u = quarter * ((2 * n + 1) as f64 / POINTS as f64 - 1.0);
+            let (sn, cn, dn) = modulus.sn_cn_dn(u);
+            let mut s = [0.0; 3];
+            (s[a], s[b], s[c]) = (a2 * dn * dn, b2 * sn * sn, c2 * cn * cn);
+            let along = s[a].sqrt();
+            let turn = (2.0 * energy / norm + along / ia) / (1.0 + along / norm);
+            here.turn += turn / POINTS as f64;
+            let p = [0, 1, 2].map(|k| s[(k + 1) % 3] * s[(k + 2) % 3]);
+            for (product, p) in here.products.iter_mut().zip(p) {
+                *product += p / POINTS as f64;
+            }
+            for (square, (j, k)) in squares.iter_mut().zip([(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]) {
+                *square += p[j] * p[k] / POINTS as f64;
+            }
+            let square = |k: usize| s[k] / (moments[k] * moments[k]);
+            omega_squared += (square(0) + square(1) + square(2)) / POINTS as f64;
+        }
+        let slope = Means { period: 0.0, turn: 0.0, products: [0.0; 3] };
+        Orbit { start, energy, norm, here, slope, squares, omega_squared }
+    }
+}

@@ -1,0 +1,180 @@
+//! Turns about principal axes, one after another: what splittings of the kinetic energy are made of.
+
+use core::f64::consts::FRAC_PI_4;
+
+use crate::body::Point;
+use crate::flow::{turn_a_little_about, turn_about, turn_about_axis};
+use crate::method::SideBySide;
+use crate::method::combine::lengths;
+use crate::method::contract::lanes::{Kernel, Width};
+use crate::method::schemes::{Part, Scheme};
+use crate::num::trig::SMALL;
+use crate::num::{Dd, Precise, Real};
+
+/// A step of turns that reads the same from both ends.
+///
+/// The last turn of a step and the first of the next are about the same axis and merge: [`open`](Self::open) takes the first
+/// turn, [`advance`](Self::advance) the others and then both ends at once, [`close`](Self::close) takes the first turn back.
+#[derive(Clone, Debug)]
+pub(in crate::method) struct Turns<S> {
+    axes: Axes,
+    /// Half the angle of each turn over the momentum about its axis, from the second to the last.
+    whole: Vec<S>,
+    /// The same with both ends merged.
+    cycle: Vec<S>,
+    first: S,
+    /// Half of the largest angle of an opened motion at most, rad.
+    reach: f64,
+    /// Whether that is at most [`SMALL`].
+    small: bool,
+}
+
+/// Which axes the turns are about, in the order of `cycle`.
+#[derive(Clone, Copy, Debug)]
+enum Axes {
+    /// Inner, outer and so on.
+    Two([usize; 2]),
+    /// Middle, inner, middle, outer and so on.
+    Three([usize; 3]),
+}
+
+impl<S: Precise> Turns<S> {
+    /// Two flows in turn as `scheme` says, the first of a step about `outer`. `rates` are the rates of turning over the
+    /// momentum about outer and inner axis, for the time of a step.
+    pub(in crate::method) fn two(axes: [usize; 2], rates: [Dd; 2], scheme: &Scheme) -> Self {
+        let flows = scheme.flows();
+        let first = flows.first().map_or(Part::B, |flow| flow.0);
+        let [outer, inner] = [true, false].map(|outer| {
+            let shares: Vec<Dd> =
+                flows.iter().filter(|flow| (flow.0 == first) == outer).map(|flow| flow.1).collect();
+            lengths::<S>(rates[usize::from(!outer)] * 0.5, &shares)
+        });
+        let turns = inner.iter().zip(&outer[1..]).flat_map(|(inner, outer)| [*inner, *outer]);
+        Turns::new(Axes::Two(axes), outer[0], turns.collect())
+    }
+
+    /// Strang's splitting by three axes, composed of steps of the given shares; `axes` and `rates` are those of outer, middle
+    /// and inner axis.
+    pub(in crate::method) fn three(axes: [usize; 3], rates: [Dd; 3], shares: &[Dd]) -> Self {
+        let [outer, middle, inner] = rates.map(|rate| lengths::<S>(rate * 0.5, shares));
+        let mut turns = Vec::with_capacity(4 * shares.len());
+        for n in 0..shares.len() {
+            let halves = [middle[n] * 0.5, inner[n], middle[n] * 0.5];
+            turns.extend(halves);
+            turns.push((outer[n] + outer.get(n + 1).copied().unwrap_or(Dd::ZERO)) * 0.5);
+        }
+        Turns::new(Axes::Three(axes), outer[0] * 0.5, turns)
+    }
+
+    fn new(axes: Axes, first: Dd, turns: Vec<Dd>) -> Self {
+        let whole: Vec<S> = turns.into_iter().map(S::from_dd).collect();
+        let first = S::from_dd(first);
+        let mut cycle = whole.clone();
+        if let Some(last) = cycle.last_mut() {
+            *last = *last + first;
+        }
+        Turns { axes, whole, cycle, first, reach: f64::INFINITY, small: false }
+    }
+
+    /// Takes all turns of a step.
+    #[inline]
+    pub(in crate::method) fn apply(&self, x: &mut Point<S>) {
+        turn_about_axis(self.outer(), x, self.first);
+        self.axes.turn::<false, S>(&self.whole, x);
+        x.renormalize_at_times();
+    }
+
+    /// Takes the first turn; from here on |m| is that of `x`.
+    pub(in crate::method) fn open(&mut self, x: &mut Point<S>) {
+        let largest = self.cycle.iter().map(|rate| rate.magnitude()).fold(0.0, f64::max);
+        // |m| walks by rounding
+        self.reach = 1.01 * largest * x.momentum_body.norm().magnitude();
+        self.small = self.reach <= SMALL;
+        turn_about_axis(self.outer(), x, self.first);
+    }
+
+    #[inline]
+    pub(in crate::method) fn advance(&self, x: &mut Point<S>) {
+        if self.small {
+            self.axes.turn::<true, S>(&self.cycle, x);
+        } else {
+            self.axes.turn::<false, S>(&self.cycle, x);
+        }
+        x.renormalize_at_times();
+    }
+
+    #[inline]
+    pub(in crate::method) fn close(&self, x: &mut Point<S>) {
+        turn_about_axis(self.outer(), x, -self.first);
+    }
+
+    /// The steps of an opened motion side by side with others; `None` where a turn goes so far that its angle is reduced.
+    pub(in crate::method) fn side_by_side(&self) -> Option<SideBySide<S>> {
+        let width = if self.small {
+            Width::Small
+        } else if self.reach <= FRAC_PI_4 {
+            Width::Moderate
+        } else {
+            return None;
+        };
+        let axes: &[usize] = match &self.axes {
+            Axes::Two([outer, inner]) => &[*inner, *outer],
+            Axes::Three([outer, middle, inner]) => &[*middle, *inner, *middle, *outer],
+        };
+        let axes = axes.iter().copied().cycle().take(self.cycle.len()).collect();
+        Some(SideBySide { kernel: Kernel::Turns(axes, width), constants: self.cycle.clone() })
+    }
+
+    fn outer(&self) -> usize {
+        match self.axes {
+            Axes::Two([outer, _]) | Axes::Three([outer, ..]) => outer,
+        }
+    }
+}
+
+impl Axes {
+    /// Takes all of `turns`. The axes are constants inside, so that the state stays in registers.
+    #[inline]
+    fn turn<const SMALL: bool, S: Real>(self, turns: &[S], x: &mut Point<S>) {
+        match self {
+            Axes::Two([0, 1]) => two::<0, 1, SMALL, S>(turns, x),
+            Axes::Two([0, _]) => two::<0, 2, SMALL, S>(turns, x),
+            Axes::Two([1, 0]) => two::<1, 0, SMALL, S>(turns, x),
+            Axes::Two([1, _]) => two::<1, 2, SMALL, S>(turns, x),
+            Axes::Two([_, 0]) => two::<2, 0, SMALL, S>(turns, x),
+            Axes::Two(_) => two::<2, 1, SMALL, S>(turns, x),
+            Axes::Three([0, 1, _]) => three::<0, 1, 2, SMALL, S>(turns, x),
+            Axes::Three([0, ..]) => three::<0, 2, 1, SMALL, S>(turns, x),
+            Axes::Three([1, 0, _]) => three::<1, 0, 2, SMALL, S>(turns, x),
+            Axes::Three([1, ..]) => three::<1, 2, 0, SMALL, S>(turns, x),
+            Axes::Three([_, 0, _]) => three::<2, 0, 1, SMALL, S>(turns, x),
+            Axes::Three(_) => three::<2, 1, 0, SMALL, S>(turns, x),
+        }
+    }
+}
+
+#[inline(always)]
+fn two<const OUTER: usize, const INNER: usize, const SMALL: bool, S: Real>(turns: &[S], x: &mut Point<S>) {
+    for &[inner, outer] in turns.as_chunks().0 {
+        turn::<INNER, SMALL, S>(x, inner);
+        turn::<OUTER, SMALL, S>(x, outer);
+    }
+}
+
+#[inline(always)]
+fn three<const OUTER: usize, const MIDDLE: usize, const INNER: usize, const SMALL: bool, S: Real>(
+    turns: &[S],
+    x: &mut Point<S>,
+) {
+    for &[before, inner, behind, outer] in turns.as_chunks().0 {
+        turn::<MIDDLE, SMALL, S>(x, before);
+        turn::<INNER, SMALL, S>(x, inner);
+        turn::<MIDDLE, SMALL, S>(x, behind);
+        turn::<OUTER, SMALL, S>(x, outer);
+    }
+}
+
+#[inline(always)]
+fn turn<const AXIS: usize, const SMALL: bool, S: Real>(x: &mut Point<S>, half_rate: S) {
+    if SMALL { turn_a_little_about::<AXIS, S>(x, half_rate) } else { turn_about::<AXIS, S>(x, half_rate) }
+}
