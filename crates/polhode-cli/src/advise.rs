@@ -215,7 +215,9 @@ fn json(advice: &Advice, actual: Option<f64>) -> String {
 /// The flag that an error is about, and its message.
 fn told(error: AdviseError) -> Error {
     let flag = match &error {
-        AdviseError::NotPositive { .. } | AdviseError::Chaotic { .. } => "--until",
+        AdviseError::NotPositive { .. } | AdviseError::Chaotic { .. } | AdviseError::TooLong { .. } => {
+            "--until"
+        }
         AdviseError::Lost { .. } | AdviseError::Conditioning { .. } | AdviseError::Unreached { .. } => {
             "--attitude-error"
         }

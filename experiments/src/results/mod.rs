@@ -40,7 +40,8 @@ const EXAMPLES: &str = "Examples:
   polhode experiment run order drift --scale smoke
   polhode experiment run order drift --scale smoke --report results.html";
 
-/// The subcommands of `polhode experiment`.
+/// The subcommands of `polhode experiment`; what is said of each is its help on the command line.
+#[allow(rustdoc::invalid_html_tags)]
 #[derive(Subcommand)]
 pub enum ExperimentCommand {
     /// List the experiments and the question of each
