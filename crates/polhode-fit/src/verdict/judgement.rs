@@ -38,9 +38,9 @@ pub(crate) enum Verdict {
     /// It leaves numbers of the tensor open.
     Undetermined(Identifiability),
     /// It leaves numbers open that a prior supplies.
-    Completed(Supported, Completed),
+    Completed(Box<Supported>, Box<Completed>),
     /// It determines the tensor.
-    Determined(Supported),
+    Determined(Box<Supported>),
 }
 
 /// What an answer rests on beside the weak estimate.
@@ -68,21 +68,11 @@ impl Case<'_> {
         let Case { stretches, settings, variance, .. } = *self;
         let weak = &chosen.weak;
         let misfit = weak.misfit(variance);
-        let better = self.other_units(chosen);
         // a unit of any size must not convince: there is a tensor next to the sphere for any small wobble in large enough
         // a unit
-        let (hidden, warned) = match better.as_ref().map(|b| b.support) {
-            Some(Support::Named) => {
-                if let Some(better) = better {
-                    return Ok(Verdict::MistakenUnit(better));
-                }
-                (false, false)
-            }
-            // torque noise that explains what a unit would explain without any explains nothing
-            Some(Support::Any { determined, far }) => {
-                (far && weak.explanation(variance) == Explanation::TorqueNoise, determined)
-            }
-            Some(Support::Undetermined) | None => (false, false),
+        let better = match self.other_units(chosen) {
+            Some(better) if better.support == Support::Named => return Ok(Verdict::MistakenUnit(better)),
+            better => better,
         };
         let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
         // what the noise does not explain enlarges the deviations
@@ -93,14 +83,22 @@ impl Case<'_> {
         let filling = prior.as_ref().filter(|_| is_open && !self.is_sized);
         let filled =
             filling.and_then(|prior| completed(stretches, weak, &prior.shape_root(), prior.x, variance));
-        let factor = better.as_ref().map(|b| b.factor);
-        let better = better.filter(|_| warned);
+        let (factor, support) = (better.as_ref().map(|b| b.factor), better.as_ref().map(|b| b.support));
+        let better = better.filter(|b| matches!(b.support, Support::Any { determined: true, .. }));
         if let Some(filled) = filled {
             let identifiability =
                 Identifiability::new(&filled.alone, &scatter_of(stretches), &tensor(&filled.weak.x()));
-            return Ok(Verdict::Completed(Supported { identifiability, prior, better }, filled));
+            return Ok(Verdict::Completed(
+                Box::new(Supported { identifiability, prior, better }),
+                Box::new(filled),
+            ));
         }
-        if hidden || (!weak.has_settled() && misfit > weak.expected_misfit()) {
+        let is_explained = match (support, weak.explanation(variance)) {
+            // torque noise that explains what a unit would explain without any explains nothing
+            (Some(Support::Any { far: true, .. }), Explanation::TorqueNoise) => false,
+            _ => weak.has_settled() || misfit <= weak.expected_misfit(),
+        };
+        if !is_explained {
             return Ok(Verdict::Unsettled { factor });
         }
         let names = untold(weak, stretches, enlarged, &identifiability);
@@ -109,7 +107,7 @@ impl Case<'_> {
             return Ok(Verdict::UntoldTorque { names, rank: identifiability.rank });
         }
         match identifiability.complete() {
-            true => Ok(Verdict::Determined(Supported { identifiability, prior, better })),
+            true => Ok(Verdict::Determined(Box::new(Supported { identifiability, prior, better }))),
             false => Ok(Verdict::Undetermined(identifiability)),
         }
     }
