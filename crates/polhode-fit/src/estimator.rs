@@ -1,5 +1,6 @@
 //! The estimator: from a record to a physical tensor.
 
+use crate::solve::completed::Completed;
 use crate::thresholds::noise::{LEAST, MOST};
 use crate::thresholds::walk::STEPS;
 use crate::verdict::judgement::{Case, Supported, Verdict};
@@ -95,12 +96,13 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         Verdict::UntoldTorque { names, rank } => return Err(FitError::Untold { names, rank }),
         Verdict::Undetermined(what) => return Err(FitError::Unidentifiable(Box::new(what))),
         Verdict::Completed(supported, by) => {
-            chosen.weak = by.weak;
-            (supported, Some(Agreement { chi2: by.chi2, dof: 5 }))
+            let Completed { weak, chi2, .. } = *by;
+            chosen.weak = weak;
+            (supported, Some(Agreement { chi2, dof: 5 }))
         }
         Verdict::Determined(supported) => (supported, None),
     };
-    let Supported { identifiability, prior, better } = supported;
+    let Supported { identifiability, prior, better } = *supported;
     let weak = &chosen.weak;
     let misfit = weak.misfit(variance);
     let information = || FitError::Solver(SolverFailure::Information);

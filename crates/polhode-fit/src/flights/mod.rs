@@ -47,7 +47,7 @@ pub struct Flights {
     pub whole: bool,
 }
 
-/// Finds the spans of a record in which the body rotates freely, but for drag; [`Record::during`] cuts them out.
+/// Finds the spans of a record in which the body rotates freely, but for drag; [`during`] cuts them out.
 ///
 /// A record that nowhere contradicts a free body, or one under the torques that [`fit`](super::fit) has columns for, is
 /// one flight from end to end. Otherwise a flight is what one tensor explains together with other flights, up to torques

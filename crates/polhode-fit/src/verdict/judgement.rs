@@ -38,9 +38,9 @@ pub(crate) enum Verdict {
     /// It leaves numbers of the tensor open.
     Undetermined(Identifiability),
     /// It leaves numbers open that a prior supplies.
-    Completed(Supported, Completed),
+    Completed(Box<Supported>, Box<Completed>),
     /// It determines the tensor.
-    Determined(Supported),
+    Determined(Box<Supported>),
 }
 
 /// What an answer rests on beside the weak estimate.
@@ -88,7 +88,10 @@ impl Case<'_> {
         if let Some(filled) = filled {
             let identifiability =
                 Identifiability::new(&filled.alone, &scatter_of(stretches), &tensor(&filled.weak.x()));
-            return Ok(Verdict::Completed(Supported { identifiability, prior, better }, filled));
+            return Ok(Verdict::Completed(
+                Box::new(Supported { identifiability, prior, better }),
+                Box::new(filled),
+            ));
         }
         let is_explained = match (support, weak.explanation(variance)) {
             // torque noise that explains what a unit would explain without any explains nothing
@@ -104,7 +107,7 @@ impl Case<'_> {
             return Ok(Verdict::UntoldTorque { names, rank: identifiability.rank });
         }
         match identifiability.complete() {
-            true => Ok(Verdict::Determined(Supported { identifiability, prior, better })),
+            true => Ok(Verdict::Determined(Box::new(Supported { identifiability, prior, better }))),
             false => Ok(Verdict::Undetermined(identifiability)),
         }
     }
