@@ -1,4 +1,4 @@
-//! Units of times and rates, by the names that files use.
+//! Units of times, rates, angles, momenta and torques, by the names that files use.
 
 use crate::num::Shown;
 
@@ -14,11 +14,17 @@ pub enum TimeUnit {
     Microseconds,
     /// 1e-9 s
     Nanoseconds,
+    /// 60 s
+    Minutes,
+    /// 3600 s
+    Hours,
+    /// 86 400 s
+    Days,
     /// This many seconds, such as the time between two counts.
     Multiple(f64),
 }
 
-/// Unit of a column of rates.
+/// Unit of an angular velocity.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RateUnit {
@@ -31,6 +37,31 @@ pub enum RateUnit {
     RevolutionsPerMinute,
 }
 
+/// Unit of an angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AngleUnit {
+    /// Radians.
+    Radians,
+    /// Degrees.
+    Degrees,
+}
+
+/// Unit of an angular momentum.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MomentumUnit {
+    /// N m s = kg m²/s
+    NewtonMetreSeconds,
+}
+
+/// Unit of a torque.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TorqueUnit {
+    /// N m
+    NewtonMetres,
+}
+
 impl core::fmt::Display for TimeUnit {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
@@ -38,6 +69,9 @@ impl core::fmt::Display for TimeUnit {
             Self::Milliseconds => f.write_str("ms"),
             Self::Microseconds => f.write_str("us"),
             Self::Nanoseconds => f.write_str("ns"),
+            Self::Minutes => f.write_str("min"),
+            Self::Hours => f.write_str("h"),
+            Self::Days => f.write_str("d"),
             Self::Multiple(seconds) => write!(f, "{} s", Shown(*seconds)),
         }
     }
@@ -54,13 +88,16 @@ impl core::fmt::Display for RateUnit {
 }
 
 impl TimeUnit {
-    /// The unit of that name: s, ms, us (µs), ns.
+    /// The unit of that name: s, ms, us (µs), ns, min, h, d.
     pub fn named(name: &str) -> Option<Self> {
         match plain(name).as_str() {
             "s" | "sec" | "second" | "seconds" | "с" | "сек" => Some(Self::Seconds),
             "ms" | "msec" | "milliseconds" => Some(Self::Milliseconds),
             "us" | "µs" | "μs" | "microseconds" => Some(Self::Microseconds),
-            "ns" | "nanoseconds" => Some(Self::Nanoseconds),
+            "ns" | "nanos" | "nanoseconds" => Some(Self::Nanoseconds),
+            "min" | "minutes" => Some(Self::Minutes),
+            "h" | "hr" | "hours" => Some(Self::Hours),
+            "d" | "day" | "days" => Some(Self::Days),
             _ => None,
         }
     }
@@ -72,6 +109,9 @@ impl TimeUnit {
             Self::Milliseconds => "milliseconds",
             Self::Microseconds => "microseconds",
             Self::Nanoseconds => "nanoseconds",
+            Self::Minutes => "minutes",
+            Self::Hours => "hours",
+            Self::Days => "days",
             Self::Multiple(_) => "multiples of a time",
         }
     }
@@ -83,18 +123,24 @@ impl TimeUnit {
             Self::Milliseconds => value / 1e3,
             Self::Microseconds => value / 1e6,
             Self::Nanoseconds => value / 1e9,
+            Self::Minutes => value * 60.0,
+            Self::Hours => value * 3600.0,
+            Self::Days => value * 86_400.0,
             Self::Multiple(seconds) => value * seconds,
         }
     }
 }
 
 impl RateUnit {
+    /// All three.
+    pub const ALL: [RateUnit; 3] =
+        [RateUnit::RadiansPerSecond, RateUnit::DegreesPerSecond, RateUnit::RevolutionsPerMinute];
+
     /// The unit of that name: rad/s, deg/s (°/s, dps), rpm.
     pub fn named(name: &str) -> Option<Self> {
         match plain(name).as_str() {
-            "rad/s" | "рад/с" | "rads" | "rad/sec" | "rads-1" | "rps" | "radians/s" => {
-                Some(Self::RadiansPerSecond)
-            }
+            "rad/s" | "рад/с" | "rads" | "rad/sec" | "rads-1" | "rads^-1" | "rad·s⁻¹" | "rps"
+            | "radians/s" => Some(Self::RadiansPerSecond),
             "deg/s" | "°/s" | "°/с" | "dps" | "degs" | "deg/sec" | "degrees/s" => {
                 Some(Self::DegreesPerSecond)
             }
@@ -120,6 +166,55 @@ impl RateUnit {
             Self::RevolutionsPerMinute => value * (core::f64::consts::PI / 30.0),
         }
     }
+}
+
+impl AngleUnit {
+    /// The unit of that name: rad, deg (°).
+    pub fn named(name: &str) -> Option<Self> {
+        match plain(name).as_str() {
+            "rad" | "radians" => Some(Self::Radians),
+            "deg" | "°" | "degrees" => Some(Self::Degrees),
+            _ => None,
+        }
+    }
+
+    /// One of it, rad.
+    #[must_use]
+    pub fn radians(self) -> f64 {
+        match self {
+            Self::Radians => 1.0,
+            Self::Degrees => core::f64::consts::PI / 180.0,
+        }
+    }
+}
+
+impl core::fmt::Display for AngleUnit {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Radians => "rad",
+            Self::Degrees => "deg",
+        })
+    }
+}
+
+impl MomentumUnit {
+    /// The unit of that name: N m s, kg m^2/s.
+    pub fn named(name: &str) -> Option<Self> {
+        matches!(product(name).as_str(), "Nms" | "kgm^2/s" | "kgm²/s" | "kgm2/s")
+            .then_some(Self::NewtonMetreSeconds)
+    }
+}
+
+impl TorqueUnit {
+    /// The unit of that name: N m.
+    pub fn named(name: &str) -> Option<Self> {
+        (product(name) == "Nm").then_some(Self::NewtonMetres)
+    }
+}
+
+/// Without blanks and signs of multiplication; mN is not MN.
+fn product(text: &str) -> String {
+    text.chars().filter(|c| !" .*·".contains(*c)).collect()
 }
 
 /// Lower case without blanks.

@@ -48,7 +48,7 @@ impl Reading {
     /// without attitude.
     #[must_use]
     pub fn omega_body(&self, record: &Trajectory, row: usize) -> Option<Vec3<f64>> {
-        let unit = self.rate_unit.map_or(1.0, super::RateUnit::radians_per_second);
+        let unit = self.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
         let omega = Vec3(*record.rates.as_ref()?.get(row)?) * unit;
         self.in_body(self.omega_frame, record, row, omega)
     }

@@ -3,7 +3,7 @@
 use super::program::{Dynamics, Program, Turn};
 use super::rows::Windows;
 use super::shape::Look;
-use super::{Attitudes, Frame, RateUnit, Reading, Trajectory};
+use super::{Attitudes, Frame, Reading, Trajectory};
 use crate::num::trig::sin_cos;
 use crate::rotation::{Quat, Vec3};
 
@@ -71,7 +71,7 @@ impl<'a> Columns<'a> {
     fn omega(&self, reading: &Reading, dynamics: &Dynamics, row: usize) -> Option<Vec3<f64>> {
         match self.source {
             Source::Rates => {
-                let unit = reading.rate_unit.map_or(1.0, RateUnit::radians_per_second);
+                let unit = reading.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
                 self.record.rates.as_ref().map(|rates| Vec3(rates[row]) * unit)
             }
             Source::Momentum => reading.momentum_body(self.record, row).map(|m| dynamics.omega(m)),
@@ -164,7 +164,7 @@ impl<'a> Columns<'a> {
 
     /// States at the nodes of the windows, in body axes, by `reading`; ω of attitudes alone as their mean change between nodes.
     pub(super) fn looks(&self, reading: &Reading, windows: &Windows) -> Vec<Vec<Look>> {
-        let unit = reading.rate_unit.map_or(1.0, RateUnit::radians_per_second);
+        let unit = reading.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
         let at = |row: usize| -> Option<Look> {
             let time = self.record.times[row];
             let attitude = reading.attitude(self.record, row);

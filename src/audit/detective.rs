@@ -139,7 +139,7 @@ impl Case<'_> {
                 if forced {
                     found.push((Suspect::Transposed, Program { law: Law::TransposedForces, ..right }));
                 }
-                let degree = RateUnit::DegreesPerSecond.radians_per_second();
+                let degree = RateUnit::DegreesPerSecond.radians_per_second(1.0);
                 for factor in [degree, 1.0 / degree] {
                     found.push((Suspect::Degrees, Program { turn: Turn { frame, factor }, ..right }));
                 }

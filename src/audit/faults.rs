@@ -70,7 +70,7 @@ fn usual_interval(record: &Trajectory) -> f64 {
 }
 
 fn too_coarse(record: &Trajectory, reading: &Reading, usual: f64) -> Option<Fault> {
-    let unit = reading.rate_unit.map_or(1.0, super::RateUnit::radians_per_second);
+    let unit = reading.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
     let rates = record.rates.as_ref()?;
     let squares = rates.iter().map(|w| Vec3(*w).norm_squared()).sum::<f64>() / rates.len() as f64;
     let angle = squares.sqrt() * unit * usual;

@@ -28,9 +28,10 @@ mod states;
 mod trajectory;
 mod verdict;
 
+pub use crate::units::{AngleUnit, RateUnit};
 pub use error::AuditError;
 pub use question::{Claims, Question};
-pub use reading::{AngleUnit, Angles, Direction, Frame, Product, QuaternionOrder, RateUnit, Reading, Turns};
+pub use reading::{Angles, Direction, Frame, Product, QuaternionOrder, Reading, Turns};
 pub use trajectory::{Attitudes, FEWEST_ROWS, Trajectory};
 pub use verdict::{
     AttitudeError, Conservation, Fault, Judgement, Missing, Ranked, Resolution, Signature, Suspect, Tie,

@@ -1,9 +1,9 @@
 //! A reading of the columns: which convention their numbers are in.
 
-use core::f64::consts::{PI, TAU};
 use core::fmt;
 
 use crate::rotation::EulerSequence;
+use crate::units::{AngleUnit, RateUnit};
 
 /// Place of the scalar in a quaternion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,26 +41,6 @@ pub enum Frame {
     Space,
 }
 
-/// Unit of angular velocity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RateUnit {
-    /// rad/s.
-    RadiansPerSecond,
-    /// deg/s.
-    DegreesPerSecond,
-    /// Turns a minute.
-    Rpm,
-}
-
-/// Unit of angles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AngleUnit {
-    /// Radians.
-    Radians,
-    /// Degrees.
-    Degrees,
-}
-
 /// What the turns of Euler angles are about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turns {
@@ -84,7 +64,8 @@ pub struct Angles {
 /// One convention of all columns; what the record has no column for is `None`.
 ///
 /// ```
-/// use polhode::audit::{Direction, Frame, QuaternionOrder, RateUnit, Reading};
+/// use polhode::audit::{Direction, Frame, QuaternionOrder, Reading};
+/// use polhode::units::RateUnit;
 /// let mut mujoco = Reading::default();
 /// mujoco.quaternion = Some(QuaternionOrder::ScalarFirst);
 /// mujoco.attitude = Some(Direction::BodyToSpace);
@@ -157,32 +138,6 @@ impl Direction {
     }
 }
 
-impl RateUnit {
-    /// All three.
-    pub const ALL: [RateUnit; 3] = [RateUnit::RadiansPerSecond, RateUnit::DegreesPerSecond, RateUnit::Rpm];
-
-    /// One of it, rad/s.
-    #[must_use]
-    pub fn radians_per_second(self) -> f64 {
-        match self {
-            RateUnit::RadiansPerSecond => 1.0,
-            RateUnit::DegreesPerSecond => PI / 180.0,
-            RateUnit::Rpm => TAU / 60.0,
-        }
-    }
-}
-
-impl AngleUnit {
-    /// One of it, rad.
-    #[must_use]
-    pub fn radians(self) -> f64 {
-        match self {
-            AngleUnit::Radians => 1.0,
-            AngleUnit::Degrees => PI / 180.0,
-        }
-    }
-}
-
 impl fmt::Display for QuaternionOrder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -206,25 +161,6 @@ impl fmt::Display for Frame {
         f.write_str(match self {
             Frame::Body => "body",
             Frame::Space => "space",
-        })
-    }
-}
-
-impl fmt::Display for RateUnit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            RateUnit::RadiansPerSecond => "rad/s",
-            RateUnit::DegreesPerSecond => "deg/s",
-            RateUnit::Rpm => "rpm",
-        })
-    }
-}
-
-impl fmt::Display for AngleUnit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            AngleUnit::Radians => "rad",
-            AngleUnit::Degrees => "deg",
         })
     }
 }

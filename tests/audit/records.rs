@@ -136,7 +136,7 @@ pub(crate) fn record(
     writing: Writing,
 ) -> Trajectory {
     let size = states.iter().map(|(_, _, w)| w.norm_squared()).sum::<f64>() / states.len() as f64;
-    let unit = reading.rate_unit.unwrap().radians_per_second();
+    let unit = reading.rate_unit.unwrap().radians_per_second(1.0);
     let size = size.sqrt() / unit;
     let (mut quaternions, mut matrices, mut triples, mut rates) = (vec![], vec![], vec![], vec![]);
     for (_, q, omega) in states {

@@ -1,47 +1,14 @@
 //! One time as it is written: a number of seconds, a number with a unit, or a date.
 
 use polhode::body::Date;
+use polhode::units::TimeUnit;
 
 use crate::numbers::number;
 
-/// Seconds in a unit; below a second what the number is divided by.
-const UNITS: [(&str, Unit); 12] = [
-    ("ns", Unit::Part(1e9)),
-    ("us", Unit::Part(1e6)),
-    ("ms", Unit::Part(1e3)),
-    ("s", Unit::Multiple(1.0)),
-    ("sec", Unit::Multiple(1.0)),
-    ("min", Unit::Multiple(60.0)),
-    ("h", Unit::Multiple(3600.0)),
-    ("hr", Unit::Multiple(3600.0)),
-    ("hours", Unit::Multiple(3600.0)),
-    ("d", Unit::Multiple(86_400.0)),
-    ("day", Unit::Multiple(86_400.0)),
-    ("days", Unit::Multiple(86_400.0)),
-];
-
-#[derive(Clone, Copy)]
-enum Unit {
-    Part(f64),
-    Multiple(f64),
-}
-
-impl Unit {
-    fn named(name: &str) -> Option<Self> {
-        UNITS.iter().find(|(known, _)| *known == name).map(|(_, unit)| *unit)
-    }
-
-    fn seconds(self, value: f64) -> f64 {
-        match self {
-            Self::Part(parts) => value / parts,
-            Self::Multiple(seconds) => value * seconds,
-        }
-    }
-}
-
 /// The seconds in the unit of time `name`.
+#[must_use]
 pub fn seconds_in(name: &str) -> Option<f64> {
-    Unit::named(name).map(|unit| unit.seconds(1.0))
+    TimeUnit::named(name).map(|unit| unit.seconds(1.0))
 }
 
 /// A number and the name of a unit behind it.
@@ -56,7 +23,7 @@ pub fn duration(text: &str) -> Result<f64, String> {
     let text = text.trim();
     let Some((digits, name)) = with_unit(text) else { return number(text) };
     let value = number(digits)?;
-    let unit = Unit::named(name)
+    let unit = TimeUnit::named(name)
         .ok_or_else(|| format!("'{name}' is no unit of time here; write ns, us, ms, s, min, h or d"))?;
     let seconds = unit.seconds(value);
     if seconds.is_finite() { Ok(seconds) } else { Err(format!("'{text}' is too long a time for a double")) }
@@ -78,7 +45,7 @@ pub fn epoch(text: &str) -> Result<Date, String> {
 /// The time `text` in seconds, from `epoch` on where there is one.
 pub fn seconds(text: &str, epoch: Option<&Date>) -> Result<f64, String> {
     let text = text.trim();
-    if with_unit(text).is_some_and(|(_, name)| Unit::named(name).is_some()) {
+    if with_unit(text).is_some_and(|(_, name)| TimeUnit::named(name).is_some()) {
         return duration(text);
     }
     match epoch {

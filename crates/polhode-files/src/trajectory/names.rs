@@ -263,7 +263,7 @@ pub fn rate_unit(text: &str) -> Option<RateUnit> {
     match text {
         "rad/s" | "rad s-1" | "rad·s⁻¹" => Some(RateUnit::RadiansPerSecond),
         "deg/s" | "°/s" | "dps" => Some(RateUnit::DegreesPerSecond),
-        "rpm" | "1/min" => Some(RateUnit::Rpm),
+        "rpm" | "1/min" => Some(RateUnit::RevolutionsPerMinute),
         _ => None,
     }
 }

@@ -83,7 +83,7 @@ pub(super) fn written(
     form: Form,
     how: Writing,
 ) -> Trajectory {
-    let unit = reading.rate_unit.map_or(1.0, RateUnit::radians_per_second);
+    let unit = reading.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
     let squares = rows.iter().map(|row| row.omega.norm_squared()).sum::<f64>();
     let size = (squares / rows.len() as f64).sqrt() / unit;
     let mut quaternions = Vec::new();
