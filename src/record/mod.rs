@@ -38,7 +38,6 @@ pub struct Record {
     pub segments: Vec<Segment>,
     /// What was found among the rows, and when, s.
     findings: Vec<(f64, Finding)>,
-    skipped: Vec<RecordError>,
     /// File and name of each column that was not read.
     unused: Vec<(String, String)>,
 }
@@ -71,7 +70,6 @@ impl Record {
                 columns: [1, 2, 3, 4],
                 rate_unit: Some(RateUnit::default()),
                 unused: Vec::new(),
-                skipped: Vec::new(),
             },
         )
     }
@@ -81,27 +79,14 @@ impl Record {
     /// Values that are not finite, times that decrease, no rows.
     #[doc(hidden)]
     pub fn cleaned(file: &str, mut rows: Rows) -> Result<Record, RecordError> {
-        let skipped = core::mem::take(&mut rows.skipped);
         let unused = core::mem::take(&mut rows.unused).into_iter().map(|name| (file.into(), name)).collect();
         let Cleaned { segments, findings } = cleaned(file, rows)?;
-        Ok(Record { segments, findings, skipped, unused })
-    }
-
-    /// Why rows of the text were left out, one by one.
-    pub fn skipped(&self) -> &[RecordError] {
-        &self.skipped
+        Ok(Record { segments, findings, unused })
     }
 
     /// File and name of each column of a text that was not read.
     pub fn unused_columns(&self) -> &[(String, String)] {
         &self.unused
-    }
-
-    /// Takes columns that the caller has read by itself off the [list](Self::unused_columns) of those that were not.
-    #[must_use]
-    pub fn with_used(mut self, uses: impl Fn(&str) -> bool) -> Record {
-        self.unused.retain(|(_, name)| !uses(name));
-        self
     }
 
     /// Number of samples.
@@ -111,7 +96,7 @@ impl Record {
 
     /// What is known of its files, without samples.
     fn of_none(&self) -> Record {
-        Record { skipped: self.skipped.clone(), unused: self.unused.clone(), ..Record::default() }
+        Record { unused: self.unused.clone(), ..Record::default() }
     }
 
     /// The spikes of all segments, and the record without them, where there are any.
@@ -229,7 +214,6 @@ impl Record {
     pub fn join(mut self, other: Record) -> Record {
         self.segments.extend(other.segments);
         self.findings.extend(other.findings);
-        self.skipped.extend(other.skipped);
         self.unused.extend(other.unused);
         self
     }

@@ -1,6 +1,5 @@
 //! Rows of a file before they are a record.
 
-use super::RecordError;
 use crate::units::RateUnit;
 
 /// The rows of a text: line and values of each, in s and rad/s, with the names and numbers of their columns.
@@ -16,6 +15,4 @@ pub struct Rows {
     pub rate_unit: Option<RateUnit>,
     /// Names of the columns that are not read.
     pub unused: Vec<String>,
-    /// Why rows were left out.
-    pub skipped: Vec<RecordError>,
 }

@@ -1,9 +1,9 @@
-//! What can go wrong on the command line, and how it is told.
+//! What can go wrong with a file, a flag or a run, and how it is told.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::io::Write as _;
 
-use crate::text::{visible, visible_lines};
+use crate::text::{short, visible, visible_lines};
 
 /// A message for standard error and the exit code that goes with it.
 #[derive(Debug, thiserror::Error)]
@@ -14,11 +14,276 @@ pub enum Error {
     /// Input that cannot be used. Exit code 2.
     #[error("{0}")]
     Input(String),
+    /// A place in a table that cannot be used. Exit code 2.
+    #[error("{0}")]
+    Table(Box<TableError>),
     /// The reader of standard output has seen enough, and the work ends. Exit code 0, and nothing is said.
     #[error("standard output is read no further")]
     Unread,
 }
 
+/// Where a table breaks which rule, and what to do. Lines and columns count from 1, the header included.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TableError {
+    /// Name of the file.
+    pub file: String,
+    /// The line; `None` of the file as a whole.
+    pub line: Option<u64>,
+    /// Number and name of the column.
+    pub column: Option<(usize, String)>,
+    /// What stands there; empty where nothing does.
+    pub value: String,
+    /// The rule that it breaks.
+    pub rule: Rule,
+    /// What to do.
+    pub remedy: String,
+}
+
+/// A rule for tables.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Rule {
+    /// The file can be read; the reason why it cannot.
+    Readable(String),
+    /// A line is no longer than this many bytes.
+    Length(usize),
+    /// Text is UTF-8.
+    Utf8,
+    /// There are rows.
+    Rows,
+    /// A column of this quantity is needed; the names that were found.
+    Column(String, Vec<String>),
+    /// Some columns hold an attitude, an angular velocity or an angular momentum; the names that were found.
+    Quantity(Vec<String>),
+    /// One column has the name.
+    Unique(usize, usize),
+    /// One group of columns holds the quantity: what, and the first names of both.
+    OneGroup(&'static str, String, String),
+    /// The columns of a quantity are complete.
+    Complete(String),
+    /// The unit is known; those that are.
+    KnownUnit(&'static str),
+    /// The header and a flag name one unit: that of the header, that of the flag.
+    OneUnit(String, String),
+    /// The header names a unit, such as this one.
+    Unit(&'static str),
+    /// Times are in a unit of time; this column counts samples.
+    Time,
+    /// Rows have no more cells than the header: cells and columns.
+    Longer(usize, usize),
+    /// Rows reach the last column that is read: cells and columns.
+    Shorter(usize, usize),
+    /// The file ends at the end of a row.
+    Torn,
+    /// One mark parts the cells of all lines: that of the header, that of the line.
+    Delimiter(char, char),
+    /// A number is there.
+    Missing,
+    /// The cell is a number.
+    Number,
+    /// The number is finite.
+    Finite,
+    /// No comma in a number may part thousands or decimals.
+    Comma,
+    /// Times do not decrease, or ascend where that is `true`; the time before, s.
+    Order(f64, bool),
+    /// An attitude is not zero.
+    Turn,
+    /// What else a layout asks for.
+    Other(String),
+}
+
+impl Rule {
+    /// The rule in words, and what to do where nothing better is known.
+    fn words(&self) -> (String, &'static str) {
+        const FILE: &str = "name a text file of rows";
+        const ROW: &str = "leave the row out, or complete it";
+        match self {
+            Self::Readable(reason) => (format!("cannot be read: {reason}"), FILE),
+            Self::Length(most) => (format!("longer than {most} bytes"), FILE),
+            Self::Utf8 => ("not UTF-8".into(), FILE),
+            Self::Rows => ("no rows".into(), "name a file with a header and one row for each time"),
+            Self::Column(missing, found) => (
+                format!("no column for {missing}; the header has {}", listed(found)),
+                "name the columns t, wx, wy, wz (or \"Time (s)\", \"Gyroscope x (rad/s)\", ...), or say which they are: --columns t=NAME,wx=NAME,... (keys in --help)",
+            ),
+            Self::Quantity(found) => (
+                format!("neither an attitude nor an angular velocity is told by the names {}", listed(found)),
+                "name the columns by --columns t=NAME,qw=NAME,qx=NAME,... (keys in --help)",
+            ),
+            Self::Unique(first, second) => (
+                format!("columns {first} and {second} have this one name"),
+                "rename one, or give the number of the column that is meant in --columns",
+            ),
+            Self::OneGroup(what, first, second) => (
+                format!("two {what}: from '{}' and from '{}' on", visible(first), visible(second)),
+                "name the columns of one by --columns (keys in --help)",
+            ),
+            Self::Complete(keys) => (format!("a part of {keys}"), "name all of them, or none"),
+            Self::KnownUnit(known) => (
+                format!("no unit that is known here; known: {known}"),
+                "convert the column, or correct its header",
+            ),
+            Self::OneUnit(header, flag) => {
+                (format!("the header says {header}, the flag says {flag}"), "drop one of the two")
+            }
+            Self::Unit(unit) => (
+                format!("the column has no unit; needed is {unit}"),
+                "write it in the header, as NAME (UNIT)",
+            ),
+            Self::Time => {
+                ("counts samples and is no time".into(), "give the rate of the samples: --sample-rate HZ")
+            }
+            Self::Longer(cells, columns) => (
+                format!("{cells} cells where the header has {columns}"),
+                "every row must have as many cells as the header, with decimal points where commas separate them",
+            ),
+            Self::Shorter(cells, columns) => (format!("the row has {cells} of {columns} columns"), ROW),
+            Self::Torn => ("the file ends in the middle of this row".into(), ROW),
+            Self::Delimiter(header, line) => (
+                format!("cells separated by {} where the header has {}", mark(*line), mark(*header)),
+                "separate the cells of every line by the same mark",
+            ),
+            Self::Missing => ("a number is missing".into(), ROW),
+            Self::Number => ("is not a number".into(), "write it like 0.5 or 1e-3"),
+            Self::Finite => ("is not a finite number".into(), "leave the row out"),
+            Self::Comma => (
+                "has a comma that may separate thousands or decimals".into(),
+                "write a decimal point and no other mark",
+            ),
+            Self::Order(before, true) => (
+                format!("does not come after the time before it, {} s", short(*before)),
+                "sort the rows by time; rows of several bodies need a column id",
+            ),
+            Self::Order(before, false) => (
+                format!("comes before the time above it, {} s", short(*before)),
+                "sort the rows by time, or give the files apart",
+            ),
+            Self::Turn => {
+                ("every component of the attitude is zero, which is no rotation".into(), "leave the row out")
+            }
+            Self::Other(rule) => (rule.clone(), "name a table with a header"),
+        }
+    }
+}
+
+impl fmt::Display for Rule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words().0)
+    }
+}
+
+fn mark(c: char) -> &'static str {
+    match c {
+        ',' => "commas",
+        ';' => "semicolons",
+        '\t' => "tabs",
+        _ => "blanks",
+    }
+}
+
+/// Names of columns that a message lists, and their characters in all.
+const LISTED: (usize, usize) = (60, 1500);
+
+/// All names of a header; of a file of another kind, which has none, the beginning.
+fn listed(names: &[String]) -> String {
+    let length: usize = names.iter().map(String::len).sum();
+    let shown: Vec<String> = names.iter().map(|name| format!("'{}'", visible(name))).collect();
+    let all = if shown.is_empty() { "none".into() } else { shown.join(", ") };
+    let is_header = names.len() <= LISTED.0 && length <= LISTED.1;
+    if is_header && !names.iter().any(|name| name.contains(char::is_control)) {
+        all
+    } else {
+        begun(&all).into_owned()
+    }
+}
+
+/// Characters of a value that a message shows; a file of another kind may be a single line.
+const SHOWN: usize = 50;
+
+fn begun(text: &str) -> std::borrow::Cow<'_, str> {
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]).into(),
+        None => text.into(),
+    }
+}
+
+impl TableError {
+    /// Of a rule, with its usual remedy, at no line yet.
+    pub(crate) fn of(file: &str, rule: Rule) -> Self {
+        let remedy = rule.words().1.into();
+        Self { file: file.into(), line: None, column: None, value: String::new(), rule, remedy }
+    }
+
+    /// At this line.
+    pub(crate) fn at(mut self, line: u64) -> Self {
+        self.line = Some(line);
+        self
+    }
+
+    /// In the column of this place, from 0, and name.
+    pub(crate) fn in_column(mut self, place: usize, name: &str) -> Self {
+        self.column = Some((place + 1, name.into()));
+        self
+    }
+
+    /// Where this stands.
+    pub(crate) fn value(mut self, value: &str) -> Self {
+        self.value = value.into();
+        self
+    }
+
+    /// With another remedy.
+    #[must_use]
+    pub fn with_remedy(mut self, remedy: &str) -> Self {
+        self.remedy = remedy.into();
+        self
+    }
+
+    /// Whether it concerns one row, so that the others are usable without it.
+    #[must_use]
+    pub fn is_of_a_row(&self) -> bool {
+        use Rule::{Comma, Delimiter, Finite, Longer, Missing, Number, Order, Shorter, Torn, Turn};
+        matches!(
+            self.rule,
+            Longer(..)
+                | Shorter(..)
+                | Torn
+                | Delimiter(..)
+                | Missing
+                | Number
+                | Finite
+                | Comma
+                | Order(..)
+                | Turn
+        )
+    }
+}
+
+impl fmt::Display for TableError {
+    /// File, line, column, value, rule and remedy.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.file)?;
+        if let Some(line) = self.line {
+            write!(f, ", line {line}")?;
+        }
+        if let Some((number, name)) = &self.column {
+            write!(f, ", column {number} ({})", begun(&visible(name)))?;
+        }
+        f.write_str(": ")?;
+        if !self.value.is_empty() {
+            write!(f, "'{}': ", begun(&visible(&self.value)))?;
+        }
+        write!(f, "{}; {}", self.rule, self.remedy)
+    }
+}
+
+impl From<TableError> for Error {
+    fn from(error: TableError) -> Self {
+        Self::Table(Box::new(error))
+    }
+}
 /// What ours alone can cause: catalogues and examples are valid; if one is not, that is what failed.
 pub fn unexpected(error: impl std::fmt::Display) -> Error {
     Error::Failed(error.to_string())
@@ -54,7 +319,7 @@ impl Error {
         match self {
             Self::Unread => 0,
             Self::Failed(_) => 1,
-            Self::Input(_) => 2,
+            Self::Input(_) | Self::Table(_) => 2,
         }
     }
 }

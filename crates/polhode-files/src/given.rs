@@ -10,10 +10,12 @@ use serde::Deserialize;
 
 use crate::error::Error;
 
+/// A body as it was given: what its file states, and where.
 #[derive(Clone, Debug)]
 pub struct Given {
     /// Of the link or body in a model, else empty.
     pub name: String,
+    /// kg.
     pub mass: Option<f64>,
     /// In the axes of the frame.
     pub center_of_mass: Vector3<f64>,
@@ -44,6 +46,7 @@ pub struct Given {
 /// The bytes of a file that hold a tensor.
 #[derive(Clone, Debug)]
 pub struct Writing {
+    /// The file.
     pub file: Rc<Path>,
     /// Of xx, yy, zz, xy, xz, yz each.
     pub entries: [Option<Range<usize>>; 6],
@@ -82,6 +85,7 @@ impl Given {
         Self { defect: Some(defect), ..Self::of_tensor(Matrix3::zeros()) }
     }
 
+    /// With one remark more.
     pub fn add_remark(&mut self, remark: &str) {
         self.remark = Some(match self.remark.take() {
             Some(before) => format!("{before}; {remark}"),

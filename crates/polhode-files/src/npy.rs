@@ -91,10 +91,12 @@ impl<const N: usize> Array<N> {
         Ok(numbers.iter().map(|entry| entry.map(f64::from_le_bytes)))
     }
 
+    /// Number of times.
     pub fn times(&self) -> u64 {
         self.times
     }
 
+    /// Number of members.
     pub fn members(&self) -> u64 {
         self.members
     }

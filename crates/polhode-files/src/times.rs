@@ -1,49 +1,43 @@
 //! Times from a column of a text, one line after the other.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, ErrorKind, Read, stdin};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use polhode::body::Date;
+use polhode::units::TimeUnit;
 
-use crate::error::Error;
+use crate::error::{Error, Rule, TableError};
 use crate::moment::{is_moment, seconds};
+use crate::table::{Delimiter, Lines as Text, Name, uncommented, width_rule};
 use crate::text::visible;
 
-/// A line of times is no longer than this many bytes.
-const LONGEST_LINE: u64 = 1 << 20;
-/// Where the times stand if nothing else is said.
-const NAMES: [&str; 4] = ["t", "time", "jd", "epoch"];
-
+/// Where times come from.
 #[derive(Clone, Debug)]
 pub enum Source {
+    /// A file.
     File(PathBuf),
+    /// Standard input.
     Standard,
-}
-
-impl Source {
-    fn name(&self) -> String {
-        match self {
-            Self::File(path) => path.display().to_string(),
-            Self::Standard => "standard input".into(),
-        }
-    }
 }
 
 /// A column of times.
 #[derive(Clone, Debug)]
 pub struct Column {
+    /// The text that holds it.
     pub source: Source,
     /// Its name or its number, from 1.
     pub wanted: Option<String>,
+    /// The date of t = 0.
     pub epoch: Option<Date>,
+    /// The flags that name it, for messages.
     pub asked: Asked,
 }
 
 /// By which flags or keys a file and its column are named.
 #[derive(Clone, Debug)]
 pub struct Asked {
+    /// The file.
     pub file: String,
+    /// The column.
     pub column: &'static str,
 }
 
@@ -56,32 +50,34 @@ impl Column {
         }
     }
 
-    pub fn read(&self) -> Result<Lines<'_>, Error> {
-        let reader: Box<dyn BufRead> = match &self.source {
-            Source::File(path) => {
-                let file = File::open(path).map_err(|reason| self.unread(&reason))?;
-                Box::new(BufReader::with_capacity(1 << 16, file))
-            }
-            Source::Standard => Box::new(BufReader::with_capacity(1 << 16, stdin())),
+    /// The times from the first line on.
+    ///
+    /// # Errors
+    /// A file that cannot be opened.
+    pub fn read(&self) -> Result<Times<'_>, Error> {
+        let text = match &self.source {
+            Source::File(path) => Text::open(path),
+            Source::Standard => Text::open(Path::new("-")),
         };
-        Ok(Lines { column: self, reader, text: String::new(), line: 0, place: None, is_empty: true })
+        let text = text.map_err(|error| self.named(error))?;
+        Ok(Times { column: self, text, place: None, is_empty: true, is_over: false })
     }
 
-    fn unread(&self, reason: &dyn std::fmt::Display) -> Error {
-        let rule = format!("cannot be read: {reason}");
-        Error::input(&self.asked.file, &self.source.name(), &rule, "name a text file of times")
+    /// A refusal of the file as a whole, with the flag that names it.
+    fn named(&self, mut error: TableError) -> Error {
+        error.file = format!("{}: {}", self.asked.file, error.file);
+        error.with_remedy("name a text file of times").into()
     }
 }
 
-/// The times of a column, as they are read.
-pub struct Lines<'c> {
+/// The times of a column, s, as they are read.
+pub struct Times<'c> {
     column: &'c Column,
-    reader: Box<dyn BufRead>,
-    text: String,
-    line: u64,
+    text: Text<'static>,
     /// Known with the first line.
     place: Option<Place>,
     is_empty: bool,
+    is_over: bool,
 }
 
 /// Where the times stand in a line.
@@ -89,120 +85,137 @@ struct Place {
     /// From 0.
     column: usize,
     name: String,
-    /// Nothing else stands there, so that a date may hold a blank.
-    alone: bool,
+    /// The unit of times that name none.
+    unit: Option<TimeUnit>,
+    delimiter: Delimiter,
+    /// Columns of the first line; with one, a date may hold a blank.
+    columns: usize,
 }
 
-impl Iterator for Lines<'_> {
+impl Iterator for Times<'_> {
     type Item = Result<f64, Error>;
     fn next(&mut self) -> Option<Result<f64, Error>> {
+        if self.is_over {
+            return None;
+        }
+        let found = self.advance().transpose();
+        self.is_over = !matches!(found, Some(Ok(_)));
+        found.map(|time| time.map_err(Error::from))
+    }
+}
+
+impl Times<'_> {
+    /// The next time.
+    fn advance(&mut self) -> Result<Option<f64>, TableError> {
         loop {
-            self.text.clear();
-            self.line += 1;
-            match self.reader.by_ref().take(LONGEST_LINE).read_line(&mut self.text) {
-                Ok(0) if self.is_empty => {
-                    self.is_empty = false;
-                    return Some(Err(self.refused("", "no time in it", "write one time a line")));
-                }
-                Ok(0) => return None,
-                Ok(length) if length as u64 == LONGEST_LINE => {
-                    let rule = format!("longer than {LONGEST_LINE} bytes");
-                    return Some(Err(self.refused("", &rule, "write one time a line")));
-                }
-                Ok(_) => {}
-                Err(reason) if reason.kind() == ErrorKind::InvalidData => {
-                    return Some(Err(self.refused("", "not UTF-8", "name a text file of times")));
-                }
-                Err(reason) => return Some(Err(self.column.unread(&reason))),
+            if !self.text.advance()? {
+                let refused =
+                    || TableError::of(&self.text.name, Rule::Rows).with_remedy("write one time a line");
+                return if self.is_empty { Err(refused()) } else { Ok(None) };
             }
-            let text = self.text.trim_start_matches('\u{feff}').trim();
-            if text.is_empty() || text.starts_with('#') {
+            let text = self.text.text.trim();
+            if text.is_empty() || uncommented(text).is_some() {
                 continue;
             }
             if self.place.is_none() {
-                match place(text, self.column.wanted.as_deref(), self.column.asked.column) {
-                    Ok((place, is_header)) => {
-                        self.place = Some(place);
-                        if is_header {
-                            continue;
-                        }
-                    }
-                    Err((rule, remedy)) => return Some(Err(self.refused("", &rule, &remedy))),
+                let (place, is_header) = place(text, self.column.wanted.as_deref(), self.column.asked.column)
+                    .map_err(|(rule, remedy)| self.text.refused(rule).with_remedy(&remedy))?;
+                self.place = Some(place);
+                if is_header {
+                    continue;
                 }
             }
             let Some(place) = &self.place else { continue };
             self.is_empty = false;
-            let cell = if place.alone { Some(text) } else { cells(text).nth(place.column) };
-            let Some(cell) = cell else {
-                return Some(Err(self.refused("", "has no such column", "give every line a time")));
-            };
-            let found = seconds(cell, self.column.epoch.as_ref());
-            return Some(found.map_err(|error| {
-                let (file, line) = (self.column.source.name(), self.line);
-                let (number, name) = (place.column + 1, visible(&place.name));
-                Error::Input(format!("{file}, line {line}, column {number} ({name}): {}", visible(&error)))
-            }));
+            return place.time(&self.text, self.column.epoch.as_ref()).map(Some);
         }
     }
 }
 
-impl Lines<'_> {
-    fn refused(&self, value: &str, rule: &str, remedy: &str) -> Error {
-        Error::input(&format!("{}, line {}", self.column.source.name(), self.line), value, rule, remedy)
-    }
-}
-
-/// The cells of a line, apart by comma, semicolon, tab or blanks.
-fn cells(line: &str) -> Box<dyn Iterator<Item = &str> + '_> {
-    match [',', ';', '\t'].into_iter().find(|&c| line.contains(c)) {
-        Some(delimiter) => Box::new(line.split(delimiter).map(|cell| cell.trim().trim_matches('"'))),
-        None => Box::new(line.split_whitespace()),
+impl Place {
+    /// The time in a line.
+    fn time(&self, line: &Text, epoch: Option<&Date>) -> Result<f64, TableError> {
+        let text = line.text.trim();
+        let mut cells = vec![text.to_string()];
+        if self.columns > 1 {
+            cells = self.delimiter.names(text);
+            if cells.len() == self.columns + 1 && cells.last().is_some_and(String::is_empty) {
+                cells.pop();
+            }
+            let (widths, ended) = ((cells.len(), self.columns), line.is_ended);
+            if let Some(rule) = width_rule((text, ended), self.delimiter, widths, self.column, self.columns) {
+                return Err(line.refused(rule));
+            }
+        }
+        let cell = cells.get(self.column).map_or("", String::as_str);
+        let refused = |rule: Rule| line.refused(rule).in_column(self.column, &self.name).value(cell);
+        if cell.is_empty() {
+            return Err(refused(Rule::Missing));
+        }
+        let number = self.delimiter.number(cell);
+        match (self.unit, number.parse::<f64>()) {
+            (Some(unit), Ok(value)) if value.is_finite() => Ok(unit.seconds(value)),
+            _ => seconds(&number, epoch).map_err(|error| match error.split_once("; ") {
+                Some((_, remedy))
+                    if number.parse::<f64>().is_err()
+                        && !error.contains(" is a date")
+                        && !error.contains("no unit") =>
+                {
+                    refused(Rule::Number).with_remedy(remedy)
+                }
+                _ => line
+                    .refused(Rule::Other(error))
+                    .in_column(self.column, &self.name)
+                    .with_remedy("write one time a line"),
+            }),
+        }
     }
 }
 
 /// From the first line: where the times stand, and whether the line is a header. Else a rule and a remedy.
-fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), (String, String)> {
+fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), (Rule, String)> {
+    let delimiter = Delimiter::of(line);
     if wanted.is_none() && is_moment(line).is_ok() {
-        return Ok((Place { column: 0, name: "t".into(), alone: true }, false));
+        return Ok((Place { column: 0, name: "t".into(), unit: None, delimiter, columns: 1 }, false));
     }
-    let names: Vec<&str> = cells(line).collect();
-    let is_header = names.iter().all(|cell| is_moment(cell).is_err());
-    let listed = || {
-        let shown: Vec<String> = names.iter().map(|name| format!("'{}'", visible(name))).collect();
-        shown.join(", ")
-    };
-    let by_number = |text: &str| {
-        let number = text.parse::<usize>().ok()?;
-        (1..=names.len()).contains(&number).then(|| number - 1)
+    let cells = delimiter.names(line);
+    let is_header = cells.iter().all(|cell| is_moment(cell).is_err());
+    let names: Vec<Name> = cells.iter().map(|cell| Name::of(cell)).collect();
+    let by_number =
+        |text: &str| text.parse::<usize>().ok().filter(|n| (1..=cells.len()).contains(n)).map(|n| n - 1);
+    let ranked = || {
+        let ranks = names.iter().enumerate().filter(|(_, name)| !name.is_counter());
+        ranks.filter_map(|(k, name)| Some((name.time_rank()?, k))).min().map(|(_, k)| k)
     };
     let (found, remedy) = match wanted {
         Some(text) => {
-            let named = names.iter().position(|name| is_header && *name == text);
+            let named = cells.iter().position(|name| is_header && name == text);
             (named.or_else(|| by_number(text)), format!("name one of them by {flag}"))
         }
-        None if names.len() == 1 => (Some(0), String::new()),
-        None => {
-            let named = |known: &&str| names.iter().position(|name| name.eq_ignore_ascii_case(known));
-            (
-                NAMES.iter().find_map(named).filter(|_| is_header),
-                format!("name the column of times by {flag}"),
-            )
-        }
+        None if cells.len() == 1 => (Some(0), String::new()),
+        None => (ranked().filter(|_| is_header), format!("name the column of times by {flag}")),
     };
-    match found {
-        Some(column) => {
-            let name = if is_header { names[column].into() } else { "t".into() };
-            Ok((Place { column, name, alone: names.len() == 1 }, is_header))
-        }
-        None => {
-            let rule = match wanted {
-                Some(text) => format!("no column '{text}'; the line has {}", listed()),
-                None if is_header => format!("no column 't'; the line has {}", listed()),
-                None => format!("{} columns without a header: {}", names.len(), listed()),
-            };
-            Err((rule, remedy))
-        }
+    let Some(column) = found else {
+        let missing = wanted.map_or_else(|| "time".to_string(), |text| format!("'{text}'"));
+        return Err((Rule::Column(missing, cells), remedy));
+    };
+    let same = cells.iter().skip(column + 1).position(|name| is_header && *name == cells[column]);
+    if let (Some(second), None) = (same, wanted.and_then(by_number)) {
+        return Err((
+            Rule::Unique(column + 1, column + second + 2),
+            format!("give the number of one by {flag}"),
+        ));
     }
+    let name = if is_header { cells[column].clone() } else { "t".into() };
+    let unit = match names[column].time_unit() {
+        Some((text, None)) if is_header && names[column].time_rank().is_some() => {
+            let rule = Rule::Other(format!("column '{}' is in '{}'", visible(&name), visible(text)));
+            return Err((rule, "known units of time: s, ms, us, ns, min, h, d".into()));
+        }
+        Some((_, unit)) if is_header => unit,
+        _ => None,
+    };
+    Ok((Place { column, name, unit, delimiter, columns: cells.len() }, is_header))
 }
 
 #[cfg(test)]
@@ -237,22 +250,34 @@ mod tests {
     #[test]
     fn what_is_no_time_is_refused_with_its_place() {
         for (text, wanted, says) in [
-            ("1\nx\n", None, ", line 2, column 1 (t): 'x' is not a number; write it like 0.5 or 1e-3"),
+            ("1\nx\n", None, ", line 2, column 1 (t): 'x': is not a number; write it like 0.5 or 1e-3"),
             ("t,a\n1,2\n,3\n", None, ", line 3, column 1 (t): a number is missing"),
-            ("1,2\n", None, ", line 1: 2 columns without a header: '1', '2'; name the column of times"),
-            ("a,b\n1,2\n", None, ", line 1: no column 't'; the line has 'a', 'b'; name the column of times"),
+            (
+                "1,2\n",
+                None,
+                ", line 1: no column for time; the header has '1', '2'; name the column of times",
+            ),
+            (
+                "a,b\n1,2\n",
+                None,
+                ", line 1: no column for time; the header has 'a', 'b'; name the column of times",
+            ),
             (
                 "a,b\n1,2\n3,4\n",
                 Some("c"),
-                ", line 1: no column 'c'; the line has 'a', 'b'; name one of them",
+                ", line 1: no column for 'c'; the header has 'a', 'b'; name one of them",
             ),
-            ("# nothing\n\n", None, ", line 3: no time in it"),
+            ("# nothing\n\n", None, ": no rows; write one time a line"),
             ("t,b\n1,2\n2025-01-01,5\n", None, ", line 3, column 1 (t): '2025-01-01' is a date; give"),
         ] {
             let error = read(text, wanted, None).unwrap_err();
             assert!(error.starts_with(says), "{text:?}: {error}");
         }
         assert!(read("b\n1\n", Some("b"), None).is_ok());
-        assert!(read("a b\n1 2\n3\n", Some("b"), None).unwrap_err().contains("line 3: has no such column"));
+        assert!(
+            read("a b\n1 2\n3\n", Some("b"), None)
+                .unwrap_err()
+                .contains("line 3: the row has 1 of 2 columns")
+        );
     }
 }

@@ -12,7 +12,9 @@ use crate::text::visible;
 
 /// A file and its text.
 pub struct TomlFile<'t> {
+    /// Its path, for messages.
     pub path: &'t Path,
+    /// Its text.
     pub text: &'t str,
 }
 
@@ -40,17 +42,24 @@ impl<'t> TomlFile<'t> {
 
 /// The keys of one table.
 pub struct Section<'t> {
+    /// The file that it stands in.
     pub file: &'t TomlFile<'t>,
     /// Where it begins.
     pub place: usize,
+    /// Its keys and values.
     pub keys: &'t DeTable<'t>,
 }
 
 impl<'t> Section<'t> {
+    /// The value of a key.
     pub fn value(&self, key: &str) -> Option<&'t Spanned<DeValue<'t>>> {
         self.keys.get(key)
     }
 
+    /// A text in quotes.
+    ///
+    /// # Errors
+    /// A value of another kind.
     pub fn text(&self, key: &str) -> Result<Option<&'t str>, Error> {
         match self.value(key).map(Spanned::get_ref) {
             None => Ok(None),
@@ -59,6 +68,10 @@ impl<'t> Section<'t> {
         }
     }
 
+    /// A number above zero.
+    ///
+    /// # Errors
+    /// Another number, or a value of another kind.
     pub fn positive(&self, key: &str) -> Result<Option<f64>, Error> {
         let Some(value) = self.value(key) else { return Ok(None) };
         self.check_positive(key, self.number(key, value)?).map(Some)
@@ -106,6 +119,10 @@ impl<'t> Section<'t> {
         parsed.map(Some).ok_or_else(refused)
     }
 
+    /// `N` numbers in brackets.
+    ///
+    /// # Errors
+    /// Another count, or values of another kind.
     pub fn numbers<const N: usize>(&self, key: &str) -> Result<Option<[f64; N]>, Error> {
         let Some(list) = self.list(key)? else { return Ok(None) };
         let found = list.len();

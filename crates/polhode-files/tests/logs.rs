@@ -3,13 +3,14 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use polhode::units::{RateUnit, TimeUnit};
+use polhode_files::ColumnNames;
 use polhode_files::record::{self, Reading};
 
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
 
 /// Times and rates of the only segment.
 fn read(text: &str, reading: Reading) -> (Vec<f64>, Vec<[f64; 3]>) {
-    let record = record::read(text, "log", reading).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let record = record::read(text, "log", &reading).unwrap_or_else(|error| panic!("{error}\n{text}")).record;
     assert_eq!(record.segments.len(), 1, "{text}");
     let segment = &record.segments[0];
     (segment.times().to_vec(), segment.rates().iter().map(|w| [w.x, w.y, w.z]).collect())
@@ -215,7 +216,10 @@ fn times_of_the_clock_and_no_header() {
 
 #[test]
 fn columns_are_named_or_numbered() {
-    let of = |columns: [&str; 4]| Reading { columns: Some(columns.map(String::from)), ..Reading::default() };
+    let of = |[t, x, y, z]: [&str; 4]| {
+        let columns = ColumnNames::parse(&format!("t={t},x={x},y={y},z={z}")).unwrap();
+        Reading { columns, ..Reading::default() }
+    };
     let expected = (vec![0.0, 0.5], vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     let text = "note,A,B,C,D\nr1,3,2,1,0\nr2,6,5,4,0.5\n";
     assert_eq!(read(text, of(["D", "C", "B", "A"])), expected);
@@ -223,11 +227,10 @@ fn columns_are_named_or_numbered() {
     assert_eq!(read("3,2,1,0\n6,5,4,0.5\n", of(["4", "3", "2", "1"])), expected);
     // what the names would say otherwise does not count
     assert_eq!(read("t,wx,wy,wz\n3,2,1,0\n6,5,4,0.5\n", of(["wz", "wy", "wx", "t"])), expected);
-    let refused = |text: &str, columns| record::read(text, "log", of(columns)).unwrap_err().to_string();
+    let refused = |text: &str, columns| record::read(text, "log", &of(columns)).unwrap_err().to_string();
     let message = refused(text, ["D", "C", "B", "gyro"]);
     assert!(
-        message
-            .starts_with("log: no column for 'gyro'; the header has [\"note\", \"A\", \"B\", \"C\", \"D\"]"),
+        message.starts_with("log, line 1: no column for 'gyro'; the header has 'note', 'A', 'B', 'C', 'D'"),
         "{message}"
     );
     assert!(refused("1,2,3,4\n", ["1", "2", "3", "5"]).contains("no column for "));
@@ -250,27 +253,90 @@ fn bad_rows_are_left_out_up_to_a_share_and_counted() {
         "t,wx,wy,wz\n".to_string() + &(0..rows).map(line).collect::<String>()
     };
     for bad in ["0.5,,1,2", "0.5,nan,1,2", "0.5,1", "0.1,1,2,3", "0.5,1,2,3,4,5", "0.5,x,1,2", ""] {
-        let record = record::read(&log(&[(50, bad)], 100), "log", Reading::default()).unwrap();
-        let skipped = record.skipped();
-        assert_eq!((record.samples(), skipped.len()), (99, usize::from(!bad.is_empty())), "{bad}");
+        let found = record::read(&log(&[(50, bad)], 100), "log", &Reading::default()).unwrap();
+        let skipped = &found.skipped;
+        assert_eq!((found.record.samples(), skipped.len()), (99, usize::from(!bad.is_empty())), "{bad}");
         assert!(skipped.iter().all(|error| error.to_string().starts_with("log, line 52")), "{skipped:?}");
     }
     // two rows that have changed places cost one
     let swapped =
-        record::read(&log(&[(50, "0.51,1,2,3"), (51, "0.5,1,2,3")], 100), "log", Reading::default());
-    assert_eq!(swapped.unwrap().skipped().len(), 1);
+        record::read(&log(&[(50, "0.51,1,2,3"), (51, "0.5,1,2,3")], 100), "log", &Reading::default());
+    assert_eq!(swapped.unwrap().skipped.len(), 1);
     // three of a hundred are too many, unless more are allowed
     let three = log(&[(50, "a,,,"), (60, ",,,"), (70, "0.7,1,2,")], 100);
-    let error = record::read(&three, "log", Reading::default()).unwrap_err().to_string();
-    assert!(error.starts_with("log, line 52, column 1 (t): \"a\""), "{error}");
+    let error = record::read(&three, "log", &Reading::default()).unwrap_err().to_string();
+    assert!(error.starts_with("log, line 52, column 1 (t): 'a'"), "{error}");
     let allowed = Reading { most_skipped: Some(0.05), ..Reading::default() };
-    assert_eq!(record::read(&three, "log", allowed).unwrap().skipped().len(), 3);
+    assert_eq!(record::read(&three, "log", &allowed).unwrap().skipped.len(), 3);
     let none = Reading { most_skipped: Some(0.0), ..Reading::default() };
-    assert!(record::read(&log(&[(50, "")], 100), "log", none.clone()).is_ok());
-    assert!(record::read(&log(&[(50, "x,1,2,3")], 100), "log", none.clone()).is_err());
+    assert!(record::read(&log(&[(50, "")], 100), "log", &none).is_ok());
+    assert!(record::read(&log(&[(50, "x,1,2,3")], 100), "log", &none).is_err());
     // the file ends in the middle of a row
-    let torn = log(&[], 3) + "0.03,0.5,-";
-    let record = record::read(&torn, "log", none).unwrap();
-    assert_eq!((record.samples(), record.skipped().len()), (3, 1));
-    assert_eq!(record.skipped()[0].to_string(), "log, line 5: the file ends in the middle of this row");
+    let torn = log(&[], 60) + "0.6,0.5,-";
+    let found = record::read(&torn, "log", &Reading::default()).unwrap();
+    assert_eq!((found.record.samples(), found.skipped.len()), (60, 1));
+    let says = "log, line 62: the file ends in the middle of this row";
+    assert!(found.skipped[0].to_string().starts_with(says), "{}", found.skipped[0]);
+    assert!(record::read(&torn, "log", &none).unwrap_err().to_string().starts_with(says));
+}
+
+#[test]
+fn loggers_of_the_second_review() {
+    check(
+        "Xsens MTi",
+        "// Sample rate: 100.0Hz\nCounter\tAcc_X\tGyr_X\tGyr_Y\tGyr_Z\n11\t1\t0.5\t-1\t2\n12\t1\t0.25\t1\t-2\n",
+        1.0,
+    );
+    check(
+        "EuRoC",
+        "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2]\n\
+         1403636579758555392,0.5,-1,2,9\n1403636579768555392,0.25,1,-2,9\n",
+        1.0,
+    );
+    check(
+        "VectorNav",
+        "TimeStartup(ns),gyroX(rad/s),gyroY(rad/s),gyroZ(rad/s)\n10000000,0.5,-1,2\n20000000,0.25,1,-2\n",
+        1.0,
+    );
+    check(
+        "OpenIMU",
+        "time(s),rollRate(deg/s),pitchRate(deg/s),yawRate(deg/s)\n0.01,0.5,-1,2\n0.02,0.25,1,-2\n",
+        DEGREE,
+    );
+    check(
+        "Shimmer",
+        "\"sep=\t\"\nShimmer_5E3B_Timestamp_Unix_CAL\tShimmer_5E3B_Gyro_X_CAL\tShimmer_5E3B_Gyro_Y_CAL\tShimmer_5E3B_Gyro_Z_CAL\n\
+         ms\tdeg/s\tdeg/s\tdeg/s\n1727600000250\t0.5\t-1\t2\n1727600000260\t0.25\t1\t-2\n",
+        DEGREE,
+    );
+    check(
+        "Delsys",
+        "X[s],Trigno 1: Gyro.X 1 [deg/s],Trigno 1: Gyro.Y 1 [deg/s],Trigno 1: Gyro.Z 1 [deg/s]\n0.01,0.5,-1,2\n0.02,0.25,1,-2\n",
+        DEGREE,
+    );
+    check("Arduino", "millis,GyX,GyY,GyZ\n10,0.5,-1,2\n20,0.25,1,-2\n", 1.0);
+    check("Crazyflie", "Timestamp,gyro.x,gyro.y,gyro.z\n10,0.5,-1,2\n20,0.25,1,-2\n", DEGREE);
+    check(
+        "Basilisk",
+        "time,sigma_BN_1,sigma_BN_2,sigma_BN_3,omega_BN_B_1,omega_BN_B_2,omega_BN_B_3\n0.01,0,0,0,0.5,-1,2\n0.02,0,0,0,0.25,1,-2\n",
+        1.0,
+    );
+}
+
+#[test]
+fn a_counter_needs_the_rate_of_its_samples() {
+    let text = "Packet number,Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s)\n7,0.5,-1,2\n8,0.25,1,-2\n";
+    let refused = record::read(text, "log", &Reading::default()).unwrap_err().to_string();
+    assert!(refused.starts_with("log, line 1, column 1 (Packet number): counts samples"), "{refused}");
+    assert!(refused.contains("--sample-rate HZ"), "{refused}");
+    let rated = Reading { sample_rate: Some(100.0), ..Reading::default() };
+    let found = record::read(text, "log", &rated).unwrap().record;
+    assert!((found.segments[0].times()[1] - found.segments[0].times()[0] - 0.01).abs() < 1e-15);
+    // rows without a time are counted
+    let bare = "gx,gy,gz\n0.5,-1,2\n0.25,1,-2\n";
+    assert_eq!(record::read(bare, "log", &rated).unwrap().record.segments[0].times(), [0.0, 0.01]);
+    assert!(record::read(bare, "log", &Reading::default()).is_err());
+    // a time is not counted
+    let timed = record::read("t,gx,gy,gz\n0,1,2,3\n", "log", &rated).unwrap_err().to_string();
+    assert!(timed.contains("drop --sample-rate"), "{timed}");
 }

@@ -109,7 +109,7 @@ fn a_named_unit_beside_a_guessed_one_is_refused() {
         for i in 0..100 {
             text += &format!("{},{},{},2\n", 0.01 * f64::from(i), i % 7, i % 5);
         }
-        record::read(&text, name, Reading::default()).unwrap()
+        record::read(&text, name, &Reading::default()).unwrap().record
     };
     let mixed = read(" (deg/s)", "a.csv").join(read("", "b.csv"));
     let text = fit(&mixed, &Settings::default()).unwrap_err().to_string();

@@ -7,10 +7,11 @@ use polhode::audit::{Reading, Trajectory, Verdict};
 use polhode::body::Body;
 use polhode::inertia::Inertia;
 use polhode::rotation::rotation_angle;
+use polhode_files::Reading as TableReading;
 use polhode_files::error::Error;
 use polhode_files::numbers::numbers;
 use polhode_files::text::visible;
-use polhode_files::trajectory::{ColumnNames, read};
+use polhode_files::trajectory::read;
 
 /// A trajectory that is right, with its body.
 pub(super) struct Golden {
@@ -51,7 +52,7 @@ impl Difference {
 impl Golden {
     /// Of a file that `polhode audit --golden` has written, or one with the same columns and the line `# moments: I1,I2,I3`.
     pub(super) fn read(path: &Path) -> Result<Self, Error> {
-        let found = read(path, &ColumnNames::default(), None)?;
+        let found = read(path, &TableReading::default())?;
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |value: &str, rule: &str| {
             Error::input(&name, value, rule, "write golden trajectories by `polhode audit --golden DIR`")

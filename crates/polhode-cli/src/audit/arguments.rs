@@ -1,20 +1,18 @@
 //! The flags that say how a record is to be read.
 
 use clap::{Args, ValueEnum};
-use polhode::audit::{AngleUnit, Angles, Claims, Direction, Frame, QuaternionOrder, RateUnit, Turns};
+use polhode::audit::{Angles, Claims, Direction, Frame, Turns};
 use polhode::rotation::EulerSequence;
-use polhode_files::numbers::positive;
-use polhode_files::trajectory::{ColumnNames, angle_unit, rate_unit};
+use polhode::units::{AngleUnit, RateUnit};
+use polhode_files::Reading;
+
+use crate::flags::table::{Order, TableArguments, rate_unit};
 
 /// What is claimed of the convention, and where the columns stand.
 #[derive(Args, Clone, Debug)]
 pub(super) struct ReadingArguments {
-    /// Columns by name or by number from 1. Keys: t, id; qw,qx,qy,qz, or q0..q3 where the place of the scalar is open; r11..r33; e1..e3 (Euler); s1..s3 (MRP); wx,wy,wz; lx,ly,lz
-    #[arg(long, value_name = "KEY=NAME,...", value_parser = ColumnNames::parse, help_heading = "Reading")]
-    columns: Option<ColumnNames>,
-    /// Unit of time: s, ms, us, ns, or a number of seconds, such as the step of a dump that counts steps [default: that of the header, else s]
-    #[arg(long, value_name = "UNIT", value_parser = time_unit, help_heading = "Reading")]
-    pub(super) time_unit: Option<f64>,
+    #[command(flatten)]
+    table: TableArguments,
     /// State the place of the scalar [default: found from the rows]
     #[arg(long, value_enum, help_heading = "Reading")]
     quaternion: Option<Order>,
@@ -31,7 +29,7 @@ pub(super) struct ReadingArguments {
     #[arg(long, value_enum, help_heading = "Reading")]
     momentum_frame: Option<Axes>,
     /// State the unit of the angular velocity: rad/s, deg/s or rpm
-    #[arg(long, value_name = "UNIT", value_parser = rate, help_heading = "Reading")]
+    #[arg(long, value_name = "UNIT", value_parser = rate_unit, help_heading = "Reading")]
     rate_unit: Option<RateUnit>,
     /// Sequence of the Euler angles in the order of their columns, about turned axes, as zyx; about fixed axes with :extrinsic
     #[arg(long, value_name = "SEQUENCE[:extrinsic]", value_parser = sequence, help_heading = "Reading")]
@@ -42,14 +40,6 @@ pub(super) struct ReadingArguments {
     /// The moments may belong to the axes in any order
     #[arg(long, help_heading = "Reading")]
     any_order: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Order {
-    /// Scalar first
-    Wxyz,
-    /// Scalar last
-    Xyzw,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -81,25 +71,8 @@ impl From<Axes> for Frame {
     }
 }
 
-fn time_unit(text: &str) -> Result<f64, String> {
-    let named = match text {
-        "s" => Some(1.0),
-        "ms" => Some(1e-3),
-        "us" => Some(1e-6),
-        "ns" => Some(1e-9),
-        _ => positive(text).ok(),
-    };
-    named.ok_or_else(|| {
-        format!("'{text}' is no unit of time here; known: s, ms, us, ns, or a number of seconds")
-    })
-}
-
-fn rate(text: &str) -> Result<RateUnit, String> {
-    rate_unit(text).ok_or_else(|| format!("'{text}' is no unit of rates here; write rad/s, deg/s or rpm"))
-}
-
 fn angle(text: &str) -> Result<AngleUnit, String> {
-    angle_unit(text).ok_or_else(|| format!("'{text}' is no unit of angles here; write rad or deg"))
+    AngleUnit::named(text).ok_or_else(|| format!("'{text}' is no unit of angles here; write rad or deg"))
 }
 
 fn sequence(text: &str) -> Result<(EulerSequence, Turns), String> {
@@ -114,18 +87,16 @@ fn sequence(text: &str) -> Result<(EulerSequence, Turns), String> {
 }
 
 impl ReadingArguments {
-    pub(super) fn columns(&self) -> ColumnNames {
-        self.columns.clone().unwrap_or_default()
+    /// How the table is read.
+    pub(super) fn table(&self) -> Reading {
+        self.table.reading(self.rate_unit)
     }
 
     /// What is claimed: by flags first, then by the names of the file.
     pub(super) fn claims(&self, of_file: Claims) -> Claims {
         let mut claims = of_file;
         if let Some(order) = self.quaternion {
-            claims.quaternion = Some(match order {
-                Order::Wxyz => QuaternionOrder::ScalarFirst,
-                Order::Xyzw => QuaternionOrder::ScalarLast,
-            });
+            claims.quaternion = Some(order.into());
         }
         if let Some(to) = self.attitude {
             let direct = match to {

@@ -153,7 +153,7 @@ impl Audit {
                 remedy,
             ));
         }
-        let found = trajectory::read(path, &self.reading.columns(), self.reading.time_unit)?;
+        let found = trajectory::read(path, &self.reading.table())?;
         let claims = self.reading.claims(found.claims);
         let bodies: Vec<(Option<String>, Trajectory)> = match &self.id {
             None => found.bodies,

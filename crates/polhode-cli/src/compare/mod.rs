@@ -18,6 +18,7 @@ use polhode_pages::output::{Output, emit};
 use polhode_pages::table::{Cell, Column, Format, Table, row};
 
 use crate::flags::motion::MotionArguments;
+use crate::flags::table::{Order, TableArguments};
 use crate::methods::named;
 use crate::plot::Picture;
 use trajectory::Trajectory;
@@ -67,11 +68,16 @@ pub(crate) struct Compare {
     /// Time of the start: s, or with a unit
     #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", help_heading = "Times")]
     start_time: f64,
-    /// A trajectory of another program as one more row: CSV with t and the attitude q_w, q_x, q_y, q_z, body to space; with
-    /// omega_body_x, omega_body_y, omega_body_z (rad/s, body axes) also its errors of energy and momentum and its flips, at the
-    /// rows of the file; repeatable
+    /// A trajectory of another program as one more row: any file with an attitude that `polhode audit` reads, in the convention
+    /// that its rows show; with an angular velocity also its errors of energy and momentum and its flips, at the rows of the
+    /// file; repeatable
     #[arg(long, value_name = "FILE.csv", help_heading = "Methods")]
     trajectory: Vec<PathBuf>,
+    #[command(flatten)]
+    table: TableArguments,
+    /// State the place of the scalar in the quaternions of trajectories [default: as named, else found from the rows]
+    #[arg(long, value_enum, help_heading = "Reading")]
+    quaternion: Option<Order>,
     /// Draw attitude error against processor time to this file
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
     figure: Option<PathBuf>,
@@ -112,12 +118,15 @@ impl Compare {
         let trajectories: Vec<Trajectory> = self
             .trajectory
             .iter()
-            .map(|path| Trajectory::read(path, (self.start_time, self.until)))
+            .map(|path| {
+                let order = self.quaternion.map(Into::into);
+                Trajectory::read(path, &self.table.reading(None), order, &body, (self.start_time, self.until))
+            })
             .collect::<Result<_, _>>()?;
         // a place that cannot be written is found out before the work
         let figure_file = self.figure.as_deref().map(|path| {
             let picture = Picture::of("--figure", path, &[Picture::Svg, Picture::Png])?;
-            Ok((Output::to_file("--figure", path)?, picture))
+            Ok::<_, Error>((Output::to_file("--figure", path)?, picture))
         });
         let figure_file = figure_file.transpose()?;
         let motion = Motion::evenly(&body, &start, self.start_time, span, LOOKS)?;

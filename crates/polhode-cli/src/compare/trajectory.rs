@@ -2,33 +2,19 @@
 
 use std::path::Path;
 
-use polhode::body::{Clock, State};
+use polhode::audit::{
+    Attitudes, Claims, Direction, Frame, Judgement, QuaternionOrder, Question, Reading,
+    Trajectory as Columns, audit,
+};
+use polhode::body::{Body, Clock, State};
 use polhode::num::Dd;
 use polhode::observe::{Errors, Monitor};
 use polhode::rotation::{Quat, Vec3};
+use polhode::units::RateUnit;
 use polhode_experiments::measured::{Ending, LOST, Motion};
 use polhode_files::error::{Error, unexpected};
-use polhode_files::numbers::number;
-use polhode_files::read;
-use polhode_files::text::short;
-
-/// Spellings of the columns: time, then the quaternion, scalar first.
-const COLUMNS: [&[&str]; 5] = [
-    &["t", "time"],
-    &["q_w", "qw", "q0", "w"],
-    &["q_x", "qx", "q1", "x"],
-    &["q_y", "qy", "q2", "y"],
-    &["q_z", "qz", "q3", "z"],
-];
-
-/// Spellings of the columns of the angular velocity in body axes, rad/s: all three or none.
-const OMEGA: [&[&str]; 3] = [
-    &["omega_body_x", "omega_x", "wx"],
-    &["omega_body_y", "omega_y", "wy"],
-    &["omega_body_z", "omega_z", "wz"],
-];
-
-const REMEDY: &str = "name a CSV file with the columns t, q_w, q_x, q_y, q_z";
+use polhode_files::text::{short, visible};
+use polhode_files::{Reading as TableReading, trajectory};
 
 /// Rows of a file.
 pub(super) struct Trajectory {
@@ -56,68 +42,59 @@ pub(super) struct Off {
 }
 
 impl Trajectory {
-    /// Of the file at `path`, whose times lie from the start to the end.
-    pub(super) fn read(path: &Path, (start, end): (f64, f64)) -> Result<Self, Error> {
-        let text = read(path, REMEDY)?;
-        let name = path.display().to_string();
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-        let refused = |error: csv::Error| Error::Input(format!("{name}: {error}; {REMEDY}"));
-        let header = reader.headers().map_err(refused)?.clone();
-        let place = |spellings: &[&str]| {
-            let found = header.iter().position(|column| spellings.contains(&column));
-            found.ok_or_else(|| Error::input(&name, spellings[0], "no such column", REMEDY))
-        };
-        let mut places = [0; 5];
-        for (slot, spellings) in places.iter_mut().zip(COLUMNS) {
-            *slot = place(spellings)?;
+    /// Of the file at `path`, whose times lie from the start to the end; `order`: the place of the scalar, where a flag says it.
+    pub(super) fn read(
+        path: &Path,
+        table: &TableReading,
+        order: Option<QuaternionOrder>,
+        body: &Body,
+        (start, end): (f64, f64),
+    ) -> Result<Self, Error> {
+        let found = trajectory::read(path, table)?;
+        let name = visible(&path.display().to_string()).into_owned();
+        let refused = |rule: &str, remedy: &str| Err(Error::input(&name, "", rule, remedy));
+        if found.counts_steps {
+            return refused(
+                "counts steps of a length that it does not tell",
+                "give the length of a step, s, as --time-unit",
+            );
         }
-        let omega: Vec<Option<usize>> = OMEGA
-            .iter()
-            .map(|spellings| header.iter().position(|column| spellings.contains(&column)))
-            .collect();
-        let omega: Option<Vec<usize>> = match omega.iter().flatten().count() {
-            0 => None,
-            3 => omega.into_iter().collect(),
-            _ => {
-                let missing = omega.iter().position(Option::is_none).unwrap_or(0);
-                let remedy =
-                    "give omega_body_x, omega_body_y and omega_body_z, rad/s in body axes, or none of them";
-                return Err(Error::input(&name, OMEGA[missing][0], "no such column", remedy));
+        let mut bodies = found.bodies;
+        let columns = match (bodies.len(), bodies.pop()) {
+            (1, Some((_, columns))) => columns,
+            (count, _) => {
+                return refused(&format!("has {count} bodies"), "name a file of one body, or its --columns");
             }
         };
-        let mut rows: Vec<Row> = Vec::new();
-        for record in reader.records() {
-            let record = record.map_err(refused)?;
-            let line = record.position().map_or(0, csv::Position::line);
-            let at = format!("{name}:{line}");
-            let value = |place: usize| {
-                number(record.get(place).unwrap_or(""))
-                    .map_err(|error| Error::Input(format!("{at}: {error}")))
+        if columns.attitude.is_none() {
+            return refused("has no attitude", "add the columns q_w, q_x, q_y, q_z");
+        }
+        let mut claims = found.claims;
+        claims.quaternion = order.or(claims.quaternion);
+        let Some(reading) = reading(&columns, claims, body) else {
+            return match &columns.attitude {
+                Some(Attitudes::Quaternions(_)) => refused(
+                    "its rows leave open whether the scalar of the quaternion stands first or last",
+                    "state it by --quaternion wxyz or xyzw",
+                ),
+                _ => refused(
+                    "its rows leave the sequence of the Euler angles open",
+                    "write the attitude as a quaternion",
+                ),
             };
-            let mut values = [0.0; 5];
-            for (slot, place) in values.iter_mut().zip(places) {
-                *slot = value(place)?;
-            }
-            let mut omega_body = omega.as_ref().map(|_| [0.0; 3]);
-            for (slot, place) in omega_body.iter_mut().flatten().zip(omega.iter().flatten()) {
-                *slot = value(*place)?;
-            }
-            let [t, w, x, y, z] = values;
-            let rule = |rule: &str, remedy: &str| Err(Error::input(&at, &short(t), rule, remedy));
+        };
+        let mut rows = Vec::new();
+        for (k, &t) in columns.times.iter().enumerate() {
             if !(start..=end).contains(&t) {
                 let span = format!("lies outside of the run, t from {} to {}", short(start), short(end));
-                return rule(&span, "give another --until or --start-time, or fewer rows");
+                return Err(Error::input(
+                    &name,
+                    &short(t),
+                    &span,
+                    "give another --until or --start-time, or fewer rows",
+                ));
             }
-            if rows.last().is_some_and(|before| before.t >= t) {
-                return rule("does not come after the time before it", "sort the rows by time");
-            }
-            if [w, x, y, z] == [0.0; 4] {
-                return rule("has the zero quaternion, which has no direction", "leave the row out");
-            }
-            rows.push(Row { t, attitude: [w, x, y, z], omega_body });
-        }
-        if rows.is_empty() {
-            return Err(Error::input(&name, "", "has no rows", REMEDY));
+            rows.extend(row(&columns, &reading, k));
         }
         Ok(Trajectory { name, rows })
     }
@@ -164,4 +141,54 @@ impl Trajectory {
         let last = self.rows.last().map_or(0.0, |row| row.t - start_time);
         Ok(Some((monitor.worst(), monitor.flips(), motion.reference().flips_at(last))))
     }
+}
+
+/// A row as this library reads it.
+fn row(columns: &Columns, reading: &Reading, k: usize) -> Option<Row> {
+    let attitude = match &columns.attitude {
+        // any norm is fine, and none is changed
+        Some(Attitudes::Quaternions(rows)) if reading.attitude == Some(Direction::BodyToSpace) => {
+            let [a, b, c, d] = *rows.get(k)?;
+            if reading.quaternion == Some(QuaternionOrder::ScalarLast) { [d, a, b, c] } else { [a, b, c, d] }
+        }
+        _ => reading.attitude(columns, k)?.components(),
+    };
+    let omega_body = reading.omega_body(columns, k).map(|omega| omega.0);
+    Some(Row { t: *columns.times.get(k)?, attitude, omega_body })
+}
+
+/// How the columns are read: as their names and flags claim and else as this program writes them, unless the rows are a motion
+/// of the body in another convention, which is what `polhode audit` would say of them.
+fn reading(columns: &Columns, claims: Claims, body: &Body) -> Option<Reading> {
+    let mut own = Reading::default();
+    own.quaternion = claims.quaternion;
+    own.attitude = claims.attitude.or(Some(Direction::BodyToSpace));
+    own.omega_frame = claims.omega_frame.or(Some(Frame::Body));
+    own.rate_unit = claims.rate_unit.or(Some(RateUnit::RadiansPerSecond));
+    own.angles = claims.angles;
+    let is_quaternion = matches!(columns.attitude, Some(Attitudes::Quaternions(_)));
+    let is_open = match &columns.attitude {
+        Some(Attitudes::Quaternions(_)) => own.quaternion.is_none(),
+        Some(Attitudes::Angles(_)) => own.angles.is_none(),
+        _ => false,
+    };
+    let mut question = Question::new(Some(body.clone()));
+    question.claims = claims;
+    let Ok(verdict) = audit(columns, &question) else { return (!is_open).then_some(own) };
+    let best = verdict.reading;
+    let ties = verdict.tie.map_or(Vec::new(), |tie| tie.readings);
+    let differs = |other: &Reading| {
+        (is_quaternion && other.quaternion != best.quaternion)
+            || other.angles.map(|angles| angles.sequence) != best.angles.map(|angles| angles.sequence)
+    };
+    if is_open && ties.iter().any(differs) {
+        return None;
+    }
+    if verdict.judgement == Judgement::Right && !ties.contains(&own) {
+        return Some(best);
+    }
+    if is_open {
+        (own.quaternion, own.angles) = (best.quaternion, best.angles);
+    }
+    Some(own)
 }

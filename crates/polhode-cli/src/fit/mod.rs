@@ -112,7 +112,7 @@ impl Fit {
         let page = page.zip(form);
         let figure = self.figure.as_deref().map(|path| {
             let picture = Picture::of("--figure", path, &[Picture::Svg, Picture::Png])?;
-            Ok((Output::to_file("--figure", path)?, picture))
+            Ok::<_, Error>((Output::to_file("--figure", path)?, picture))
         });
         let figure = figure.transpose()?;
         let mut record = self.reading.record(&self.data, &self.wheel)?;

@@ -4,31 +4,27 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use polhode_files::error::{Error, warn};
-use polhode_files::numbers::{number, numbers, positive};
-use polhode_files::read;
+use polhode_files::numbers::{number, numbers};
 use polhode_files::record::{self, Reading};
-use polhode_fit::{RateUnit, Record, RecordError, TimeUnit};
+use polhode_fit::{RateUnit, Record};
 
 use super::inputs::WheelArguments;
+use crate::flags::table::{TableArguments, rate_unit};
 
 /// Columns, units and windows.
 #[derive(Args, Clone, Debug)]
 pub(super) struct ReadingArguments {
-    /// Columns of the time and of the rates, by name or number, where they are not found: t=NAME,x=NAME,y=NAME,z=NAME
-    #[arg(long, value_name = "t=...,x=...,y=...,z=...", value_parser = columns)]
-    columns: Option<ColumnNames>,
+    #[command(flatten)]
+    table: TableArguments,
     /// Fraction of the rows that may be left out because they cannot be read [default: 0.02]
-    #[arg(long, value_name = "FRACTION", value_parser = share, allow_hyphen_values = true)]
+    #[arg(long, value_name = "FRACTION", value_parser = share, allow_hyphen_values = true, help_heading = "Reading")]
     skip_rows: Option<f64>,
-    /// Unit of time where the header names none: s, ms, us, ns, or a number of seconds [default: s]
-    #[arg(long, value_name = "UNIT", value_parser = time_unit)]
-    time_unit: Option<TimeUnit>,
     /// Unit of the rates where the header names none: rad/s, deg/s, rpm [default: rad/s]
-    #[arg(long, value_name = "UNIT", value_parser = rate_unit)]
+    #[arg(long, value_name = "UNIT", value_parser = rate_unit, help_heading = "Reading")]
     rate_unit: Option<RateUnit>,
     /// Use only samples from t0 to t1, s; repeatable. With N: of the N-th file only [default: all samples if the body
     /// rotates freely from the first to the last, else the flights, which are found and listed]
-    #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true)]
+    #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true, help_heading = "Reading")]
     window: Vec<Window>,
 }
 
@@ -54,59 +50,11 @@ fn window(text: &str) -> Result<Window, String> {
     Ok(Window { file, span: (start, end) })
 }
 
-fn time_unit(text: &str) -> Result<TimeUnit, String> {
-    let number = || positive(text).ok().map(TimeUnit::Multiple);
-    TimeUnit::named(text).or_else(number).ok_or_else(|| {
-        format!("'{text}' is no unit of time here; known: s, ms, us, ns, or a number of seconds")
-    })
-}
-
-/// Names or numbers of the columns of time and rates.
-#[derive(Clone, Debug)]
-struct ColumnNames([String; 4]);
-
-fn columns(text: &str) -> Result<ColumnNames, String> {
-    let mut found: [Option<String>; 4] = Default::default();
-    // a name may hold a comma: it goes on up to the next key
-    let mut last: Option<usize> = None;
-    for part in text.split(',') {
-        let keyed = part.split_once('=').and_then(|(key, name)| {
-            let place = ["t", "x", "y", "z"].iter().position(|known| *known == key.trim())?;
-            Some((place, name.trim()))
-        });
-        match (keyed, last) {
-            (Some((place, name)), _) => {
-                found[place] = Some(name.to_string());
-                last = Some(place);
-            }
-            (None, Some(place)) => {
-                if let Some(name) = &mut found[place] {
-                    *name += &format!(",{part}");
-                }
-            }
-            (None, None) => return Err(format!("'{part}' has no key; write t=NAME,x=NAME,y=NAME,z=NAME")),
-        }
-    }
-    let missing = found.iter().position(|name| name.as_ref().is_none_or(String::is_empty));
-    match (missing, found) {
-        (None, [Some(t), Some(x), Some(y), Some(z)]) => Ok(ColumnNames([t, x, y, z])),
-        (missing, _) => {
-            let key = ["t", "x", "y", "z"][missing.unwrap_or(0)];
-            Err(format!("{key}= is missing; write t=NAME,x=NAME,y=NAME,z=NAME, or numbers from 1"))
-        }
-    }
-}
-
 fn share(text: &str) -> Result<f64, String> {
     match number(text)? {
         share if (0.0..1.0).contains(&share) => Ok(share),
         share => Err(format!("{share:?} is no fraction of the rows; give a number from 0 to below 1")),
     }
-}
-
-fn rate_unit(text: &str) -> Result<RateUnit, String> {
-    RateUnit::named(text)
-        .ok_or_else(|| format!("'{text}' is no unit of rates here; known: rad/s, deg/s, rpm"))
 }
 
 impl ReadingArguments {
@@ -140,32 +88,24 @@ impl ReadingArguments {
     }
 
     fn read(&self, path: &Path, wheel: &WheelArguments) -> Result<Record, Error> {
-        let text = read(path, "name a text file with a header and columns")?;
-        let reading = Reading {
-            time_unit: self.time_unit,
-            rate_unit: self.rate_unit,
-            columns: self.columns.clone().map(|ColumnNames(names)| names),
-            most_skipped: self.skip_rows,
-        };
-        let record = record::read(&text, &path.display().to_string(), reading).map_err(|error| {
-            Error::Input(match &error {
-                RecordError::Column { .. } => {
-                    format!("{error}, or say which they are: --columns t=NAME,x=NAME,y=NAME,z=NAME")
-                }
-                RecordError::Value { .. } | RecordError::Cells { .. } | RecordError::Order { .. } => {
-                    format!("{error}, or allow for more such rows by --skip-rows FRACTION")
-                }
-                _ => error.to_string(),
-            })
+        let reading = Reading { most_skipped: self.skip_rows, ..self.table.reading(self.rate_unit) };
+        let found = record::open(path, &reading, wheel.momentum()).map_err(|error| match error {
+            Error::Table(error) if error.is_of_a_row() => {
+                let remedy = format!("{}, or allow for more such rows by --skip-rows FRACTION", error.remedy);
+                Error::from(error.with_remedy(&remedy))
+            }
+            other => other,
         })?;
-        if let Some(first) = record.skipped().first() {
-            let rows = match record.skipped().len() {
+        if let Some(first) = found.skipped.first() {
+            let rows = match found.skipped.len() {
                 1 => "1 row is".to_string(),
                 count => format!("{count} rows are"),
             };
-            warn(&format!("{rows} left out beside {} that are read; the first: {first}", record.samples()));
+            let samples = found.record.samples();
+            warn(&format!("{rows} left out beside {samples} that are read; the first: {first}"));
         }
-        wheel.complete(record, &text, &path.display().to_string())
+        found.remarks.iter().for_each(|remark| warn(remark));
+        Ok(found.record)
     }
 }
 

@@ -5,5 +5,6 @@ pub(crate) mod body_file;
 pub(crate) mod force;
 pub(crate) mod motion;
 pub(crate) mod start;
+pub(crate) mod table;
 pub(crate) mod times;
 pub(crate) mod tumbling;

@@ -285,7 +285,7 @@ fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
     let zero = file("zero.csv", &format!("{header}0,0,0,0,0\n"));
     refused(
         &format!("audit {zero}"),
-        &["zero.csv, line 2, column 2: every component of the attitude is zero"],
+        &["zero.csv, line 2, column 2 (q_w): '0': every component of the attitude is zero"],
     );
     refused("audit absent.csv", &["absent.csv: cannot be read", "name a text file"]);
     refused(

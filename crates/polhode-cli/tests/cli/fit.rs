@@ -232,7 +232,7 @@ fn a_phones_record_gives_the_tensor_of_its_columns() {
     refused(
         2,
         &format!("fit {} --time-unit ns", scratch.0.join("phone.csv").display()),
-        &["column \"seconds_elapsed\" says s, the setting says ns"],
+        &["(seconds_elapsed): the header says s, the flag says ns"],
     );
 }
 
@@ -240,7 +240,7 @@ fn a_phones_record_gives_the_tensor_of_its_columns() {
 fn unusable_input_is_refused_by_file_line_and_column() {
     let scratch = Scratch::new("refused");
     let nan = scratch.file("nan.csv", "t,wx,wy,wz\n0,1,2,3\n0.1,1,nan,3\n");
-    refused(2, &format!("fit {nan}"), &["nan.csv, line 3, column 3 (wy): \"nan\" is not a finite number"]);
+    refused(2, &format!("fit {nan}"), &["nan.csv, line 3, column 3 (wy): 'nan': is not a finite number"]);
     let short = scratch.file("short.csv", "t,wx,wy,wz\n0,1,2,3\n0.1,1,2,3\n");
     refused(2, &format!("fit {short}"), &["short.csv: 2 samples, at most 2 without a gap", "at least 16"]);
     let still = (0..100).map(|i| format!("{i},0,0,0\n")).collect::<String>();
@@ -249,11 +249,11 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     let headless = scratch.file("headless.csv", "0,9,1,2,3\n1,9,1,2,3\n");
     refused(2, &format!("fit {headless}"), &["headless.csv: no column for time", "--columns t=NAME"]);
     let thousands = scratch.file("thousands.csv", "t,wx,wy,wz\n0.5,\"1,000\",0,0\n");
-    refused(2, &format!("fit {thousands}"), &["thousands.csv, line 2, column 2 (wx): \"1,000\" has a comma"]);
+    refused(2, &format!("fit {thousands}"), &["thousands.csv, line 2, column 2 (wx): '1,000': has a comma"]);
     let wide = scratch.file("wide.csv", "t,wx,wy,wz\n0,5,1,0,0\n");
     refused(2, &format!("fit {wide}"), &["wide.csv, line 2: 5 cells where the header has 4"]);
     let text = scratch.file("text.csv", "run,t,wx,wy\nr1,0,1,2\nr2,1,1,2\n");
-    refused(2, &format!("fit {text}"), &["the header has [\"run\", \"t\", \"wx\", \"wy\"]"]);
+    refused(2, &format!("fit {text}"), &["the header has 'run', 't', 'wx', 'wy'"]);
     let binary = scratch.file("binary.csv", "\u{1}IMU,".repeat(1000));
     let message = run(&format!("fit {binary}")).err;
     assert!(message.contains("no column for time") && message.len() < 400, "{message}");
@@ -385,18 +385,22 @@ fn wheels_and_torques_are_columns() {
         assert!((by_speed - 5.6).abs() < 0.05, "{header}: {by_speed}");
     }
     let unused = run(&format!("fit {speed}"));
-    assert!(unused.err.contains("(Wheel): the column is not used; --wheel nx,ny,nz,I"), "{}", unused.err);
+    assert!(
+        unused.err.contains("(Wheel [rpm]): the column is not used; --wheel nx,ny,nz,I"),
+        "{}",
+        unused.err
+    );
     fs::write(&speed, with_speed("wheel", "40")).unwrap();
-    let says = ["speed.csv, line 1 (wheel)", "no unit that is known", "write wheel (rad/s)"];
+    let says = ["speed.csv, line 1, column 5 (wheel): the column has no unit", "rad/s, deg/s or rpm"];
     refused(2, &format!("fit {speed} --wheel 0,0,1,0.01"), &says);
     fs::write(&speed, with_speed("wheel (rad/s)", "40").replacen(",40\n", ",fast\n", 1)).unwrap();
-    refused(2, &format!("fit {speed} --wheel 0,0,1,0.01"), &["line 2, column 5 (wheel)", "'fast'"]);
-    refused(2, &format!("fit {record} --wheel 0,0,1,0.01"), &["no column of its speed"]);
+    refused(2, &format!("fit {speed} --wheel 0,0,1,0.01"), &["line 2, column 5 (wheel (rad/s))", "'fast'"]);
+    refused(2, &format!("fit {record} --wheel 0,0,1,0.01"), &["no column for the speed of the wheel"]);
     refused(2, &format!("fit {record} --wheel 0,0,1,-1"), &["--wheel", "must be positive"]);
     fs::write(&speed, with_speed("hx (N m s)", "40")).unwrap();
-    refused(2, &format!("fit {speed}"), &["line 1 (hx)", "two columns more"]);
+    refused(2, &format!("fit {speed}"), &["line 1, column 5 (hx (N m s))", "two columns more"]);
     fs::write(&record, text.replace("(N m s)", "(g m)")).unwrap();
-    refused(2, &format!("fit {record}"), &["line 1 (hx)", "the unit here is N m s"]);
+    refused(2, &format!("fit {record}"), &["line 1, column 5 (hx (g m)): 'g m'", "known: N m s"]);
     fs::write(&record, text.replace(" (N m s)", "")).unwrap();
-    refused(2, &format!("fit {record}"), &["line 1 (hx)", "has no unit", "write hx (N m s)"]);
+    refused(2, &format!("fit {record}"), &["line 1, column 5 (hx): the column has no unit", "N m s"]);
 }

@@ -87,7 +87,7 @@ fn a_wheel_is_calibrated_by_a_body_that_is_known() {
     refused(&format!("fit {record} --calibrate-wheel 0,0,0 --body {body}"), &["no direction"]);
     refused(
         &format!("fit {momenta} --calibrate-wheel 0,0,1 --body {body}"),
-        &["--calibrate-wheel", "no column of its speed"],
+        &["momenta.csv: no column for the speed of the wheel", "name the column wheel"],
     );
     // one file with a wheel, one without
     let bare = path("bare.csv");

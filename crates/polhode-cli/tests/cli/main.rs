@@ -25,4 +25,5 @@ mod plot;
 mod propagate;
 mod report;
 mod robots;
+mod tables;
 mod times;

@@ -44,13 +44,13 @@ fn times_have_units_and_dates() {
 fn times_that_cannot_be_used_are_refused_by_file_line_and_column() {
     let scratch = Scratch::new("times-refused");
     let of = |name: &str, text: &str| format!("--times {}", scratch.file(name, text));
-    refused(&with(&of("a", "1\n2\nx\n")), &["a, line 3, column 1 (t): 'x' is not a number"]);
+    refused(&with(&of("a", "1\n2\nx\n")), &["a, line 3, column 1 (t): 'x': is not a number"]);
     refused(&with(&of("b", "jd,mag\n1,\n,2\n")), &["b, line 3, column 1 (jd): a number is missing"]);
     refused(
-        &with(&of("c", "date,mag\n1,2\n")),
-        &["c, line 1: no column 't'", "'date', 'mag'", "--times-column"],
+        &with(&of("c", "when,mag\n1,2\n")),
+        &["c, line 1: no column for time", "'when', 'mag'", "--times-column"],
     );
-    refused(&with(&of("d", "")), &["d, line 1: no time in it", "one time a line"]);
+    refused(&with(&of("d", "")), &["d: no rows", "one time a line"]);
     refused(&with(&of("e", "1\n1e300\n")), &["--times: 1e300", "can be answered"]);
     let stepped = of("f", "0.5\n0.3\n");
     refused(&with(&format!("{stepped} --method rk4 --step 0.125")), &["--times: 0.3 comes after 0.5"]);

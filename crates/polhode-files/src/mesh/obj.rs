@@ -8,6 +8,10 @@ use polhode::inertia::{Surface, SurfaceBuilder};
 use super::MeshFileError;
 use super::text::{Lines, beginning, numbers};
 
+/// The surface in a file of the kind Wavefront OBJ.
+///
+/// # Errors
+/// A file of another kind, or one that ends too early, by its line or byte.
 pub fn read(reader: impl BufRead) -> Result<Surface, MeshFileError> {
     let mut mesh = SurfaceBuilder::default();
     let mut vertices: Vec<Vector3<f64>> = Vec::new();

@@ -85,6 +85,10 @@ struct Element {
     properties: Vec<Property>,
 }
 
+/// The surface in a file of the kind PLY.
+///
+/// # Errors
+/// A file of another kind, or one that ends too early, by its line or byte.
 pub fn read(reader: impl BufRead) -> Result<Surface, MeshFileError> {
     let mut lines = Lines::new(reader);
     let (encoding, elements) = header(&mut lines)?;

@@ -13,6 +13,10 @@ const HEADER: usize = 84;
 /// Bytes of a triangle: normal, three corners, attribute.
 const TRIANGLE: usize = 50;
 
+/// The surface in a file of the kind STL, text or binary.
+///
+/// # Errors
+/// A file of another kind, or one that ends too early, by its line or byte.
 pub fn read(mut reader: impl Read) -> Result<Surface, MeshFileError> {
     let mut head = [0; HEADER];
     let length = fill(&mut reader, &mut head)?;

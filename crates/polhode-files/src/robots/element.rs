@@ -16,7 +16,9 @@ const MOST_PREFIXES: usize = 64;
 /// A text of the file and the bytes that hold it.
 #[derive(Clone, Debug)]
 pub struct Value {
+    /// The text.
     pub text: String,
+    /// Its bytes.
     pub range: Range<usize>,
 }
 

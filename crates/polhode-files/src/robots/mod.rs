@@ -17,14 +17,20 @@ pub use element::Value;
 /// A language of models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
+    /// Unified Robot Description Format.
     Urdf,
+    /// The format of MuJoCo.
     Mjcf,
+    /// Simulation Description Format.
     Sdf,
 }
 
 impl Language {
+    /// As flags spell them.
     pub const NAMES: [&str; 3] = ["urdf", "mjcf", "sdf"];
 
+    /// The language that a flag spells so.
+    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "urdf" => Some(Self::Urdf),

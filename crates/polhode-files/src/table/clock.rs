@@ -3,8 +3,11 @@
 use polhode::body::Date;
 use polhode::units::{RateUnit, TimeUnit};
 
+use super::name::Name;
+use super::source::Line;
+
 /// Reads the times of one text.
-pub(super) struct Clock {
+pub(crate) struct Clock {
     unit: Option<TimeUnit>,
     /// Known with the first time.
     kind: Option<Kind>,
@@ -27,12 +30,12 @@ const LATEST: f64 = 4.0;
 
 impl Clock {
     /// With the unit that is known of numbers.
-    pub(super) fn new(unit: Option<TimeUnit>) -> Self {
+    pub(crate) fn new(unit: Option<TimeUnit>) -> Self {
         Clock { unit, kind: None }
     }
 
     /// The time of a cell, s; with `nanoseconds` it holds whole seconds.
-    pub(super) fn seconds(&mut self, cell: &str, nanoseconds: Option<&str>) -> Option<f64> {
+    pub(crate) fn seconds(&mut self, cell: &str, nanoseconds: Option<&str>) -> Option<f64> {
         if self.kind.is_none() {
             self.kind = Some(self.kind_of(cell, nanoseconds.is_some())?);
         }
@@ -68,7 +71,7 @@ impl Clock {
 
 /// What the lines before the header say.
 #[derive(Default)]
-pub(super) struct Preamble {
+pub(crate) struct Preamble {
     /// Of a gyroscope in the units of its converter, deg/s.
     gyro_scale: Option<f64>,
     /// Samples a second.
@@ -78,10 +81,10 @@ pub(super) struct Preamble {
 }
 
 impl Preamble {
-    pub(super) fn of(lines: &[(usize, &str)]) -> Self {
+    pub(crate) fn of(lines: &[Line]) -> Self {
         let mut found = Preamble::default();
-        for (_, line) in lines {
-            let lower = line.to_lowercase();
+        for line in lines {
+            let lower = line.text.to_lowercase();
             let value = || lower.rsplit([':', ',', '=']).next().unwrap_or_default().trim_matches(['"', ' ']);
             if lower.contains("gyro_scale") || lower.contains("gyroscale") {
                 found.gyro_scale = scale(value());
@@ -96,22 +99,23 @@ impl Preamble {
     }
 
     /// The unit of a time column that counts in its own way.
-    pub(super) fn time_unit(&self, name: &str) -> Option<TimeUnit> {
-        match name.to_lowercase().as_str() {
+    pub(crate) fn time_unit(&self, name: &Name) -> Option<TimeUnit> {
+        match name.letters.as_str() {
             "sampletimefine" if self.is_dot => Some(TimeUnit::Microseconds),
             // ticks of 10 kHz
             "sampletimefine" => Some(TimeUnit::Multiple(1e-4)),
-            "packetcounter" | "frame" => self.rate.map(|rate| TimeUnit::Multiple(1.0 / rate)),
+            _ if name.is_counter() => self.rate.map(|rate| TimeUnit::Multiple(1.0 / rate)),
             _ => None,
         }
     }
 
-    pub(super) fn rate_unit(&self) -> Option<RateUnit> {
+    /// The unit of the rates of the device.
+    pub(crate) fn rate_unit(&self) -> Option<RateUnit> {
         self.is_dot.then_some(RateUnit::DegreesPerSecond)
     }
 
     /// What a number of the column `name` is in the unit of the column.
-    pub(super) fn scale(&self, name: &str) -> f64 {
+    pub(crate) fn scale(&self, name: &str) -> f64 {
         let is_raw = name.to_lowercase().starts_with("gyroadc[") && !name.contains('(');
         self.gyro_scale.filter(|_| is_raw).unwrap_or(1.0)
     }

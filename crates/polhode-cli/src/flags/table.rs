@@ -1,0 +1,66 @@
+//! How a table is read where its header leaves it open: columns, units, counters, the place of the scalar.
+
+use clap::{Args, ValueEnum};
+use polhode::audit::QuaternionOrder;
+use polhode::units::{RateUnit, TimeUnit};
+use polhode_files::numbers::positive;
+use polhode_files::{ColumnNames, Reading};
+
+/// Columns and times of a table.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Reading")]
+pub(crate) struct TableArguments {
+    /// Columns by name or by number from 1. Keys: t, id; wx,wy,wz (or x,y,z); qw,qx,qy,qz, or q0..q3 where the place of the scalar is open; r11..r33; e1..e3 (Euler); s1..s3 (MRP); lx,ly,lz
+    #[arg(long, value_name = "KEY=NAME,...", value_parser = ColumnNames::parse)]
+    columns: Option<ColumnNames>,
+    /// Unit of time where the header names none: s, ms, us, ns, or a number of seconds, such as the step of a dump that counts steps [default: s]
+    #[arg(long, value_name = "UNIT", value_parser = time_unit)]
+    time_unit: Option<TimeUnit>,
+    /// Samples a second, where a column counts samples in place of a time, or rows have neither
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_hyphen_values = true)]
+    sample_rate: Option<f64>,
+}
+
+impl TableArguments {
+    /// What they say, with the unit of the angular velocity.
+    pub(crate) fn reading(&self, rate_unit: Option<RateUnit>) -> Reading {
+        Reading {
+            columns: self.columns.clone().unwrap_or_default(),
+            time_unit: self.time_unit,
+            sample_rate: self.sample_rate,
+            rate_unit,
+            ..Reading::default()
+        }
+    }
+}
+
+fn time_unit(text: &str) -> Result<TimeUnit, String> {
+    let number = || positive(text).ok().map(TimeUnit::Multiple);
+    TimeUnit::named(text).or_else(number).ok_or_else(|| {
+        format!("'{text}' is no unit of time here; known: s, ms, us, ns, or a number of seconds")
+    })
+}
+
+/// A unit of angular velocity.
+pub(crate) fn rate_unit(text: &str) -> Result<RateUnit, String> {
+    RateUnit::named(text)
+        .ok_or_else(|| format!("'{text}' is no unit of rates here; known: rad/s, deg/s, rpm"))
+}
+
+/// Place of the scalar in a quaternion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Order {
+    /// Scalar first
+    Wxyz,
+    /// Scalar last
+    Xyzw,
+}
+
+impl From<Order> for QuaternionOrder {
+    fn from(order: Order) -> Self {
+        match order {
+            Order::Wxyz => Self::ScalarFirst,
+            Order::Xyzw => Self::ScalarLast,
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Dumps of LAMMPS as rows: blocks of atoms, each with a time step and, where it was asked for, a time.
+
+use super::lines::Lines;
+use super::source::Line;
+use crate::error::{Rule, TableError};
+
+/// Blocks of a dump; each atom is a row, with the time of its block in front.
+pub(crate) struct Dump<'t> {
+    pub(crate) lines: Lines<'t>,
+    /// The item that was read last.
+    item: Option<String>,
+    /// What the block says before its rows.
+    step: Option<String>,
+    time: Option<String>,
+    atoms: Option<u64>,
+    /// Rows of the block that are left, and of how many.
+    left: (u64, u64),
+    /// The time of the block.
+    now: String,
+    /// The columns of the first block.
+    names: Option<String>,
+}
+
+impl<'t> Dump<'t> {
+    /// Of lines whose first, `item`, was read.
+    pub(crate) fn new(lines: Lines<'t>, item: &str) -> Self {
+        let item = item.strip_prefix("ITEM:").map(|item| item.trim().to_string());
+        let now = String::new();
+        Self { lines, item, step: None, time: None, atoms: None, left: (0, 0), now, names: None }
+    }
+
+    /// Reads the header, then a row for each atom.
+    pub(crate) fn advance(&mut self, line: &mut Line) -> Result<bool, TableError> {
+        while self.left.0 == 0 {
+            let Some(item) = self.item.take() else {
+                if !self.lines.advance()? {
+                    return if self.names.is_some() {
+                        Ok(false)
+                    } else {
+                        Err(self.lines.refused(Rule::Rows))
+                    };
+                }
+                self.item = self.lines.text.trim().strip_prefix("ITEM:").map(|item| item.trim().to_string());
+                continue;
+            };
+            match item.as_str() {
+                "TIMESTEP" => self.step = Some(self.number()?),
+                "TIME" => self.time = Some(self.number()?),
+                "NUMBER OF ATOMS" => self.atoms = self.number()?.parse().ok(),
+                text if text.starts_with("ATOMS") => {
+                    let other = |rule: &str, remedy: &str| {
+                        Err(self.lines.refused(Rule::Other(rule.into())).with_remedy(remedy))
+                    };
+                    let Some(atoms) = self.atoms.take() else {
+                        return other(
+                            "a block of atoms without their number",
+                            "dump it with ITEM: NUMBER OF ATOMS",
+                        );
+                    };
+                    let (time, name) = match (self.time.take(), self.step.take()) {
+                        (Some(time), _) => (time, "t"),
+                        (None, Some(step)) => (step, "timestep"),
+                        (None, None) => {
+                            return other(
+                                "a block of atoms without a time step",
+                                "dump it with ITEM: TIMESTEP",
+                            );
+                        }
+                    };
+                    let names = format!("{name} {}", named(text.split_whitespace().skip(1)).join(" "));
+                    (self.now, self.left) = (time, (atoms, atoms));
+                    match &self.names {
+                        None => {
+                            line.text.clone_from(&names);
+                            (line.number, line.is_ended, self.names) = (self.lines.number, true, Some(names));
+                            return Ok(true);
+                        }
+                        Some(before) if *before != names => {
+                            return other(
+                                "other columns than in the block before",
+                                "dump one set of columns",
+                            );
+                        }
+                        Some(_) => {}
+                    }
+                }
+                // bounds of the box, units: of no interest here
+                _ => {}
+            }
+        }
+        if !self.lines.advance()? {
+            let rule = format!("the file ends within a block of {} atoms", self.left.1);
+            return Err(self
+                .lines
+                .refused(Rule::Other(rule))
+                .with_remedy("leave the block out, or complete it"));
+        }
+        self.left.0 -= 1;
+        line.text = format!("{} {}", self.now, self.lines.text.trim());
+        (line.number, line.is_ended) = (self.lines.number, self.lines.is_ended);
+        Ok(true)
+    }
+
+    /// The number on the next line.
+    fn number(&mut self) -> Result<String, TableError> {
+        self.lines.advance()?;
+        let text = self.lines.text.trim();
+        if text.parse::<f64>().is_ok_and(f64::is_finite) {
+            return Ok(text.into());
+        }
+        Err(self.lines.refused(Rule::Number).value(text).with_remedy("dump the file again"))
+    }
+}
+
+/// Names of columns without the marks of computes, fixes and variables; four components of one compute are a quaternion.
+fn named<'a>(columns: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let columns: Vec<&str> = columns.collect();
+    let part = |name: &'a str| name.strip_suffix(']')?.rsplit_once('[');
+    let size =
+        |stem: &str| columns.iter().filter(|name| part(name).is_some_and(|(other, _)| other == stem)).count();
+    let plain = |name: &str| {
+        let stripped = ["c_", "f_", "v_"].iter().find_map(|mark| name.strip_prefix(mark));
+        stripped.unwrap_or(name).to_string()
+    };
+    let name = |name: &&'a str| match part(name) {
+        Some((stem, number)) if size(stem) == 4 => {
+            let letters = ["w", "x", "y", "z"];
+            let letter = number.parse::<usize>().ok().and_then(|n| letters.get(n.checked_sub(1)?));
+            letter.map_or_else(|| plain(name), |letter| format!("q_{letter}"))
+        }
+        _ => plain(name),
+    };
+    columns.iter().map(name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::named;
+
+    #[test]
+    fn four_components_of_a_compute_are_a_quaternion() {
+        let header = "id type c_orient[1] c_orient[2] c_orient[3] c_orient[4] angmomx c_omega[1] v_k";
+        let names = named(header.split_whitespace());
+        assert_eq!(names, ["id", "type", "q_w", "q_x", "q_y", "q_z", "angmomx", "omega[1]", "k"]);
+    }
+}

@@ -1,0 +1,255 @@
+//! Trajectories from files of other programs: tables of rows, and dumps of LAMMPS.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use polhode::audit::{Attitudes, Claims, Direction, Frame, QuaternionOrder, Trajectory};
+use polhode::units::AngleUnit;
+
+use crate::error::{Error, Rule, TableError};
+use crate::table::{Columns, Group, Quantity, Reading, Table, digits};
+use crate::text::visible;
+
+/// What a file holds.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Found {
+    /// Trajectories with the name of their body, where there are several.
+    pub bodies: Vec<(Option<String>, Trajectory)>,
+    /// What names and layout claim of the convention.
+    pub claims: Claims,
+    /// Whether the times are counts of steps, of a length that the file does not tell.
+    pub counts_steps: bool,
+    /// Lines before the header that begin with #, without that.
+    pub comments: Vec<String>,
+}
+
+/// Reads the trajectories at `path`, or of standard input where that is `-`.
+///
+/// Rows hold a time and an attitude (quaternion, matrix, Euler angles, modified Rodrigues parameters), an angular velocity or
+/// an angular momentum, in columns of any common names; several bodies by a column `id`, by the `qpos` and `qvel` of MuJoCo, or
+/// in a dump of LAMMPS. Times are in s; other numbers are as they stand, with what their names [claim](Found::claims).
+///
+/// ```
+/// use polhode::audit::QuaternionOrder;
+/// use polhode_files::{Reading, trajectory};
+/// let file = std::env::temp_dir().join(format!("polhode-run-{}.csv", std::process::id()));
+/// std::fs::write(&file, "time (ms),qw,qx,qy,qz\n0,1,0,0,0\n10,0.8,0,0,0.6\n")?;
+/// let found = trajectory::read(&file, &Reading::default())?;
+/// assert_eq!(found.bodies[0].1.times, [0.0, 0.01]);
+/// assert_eq!(found.claims.quaternion, Some(QuaternionOrder::ScalarFirst));
+/// # std::fs::remove_file(file)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// A file without the columns of a trajectory, and rows that cannot be read, by line and column.
+pub fn read(path: &Path, reading: &Reading) -> Result<Found, Error> {
+    Ok(found(Table::open(path, reading)?)?)
+}
+
+fn found(mut table: Table) -> Result<Found, TableError> {
+    let claims = claims(&table)?;
+    let mut rows = Bodies::default();
+    while table.next()? {
+        rows.push(&mut table)?;
+    }
+    if rows.bodies.is_empty() {
+        return Err(TableError::of(table.name(), Rule::Rows));
+    }
+    let several = rows.bodies.len() > 1;
+    let bodies =
+        rows.bodies.into_iter().map(|body| (body.name.clone().filter(|_| several), body.trajectory()));
+    Ok(Found {
+        bodies: bodies.collect(),
+        claims,
+        counts_steps: table.counts_steps(),
+        comments: table.comments,
+    })
+}
+
+/// What names and layout claim of the convention.
+fn claims(table: &Table) -> Result<Claims, TableError> {
+    let mut claims = Claims::default();
+    let Some(body) = table.header.bodies.first() else { return Ok(claims) };
+    if let Some(attitude) = &body.attitude {
+        match attitude.quantity {
+            Quantity::Quaternion => claims.quaternion = Some(QuaternionOrder::ScalarFirst),
+            Quantity::Rodrigues => claims.attitude = Some(Direction::BodyToSpace),
+            Quantity::Angles => {
+                if let Some(text) = &attitude.units[0] {
+                    claims.angle_unit = AngleUnit::named(text);
+                    if claims.angle_unit.is_none() {
+                        let rule = Rule::KnownUnit("rad, deg");
+                        return Err(table.refused_column(attitude.places[0], rule).value(text));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    claims.omega_frame = body.rates.as_ref().and_then(|rates| rates.frame);
+    claims.rate_unit = table.rate_units(0)[0].filter(|_| body.rates.is_some());
+    claims.momentum_frame = body.momentum.as_ref().and_then(|momentum| momentum.frame);
+    if table.is_dump() {
+        // momenta and rates of atoms are in the axes of space
+        (claims.omega_frame, claims.momentum_frame) = (Some(Frame::Space), Some(Frame::Space));
+    }
+    if table.is_dump() || table.header.is_generalized {
+        claims.attitude = Some(Direction::BodyToSpace);
+    }
+    Ok(claims)
+}
+
+/// The rows of one body so far.
+struct Body {
+    name: Option<String>,
+    times: Vec<f64>,
+    attitude: Option<Attitudes>,
+    rates: Option<Vec<[f64; 3]>>,
+    momentum: Option<Vec<[f64; 3]>>,
+    /// Of attitude, rates and momentum: most significant digits, and whether the numbers change.
+    written: [Written; 3],
+}
+
+#[derive(Clone, Copy, Default)]
+struct Written {
+    digits: u32,
+    first: Option<f64>,
+    changes: bool,
+}
+
+impl Written {
+    fn note(&mut self, text: &str, value: f64) {
+        // more than 17 digits are those of no double
+        if self.digits < 17 {
+            self.digits = self.digits.max(digits(text)).min(17);
+        }
+        match self.first {
+            None => self.first = Some(value),
+            Some(first) => self.changes |= first.abs() != value.abs() && value != 0.0,
+        }
+    }
+
+    /// The numbers in some columns of the present row.
+    fn take<const N: usize>(&mut self, table: &Table, group: &Group) -> Result<[f64; N], TableError> {
+        let values = table.numbers::<N>(&group.places)?;
+        for (value, place) in values.iter().zip(&group.places) {
+            self.note(table.cell(*place), *value);
+        }
+        Ok(values)
+    }
+}
+
+/// All rows of a file.
+#[derive(Default)]
+struct Bodies {
+    bodies: Vec<Body>,
+    /// Where the bodies of an id begin.
+    ids: HashMap<String, usize>,
+}
+
+impl Bodies {
+    /// Adds the present row.
+    fn push(&mut self, table: &mut Table) -> Result<(), TableError> {
+        table.check()?;
+        let time = table.time()?;
+        let id = table.header.id.map_or("", |place| table.cell(place));
+        let first = match self.ids.get(id) {
+            Some(first) => *first,
+            None => self.begin(id, table.header.id.is_some(), &table.header.bodies),
+        };
+        for (k, columns) in table.header.bodies.iter().enumerate() {
+            let body = &mut self.bodies[first + k];
+            if let Some(&before) = body.times.last()
+                && before >= time
+            {
+                let error = match table.header.time {
+                    Some(place) => table.refused_cell(place, Rule::Order(before, true)),
+                    None => table.refused(Rule::Order(before, true)),
+                };
+                let has_id = table.header.id.is_some();
+                return Err(if has_id {
+                    error.with_remedy("sort the rows of each body by time")
+                } else {
+                    error
+                });
+            }
+            body.times.push(time);
+            body.push(table, columns)?;
+        }
+        Ok(())
+    }
+
+    /// The place of the first body of a new id.
+    fn begin(&mut self, id: &str, is_named: bool, columns: &[Columns]) -> usize {
+        let first = self.bodies.len();
+        self.ids.insert(id.to_string(), first);
+        for columns in columns {
+            let name = match (is_named.then(|| visible(id).into_owned()), &columns.label) {
+                (Some(id), Some(label)) => Some(format!("{id}, {label}")),
+                (id, label) => id.or_else(|| label.clone()),
+            };
+            self.bodies.push(Body::new(name, columns));
+        }
+        first
+    }
+}
+
+impl Body {
+    fn new(name: Option<String>, columns: &Columns) -> Self {
+        let attitude = columns.attitude.as_ref().map(|group| match group.quantity {
+            Quantity::Matrix => Attitudes::Matrices(Vec::new()),
+            Quantity::Angles => Attitudes::Angles(Vec::new()),
+            Quantity::Rodrigues => Attitudes::Rodrigues(Vec::new()),
+            _ => Attitudes::Quaternions(Vec::new()),
+        });
+        let rows = |group: &Option<Group>| group.as_ref().map(|_| Vec::new());
+        let (rates, momentum) = (rows(&columns.rates), rows(&columns.momentum));
+        Self { name, times: Vec::new(), attitude, rates, momentum, written: Default::default() }
+    }
+
+    /// Adds what the columns of the present row hold.
+    fn push(&mut self, table: &Table, columns: &Columns) -> Result<(), TableError> {
+        let [attitudes, rates, momenta] = &mut self.written;
+        if let (Some(group), Some(attitude)) = (&columns.attitude, &mut self.attitude) {
+            let is_zero = match attitude {
+                Attitudes::Quaternions(rows) => {
+                    rows.push(attitudes.take(table, group)?);
+                    rows.last() == Some(&[0.0; 4])
+                }
+                Attitudes::Matrices(rows) => {
+                    rows.push(attitudes.take(table, group)?);
+                    rows.last() == Some(&[0.0; 9])
+                }
+                Attitudes::Angles(rows) | Attitudes::Rodrigues(rows) => {
+                    rows.push(attitudes.take(table, group)?);
+                    false
+                }
+                _ => false,
+            };
+            if is_zero {
+                return Err(table.refused_cell(group.places[0], Rule::Turn));
+            }
+        }
+        if let (Some(group), Some(rows)) = (&columns.rates, &mut self.rates) {
+            let scale = table.scale(group.places[0]);
+            rows.push(rates.take::<3>(table, group)?.map(|rate| rate * scale));
+        }
+        if let (Some(group), Some(rows)) = (&columns.momentum, &mut self.momentum) {
+            rows.push(momenta.take(table, group)?);
+        }
+        Ok(())
+    }
+
+    fn trajectory(self) -> Trajectory {
+        let mut trajectory = Trajectory::new(self.times);
+        trajectory.attitude = self.attitude;
+        trajectory.rates = self.rates;
+        trajectory.momentum = self.momentum;
+        // numbers that stay the same may be short by nature
+        let changing = self.written.iter().filter(|written| written.changes && written.digits > 0);
+        trajectory.digits = changing.map(|written| written.digits).min();
+        trajectory
+    }
+}

@@ -1,0 +1,121 @@
+//! Trajectories as simulators write them: read with their claims, or refused by line and column.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use polhode::audit::{Attitudes, Direction, Frame, QuaternionOrder};
+use polhode_files::trajectory::{Found, read};
+use polhode_files::{ColumnNames, Reading};
+
+fn found(text: &str, columns: &str) -> Result<Found, String> {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = scratch.path().join("run.csv");
+    std::fs::write(&path, text).unwrap();
+    let mut reading = Reading::default();
+    if !columns.is_empty() {
+        reading.columns = ColumnNames::parse(columns).unwrap();
+    }
+    read(&path, &reading).map_err(|error| {
+        error.to_string().rsplit_once("run.csv").map_or(String::new(), |(_, rest)| rest.into())
+    })
+}
+
+fn quaternions(found: &Found, body: usize) -> &[[f64; 4]] {
+    match &found.bodies[body].1.attitude {
+        Some(Attitudes::Quaternions(rows)) => rows,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn tables_with_a_header_in_a_comment_or_in_none() {
+    for text in ["t,w,x,y,z\n0,1,0,0,0\n1,0,1,0,0\n", "# t w x y z\n0 1 0 0 0\n1  0 1 0 0\n"] {
+        let found = found(text, "").unwrap();
+        assert_eq!(found.bodies[0].1.times, [0.0, 1.0]);
+        assert_eq!(quaternions(&found, 0), [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]]);
+        assert_eq!(found.claims.quaternion, Some(QuaternionOrder::ScalarFirst));
+    }
+    let found = found("0;1;2;3;4\n5;6;7;8;9\n", "t=1,q0=2,q1=3,q2=4,q3=5").unwrap();
+    assert_eq!((quaternions(&found, 0)[1], found.claims.quaternion), ([6.0, 7.0, 8.0, 9.0], None));
+}
+
+#[test]
+fn generalized_positions_of_two_free_joints() {
+    let header = |stem: &str, n: usize| (0..n).map(|k| format!(",{stem}_{k}")).collect::<String>();
+    let row: String = (0..26).map(|k| format!(",{k}")).collect();
+    let text = format!("time{}{}\n0{row}\n", header("qpos", 14), header("qvel", 12));
+    let found = found(&text, "").unwrap();
+    assert_eq!(quaternions(&found, 1), [[10.0, 11.0, 12.0, 13.0]]);
+    assert_eq!(found.bodies[1].1.rates, Some(vec![[23.0, 24.0, 25.0]]));
+    assert_eq!(found.bodies[1].0.as_deref(), Some("free joint 2"));
+    assert_eq!(found.claims.omega_frame, Some(Frame::Body));
+}
+
+#[test]
+fn dumps_and_ids_part_the_bodies() {
+    let block = |step: u32| {
+        format!(
+            "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 1\n0 1\n\
+             ITEM: ATOMS id c_q[1] c_q[2] c_q[3] c_q[4] angmomx angmomy angmomz\n\
+             7 {step} 0 0 1 1 2 3\n3 1 0 0 0 4 5 6\n"
+        )
+    };
+    let found = found(&(block(0) + &block(100)), "").unwrap();
+    assert!(found.counts_steps);
+    assert_eq!(found.bodies[0].0.as_deref(), Some("7"));
+    assert_eq!(found.bodies[0].1.times, [0.0, 100.0]);
+    assert_eq!(quaternions(&found, 0)[1], [100.0, 0.0, 0.0, 1.0]);
+    assert_eq!(found.bodies[1].1.momentum, Some(vec![[4.0, 5.0, 6.0]; 2]));
+    assert_eq!(found.claims.attitude, Some(Direction::BodyToSpace));
+}
+
+#[test]
+fn what_cannot_be_read_is_refused_with_line_and_column() {
+    for (text, columns, says) in [
+        ("", "", ": no rows"),
+        ("t,w,x,y,z\n", "", ": no rows"),
+        ("t,a,b\n0,1,2\n", "", ", line 1: neither an attitude nor an angular velocity is told by the names"),
+        (
+            "a,w,x,y,z\n0,1,0,0,0\n",
+            "",
+            ", line 1: no column for time; the header has 'a', 'w', 'x', 'y', 'z'; name",
+        ),
+        ("0,1\n", "", ": no column for time; the header has none"),
+        (
+            "t,w,x,y,z\n0,1,0,0\n",
+            "",
+            ", line 2: the row has 4 of 5 columns; leave the row out, or complete it",
+        ),
+        ("t,w,x,y,z\n0,1,0,,0\n", "", ", line 2, column 4 (y): a number is missing"),
+        ("t,w,x,y,z\n0,1,0,0,x\n", "", ", line 2, column 5 (z): 'x': is not a number"),
+        ("t,w,x,y,z\n0,1,0,0,nan\n", "", ", line 2, column 5 (z): 'nan': is not a finite number"),
+        (
+            "t,w,x,y,z\n1,1,0,0,0\n1,1,0,0,0\n",
+            "",
+            ", line 3, column 1 (t): '1': does not come after the time",
+        ),
+        ("t,wx,wy,wz\n", "wx=q", ", line 1: no column for 'q'; the header has 't', 'wx', 'wy', 'wz'"),
+        ("t,wx,wy,wz\n", "wx=wx,wy=2", ", line 1: a part of wx, wy, wz in --columns: wz=NAME is missing;"),
+        (
+            "t,wx,wy,wz,gyro_x,gyro_y,gyro_z\n",
+            "",
+            ", line 1: two angular velocities: from 'wx' and from 'gyro_x'",
+        ),
+        ("t,qpos0,qpos1\n", "", ", line 1: 2 columns qpos and 0 columns qvel are not those of free joints"),
+    ] {
+        let error = found(text, columns).err().unwrap_or_default();
+        assert!(error.starts_with(says), "{text:?}: {error}");
+    }
+}
+
+/// LAMMPS writes units and time before the step: `dump_modify units yes time yes`.
+#[test]
+fn dumps_tell_their_time_before_the_step() {
+    let block = |time: &str, step: u32| {
+        format!(
+            "ITEM: UNITS\nlj\nITEM: TIME\n{time}\nITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n\
+             0 1\n0 1\n0 1\nITEM: ATOMS id c_q[1] c_q[2] c_q[3] c_q[4]\n1 1 0 0 0\n"
+        )
+    };
+    let found = found(&(block("0", 0) + &block("0.5", 100)), "").unwrap();
+    assert!(!found.counts_steps);
+    assert_eq!(found.bodies[0].1.times, [0.0, 0.5]);
+}
