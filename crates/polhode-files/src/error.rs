@@ -16,16 +16,20 @@ pub enum Error {
     Input(String),
     /// A place in a table that cannot be used. Exit code 2.
     #[error("{0}")]
-    Table(Box<TableError>),
+    Table(TableError),
     /// The reader of standard output has seen enough, and the work ends. Exit code 0, and nothing is said.
     #[error("standard output is read no further")]
     Unread,
 }
 
-/// Where a table breaks which rule, and what to do. Lines and columns count from 1, the header included.
+/// Where a table breaks which rule, and what to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableError(Box<Broken>);
+
+/// The parts of a [`TableError`]. Lines and columns count from 1, the header included.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct TableError {
+pub struct Broken {
     /// Name of the file.
     pub file: String,
     /// The line; `None` of the file as a whole.
@@ -213,31 +217,38 @@ impl TableError {
     /// Of a rule, with its usual remedy, at no line yet.
     pub(crate) fn of(file: &str, rule: Rule) -> Self {
         let remedy = rule.words().1.into();
-        Self { file: file.into(), line: None, column: None, value: String::new(), rule, remedy }
+        let (file, value) = (file.into(), String::new());
+        Self(Box::new(Broken { file, line: None, column: None, value, rule, remedy }))
+    }
+
+    /// Of a file that is named so.
+    pub(crate) fn named(mut self, file: String) -> Self {
+        self.0.file = file;
+        self
     }
 
     /// At this line.
     pub(crate) fn at(mut self, line: u64) -> Self {
-        self.line = Some(line);
+        self.0.line = Some(line);
         self
     }
 
     /// In the column of this place, from 0, and name.
     pub(crate) fn in_column(mut self, place: usize, name: &str) -> Self {
-        self.column = Some((place + 1, name.into()));
+        self.0.column = Some((place + 1, name.into()));
         self
     }
 
     /// Where this stands.
     pub(crate) fn value(mut self, value: &str) -> Self {
-        self.value = value.into();
+        self.0.value = value.into();
         self
     }
 
     /// With another remedy.
     #[must_use]
     pub fn with_remedy(mut self, remedy: &str) -> Self {
-        self.remedy = remedy.into();
+        self.0.remedy = remedy.into();
         self
     }
 
@@ -261,6 +272,13 @@ impl TableError {
     }
 }
 
+impl std::ops::Deref for TableError {
+    type Target = Broken;
+    fn deref(&self) -> &Broken {
+        &self.0
+    }
+}
+
 impl fmt::Display for TableError {
     /// File, line, column, value, rule and remedy.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -281,7 +299,7 @@ impl fmt::Display for TableError {
 
 impl From<TableError> for Error {
     fn from(error: TableError) -> Self {
-        Self::Table(Box::new(error))
+        Self::Table(error)
     }
 }
 /// What ours alone can cause: catalogues and examples are valid; if one is not, that is what failed.

@@ -38,6 +38,6 @@ pub mod times;
 pub mod toml_file;
 pub mod trajectory;
 
-pub use error::{Error, Rule, TableError};
+pub use error::{Broken, Error, Rule, TableError};
 pub use read::read;
 pub use table::{ColumnNames, Reading};

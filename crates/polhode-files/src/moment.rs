@@ -1,6 +1,7 @@
 //! One time as it is written: a number of seconds, a number with a unit, or a date.
 
-use polhode::units::{Date, TimeUnit};
+use polhode::units::Date;
+use polhode::units::TimeUnit;
 
 use crate::numbers::number;
 

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use polhode::units::{Date, TimeUnit};
+use polhode::units::Date;
+use polhode::units::TimeUnit;
 
 use crate::error::{Error, Rule, TableError};
 use crate::moment::{is_moment, seconds};
@@ -59,13 +60,14 @@ impl Column {
             Source::Standard => Text::open(Path::new("-")),
         };
         let text = text.map_err(|error| self.named(error))?;
-        Ok(Times { column: self, text, place: None, is_empty: true, is_over: false })
+        let header = None;
+        Ok(Times { column: self, text, header, place: None, is_empty: true, is_over: false })
     }
 
     /// A refusal of the file as a whole, with the flag that names it.
-    fn named(&self, mut error: TableError) -> Error {
-        error.file = format!("{}: {}", self.asked.file, error.file);
-        error.with_remedy("name a text file of times").into()
+    fn named(&self, error: TableError) -> Error {
+        let file = format!("{}: {}", self.asked.file, error.file);
+        error.named(file).with_remedy("name a text file of times").into()
     }
 }
 
@@ -73,6 +75,8 @@ impl Column {
 pub struct Times<'c> {
     column: &'c Column,
     text: Text<'static>,
+    /// The last comment above the rows, which may name the columns.
+    header: Option<String>,
     /// Known with the first line.
     place: Option<Place>,
     is_empty: bool,
@@ -113,12 +117,25 @@ impl Times<'_> {
                 return if self.is_empty { Err(refused()) } else { Ok(None) };
             }
             let text = self.text.text.trim();
-            if text.is_empty() || uncommented(text).is_some() {
+            if let Some(comment) = uncommented(text) {
+                self.header = Some(comment.into());
+                continue;
+            }
+            if text.is_empty() {
                 continue;
             }
             if self.place.is_none() {
-                let (place, is_header) = place(text, self.column.wanted.as_deref(), self.column.asked.column)
-                    .map_err(|(rule, remedy)| self.text.refused(rule).with_remedy(&remedy))?;
+                let asked = (self.column.wanted.as_deref(), self.column.asked.column);
+                let own = place(text, asked.0, asked.1);
+                let named = self.header.as_deref().filter(|_| own.is_err());
+                let named = named.and_then(|header| place(header, asked.0, asked.1).ok());
+                let delimiter = Delimiter::of(text);
+                let columns = delimiter.names(text).len();
+                let (place, is_header) =
+                    match named.filter(|(place, is_header)| *is_header && place.columns == columns) {
+                        Some((place, _)) => (Place { delimiter, ..place }, false),
+                        None => own.map_err(|(rule, remedy)| self.text.refused(rule).with_remedy(&remedy))?,
+                    };
                 self.place = Some(place);
                 if is_header {
                     continue;

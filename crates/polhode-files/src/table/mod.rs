@@ -243,7 +243,10 @@ impl<'t> Table<'t> {
     /// A rule that the header of a column breaks.
     pub(crate) fn refused_column(&self, place: usize, rule: Rule) -> TableError {
         let error = TableError::of(self.name(), rule).in_column(place, &self.header.names[place].text);
-        TableError { line: self.named_at, ..error }
+        match self.named_at {
+            Some(line) => error.at(line),
+            None => error,
+        }
     }
 
     /// Reads a row of units below the names, and passes over one that says what is calibrated; the unit of time that it names.
