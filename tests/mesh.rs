@@ -36,8 +36,6 @@ fn mapped(triangles: &[Triangle], map: impl Fn(Vector3<f64>) -> Vector3<f64>) ->
     triangles.iter().map(|t| t.map(&map)).collect()
 }
 
-/// Quadrilaterals and triangles, textures and normals, backward indices, all of which OBJ files have.
-
 fn largest_error(found: &MassProperties, expected: &MassProperties) -> f64 {
     let mass = (found.mass() / expected.mass() - 1.0).abs();
     let scale = expected.tensor().amax();

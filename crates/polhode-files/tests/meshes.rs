@@ -83,6 +83,7 @@ fn ascii(triangles: &[Triangle]) -> String {
     text + "endsolid a cube\n"
 }
 
+/// Quadrilaterals and triangles, textures and normals, backward indices, all of which OBJ files have.
 const OBJ_CUBE: &str = "\
 # a cube
 mtllib cube.mtl
