@@ -221,12 +221,6 @@ impl TableError {
         Self(Box::new(Broken { file, line: None, column: None, value, rule, remedy }))
     }
 
-    /// Of a file that is named so.
-    pub(crate) fn named(mut self, file: String) -> Self {
-        self.0.file = file;
-        self
-    }
-
     /// At this line.
     pub(crate) fn at(mut self, line: u64) -> Self {
         self.0.line = Some(line);

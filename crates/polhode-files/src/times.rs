@@ -59,15 +59,14 @@ impl Column {
             Source::File(path) => Text::open(path),
             Source::Standard => Text::open(Path::new("-")),
         };
-        let text = text.map_err(|error| self.named(error))?;
+        let text = text.map_err(|error| self.named(&error))?;
         let header = None;
         Ok(Times { column: self, text, header, place: None, is_empty: true, is_over: false })
     }
 
     /// A refusal of the file as a whole, with the flag that names it.
-    fn named(&self, error: TableError) -> Error {
-        let file = format!("{}: {}", self.asked.file, error.file);
-        error.named(file).with_remedy("name a text file of times").into()
+    fn named(&self, error: &TableError) -> Error {
+        Error::input(&self.asked.file, &error.file, &error.rule.to_string(), "name a text file of times")
     }
 }
 

@@ -116,8 +116,8 @@ impl Preamble {
 
     /// What a number of the column `name` is in the unit of the column.
     pub(crate) fn scale(&self, name: &str) -> f64 {
-        let is_raw = name.to_lowercase().starts_with("gyroadc[") && !name.contains('(');
-        self.gyro_scale.filter(|_| is_raw).unwrap_or(1.0)
+        let is_raw = |_: &f64| name.to_lowercase().starts_with("gyroadc[") && !name.contains('(');
+        self.gyro_scale.filter(is_raw).unwrap_or(1.0)
     }
 }
 

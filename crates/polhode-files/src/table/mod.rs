@@ -172,6 +172,9 @@ impl<'t> Table<'t> {
     /// Whether the present row has the cells that its header asks for.
     pub(crate) fn check(&self) -> Result<(), TableError> {
         let header = &self.header;
+        if self.cells.len() == header.names.len() {
+            return Ok(());
+        }
         let last = header.columns().into_iter().chain(header.time).chain(header.nanoseconds).max();
         let (line, widths) =
             ((self.line.text.as_str(), self.line.is_ended), (self.cells.len(), header.names.len()));
