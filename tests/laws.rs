@@ -509,6 +509,11 @@ fn drifting_energy_is_seen_to_drift() {
     }
 }
 
+/// Whether it is a method projected onto its invariants, step by step.
+fn is_projected(method: &(impl Claimed + ?Sized)) -> bool {
+    method.name().ends_with("-projected")
+}
+
 fn free_claims(method: &(impl Claimed + ?Sized)) -> Claims {
     method.claims(Problem::Free).unwrap()
 }
@@ -524,8 +529,10 @@ fn rounding_does_not_bias_an_energy_that_is_kept() {
         let mut run = Run::new(method, &body, &start, 0.1).unwrap();
         let end = run.samples(Schedule::every(1_000_000, 1_000_000)).last().unwrap().unwrap();
         let energy = end.worst.energy.unwrap();
-        assert!(energy < 2e-14, "{}: {energy:e}", method.name());
-        assert!(end.worst.momentum_norm.unwrap() < 2e-14, "{}: {:?}", method.name(), end.worst.momentum_norm);
+        // a projection ends at a residual of its own, which adds up over the steps
+        let limit = if is_projected(method) { 1e-11 } else { 2e-14 };
+        assert!(energy < limit, "{}: {energy:e}", method.name());
+        assert!(end.worst.momentum_norm.unwrap() < limit, "{}: {:?}", method.name(), end.worst.momentum_norm);
     }
 }
 
@@ -588,7 +595,8 @@ fn a_small_first_change_does_not_end_an_implicit_step() {
             let mut run = Run::new(method, &body, &start, h).unwrap();
             let end = run.advance_to(10_000).unwrap();
             let energy = end.worst.energy.unwrap();
-            assert!(energy < 1e-14, "{} at {h}: {energy:e}", method.name());
+            let limit = if is_projected(method) { 1e-13 } else { 1e-14 };
+            assert!(energy < limit, "{} at {h}: {energy:e}", method.name());
         }
     }
 }
@@ -600,7 +608,9 @@ fn a_body_that_hangs_almost_still_is_no_unsolved_step() {
     let body = Body::heavy(Inertia::from_tensor(tensor).unwrap(), [0.0, 0.0, -1.0].into()).unwrap();
     for push in [0.0, 1e-12, 1e-8, 1e-5, 1e-3] {
         let start = body.state(Default::default(), [push, -0.5 * push, 0.25 * push].into()).unwrap();
-        for method in catalogue().iter().filter(|m| free_claims(*m).cost.solves > 0) {
+        let solves =
+            |m: &dyn AnyMethod| m.claims(Problem::Gravity).is_some_and(|claims| claims.cost.solves > 0);
+        for method in catalogue().iter().filter(|m| solves(m.as_ref())) {
             let end = Run::new(method, &body, &start, 0.1).unwrap().advance_to(10_000).unwrap();
             let energy = end.worst.energy.unwrap();
             assert!(energy < 1e-8, "{} {push}: {energy:e}", method.name());

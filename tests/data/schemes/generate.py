@@ -1,4 +1,4 @@
-"""Writes coefficients.csv and prints the lists of src/method/schemes.
+"""Writes coefficients.csv and prints the lists of src/method/combine/schemes.
 
     python3 tests/data/schemes/generate.py        (python 3.11, mpmath 1.3)
 

@@ -221,3 +221,10 @@ fn share_of_norm(distance: f64, tensor: &Matrix3<f64>) -> f64 {
 pub(super) fn six(tensor: &Matrix3<f64>) -> [f64; 6] {
     [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|place| tensor[place] + 0.0)
 }
+
+/// A model with the text that its links were read from.
+pub(super) struct Model {
+    pub(super) path: String,
+    pub(super) text: String,
+    pub(super) links: Vec<Examined>,
+}

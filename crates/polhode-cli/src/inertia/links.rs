@@ -8,15 +8,8 @@ use polhode_files::read;
 use polhode_files::robots::{self as models, Language};
 use polhode_pages::output::Output;
 
-use super::examined::{Examined, Worth};
+use super::examined::{Examined, Model, Worth};
 use super::{Form, Inertia, output, repair, summary, twins};
-
-/// A model with the text that its links were read from.
-pub(super) struct Model {
-    pub(super) path: String,
-    pub(super) text: String,
-    pub(super) links: Vec<Examined>,
-}
 
 /// Examines the models that `command` names.
 ///

@@ -11,8 +11,7 @@ use polhode_files::given::Writing;
 use polhode_files::text::{rounded, visible};
 use polhode_pages::output::Output;
 
-use super::examined::{Examined, Worth, six};
-use super::links::Model;
+use super::examined::{Examined, Model, Worth, six};
 
 /// By how much the moments of a nearest tensor are raised, relative to its trace, so that programs that judge without a tolerance
 /// accept it.

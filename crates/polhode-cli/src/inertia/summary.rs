@@ -4,8 +4,7 @@ use std::fmt::Write;
 
 use polhode_files::text::{short, visible};
 
-use super::examined::{Examined, Worth};
-use super::links::Model;
+use super::examined::{Examined, Model, Worth};
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;

@@ -3,8 +3,8 @@
 use polhode::units::Date;
 use polhode::units::{RateUnit, TimeUnit};
 
+use super::lines::Line;
 use super::name::Name;
-use super::source::Line;
 
 /// Reads the times of one text.
 pub(crate) struct Clock {

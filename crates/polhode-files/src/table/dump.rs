@@ -1,7 +1,6 @@
 //! Dumps of LAMMPS as rows: blocks of atoms, each with a time step and, where it was asked for, a time.
 
-use super::lines::Lines;
-use super::source::Line;
+use super::lines::{Line, Lines};
 use crate::error::{Rule, TableError};
 
 /// Blocks of a dump; each atom is a row, with the time of its block in front.

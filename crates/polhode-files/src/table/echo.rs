@@ -1,7 +1,6 @@
 //! Messages that ROS prints, as rows.
 
-use super::lines::Lines;
-use super::source::Line;
+use super::lines::{Line, Lines};
 use crate::error::TableError;
 
 /// The names of the columns.

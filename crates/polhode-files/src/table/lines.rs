@@ -10,6 +10,17 @@ use crate::text::visible;
 /// A line is no longer than this many bytes.
 const LONGEST_LINE: usize = 1 << 24;
 
+/// A line of a table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Line {
+    /// In its file, from 1.
+    pub(crate) number: u64,
+    /// Without blanks at its ends; a tab in front is an empty cell.
+    pub(crate) text: String,
+    /// Whether a mark ends it.
+    pub(crate) is_ended: bool,
+}
+
 /// A text, line by line. A line feed, a carriage return, or both end a line.
 pub(crate) struct Lines<'t> {
     reader: Box<dyn BufRead + 't>,

@@ -5,7 +5,8 @@ use std::collections::VecDeque;
 use super::Reading;
 use super::cells::{Delimiter, is_number, uncommented};
 use super::header::Header;
-use super::source::{Line, Source};
+use super::lines::Line;
+use super::source::Source;
 use crate::error::{Rule, TableError};
 
 /// Lines in which a header is looked for.

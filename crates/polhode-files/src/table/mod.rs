@@ -22,9 +22,9 @@ pub(crate) use cells::{Delimiter, digits, plain, uncommented, width_rule};
 use clock::{Clock, Preamble};
 pub use flags::ColumnNames;
 pub(crate) use header::{Columns, Group, Header};
-pub(crate) use lines::Lines;
+pub(crate) use lines::{Line, Lines};
 pub(crate) use name::Name;
-pub(crate) use source::{Line, Source};
+pub(crate) use source::Source;
 pub(crate) use spellings::{Quantity, RATE_ENDINGS};
 
 use crate::error::{Rule, TableError};

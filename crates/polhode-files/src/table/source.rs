@@ -2,19 +2,8 @@
 
 use super::dump::Dump;
 use super::echo::Echo;
-use super::lines::Lines;
+use super::lines::{Line, Lines};
 use crate::error::TableError;
-
-/// A line of a table.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Line {
-    /// In its file, from 1.
-    pub(crate) number: u64,
-    /// Without blanks at its ends; a tab in front is an empty cell.
-    pub(crate) text: String,
-    /// Whether a mark ends it.
-    pub(crate) is_ended: bool,
-}
 
 /// Lines of a table.
 pub(crate) enum Source<'t> {
