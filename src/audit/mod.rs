@@ -15,6 +15,7 @@ mod deviation;
 mod error;
 mod faults;
 mod judge;
+mod misplaced;
 mod motion;
 mod program;
 mod question;
@@ -25,15 +26,16 @@ mod shape;
 mod signature;
 mod start;
 mod states;
+mod sweep;
 mod trajectory;
 mod verdict;
 
 pub use error::AuditError;
-pub use question::{Claims, Question};
+pub use question::{Claims, Noise, Question};
 pub use reading::{AngleUnit, Angles, Direction, Frame, Product, QuaternionOrder, RateUnit, Reading, Turns};
-pub use trajectory::{Attitudes, FEWEST_ROWS, Trajectory};
+pub use trajectory::{Attitudes, Digits, FEWEST_ROWS, Trajectory};
 pub use verdict::{
-    AttitudeError, Conservation, Fault, Judgement, Missing, Ranked, Resolution, Signature, Suspect, Tie,
+    AttitudeError, Conservation, Fault, Judgement, Misplaced, Missing, Ranked, Resolution, Signature, Suspect, Tie,
     TieReason, Traces, Verdict,
 };
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use polhode::audit::{Attitudes, Trajectory};
+use polhode::audit::{Attitudes, Digits, Trajectory};
 
 use super::layout::{AttitudeKind, BodyColumns, Layout};
 use super::lines::{Lines, digits};
@@ -16,26 +16,20 @@ struct Gathered {
     attitude: Option<Attitudes>,
     rates: Option<Vec<[f64; 3]>>,
     momentum: Option<Vec<[f64; 3]>>,
-    /// Of attitude, rates and momentum: most significant digits, and whether the numbers change.
+    /// Of attitude, rates and momentum: most significant digits.
     written: [Written; 3],
 }
 
 #[derive(Clone, Copy, Default)]
 struct Written {
     digits: u32,
-    first: Option<f64>,
-    changes: bool,
 }
 
 impl Written {
-    fn note(&mut self, text: &str, value: f64) {
+    fn note(&mut self, text: &str) {
         // more than 17 digits are those of no double
         if self.digits < 17 {
             self.digits = self.digits.max(digits(text)).min(17);
-        }
-        match self.first {
-            None => self.first = Some(value),
-            Some(first) => self.changes |= first.abs() != value.abs() && value != 0.0,
         }
     }
 }
@@ -184,9 +178,8 @@ impl Gathered {
         trajectory.attitude = self.attitude;
         trajectory.rates = self.rates;
         trajectory.momentum = self.momentum;
-        // numbers that stay the same may be short by nature
-        let changing = self.written.iter().filter(|written| written.changes && written.digits > 0);
-        trajectory.digits = changing.map(|written| written.digits).min();
+        let [attitude, rates, momentum] = self.written.map(|written| (written.digits > 0).then_some(written.digits));
+        trajectory.digits = Digits { attitude, rates, momentum };
         trajectory
     }
 }
@@ -200,7 +193,7 @@ fn take<const N: usize>(
     let mut values = [0.0; N];
     for (value, place) in values.iter_mut().zip(places) {
         *value = lines.number_at(*place, names)?;
-        written.note(lines.cell(*place), *value);
+        written.note(lines.cell(*place));
     }
     Ok(values)
 }
