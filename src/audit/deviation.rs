@@ -81,9 +81,11 @@ impl Distance {
         all.fold((0.0, 0), |most, (row, size)| if size > most.0 { (size, row) } else { most })
     }
 
-    /// Root mean square of a component.
-    fn spread(vectors: &[Vec3<f64>]) -> f64 {
-        (vectors.iter().map(|v| v.norm_squared()).sum::<f64>() / (3 * vectors.len().max(1)) as f64).sqrt()
+    /// The middle length.
+    fn middle(vectors: &[Vec3<f64>]) -> f64 {
+        let mut sizes: Vec<f64> = vectors.iter().map(|v| v.norm()).collect();
+        let at = sizes.len() / 2;
+        if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(at, f64::total_cmp).1 }
     }
 }
 
@@ -139,9 +141,10 @@ pub(super) fn deviation(
         };
         let best = fitted(&first, &rows, weights, measured_rates, shape)
             .and_then(|start| Distance::of(&start, &rows, size));
+        // by the middle row: a few bad rows drag a fit, and leave the first row where it is
         let total = |distance: &Distance| {
-            let of_rates = if measured_rates { Distance::spread(&distance.rates) / weights.rates } else { 0.0 };
-            Distance::spread(&distance.turns) / weights.attitude + of_rates
+            let of_rates = if measured_rates { Distance::middle(&distance.rates) / weights.rates } else { 0.0 };
+            Distance::middle(&distance.turns) / weights.attitude + of_rates
         };
         if let Some(best) = best.filter(|best| total(best) < total(&from_first)) {
             (chosen, fitted_start) = (best, true);
