@@ -53,6 +53,13 @@ impl core::error::Error for Error {
     }
 }
 
+/// For what a body does not have, as `motion.tumbling().ok_or("it tumbles")?` says it.
+impl From<&'static str> for Error {
+    fn from(words: &'static str) -> Self {
+        Error(words.into())
+    }
+}
+
 macro_rules! from {
     ($($error:path),* $(,)?) => {$(
         impl From<$error> for Error {

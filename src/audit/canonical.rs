@@ -30,8 +30,9 @@ impl Reading {
             }
             Attitudes::Angles(rows) => {
                 let angles = self.angles?;
+                let angle = *rows.get(row)?;
                 let [first, second, third] = [0, 1, 2].map(|n| {
-                    let (sin, cos) = sin_cos(0.5 * rows[row][n] * angles.unit.radians());
+                    let (sin, cos) = sin_cos(0.5 * angle[n] * angles.unit.radians());
                     Quat::new(cos, Vec3::unit(angles.sequence.axes()[n]) * sin)
                 });
                 match angles.turns {

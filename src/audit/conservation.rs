@@ -1,5 +1,6 @@
 //! What the motion keeps, and how well the record does.
 
+use super::columns::{Columns, Source};
 use super::resolution::{noise, triples};
 use super::states::{Quantities, Row, states};
 use super::{Conservation, Reading, Traces, Trajectory};
@@ -16,15 +17,13 @@ const DRAWN: usize = 2000;
 /// How many times the noise the largest of many rows may be off.
 const SPREAD: f64 = 6.0;
 
-/// What is kept, by `reading`, and its errors at rows for figures. `rounding`: of the numbers, relative; `every`: all rows, where
-/// the largest error is to be that of all.
+/// What is kept, by `reading`, and its errors at rows for figures; the largest errors are those of all rows where the record has
+/// an angular velocity or momentum. `allowed`: what attitude and angular velocity of a row may be off.
 pub(super) fn conservation(
     record: &Trajectory,
     reading: &Reading,
     body: &Body,
-    tolerance: f64,
-    rounding: f64,
-    every: &[Row],
+    [attitude_off, omega_off]: [f64; 2],
 ) -> (Vec<Conservation>, Traces) {
     let free = body.problem() == Problem::Free;
     let count = record.times.len();
@@ -59,6 +58,24 @@ pub(super) fn conservation(
     let rows: Vec<usize> = looked.iter().map(|row| row.row).collect();
     let times: Vec<f64> = looked.iter().map(|row| row.time).collect();
     let kept = body.conserved();
+    // what a row within its allowance may change at most, to first order: dE = m dω, dm = I dω, dL = dm + turn L, and what a
+    // torque of the size of the potential does by a turn
+    let size = (looked.iter().map(|row| row.omega.norm_squared()).sum::<f64>() / looked.len() as f64).sqrt();
+    let most_momentum = looked.iter().map(|row| quantities.momentum(row).norm()).fold(norm, f64::max);
+    let largest_moment = quantities.largest_moment();
+    let by_omega = largest_moment * size * omega_off / norm;
+    let potential = looked.iter().map(|row| (quantities.energy(row) - quantities.kinetic(row)).abs());
+    let by_turn = 3.0 * potential.fold(0.0, f64::max) * attitude_off / energy_scale;
+    let allowed_of = |quantity: Conserved| {
+        let of_row = match quantity {
+            Conserved::Energy => most_momentum * size * omega_off / energy_scale + by_turn,
+            Conserved::MomentumNorm => by_omega,
+            _ => by_omega + attitude_off * most_momentum / norm,
+        };
+        // the first row may be off as well, and what is large has terms of second order
+        2.0 * of_row * (1.0 + omega_off + attitude_off)
+    };
+    let has_omega = Columns::new(record).source != Source::Attitude;
     let mut found = Vec::new();
     let mut look = |quantity: Conserved, of: &dyn Fn(&Row) -> f64| {
         if !kept.contains(&quantity) {
@@ -69,13 +86,19 @@ pub(super) fn conservation(
             return;
         }
         let series: Vec<f64> = looked.iter().map(of).collect();
-        let resolution = (SPREAD * noise(&rows, &series)).max(12.0 * rounding);
+        let noise = SPREAD * noise(&rows, &series);
+        let resolution = noise.max(allowed_of(quantity));
         let mut error = series.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        if count > rows.len() {
-            error = every.iter().fold(error, |most, row| most.max(of(row).abs()));
+        if has_omega && count > rows.len() {
+            for row in 0..count {
+                // one row at a time: a record may be as large as the memory allows
+                if let [row] = states(record, reading, body, &[row])[..] {
+                    error = error.max(of(&row).abs());
+                }
+            }
         }
         let drift = secular_drift(&times, &series);
-        let conserved = error <= tolerance.max(resolution);
+        let conserved = error <= resolution;
         found.push(Conservation { quantity, error, drift, resolution, conserved });
     };
     look(Conserved::Energy, &energy_of);

@@ -1,8 +1,10 @@
 //! How far a record is from the motion that starts like it, and what of that its noise explains.
 
 use super::resolution::{noise, triples};
+use super::signature::Flips;
 use super::start::{Start, Weights, distances, fitted};
 use super::states::{Row, states};
+use super::sweep::{Allowance, Sweep, Tally};
 use super::{AttitudeError, Judgement, Reading, Trajectory};
 use crate::body::Body;
 use crate::rotation::Vec3;
@@ -21,6 +23,12 @@ const SMALL: f64 = 0.3;
 
 /// The turn between rows, rad, above which an error that swings with the motion looks like noise.
 const COARSE: f64 = 0.8;
+
+/// A resolution above this, rad or relative, decides nothing.
+const COARSEST: f64 = 0.1;
+
+/// A row that is this many times the spread of all rows away is none of noise.
+const OUTLIER: f64 = 10.0;
 
 /// Distances from one motion.
 #[derive(Clone, Debug)]
@@ -43,6 +51,22 @@ pub(super) struct Deviation {
     pub(super) rates_noise: f64,
     /// The start of the motion that it is measured from.
     pub(super) start: Start,
+    /// Whether some row is beyond what tolerance, digits and declared noise allow.
+    pub(super) is_noisy: bool,
+    /// Root mean square of ω at the rows that were looked at first, rad/s.
+    pub(super) size: f64,
+    /// Rows further from the motion than is allowed in any column: the first, and how many.
+    pub(super) beyond: Option<(usize, usize)>,
+    /// Changes of sign of the momentum along the middle axis in the record and in the motion, at the same rows.
+    pub(super) flips: [u64; 2],
+}
+
+/// What each column leaves open.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Allowances {
+    pub(super) attitude: Allowance,
+    pub(super) rates: Allowance,
+    pub(super) momentum: Allowance,
 }
 
 impl Distance {
@@ -59,9 +83,11 @@ impl Distance {
         all.fold((0.0, 0), |most, (row, size)| if size > most.0 { (size, row) } else { most })
     }
 
-    /// Root mean square of a component.
-    fn spread(vectors: &[Vec3<f64>]) -> f64 {
-        (vectors.iter().map(|v| v.norm_squared()).sum::<f64>() / (3 * vectors.len().max(1)) as f64).sqrt()
+    /// The middle length.
+    fn middle(vectors: &[Vec3<f64>]) -> f64 {
+        let mut sizes: Vec<f64> = vectors.iter().map(|v| v.norm()).collect();
+        let at = sizes.len() / 2;
+        if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(at, f64::total_cmp).1 }
     }
 }
 
@@ -77,19 +103,17 @@ fn noise_of(rows: &[usize], vectors: &[Vec3<f64>]) -> f64 {
     (squares.iter().sum::<f64>() / 3.0).sqrt()
 }
 
-/// Compares `record` by `reading` with the motion of `body`; `shape`: whose tensor may be fitted. `rounding` of the attitude, rad,
-/// and of the numbers, relative.
+/// Compares `record` by `reading` with the motion of `body`; `shape`: whose tensor may be fitted. A start is looked for at some
+/// rows; every row is judged.
 pub(super) fn deviation(
     record: &Trajectory,
     reading: &Reading,
     body: &Body,
     shape: bool,
-    tolerance: f64,
-    [angle_rounding, rounding]: [f64; 2],
+    allowed: &Allowances,
 ) -> Option<Deviation> {
     let rows = states(record, reading, body, &triples(record.times.len(), GROUPS));
     let measured_rates = record.rates.is_some() || record.momentum.is_some();
-    let has_attitude = record.attitude.is_some();
     let numbers: Vec<usize> = rows.iter().map(|row| row.row).collect();
     let mean_square = rows.iter().map(|row| row.omega.norm_squared()).sum::<f64>() / rows.len().max(1) as f64;
     let size = mean_square.sqrt();
@@ -97,68 +121,145 @@ pub(super) fn deviation(
     if size.partial_cmp(&0.0) != Some(core::cmp::Ordering::Greater) {
         return None;
     }
-    let judge = |distance: &Distance| {
-        let part = |vectors: &[Vec3<f64>], rounding: f64| {
-            let noise = noise_of(&numbers, vectors).max(0.4 * rounding);
-            let (largest, spread) = (Distance::largest(vectors).0, Distance::spread(vectors));
-            let judgement = if largest <= tolerance.max(1.5 * rounding) {
-                Judgement::Right
-            } else if largest > 1.0 {
-                Judgement::Wrong
-            } else if spread <= IS_NOISE * noise {
-                let coarse = rows.windows(2).any(|pair| {
-                    pair[1].row == pair[0].row + 1 && (pair[1].time - pair[0].time) * size > COARSE
-                });
-                if coarse && spread > rounding { Judgement::Undecided } else { Judgement::Right }
-            } else if spread <= IS_NONE * noise {
-                Judgement::Undecided
-            } else {
-                Judgement::Wrong
-            };
-            (judgement, noise)
-        };
-        let attitude =
-            if has_attitude { part(&distance.turns, angle_rounding) } else { (Judgement::Right, 0.0) };
-        let rates = if measured_rates { part(&distance.rates, rounding) } else { (Judgement::Right, 0.0) };
-        (worse(attitude.0, rates.0), attitude.1, rates.1)
+    let noise_at = |distance: &Distance| {
+        let of = |vectors: &[Vec3<f64>], rounding: f64| noise_of(&numbers, vectors).max(0.4 * rounding);
+        (of(&distance.turns, allowed.attitude.rounding), of(&distance.rates, allowed.rates.rounding))
+    };
+    let of_rates = if record.rates.is_some() { allowed.rates } else { allowed.momentum };
+    let is_near = |distance: &Distance| {
+        Distance::largest(&distance.turns).0 <= allowed.attitude.exact
+            && (!measured_rates || Distance::largest(&distance.rates).0 <= of_rates.exact)
     };
     let from_first = Distance::of(&first, &rows, size)?;
-    let (mut judgement, mut attitude_noise, mut rates_noise) = judge(&from_first);
+    let noise = noise_at(&from_first);
     let mut chosen = from_first.clone();
     let mut fitted_start = false;
-    if judgement != Judgement::Right {
+    if !is_near(&from_first) {
         let weigh = |noise: f64, rounding: f64| noise.max(rounding).max(1e-15);
         let weights = Weights {
-            attitude: weigh(attitude_noise, angle_rounding),
-            rates: weigh(rates_noise, rounding).max(if measured_rates { 0.0 } else { 1e-3 }),
+            attitude: weigh(noise.0, allowed.attitude.rounding),
+            rates: weigh(noise.1, of_rates.rounding).max(if measured_rates { 0.0 } else { 1e-3 }),
             size,
         };
         let best = fitted(&first, &rows, weights, measured_rates, shape)
             .and_then(|start| Distance::of(&start, &rows, size));
-        if let Some(best) = best {
-            let (by_fit, attitude, rates) = judge(&best);
-            if by_fit != Judgement::Wrong {
-                (judgement, attitude_noise, rates_noise) = (by_fit, attitude, rates);
-                (chosen, fitted_start) = (best, true);
-            } else {
-                judgement = Judgement::Wrong;
-            }
+        // by the middle row: a few bad rows drag a fit, and leave the first row where it is
+        let total = |distance: &Distance| {
+            let of_rates =
+                if measured_rates { Distance::middle(&distance.rates) / weights.rates } else { 0.0 };
+            Distance::middle(&distance.turns) / weights.attitude + of_rates
+        };
+        if let Some(best) = best.filter(|best| total(best) < total(&from_first)) {
+            (chosen, fitted_start) = (best, true);
         }
     }
-    let (largest, at) = Distance::largest(&chosen.turns);
-    let end = rows.len() - 1;
-    let omega = rows[end].attitude.map_or(Vec3::zero(), |q| q.rotate(rows[end].omega));
-    let along = if omega.norm() > 0.0 { chosen.turns[end].dot(omega) / omega.norm() } else { 0.0 };
-    let across = (chosen.turns[end].norm_squared() - along * along).max(0.0).sqrt();
-    let error = has_attitude.then(|| AttitudeError {
-        largest,
-        at: rows[at].time,
+    let noise = noise_at(&chosen);
+    let sweep = Sweep { record, reading, start: &chosen.start, size };
+    let found = every_row(&sweep, allowed, &of_rates, noise)?;
+    let judge = |tally: Option<&Tally>, allowance: &Allowance, noise: f64| {
+        tally.map_or(Judgement::Right, |tally| of_column(tally, allowance, noise, size, record))
+    };
+    let judgement = worse(
+        worse(
+            judge(found.attitude.as_ref(), &allowed.attitude, noise.0),
+            judge(found.rates.as_ref(), &of_rates, noise.1),
+        ),
+        judge(found.momentum.as_ref(), &allowed.momentum, 0.0),
+    );
+    let (along, across) = found.last.unwrap_or_default();
+    let error = found.attitude.as_ref().map(|tally| AttitudeError {
+        largest: tally.largest,
+        at: record.times[tally.at],
         phase: along,
         drift: across,
         fitted_start,
-        from_first_row: Distance::largest(&from_first.turns).0,
+        from_first_row: if fitted_start { Distance::largest(&from_first.turns).0 } else { tally.largest },
     });
-    Some(Deviation { judgement, error, attitude_noise, rates_noise, start: chosen.start })
+    let tallies = [&found.attitude, &found.rates, &found.momentum];
+    let first_beyond = tallies.iter().filter_map(|tally| tally.as_ref()?.first_beyond).min();
+    let most_beyond = tallies.iter().filter_map(|tally| Some(tally.as_ref()?.beyond)).max().unwrap_or(0);
+    Some(Deviation {
+        judgement,
+        error,
+        attitude_noise: noise.0,
+        rates_noise: noise.1,
+        beyond: first_beyond.map(|row| (row, most_beyond)),
+        is_noisy: tallies.iter().filter_map(|tally| tally.as_ref()).any(|tally| !tally.is_exact()),
+        flips: found.flips,
+        start: chosen.start,
+        size,
+    })
+}
+
+/// What a pass over all rows finds.
+struct Every {
+    attitude: Option<Tally>,
+    /// Of what ω is read from, rates or momenta.
+    rates: Option<Tally>,
+    /// Of momenta beside rates.
+    momentum: Option<Tally>,
+    /// Of the last attitude: the error along the motion and across, rad.
+    last: Option<(f64, f64)>,
+    flips: [u64; 2],
+}
+
+fn every_row(
+    sweep: &Sweep<'_>,
+    allowed: &Allowances,
+    of_rates: &Allowance,
+    noise: (f64, f64),
+) -> Option<Every> {
+    let record = sweep.record;
+    let rows = record.times.len();
+    let tally = |is_there: bool, allowance: Allowance| is_there.then(|| Tally::new(rows, allowance));
+    let has_rates = record.rates.is_some() || record.momentum.is_some();
+    let mut found = Every {
+        attitude: tally(record.attitude.is_some(), allowed.attitude),
+        rates: tally(has_rates, *of_rates),
+        momentum: tally(record.rates.is_some() && record.momentum.is_some(), allowed.momentum),
+        last: None,
+        flips: [0, 0],
+    };
+    let threshold = sweep.size * (6.0 * noise.1).max(of_rates.largest(rows)).min(0.1);
+    let mut flips = [0, 1].map(|_| Flips::new(&sweep.start.body, threshold));
+    sweep.every(&mut |seen| {
+        let add = |tally: &mut Option<Tally>, deviation: Option<Vec3<f64>>| {
+            // a column without a number at this row is no column that was found right
+            let nowhere = Vec3([f64::NAN; 3]);
+            if let Some(tally) = tally {
+                tally.add(seen.row, deviation.unwrap_or(nowhere));
+            }
+        };
+        add(&mut found.attitude, seen.turn);
+        add(&mut found.rates, seen.rates);
+        add(&mut found.momentum, seen.momentum);
+        if let Some(omega) = seen.omega {
+            flips[0].see(omega);
+            flips[1].see(seen.exact.1);
+        }
+        if let Some(turn) = seen.turn.filter(|_| seen.row + 1 == rows) {
+            let omega = seen.exact.0.rotate(seen.exact.1);
+            let along = if omega.norm() > 0.0 { turn.dot(omega) / omega.norm() } else { 0.0 };
+            found.last = Some((along, (turn.norm_squared() - along * along).max(0.0).sqrt()));
+        }
+    })?;
+    found.flips = flips.map(|flips| flips.count);
+    let seen = [&found.attitude, &found.rates].into_iter().flatten().all(|tally| tally.rows_seen() == rows);
+    seen.then_some(found)
+}
+
+/// The judgement of one column. `noise`: root mean square of a component between neighbours.
+fn of_column(tally: &Tally, allowance: &Allowance, noise: f64, size: f64, record: &Trajectory) -> Judgement {
+    if tally.is_exact() || tally.is_declared_noise() {
+        // digits that leave a tenth of a radian open decide nothing
+        return if 1.5 * allowance.rounding > COARSEST { Judgement::Undecided } else { Judgement::Right };
+    }
+    let spread = tally.spread();
+    let swings = record.times.windows(2).any(|pair| (pair[1] - pair[0]) * size > COARSE);
+    let is_like_noise = tally.largest <= SMALL
+        && spread <= if swings { IS_NONE } else { IS_NOISE } * noise
+        && tally.largest <= OUTLIER * spread.max(allowance.rounding);
+    if is_like_noise { Judgement::Undecided } else { Judgement::Wrong }
 }
 
 /// The worse of two judgements.

@@ -61,6 +61,16 @@ pub enum AuditError {
         /// What was given.
         value: f64,
     },
+    /// Noise that is declared is not usable.
+    #[error("the noise of the {quantity} is {}; it must be a number from 0 to {}", Shown(*value), Shown(*most))]
+    Noise {
+        /// Of which column.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is allowed at most.
+        most: f64,
+    },
     /// Angular momentum alone, which tells nothing without a body.
     #[error("a record of angular momenta needs the body, whose moments turn them into angular velocities")]
     MomentumNeedsBody,

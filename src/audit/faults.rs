@@ -19,13 +19,12 @@ const FEW_DIGITS: u32 = 10;
 /// A change of state this many times what nearly all rows show is a discontinuity.
 const DISCONTINUITY: f64 = 25.0;
 
-/// What is odd about `record`, read by `reading`. `rounding`: of the numbers, relative.
+/// What is odd about the sampling and the writing of `record`, read by `reading`.
 pub(super) fn faults(
     record: &Trajectory,
     reading: &Reading,
     writing: &Writing,
     tolerance: f64,
-    rounding: f64,
 ) -> Vec<Fault> {
     let mut found = Vec::new();
     let usual = usual_interval(record);
@@ -51,14 +50,13 @@ pub(super) fn faults(
             found.push(Fault::SignFlips { row, count: flips.len() });
         }
     }
-    found.extend(not_normalized(record, tolerance.max(20.0 * rounding)));
+    found.extend(not_normalized(record, tolerance.max(20.0 * writing.rounding())));
     found.extend(plateau(record));
     if writing.single_precision {
         found.push(Fault::SinglePrecision);
     } else if writing.digits < FEW_DIGITS {
         found.push(Fault::FewDigits { digits: writing.digits });
     }
-    found.extend(discontinuity(record, reading, usual, rounding));
     found
 }
 
@@ -119,42 +117,48 @@ fn plateau(record: &Trajectory) -> Option<Fault> {
     (rows >= PLATEAU).then_some(Fault::Plateau { row, rows })
 }
 
-/// Where attitude or angular velocity change by far more than between other rows.
-fn discontinuity(record: &Trajectory, reading: &Reading, usual: f64, rounding: f64) -> Option<Fault> {
+/// Most changes that the usual one is read off.
+const MOST: usize = 4096;
+
+/// Where attitude or angular velocity change by far more than between other rows. `rounding`: of the numbers, relative.
+pub(super) fn discontinuity(record: &Trajectory, reading: &Reading, rounding: f64) -> Option<Fault> {
     let rows = record.times.len();
-    let mut size = 0.0_f64;
-    let mut before = (reading.attitude(record, 0), reading.omega_body(record, 0));
-    let mut changes = Vec::with_capacity(rows);
-    for row in 1..rows {
-        let now = (reading.attitude(record, row), reading.omega_body(record, row));
-        let dt = record.times[row] - record.times[row - 1];
-        if let (Some(a), Some(b)) = (before.1, now.1) {
-            size = size.max(b.norm());
-            let mean = (a + b) * 0.5;
-            let turned = match (before.0, now.0) {
-                (Some(p), Some(q)) => (rotation_vector(p.conjugate() * q) - mean * dt).norm(),
-                _ => 0.0,
-            };
-            changes.push((row, turned, (b - a).norm(), dt));
-        } else if let (Some(p), Some(q)) = (before.0, now.0) {
-            changes.push((row, rotation_vector(p.conjugate() * q).norm(), 0.0, dt));
-        }
-        before = now;
-    }
+    let usual = usual_interval(record);
+    let at = |row: usize| (reading.attitude(record, row), reading.omega_body(record, row));
+    let some = rows.div_ceil(MOST);
+    let rates = (0..rows).step_by(some).filter_map(|row| at(row).1.map(|omega| omega.norm()));
+    let size = rates.fold(0.0_f64, f64::max);
     let relative = if size > 0.0 { 1.0 / size } else { 0.0 };
-    let sizes: Vec<(usize, f64)> = changes
-        .iter()
-        .filter(|(_, _, _, dt)| *dt <= JUMP * usual)
-        .map(|(row, turned, rates, _)| (*row, turned.max(rates * relative)))
-        .collect();
-    let mut sorted: Vec<f64> = sizes.iter().map(|(_, size)| *size).collect();
+    // of a row from the one before, where the interval is a usual one
+    let change = |row: usize| -> Option<f64> {
+        let dt = record.times[row] - record.times[row - 1];
+        if dt > JUMP * usual {
+            return None;
+        }
+        let (before, now) = (at(row - 1), at(row));
+        let turn = before.0.zip(now.0).map(|(p, q)| rotation_vector(p.conjugate() * q));
+        Some(match (before.1, now.1) {
+            (Some(a), Some(b)) => {
+                let turned = turn.map_or(0.0, |turn| (turn - (a + b) * (0.5 * dt)).norm());
+                turned.max((b - a).norm() * relative)
+            }
+            _ => turn?.norm(),
+        })
+    };
+    let mut sorted: Vec<f64> = (1..rows).step_by(some).filter_map(change).collect();
     if sorted.len() < 20 {
         return None;
     }
     let at = sorted.len() * 95 / 100;
     let common = *sorted.select_nth_unstable_by(at, f64::total_cmp).1;
     let threshold = DISCONTINUITY * common.max(rounding);
-    let jumps = sizes.iter().filter(|(_, size)| *size > threshold);
-    let largest = jumps.clone().fold((0, 0.0), |most, next| if next.1 > most.1 { *next } else { most });
-    (largest.1 > 0.0).then(|| Fault::Discontinuity { row: largest.0, size: largest.1, count: jumps.count() })
+    let (mut largest, mut count) = ((0, 0.0), 0);
+    for row in 1..rows {
+        let Some(size) = change(row).filter(|size| *size > threshold) else { continue };
+        count += 1;
+        if size > largest.1 {
+            largest = (row, size);
+        }
+    }
+    (count > 0).then_some(Fault::Discontinuity { row: largest.0, size: largest.1, count })
 }

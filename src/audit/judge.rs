@@ -3,20 +3,23 @@
 use super::columns::{Columns, Source};
 use super::conservation::conservation;
 use super::detective::Finding;
-use super::deviation::{deviation, trace};
-use super::faults::faults;
-use super::resolution::Writing;
-use super::signature::{flips, signature as signature_of};
+use super::deviation::{Allowances, deviation, trace};
+use super::faults::{discontinuity, faults};
+use super::misplaced::misplaced;
+use super::resolution::{Writings, triples};
+use super::signature::signature as signature_of;
 use super::states::{Quantities, states};
+use super::sweep::Allowance;
 use super::{
-    AuditError, Fault, Frame, Judgement, Missing, Question, Reading, Resolution, Suspect, Tie, TieReason,
-    Trajectory, Verdict,
+    AuditError, Fault, Frame, Judgement, Missing, Noise, Question, Reading, Resolution, Suspect, Tie,
+    TieReason, Trajectory, Verdict,
 };
 use crate::body::{Body, Problem};
-use crate::flow::FreeMotion;
 use crate::inertia::Symmetry;
-use crate::num::Dd;
-use crate::rotation::{Quat, Vec3};
+use crate::rotation::Vec3;
+
+/// Groups of three rows that the size of ω is read off.
+const LOOKS: usize = 128;
 
 /// The verdict on `record`, of which `finding` is known.
 pub(super) fn judge(
@@ -26,23 +29,39 @@ pub(super) fn judge(
 ) -> Result<Verdict, AuditError> {
     let first = finding.right.first().ok_or(AuditError::NoReading)?;
     let (mut reading, body) = (first.reading, first.body.clone());
-    let writing = Writing::of(record);
-    let rounding = writing.rounding();
-    let angle_rounding = record.attitude.as_ref().map_or(0.0, |attitude| attitude.rounding_angle(rounding));
+    let writings = Writings::of(record);
+    let rounding = writings.rates.rounding().max(writings.momentum.rounding());
+    let angle_rounding = record
+        .attitude
+        .as_ref()
+        .map_or(0.0, |attitude| attitude.rounding_angle(writings.attitude.rounding()));
     let tolerance = question.tolerance;
     let fits = question.body.is_none();
-    let deviation = deviation(record, &reading, &body, fits, tolerance, [angle_rounding, rounding]);
+    let allowances = allowances(record, &reading, &body, question, &writings, angle_rounding);
+    let deviation = deviation(record, &reading, &body, fits, &allowances);
     let noise = deviation.as_ref().map_or(rounding, |found| found.attitude_noise.max(found.rates_noise));
     let free = body.problem() == Problem::Free;
     // the tensor of a record that is right comes from all of its rows
     let fitted_body = deviation.as_ref().filter(|found| fits && found.judgement == Judgement::Right);
     let body = fitted_body.map_or(body, |found| found.start.body.clone());
-    let numbers: Vec<usize> = (0..record.times.len()).collect();
     let has_omega = Columns::new(record).source != Source::Attitude;
-    let every = if free && has_omega { states(record, &reading, &body, &numbers) } else { Vec::new() };
-    let (conservation, mut traces) = conservation(record, &reading, &body, tolerance, rounding, &every);
-    let faults = faults(record, &reading, &writing, tolerance, rounding);
+    let rows = record.times.len();
+    let of_rates = if record.rates.is_some() { allowances.rates } else { allowances.momentum };
+    let off = [allowances.attitude.largest(rows), of_rates.largest(rows)];
+    let (conservation, mut traces) = conservation(record, &reading, &body, off);
     let by_motion = deviation.as_ref().map_or(Judgement::Undecided, |found| found.judgement);
+    // a record every row of which is that of the motion keeps what the motion keeps, flips as often, and does not jump
+    let contradicted = conservation.iter().any(|kept| !kept.conserved)
+        || deviation.as_ref().is_some_and(|found| has_omega && found.flips[0] != found.flips[1]);
+    let by_motion =
+        if by_motion == Judgement::Right && contradicted { Judgement::Undecided } else { by_motion };
+    let mut faults = faults(record, &reading, &writings.coarsest(), tolerance);
+    if by_motion != Judgement::Right {
+        faults.extend(discontinuity(record, &reading, rounding));
+        if let Some(found) = &deviation {
+            faults.extend(misplaced(record, &reading, found, &allowances));
+        }
+    }
     let claim = broken_claim(&reading, &finding, question);
     let mut signature = None;
     let suspect = match (&finding.mistake, claim) {
@@ -59,14 +78,8 @@ pub(super) fn judge(
     };
     let judgement = if suspect == Suspect::None { by_motion } else { Judgement::Wrong };
     let counted = deviation.as_ref().filter(|_| free && has_omega);
-    let flips = counted.map(|found| flips(&every, &body, found.rates_noise));
-    let end = record.times[record.times.len() - 1] - record.times[0];
-    let flips_exact = counted.and_then(|found| {
-        let start = &found.start;
-        let inside =
-            start.body.enter_omega(start.row.attitude.unwrap_or(Quat::identity()), start.row.omega).ok()?;
-        Some(FreeMotion::from_point(start.body.inertia(), inside).flips(Dd::from(end)))
-    });
+    let flips = counted.map(|found| found.flips[0]);
+    let flips_exact = counted.map(|found| found.flips[1]);
     if let Some(found) = deviation.as_ref().filter(|_| record.attitude.is_some()) {
         traces.attitude = trace(record, &reading, &found.start, &traces.times);
     }
@@ -82,12 +95,16 @@ pub(super) fn judge(
             .rates
             .as_ref()
             .map(|_| deviation.as_ref().map_or(rounding, |found| found.rates_noise.max(rounding))),
-        digits: writing.digits,
-        single_precision: writing.single_precision,
+        digits: writings.coarsest().digits,
+        single_precision: writings.coarsest().single_precision,
     };
     if record.rates.is_some() && record.momentum.is_some() {
         reading.momentum_frame = momentum_frame(record, &reading, &body);
     }
+    let noise = deviation
+        .as_ref()
+        .filter(|found| judgement == Judgement::Undecided && found.is_noisy)
+        .map(|found| Noise { attitude: found.attitude_noise, rates: found.rates_noise * found.size });
     let missing = [
         (record.attitude.is_none(), Missing::Attitude),
         (record.rates.is_none() && record.momentum.is_none(), Missing::Rates),
@@ -101,6 +118,7 @@ pub(super) fn judge(
         tie,
         body,
         resolution,
+        noise,
         conservation,
         attitude_error: deviation.and_then(|found| found.error),
         flips,
@@ -110,6 +128,27 @@ pub(super) fn judge(
         missing: missing.into_iter().filter(|(lacks, _)| *lacks).map(|(_, what)| what).collect(),
         traces,
     })
+}
+
+/// What each column may be off.
+fn allowances(
+    record: &Trajectory,
+    reading: &Reading,
+    body: &Body,
+    question: &Question,
+    writings: &Writings,
+    angle_rounding: f64,
+) -> Allowances {
+    let rows = states(record, reading, body, &triples(record.times.len(), LOOKS));
+    let squares = rows.iter().map(|row| row.omega.norm_squared()).sum::<f64>() / rows.len().max(1) as f64;
+    let size = squares.sqrt();
+    let relative = if size > 0.0 { question.noise.rates / size } else { 0.0 };
+    let of = |rounding: f64, noise: f64| Allowance::of(question.tolerance, rounding, noise);
+    Allowances {
+        attitude: of(angle_rounding, question.noise.attitude),
+        rates: of(writings.rates.rounding(), relative),
+        momentum: of(writings.momentum.rounding(), relative),
+    }
 }
 
 /// Why the first readings fit alike.

@@ -15,6 +15,7 @@ mod deviation;
 mod error;
 mod faults;
 mod judge;
+mod misplaced;
 mod motion;
 mod program;
 mod question;
@@ -25,17 +26,18 @@ mod shape;
 mod signature;
 mod start;
 mod states;
+mod sweep;
 mod trajectory;
 mod verdict;
 
 pub use crate::units::{AngleUnit, RateUnit};
 pub use error::AuditError;
-pub use question::{Claims, Question};
+pub use question::{Claims, Noise, Question};
 pub use reading::{Angles, Direction, Frame, Product, QuaternionOrder, Reading, Turns};
-pub use trajectory::{Attitudes, FEWEST_ROWS, Trajectory};
+pub use trajectory::{Attitudes, Digits, FEWEST_ROWS, Trajectory};
 pub use verdict::{
-    AttitudeError, Conservation, Fault, Judgement, Missing, Ranked, Resolution, Signature, Suspect, Tie,
-    TieReason, Traces, Verdict,
+    AttitudeError, Conservation, Fault, Judgement, Misplaced, Missing, Ranked, Resolution, Signature,
+    Suspect, Tie, TieReason, Traces, Verdict,
 };
 
 /// The verdict on `record`.

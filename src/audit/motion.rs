@@ -13,34 +13,48 @@ const FAR: f64 = 2000.0;
 /// The turn of a step where no power series takes the forces, rad.
 const STEP: f64 = 0.05;
 
-/// Attitude, body → space, and angular velocity, body axes, of the motion from `start` at the times of `rows`, not before its
-/// own; `None` where it cannot be followed. `precise`: in double-double, where it has to be run and is not too long.
+/// Attitude, body → space, and angular velocity, body axes, of the motion from `start` at each of `times`, not before its own;
+/// `None` where it cannot be followed. `precise`: in double-double, where it has to be run and is not too long.
+pub(super) fn follow(
+    body: &Body,
+    start: &Row,
+    times: &mut dyn Iterator<Item = f64>,
+    precise: bool,
+    each: &mut dyn FnMut(Quat<f64>, Vec3<f64>),
+) -> Option<()> {
+    let attitude = start.attitude.unwrap_or(Quat::identity());
+    let inside = body.enter_omega(attitude, start.omega).ok()?;
+    let mut read = |point: Point<f64>| {
+        let state = body.leave(&point);
+        each(state.attitude, Vec3::from(body.omega_of(&point)));
+    };
+    if let Ok(exact) = ExactMotion::from_point(body, inside) {
+        times.for_each(|t| read(exact.point_at(Dd::from(t) - Dd::from(start.time))));
+        return Some(());
+    }
+    let rate = start.omega.norm();
+    let series = AdaptiveTaylor::to_rounding();
+    if precise {
+        let prepare = |clock| prepared(&series, |method| method.prepare_dd(clock, body).ok());
+        return stepped(prepare, inside, start.time, rate, times, &mut |point| read(point.to_f64()));
+    }
+    let prepare = |clock| prepared(&series, |method| method.prepare_f64(clock, body).ok());
+    stepped(prepare, inside.to_f64(), start.time, rate, times, &mut |point| read(*point))
+}
+
+/// The same in a list.
 pub(super) fn motion(
     body: &Body,
     start: &Row,
     times: impl Iterator<Item = f64>,
     precise: bool,
 ) -> Option<Vec<(Quat<f64>, Vec3<f64>)>> {
-    let attitude = start.attitude.unwrap_or(Quat::identity());
-    let inside = body.enter_omega(attitude, start.omega).ok()?;
-    let read = |point: Point<f64>| {
-        let state = body.leave(&point);
-        (state.attitude, Vec3::from(body.omega_of(&point)))
-    };
-    if let Ok(exact) = ExactMotion::from_point(body, inside) {
-        return Some(times.map(|t| read(exact.point_at(Dd::from(t) - Dd::from(start.time)))).collect());
-    }
     let times: Vec<f64> = times.collect();
-    let rate = start.omega.norm();
-    let way = rate * (times.last()? - start.time);
-    let series = AdaptiveTaylor::to_rounding();
-    if precise && way < FAR {
-        let prepare = |clock| prepared(&series, |method| method.prepare_dd(clock, body).ok());
-        let points = stepped(prepare, inside, start.time, rate, &times)?;
-        return Some(points.iter().map(|point| read(point.to_f64())).collect());
-    }
-    let prepare = |clock| prepared(&series, |method| method.prepare_f64(clock, body).ok());
-    Some(stepped(prepare, inside.to_f64(), start.time, rate, &times)?.into_iter().map(read).collect())
+    let way = start.omega.norm() * (times.last()? - start.time);
+    let mut found = Vec::with_capacity(times.len());
+    let mut times = times.into_iter();
+    follow(body, start, &mut times, precise && way < FAR, &mut |q, omega| found.push((q, omega)))?;
+    Some(found)
 }
 
 /// A step of `series`, or of a Runge-Kutta method where a force is a closure; and whether it chooses its own substeps.
@@ -56,11 +70,11 @@ fn stepped<S: Precise>(
     start: Point<S>,
     start_time: f64,
     rate: f64,
-    times: &[f64],
-) -> Option<Vec<Point<S>>> {
+    times: &mut dyn Iterator<Item = f64>,
+    each: &mut dyn FnMut(&Point<S>),
+) -> Option<()> {
     let (mut x, mut t) = (start, start_time);
-    let mut points = Vec::with_capacity(times.len());
-    for &time in times {
+    for time in times {
         if time > t {
             let (mut step, adaptive) = prepare(Clock { start: t, step: time - t })?;
             let mut n = 1;
@@ -77,7 +91,7 @@ fn stepped<S: Precise>(
         if !x.is_finite() {
             return None;
         }
-        points.push(x);
+        each(&x);
     }
-    Some(points)
+    Some(())
 }

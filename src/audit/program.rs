@@ -85,6 +85,11 @@ impl Dynamics {
         self.axes.rotate(self.axes.rotate_back(omega_body).times(self.moments))
     }
 
+    /// In units of the solver frame.
+    pub(super) fn largest_moment(&self) -> f64 {
+        self.moments.0.into_iter().fold(0.0, f64::max)
+    }
+
     /// The state after `dt` s of the state (`attitude`, `omega`) at `t` s, with ω in the frame of the program.
     pub(super) fn after(
         &self,

@@ -3,6 +3,9 @@
 use super::{AngleUnit, Angles, AuditError, Direction, Frame, QuaternionOrder, RateUnit, Reading};
 use crate::body::Body;
 
+/// Most noise of the attitude that may be declared, rad: more hides any motion.
+const MOST_NOISE: f64 = 0.1;
+
 /// What is asked of a record.
 ///
 /// ```
@@ -19,8 +22,19 @@ pub struct Question {
     pub body: Option<Body>,
     /// Largest error of a record that is right, rad and relative.
     pub tolerance: f64,
+    /// Noise of the record that is declared; without it a noisy record is undecided at best.
+    pub noise: Noise,
     /// What is claimed of the convention.
     pub claims: Claims,
+}
+
+/// Standard deviations of a component that a record is declared to have.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Noise {
+    /// Of the attitude, rad.
+    pub attitude: f64,
+    /// Of the angular velocity, rad/s.
+    pub rates: f64,
 }
 
 /// What is claimed of the convention of a record; `None` is to be told from the record.
@@ -68,15 +82,21 @@ impl Question {
     /// Is the record right, to 1e-6, for this body, in whatever convention?
     #[must_use]
     pub fn new(body: Option<Body>) -> Self {
-        Question { body, tolerance: 1e-6, claims: Claims::default() }
+        Question { body, tolerance: 1e-6, noise: Noise::default(), claims: Claims::default() }
     }
 
     pub(super) fn check(&self) -> Result<(), AuditError> {
-        if self.tolerance.is_finite() && self.tolerance > 0.0 {
-            Ok(())
-        } else {
-            Err(AuditError::Tolerance { value: self.tolerance })
+        if !(self.tolerance.is_finite() && self.tolerance > 0.0) {
+            return Err(AuditError::Tolerance { value: self.tolerance });
         }
+        let Noise { attitude, rates } = self.noise;
+        if !(0.0..=MOST_NOISE).contains(&attitude) {
+            return Err(AuditError::Noise { quantity: "attitude", value: attitude, most: MOST_NOISE });
+        }
+        if !(rates >= 0.0 && rates.is_finite()) {
+            return Err(AuditError::Noise { quantity: "angular velocity", value: rates, most: f64::MAX });
+        }
+        Ok(())
     }
 }
 

@@ -8,25 +8,67 @@ const MOST: usize = 2000;
 /// Digits of a double.
 const ALL_DIGITS: u32 = 17;
 
-/// How the numbers were written.
+/// How the numbers of one column, or of all, were written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Writing {
     pub(super) digits: u32,
     pub(super) single_precision: bool,
 }
 
-impl Writing {
+/// How the numbers of each column were written; a column that is not there has all digits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Writings {
+    pub(super) attitude: Writing,
+    pub(super) rates: Writing,
+    pub(super) momentum: Writing,
+}
+
+impl Writings {
     pub(super) fn of(record: &Trajectory) -> Self {
         let rows = record.times.len();
-        let step = rows.div_ceil(MOST);
-        let mut values = Vec::new();
-        for row in (0..rows).step_by(step) {
-            if let Some(attitude) = &record.attitude {
-                values.extend_from_slice(attitude.row(row));
-            }
-            for vectors in [&record.rates, &record.momentum].into_iter().flatten() {
-                values.extend_from_slice(&vectors[row]);
-            }
+        let some = || (0..rows).step_by(rows.div_ceil(MOST));
+        let of_vectors = |vectors: &Option<Vec<[f64; 3]>>, known| {
+            let values = vectors.iter().flat_map(|vectors| some().flat_map(|row| vectors[row])).collect();
+            Writing::of(values, known)
+        };
+        let attitude = record.attitude.iter();
+        let attitude =
+            attitude.flat_map(|attitude| some().flat_map(|row| attitude.row(row).to_vec())).collect();
+        let mut found = Writings {
+            attitude: Writing::of(attitude, record.digits.attitude),
+            rates: of_vectors(&record.rates, record.digits.rates),
+            momentum: of_vectors(&record.momentum, record.digits.momentum),
+        };
+        // the digits of a vector that stays the same are those of one number: it was written like its neighbours
+        let stays = |vectors: &Option<Vec<[f64; 3]>>| {
+            vectors.as_ref().is_some_and(|vectors| vectors.windows(2).all(|pair| pair[0] == pair[1]))
+        };
+        let finer = |a: Writing, b: Writing| if a.digits > b.digits { a } else { b };
+        if stays(&record.rates) {
+            found.rates = finer(finer(found.rates, found.attitude), found.momentum);
+        }
+        if stays(&record.momentum) {
+            found.momentum = finer(finer(found.momentum, found.attitude), found.rates);
+        }
+        found
+    }
+
+    /// The coarsest.
+    pub(super) fn coarsest(&self) -> Writing {
+        let rank = |writing: &Writing| (writing.digits, u32::from(!writing.single_precision));
+        [self.rates, self.momentum]
+            .into_iter()
+            .fold(self.attitude, |a, b| if rank(&b) < rank(&a) { b } else { a })
+    }
+}
+
+impl Writing {
+    /// Of some `values`, whose digits may be `known`.
+    fn of(values: Vec<f64>, known: Option<u32>) -> Self {
+        // zeros are written in any number of digits
+        let values: Vec<f64> = values.into_iter().filter(|x| *x != 0.0).collect();
+        if values.is_empty() {
+            return Writing { digits: known.unwrap_or(ALL_DIGITS), single_precision: false };
         }
         let mut counts: Vec<u32> = values.iter().map(|&x| significant_digits(x)).collect();
         counts.sort_unstable();
@@ -36,7 +78,7 @@ impl Writing {
         let printed = || values.iter().all(|&x| (x as f32).to_string().parse() == Ok(x));
         let single_precision = (exact && longest > 9) || ((7..=9).contains(&longest) && printed());
         let seen = if longest >= 16 { ALL_DIGITS } else { longest.max(1) };
-        let digits = record.digits.unwrap_or(if single_precision { 7 } else { seen });
+        let digits = known.unwrap_or(if single_precision { 7 } else { seen });
         Writing { digits, single_precision }
     }
 

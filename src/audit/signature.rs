@@ -134,22 +134,28 @@ fn hypothesis(
     Some(found.into_iter().map(|(q, omega)| (q.normalized(), omega)).collect())
 }
 
-/// Changes of sign of the momentum along the axis of the middle moment over `rows`; changes that noise may make do not count.
-pub(super) fn flips(rows: &[Row], body: &Body, noise: f64) -> u64 {
-    let axis = Vec3::unit(body.rotor().middle_axis());
-    let axis = body.inertia().frame().map(|x| x.hi()).rotate(axis);
-    let mean = rows.iter().map(|row| row.omega.norm_squared()).sum::<f64>() / rows.len().max(1) as f64;
-    let threshold = 6.0 * noise * mean.sqrt();
-    let (mut count, mut positive) = (0, None);
-    for row in rows {
-        let along = row.omega.dot(axis);
-        if along.abs() <= threshold {
-            continue;
-        }
-        if positive.is_some_and(|before| before != (along > 0.0)) {
-            count += 1;
-        }
-        positive = Some(along > 0.0);
+/// Counts changes of sign of the momentum along the axis of the middle moment; those within a threshold of ω do not count.
+pub(super) struct Flips {
+    axis: Vec3<f64>,
+    threshold: f64,
+    positive: Option<bool>,
+    pub(super) count: u64,
+}
+
+impl Flips {
+    /// Of `body`; `threshold` in rad/s.
+    pub(super) fn new(body: &Body, threshold: f64) -> Self {
+        let axis = Vec3::unit(body.rotor().middle_axis());
+        let axis = body.inertia().frame().map(|x| x.hi()).rotate(axis);
+        Flips { axis, threshold, positive: None, count: 0 }
     }
-    count
+
+    pub(super) fn see(&mut self, omega: Vec3<f64>) {
+        let along = omega.dot(self.axis);
+        if along.abs() <= self.threshold {
+            return;
+        }
+        self.count += u64::from(self.positive.is_some_and(|before| before != (along > 0.0)));
+        self.positive = Some(along > 0.0);
+    }
 }

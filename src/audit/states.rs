@@ -52,6 +52,11 @@ impl<'a> Quantities<'a> {
         self.dynamics.momentum(row.omega)
     }
 
+    /// In the units of [`momentum`](Self::momentum).
+    pub(super) fn largest_moment(&self) -> f64 {
+        self.dynamics.largest_moment()
+    }
+
     pub(super) fn kinetic(&self, row: &Row) -> f64 {
         0.5 * self.momentum(row).dot(row.omega)
     }

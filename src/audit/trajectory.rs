@@ -27,7 +27,18 @@ pub struct Trajectory {
     /// Components of the angular momentum, in an unknown frame.
     pub momentum: Option<Vec<[f64; 3]>>,
     /// Significant decimal digits of the numbers, where it is known how they were written.
-    pub digits: Option<u32>,
+    pub digits: Digits,
+}
+
+/// Significant decimal digits of each column, where it is known how its numbers were written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Digits {
+    /// Of the attitude.
+    pub attitude: Option<u32>,
+    /// Of the angular velocity.
+    pub rates: Option<u32>,
+    /// Of the angular momentum.
+    pub momentum: Option<u32>,
 }
 
 /// Attitudes as the columns have them.
@@ -75,7 +86,7 @@ impl Trajectory {
     /// A record with these times, s, and no columns yet.
     #[must_use]
     pub fn new(times: Vec<f64>) -> Self {
-        Trajectory { times, attitude: None, rates: None, momentum: None, digits: None }
+        Trajectory { times, attitude: None, rates: None, momentum: None, digits: Digits::default() }
     }
 
     /// The same with attitudes.
@@ -99,10 +110,10 @@ impl Trajectory {
         self
     }
 
-    /// The same with the number of significant decimal digits that were written.
+    /// The same with the numbers of significant decimal digits that were written.
     #[must_use]
-    pub fn with_digits(mut self, digits: u32) -> Self {
-        self.digits = Some(digits);
+    pub fn with_digits(mut self, digits: Digits) -> Self {
+        self.digits = digits;
         self
     }
 

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::Reading;
+use super::{Noise, Reading};
 use crate::body::{Body, Conserved};
 use crate::observe::Drift;
 
@@ -155,6 +155,22 @@ pub struct Signature {
     pub mismatch: f64,
 }
 
+/// What a row holds that is not where the motion is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Misplaced {
+    /// The numbers of the row before.
+    Repeated,
+    /// The state of a neighbour, which holds the state of this row.
+    Exchanged,
+    /// The state of the row before or behind it: time stamps that are off by one.
+    Shifted,
+    /// The mean of its neighbours.
+    Interpolated,
+    /// None of these.
+    Unknown,
+}
+
 /// Something about the sampling or the writing of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -202,6 +218,17 @@ pub enum Fault {
     FewDigits {
         /// How many.
         digits: u32,
+    },
+    /// Rows that are further from the motion than is allowed.
+    Misplaced {
+        /// What they hold.
+        what: Misplaced,
+        /// The first of them, from 0.
+        row: usize,
+        /// How many there are.
+        count: usize,
+        /// The largest distance from the motion, rad or relative.
+        largest: f64,
     },
     /// The state jumps between two rows.
     Discontinuity {
@@ -260,6 +287,9 @@ pub struct Verdict {
     pub body: Body,
     /// What noise and digits leave open.
     pub resolution: Resolution,
+    /// The noise within which an undecided record agrees with the motion, where it is noise that leaves it open; it was not
+    /// declared, or declared smaller.
+    pub noise: Option<Noise>,
     /// What the motion keeps, and how well the record does.
     pub conservation: Vec<Conservation>,
     /// Distance from the exact motion; `None` without attitude.
@@ -303,6 +333,18 @@ impl fmt::Display for Suspect {
             Suspect::GyroscopicSign => "gyroscopic-sign",
             Suspect::Integrator(name) => return write!(f, "integrator:{name}"),
             Suspect::Discontinuity => "discontinuity",
+        })
+    }
+}
+
+impl fmt::Display for Misplaced {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Misplaced::Repeated => "repeats the row before",
+            Misplaced::Exchanged => "is exchanged with a neighbour",
+            Misplaced::Shifted => "holds the state of a neighbour, as time stamps that are off by one row do",
+            Misplaced::Interpolated => "is the mean of its neighbours, as interpolated frames are",
+            Misplaced::Unknown => "is not where the motion is",
         })
     }
 }
@@ -359,6 +401,10 @@ impl fmt::Display for Fault {
             Fault::SinglePrecision => f.write_str("every number is one of single precision; write doubles"),
             Fault::FewDigits { digits } => {
                 write!(f, "the numbers have {digits} significant digits; write 17")
+            }
+            Fault::Misplaced { what, row, count, largest } => {
+                let rows = if *count == 1 { String::new() } else { format!(" ({count} such rows)") };
+                write!(f, "row {row}: {what}{rows}; up to {largest:.1e} rad or relative from the motion")
             }
             Fault::Discontinuity { row, size, count } => {
                 write!(f, "row {row}: the state jumps by {size:.1e} ({count} such rows)")

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods)]
 
 mod conventions;
+mod every_row;
 mod mistakes;
 mod records;
 mod ties;

@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::audit::{
-    Attitudes, AuditError, Direction, Fault, Frame, Judgement, Missing, Question, Suspect, TieReason,
+    Attitudes, AuditError, Direction, Fault, Frame, Judgement, Missing, Noise, Question, Suspect, TieReason,
     Trajectory, audit,
 };
 use polhode::body::{Body, State};
@@ -12,7 +12,7 @@ use polhode::rotation::Vec3;
 
 use crate::records::{Form, Seeded, Writing, Written, reading, record};
 
-fn states(body: &Body, start: &State, dt: f64, rows: usize) -> Vec<Written> {
+pub(crate) fn states(body: &Body, start: &State, dt: f64, rows: usize) -> Vec<Written> {
     let motion = ExactMotion::new(body, start).unwrap();
     let at = |k: usize| {
         let state = motion.at(k as f64 * dt).unwrap();
@@ -133,12 +133,14 @@ fn a_top_is_right_with_its_weight_only() {
         let convention = reading(&mut random, form);
         let written = states(&top, &start, 0.02, 500);
         let file = record(&mut random, &written, &convention, form, Writing { noise, ..Writing::EXACT });
-        let verdict = audit(&file, &Question::new(Some(top.clone()))).unwrap();
-        assert_eq!(
-            (verdict.judgement, verdict.suspect.clone()),
-            (Judgement::Right, Suspect::None),
-            "{verdict:?}"
-        );
+        let mut question = Question::new(Some(top.clone()));
+        let verdict = audit(&file, &question).unwrap();
+        // noise that nobody declares decides nothing
+        let expected = if noise > 0.0 { Judgement::Undecided } else { Judgement::Right };
+        assert_eq!((verdict.judgement, verdict.suspect), (expected, Suspect::None));
+        question.noise = Noise { attitude: 1.2 * noise, rates: 9.0 * 1.2 * noise };
+        let verdict = audit(&file, &question).unwrap();
+        assert_eq!((verdict.judgement, verdict.suspect), (Judgement::Right, Suspect::None));
         assert_eq!(verdict.reading, convention);
         let verdict = audit(&file, &Question::new(Some(Body::free(inertia.clone())))).unwrap();
         assert_eq!(verdict.judgement, Judgement::Wrong);

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use polhode::audit::{Attitudes, Claims, Direction, Frame, QuaternionOrder, Trajectory};
+use polhode::audit::{Attitudes, Claims, Digits, Direction, Frame, QuaternionOrder, Trajectory};
 use polhode::units::AngleUnit;
 
 use crate::error::{Error, Rule, TableError};
@@ -108,34 +108,28 @@ struct Body {
     attitude: Option<Attitudes>,
     rates: Option<Vec<[f64; 3]>>,
     momentum: Option<Vec<[f64; 3]>>,
-    /// Of attitude, rates and momentum: most significant digits, and whether the numbers change.
+    /// Of attitude, rates and momentum: most significant digits.
     written: [Written; 3],
 }
 
 #[derive(Clone, Copy, Default)]
 struct Written {
     digits: u32,
-    first: Option<f64>,
-    changes: bool,
 }
 
 impl Written {
-    fn note(&mut self, text: &str, value: f64) {
+    fn note(&mut self, text: &str) {
         // more than 17 digits are those of no double
         if self.digits < 17 {
             self.digits = self.digits.max(digits(text)).min(17);
-        }
-        match self.first {
-            None => self.first = Some(value),
-            Some(first) => self.changes |= first.abs() != value.abs() && value != 0.0,
         }
     }
 
     /// The numbers in some columns of the present row.
     fn take<const N: usize>(&mut self, table: &Table, group: &Group) -> Result<[f64; N], TableError> {
         let values = table.numbers::<N>(&group.places)?;
-        for (value, place) in values.iter().zip(&group.places) {
-            self.note(table.cell(*place), *value);
+        for place in &group.places {
+            self.note(table.cell(*place));
         }
         Ok(values)
     }
@@ -247,9 +241,9 @@ impl Body {
         trajectory.attitude = self.attitude;
         trajectory.rates = self.rates;
         trajectory.momentum = self.momentum;
-        // numbers that stay the same may be short by nature
-        let changing = self.written.iter().filter(|written| written.changes && written.digits > 0);
-        trajectory.digits = changing.map(|written| written.digits).min();
+        let [attitude, rates, momentum] =
+            self.written.map(|written| (written.digits > 0).then_some(written.digits));
+        trajectory.digits = Digits { attitude, rates, momentum };
         trajectory
     }
 }

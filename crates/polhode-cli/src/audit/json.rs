@@ -63,6 +63,7 @@ fn object(outcome: &Outcome) -> Value {
             "at": found.at, "mismatch": found.mismatch,
         })),
         "resolution": {
+            "noise": verdict.noise.map(|noise| [noise.attitude, noise.rates]),
             "attitude": verdict.resolution.attitude, "rates": verdict.resolution.rates,
             "digits": verdict.resolution.digits, "single_precision": verdict.resolution.single_precision,
         },

@@ -13,10 +13,10 @@ mod text;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use polhode::audit::{Question, Trajectory, audit};
+use polhode::audit::{Noise, Question, Trajectory, audit};
 use polhode::body::Body;
 use polhode_files::error::{Error, warn};
-use polhode_files::numbers::positive;
+use polhode_files::numbers::{list, positive};
 use polhode_files::text::{short, visible};
 use polhode_files::trajectory;
 use polhode_pages::document::Form;
@@ -50,8 +50,9 @@ const RANKED: usize = 5;
 /// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
 /// angular momentum in columns of any common names, the qpos and qvel of MuJoCo, and LAMMPS dumps; several bodies by a column
 /// id. Every convention that the columns allow is tried; the one in which the rows obey the equations of motion is kept. Without
-/// a body its moments are fitted up to a factor. right: within --tolerance of a motion of the body, or within the digits and
-/// the noise of the record. Where a name or an option states a direction, a frame, a unit or the order of the moments, and the
+/// a body its moments are fitted up to a factor. right: every row and every column is within --tolerance of a motion of the
+/// body, within what its own digits tell, or within the noise that --noise declares. A record that agrees within a noise that
+/// nobody declares is undecided. Where a name or an option states a direction, a frame, a unit or the order of the moments, and the
 /// rows contradict it, the record is wrong. suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, gyroscopic-term-missing,
 /// gyroscopic-sign, integrator:NAME, discontinuity or none. Exit code 0: right; 1: wrong or undecided.
 #[derive(Args, Clone, Debug)]
@@ -73,6 +74,9 @@ pub(crate) struct Audit {
     /// Largest error of a record that is right, rad and relative
     #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
     tolerance: f64,
+    /// Noise that the record has, standard deviations of a component of the attitude, rad, and of the angular velocity, rad/s; a noisy record is undecided without it
+    #[arg(long, value_name = "ANGLE[,RATE]", value_parser = noise, allow_hyphen_values = true, help_heading = "Verdict")]
+    noise: Option<Noise>,
     /// Compare with this golden trajectory too, of whose body the record then is
     #[arg(long, value_name = "GOLDEN.csv", conflicts_with_all = ["BodyArguments", "weight_moment"], help_heading = "Verdict")]
     against: Option<PathBuf>,
@@ -181,6 +185,7 @@ impl Audit {
             }
             let mut question = Question::new(body.clone());
             (question.tolerance, question.claims) = (self.tolerance, claims);
+            question.noise = self.noise.unwrap_or_default();
             let verdict =
                 audit(&record, &question).map_err(|error| Error::Input(format!("{place}: {error}")))?;
             let against =
@@ -196,6 +201,24 @@ impl Audit {
         }
         Ok(outcomes)
     }
+}
+
+/// Standard deviations of the attitude, rad, and of the angular velocity, rad/s, which is 0 where it is left out.
+fn noise(text: &str) -> Result<Noise, String> {
+    let (attitude, rates) = match list(text)?[..] {
+        [attitude] => (attitude, 0.0),
+        [attitude, rates] => (attitude, rates),
+        ref given => {
+            return Err(format!("{} given, 1 or 2 needed: ANGLE in rad, RATE in rad/s", given.len()));
+        }
+    };
+    if !(0.0..=0.1).contains(&attitude) {
+        return Err(format!("ANGLE is {attitude:?} rad; give a number from 0 to 0.1"));
+    }
+    if rates < 0.0 {
+        return Err(format!("RATE is {rates:?} rad/s; give 0 or more"));
+    }
+    Ok(Noise { attitude, rates })
 }
 
 /// Turns counts of steps into times, and says how.

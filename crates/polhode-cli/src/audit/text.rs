@@ -84,6 +84,13 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
             size(error.largest), short(error.at), size(error.phase), size(error.drift)
         ));
     }
+    if let Some(noise) = verdict.noise {
+        let given = [noise.attitude, noise.rates].map(|sigma| format!("{sigma:.1e}"));
+        lines.push(format!(
+            "Undecided: it agrees with the motion within noise of {} rad and {} rad/s (standard deviations of a component). If the record has that noise, say so: --noise {}.",
+            given[0], given[1], given.join(",")
+        ));
+    }
     if let Some(difference) = &outcome.against {
         lines.push(format!(
             "Against {}: {} rad at t = {} s, of {} rows at the same times; {} rad are allowed.",

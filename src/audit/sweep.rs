@@ -1,0 +1,218 @@
+//! Every row of a record beside the exact motion, one after the other.
+
+use super::columns::{Columns, Source, rotation_vector};
+use super::motion::follow;
+use super::program::Dynamics;
+use super::start::Start;
+use super::{Reading, Trajectory};
+use crate::rotation::{Quat, Vec3};
+
+/// Rows up to which a motion without closed form is followed in double-double.
+const FEW: usize = 2000;
+
+/// One row as it was written and as it should be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub(super) row: usize,
+    pub(super) time: f64,
+    /// Body → space, of the record; `None` where it has none.
+    pub(super) attitude: Option<Quat<f64>>,
+    /// Body axes, rad/s, of the record; `None` where it has none.
+    pub(super) omega: Option<Vec3<f64>>,
+    /// Attitude and ω of the motion.
+    pub(super) exact: (Quat<f64>, Vec3<f64>),
+    /// From the motion to the record, in space, rad.
+    pub(super) turn: Option<Vec3<f64>>,
+    /// ω of the record without that of the motion, relative to the size of ω.
+    pub(super) rates: Option<Vec3<f64>>,
+    /// The same of momenta that stand beside rates, relative to the size of the momentum.
+    pub(super) momentum: Option<Vec3<f64>>,
+}
+
+/// What a record is compared with.
+pub(super) struct Sweep<'a> {
+    pub(super) record: &'a Trajectory,
+    pub(super) reading: &'a Reading,
+    pub(super) start: &'a Start,
+    /// Root mean square of ω, rad/s.
+    pub(super) size: f64,
+}
+
+impl Sweep<'_> {
+    /// Shows every row to `each`; `None` where the motion cannot be followed.
+    pub(super) fn every(&self, each: &mut dyn FnMut(&Seen)) -> Option<()> {
+        let (record, reading) = (self.record, self.reading);
+        let source = Columns::new(record).source;
+        let dynamics = Dynamics::new(&self.start.body);
+        let beside = record.rates.is_some() && record.momentum.is_some();
+        let scale = self.start.body.scale();
+        let size = dynamics.momentum(self.start.row.omega).norm() * scale;
+        let mut row = 0;
+        let mut look = |q: Quat<f64>, omega: Vec3<f64>| {
+            let attitude = reading.attitude(record, row);
+            let measured = match source {
+                Source::Rates => reading.omega_body(record, row),
+                Source::Momentum => reading.momentum_body(record, row).map(|m| dynamics.omega(m)),
+                Source::Attitude => None,
+            };
+            let momentum = reading.momentum_body(record, row).filter(|_| beside);
+            let seen = Seen {
+                row,
+                time: record.times[row],
+                attitude,
+                omega: measured,
+                exact: (q, omega),
+                turn: attitude.map(|found| q.rotate(rotation_vector(q.conjugate() * found))),
+                rates: measured.map(|found| (found - omega) * (1.0 / self.size)),
+                momentum: momentum.map(|m| (m - dynamics.momentum(omega) * scale) * (1.0 / size)),
+            };
+            each(&seen);
+            row += 1;
+        };
+        let precise = record.times.len() <= FEW;
+        follow(&self.start.body, &self.start.row, &mut record.times.iter().copied(), precise, &mut look)
+    }
+}
+
+/// What a column leaves open, per row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Allowance {
+    /// Largest deviation that tolerance and digits allow.
+    pub(super) exact: f64,
+    /// Half a unit of the last digit, as a deviation.
+    pub(super) rounding: f64,
+    /// Standard deviation of a component that is declared; 0 without.
+    pub(super) noise: f64,
+}
+
+impl Allowance {
+    pub(super) fn of(tolerance: f64, rounding: f64, noise: f64) -> Self {
+        Allowance { exact: tolerance.max(1.5 * rounding), rounding, noise }
+    }
+
+    /// Largest deviation of any of `rows` rows: that of normal deviates exceeds it once in some thousand records.
+    pub(super) fn largest(&self, rows: usize) -> f64 {
+        self.exact + self.noise * ((2.0 * libm::log(3.0 * rows as f64)).sqrt() + 1.5)
+    }
+}
+
+/// Blocks of rows whose mean deviations are compared with what noise leaves of them.
+const BLOCKS: usize = 64;
+
+/// Fewest rows of a block.
+const FEWEST: usize = 16;
+
+/// Deviations of one column over all rows.
+#[derive(Clone, Debug)]
+pub(super) struct Tally {
+    rows: usize,
+    allowance: Allowance,
+    pub(super) largest: f64,
+    pub(super) at: usize,
+    squares: f64,
+    count: usize,
+    /// The first row beyond the allowance, and how many there are.
+    pub(super) first_beyond: Option<usize>,
+    pub(super) beyond: usize,
+    blocks: Vec<(Vec3<f64>, usize)>,
+}
+
+impl Tally {
+    pub(super) fn new(rows: usize, allowance: Allowance) -> Self {
+        let blocks = (rows / FEWEST).clamp(1, BLOCKS);
+        Tally {
+            rows,
+            allowance,
+            largest: 0.0,
+            at: 0,
+            squares: 0.0,
+            count: 0,
+            first_beyond: None,
+            beyond: 0,
+            blocks: vec![(Vec3::zero(), 0); blocks],
+        }
+    }
+
+    pub(super) fn add(&mut self, row: usize, deviation: Vec3<f64>) {
+        let size = deviation.norm();
+        self.count += 1;
+        self.squares += size * size;
+        if size > self.largest || size.is_nan() {
+            (self.largest, self.at) = (if size.is_nan() { f64::INFINITY } else { size }, row);
+        }
+        if size > self.allowance.largest(self.rows) || size.is_nan() {
+            self.first_beyond.get_or_insert(row);
+            self.beyond += 1;
+        }
+        let blocks = self.blocks.len();
+        if let Some((sum, count)) = self.blocks.get_mut(row * blocks / self.rows) {
+            *sum = *sum + deviation;
+            *count += 1;
+        }
+    }
+
+    /// Root mean square of a component.
+    pub(super) fn spread(&self) -> f64 {
+        (self.squares / (3 * self.count.max(1)) as f64).sqrt()
+    }
+
+    /// How many rows were added.
+    pub(super) fn rows_seen(&self) -> usize {
+        self.count
+    }
+
+    /// Whether every row is within what tolerance and digits allow.
+    pub(super) fn is_exact(&self) -> bool {
+        self.largest <= self.allowance.exact
+    }
+
+    /// Whether the deviations are within the noise that is declared: each of them, their spread, and the means of blocks, in
+    /// which an error that lasts adds up and noise does not.
+    pub(super) fn is_declared_noise(&self) -> bool {
+        let Allowance { exact, noise, .. } = self.allowance;
+        let fewer = |count: usize| 1.0 / (count.max(1) as f64).sqrt();
+        let in_blocks = |(sum, count): &(Vec3<f64>, usize)| {
+            let mean = sum.norm() * (1.0 / (*count).max(1) as f64);
+            // a quarter: what the start that was fitted to some of the rows leaves
+            mean <= exact + noise * (5.0 * fewer(*count) + 0.25)
+        };
+        noise > 0.0
+            && self.beyond == 0
+            && self.spread() <= exact + noise * (1.05 + 3.0 * fewer(3 * self.count))
+            && self.blocks.iter().all(in_blocks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_row_of_many_is_seen() {
+        for (rows, bad) in [(10, 9), (1000, 0), (100_000, 77_777)] {
+            let mut tally = Tally::new(rows, Allowance::of(1e-6, 1e-16, 0.0));
+            for row in 0..rows {
+                tally.add(row, if row == bad { Vec3([2e-6, 0.0, 0.0]) } else { Vec3([9e-7, 0.0, 0.0]) });
+            }
+            assert!(!tally.is_exact());
+            assert_eq!((tally.first_beyond, tally.beyond, tally.at), (Some(bad), 1, bad));
+        }
+    }
+
+    #[test]
+    fn noise_must_be_declared_and_nothing_else_hides_in_it() {
+        // alternating signs of one size have the spread of noise, and a mean of zero
+        let tally_of = |noise: f64, of: &dyn Fn(usize) -> f64| {
+            let mut tally = Tally::new(4096, Allowance::of(1e-6, 1e-16, noise));
+            (0..4096).for_each(|row| tally.add(row, Vec3([1.0, 1.0, -1.0]) * of(row)));
+            (tally.is_exact(), tally.is_declared_noise())
+        };
+        let swing = |row: usize| if row % 2 == 0 { 1e-3 } else { -1e-3 };
+        assert_eq!(tally_of(0.0, &swing), (false, false));
+        assert_eq!(tally_of(1e-3, &swing), (false, true));
+        assert_eq!(tally_of(0.9e-3, &swing), (false, false));
+        assert_eq!(tally_of(1e-3, &|row| swing(row) + if row > 2000 { 9e-4 } else { 0.0 }), (false, false));
+        assert_eq!(tally_of(1e-3, &|row| if row == 5 { 8e-3 } else { swing(row) }), (false, false));
+        assert_eq!(tally_of(1e-3, &|_| f64::NAN), (false, false));
+    }
+}
