@@ -62,7 +62,6 @@ fn every_command_does_without_threads() {
 }
 
 #[test]
-#[ignore = "the reference of advise asks for a thread until the one judge of a run takes its place"]
 fn advice_under_a_force_does_without_threads() {
     let scratch = scratch("threads-advice");
     for rest in ["", " --check"] {
