@@ -44,7 +44,7 @@ pub enum ScheduleError {
     },
     /// More steps than can be counted exactly.
     #[error(
-        "{steps:e} steps of {step} s lead to t = {t} s, and at most 2^53 can be counted; take a larger step"
+        "{steps:e} steps of {} s lead to t = {} s, and at most 2^53 can be counted; take a larger step", Shown(*step), Shown(*t)
     )]
     TooMany {
         /// The time, s.

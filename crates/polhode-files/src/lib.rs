@@ -25,6 +25,7 @@ struct Readme;
 
 pub mod error;
 pub mod given;
+pub mod inputs;
 pub mod mesh;
 pub mod moment;
 pub mod npy;
@@ -39,5 +40,5 @@ pub mod toml_file;
 pub mod trajectory;
 
 pub use error::{Broken, Error, Rule, TableError};
-pub use read::read;
+pub use read::{read, read_own};
 pub use table::{ColumnNames, Reading};

@@ -79,7 +79,15 @@ impl<const N: usize> Array<N> {
 
     /// The bytes of all members at time number `time`.
     pub fn read(&mut self, time: u64) -> io::Result<&[u8]> {
-        self.bytes.resize(self.members as usize * N * 8, 0);
+        let size = usize::try_from(self.members.saturating_mul(8 * N as u64)).unwrap_or(usize::MAX);
+        self.bytes.clear();
+        self.bytes.try_reserve_exact(size).map_err(|_| {
+            io::Error::new(
+                io::ErrorKind::OutOfMemory,
+                format!("{size} bytes of one time do not fit into memory"),
+            )
+        })?;
+        self.bytes.resize(size, 0);
         self.seek(time, 0)?;
         self.file.read_exact(&mut self.bytes)?;
         Ok(&self.bytes)

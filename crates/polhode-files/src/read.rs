@@ -5,20 +5,32 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 
 use crate::error::Error;
+use crate::inputs;
 
 /// A line of a text file is no longer than this many bytes; whole models stand in one.
 const LONGEST_LINE: usize = 1 << 24;
 
-/// Reads a text file; the message of a failure ends in `remedy`.
+/// Reads a text file, which no output of this process replaces then; the message of a failure ends in `remedy`.
 pub fn read(path: &Path, remedy: &str) -> Result<String, Error> {
+    text(path, inputs::open, remedy)
+}
+
+/// The same for a file of the program's own, which it writes again: a record of results, a page with generated blocks.
+pub fn read_own(path: &Path, remedy: &str) -> Result<String, Error> {
+    text(path, |path| File::open(path), remedy)
+}
+
+fn text(path: &Path, open: fn(&Path) -> io::Result<File>, remedy: &str) -> Result<String, Error> {
     let refused = |reason: &dyn std::fmt::Display| {
         Error::Input(format!("{}: cannot be read: {reason}; {remedy}", path.display()))
     };
     let lines = || {
-        let file = File::open(path)?;
+        let file = open(path)?;
         let mut bytes = Vec::new();
         let size = file.metadata().map_or(0, |found| found.len());
-        let _ = bytes.try_reserve_exact(usize::try_from(size).unwrap_or(0));
+        bytes.try_reserve_exact(usize::try_from(size).unwrap_or(usize::MAX)).map_err(|_| {
+            io::Error::new(ErrorKind::OutOfMemory, format!("{size} bytes do not fit into memory"))
+        })?;
         let mut reader = BufReader::new(file);
         let mut count = 0_u64;
         loop {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use polhode_files::error::Error;
-use polhode_files::read;
+use polhode_files::read_own;
 use polhode_pages::output::emit;
 use polhode_pages::table::Table;
 
@@ -125,7 +125,7 @@ fn compare(
     for (path, table) in committed(scale, experiment, report) {
         match root.join(&path).is_file() {
             true => {
-                let text = read(&root.join(&path), scale.remedy())?;
+                let text = read_own(&root.join(&path), scale.remedy())?;
                 let told = differences(&path, &text, &table.csv());
                 found.extend(told.map_err(|reason| Error::Failed(format!("{reason}; {}", scale.remedy())))?);
             }

@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use polhode_files::error::Error;
-use polhode_files::read;
+use polhode_files::read_own;
 use polhode_pages::output::MARK;
 use polhode_pages::table::{Part, Shown, Table};
 use serde::Deserialize;
@@ -60,7 +60,7 @@ impl Results {
     /// A `run.toml` that cannot be read, or names another experiment.
     pub(super) fn open(folder: PathBuf) -> Result<Self, Error> {
         let path = folder.join(MARK);
-        let origin: Origin = toml::from_str(&read(&path, REMEDY)?)
+        let origin: Origin = toml::from_str(&read_own(&path, REMEDY)?)
             .map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
         let name = &origin.experiment;
         if !is_name(name) || !folder.ends_with(name) {
@@ -75,7 +75,7 @@ impl Results {
         if self.origin.experiment == COSTED && table == CURVES {
             return Ok(self.which()?.curves().csv());
         }
-        read(&within(&self.folder, self.folder.join(format!("{table}.csv")))?, REMEDY)
+        read_own(&within(&self.folder, self.folder.join(format!("{table}.csv")))?, REMEDY)
     }
 
     /// The quickest methods, of the costs of `work-precision`.

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use polhode_files::error::Error;
-use polhode_files::read;
+use polhode_files::read_own;
 use polhode_pages::figure;
 use polhode_pages::output::{MARK, Staging, emit};
 use polhode_pages::table::{Column, Table};
@@ -35,7 +35,7 @@ pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
     }
     let results = within(root, root.join(RESULTS))?;
     let readme_path = within(root, root.join("README.md"))?;
-    let readme = read(&readme_path, "run this in the project's root")?;
+    let readme = read_own(&readme_path, "run this in the project's root")?;
     let results = folders(&results)?.into_iter().map(|folder| Results::open(within(root, folder)?));
     let results = results.collect::<Result<Vec<_>, _>>()?;
     let readme = with_blocks_filled(&readme, &results)?;
@@ -63,7 +63,7 @@ pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
 /// Copies CSVs, `run.toml` and the figures that README.md shows of every experiment in `from`; the rest of what a run writes
 /// follows from them.
 fn take_over(root: &Path, from: &Path) -> Result<(), Error> {
-    let readme = read(&within(root, root.join("README.md"))?, "run this in the project's root")?;
+    let readme = read_own(&within(root, root.join("README.md"))?, "run this in the project's root")?;
     for folder in folders(from)? {
         let found = Results::open(folder)?;
         if found.origin.scale != "paper" {
@@ -75,7 +75,7 @@ fn take_over(root: &Path, from: &Path) -> Result<(), Error> {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let figure = || readme.contains(&format!("({RESULTS}/{}/{name})", found.origin.experiment));
             if name == MARK || name.ends_with(".csv") || (name.ends_with(".svg") && figure()) {
-                staging.write(&name, read(&path, REMEDY)?.as_bytes())?;
+                staging.write(&name, read_own(&path, REMEDY)?.as_bytes())?;
             }
         }
         staging.commit()?;
@@ -92,7 +92,7 @@ fn named_by_article(root: &Path) -> Result<BTreeSet<String>, Error> {
         }
         for path in sorted_entries(&within(root, folder)?)? {
             if path.extension().is_some_and(|ending| ending == "tex") {
-                let text = read(&within(root, path)?, "name a text file")?;
+                let text = read_own(&within(root, path)?, "name a text file")?;
                 let words = text.lines().flat_map(|line| without_comment(line).split(['{', '}']));
                 names.extend(words.filter_map(|word| word.strip_prefix(GENERATED)).map(String::from));
             }

@@ -25,6 +25,7 @@ use polhode_pages::table::Format;
 
 use crate::flags::body::BodyArguments;
 use crate::flags::force::ForceArguments;
+use crate::memory;
 use against::Golden;
 use arguments::ReadingArguments;
 use outcome::Outcome;
@@ -157,6 +158,7 @@ impl Audit {
                 remedy,
             ));
         }
+        memory::check_files(&[path.to_path_buf()], 2)?;
         let found = trajectory::read(path, &self.reading.table())?;
         let claims = self.reading.claims(found.claims);
         let bodies: Vec<(Option<String>, Trajectory)> = match &self.id {

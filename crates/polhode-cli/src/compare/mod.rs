@@ -5,8 +5,9 @@ mod trajectory;
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::body::{Body, Clock};
+use polhode::body::{Body, Clock, Point};
 use polhode::method::{AnyMethod, Claimed, ToleranceError};
+use polhode::num::Dd;
 use polhode::run::{RunError, Schedule, ScheduleError};
 use polhode::truth::{AGREEMENT, Care, Ending, Judged, Truth, TruthError, evenly};
 use polhode_experiments::timing::StepTime;
@@ -18,6 +19,7 @@ use polhode_pages::figure::{Figure, Series};
 use polhode_pages::output::{Output, emit};
 use polhode_pages::table::{Cell, Column, Format, Table, row};
 
+use crate::cost;
 use crate::flags::motion::MotionArguments;
 use crate::flags::table::{Order, TableArguments};
 use crate::methods::{adaptive, allowed, named, not_taken};
@@ -116,6 +118,10 @@ impl Compare {
         let start = self.motion.start(&body)?;
         let span = self.span()?;
         let entries = self.entries(span)?;
+        let speed = body.omega_of(&start).norm();
+        for entry in &entries {
+            self.check_cost(entry, &body, &start, speed, span)?;
+        }
         let trajectories: Vec<Trajectory> = self
             .trajectory
             .iter()
@@ -258,6 +264,30 @@ impl Compare {
             ),
             error => Error::Input(format!("--steps: '{value}': {error}")),
         })
+    }
+
+    /// Refuses a method that would take forever, and says on a terminal of one that takes long.
+    fn check_cost(
+        &self,
+        entry: &Entry,
+        body: &Body,
+        start: &Point<Dd>,
+        speed: f64,
+        span: f64,
+    ) -> Result<(), Error> {
+        let step = match entry.step {
+            Some(step) => {
+                cost::check("--steps", step, span / step, "take larger steps or an earlier end")?;
+                step
+            }
+            None => {
+                cost::check_turn("--until", self.until, speed * span)?;
+                span.min(1.0 / speed)
+            }
+        };
+        let clock = Clock { start: self.start_time, step };
+        cost::announce(entry.method.as_ref(), body, start.to_f64(), clock, libm::ceil(span / step) as u64);
+        Ok(())
     }
 
     fn judged(&self, truth: &Truth, entry: &Entry) -> Result<(Judged, StepTime), Error> {

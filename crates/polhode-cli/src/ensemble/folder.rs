@@ -1,23 +1,23 @@
 //! A shard on the disk: arrays, largest errors, failures, and the record that it is whole.
 
-use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use polhode_files::error::{Error, unexpected};
 use polhode_files::npy::Array;
-use polhode_files::read;
+use polhode_files::{inputs, read, read_own};
 use polhode_pages::output::{MARK, Staging};
 use polhode_pages::table::{Cell, Column, Table};
 
+use super::checksum::Checksum;
 use super::record::Record;
 use super::shard::Shard;
 use super::work::{ATTITUDES, Failure, Largest, OMEGAS, Shares};
 
 /// Folder of the shards in that of the results.
 pub(super) const SHARDS: &str = "shards";
-const ERRORS: &str = "errors";
-const FAILURES: &str = "failures";
+pub(super) const ERRORS: &str = "errors";
+pub(super) const FAILURES: &str = "failures";
 
 /// A shard that stands whole on the disk.
 pub(super) struct Finished {
@@ -36,7 +36,7 @@ pub(super) fn finished(out: &Path) -> Result<Vec<Finished>, Error> {
             continue;
         }
         let path = entry.path();
-        let record = record(&path)?;
+        let record = record(&path, read)?;
         let shard = record.as_ref().and_then(Record::place);
         let Some((record, shard)) = record.zip(shard) else {
             let rule = format!("is no shard of an ensemble: it has no {MARK} that says so");
@@ -49,8 +49,13 @@ pub(super) fn finished(out: &Path) -> Result<Vec<Finished>, Error> {
     Ok(found)
 }
 
+/// The record of results, which the next run writes again.
+pub(super) fn record_of_results(folder: &Path) -> Result<Option<Record>, Error> {
+    record(folder, read_own)
+}
+
 /// The record of a folder, if it has one.
-pub(super) fn record(folder: &Path) -> Result<Option<Record>, Error> {
+fn record(folder: &Path, read: fn(&Path, &str) -> Result<String, Error>) -> Result<Option<Record>, Error> {
     let path = folder.join(MARK);
     if !path.is_file() {
         return Ok(None);
@@ -87,16 +92,23 @@ pub(super) fn failures_table(failures: &[Failure]) -> Table {
     table
 }
 
-/// Writes what goes beside the arrays of a shard, and puts it in its place.
-pub(super) fn commit(staging: Staging, shares: &Shares, record: &Record) -> Result<(), Error> {
+/// Writes what goes beside the arrays of a shard, with the checksums of all, and puts it in its place.
+pub(super) fn commit(staging: Staging, shares: &Shares, mut record: Record) -> Result<(), Error> {
     let mut errors = errors_table();
     for (t, largest) in shares.times.iter().zip(&shares.largest) {
         errors.push([Cell::from(*t), Cell::from(largest.energy), Cell::from(largest.momentum_vector)]);
     }
-    for table in [errors, failures_table(&shares.failures)] {
-        staging.write(&format!("{}.csv", table.name), table.csv().as_bytes())?;
+    let tables =
+        [errors, failures_table(&shares.failures)].map(|table| (format!("{}.csv", table.name), table));
+    for (name, table) in &tables {
+        staging.write(name, table.csv().as_bytes())?;
     }
-    staging.write(MARK, record.text().map_err(unexpected)?.as_bytes())?;
+    let arrays = [Some(ATTITUDES), record.identity.omegas.then_some(OMEGAS)].into_iter().flatten();
+    for name in tables.iter().map(|(name, _)| name.as_str()).chain(arrays) {
+        let sum = Checksum::of(staging.open(name)?).map_err(unexpected)?;
+        record.sha256.insert(name.into(), sum);
+    }
+    staging.write(MARK, record.sealed_text().map_err(unexpected)?.as_bytes())?;
     staging.commit()
 }
 
@@ -116,8 +128,8 @@ impl Finished {
 
     fn array<const N: usize>(&self, name: &str) -> Result<Array<N>, Error> {
         let path = self.path.join(name);
-        let opened =
-            File::open(&path).and_then(|file| Array::open(file, self.record.identity.times, self.members()));
+        let opened = inputs::open(&path)
+            .and_then(|file| Array::open(file, self.record.identity.times, self.members()));
         opened.map_err(|error| self.damaged(&path, &error))
     }
 
@@ -127,17 +139,27 @@ impl Finished {
         Error::Input(format!("{}: {error}; {remedy}", path.display()))
     }
 
+    /// The same of what contradicts the others.
+    pub(super) fn wrong(&self, path: &Path, rule: &str) -> Error {
+        self.damaged(path, &io::Error::new(io::ErrorKind::InvalidData, rule))
+    }
+
+    /// Where its record stands.
+    pub(super) fn mark(&self) -> PathBuf {
+        self.path.join(MARK)
+    }
+
     /// Largest errors and failures.
     pub(super) fn shares(&self) -> Result<Shares, Error> {
         let rows = |name: &str| -> Result<Vec<csv::StringRecord>, Error> {
             let path = self.path.join(format!("{name}.csv"));
             let damaged = |error: csv::Error| self.damaged(&path, &io::Error::other(error));
-            let mut reader = csv::Reader::from_path(&path).map_err(damaged)?;
-            reader.records().collect::<Result<_, _>>().map_err(damaged)
+            let file = inputs::open(&path).map_err(|error| self.damaged(&path, &error))?;
+            csv::Reader::from_reader(file).into_records().collect::<Result<_, _>>().map_err(damaged)
         };
         let wrong = |name: &str| {
             let path = self.path.join(format!("{name}.csv"));
-            self.damaged(&path, &io::Error::new(io::ErrorKind::InvalidData, "it has other rows than a shard"))
+            self.wrong(&path, "it has other rows than a shard")
         };
         let cell = |text: &str| -> Result<Option<f64>, Error> {
             if text.is_empty() { Ok(None) } else { text.parse().map(Some).map_err(|_| wrong(ERRORS)) }

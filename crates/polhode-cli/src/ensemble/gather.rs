@@ -7,13 +7,14 @@ use polhode_files::error::{Error, unexpected};
 use polhode_files::npy;
 use polhode_pages::output::{MARK, Output, unwritable};
 
-use super::folder::{Finished, finished};
-use super::memory;
+use super::folder::{ERRORS, Finished, finished};
 use super::record::{Identity, Record};
 use super::reduce::{self, reduce};
 use super::results::Results;
+use super::verify::verified;
 use super::work::{ATTITUDES, Largest, OMEGAS, Shares};
 use super::{said, threads_of};
+use crate::memory;
 
 const EXAMPLES: &str = "Examples:
   polhode ensemble examples/ensemble.toml --out halves --shard 1/2
@@ -23,8 +24,9 @@ const EXAMPLES: &str = "Examples:
 /// Reduce the shards of an ensemble to the results of one run
 ///
 /// The shards that `polhode ensemble --shard K/N` has written stand in DIR/shards. They must be all of one run: of the same
-/// specification, version and number of shards. The results in DIR are those of the run without shards, to the last bit; the
-/// shards stay where they are, and may be removed then.
+/// specification, seed, version and number of shards, with every file as its run wrote it (the run.toml beside it has the
+/// SHA-256). The results in DIR are those of the run without shards, to the last bit; the shards stay where they are, and may be
+/// removed then.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Gather {
@@ -57,8 +59,9 @@ impl Gather {
                 "give fewer --threads, or take a machine with more",
             ));
         }
-        let mut arrays = shards.iter().map(Finished::attitudes).collect::<Result<Vec<_>, _>>()?;
+        // nothing is written before every byte of every shard has been looked at
         let shares = together(&shards)?;
+        let mut arrays = shards.iter().map(Finished::attitudes).collect::<Result<Vec<_>, _>>()?;
         let unreadable = |error: std::io::Error| Error::Input(format!("{}: {error}", self.folder.display()));
         let reduced = reduce(&mut arrays, identity.members, threads).map_err(unreadable)?;
         let records: Vec<Record> = shards.iter().map(|shard| shard.record.clone()).collect();
@@ -158,6 +161,14 @@ impl Gather {
                 &format!("gather them with that version; this is {}", env!("CARGO_PKG_VERSION")),
             );
         }
+        if let Some(other) = shards.iter().find(|shard| !shard.record.is_alike(&first.record)) {
+            let of = |shard: &Finished| {
+                let seed = shard.record.seed.map_or("no seed".into(), |seed| format!("seed {seed}"));
+                format!("{} is of method {} and {seed}", shard.shard, shard.record.method)
+            };
+            let rule = format!("holds shards of two runs: {}, and {}", of(first), of(other));
+            return refused(&rule, "remove those of one of the two");
+        }
         Ok(identity.clone())
     }
 }
@@ -166,10 +177,18 @@ impl Gather {
 fn together(shards: &[Finished]) -> Result<Shares, Error> {
     let mut all = Shares::default();
     for shard in shards {
-        let shares = shard.shares()?;
+        let shares = verified(shard)?;
         if all.times.is_empty() {
             all.times = shares.times;
             all.largest = vec![Largest::default(); all.times.len()];
+        } else if let Some(k) = (0..all.times.len()).find(|k| all.times[*k] != shares.times[*k]) {
+            let rule = format!(
+                "row {} is of t = {}, and that of shard 1 of t = {}",
+                k + 1,
+                shares.times[k],
+                all.times[k]
+            );
+            return Err(shard.wrong(&shard.path.join(format!("{ERRORS}.csv")), &rule));
         }
         for (all, one) in all.largest.iter_mut().zip(shares.largest) {
             *all = all.or(one);
@@ -182,6 +201,6 @@ fn together(shards: &[Finished]) -> Result<Shares, Error> {
 
 /// Whether a folder holds results of the run `identity`.
 pub(super) fn has_results(folder: &Path, identity: &Identity) -> Result<bool, Error> {
-    let record = super::folder::record(folder)?;
+    let record = super::folder::record_of_results(folder)?;
     Ok(record.is_some_and(|record| record.is_results() && record.identity == *identity))
 }

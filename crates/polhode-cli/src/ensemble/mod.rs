@@ -1,14 +1,15 @@
 //! `polhode ensemble`: many bodies from uncertain starts, on one machine or in shares on many.
 
+mod checksum;
 mod digest;
 mod folder;
 mod gather;
-mod memory;
 mod record;
 mod reduce;
 mod results;
 mod shard;
 mod spec;
+mod verify;
 mod work;
 
 use std::path::{Path, PathBuf};
@@ -19,6 +20,7 @@ use polhode_files::error::{Error, tell, unexpected, warn};
 use polhode_files::npy;
 use polhode_pages::output::{Staging, emit};
 
+use crate::{cost, memory};
 pub(crate) use gather::Gather;
 use record::{Identity, Record};
 use results::Results;
@@ -214,7 +216,7 @@ impl Ensemble {
         let staging = Staging::new(&folder)?;
         let (_, shares) = work::propagate(spec, range.clone(), self.means(), &staging, &folder)?;
         let record = Record::new(spec, Some(shard), shares.draws, shares.failures.len() as u64);
-        folder::commit(staging, &shares, &record)?;
+        folder::commit(staging, &shares, record)?;
         warn_of(&shares, range.end - range.start);
         emit(
             &format!("Shard {shard}, members {} to {}: {}\n", range.start + 1, range.end, folder.display()),
@@ -222,9 +224,10 @@ impl Ensemble {
         )
     }
 
-    /// Refuses work that needs more memory or more room on the disk than there is, before it begins.
+    /// Refuses work of more steps than can be taken, and work that needs more memory or more room on the disk than there is, before it begins.
     fn check_room(&self, spec: &Spec, shard: Shard) -> Result<(), Error> {
         let range = shard.range(spec.members);
+        cost::check_all(&spec.place, range.end - range.start, spec.steps())?;
         let (members, threads) = (range.end - range.start, threads_of(self.threads));
         let times = spec.plan.times.len() as u64;
         let reduction = if shard == Shard::WHOLE { reduce::memory(members, threads) } else { 0 };

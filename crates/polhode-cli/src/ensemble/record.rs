@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use polhode_experiments::build;
+use polhode_pages::output::MARK;
 use serde::{Deserialize, Serialize};
 
+use super::checksum::Checksum;
 use super::shard::Shard;
 use super::spec::Spec;
 
@@ -43,6 +45,9 @@ pub(super) struct Record {
     pub(super) profile: String,
     pub(super) target: String,
     pub(super) identity: Identity,
+    /// Of a shard: checksums of the files beside it, and under [`MARK`] of this record without that line.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) sha256: BTreeMap<String, String>,
     /// Columns and arrays of the files beside it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) files: BTreeMap<String, BTreeMap<String, String>>,
@@ -96,6 +101,7 @@ impl Record {
             profile: build::PROFILE.into(),
             target: build::TARGET.into(),
             identity: Identity::of(spec),
+            sha256: BTreeMap::new(),
             files: BTreeMap::new(),
         }
     }
@@ -110,6 +116,7 @@ impl Record {
             shards: None,
             draws: sum(|shard| shard.draws),
             failed: sum(|shard| shard.failed),
+            sha256: BTreeMap::new(),
             ..first
         })
     }
@@ -118,6 +125,11 @@ impl Record {
     pub(super) fn place(&self) -> Option<Shard> {
         let (number, count) = (self.shard?, self.shards?);
         (self.kind == SHARD && (1..=count).contains(&number)).then_some(Shard { number, count })
+    }
+
+    /// Whether two shards have the method and the seed in common, as all of one specification do.
+    pub(super) fn is_alike(&self, other: &Self) -> bool {
+        (&self.method, self.seed) == (&other.method, other.seed)
     }
 
     pub(super) fn is_results(&self) -> bool {
@@ -130,5 +142,25 @@ impl Record {
 
     pub(super) fn text(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(self)
+    }
+
+    /// The same with a checksum of itself.
+    pub(super) fn sealed_text(mut self) -> Result<String, toml::ser::Error> {
+        let seal = self.seal()?;
+        self.sha256.insert(MARK.into(), seal);
+        self.text()
+    }
+
+    /// Whether the record is the one that its checksum was made of.
+    pub(super) fn is_as_written(&self) -> bool {
+        self.seal().is_ok_and(|seal| self.sha256.get(MARK) == Some(&seal))
+    }
+
+    fn seal(&self) -> Result<String, toml::ser::Error> {
+        let mut bare = self.clone();
+        bare.sha256.remove(MARK);
+        let mut sum = Checksum::new();
+        sum.add(bare.text()?.as_bytes());
+        Ok(sum.hexadecimal())
     }
 }

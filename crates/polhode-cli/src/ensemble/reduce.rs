@@ -1,5 +1,7 @@
 //! Mean attitude and dispersion over time, from the arrays of all shards.
 
+use std::io;
+
 use polhode::rotation::{Dispersion, Quat};
 use polhode_experiments::parallel;
 use polhode_files::npy::Array;
@@ -42,7 +44,7 @@ pub(super) fn reduce(
     arrays: &mut [Array<4>],
     members: u64,
     threads: usize,
-) -> std::io::Result<Vec<Option<Reduced>>> {
+) -> io::Result<Vec<Option<Reduced>>> {
     let times = arrays.first().map_or(0, Array::times);
     let batch = side_by_side(members, threads);
     let mut reduced: Vec<Option<Reduced>> = Vec::with_capacity(times as usize);
@@ -51,7 +53,12 @@ pub(super) fn reduce(
         let end = times.min(next + batch as u64);
         let mut slabs = Vec::with_capacity(batch);
         for time in next..end {
-            let mut slab = Vec::with_capacity(members as usize);
+            let mut slab = Vec::new();
+            let room = usize::try_from(members).ok().filter(|room| slab.try_reserve_exact(*room).is_ok());
+            if room.is_none() {
+                let rule = format!("the attitudes of {members} members do not fit into memory");
+                return Err(io::Error::new(io::ErrorKind::OutOfMemory, rule));
+            }
             for array in arrays.iter_mut() {
                 // zeros stand where a member has no row
                 let rows = array.entries(time)?.filter(|q| *q != [0.0; 4]);

@@ -15,12 +15,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use nalgebra::Vector3;
 use polhode_files::error::{Error, warn};
+use polhode_files::inputs as opened;
 use polhode_files::numbers::{numbers, positive};
 use polhode_fit::{FitError, Limit, Settings, fit};
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
 
+use crate::memory;
 use crate::plot::Picture;
 use arguments::{KnownArguments, PriorArguments, Scope, SensorArguments, Torque};
 use flights::Spans;
@@ -115,6 +117,7 @@ impl Fit {
             Ok::<_, Error>((Output::to_file("--figure", path)?, picture))
         });
         let figure = figure.transpose()?;
+        memory::check_files(&self.data, 3)?;
         let mut record = self.reading.record(&self.data, &self.wheel)?;
         let limit = |axis: &[f64; 4]| Limit {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
@@ -254,16 +257,9 @@ impl Fit {
                     "name another file",
                 ));
             }
-            if self.data.iter().any(|path| same(path, out)) {
-                let value = out.display().to_string();
-                return Err(Error::input(
-                    flag,
-                    &value,
-                    "it would replace the measurement",
-                    "name another file",
-                ));
-            }
         }
+        // refused before the work rather than at its end
+        self.data.iter().for_each(|path| opened::register(path));
         if let Some(path) = self
             .residuals
             .as_deref()

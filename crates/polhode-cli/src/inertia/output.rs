@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::{Diagnosis, MassProperties};
+use polhode_files::error::warn;
 use polhode_files::text::{visible, visible_json};
 use polhode_pages::table::{Cell, Column, Format, Table, row};
 use serde_json::{Value, json};
@@ -22,7 +23,12 @@ pub(super) fn write(bodies: &[Examined], files: &[String], form: Form) -> String
     };
     match form {
         Form::Table => bodies.iter().map(sheet).collect::<Vec<_>>().join("\n"),
-        Form::Csv => Format::Csv.write(&rows(bodies, files)),
+        Form::Csv => {
+            if let Some(remark) = remark_on_formulas(bodies) {
+                warn(&remark);
+            }
+            Format::Csv.write(&rows(bodies, files))
+        }
         Form::Json => match bodies {
             [one] => json(one, files.first()) + "\n",
             many => {
@@ -99,9 +105,27 @@ fn rows(bodies: &[Examined], files: &[String]) -> Table {
     let mut table = Table::new("inertia", "Mass properties.", file.into_iter().chain(columns).collect());
     for (k, quantities) in all.into_iter().enumerate() {
         let file = files.get(k).map(|file| Cell::from(file.as_str()));
-        table.push(file.into_iter().chain(quantities.into_iter().map(|(_, _, value)| value)));
+        let cells = file.into_iter().chain(quantities.into_iter().map(|(_, _, value)| value));
+        table.push(cells.map(|cell| match cell {
+            Cell::Text(text) if is_formula(&text) => Cell::from(format!("'{text}")),
+            cell => cell,
+        }));
     }
     table
+}
+
+/// Whether a spreadsheet would run a cell instead of showing it.
+fn is_formula(text: &str) -> bool {
+    text.starts_with(['=', '+', '-', '@', '\t', '\r'])
+}
+
+/// What is said of names that a CSV holds with an apostrophe before them.
+fn remark_on_formulas(bodies: &[Examined]) -> Option<String> {
+    let name = bodies.iter().map(|body| &body.given.name).find(|name| is_formula(name))?;
+    Some(format!(
+        "name '{}': a spreadsheet would run it as a formula; texts that begin with =, +, -, @ or a tab stand with an apostrophe before them in the CSV, and as they are in --format json",
+        visible(name)
+    ))
 }
 
 /// One line per quantity.

@@ -50,8 +50,10 @@ pub(super) fn write(models: &[Model], folder: &Path) -> Result<String, Error> {
             "name a folder that can be made",
         )
     })?;
-    for (target, text) in outputs {
-        Output::to_file("--repair", &target)?.write_whole(&text)?;
+    // every place is known to be writable, and no input, before the first is written
+    let opened = |(target, text): (PathBuf, String)| Ok((Output::to_file("--repair", &target)?, text));
+    for (output, text) in outputs.into_iter().map(opened).collect::<Result<Vec<_>, Error>>()? {
+        output.write_whole(&text)?;
     }
     Ok(told.trim_end().to_owned())
 }

@@ -12,6 +12,7 @@ use polhode_files::error::{Error, warn};
 use polhode_files::text::short;
 
 use super::{Kind, Plot};
+use crate::cost;
 use crate::methods::{Unusable, adaptive, at_tolerance, named, not_taken, unknown};
 
 /// Points of a curve: at least so many, and at most.
@@ -200,6 +201,15 @@ impl Looks {
                 let flag = if matches!(error, RunError::Step(_)) { "--method" } else { "--step" };
                 Error::Input(format!("{flag}: {error}"))
             })?;
+        let turn = speed * plot.until;
+        let trial = if adaptive && speed > 0.0 {
+            cost::check_turn("--until", plot.until, turn)?;
+            (Clock { step: step.min(1.0 / speed), ..clock }, libm::ceil(turn) as u64)
+        } else {
+            cost::check("--step", step, steps as f64, "take a larger step or an earlier end")?;
+            (clock, steps)
+        };
+        cost::announce(method.as_ref(), &self.body, start.to_f64(), trial.0, trial.1);
         let middle = middle_axis(&self.body);
         let mut flips = middle.map(|_| Flips::default());
         let mut before: Option<(f64, f64, u64)> = None;

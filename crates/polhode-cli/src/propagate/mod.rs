@@ -17,6 +17,7 @@ use polhode_files::moment::positive_duration;
 use polhode_files::numbers::positive;
 use polhode_pages::table::{Format, Rows};
 
+use crate::cost;
 use crate::flags::motion::MotionArguments;
 use crate::flags::times::{OutputTimes, TimeArguments};
 use crate::methods::{Unusable, adaptive, at_tolerance, named, not_taken, unknown};
@@ -166,8 +167,13 @@ impl Propagate {
             )));
         };
         let clock = Clock { start: self.times.start()?, step: h };
-        let mut before = clock.start;
-        let count = times.check(|t| self.steps_to(clock, &mut before, t).map(|_| ()))?;
+        let speed = body.omega_of(&start).norm();
+        let chosen = adaptive.then_some(speed);
+        let (mut before, mut last) = (clock.start, 0);
+        let count = times.check(|t| {
+            last = self.steps_to(clock, chosen, &mut before, t)?;
+            Ok(())
+        })?;
         let mut run = Run::from_point(&method, body, start.to_f64(), clock).map_err(|error| match error {
             RunError::Step(error @ StepError::Refused { .. }) => Error::Input(format!("--method: {error}")),
             error => Error::Input(format!("--step: {error}")),
@@ -175,13 +181,19 @@ impl Propagate {
         if !columns.errors() {
             run = run.watching(Watch::Never);
         }
-        let speed = body.omega_of(&start).norm();
         if h * speed > 1.0 && !adaptive {
             warn(&format!(
                 "--step: '{h:?}': turns the body by {:?} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
                 h * speed
             ));
         }
+        let turn = speed * (before - clock.start);
+        let trial = if adaptive && speed > 0.0 {
+            (Clock { step: h.min(1.0 / speed), ..clock }, libm::ceil(turn) as u64)
+        } else {
+            (clock, last)
+        };
+        cost::announce(method.as_ref(), body, start.to_f64(), trial.0, trial.1);
         // without closed form the attitude error is left empty
         let exact = columns.attitude_error().then(|| ExactMotion::from_point(body, run.start().to_dd()).ok());
         let exact = exact.flatten();
@@ -189,7 +201,7 @@ impl Propagate {
             let mut before = clock.start;
             for t in times.iter()? {
                 let t = t?;
-                let sample = self.sample(&mut run, self.steps_to(clock, &mut before, t)?)?;
+                let sample = self.sample(&mut run, self.steps_to(clock, chosen, &mut before, t)?)?;
                 let error = exact.as_ref().map(|exact| {
                     let there = exact.point_at_dd(sample.elapsed);
                     rotation_angle(sample.point.to_dd().attitude, there.attitude).hi()
@@ -220,14 +232,20 @@ impl Propagate {
         })
     }
 
-    /// The number of steps that leads to the time `t`, which must not come before `before`.
-    fn steps_to(&self, clock: Clock, before: &mut f64, t: f64) -> Result<u64, Error> {
+    /// The number of steps that leads to the time `t`, which must not come before `before`; of a method that chooses
+    /// its steps `speed` is |ω| at the start.
+    fn steps_to(&self, clock: Clock, speed: Option<f64>, before: &mut f64, t: f64) -> Result<u64, Error> {
         if t < *before {
             return Err(self.unreachable(&ScheduleError::NotAscending { t, before: *before }));
         }
         let steps = Schedule::at_times(clock, &[t]).map_err(|error| self.unreachable(&error))?;
         *before = t;
-        Ok(steps.into_iter().last().unwrap_or(0))
+        let steps = steps.into_iter().last().unwrap_or(0);
+        cost::check("--step", clock.step, steps as f64, "take a larger step or an earlier time")?;
+        if let Some(speed) = speed {
+            cost::check_turn(self.times.flag(), t, speed * (t - clock.start))?;
+        }
+        Ok(steps)
     }
 
     /// Refuses to go on where the numbers no longer are those of a rotation.

@@ -288,7 +288,7 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     let nowhere = run(&format!("fit {record} --residuals /nowhere/r.svg"));
     assert!(nowhere.code == 2 && nowhere.err.contains("--residuals: '/nowhere/r.svg'"), "{}", nowhere.err);
     let before = fs::read_to_string(&record).unwrap();
-    refused(2, &format!("fit {record} --out {record}"), &["--out", "it would replace the measurement"]);
+    refused(2, &format!("fit {record} --out {record}"), &["--out", "it would replace the input"]);
     let same = scratch.0.join("same").display().to_string();
     refused(2, &format!("fit {record} --out {same} --residuals {same}"), &["it would replace --out"]);
     assert_eq!(fs::read_to_string(&record).unwrap(), before);

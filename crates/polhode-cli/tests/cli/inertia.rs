@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::harness::{self, Answer, Scratch, names, polhode};
+use crate::harness::{self, Answer, Scratch, names, polhode, refused};
 use crate::robots::ROBOT;
 
 impl Scratch {
@@ -481,4 +481,41 @@ fn what_a_terminal_would_obey_is_written_out() {
     assert_eq!(read_back["name"], name);
     scratch.file("back.toml", scratch.output("json valid.json --format toml"));
     assert!(scratch.output("parts back.toml").contains(",valid,"));
+}
+
+#[test]
+fn elements_of_a_ply_that_cannot_be_there_are_refused_at_once() {
+    let scratch = Scratch::new("inertia-ply");
+    let head = |encoding: &str, elements: &str| format!("ply\nformat {encoding} 1.0\n{elements}end_header\n");
+    let vertex = "property float x\nproperty float y\nproperty float z\n";
+    for (name, text, says) in [
+        (
+            "junk",
+            head("ascii", "element junk 18446744073709551615\n"),
+            "PLY announces 18446744073709551615 of element junk, which has no properties",
+        ),
+        (
+            "many",
+            head("ascii", &"element a 4000000000\n".repeat(100)),
+            "4000000000 of element a, which has no",
+        ),
+        (
+            "vertices",
+            head("binary_little_endian", &format!("element vertex 4000000000\n{vertex}")),
+            "take 48000000000 bytes or more, and 0 follow the header",
+        ),
+        (
+            "text",
+            head("ascii", &format!("element vertex 1000\n{vertex}")) + "0 0 0\n",
+            "take 6000 bytes or more, and 6 follow the header",
+        ),
+        (
+            "overflow",
+            head("binary_big_endian", &format!("element vertex {}\n{vertex}", u64::MAX)),
+            "take 18446744073709551615 bytes or more",
+        ),
+    ] {
+        let path = scratch.file(&format!("{name}.ply"), text);
+        refused(&format!("inertia mesh {path} --mass 1"), &[says]);
+    }
 }

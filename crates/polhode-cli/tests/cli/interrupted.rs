@@ -124,7 +124,8 @@ fn a_signal_leaves_nothing_beside_the_old_file() {
     };
     output(&line(1));
     let old = fs::read(&path).unwrap();
-    let signals = [("INT", 2), ("TERM", 15)].into_iter().filter(|(_, number)| !is_ignored(*number));
+    let signals =
+        [("HUP", 1), ("INT", 2), ("TERM", 15)].into_iter().filter(|(_, number)| !is_ignored(*number));
     for (name, number) in signals {
         // far longer than the test waits
         let mut child = start(&line(5_000_000));

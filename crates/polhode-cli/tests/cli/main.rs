@@ -8,6 +8,7 @@ mod advise;
 mod audit;
 mod compare;
 mod compose;
+mod costs;
 mod ensemble;
 mod experiment;
 mod fit;
@@ -18,6 +19,8 @@ mod general;
 mod harness;
 mod inertia;
 #[cfg(unix)]
+mod inputs;
+#[cfg(unix)]
 mod interrupted;
 mod logs;
 mod motion;
@@ -25,5 +28,7 @@ mod plot;
 mod propagate;
 mod report;
 mod robots;
+#[cfg(unix)]
+mod scarce;
 mod tables;
 mod times;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use crate::harness::{Answer, Scratch, names};
+use crate::harness::{Answer, Scratch, names, run};
 use crate::inertia::{OBJ_CUBE, golden, numbers};
 
 /// A model of two links in the words of other programs, with axes turned by rpy.
@@ -401,4 +401,68 @@ fn reversed(obj: &str) -> String {
         None => line.to_owned(),
     };
     obj.lines().map(|line| turn(line) + "\n").collect()
+}
+
+#[test]
+fn models_nested_without_end_are_refused_with_line_and_depth() {
+    let scratch = Scratch::new("robots-nested");
+    for (language, root, element) in
+        [("urdf", "robot", "link"), ("mjcf", "mujoco", "body"), ("sdf", "sdf", "model")]
+    {
+        for depth in [600, 5000, 200_000] {
+            let text = format!(
+                "<{root}>\n{}{}</{root}>",
+                format!("<{element}>\n").repeat(depth),
+                format!("</{element}>").repeat(depth)
+            );
+            let path = scratch.file("nested.xml", text);
+            let answer = run(&format!("inertia {language} {path}"));
+            let says = format!("{path}:501: elements are nested 501 deep, and at most 500 are read");
+            assert_eq!(answer.code, 2, "{language}, {depth}: {}", answer.err);
+            assert!(answer.err.contains(&says), "{language}, {depth}: {}", answer.err);
+        }
+        let depth = 490;
+        let text = format!(
+            "<{root}>{}{}</{root}>",
+            format!("<{element}>").repeat(depth),
+            format!("</{element}>").repeat(depth)
+        );
+        let path = scratch.file("deep.xml", text);
+        let answer = run(&format!("inertia {language} {path}"));
+        assert!(!answer.err.contains("are nested"), "{language}: {}", answer.err);
+    }
+}
+
+#[test]
+fn a_chain_of_included_files_is_as_deep_as_one_file_at_most() {
+    let scratch = Scratch::new("robots-chain");
+    let nested = |inside: &str| format!("{}{inside}{}", "<body>".repeat(300), "</body>".repeat(300));
+    for k in 0..20 {
+        let inside = nested(&format!("<include file=\"{}.xml\"/>", k + 1));
+        scratch.file(&format!("{k}.xml"), format!("<mujoco><worldbody>{inside}</worldbody></mujoco>"));
+    }
+    scratch.file("20.xml", "<mujoco/>");
+    let answer = run(&format!("inertia mjcf {}", scratch.0.join("0.xml").display()));
+    assert!((0..=2).contains(&answer.code), "{}", answer.err);
+    let all = answer.err + &answer.out;
+    assert!(all.contains("would be nested more than 500 deep"), "{all}");
+}
+
+#[test]
+fn names_that_a_spreadsheet_would_run_are_quoted_in_csv_alone() {
+    let scratch = Scratch::new("robots-formula");
+    let link = |name: &str| {
+        format!(
+            "<link name=\"{name}\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>"
+        )
+    };
+    let names = ["=1+1|cmd", "+1", "-1", "@SUM(A1)", "a=1", "arm-left"];
+    let links: String = names.iter().map(|name| link(name)).collect();
+    let path = scratch.file("robot.urdf", format!("<robot name=\"r\">{links}</robot>"));
+    let answer = run(&format!("inertia urdf {path} --format csv"));
+    let found: Vec<&str> = answer.out.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
+    assert_eq!(found, ["'=1+1|cmd", "'+1", "'-1", "'@SUM(A1)", "a=1", "arm-left"]);
+    assert!(answer.err.contains("'=1+1|cmd': a spreadsheet would run it as a formula"), "{}", answer.err);
+    let json = run(&format!("inertia urdf {path} --format json"));
+    assert!(json.out.contains("\"name\": \"=1+1|cmd\"") && !json.err.contains("spreadsheet"), "{}", json.err);
 }

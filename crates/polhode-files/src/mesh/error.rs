@@ -93,6 +93,30 @@ pub enum MeshFileError {
         /// How many the header announces.
         announced: u64,
     },
+    /// An element of a PLY has no properties, and its count can be any.
+    #[error(
+        "PLY announces {announced} of element {element}, which has no properties; is its header complete?"
+    )]
+    NoProperties {
+        /// Name of the element.
+        element: String,
+        /// How many the header announces.
+        announced: u64,
+    },
+    /// The elements of a PLY are more than its bytes can hold.
+    #[error(
+        "PLY announces {announced} of element {element}, which with those before it take {needed} bytes or more, and {left} follow the header"
+    )]
+    TooManyElements {
+        /// Name of the element.
+        element: String,
+        /// How many the header announces.
+        announced: u64,
+        /// The least number of bytes.
+        needed: u64,
+        /// Bytes behind the header.
+        left: u64,
+    },
     /// A face of a PLY names a vertex that is not there.
     #[error("face {face} names vertex {index}, counted from 0, but there are {vertices}")]
     Corner {

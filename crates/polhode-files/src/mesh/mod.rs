@@ -6,13 +6,13 @@ mod ply;
 mod stl;
 mod text;
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
 use polhode::inertia::Surface;
 
 use crate::error::Error;
+use crate::inputs;
 use crate::text::visible;
 pub use error::MeshFileError;
 pub use obj::read as obj;
@@ -24,11 +24,15 @@ pub fn surface(path: &Path) -> Result<Surface, Error> {
     let refused =
         |error: MeshFileError| Error::Input(visible(&format!("{}: {error}", path.display())).into());
     let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
-    let open = || File::open(path).map(BufReader::new).map_err(|error| refused(error.into()));
+    let open = || inputs::open(path).map(BufReader::new).map_err(|error| refused(error.into()));
     match ending.as_deref() {
         Some("stl") => stl::read(open()?).map_err(refused),
         Some("obj") => obj::read(open()?).map_err(refused),
-        Some("ply") => ply::read(open()?).map_err(refused),
+        Some("ply") => {
+            // a pipe has no size
+            let size = path.metadata().ok().filter(|found| found.is_file()).map(|found| found.len());
+            ply::sized(open()?, size).map_err(refused)
+        }
         _ => Err(Error::input(
             "mesh",
             &path.display().to_string(),

@@ -90,8 +90,15 @@ struct Element {
 /// # Errors
 /// A file of another kind, or one that ends too early, by its line or byte.
 pub fn read(reader: impl BufRead) -> Result<Surface, MeshFileError> {
+    sized(reader, None)
+}
+
+/// The same of a file of `size` bytes, in which elements that cannot be there are refused before they are looked for.
+pub(super) fn sized(reader: impl BufRead, size: Option<u64>) -> Result<Surface, MeshFileError> {
     let mut lines = Lines::new(reader);
     let (encoding, elements) = header(&mut lines)?;
+    let size = size.map(|size| size.saturating_sub(lines.bytes));
+    check_counts(encoding, &elements, size)?;
     let mut numbers = Numbers { lines, encoding, words: Vec::new() };
     let mut vertices = Vec::new();
     let mut mesh = SurfaceBuilder::default();
@@ -113,6 +120,32 @@ pub fn read(reader: impl BufRead) -> Result<Surface, MeshFileError> {
         }
     }
     Ok(mesh.finish()?)
+}
+
+/// Elements take bytes, or a count would be a loop without an end, and all of them as many as are left at most.
+fn check_counts(encoding: Encoding, elements: &[Element], left: Option<u64>) -> Result<(), MeshFileError> {
+    let mut needed = 0_u64;
+    for Element { name, count, properties } in elements {
+        if properties.is_empty() && *count > 0 {
+            return Err(MeshFileError::NoProperties { element: name.clone(), announced: *count });
+        }
+        // a list may be empty, but its length is there; a number of a text is a digit and what parts it from the next
+        let bytes = properties.iter().map(|property| match encoding {
+            Encoding::Text => 2,
+            Encoding::Little | Encoding::Big => property.length.unwrap_or(property.kind).bytes() as u64,
+        });
+        needed = needed.saturating_add(bytes.sum::<u64>().saturating_mul(*count));
+        // nothing stands behind the last number of a text
+        if let Some(left) = left.filter(|left| needed > left.saturating_add(1)) {
+            return Err(MeshFileError::TooManyElements {
+                element: name.clone(),
+                announced: *count,
+                needed,
+                left,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// A polygon, cut into triangles from its first corner.

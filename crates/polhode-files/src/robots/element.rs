@@ -41,8 +41,9 @@ impl Element {
     /// Prefixes need no declaration. Document types are refused, and with them entities.
     ///
     /// # Errors
-    /// Text that is no XML.
+    /// Text that is no XML; elements nested deeper than models ever are, which would exhaust the stack.
     pub(super) fn parse(path: &Path, text: &str) -> Result<Element, Error> {
+        super::depth::check(path, text)?;
         let mut namespaces = String::new();
         let blank = blank_declaration(text);
         for _ in 0..MOST_PREFIXES {
@@ -94,6 +95,11 @@ impl Element {
             found.extend(child.all());
         }
         found
+    }
+
+    /// Elements inside each other, this one among them.
+    pub(super) fn depth(&self) -> usize {
+        1 + self.children.iter().map(Element::depth).max().unwrap_or(0)
     }
 
     /// The numbers of an attribute, if it is there.

@@ -1,5 +1,6 @@
 //! Robot models, link by link: URDF, MJCF and SDF.
 
+mod depth;
 mod element;
 mod mjcf;
 mod pose;

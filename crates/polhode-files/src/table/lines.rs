@@ -1,10 +1,10 @@
 //! Lines of a text, one in memory at a time.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, stdin};
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use crate::error::{Rule, TableError};
+use crate::inputs;
 use crate::text::visible;
 
 /// A line is no longer than this many bytes.
@@ -41,10 +41,10 @@ impl<'t> Lines<'t> {
     /// Of the file at `path`, or of standard input where that is `-`.
     pub(crate) fn open(path: &Path) -> Result<Lines<'static>, TableError> {
         let (name, reader): (String, Box<dyn BufRead>) = if path.as_os_str() == "-" {
-            ("standard input".into(), Box::new(BufReader::with_capacity(1 << 18, stdin())))
+            ("standard input".into(), Box::new(BufReader::with_capacity(1 << 18, inputs::standard())))
         } else {
             let name = visible(&path.display().to_string()).into_owned();
-            let file = File::open(path)
+            let file = inputs::open(path)
                 .map_err(|reason| TableError::of(&name, Rule::Readable(reason.to_string())))?;
             (name, Box::new(BufReader::with_capacity(1 << 18, file)))
         };

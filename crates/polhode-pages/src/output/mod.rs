@@ -9,6 +9,8 @@ use std::io::{self, BufWriter, ErrorKind, Stdout, Write};
 use std::path::{Path, PathBuf};
 
 use polhode_files::error::Error;
+use polhode_files::inputs;
+use polhode_files::text::visible;
 
 use replacement::Replacement;
 pub use staging::{MARK, Staging};
@@ -34,7 +36,12 @@ impl Output {
     }
 
     /// To the file that `flag` names.
+    ///
+    /// # Errors
+    /// A place that cannot be written; a file that this process reads, under whichever name. What is read only after this is
+    /// refused in [`finish`](Self::finish).
     pub fn to_file(flag: &'static str, path: &Path) -> Result<Self, Error> {
+        check_is_no_input(flag, path)?;
         let file = Replacement::new(path).map_err(|reason| unwritable(flag, path, &reason))?;
         Ok(Self::File { file, flag, path: path.to_path_buf() })
     }
@@ -59,6 +66,7 @@ impl Output {
     pub fn finish(self) -> Result<(), Error> {
         match self {
             Self::File { file, flag, path } => {
+                check_is_no_input(flag, &path)?;
                 file.commit().map_err(|reason| unwritable(flag, &path, &reason))
             }
             Self::Standard(mut stdout) => stdout.flush().map_err(|reason| unprinted(&reason)),
@@ -82,6 +90,12 @@ impl Output {
 /// Writes `text` to the file of `--out` when given, else to standard output.
 pub fn emit(text: &str, out: Option<&Path>) -> Result<(), Error> {
     Output::new(out)?.write_whole(text)
+}
+
+fn check_is_no_input(flag: &str, path: &Path) -> Result<(), Error> {
+    let Some(input) = inputs::same_file(path) else { return Ok(()) };
+    let rule = format!("it would replace the input '{}'", visible(&input.display().to_string()));
+    Err(Error::input(flag, &path.display().to_string(), &rule, "name another file"))
 }
 
 fn unprinted(reason: &io::Error) -> Error {

@@ -35,7 +35,8 @@ pub(super) fn remove(path: &Path) {
     let _ = if is_folder { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
 }
 
-/// From now on SIGINT and SIGTERM remove what is unfinished before they end the process.
+/// From now on SIGINT, SIGTERM and SIGHUP remove what is unfinished before they end the process, and a file that grows beyond
+/// the size that the shell allows is refused by the write instead of a signal.
 pub(super) fn watch() {
     static WATCHED: Once = Once::new();
     WATCHED.call_once(start);
@@ -43,16 +44,19 @@ pub(super) fn watch() {
 
 #[cfg(unix)]
 fn start() {
-    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
     let (ready, started) = std::sync::mpsc::channel();
     let serve = move || {
-        let signals = Signals::new([SIGINT, SIGTERM].into_iter().filter(|signal| !is_ignored(*signal)));
+        // nohup ignores SIGHUP; where that is not told, it stays as it is
+        let ends = [SIGINT, SIGTERM].into_iter().filter(|signal| is_ignored(*signal) != Some(true));
+        let hangs_up = Some(SIGHUP).filter(|signal| is_ignored(*signal) == Some(false));
+        let signals = Signals::new(ends.chain(hangs_up).chain([SIGXFSZ]));
         let _ = ready.send(());
         let Ok(mut signals) = signals else { return };
-        for signal in signals.forever() {
+        for signal in signals.forever().filter(|signal| *signal != SIGXFSZ) {
             let paused = pause();
             paused.iter().for_each(|path| remove(path));
             let _ = emulate_default_handler(signal);
@@ -67,11 +71,12 @@ fn start() {
 #[cfg(not(unix))]
 fn start() {}
 
-/// Whether the process was started with `signal` ignored, as a shell does with SIGINT for a command in the background.
+/// Whether the process was started with `signal` ignored, as a shell does with SIGINT for a command in the background;
+/// `None` where the system does not tell.
 #[cfg(unix)]
-fn is_ignored(signal: i32) -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
-        .is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+fn is_ignored(signal: i32) -> Option<bool> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
+    let mask = u64::from_str_radix(mask.trim(), 16).ok()?;
+    Some(mask >> (signal - 1) & 1 == 1)
 }

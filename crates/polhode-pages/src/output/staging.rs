@@ -5,6 +5,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use polhode_files::error::Error;
+use polhode_files::inputs;
+use polhode_files::text::visible;
 use tempfile::TempDir;
 
 use super::replacement::follow;
@@ -26,8 +28,9 @@ impl Staging {
     /// Prepares to write `target`, which is left as it is until the commit.
     ///
     /// # Errors
-    /// When no folder can be made there, or when one stands there that is not a folder of results.
+    /// When no folder can be made there, or when one stands there that is not a folder of results or holds an input.
     pub fn new(target: &Path) -> Result<Self, Error> {
+        check_holds_no_input(target)?;
         let foreign = fs::read_dir(target).is_ok_and(|mut entries| entries.next().is_some())
             && !target.join(MARK).is_file();
         if foreign {
@@ -73,6 +76,12 @@ impl Staging {
         made.map_err(|reason| unwritable("--out", &self.target.join(name), &reason))
     }
 
+    /// Opens one file of the folder, to be read before the commit.
+    pub fn open(&self, name: &str) -> Result<File, Error> {
+        let opened = File::open(self.temporary.path().join(name));
+        opened.map_err(|reason| unwritable("--out", &self.target.join(name), &reason))
+    }
+
     /// Removes one file of the folder.
     pub fn remove(&self, name: &str) -> Result<(), Error> {
         let removed = fs::remove_file(self.temporary.path().join(name));
@@ -81,6 +90,7 @@ impl Staging {
 
     /// Puts the folder in place of the one that stood there, which is then removed.
     pub fn commit(self) -> Result<(), Error> {
+        check_holds_no_input(&self.target)?;
         if let Ok(old) = fs::metadata(&self.target) {
             temporary::take_over(&old, self.temporary.path());
         }
@@ -88,6 +98,13 @@ impl Staging {
         exchange(self.temporary.path(), &self.target)
             .map_err(|reason| unwritable("--out", &self.target, &reason))
     }
+}
+
+/// Refuses to replace a folder with a file in it that this process reads.
+fn check_holds_no_input(target: &Path) -> Result<(), Error> {
+    let Some(input) = inputs::within(target) else { return Ok(()) };
+    let rule = format!("it holds the input '{}', which would be lost", visible(&input.display().to_string()));
+    Err(Error::input("--out", &target.display().to_string(), &rule, "name another folder"))
 }
 
 /// Puts `new` at `target`, and what stood there, if anything did, at `new`.

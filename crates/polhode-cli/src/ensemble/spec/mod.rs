@@ -151,6 +151,20 @@ impl Spec {
         }
     }
 
+    /// Steps of a member up to the last time, of a method that chooses them about one for each radian that the first member turns;
+    /// 0 for the closed form.
+    pub(super) fn steps(&self) -> f64 {
+        match &self.plan.motion {
+            Motion::Exact { .. } => 0.0,
+            Motion::Stepped { method, steps, clock, .. } => {
+                let span = steps.last().map_or(0.0, |steps| *steps as f64 * clock.step);
+                let speed = self.member(0).map_or(0.0, |member| member.omega_body.norm());
+                let own = if method.tolerance().is_some() { span * speed } else { 0.0 };
+                steps.last().map_or(0.0, |steps| *steps as f64).max(own)
+            }
+        }
+    }
+
     /// Whether members are drawn, with `seed`.
     pub(super) fn is_drawn(&self) -> bool {
         matches!(self.source, Source::Drawn(_))

@@ -133,7 +133,7 @@ impl Plan {
         out_of_reach.map_or(Ok(()), |error| Err(error.to_string()))
     }
 
-    /// The method, where there is one.
+    /// The name of the method.
     pub(in crate::ensemble) fn method_name(&self) -> &str {
         match &self.motion {
             Motion::Exact { .. } => "exact",

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use sha2::Digest as _;
+
 use super::{EXACT, done};
 use crate::harness::{Scratch, golden, polhode, words};
 
@@ -207,4 +209,127 @@ fn more_memory_or_disk_than_there_is_is_refused_before_the_work() {
     let told = refusal(&scratch, "ensemble spec.toml --out out --shard 1/10000");
     assert!(told.contains("on the disk of --out") || told.contains("of memory"), "{told}");
     assert_eq!(scratch.names(), ["spec.toml"]);
+}
+
+/// Two shards of an ensemble of which a test changes something.
+fn shards(name: &str) -> Scratch {
+    let scratch = Scratch::new(name);
+    scratch.file("spec.toml", EXACT);
+    for k in [1, 2] {
+        done(&format!("ensemble spec.toml --out out --shard {k}/2"), &scratch);
+    }
+    scratch
+}
+
+/// The record with `sum` in place of the checksum of a file, and sealed again.
+fn resealed(record: &str, name: &str, sum: &str) -> String {
+    let is_of =
+        |line: &str, name: &str| line.split_once(" = ").is_some_and(|(key, _)| key.trim_matches('"') == name);
+    let bare: String = record
+        .lines()
+        .filter(|line| !is_of(line, "run.toml"))
+        .map(|line| if is_of(line, name) { format!("\"{name}\" = \"{sum}\"\n") } else { format!("{line}\n") })
+        .collect();
+    let seal = sha256(bare.as_bytes());
+    bare + &format!("\"run.toml\" = \"{seal}\"\n")
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[test]
+fn a_byte_that_was_changed_in_a_shard_is_found_and_nothing_is_written() {
+    let scratch = shards("ensemble-bytes");
+    let [one, two] = ["1-of-2", "2-of-2"].map(|name| scratch.0.join("out/shards").join(name));
+    let expect = |says: &[&str]| {
+        let told = refusal(&scratch, "gather out");
+        for part in says {
+            assert!(told.contains(part), "'{part}' is not in {told}");
+        }
+        assert_eq!(crate::harness::names(&scratch.0.join("out")), ["shards"]);
+    };
+    for name in ["attitudes.npy", "omegas.npy", "errors.csv", "failures.csv", "run.toml"] {
+        let path = two.join(name);
+        let bytes = fs::read(&path).unwrap();
+        let mut changed = bytes.clone();
+        // the last digit of a number, or the last bit of a mantissa
+        let place = if name.ends_with("npy") { 128 + 8 * 1000 } else { bytes.len() - 3 };
+        changed[place] ^= 1;
+        fs::write(&path, changed).unwrap();
+        expect(&[&format!("shards/2-of-2/{name}: it is not as its run wrote it"), "run shard 2/2 again"]);
+        fs::write(&path, bytes).unwrap();
+    }
+    // arrays of two shards exchanged: 150 and 151 members
+    let even = Scratch::new("ensemble-exchanged");
+    even.file("spec.toml", EXACT.replace("members = 301", "members = 300"));
+    for k in [1, 2] {
+        done(&format!("ensemble spec.toml --out out --shard {k}/2"), &even);
+    }
+    let arrays = ["1-of-2", "2-of-2"].map(|name| even.0.join("out/shards").join(name).join("attitudes.npy"));
+    let bytes = arrays.clone().map(|path| fs::read(path).unwrap());
+    fs::write(&arrays[0], &bytes[1]).unwrap();
+    fs::write(&arrays[1], &bytes[0]).unwrap();
+    let told = refusal(&even, "gather out");
+    assert!(told.contains("shards/1-of-2/attitudes.npy: it is not as its run wrote it: SHA-256 "), "{told}");
+    // a seed that is another
+    let mark = one.join("run.toml");
+    let record = fs::read_to_string(&mark).unwrap();
+    fs::write(&mark, record.replace("seed = 7", "seed = 2")).unwrap();
+    expect(&["1/2 is of method exact and seed 2, and 2/2 is of method exact and seed 7"]);
+    // a record without checksums, as of an older version
+    let bare = record.split_once("[sha256]").unwrap().0;
+    fs::write(&mark, bare).unwrap();
+    expect(&["shards/1-of-2/run.toml: it is not as its run wrote it"]);
+    fs::write(&mark, record).unwrap();
+    done("gather out", &scratch);
+}
+
+#[test]
+fn numbers_of_a_shard_that_cannot_be_are_named() {
+    let scratch = shards("ensemble-numbers");
+    let shard = scratch.0.join("out/shards/2-of-2");
+    let mark = shard.join("run.toml");
+    let record = fs::read_to_string(&mark).unwrap();
+    let expect = |name: &str, bytes: &[u8], says: &str| {
+        let kept = fs::read(shard.join(name)).unwrap();
+        fs::write(shard.join(name), bytes).unwrap();
+        fs::write(&mark, resealed(&record, name, &sha256(bytes))).unwrap();
+        let told = refusal(&scratch, "gather out");
+        assert!(told.contains(says), "'{says}' is not in {told}");
+        assert_eq!(crate::harness::names(&scratch.0.join("out")), ["shards"]);
+        fs::write(shard.join(name), kept).unwrap();
+        fs::write(&mark, &record).unwrap();
+    };
+    let with = |name: &str, entry: usize, value: f64| {
+        let mut bytes = fs::read(shard.join(name)).unwrap();
+        bytes[128 + 8 * entry..][..8].copy_from_slice(&value.to_le_bytes());
+        bytes
+    };
+    // members 151 to 301; the second row begins behind 151 of four numbers
+    let second = 4 * (151 + 2);
+    for (value, says) in [
+        (f64::NAN, "attitudes.npy: row 2 of member 153 is not finite"),
+        (2.0, "attitudes.npy: row 2 of member 153 has the norm 2"),
+    ] {
+        expect("attitudes.npy", &with("attitudes.npy", second, value), says);
+    }
+    let mut gone = fs::read(shard.join("attitudes.npy")).unwrap();
+    gone[128..128 + 32].fill(0);
+    expect(
+        "attitudes.npy",
+        &gone,
+        "row 1 of member 151 is zero, although failures.csv does not name the member",
+    );
+    expect(
+        "omegas.npy",
+        &with("omegas.npy", 0, f64::INFINITY),
+        "omegas.npy: row 1 of member 151 is not finite",
+    );
+    // failures that do not add up
+    expect("failures.csv", b"member,t,reason\n151,0.0,lost\n", "it names 1 members, and run.toml 0");
+    // times of other rows
+    let errors = fs::read_to_string(shard.join("errors.csv")).unwrap().replace("\n100.0,", "\n101.0,");
+    expect("errors.csv", errors.as_bytes(), "row 3 is of t = 101, and that of shard 1 of t = 100");
+    done("gather out", &scratch);
 }

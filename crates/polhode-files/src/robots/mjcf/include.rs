@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::super::depth;
 use super::super::element::Element;
 use super::{Given, link};
 use crate::read::read;
@@ -17,7 +18,7 @@ pub(super) fn resolve(document: Element, path: &Path, root: Option<&Path>) -> (E
     let allowed = root.map_or_else(|| folder.clone(), Path::to_path_buf);
     let open = path.canonicalize().into_iter().collect();
     let mut includes = Includes { folder, allowed, files: 0, bytes: 0, open, refused: Vec::new() };
-    let document = includes.resolve(document);
+    let document = includes.resolve(document, 0);
     (document, includes.refused)
 }
 
@@ -38,11 +39,12 @@ struct Includes {
 }
 
 impl Includes {
-    fn resolve(&mut self, mut element: Element) -> Element {
+    /// `element` stands at `depth`.
+    fn resolve(&mut self, mut element: Element, depth: usize) -> Element {
         let children = std::mem::take(&mut element.children);
         for child in children {
             if child.tag == "include" {
-                match self.included(&child) {
+                match self.included(&child, depth) {
                     Ok(found) => element.children.extend(found),
                     Err(defect) => {
                         let name = format!("include {}", child.attribute("file").unwrap_or_default());
@@ -50,7 +52,7 @@ impl Includes {
                     }
                 }
             } else {
-                let resolved = self.resolve(child);
+                let resolved = self.resolve(child, depth + 1);
                 element.children.push(resolved);
             }
         }
@@ -58,7 +60,7 @@ impl Includes {
     }
 
     /// What stands in an included file, its own includes replaced.
-    fn included(&mut self, include: &Element) -> Result<Vec<Element>, String> {
+    fn included(&mut self, include: &Element, depth: usize) -> Result<Vec<Element>, String> {
         let name = include.attribute("file").ok_or("file is missing")?;
         // as MuJoCo looks for it, or else beside the file that includes it
         let place = [self.folder.join(name), folder_of(&include.file).join(name)]
@@ -83,15 +85,19 @@ impl Includes {
         let text = read(&place, "name an MJCF file").map_err(|error| error.to_string())?;
         self.bytes += text.len();
         let document = Element::parse(&place, &text).map_err(|error| error.to_string())?;
+        // each file alone is shallow, and a chain of them need not be
+        if depth + document.depth() > depth::MOST {
+            return Err(format!("file '{name}': elements would be nested more than {} deep", depth::MOST));
+        }
         self.open.push(found);
         let mut children = Vec::new();
         for root in document.children {
             // a file of one element around others is opened; a bare one stands for itself
             if matches!(root.tag.as_str(), "mujoco" | "mujocoinclude") {
-                children.extend(self.resolve(root).children);
+                children.extend(self.resolve(root, depth).children);
             } else {
                 let holder = Element::around(vec![root], include.file.clone());
-                children.extend(self.resolve(holder).children);
+                children.extend(self.resolve(holder, depth).children);
             }
         }
         self.open.pop();
