@@ -207,7 +207,7 @@ mod tests {
             (0..4096).for_each(|row| tally.add(row, Vec3([1.0, 1.0, -1.0]) * of(row)));
             (tally.is_exact(), tally.is_declared_noise())
         };
-        let swing = |row: usize| if row % 2 == 0 { 1e-3 } else { -1e-3 };
+        let swing = |row: usize| if row.is_multiple_of(2) { 1e-3 } else { -1e-3 };
         assert_eq!(tally_of(0.0, &swing), (false, false));
         assert_eq!(tally_of(1e-3, &swing), (false, true));
         assert_eq!(tally_of(0.9e-3, &swing), (false, false));
