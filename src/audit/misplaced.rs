@@ -66,7 +66,7 @@ fn kind(before: Option<&Seen>, now: &Seen, behind: Option<&Seen>, size: f64) -> 
         let turn = a.0.zip(b.0).map_or(0.0, |(p, q)| rotation_vector(p.conjugate() * q).norm());
         let scale = a.1.map_or(0.0, |omega| omega.norm());
         let rates = a.1.zip(b.1).map_or(0.0, |(v, w)| (v - w).norm() / scale.max(f64::MIN_POSITIVE));
-        turn.max(rates) <= NEAR * size
+        turn.max(rates) <= NEAR * size.min(1.0)
     };
     let written = |seen: &Seen| (seen.attitude, seen.omega);
     let exact = |seen: &Seen| (now.attitude.map(|_| seen.exact.0), now.omega.map(|_| seen.exact.1));
