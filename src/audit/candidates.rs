@@ -1,8 +1,8 @@
 //! All readings of the columns that a record has.
 
 use super::{
-    AngleUnit, Angles, Attitudes, Claims, Direction, Frame, QuaternionOrder, RateUnit, Reading, Trajectory,
-    Turns,
+    AngleUnit, Angles, Attitudes, Convention, Direction, Frame, QuaternionOrder, RateUnit, Reading,
+    Trajectory, Turns,
 };
 use crate::rotation::EulerSequence;
 
@@ -10,7 +10,7 @@ use crate::rotation::EulerSequence;
 pub(super) const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
 /// Readings of the attitude alone, each in both directions.
-pub(super) fn attitudes(record: &Trajectory, claims: &Claims) -> Vec<Reading> {
+pub(super) fn attitudes(record: &Trajectory, claims: &Convention) -> Vec<Reading> {
     let plain = Reading::default();
     let numbers: Vec<Reading> = match &record.attitude {
         None => return vec![plain],

@@ -13,8 +13,8 @@ use super::columns::{Columns, Defects, Source};
 use super::program::{Dynamics, Law, Program, Turn};
 use super::rows::Windows;
 use super::{
-    AuditError, Claims, Direction, Frame, Question, Ranked, RateUnit, Reading, Suspect, Trajectory, Turns,
-    shape,
+    AuditError, Convention, Direction, Frame, Question, Ranked, RateUnit, Reading, Suspect, Trajectory,
+    Turns, shape,
 };
 use crate::body::Body;
 
@@ -103,7 +103,7 @@ fn orders(question: &Question) -> Vec<([usize; 3], Body)> {
 struct Case<'a> {
     columns: Columns<'a>,
     windows: Windows,
-    claims: Claims,
+    claims: Convention,
     /// Empty where no body is given.
     bodies: Vec<([usize; 3], Body)>,
 }

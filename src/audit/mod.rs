@@ -32,7 +32,7 @@ mod verdict;
 
 pub use crate::units::{AngleUnit, RateUnit};
 pub use error::AuditError;
-pub use question::{Claims, Noise, Question};
+pub use question::{Convention, Noise, Question};
 pub use reading::{Angles, Direction, Frame, Product, QuaternionOrder, Reading, Turns};
 pub use trajectory::{Attitudes, Digits, FEWEST_ROWS, Trajectory};
 pub use verdict::{

@@ -25,7 +25,7 @@ pub struct Question {
     /// Noise of the record that is declared; without it a noisy record is undecided at best.
     pub noise: Noise,
     /// What is claimed of the convention.
-    pub claims: Claims,
+    pub claims: Convention,
 }
 
 /// Standard deviations of a component that a record is declared to have.
@@ -43,7 +43,7 @@ pub struct Noise {
 /// or an order of moments that the record contradicts makes it wrong, with the claim as the suspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Claims {
+pub struct Convention {
     /// Place of the scalar.
     pub quaternion: Option<QuaternionOrder>,
     /// Direction of the attitude, by Hamilton's product.
@@ -62,10 +62,10 @@ pub struct Claims {
     pub moments: Option<[usize; 3]>,
 }
 
-impl Default for Claims {
+impl Default for Convention {
     /// Nothing but the order of the moments.
     fn default() -> Self {
-        Claims {
+        Convention {
             quaternion: None,
             attitude: None,
             angles: None,
@@ -82,7 +82,7 @@ impl Question {
     /// Is the record right, to 1e-6, for this body, in whatever convention?
     #[must_use]
     pub fn new(body: Option<Body>) -> Self {
-        Question { body, tolerance: 1e-6, noise: Noise::default(), claims: Claims::default() }
+        Question { body, tolerance: 1e-6, noise: Noise::default(), claims: Convention::default() }
     }
 
     pub(super) fn check(&self) -> Result<(), AuditError> {
@@ -100,7 +100,7 @@ impl Question {
     }
 }
 
-impl Claims {
+impl Convention {
     /// Whether `reading` is one of those that are looked at: what is taken as given holds.
     pub(super) fn admit(&self, reading: &Reading) -> bool {
         let agrees = |claimed: Option<QuaternionOrder>, read| claimed.is_none() || read == claimed;

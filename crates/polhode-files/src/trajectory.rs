@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use polhode::audit::{Attitudes, Claims, Digits, Direction, Frame, QuaternionOrder, Trajectory};
+use polhode::audit::{Attitudes, Convention, Digits, Direction, Frame, QuaternionOrder, Trajectory};
 use polhode::units::AngleUnit;
 
 use crate::error::{Error, Rule, TableError};
@@ -17,7 +17,7 @@ pub struct Found {
     /// Trajectories with the name of their body, where there are several.
     pub bodies: Vec<(Option<String>, Trajectory)>,
     /// What names and layout claim of the convention.
-    pub claims: Claims,
+    pub claims: Convention,
     /// Whether the times are counts of steps, of a length that the file does not tell.
     pub counts_steps: bool,
     /// Lines before the header that begin with #, without that.
@@ -69,8 +69,8 @@ fn found(mut table: Table) -> Result<Found, TableError> {
 }
 
 /// What names and layout claim of the convention.
-fn claims(table: &Table) -> Result<Claims, TableError> {
-    let mut claims = Claims::default();
+fn claims(table: &Table) -> Result<Convention, TableError> {
+    let mut claims = Convention::default();
     let Some(body) = table.header.bodies.first() else { return Ok(claims) };
     if let Some(attitude) = &body.attitude {
         match attitude.quantity {

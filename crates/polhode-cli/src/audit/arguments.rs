@@ -1,7 +1,7 @@
 //! The flags that say how a record is to be read.
 
 use clap::{Args, ValueEnum};
-use polhode::audit::{Angles, Claims, Direction, Frame, Turns};
+use polhode::audit::{Angles, Convention, Direction, Frame, Turns};
 use polhode::rotation::EulerSequence;
 use polhode::units::{AngleUnit, RateUnit};
 use polhode_files::Reading;
@@ -93,7 +93,7 @@ impl ReadingArguments {
     }
 
     /// What is claimed: by flags first, then by the names of the file.
-    pub(super) fn claims(&self, of_file: Claims) -> Claims {
+    pub(super) fn claims(&self, of_file: Convention) -> Convention {
         let mut claims = of_file;
         if let Some(order) = self.quaternion {
             claims.quaternion = Some(order.into());

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use polhode::audit::{
-    Attitudes, Claims, Direction, Frame, Judgement, QuaternionOrder, Question, Reading,
+    Attitudes, Convention, Direction, Frame, Judgement, QuaternionOrder, Question, Reading,
     Trajectory as Columns, audit,
 };
 use polhode::body::{Body, Clock, State};
@@ -159,7 +159,7 @@ fn row(columns: &Columns, reading: &Reading, k: usize) -> Option<Row> {
 
 /// How the columns are read: as their names and flags claim and else as this program writes them, unless the rows are a motion
 /// of the body in another convention, which is what `polhode audit` would say of them.
-fn reading(columns: &Columns, claims: Claims, body: &Body) -> Option<Reading> {
+fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<Reading> {
     let mut own = Reading::default();
     own.quaternion = claims.quaternion;
     own.attitude = claims.attitude.or(Some(Direction::BodyToSpace));

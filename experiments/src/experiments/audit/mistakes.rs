@@ -1,6 +1,6 @@
 //! Programs with one mistake each, by RK4 in short steps.
 
-use polhode::audit::{Claims, Direction, Frame};
+use polhode::audit::{Convention, Direction, Frame};
 use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3};
 
@@ -117,8 +117,8 @@ pub(super) fn wrong(mistake: Mistake, random: &mut Random) -> Wrong {
 }
 
 /// What the program says of its convention: its attitude is from body to space, its angular velocity in body axes.
-pub(super) fn claims(mistake: Mistake) -> Claims {
-    let mut claims = Claims::default();
+pub(super) fn claims(mistake: Mistake) -> Convention {
+    let mut claims = Convention::default();
     if mistake == Mistake::MomentsOrder {
         claims.attitude = Some(Direction::BodyToSpace);
         claims.omega_frame = Some(Frame::Body);
