@@ -2,7 +2,7 @@
 
 use super::columns::{Columns, Source};
 use super::resolution::{noise, triples};
-use super::states::{Quantities, Row, states};
+use super::states::{Quantities, Row, States, states};
 use super::{Conservation, Reading, Traces, Trajectory};
 use crate::body::{Body, Conserved, Problem};
 use crate::observe::secular_drift;
@@ -75,6 +75,7 @@ pub(super) fn conservation(
         // the first row may be off as well, and what is large has terms of second order
         2.0 * of_row * (1.0 + omega_off + attitude_off)
     };
+    let every = States::new(record, reading, body);
     let has_omega = Columns::new(record).source != Source::Attitude;
     let mut found = Vec::new();
     let mut look = |quantity: Conserved, of: &dyn Fn(&Row) -> f64| {
@@ -90,12 +91,9 @@ pub(super) fn conservation(
         let resolution = noise.max(allowed_of(quantity));
         let mut error = series.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         if has_omega && count > rows.len() {
-            for row in 0..count {
-                // one row at a time: a record may be as large as the memory allows
-                if let [row] = states(record, reading, body, &[row])[..] {
-                    error = error.max(of(&row).abs());
-                }
-            }
+            // one row at a time: a record may be as large as the memory allows
+            error =
+                (0..count).filter_map(|row| every.at(row)).fold(error, |most, row| most.max(of(&row).abs()));
         }
         let drift = secular_drift(&times, &series);
         let conserved = error <= resolution;

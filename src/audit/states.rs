@@ -17,22 +17,40 @@ pub(super) struct Row {
     pub(super) omega: Vec3<f64>,
 }
 
-/// The rows `rows` by `reading`; of a record of attitudes alone with the angular velocity that leads to a later row, without the
-/// rows that have none.
-pub(super) fn states(record: &Trajectory, reading: &Reading, body: &Body, rows: &[usize]) -> Vec<Row> {
-    let columns = Columns::new(record);
-    let dynamics = Dynamics::new(body);
-    let stride = columns.windows().stride;
-    let at = |row: usize| -> Option<Row> {
+/// The rows of a record by a reading, one at a time.
+pub(super) struct States<'a> {
+    columns: Columns<'a>,
+    reading: &'a Reading,
+    dynamics: Dynamics,
+    /// Rows from one to the one that its angular velocity leads to, of a record of attitudes alone.
+    stride: usize,
+}
+
+impl<'a> States<'a> {
+    pub(super) fn new(record: &'a Trajectory, reading: &'a Reading, body: &Body) -> Self {
+        let columns = Columns::new(record);
+        let stride = if columns.source == Source::Attitude { columns.windows().stride } else { 1 };
+        States { columns, reading, dynamics: Dynamics::new(body), stride }
+    }
+
+    /// The row `row`; of a record of attitudes alone with the angular velocity that leads to a later row, `None` where there is
+    /// none.
+    pub(super) fn at(&self, row: usize) -> Option<Row> {
+        let (record, reading) = (self.columns.record, self.reading);
         let attitude = reading.attitude(record, row);
-        let omega = match columns.source {
+        let omega = match self.columns.source {
             Source::Rates => reading.omega_body(record, row)?,
-            Source::Momentum => dynamics.omega(reading.momentum_body(record, row)?),
-            Source::Attitude => columns.shot(reading, &dynamics, row, stride)?,
+            Source::Momentum => self.dynamics.omega(reading.momentum_body(record, row)?),
+            Source::Attitude => self.columns.shot(reading, &self.dynamics, row, self.stride)?,
         };
         Some(Row { row, time: record.times[row], attitude, omega })
-    };
-    rows.iter().filter_map(|&row| at(row)).collect()
+    }
+}
+
+/// The rows `rows` by `reading`, without those that have no angular velocity.
+pub(super) fn states(record: &Trajectory, reading: &Reading, body: &Body, rows: &[usize]) -> Vec<Row> {
+    let states = States::new(record, reading, body);
+    rows.iter().filter_map(|&row| states.at(row)).collect()
 }
 
 /// Energy, angular momentum in body axes and in space, in units of the solver frame.
