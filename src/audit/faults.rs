@@ -87,6 +87,44 @@ fn not_normalized(record: &Trajectory, threshold: f64) -> Option<Fault> {
     (error > threshold).then_some(Fault::NotNormalized { error, row })
 }
 
+/// Rows whose quaternion has another norm than most have, or whose matrix is no multiple of a rotation, by more than `allowed`:
+/// the attitude that is nearest to them may be right, and what was written is not.
+pub(super) fn no_rotation(record: &Trajectory, allowed: f64) -> Option<Fault> {
+    let attitude = record.attitude.as_ref()?;
+    let dimension = match attitude {
+        Attitudes::Quaternions(_) => 1.0,
+        Attitudes::Matrices(_) => 3.0,
+        _ => return None,
+    };
+    let square = |row: usize| attitude.row(row).iter().map(|x| x * x).sum::<f64>() / dimension;
+    let rows = attitude.len();
+    let mut some: Vec<f64> = (0..rows).step_by(rows.div_ceil(MOST)).map(square).collect();
+    let middle = some.len() / 2;
+    let usual = *some.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let defect = |row: usize| match attitude {
+        Attitudes::Matrices(matrices) => {
+            let [a, b, c] = [0, 3, 6].map(|n| Vec3([0, 1, 2].map(|k| matrices[row][n + k])));
+            let lengths = [a, b, c].map(|v| ((v.norm_squared() / usual).sqrt() - 1.0).abs());
+            let angles = [a.dot(b), b.dot(c), c.dot(a)].map(|product| 0.5 * product.abs() / usual);
+            let mirrored = if a.cross(b).dot(c) > 0.0 { 0.0 } else { 2.0 };
+            lengths.into_iter().chain(angles).fold(mirrored, f64::max)
+        }
+        _ => ((square(row) / usual).sqrt() - 1.0).abs(),
+    };
+    let (mut largest, mut count) = ((0, 0.0), 0);
+    for row in 0..rows {
+        let error = defect(row);
+        // a norm that is not finite is none
+        if error.is_nan() || error > allowed {
+            count += 1;
+            if error.is_nan() || error > largest.1 {
+                largest = (row, if error.is_nan() { f64::INFINITY } else { error });
+            }
+        }
+    }
+    (count > 0).then_some(Fault::NoRotation { row: largest.0, error: largest.1, count })
+}
+
 /// The longest run of rows in which a component of the angular velocity stays the same although it changes elsewhere. Rounded
 /// peaks stay the same too, but are entered and left by small changes.
 fn plateau(record: &Trajectory) -> Option<Fault> {

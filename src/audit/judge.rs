@@ -4,7 +4,7 @@ use super::columns::{Columns, Source};
 use super::conservation::conservation;
 use super::detective::Finding;
 use super::deviation::{Allowances, deviation, trace};
-use super::faults::{discontinuity, faults};
+use super::faults::{discontinuity, faults, no_rotation};
 use super::misplaced::misplaced;
 use super::resolution::{Writings, triples};
 use super::signature::signature as signature_of;
@@ -53,9 +53,13 @@ pub(super) fn judge(
     // a record every row of which is that of the motion keeps what the motion keeps, flips as often, and does not jump
     let contradicted = conservation.iter().any(|kept| !kept.conserved)
         || deviation.as_ref().is_some_and(|found| has_omega && found.flips[0] != found.flips[1]);
+    // noise of the entries of a matrix changes its lengths by half as much again as it turns it
+    let no_rotation = no_rotation(record, 2.0 * allowances.attitude.largest(rows));
+    let contradicted = contradicted || no_rotation.is_some();
     let by_motion =
         if by_motion == Judgement::Right && contradicted { Judgement::Undecided } else { by_motion };
     let mut faults = faults(record, &reading, &writings.coarsest(), tolerance);
+    faults.extend(no_rotation);
     if by_motion != Judgement::Right {
         faults.extend(discontinuity(record, &reading, rounding));
         if let Some(found) = &deviation {

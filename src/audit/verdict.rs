@@ -205,6 +205,15 @@ pub enum Fault {
         /// The row, from 0.
         row: usize,
     },
+    /// Quaternions whose norm is not that of the others, or matrices that are no multiple of a rotation.
+    NoRotation {
+        /// The row that is furthest off, from 0.
+        row: usize,
+        /// By how much, relative.
+        error: f64,
+        /// How many rows.
+        count: usize,
+    },
     /// A component of the angular velocity that stays the same over rows, as clamped or held rates do.
     Plateau {
         /// The first row.
@@ -394,6 +403,10 @@ impl fmt::Display for Fault {
                     "row {row}: the norm of the attitude is off by {error:.1e}; normalise after every step"
                 )
             }
+            Fault::NoRotation { row, error, count } => write!(
+                f,
+                "row {row}: what is written is no rotation of the size that the others have, off by {error:.1e} ({count} such rows)"
+            ),
             Fault::Plateau { row, rows } => write!(
                 f,
                 "row {row}: a component of the angular velocity stays the same over {rows} rows; are rates clamped or held?"

@@ -98,6 +98,34 @@ fn each_kind_of_column_alone_is_judged_to_its_last_row() {
     assert_ne!(judged(&momenta), Judgement::Right);
 }
 
+/// The attitude nearest to it may be right; what was written is not.
+#[test]
+fn a_row_that_is_no_rotation_is_not_right() {
+    let motion = motion(400);
+    let good = plain(&motion);
+    let mut scaled = good.clone();
+    quaternions(&mut scaled).iter_mut().flatten().for_each(|x| *x *= 3.0);
+    assert_eq!(judged(&scaled), Judgement::Right, "one norm for all rows is a habit of the program");
+    let mut bad = good.clone();
+    quaternions(&mut bad)[200] = good_row(&good, 200).map(|x| 3.0 * x);
+    let verdict = audit(&bad, &Question::new(Some(body()))).unwrap();
+    assert_eq!(verdict.judgement, Judgement::Undecided);
+    assert!(verdict.faults.iter().any(|fault| matches!(fault, Fault::NoRotation { row: 200, count: 1, .. })));
+    let mut random = Seeded(21);
+    let convention = reading(&mut random, Form::Matrix);
+    let mut sheared = record(&mut random, &motion, &convention, Form::Matrix, Writing::EXACT);
+    assert_eq!(judged(&sheared), Judgement::Right);
+    // a symmetric change leaves the nearest rotation where it is
+    let Some(Attitudes::Matrices(rows)) = &mut sheared.attitude else { panic!() };
+    let m = rows[77];
+    rows[77] = std::array::from_fn(|n| m[n] * if n / 3 == 0 { 1.01 } else { 1.0 });
+    assert_ne!(judged(&sheared), Judgement::Right);
+}
+
+fn good_row(record: &Trajectory, row: usize) -> [f64; 4] {
+    quaternions(&mut record.clone())[row]
+}
+
 #[test]
 fn momenta_beside_rates_are_read_too() {
     let mut both = plain(&motion(400));
