@@ -38,7 +38,7 @@ const EXAMPLES: &str = "Examples:
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Advise {
     #[command(flatten)]
-    motion: MotionArguments,
+    pub(crate) motion: MotionArguments,
     /// Duration of the motion, s, or with a unit, as 30d
     #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Demand")]
     until: f64,

@@ -55,7 +55,7 @@ const LOOKS: u32 = 64;
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Compare {
     #[command(flatten)]
-    motion: MotionArguments,
+    pub(crate) motion: MotionArguments,
     /// Methods, separated by commas: BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods`
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', required = true, help_heading = "Methods")]
     methods: Vec<String>,

@@ -3,7 +3,7 @@
 use clap::Args;
 use nalgebra::Matrix3;
 use polhode::body::Body;
-use polhode::catalogue;
+use polhode::catalogue::{self, Orientation};
 use polhode::inertia::Inertia;
 use polhode_files::error::Error;
 use polhode_files::numbers::{list, numbers};
@@ -113,7 +113,12 @@ impl BodyArguments {
     pub(crate) fn published_start(&self) -> Option<PublishedStart> {
         let name = self.body.as_deref()?;
         let found = catalogue::body(name).or_else(|| catalogue::top(name))?;
-        Some(PublishedStart { omega: found.omega_body, attitude: found.attitude })
+        Some(PublishedStart {
+            omega: found.omega_body,
+            attitude: found.attitude,
+            known: format!("{}: {}", found.name, found.attitude_known()),
+            orientation: found.orientation,
+        })
     }
 
     fn described(&self) -> Result<Described, Error> {
@@ -132,9 +137,12 @@ impl BodyArguments {
 }
 
 /// The start that a body is published with.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct PublishedStart {
     /// Body axes, rad/s.
     pub(crate) omega: [f64; 3],
     pub(crate) attitude: [f64; 4],
+    /// What is known of the attitude, in words.
+    pub(crate) known: String,
+    pub(crate) orientation: Option<Orientation>,
 }

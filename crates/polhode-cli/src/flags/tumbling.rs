@@ -47,6 +47,10 @@ enum ModeArgument {
 }
 
 impl TumblingArguments {
+    pub(crate) fn is_given(&self) -> bool {
+        self.periods.is_some()
+    }
+
     /// The elements that the flags state, if they do.
     pub(crate) fn elements(&self, angle_unit: f64) -> Result<Option<TumblingElements>, Error> {
         let Some(Periods([precession_period, rotation_period])) = self.periods else { return Ok(None) };

@@ -37,7 +37,7 @@ fn outcome(command: &str, file: &str, flags: &str) -> String {
         "fit" => format!("fit {file} --format json {flags}"),
         _ => format!("propagate {BODY} {START} --format csv --times {file}"),
     };
-    let Answer { code, out, err } = run(&line);
+    let Answer { code, out, err, .. } = run(&line);
     if code == 2 {
         let message = err.replace(&format!("--times: {file}"), "").replace(file, "");
         let message = message.trim().trim_start_matches("error: ").trim_start_matches([',', ':', ' ']);

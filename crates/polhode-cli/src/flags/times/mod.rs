@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use polhode::units::Date;
-use polhode_files::error::Error;
+use polhode_files::error::{Error, warn};
 use polhode_files::moment::{duration, epoch, is_moment, seconds};
 use polhode_files::times::{Asked, Column, Source};
 
@@ -79,6 +79,19 @@ impl TimeArguments {
     /// Time of the start, s.
     pub(crate) fn start(&self) -> Result<f64, Error> {
         self.moment("--start-time", &self.start_time)
+    }
+
+    /// Says so where t = 0 is another date than that of the `published` start.
+    pub(crate) fn compare_epoch(&self, published: &str) {
+        let published_date = published.parse::<Date>().ok();
+        if let (Some(given), Some(date)) = (&self.epoch, published_date)
+            && given.seconds_since(&date) != 0.0
+        {
+            warn(&format!(
+                "--epoch: the published start is of {published} UTC; here it is that of --start-time, {:+.0} s from there",
+                given.seconds_since(&date) + self.start().unwrap_or_default()
+            ));
+        }
     }
 
     /// The flag that the last time comes from.
