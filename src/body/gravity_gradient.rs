@@ -4,7 +4,7 @@ use core::cmp::Ordering;
 
 use nalgebra::Matrix3;
 
-use super::force::{Role, finite};
+use super::force::finite;
 use super::{Conserved, Force, ForceError, Potential, Time};
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
@@ -57,7 +57,7 @@ impl Force {
     pub(super) fn gradient_on(tensor: Matrix3<f64>, orbit: [f64; 2]) -> Self {
         let [mean_motion, eccentricity] = orbit;
         let law = GravityGradient { tensor, mean_motion, eccentricity };
-        Force::potential(NAME, law).taking(Role::Gradient(orbit))
+        Force::potential(NAME, law).on_orbit(orbit)
     }
 }
 

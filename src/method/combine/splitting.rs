@@ -139,7 +139,7 @@ impl<A: FreePart> Splitting<A, Kicks> {
     /// use polhode::method::{Claimed, Dmv, ExactFlow, Splitting};
     /// let method = Splitting::kicked(ExactFlow, SUZUKI_4)?;
     /// assert_eq!(method.name(), "kick-drift@suzuki-4");
-    /// let claims = method.claims(Problem::Gravity).unwrap();
+    /// let claims = method.claims(Problem::Linear).unwrap();
     /// assert_eq!((claims.order, claims.cost.to_string()), (Some(4), "5 free flows, 5 kicks".into()));
     /// assert!(Splitting::kicked(Dmv, SRKN_6B).is_err());
     /// # Ok::<(), polhode::method::SchemeError>(())
@@ -202,9 +202,9 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
                 Some(claims(order, Kept::all_of_free_motion(self.a.energy()), free))
             }
             // the kicks would alternate with free motion of a lower order
-            Problem::Gravity | Problem::Potential if self.is_for_free_motion() => None,
+            Problem::Linear | Problem::Potential if self.is_for_free_motion() => None,
             Problem::Potential if !self.scheme.gradients().is_empty() => None,
-            Problem::Gravity | Problem::Potential => {
+            Problem::Linear | Problem::Potential => {
                 let kept = Kept { energy: Energy::Bounded, momentum_z: true, norm: true, ..Kept::NOTHING };
                 Some(claims(Some(self.scheme.order), kept, free + Cost::kicks(count(Part::B))))
             }

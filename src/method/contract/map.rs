@@ -49,7 +49,7 @@ use crate::num::{Dd, Real};
 ///         let mut kept = Kept::NOTHING;
 ///         (kept.energy, kept.momentum_z, kept.norm) = (Energy::Bounded, true, true);
 ///         let cost = Cost::kicks(1) + Cost::free_flows(1);
-///         (problem == Problem::Gravity).then(|| Claims::new(Some(1), kept, cost, "symplectic Euler"))
+///         (problem == Problem::Linear).then(|| Claims::new(Some(1), kept, cost, "symplectic Euler"))
 ///     }
 /// }
 ///
