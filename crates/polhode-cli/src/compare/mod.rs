@@ -15,7 +15,7 @@ use polhode_files::error::{Error, warn};
 use polhode_files::moment::duration;
 use polhode_files::numbers::{list, positive};
 use polhode_files::text::short;
-use polhode_pages::figure::{Figure, Series};
+use polhode_pages::figure::{Figure, Curve};
 use polhode_pages::output::{Output, emit};
 use polhode_pages::table::{Cell, Column, Format, Table, row};
 
@@ -164,7 +164,7 @@ impl Compare {
             if let Some(error) = judged.attitude_error() {
                 match figure.series.iter_mut().find(|series| series.name == entry.family) {
                     Some(series) => series.points.push((spent.1, error)),
-                    None => figure.series.push(Series::new(entry.family.clone(), vec![(spent.1, error)])),
+                    None => figure.series.push(Curve::new(entry.family.clone(), vec![(spent.1, error)])),
                 }
             }
         }
