@@ -23,6 +23,7 @@
 #[cfg(doctest)]
 struct Readme;
 
+mod did_you_mean;
 pub mod error;
 pub mod given;
 pub mod inputs;
