@@ -51,7 +51,7 @@ pub(super) struct Follower {
 impl Follower {
     pub(super) fn new(body: &Body, start: &Point<Dd>, start_time: f64) -> Self {
         let least = body.rotor().moments::<f64>().0.into_iter().fold(f64::INFINITY, f64::min);
-        let weight = body.gravity::<f64>().map_or(0.0, |gravity| gravity.weight_moment.norm());
+        let weight = body.linear_potential::<f64>().map_or(0.0, |linear| linear.moment.norm());
         let torque = body.torque_of(Time::from_seconds(start_time), start);
         // the square of one may be beyond the range of numbers
         let torque = Some(torque.norm().hi()).filter(|norm| norm.is_finite()).unwrap_or(torque.magnitude());

@@ -2,7 +2,7 @@
 
 use super::follow::Follower;
 use super::{AGREEMENT, TruthError, attitude_error};
-use crate::body::{Body, Point, State};
+use crate::body::{Body, Point, Problem, State};
 use crate::flow::ExactMotion;
 use crate::method::StepError;
 use crate::num::Dd;
@@ -189,12 +189,12 @@ impl Truth {
     }
 
     /// max |E − E₀| of the errors `worst` of a run over max U − min U at the looks, what kinetic and potential energy exchange;
-    /// `None` of all but uniform gravity.
+    /// `None` of all but a linear potential, such as that of gravity.
     #[must_use]
     pub fn exchanged_energy_error(&self, worst: &Errors) -> Option<f64> {
-        let gravity = self.body.gravity::<Dd>().filter(|_| self.body.forces().is_empty())?;
+        let linear = self.body.linear_potential::<Dd>().filter(|_| self.body.problem() == Problem::Linear)?;
         let vertical = Vec3([Dd::ZERO, Dd::ZERO, Dd::ONE]);
-        let height = |look: &Known| look.point.attitude.rotate_back(vertical).dot(gravity.weight_moment).hi();
+        let height = |look: &Known| look.point.attitude.rotate_back(vertical).dot(linear.moment).hi();
         let (low, high) = self
             .looks
             .iter()
@@ -204,7 +204,7 @@ impl Truth {
         let exchanged = Some((high - low) * scale).filter(|range| *range > 0.0)?;
         let m = self.start.to_dd().momentum_body;
         let kinetic = 0.5 * m.dot(m.times(self.body.rotor().inverse_moments())).hi();
-        let weight = gravity.weight_moment.map(Dd::hi).norm() * scale;
+        let weight = linear.moment.map(Dd::hi).norm() * scale;
         Some(worst.energy? * (kinetic * scale + weight) / exchanged)
     }
 

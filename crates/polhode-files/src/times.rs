@@ -21,7 +21,7 @@ pub enum Source {
 
 /// A column of times.
 #[derive(Clone, Debug)]
-pub struct Column {
+pub struct TimesColumn {
     /// The text that holds it.
     pub source: Source,
     /// Its name or its number, from 1.
@@ -41,7 +41,7 @@ pub struct Asked {
     pub column: &'static str,
 }
 
-impl Column {
+impl TimesColumn {
     /// Whether the text can be read a second time; a pipe cannot.
     pub fn is_read_again(&self) -> bool {
         match &self.source {
@@ -72,7 +72,7 @@ impl Column {
 
 /// The times of a column, s, as they are read.
 pub struct Times<'c> {
-    column: &'c Column,
+    column: &'c TimesColumn,
     text: Text<'static>,
     /// The last comment above the rows, which may name the columns.
     header: Option<String>,
@@ -241,7 +241,7 @@ mod tests {
         let scratch = tempfile::tempdir().unwrap();
         let path = scratch.path().join("epochs.txt");
         std::fs::write(&path, text).unwrap();
-        let column = Column {
+        let column = TimesColumn {
             source: Source::File(path),
             wanted: wanted.map(String::from),
             epoch: epoch.map(|date| date.parse().unwrap()),

@@ -5,10 +5,10 @@ use nalgebra::Vector3;
 use polhode::record::{Record, RecordError, Segment};
 use polhode::units::{RateUnit, TimeUnit};
 use polhode_files::Error;
-use polhode_files::record::{self, Reading};
+use polhode_files::record::{self, ReadOptions};
 
 fn read(text: &str) -> Result<Record, Error> {
-    record::read(text, "a.csv", &Reading::default()).map(|found| found.record)
+    record::read(text, "a.csv", &ReadOptions::default()).map(|found| found.record)
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn broken_rows_are_named_by_line_and_column() {
         let message = read(text).unwrap_err().to_string();
         assert!(message.starts_with(expected), "{message}");
     }
-    let setting = Reading { rate_unit: Some(RateUnit::DegreesPerSecond), ..Reading::default() };
+    let setting = ReadOptions { rate_unit: Some(RateUnit::DegreesPerSecond), ..ReadOptions::default() };
     let clash = record::read("t,wx (rad/s),wy,wz\n1,1,2,3\n", "a.csv", &setting).unwrap_err().to_string();
     assert!(clash.contains("says rad/s") && clash.contains("says deg/s"), "{clash}");
 }
@@ -133,8 +133,12 @@ fn overlapping_windows_are_one_and_units_end_names() {
     assert_eq!((twice.segments.len(), twice.samples()), (2, 61 + 31));
     assert_eq!(read(&text.replace("time_ms", "timestampNs")).unwrap().segments[0].times()[99], 990e-9);
     assert!(
-        record::read(&text, "a", &Reading { time_unit: Some(TimeUnit::Seconds), ..Reading::default() })
-            .is_err()
+        record::read(
+            &text,
+            "a",
+            &ReadOptions { time_unit: Some(TimeUnit::Seconds), ..ReadOptions::default() }
+        )
+        .is_err()
     );
 }
 
@@ -211,7 +215,7 @@ fn a_time_with_a_unit_wins_over_a_bare_one() {
     }
     // the unit of the name is not overruled
     for name in ["seconds_elapsed", "time_s"] {
-        let setting = Reading { time_unit: Some(TimeUnit::Nanoseconds), ..Reading::default() };
+        let setting = ReadOptions { time_unit: Some(TimeUnit::Nanoseconds), ..ReadOptions::default() };
         let text = format!("time,{name},z,y,x\n1,0.25,3,2,1\n");
         let clash = record::read(&text, "a.csv", &setting).unwrap_err().to_string();
         assert!(clash.contains(&format!("({name}): the header says s, the flag says ns")), "{clash}");

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use polhode_pages::table::{Part, Shown, Table};
+use polhode_pages::table::{ShownColumn, Table, View};
 use serde::Serialize;
 
 use crate::build;
@@ -28,7 +28,7 @@ struct Provenance<'a> {
     seed: Option<u64>,
     tables: BTreeMap<String, Columns<'a>>,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    views: BTreeMap<&'a str, &'a Part>,
+    views: BTreeMap<&'a str, &'a View>,
 }
 
 #[derive(Serialize)]
@@ -38,7 +38,7 @@ struct Columns<'a> {
     columns: BTreeMap<&'a str, String>,
     /// How the rows are rounded for readers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    shown: Vec<Shown>,
+    shown: Vec<ShownColumn>,
 }
 
 /// The contents of `run.toml`.

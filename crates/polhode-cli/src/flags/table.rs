@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use polhode::audit::QuaternionOrder;
 use polhode::units::{RateUnit, TimeUnit};
 use polhode_files::numbers::positive;
-use polhode_files::{ColumnNames, Reading};
+use polhode_files::{ColumnNames, ReadOptions};
 
 /// Columns and times of a table.
 #[derive(Args, Clone, Debug)]
@@ -23,13 +23,13 @@ pub(crate) struct TableArguments {
 
 impl TableArguments {
     /// What they say, with the unit of the angular velocity.
-    pub(crate) fn reading(&self, rate_unit: Option<RateUnit>) -> Reading {
-        Reading {
+    pub(crate) fn reading(&self, rate_unit: Option<RateUnit>) -> ReadOptions {
+        ReadOptions {
             columns: self.columns.clone().unwrap_or_default(),
             time_unit: self.time_unit,
             sample_rate: self.sample_rate,
             rate_unit,
-            ..Reading::default()
+            ..ReadOptions::default()
         }
     }
 }

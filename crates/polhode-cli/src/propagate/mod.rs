@@ -15,7 +15,7 @@ use polhode::run::{Run, RunError, Sample, Schedule, ScheduleError, Watch};
 use polhode_files::error::{Error, warn};
 use polhode_files::moment::positive_duration;
 use polhode_files::numbers::positive;
-use polhode_pages::table::{Format, Rows};
+use polhode_pages::table::{Format, RowWriter};
 
 use crate::cost;
 use crate::flags::motion::MotionArguments;
@@ -90,9 +90,9 @@ impl Propagate {
         &self,
         columns: &Columns,
         count: Option<usize>,
-        fill: impl FnOnce(&mut Rows) -> Result<(), Error>,
+        fill: impl FnOnce(&mut RowWriter) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        let mut rows = Rows::new(columns.table(), self.format, self.out.as_deref(), count)?;
+        let mut rows = RowWriter::new(columns.table(), self.format, self.out.as_deref(), count)?;
         let ended = fill(&mut rows);
         if matches!(ended, Ok(()) | Err(Error::Failed(_))) {
             rows.finish()?;

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::Reading;
+use super::ReadOptions;
 use super::cells::{Delimiter, is_number, uncommented};
 use super::header::Header;
 use super::lines::Line;
@@ -42,7 +42,7 @@ struct Candidate {
 }
 
 /// Looks for the header: the last line to name a time and a quantity before the first row of numbers.
-pub(crate) fn look(source: &mut Source, reading: &Reading) -> Result<Looked, TableError> {
+pub(crate) fn look(source: &mut Source, reading: &ReadOptions) -> Result<Looked, TableError> {
     let mut lines: Vec<Line> = Vec::new();
     let mut best: Option<Candidate> = None;
     let mut line = Line::default();
@@ -100,7 +100,7 @@ pub(crate) fn look(source: &mut Source, reading: &Reading) -> Result<Looked, Tab
 }
 
 /// The header in a line, if it is one. Names separated by blanks may hold single blanks.
-fn header_of(text: &str, reading: &Reading) -> Option<(Header, Delimiter)> {
+fn header_of(text: &str, reading: &ReadOptions) -> Option<(Header, Delimiter)> {
     let of = |delimiter: Delimiter| {
         let cells = delimiter.names(text);
         let header = Header::of(&cells, &reading.columns, reading.sample_rate.is_some()).ok()?;
@@ -129,7 +129,7 @@ fn is_row(text: &str, header: Option<&Candidate>) -> bool {
 }
 
 /// Rows of numbers without a header: columns that are named by number, time and three rates, or messages of ROS 2.
-fn headless(lines: &[Line], reading: &Reading) -> Option<(Header, Delimiter)> {
+fn headless(lines: &[Line], reading: &ReadOptions) -> Option<(Header, Delimiter)> {
     let mut rows = lines.iter().map(|line| line.text.as_str()).filter(|text| uncommented(text).is_none());
     let first = rows.next()?;
     let delimiter = Delimiter::of(first);

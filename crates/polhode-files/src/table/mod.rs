@@ -31,7 +31,7 @@ use crate::error::{Rule, TableError};
 
 /// How a table is read, where its header leaves it open.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Reading {
+pub struct ReadOptions {
     /// Columns that are named by a flag.
     pub columns: ColumnNames,
     /// Unit of time where the header names none; without it that of the layout, or s.
@@ -72,18 +72,18 @@ pub(crate) struct Table<'t> {
 
 impl Table<'static> {
     /// Of the file at `path`, or of standard input where that is `-`.
-    pub(crate) fn open(path: &Path, reading: &Reading) -> Result<Self, TableError> {
+    pub(crate) fn open(path: &Path, reading: &ReadOptions) -> Result<Self, TableError> {
         Table::new(Source::new(Lines::open(path)?)?, reading)
     }
 }
 
 impl<'t> Table<'t> {
     /// Of a text in memory, which messages call `name`.
-    pub(crate) fn of_text(text: &'t str, name: &str, reading: &Reading) -> Result<Self, TableError> {
+    pub(crate) fn of_text(text: &'t str, name: &str, reading: &ReadOptions) -> Result<Self, TableError> {
         Table::new(Source::new(Lines::of_text(text, name))?, reading)
     }
 
-    fn new(mut source: Source<'t>, reading: &Reading) -> Result<Self, TableError> {
+    fn new(mut source: Source<'t>, reading: &ReadOptions) -> Result<Self, TableError> {
         let looked = look::look(&mut source, reading)?;
         let preamble = Preamble::of(&looked.before);
         let comments =
@@ -289,7 +289,7 @@ impl<'t> Table<'t> {
     /// The unit of the times: that of the names, a setting, the layout, or the lines above; they must not contradict each other.
     fn resolve_time(
         &self,
-        reading: &Reading,
+        reading: &ReadOptions,
         below: Option<TimeUnit>,
     ) -> Result<Option<TimeUnit>, TableError> {
         let counted = reading.sample_rate.map(|rate| TimeUnit::Multiple(1.0 / rate));
@@ -322,7 +322,7 @@ impl<'t> Table<'t> {
     }
 
     /// The units of the angular velocity are known, and do not contradict a setting.
-    fn resolve_rates(&mut self, reading: &Reading) -> Result<(), TableError> {
+    fn resolve_rates(&mut self, reading: &ReadOptions) -> Result<(), TableError> {
         let implied = self.header.rate_unit.or(self.preamble.rate_unit());
         let stated = self.header.bodies.iter().filter_map(|body| body.rates.as_ref());
         for (place, text) in stated.flat_map(|rates| rates.places.iter().zip(&rates.units)) {

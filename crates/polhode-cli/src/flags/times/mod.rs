@@ -8,7 +8,7 @@ use clap::Args;
 use polhode::units::Date;
 use polhode_files::error::{Error, warn};
 use polhode_files::moment::{duration, epoch, is_moment, seconds};
-use polhode_files::times::{Asked, Column, Source};
+use polhode_files::times::{Asked, Source, TimesColumn};
 
 pub(crate) use regular::{Regular, regular};
 
@@ -20,7 +20,7 @@ pub(crate) struct TimeArguments {
     #[arg(long, value_name = "LIST|FILE|-", value_parser = times, allow_hyphen_values = true,
           conflicts_with_all = ["until", "every"])]
     times: Option<Times>,
-    /// Column of the file of --times, by its name or number [default: t]
+    /// TimesColumn of the file of --times, by its name or number [default: t]
     #[arg(long, value_name = "NAME|N")]
     times_column: Option<String>,
     /// Last output time, with --every: s, with a unit, or a date with --epoch
@@ -143,9 +143,9 @@ impl TimeArguments {
         }
     }
 
-    fn column(&self, source: Source) -> Column {
+    fn column(&self, source: Source) -> TimesColumn {
         let asked = Asked { file: "--times".into(), column: "--times-column" };
-        Column { source, wanted: self.times_column.clone(), epoch: self.epoch, asked }
+        TimesColumn { source, wanted: self.times_column.clone(), epoch: self.epoch, asked }
     }
 
     fn moment(&self, flag: &str, text: &str) -> Result<f64, Error> {
@@ -158,14 +158,14 @@ impl TimeArguments {
 /// The times in the file `path`, s, that is named at `place` of a specification, its column by the key `times_column`.
 pub(crate) fn of_file(path: PathBuf, column: Option<String>, place: String) -> Result<Vec<f64>, Error> {
     let asked = Asked { file: place, column: "times_column" };
-    Column { source: Source::File(path), wanted: column, epoch: None, asked }.read()?.collect()
+    TimesColumn { source: Source::File(path), wanted: column, epoch: None, asked }.read()?.collect()
 }
 
 /// Output times, s, in the order in which they were given.
 pub(crate) enum OutputTimes {
     List(Vec<f64>),
     Regular(Regular),
-    Column(Column),
+    Column(TimesColumn),
 }
 
 impl OutputTimes {
