@@ -25,6 +25,7 @@ mod interrupted;
 mod logs;
 mod motion;
 mod plot;
+mod programs;
 mod propagate;
 mod report;
 mod robots;

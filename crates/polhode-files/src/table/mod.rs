@@ -1,5 +1,6 @@
 //! Tables: lines of cells under a header, read one row at a time.
 
+mod array;
 mod cells;
 mod clock;
 mod dump;
