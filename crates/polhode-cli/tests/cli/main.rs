@@ -17,6 +17,7 @@ mod flights;
 mod forces;
 mod general;
 mod harness;
+mod hostile;
 mod inertia;
 #[cfg(unix)]
 mod inputs;
