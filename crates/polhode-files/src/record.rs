@@ -42,7 +42,7 @@ pub struct FoundRecord {
 /// use polhode_files::record::{ReadOptions, read};
 /// let text = "when;p_gyro;q_gyro;r_gyro\n22-Nov-2025 10:00:00.00;1;2;3\n22-Nov-2025 10:00:00.01;1;2;3\n";
 /// let columns = ColumnNames::parse("t=when,x=p_gyro,y=q_gyro,z=r_gyro").unwrap();
-/// let record = read(text, "flight.csv", &ReadOptions { columns, ..ReadOptions::default() })?.record;
+/// let record = read(text, "flight.csv", &ReadOptions::default().with_columns(columns))?.record;
 /// assert_eq!(record.segments[0].times(), [0.0, 0.01]);
 ///
 /// let text = "t (ms), wx (deg/s), wy (deg/s), wz (deg/s)\n0, 0, 90, 180\n10, 1, 90, 180\n10, 3, 90, 180\n";

@@ -54,7 +54,7 @@ fn broken_rows_are_named_by_line_and_column() {
         let message = read(text).unwrap_err().to_string();
         assert!(message.starts_with(expected), "{message}");
     }
-    let setting = ReadOptions { rate_unit: Some(RateUnit::DegreesPerSecond), ..ReadOptions::default() };
+    let setting = ReadOptions::default().with_rate_unit(RateUnit::DegreesPerSecond);
     let clash = record::read("t,wx (rad/s),wy,wz\n1,1,2,3\n", "a.csv", &setting).unwrap_err().to_string();
     assert!(clash.contains("says rad/s") && clash.contains("says deg/s"), "{clash}");
 }
@@ -132,14 +132,7 @@ fn overlapping_windows_are_one_and_units_end_names() {
     let twice = record.windows(&[(0.3, 0.6), (0.0, 0.4), (0.6, 0.9), (0.0, 0.4)]).unwrap();
     assert_eq!((twice.segments.len(), twice.samples()), (2, 61 + 31));
     assert_eq!(read(&text.replace("time_ms", "timestampNs")).unwrap().segments[0].times()[99], 990e-9);
-    assert!(
-        record::read(
-            &text,
-            "a",
-            &ReadOptions { time_unit: Some(TimeUnit::Seconds), ..ReadOptions::default() }
-        )
-        .is_err()
-    );
+    assert!(record::read(&text, "a", &ReadOptions::default().with_time_unit(TimeUnit::Seconds)).is_err());
 }
 
 fn only(text: &str) -> (Vec<f64>, Vec<[f64; 3]>) {
@@ -215,7 +208,7 @@ fn a_time_with_a_unit_wins_over_a_bare_one() {
     }
     // the unit of the name is not overruled
     for name in ["seconds_elapsed", "time_s"] {
-        let setting = ReadOptions { time_unit: Some(TimeUnit::Nanoseconds), ..ReadOptions::default() };
+        let setting = ReadOptions::default().with_time_unit(TimeUnit::Nanoseconds);
         let text = format!("time,{name},z,y,x\n1,0.25,3,2,1\n");
         let clash = record::read(&text, "a.csv", &setting).unwrap_err().to_string();
         assert!(clash.contains(&format!("({name}): the header says s, the flag says ns")), "{clash}");
