@@ -10,6 +10,7 @@ use polhode::units::{MomentumUnit, RateUnit, TorqueUnit};
 use crate::error::{Error, Rule, TableError};
 pub use crate::table::ReadOptions;
 use crate::table::Table;
+use crate::text::visible;
 
 /// Share of bad rows that is passed over.
 const MOST_SKIPPED: f64 = 0.02;
@@ -96,11 +97,21 @@ fn found(
     let units = named.map(Option::unwrap_or_default);
     let scale = table.scale(rates[0]);
     let (mut rows, mut skipped): (Vec<(usize, [f64; 4])>, Vec<TableError>) = (Vec::new(), Vec::new());
+    let mut owner = String::new();
     while table.next()? {
         let before = rows.last().map(|(_, row)| row[0]);
         let row = row(&mut table, rates, units, scale, before);
         match row.and_then(|row| inputs.push(&table).map(|()| row)) {
-            Ok(row) => rows.push((usize::try_from(table.line()).unwrap_or(usize::MAX), row)),
+            Ok(row) => {
+                if let Some(id) = table.header.id {
+                    if before == Some(row[0]) && owner != table.cell(id) {
+                        return Err(several(&table, id, &owner));
+                    }
+                    owner.clear();
+                    owner.push_str(table.cell(id));
+                }
+                rows.push((usize::try_from(table.line()).unwrap_or(usize::MAX), row));
+            }
             // a first row that is text is no row of numbers
             Err(error) if rows.is_empty() && matches!(error.rule, Rule::Number | Rule::Comma) => {
                 return Err(error);
@@ -136,6 +147,12 @@ fn found(
     let record = Record::cleaned(table.name(), rows).map_err(refused)?;
     let record = inputs.complete(record, &lines).map_err(refused)?;
     Ok(FoundRecord { record, skipped, remarks })
+}
+
+/// Why rows of several bodies at one time are no record; a column of names or counters that part no times is none of them.
+fn several(table: &Table, id: usize, owner: &str) -> TableError {
+    let rule = format!("of another body than the row before, '{}', at the same time", visible(owner));
+    table.refused_cell(id, Rule::Other(rule)).with_remedy("name a file of one body")
 }
 
 /// The columns of the rates, which must be those of one body in its own axes.

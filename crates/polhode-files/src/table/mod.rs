@@ -117,7 +117,7 @@ impl<'t> Table<'t> {
         Table::new(Source::new(Lines::of_text(text, name))?, reading)
     }
 
-    fn new(mut source: Source<'t>, reading: &ReadOptions) -> Result<Self, TableError> {
+    pub(crate) fn new(mut source: Source<'t>, reading: &ReadOptions) -> Result<Self, TableError> {
         let looked = look::look(&mut source, reading)?;
         let preamble = Preamble::of(&looked.before);
         let comments =
