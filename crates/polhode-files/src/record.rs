@@ -97,19 +97,13 @@ fn found(
     let units = named.map(Option::unwrap_or_default);
     let scale = table.scale(rates[0]);
     let (mut rows, mut skipped): (Vec<(usize, [f64; 4])>, Vec<TableError>) = (Vec::new(), Vec::new());
-    let mut owner = String::new();
+    let mut owner = Owner::default();
     while table.next()? {
         let before = rows.last().map(|(_, row)| row[0]);
         let row = row(&mut table, rates, units, scale, before);
         match row.and_then(|row| inputs.push(&table).map(|()| row)) {
             Ok(row) => {
-                if let Some(id) = table.header.id {
-                    if before == Some(row[0]) && owner != table.cell(id) {
-                        return Err(several(&table, id, &owner));
-                    }
-                    owner.clear();
-                    owner.push_str(table.cell(id));
-                }
+                owner.check(&table, before == Some(row[0]))?;
                 rows.push((usize::try_from(table.line()).unwrap_or(usize::MAX), row));
             }
             // a first row that is text is no row of numbers
@@ -149,10 +143,31 @@ fn found(
     Ok(FoundRecord { record, skipped, remarks })
 }
 
-/// Why rows of several bodies at one time are no record; a column of names or counters that part no times is none of them.
-fn several(table: &Table, id: usize, owner: &str) -> TableError {
-    let rule = format!("of another body than the row before, '{}', at the same time", visible(owner));
-    table.refused_cell(id, Rule::Other(rule)).with_remedy("name a file of one body")
+/// The body of the row before, where rows have names.
+#[derive(Default)]
+struct Owner {
+    name: String,
+    /// The first name that shared its time with another.
+    partner: Option<String>,
+}
+
+impl Owner {
+    /// Refuses rows of several bodies; a counter, which may go on within one tick of a clock, shows no name again.
+    fn check(&mut self, table: &Table, at_the_same_time: bool) -> Result<(), TableError> {
+        let Some(id) = table.header.id else { return Ok(()) };
+        let name = table.cell(id);
+        if at_the_same_time && name != self.name {
+            if self.partner.as_deref() == Some(name) {
+                let before = visible(&self.name);
+                let rule = format!("of another body than the row before, '{before}', at the same time");
+                return Err(table.refused_cell(id, Rule::Other(rule)).with_remedy("name a file of one body"));
+            }
+            self.partner.get_or_insert_with(|| name.into());
+        }
+        self.name.clear();
+        self.name.push_str(name);
+        Ok(())
+    }
 }
 
 /// The columns of the rates, which must be those of one body in its own axes.

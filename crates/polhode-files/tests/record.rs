@@ -324,3 +324,17 @@ fn a_flat_top_next_to_an_end_of_the_record_needs_no_fall_there() {
     assert_eq!(saturated(&near, &falls), 0);
     assert_eq!(saturated(&falls, &near), 0);
 }
+
+#[test]
+fn rows_of_several_bodies_are_no_record_and_a_counter_is_no_body() {
+    let told = |ids: [u32; 6]| {
+        let row = |(k, id): (usize, u32)| format!("{},{id},{k},2,3\n", 0.1 * (k / 2) as f64);
+        let text = "t,id,wx,wy,wz\n".to_string() + &ids.into_iter().enumerate().map(row).collect::<String>();
+        record::read(&text, "a", &ReadOptions::default())
+            .map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    let bodies = told([7, 8, 7, 8, 7, 8]);
+    let rule = "a, line 5, column 2 (id): '8': of another body than the row before, '7', at the same time";
+    assert_eq!(bodies, format!("{rule}; name a file of one body"));
+    assert!(!told([1, 2, 3, 4, 5, 6]).contains("another body"));
+}

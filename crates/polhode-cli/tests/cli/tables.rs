@@ -255,7 +255,7 @@ fn layouts_that_are_no_plain_rows_are_read_alike_too() {
         ("matrices", table("t,r11,r12,r13,r21,r22,r23,r31,r32,r33,wx,wy,wz", ",", entries), "", turned),
         ("Euler angles", table("t,phi,theta,psi,wx,wy,wz", ",", angles), "", turned),
         ("ids", ids.clone(), "", read),
-        // of a record the second row is refused, and each row has a time
+        // a record is of one body, and each row has a time
         (
             "two bodies",
             two(ids),
@@ -263,7 +263,7 @@ fn layouts_that_are_no_plain_rows_are_read_alike_too() {
             [
                 "7 and 8: right wxyz body-to-space body rad/s",
                 "refused: has 2 bodies",
-                "refused: line 3, column 2 (id): '8.0': of another body than the row before, '7.0', at the same time",
+                "refused: line 5, column 2 (id): '8.0': of another body than the row before, '7.0', at the same time",
                 "402 times",
             ],
         ),
