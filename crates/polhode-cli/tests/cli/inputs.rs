@@ -138,8 +138,8 @@ fn two_outputs_of_one_command_are_two_files() {
     let line = format!("propagate {start} --until 5 --every 0.1 --fields t,q,omega --out run.csv");
     polhode(&words(&line), &scratch.0).silent(&line);
     for (line, first, second) in [
-        (format!("audit run.csv {body} --report a.md --out ./a.md"), "--out", "--report"),
-        (format!("audit run.csv {body} --figure a.svg --out a.svg"), "--out", "--figure"),
+        (format!("audit run.csv {body} --report a.md --format csv --out ./a.md"), "--out", "--report"),
+        (format!("audit run.csv {body} --figure a.svg --format csv --out a.svg"), "--out", "--figure"),
         (
             format!("compare {start} --until 1 --methods rk4 --steps 0.5 --figure a.svg --out a.svg"),
             "--out",
@@ -148,11 +148,11 @@ fn two_outputs_of_one_command_are_two_files() {
         ("fit run.csv --residuals a.csv --out a.csv".into(), "--residuals", "--out"),
     ] {
         let answer = polhode(&words(&line), &scratch.0);
-        let rule = format!("{second} names this file too, and one would replace the other");
+        let rule = format!("it would replace {second}");
         assert_eq!(answer.code, 2, "{line}: {}", answer.err);
         assert!(answer.err.contains(first) && answer.err.contains(&rule), "{line}: {}", answer.err);
         assert_eq!(scratch.names(), ["run.csv"], "{line}");
     }
     let line = format!("audit run.csv {body} --figure /dev/null --out /dev/null --format csv");
-    assert!(!polhode(&words(&line), &scratch.0).err.contains("names this file too"));
+    assert!(!polhode(&words(&line), &scratch.0).err.contains("it would replace"));
 }
