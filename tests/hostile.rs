@@ -377,12 +377,11 @@ fn surfaces() {
 #[test]
 fn doctor() {
     hostile(6, 1.0, |draw| {
-        let evidence = Evidence {
-            mass: draw.one_in(2).then(|| draw.list::<1>()[0].abs()),
-            center_of_mass: draw.one_in(2).then(|| draw.vector()),
-            extents: draw.one_in(2).then(|| draw.list::<3>().map(f64::abs)),
-            twin: draw.one_in(2).then(|| Twin { center_of_mass: draw.vector(), tensor: draw.tensor() }),
-        };
+        let evidence = Evidence::default()
+            .with_mass(draw.one_in(2).then(|| draw.list::<1>()[0].abs()))
+            .with_center_of_mass(draw.one_in(2).then(|| draw.vector()))
+            .with_extents(draw.one_in(2).then(|| draw.list::<3>().map(f64::abs)))
+            .with_twin(draw.one_in(2).then(|| Twin { center_of_mass: draw.vector(), tensor: draw.tensor() }));
         let tensor = draw.tensor();
         let found = match diagnose(tensor, &evidence) {
             Ok(found) => found,

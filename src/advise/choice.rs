@@ -19,6 +19,7 @@ pub enum Setting {
 
 /// A predicted quantity, and by which factor it may be wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Predicted {
     /// The quantity.
     pub value: f64,

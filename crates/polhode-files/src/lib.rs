@@ -23,10 +23,12 @@
 #[cfg(doctest)]
 struct Readme;
 
+pub mod bodies;
 mod did_you_mean;
 pub mod error;
 pub mod given;
 pub mod inputs;
+pub mod members;
 pub mod mesh;
 pub mod moment;
 pub mod npy;

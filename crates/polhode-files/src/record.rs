@@ -10,6 +10,7 @@ use polhode::units::{MomentumUnit, RateUnit, TorqueUnit};
 use crate::error::{Error, Rule, TableError};
 pub use crate::table::ReadOptions;
 use crate::table::Table;
+use crate::text::visible;
 
 /// Share of bad rows that is passed over.
 const MOST_SKIPPED: f64 = 0.02;
@@ -42,7 +43,7 @@ pub struct FoundRecord {
 /// use polhode_files::record::{ReadOptions, read};
 /// let text = "when;p_gyro;q_gyro;r_gyro\n22-Nov-2025 10:00:00.00;1;2;3\n22-Nov-2025 10:00:00.01;1;2;3\n";
 /// let columns = ColumnNames::parse("t=when,x=p_gyro,y=q_gyro,z=r_gyro").unwrap();
-/// let record = read(text, "flight.csv", &ReadOptions { columns, ..ReadOptions::default() })?.record;
+/// let record = read(text, "flight.csv", &ReadOptions::default().with_columns(columns))?.record;
 /// assert_eq!(record.segments[0].times(), [0.0, 0.01]);
 ///
 /// let text = "t (ms), wx (deg/s), wy (deg/s), wz (deg/s)\n0, 0, 90, 180\n10, 1, 90, 180\n10, 3, 90, 180\n";
@@ -96,11 +97,15 @@ fn found(
     let units = named.map(Option::unwrap_or_default);
     let scale = table.scale(rates[0]);
     let (mut rows, mut skipped): (Vec<(usize, [f64; 4])>, Vec<TableError>) = (Vec::new(), Vec::new());
+    let mut owner = Owner::default();
     while table.next()? {
         let before = rows.last().map(|(_, row)| row[0]);
         let row = row(&mut table, rates, units, scale, before);
         match row.and_then(|row| inputs.push(&table).map(|()| row)) {
-            Ok(row) => rows.push((usize::try_from(table.line()).unwrap_or(usize::MAX), row)),
+            Ok(row) => {
+                owner.check(&table, before == Some(row[0]))?;
+                rows.push((usize::try_from(table.line()).unwrap_or(usize::MAX), row));
+            }
             // a first row that is text is no row of numbers
             Err(error) if rows.is_empty() && matches!(error.rule, Rule::Number | Rule::Comma) => {
                 return Err(error);
@@ -136,6 +141,33 @@ fn found(
     let record = Record::cleaned(table.name(), rows).map_err(refused)?;
     let record = inputs.complete(record, &lines).map_err(refused)?;
     Ok(FoundRecord { record, skipped, remarks })
+}
+
+/// The body of the row before, where rows have names.
+#[derive(Default)]
+struct Owner {
+    name: String,
+    /// The first name that shared its time with another.
+    partner: Option<String>,
+}
+
+impl Owner {
+    /// Refuses rows of several bodies; a counter, which may go on within one tick of a clock, shows no name again.
+    fn check(&mut self, table: &Table, at_the_same_time: bool) -> Result<(), TableError> {
+        let Some(id) = table.header.id else { return Ok(()) };
+        let name = table.cell(id);
+        if at_the_same_time && name != self.name {
+            if self.partner.as_deref() == Some(name) {
+                let before = visible(&self.name);
+                let rule = format!("of another body than the row before, '{before}', at the same time");
+                return Err(table.refused_cell(id, Rule::Other(rule)).with_remedy("name a file of one body"));
+            }
+            self.partner.get_or_insert_with(|| name.into());
+        }
+        self.name.clear();
+        self.name.push_str(name);
+        Ok(())
+    }
 }
 
 /// The columns of the rates, which must be those of one body in its own axes.

@@ -218,7 +218,7 @@ fn times_of_the_clock_and_no_header() {
 fn columns_are_named_or_numbered() {
     let of = |[t, x, y, z]: [&str; 4]| {
         let columns = ColumnNames::parse(&format!("t={t},x={x},y={y},z={z}")).unwrap();
-        ReadOptions { columns, ..ReadOptions::default() }
+        ReadOptions::default().with_columns(columns)
     };
     let expected = (vec![0.0, 0.5], vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     let text = "note,A,B,C,D\nr1,3,2,1,0\nr2,6,5,4,0.5\n";
@@ -234,11 +234,9 @@ fn columns_are_named_or_numbered() {
         "{message}"
     );
     assert!(refused("1,2,3,4\n", ["1", "2", "3", "5"]).contains("no column for "));
-    let units = ReadOptions {
-        time_unit: Some(TimeUnit::Multiple(0.005)),
-        rate_unit: Some(RateUnit::DegreesPerSecond),
-        ..of(["1", "2", "3", "4"])
-    };
+    let units = of(["1", "2", "3", "4"])
+        .with_time_unit(TimeUnit::Multiple(0.005))
+        .with_rate_unit(RateUnit::DegreesPerSecond);
     let (times, rates) = read("0,90,0,0\n2,90,0,0\n", units);
     assert_eq!((times[1], rates[1][0]), (0.01, 90.0 * DEGREE));
 }
@@ -266,9 +264,9 @@ fn bad_rows_are_left_out_up_to_a_share_and_counted() {
     let three = log(&[(50, "a,,,"), (60, ",,,"), (70, "0.7,1,2,")], 100);
     let error = record::read(&three, "log", &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.starts_with("log, line 52, column 1 (t): 'a'"), "{error}");
-    let allowed = ReadOptions { most_skipped: Some(0.05), ..ReadOptions::default() };
+    let allowed = ReadOptions::default().with_most_skipped(0.05);
     assert_eq!(record::read(&three, "log", &allowed).unwrap().skipped.len(), 3);
-    let none = ReadOptions { most_skipped: Some(0.0), ..ReadOptions::default() };
+    let none = ReadOptions::default().with_most_skipped(0.0);
     assert!(record::read(&log(&[(50, "")], 100), "log", &none).is_ok());
     assert!(record::read(&log(&[(50, "x,1,2,3")], 100), "log", &none).is_err());
     // the file ends in the middle of a row
@@ -329,7 +327,7 @@ fn a_counter_needs_the_rate_of_its_samples() {
     let refused = record::read(text, "log", &ReadOptions::default()).unwrap_err().to_string();
     assert!(refused.starts_with("log, line 1, column 1 (Packet number): counts samples"), "{refused}");
     assert!(refused.contains("--sample-rate HZ"), "{refused}");
-    let rated = ReadOptions { sample_rate: Some(100.0), ..ReadOptions::default() };
+    let rated = ReadOptions::default().with_sample_rate(100.0);
     let found = record::read(text, "log", &rated).unwrap().record;
     assert!((found.segments[0].times()[1] - found.segments[0].times()[0] - 0.01).abs() < 1e-15);
     // rows without a time are counted

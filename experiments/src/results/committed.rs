@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use polhode_files::error::Error;
 use polhode_files::read_own;
 use polhode_pages::output::MARK;
-use polhode_pages::table::{ShownColumn, Table, View};
+use polhode_pages::table::{Selection, ShownColumn, Table};
 use serde::Deserialize;
 
 use super::which::Which;
@@ -31,7 +31,7 @@ pub(super) struct Origin {
     #[serde(default)]
     tables: BTreeMap<String, Described>,
     #[serde(default)]
-    views: BTreeMap<String, View>,
+    views: BTreeMap<String, Selection>,
 }
 
 #[derive(Deserialize)]

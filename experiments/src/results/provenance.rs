@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use polhode_pages::table::{ShownColumn, Table, View};
+use polhode_pages::table::{Selection, ShownColumn, Table};
 use serde::Serialize;
 
 use crate::build;
@@ -28,7 +28,7 @@ struct Provenance<'a> {
     seed: Option<u64>,
     tables: BTreeMap<String, Columns<'a>>,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    views: BTreeMap<&'a str, &'a View>,
+    views: BTreeMap<&'a str, &'a Selection>,
 }
 
 #[derive(Serialize)]

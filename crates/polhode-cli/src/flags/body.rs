@@ -5,11 +5,10 @@ use nalgebra::Matrix3;
 use polhode::body::Body;
 use polhode::catalogue::{self, Orientation};
 use polhode::inertia::Inertia;
+use polhode_files::bodies;
 use polhode_files::error::Error;
 use polhode_files::numbers::{list, numbers};
 use polhode_files::text::visible;
-
-use crate::flags::body_file;
 
 /// A body: exactly one of three flags.
 #[derive(Args, Clone, Debug)]
@@ -57,7 +56,7 @@ pub(crate) fn described(text: &str) -> Result<Described, Error> {
     if let Some(found) = catalogue::body(text).or_else(|| catalogue::top(text)) {
         return Ok(Described { inertia: found.inertia, weight_moment: found.weight_moment });
     }
-    if let Some(inertia) = body_file::inertia(text)? {
+    if let Some(inertia) = bodies::inertia("--body", text)? {
         return Ok(Described::alone(inertia));
     }
     let known: Vec<&str> =

@@ -24,13 +24,11 @@ pub(crate) struct TableArguments {
 impl TableArguments {
     /// What they say, with the unit of the angular velocity.
     pub(crate) fn reading(&self, rate_unit: Option<RateUnit>) -> ReadOptions {
-        ReadOptions {
-            columns: self.columns.clone().unwrap_or_default(),
-            time_unit: self.time_unit,
-            sample_rate: self.sample_rate,
-            rate_unit,
-            ..ReadOptions::default()
-        }
+        ReadOptions::default()
+            .with_columns(self.columns.clone().unwrap_or_default())
+            .with_time_unit(self.time_unit)
+            .with_sample_rate(self.sample_rate)
+            .with_rate_unit(rate_unit)
     }
 }
 

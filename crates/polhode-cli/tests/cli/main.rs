@@ -3,6 +3,7 @@
 //! `POLHODE_BLESS=1 cargo test -p polhode-cli --test cli` rewrites the golden files; read the difference.
 
 #![allow(clippy::unwrap_used)]
+#![allow(clippy::disallowed_methods, reason = "tests look at files that a command has written")]
 
 mod advise;
 mod audit;

@@ -32,6 +32,7 @@ use crate::error::{Rule, TableError};
 
 /// How a table is read, where its header leaves it open.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ReadOptions {
     /// Columns that are named by a flag.
     pub columns: ColumnNames,
@@ -43,6 +44,38 @@ pub struct ReadOptions {
     pub sample_rate: Option<f64>,
     /// Share of the rows of a record that may be left out because they cannot be read, 0.02 without it.
     pub most_skipped: Option<f64>,
+}
+
+impl ReadOptions {
+    /// With columns that are named by a flag.
+    #[must_use]
+    pub fn with_columns(self, columns: ColumnNames) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// With the unit of time where the header names none.
+    #[must_use]
+    pub fn with_time_unit(self, unit: impl Into<Option<TimeUnit>>) -> Self {
+        Self { time_unit: unit.into(), ..self }
+    }
+
+    /// With the unit of the rates where the header names none.
+    #[must_use]
+    pub fn with_rate_unit(self, unit: impl Into<Option<RateUnit>>) -> Self {
+        Self { rate_unit: unit.into(), ..self }
+    }
+
+    /// With the samples a second, where a column counts samples or rows have no time.
+    #[must_use]
+    pub fn with_sample_rate(self, rate: impl Into<Option<f64>>) -> Self {
+        Self { sample_rate: rate.into(), ..self }
+    }
+
+    /// With the share of the rows of a record that may be left out because they cannot be read.
+    #[must_use]
+    pub fn with_most_skipped(self, share: impl Into<Option<f64>>) -> Self {
+        Self { most_skipped: share.into(), ..self }
+    }
 }
 
 const TIME_UNITS: &str = "s, ms, us, ns, min, h";
@@ -84,7 +117,7 @@ impl<'t> Table<'t> {
         Table::new(Source::new(Lines::of_text(text, name))?, reading)
     }
 
-    fn new(mut source: Source<'t>, reading: &ReadOptions) -> Result<Self, TableError> {
+    pub(crate) fn new(mut source: Source<'t>, reading: &ReadOptions) -> Result<Self, TableError> {
         let looked = look::look(&mut source, reading)?;
         let preamble = Preamble::of(&looked.before);
         let comments =

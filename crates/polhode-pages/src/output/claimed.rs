@@ -24,7 +24,7 @@ pub(super) fn claim(flag: &'static str, path: &Path) -> Result<(), Error> {
     if other == flag {
         return Ok(());
     }
-    let rule = format!("{other} names this file too, and one would replace the other");
+    let rule = format!("it would replace {other}");
     Err(Error::input(flag, &path.display().to_string(), &rule, "name another file"))
 }
 
@@ -49,10 +49,7 @@ mod tests {
         claim("--out", &at("rows.csv")).unwrap();
         claim("--out", &at("rows.csv")).unwrap();
         let refused = claim("--figure", &at("sub/../rows.csv")).unwrap_err().to_string();
-        assert!(
-            refused
-                .ends_with("--out names this file too, and one would replace the other; name another file")
-        );
+        assert!(refused.ends_with("it would replace --out; name another file"));
         claim("--figure", &at("rows.svg")).unwrap();
         #[cfg(unix)]
         {

@@ -19,9 +19,9 @@ pub struct ShownColumn {
     digits: Option<usize>,
 }
 
-/// A view: the rows of another table that hold `value` in `column`.
+/// A selection: the rows of another table that hold `value` in `column`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct View {
+pub struct Selection {
     /// Name of that table.
     pub table: String,
     column: String,
@@ -29,7 +29,7 @@ pub struct View {
     hidden: Vec<String>,
 }
 
-impl View {
+impl Selection {
     pub(super) fn new(table: &str, column: &str, value: &str, hidden: &[&str]) -> Self {
         let hidden = hidden.iter().map(ToString::to_string).collect();
         Self { table: table.into(), column: column.into(), value: value.into(), hidden }
