@@ -24,13 +24,17 @@ mod ending;
 mod error;
 mod follow;
 mod judge;
+mod pair;
+mod together;
 #[allow(clippy::module_inception)]
 mod truth;
+mod turning;
 
 pub use ending::{Ending, LOST};
 pub use error::TruthError;
 pub use follow::AGREEMENT;
 pub use judge::{Care, Judged, Look};
+pub(crate) use truth::Wanted;
 pub use truth::{Truth, evenly};
 
 use crate::num::{Dd, Precise};
