@@ -103,7 +103,11 @@ impl<'a> Calibration<'a> {
             if !fit.is_empty() && !more {
                 // a short time may have been the whole
                 let seen = first.choice.whole_time && self.excess(&first.choice) + self.doubt() <= TAKEN.1;
-                if seen { fit.push(first.choice) } else { rest.push(first.choice) }
+                if seen {
+                    fit.push(first.choice)
+                } else {
+                    rest.push(first.choice)
+                }
                 continue;
             }
             match self.refined(candidate, first) {

@@ -6,7 +6,7 @@ use super::{AdviseError, Demand};
 use crate::body::{Body, Point, Time};
 use crate::num::Dd;
 use crate::rotation::{Vec3, rotation_angle};
-use crate::truth::{Truth, TruthError, Wanted};
+use crate::truth::{Truth, TruthError, Turning, Wanted};
 
 /// Most looks at a motion, at equal times: over shorter ways one in two radians.
 const MOST_LOOKS: f64 = 128.0;
@@ -62,28 +62,28 @@ pub(super) fn truth(
     heed: &mut dyn FnMut(f64),
 ) -> Result<Truth, AdviseError> {
     let wanted = demand.attitude_error;
-    let wanted = Wanted { accuracy: AGREEMENT * wanted, bearable: BEARABLE * wanted, patience };
+    let (accuracy, bearable) = (AGREEMENT * wanted, BEARABLE * wanted);
+    let wanted = Wanted { accuracy, bearable, attainable: wanted, patience };
     let truth = Truth::within(body, start, demand.start_time, times, wanted, heed)
         .map_err(|error| AdviseError::of(error, demand.attitude_error))?;
     let agree_until = truth.known_until();
     match times.last() {
         Some(end) if agree_until < *end => {
-            // a start with another last digit tells whether the motion or the runs are to blame
-            let chaotic =
-                truth.turning().is_none_or(|turning| turning.growth > CHAOTIC * turning.angle.max(1.0));
-            let demand = demand.attitude_error;
-            Err(if chaotic {
-                AdviseError::Chaotic { demand, agree_until }
+            // how a start with another last digit fares tells whether the motion or the runs are to blame
+            let turning = truth.turning();
+            let attainable = turning.map_or(0.0, |turning| f64::EPSILON * turning.growth);
+            let until = *end;
+            Err(if turning.is_none_or(Turning::is_chaotic) {
+                AdviseError::Chaotic { demand: demand.attitude_error, agree_until }
+            } else if attainable > demand.attitude_error {
+                AdviseError::Conditioning { demand: demand.attitude_error, attainable, until }
             } else {
-                AdviseError::Undecided { demand, agree_until }
+                AdviseError::Undecided { demand: demand.attitude_error, agree_until }
             })
         }
         _ => Ok(truth),
     }
 }
-
-/// A change of the start that grows to more than so many times the turn is one of a chaotic motion.
-const CHAOTIC: f64 = 100.0;
 
 impl Reference {
     pub(super) fn new(
@@ -158,7 +158,7 @@ impl Reference {
         let count = looks(SHORT);
         let at: Vec<f64> = times(horizon, count).map(Dd::hi).collect();
         let accuracy = AGREEMENT * demand.attitude_error / times_longer;
-        let wanted = Wanted { accuracy, bearable: 1e-3, patience: 0.1 };
+        let wanted = Wanted { accuracy, bearable: 1e-3, attainable: 1e-3, patience: 0.1 };
         let truth = Truth::within(body, start, start_time, &at, wanted, &mut |_| {})
             .map_err(|error| AdviseError::of(error, demand.attitude_error))?;
         let points: Vec<_> =

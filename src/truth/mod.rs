@@ -36,6 +36,7 @@ pub use follow::AGREEMENT;
 pub use judge::{Care, Judged, Look};
 pub(crate) use truth::Wanted;
 pub use truth::{Truth, evenly};
+pub(crate) use turning::Turning;
 
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, rotation_angle};

@@ -38,6 +38,8 @@ pub(crate) struct Wanted {
     pub(crate) accuracy: f64,
     /// Where they do not, to this one at least, rad.
     pub(crate) bearable: f64,
+    /// Nothing is followed where a start with another last digit is further away at the end, rad.
+    pub(crate) attainable: f64,
     /// For how long runs in double-double may go on, s, where two in `f64` do not agree.
     pub(crate) patience: f64,
 }
@@ -137,6 +139,11 @@ impl Truth {
         let from = truth.looks[0].point;
         let start = from.to_f64();
         let turning = Turning::of(body, start, start_time, times, heed)?;
+        if f64::EPSILON * turning.growth > wanted.attainable && !turning.is_chaotic() {
+            // no run can be asked for that
+            (truth.span, truth.turning) = (until, Some(turning));
+            return Ok(truth);
+        }
         let (mut best, mut nearest, mut jump) = (pair::Pair::default(), f64::INFINITY, None);
         for attempt in 0..ATTEMPTS {
             let legs = pair::smooth(&turning, AIM * wanted.accuracy, libm::pow(FINER, f64::from(attempt)));
@@ -166,8 +173,9 @@ impl Truth {
         }
         if nearest > wanted.accuracy {
             let seconds = truth.follower.seconds(&from, turning.angle)?;
-            if seconds <= wanted.patience {
-                let mut truth = Truth::from_point(body, truth.start, start_time, times, wanted.accuracy)?;
+            let slow = seconds > wanted.patience;
+            let doubled = || Truth::from_point(body, truth.start, start_time, times, wanted.accuracy).ok();
+            if let Some(mut truth) = (!slow).then(doubled).flatten() {
                 truth.turning = Some(turning);
                 return Ok(truth);
             }

@@ -2,7 +2,7 @@
 
 use super::together::together;
 use super::{TruthError, attitude_error};
-use crate::body::{Body, Clock, Field as _, Point, Time};
+use crate::body::{Body, Clock, Field as _, Point, Problem, Time};
 use crate::method::{AnyMethod, Rk8};
 use crate::rotation::Vec3;
 use crate::run::SOLVED;
@@ -26,6 +26,9 @@ const STRIDE: f64 = 0.05;
 /// The part of the largest torque that a jump is at least.
 const NOTICED: f64 = 1e-9;
 
+/// A change of the start that grows to more than so many times the turn is one of a chaotic motion.
+const CHAOTIC: f64 = 100.0;
+
 /// A small change, relative, and the turn at which its growth is no longer looked at, rad.
 const SMALL: f64 = 1e-8;
 const GROWN: f64 = 0.1;
@@ -38,6 +41,9 @@ pub(super) const MANY: usize = 256;
 
 /// Halvings of a step in which the torque seems to jump: to a millionth of it.
 const HALVINGS: u32 = 20;
+
+/// Under a torque without potential, a turn that the start lets expect may be so many times as long.
+const SLOWED: f64 = 1e3;
 
 /// The rate of a body from piece to piece of its motion.
 #[derive(Clone, Debug)]
@@ -95,7 +101,10 @@ impl Turning {
             let to = if from + span < until { from + span } else { until };
             let steps = libm::ceil(before * (to - from) / COARSE).max(1.0);
             let expected = turning.angle + (until - from) * before;
-            if turning.angle > MOST_TURN || (turning.ends.is_empty() && expected > MOST_TURN) || to <= from {
+            // drag may slow a body down
+            let most = if turning.body.problem() == Problem::Torque { SLOWED * MOST_TURN } else { MOST_TURN };
+            let far = turning.angle > MOST_TURN || (turning.ends.is_empty() && expected > most);
+            if far || to <= from {
                 let reach = if from > 0.0 { from } else { MOST_TURN / before };
                 let (steps, most) = (expected.max(turning.angle), MOST_TURN as u64);
                 return Err(TruthError::TooLong { until, steps, most, reach });
@@ -171,6 +180,11 @@ impl Turning {
         end.renormalize();
         let solved = step.worst_residual() <= SOLVED && step.stuck().is_none();
         if end.is_finite() && solved { Ok(end) } else { Err(TruthError::Lost { time: from }) }
+    }
+
+    /// Whether small changes grow far faster than the turn.
+    pub(crate) fn is_chaotic(&self) -> bool {
+        self.growth > CHAOTIC * self.angle.max(1.0)
     }
 
     /// The largest rate up to the end, rad/s.
