@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::candidate::Candidate;
 use super::progress::Stage;
 use super::reference::{Reference, Span};
-use super::trial::{Trial, trial};
+use super::trial::{SAME_RUN, Trial, trial};
 use super::{Advice, AdviseError, Choice, Demand, Predicted, Progress, Setting};
 use crate::body::Body;
 
@@ -31,8 +31,8 @@ const RUNGS: usize = 14;
 const REFINEMENTS: usize = 6;
 
 /// What part of the demand is aimed at, and between which parts a setting is taken.
-const AIM: f64 = 0.5;
-const TAKEN: (f64, f64) = (0.15, 0.8);
+const AIM: f64 = 0.4;
+const TAKEN: (f64, f64) = (0.12, 1.0 / SAME_RUN);
 
 pub(super) struct Calibration<'a> {
     body: &'a Body,

@@ -8,8 +8,9 @@ use crate::num::Dd;
 use crate::rotation::{Vec3, rotation_angle};
 use crate::truth::{Truth, TruthError, Turning, Wanted};
 
-/// Most looks at a motion, at equal times: over shorter ways one in two radians.
-const MOST_LOOKS: f64 = 128.0;
+/// Looks at a motion, at equal times, at least and at most: between these two to four a radian.
+const LEAST_LOOKS: f64 = 32.0;
+const MOST_LOOKS: f64 = 512.0;
 
 /// The turn, rad, over which each candidate is tried first.
 const SHORT: f64 = 512.0;
@@ -218,9 +219,9 @@ impl Reference {
     }
 }
 
-/// Looks at a motion that turns by `angle` rad: a power of two, at least 8.
+/// Looks at a motion that turns by `angle` rad: a power of two.
 fn looks(angle: f64) -> u64 {
-    libm::exp2(libm::floor(libm::log2((0.5 * angle).clamp(8.0, MOST_LOOKS)))) as u64
+    libm::exp2(libm::ceil(libm::log2((2.0 * angle).clamp(LEAST_LOOKS, MOST_LOOKS)))) as u64
 }
 
 /// `count` equal times up to `horizon`, s since the start.

@@ -104,7 +104,7 @@ pub(super) fn trial(
 }
 
 /// Between two looks the error may be larger than at them by about this factor.
-const SAME_RUN: f64 = 1.25;
+pub(super) const SAME_RUN: f64 = 1.5;
 
 impl Trial {
     /// The largest attitude error up to `until`: as the second half of the run grew, between √t and t. Where the energy `drifts`,

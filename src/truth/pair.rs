@@ -26,7 +26,7 @@ const ADAPTIVE: f64 = 4e-3;
 
 /// Steps of `tsit5` a radian at a tolerance of 1e-12, and the most that it takes.
 const SMALL_STEPS: f64 = 40.0;
-const MOST_SMALL_STEPS: f64 = 2e6;
+const MOST_SMALL_STEPS: f64 = 1e6;
 
 /// Θ counts as this at least.
 const LEAST_ANGLE: f64 = 30.0;

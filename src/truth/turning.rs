@@ -34,7 +34,7 @@ const SMALL: f64 = 1e-8;
 const GROWN: f64 = 0.1;
 
 /// Looks at the torque at most, about.
-const MOST_LOOKS: f64 = 1e6;
+const MOST_LOOKS: f64 = 3e5;
 
 /// Jumps after which no more are counted.
 pub(super) const MANY: usize = 256;

@@ -38,7 +38,8 @@ const REASONS: [&str; 6] = ["conditioning", "chaotic", "jumps", "undecided", "un
 
 /// What became of a demand.
 enum Outcome {
-    Named { met: bool, worse: f64 },
+    Met,
+    Missed(String),
     Refused(usize),
 }
 
@@ -65,8 +66,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut slow = 0;
     for (kind, name) in KINDS.iter().enumerate() {
         let of: Vec<_> = judged.iter().filter(|judged| judged.0 == kind).collect();
-        let met = of.iter().filter(|(_, o, ..)| matches!(o, Outcome::Named { met: true, .. })).count();
-        let missed = of.iter().filter(|(_, o, ..)| matches!(o, Outcome::Named { met: false, .. })).count();
+        let met = of.iter().filter(|(_, o, ..)| matches!(o, Outcome::Met)).count();
+        let missed = of.iter().filter(|(_, o, ..)| matches!(o, Outcome::Missed(_))).count();
         let refused =
             |reason| of.iter().filter(|(_, o, ..)| matches!(o, Outcome::Refused(r) if *r == reason)).count();
         let reasons: Vec<usize> = (0..REASONS.len()).map(refused).collect();
@@ -75,8 +76,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let cells = counts.iter().chain(&reasons).map(|n| count(*n));
         table.push(std::iter::once(Cell::from(*name)).chain(cells));
         for (_, outcome, ..) in &of {
-            if let Outcome::Named { met: false, worse } = outcome {
-                report.failures.push(format!("{name}: the error is {worse:.2} times what was stated"));
+            if let Outcome::Missed(how) = outcome {
+                report.failures.push(format!("{name}: {how}"));
             }
         }
         let mut thoughts: Vec<f64> = of.iter().map(|judged| judged.2).collect();
@@ -136,7 +137,15 @@ fn judged(problem: &Problem, advice: Result<Advice, AdviseError>) -> Result<Outc
     if error > most {
         error = largest(problem, start.to_dd(), &looks, |clock, body| taylor.prepare_dd(clock, body))?;
     }
-    Ok(Outcome::Named { met: error <= most, worse: error / most })
+    if error <= most {
+        return Ok(Outcome::Met);
+    }
+    let (asked, until) = (problem.demand.attitude_error, problem.demand.until);
+    let (value, factor) = (best.attitude_error.value, best.attitude_error.factor);
+    Ok(Outcome::Missed(format!(
+        "{} {:?} to {until:.3e} s: {error:.2e} rad; {asked:.2e} were asked for, {value:.2e} within {factor:.2} stated",
+        best.method, best.setting
+    )))
 }
 
 fn reason(error: &AdviseError) -> usize {
