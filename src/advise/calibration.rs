@@ -99,8 +99,8 @@ impl<'a> Calibration<'a> {
         for (place, (candidate, first)) in found.into_iter().enumerate() {
             let seconds = first.choice.seconds.value;
             let more = place < most && seconds <= multiple * quickest && !self.late(seconds);
-            // one at least is run, and another if none of those that were run is fit
-            if !fit.is_empty() && !more {
+            // one at least is run, and another few if none of those that were run is fit
+            if (!fit.is_empty() || place >= most) && !more {
                 // a short time may have been the whole
                 let seen = first.choice.whole_time && self.excess(&first.choice) + self.doubt() <= TAKEN.1;
                 if seen {

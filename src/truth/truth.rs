@@ -1,5 +1,7 @@
 //! The true motion from one start, known at its looks and near them.
 
+use std::time::Instant;
+
 use super::follow::Follower;
 use super::turning::{self, Turning};
 use super::{AGREEMENT, TruthError, attitude_error, pair};
@@ -52,7 +54,10 @@ const ATTEMPTS: i32 = 4;
 /// The part of an accuracy that runs are made for.
 const AIM: f64 = 0.2;
 
-/// The same, one after the other, for runs across a jump of the torque, whose error is not that of smooth ones.
+/// Of what rounding amounts to at most, the part by which two runs that agreed were seen off Taylor's method in double-double.
+const ROUNDED: f64 = 0.1;
+
+/// Parts of an accuracy, one after the other, for runs across a jump of the torque, whose error is not that of smooth ones.
 const JUMPING: [f64; 3] = [0.1, 1e-3, 1e-5];
 
 /// The motion at a look.
@@ -155,10 +160,18 @@ impl Truth {
             if worst <= nearest {
                 (best, nearest) = (pair, worst);
             }
-            if worst <= wanted.accuracy {
+            if worst <= wanted.accuracy.max(turning.rounding()) {
                 break;
             }
-            // shorter steps do not help: rounding, chaos, or a torque that jumps
+            // a closure may do what no law on series does
+            if attempt == 0 && body.forces().iter().any(|force| force.series.is_none()) {
+                let parted = times.get(best.agreed(wanted.accuracy)).copied().unwrap_or(until);
+                jump = turning.jumps(start, parted);
+                if jump.is_some() {
+                    break;
+                }
+            }
+            // shorter steps do not help: chaos, or a torque that jumps
             if attempt > 0 && (worst.is_infinite() || worst > SHRINKS * before) {
                 let parted = times.get(best.agreed(wanted.accuracy)).copied().unwrap_or(until);
                 jump = turning.jumps(start, parted);
@@ -167,7 +180,11 @@ impl Truth {
         }
         if let Some((time, count)) = jump {
             nearest = f64::INFINITY;
+            let begun = Instant::now();
             for error in JUMPING {
+                if begun.elapsed().as_secs_f64() > wanted.patience {
+                    break;
+                }
                 let legs = pair::jumping(&turning, error * wanted.accuracy).filter(|_| count < turning::MANY);
                 let Some(legs) = legs else { break };
                 let pair = pair::run(&turning, start, times, &legs, heed)?;
@@ -203,9 +220,11 @@ impl Truth {
         Ok(truth)
     }
 
-    /// The largest angle between the two runs behind a motion that is known from runs in `f64`, rad; 0 of any other.
+    /// How far the motion itself may be off, rad, where it is known from runs in `f64`: what the two are apart, and at least what both
+    /// may have rounded alike; 0 of any other.
     pub(crate) fn apart(&self) -> f64 {
-        self.apart.unwrap_or(0.0)
+        let rounded = self.turning.as_ref().map_or(0.0, |turning| ROUNDED * turning.rounding());
+        self.apart.map_or(0.0, |apart| apart.max(rounded))
     }
 
     /// When the torque first jumps, s since the start, where that was noticed.

@@ -26,11 +26,8 @@ const STRIDE: f64 = 0.05;
 /// The part of the largest torque that a jump is at least.
 const NOTICED: f64 = 1e-9;
 
-/// A change of the start that grows to more than so many times the turn is one of a chaotic motion.
-const CHAOTIC: f64 = 100.0;
-
 /// A small change, relative, and the turn at which its growth is no longer looked at, rad.
-const SMALL: f64 = 1e-8;
+const SMALL: f64 = 1e-11;
 const GROWN: f64 = 0.1;
 
 /// Looks at the torque at most, about.
@@ -182,9 +179,15 @@ impl Turning {
         if end.is_finite() && solved { Ok(end) } else { Err(TruthError::Lost { time: from }) }
     }
 
-    /// Whether small changes grow far faster than the turn.
+    /// Whether a change of the last digits of the start grows to what is seen: far more than the turn does by itself.
     pub(crate) fn is_chaotic(&self) -> bool {
-        self.growth > CHAOTIC * self.angle.max(1.0)
+        self.growth * SMALL > GROWN
+    }
+
+    /// What the rounding of runs in `f64` amounts to at most, rad, about: in steps of a tenth of a radian it walks at random, and the
+    /// attitude goes on turning.
+    pub(super) fn rounding(&self) -> f64 {
+        f64::EPSILON * libm::sqrt(0.1 * self.angle) * self.angle
     }
 
     /// The largest rate up to the end, rad/s.

@@ -10,16 +10,16 @@ use polhode_files::error::{Error, unexpected};
 
 /// What acts.
 pub(super) const KINDS: [&str; 11] = [
-    "constant torque, body",
-    "constant torque, space",
+    "constant torque in the body",
+    "constant torque in space",
     "spin-up",
     "weight",
     "gravity gradient",
-    "gravity gradient, ellipse",
+    "gravity gradient on an ellipse",
     "drag",
     "quadratic drag",
-    "late thruster, smooth",
-    "thruster, switched",
+    "smooth late thruster",
+    "switched thruster",
     "gravity gradient and drag",
 ];
 
