@@ -111,7 +111,7 @@ impl Turning {
             turning.ends.push(to);
             turning.rates.push(before.max(after));
             turning.angle += 0.5 * (before + after) * (to - from);
-            if turning.ends.len() % 256 == 0 {
+            if turning.ends.len().is_multiple_of(256) {
                 heed(to / until);
             }
             (from, before) = (to, after);
