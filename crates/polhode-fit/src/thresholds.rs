@@ -112,7 +112,7 @@ thresholds! {
         SAMPLES: usize = 1_500, "samples on which these widths are compared", UNMEASURED;
         SAME: f64 = 1e-3, "relative difference of two products that are one", UNMEASURED;
         APART: f64 = 2.0, "factor from which on two products are not taken for each other", UNMEASURED;
-        HELPLESS: f64 = 0.3,
+        HELPLESS: f64 = 0.1,
             "share of the size of the derivatives that the fastest body reaches in units that are not tried", UNMEASURED;
         OUT_OF_QUESTION: f64 = 4.0, "times what is left as read, from which other units explain less", UNMEASURED;
         OPEN: f64 = 10.0, "difference of log-likelihood up to which units explain a record equally well", UNMEASURED;

@@ -92,9 +92,9 @@ impl Motion {
             let factors = core::iter::successors(Some(1e-4), |f| Some(f * SECOND)).take_while(|f| *f < 1.0);
             products.extend(factors.map(UnitProduct::numbered));
         }
-        // no body has ratios beyond 1
+        // no body has ratios beyond 1; noise and drag may make most of the derivatives
         let [slopes, squares] = self.sums.sizes();
-        let least = HELPLESS * (slopes / squares).sqrt();
+        let least = HELPLESS * (slopes * (1.0 - self.noise).max(0.0) / squares).sqrt();
         products.retain(|p| p.factor * turn <= core::f64::consts::PI && p.factor >= least);
         let tried = products.into_iter().filter_map(|p| self.body(Some(p), p.factor));
         let mut tried: Vec<Found> =
