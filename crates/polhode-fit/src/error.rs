@@ -80,7 +80,8 @@ pub enum FitError {
     },
     /// Torques drive the body: its motion is not that of a free one.
     #[error(
-        "the body is driven, and no tensor can be told: {}; throw the body, cut out of the record what is free, or make sure of its units",
+        "the body is driven, and no tensor can be told: {}; throw the body, cut out of the record what is free, or \
+         make sure of its units",
         driven(*unexplained, *growth, *pull)
     )]
     Driven {
