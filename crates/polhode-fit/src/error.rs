@@ -62,7 +62,7 @@ pub enum FitError {
         "the rates change, but the iteration did not converge in {rounds} rounds at any radius of the test functions: the \
          noise of {noise:.3e} rad/s may hide the motion, torques may act, or the body may be slender; record longer, \
          with a larger wobble, or set the radius{}{}{}{}",
-        slowed(*fall), smaller(*factor), known(axes), left_handed(mirror.as_ref())
+        slowed(*fall), smaller(*factor), known(axes), left_handed(mirror.as_deref())
     )]
     Unsettled {
         /// Rounds of reweighting at each radius.
@@ -76,7 +76,7 @@ pub enum FitError {
         /// Relative rate at which the rotation slows, 1/s, where it does and no torque was to be fitted.
         fall: Option<f64>,
         /// Moments, shares of the trace, of the body that explains the record if its axes are left-handed.
-        mirror: Option<[f64; 3]>,
+        mirror: Option<Box<[f64; 3]>>,
     },
     /// Torques drive the body: its motion is not that of a free one.
     #[error(
@@ -215,19 +215,19 @@ pub enum FitError {
          of its products and its unit, widen its deviations, or leave it out{}",
         six(prior),
         six(record),
-        left_handed(mirror.as_ref())
+        left_handed(mirror.as_deref())
     )]
     PriorContradicted {
         /// Entries xx, yy, zz, xy, xz, yz of the prior, over its trace.
         prior: [f64; 6],
         /// The same of what the record says.
-        record: [f64; 6],
+        record: Box<[f64; 6]>,
         /// Square of their distance in standard deviations of it.
         chi2: f64,
         /// Its degrees of freedom.
         dof: usize,
         /// Moments, shares of the trace, of the body that agrees with the prior if the axes of the record are left-handed.
-        mirror: Option<[f64; 3]>,
+        mirror: Option<Box<[f64; 3]>>,
     },
     /// The prior tensor has another size than the known quantity says.
     #[error(

@@ -72,7 +72,7 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         };
     fitted(record).map_err(|mut error| {
         if let FitError::Unsettled { mirror, .. } | FitError::PriorContradicted { mirror, .. } = &mut error {
-            *mirror = reversed(record).and_then(|other| Some(fitted(&other).ok()?.principal));
+            *mirror = reversed(record).and_then(|other| Some(Box::new(fitted(&other).ok()?.principal)));
         }
         error
     })

@@ -48,7 +48,7 @@ fn toss(level: usize, k: u64) -> Result<Toss, Error> {
     let body = Inertia::from_tensor((j + j.transpose()) / 2.0).map_err(unexpected)?;
     let samples = [100, 200, 300][(k % 3) as usize];
     let times: Vec<f64> = (0..=samples).map(|i| f64::from(i) / 100.0).collect();
-    let drag = if k % 2 == 0 { 0.0 } else { 1e-2 };
+    let drag = if k.is_multiple_of(2) { 0.0 } else { 1e-2 };
     let acting =
         Disturbances::default().with_relative_drag(drag).with_torque_noise(TORQUE_NOISES[level] / 3.0);
     let sensor = Gyroscope::default()
@@ -99,6 +99,9 @@ enum Kind {
     Wrong(f64),
 }
 
+/// Whether a record is of a kind.
+type Is = fn(&Kind) -> bool;
+
 /// Counts of each kind at each level of torque noise, and what should not have happened.
 pub(super) fn table(context: &Context) -> Result<(Table, Vec<String>), Error> {
     let (right, wrong, every) = context.scale.pick((2, 1, 12), (20, 1, 2), (250, 10, 1));
@@ -131,7 +134,7 @@ pub(super) fn table(context: &Context) -> Result<(Table, Vec<String>), Error> {
             let each = parts.iter().zip(&outcomes);
             each.filter(|((l, _, kind), o)| *l == level && is_kind(kind) && is_outcome(**o)).count() as u64
         };
-        let kinds: [(&str, fn(&Kind) -> bool); 3] = [
+        let kinds: [(&str, Is); 3] = [
             ("right", |k| matches!(k, Kind::Right)),
             ("mirrored", |k| matches!(k, Kind::Mirrored)),
             ("wrong", |k| matches!(k, Kind::Wrong(_))),

@@ -92,7 +92,7 @@ fn answer(e: &Estimate) -> Vec<Block> {
         parts.push(Block::Paragraph(format!("Systematic: if the sensor is off by {}.", sizes(e))));
     }
     let facts = [unexplained(e), mirror(e)].into_iter().flatten();
-    parts.extend(facts.map(|fact| Part::Paragraph(format!("{}{}.", fact[..1].to_uppercase(), &fact[1..]))));
+    parts.extend(facts.map(|fact| Block::Paragraph(format!("{}{}.", fact[..1].to_uppercase(), &fact[1..]))));
     if let Some(prior) = e.prior {
         parts.push(Block::Paragraph(format!(
             "With a prior tensor; χ² of its distance from the record is {:.1} at {} degrees of freedom.",
