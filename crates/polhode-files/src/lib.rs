@@ -44,4 +44,4 @@ pub mod trajectory;
 
 pub use error::{Broken, Error, Rule, TableError};
 pub use read::{read, read_own};
-pub use table::{ColumnNames, ReadOptions};
+pub use table::{ColumnNames, ReadOptions, SignedAxes};

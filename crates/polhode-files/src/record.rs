@@ -104,7 +104,9 @@ fn found(
         match row.and_then(|row| inputs.push(&table).map(|()| row)) {
             Ok(row) => {
                 owner.check(&table, before == Some(row[0]))?;
-                rows.push((usize::try_from(table.line()).unwrap_or(usize::MAX), row));
+                let [time, x, y, z] = row;
+                let [x, y, z] = reading.axes.map_or([x, y, z], |axes| axes.apply([x, y, z]));
+                rows.push((usize::try_from(table.line()).unwrap_or(usize::MAX), [time, x, y, z]));
             }
             // a first row that is text is no row of numbers
             Err(error) if rows.is_empty() && matches!(error.rule, Rule::Number | Rule::Comma) => {

@@ -8,7 +8,7 @@ use crate::physical::failure::SolverFailure;
 use crate::report::averages::AverageAxis;
 use crate::report::identifiability::Identifiability;
 use crate::thresholds::test_functions::TESTS_PER_RADIUS;
-use crate::verdict::mistaken_unit::{MistakenUnit, alternatives};
+use crate::units::product::{UnitProduct, alternatives};
 
 /// Two constraints that no physically valid tensor meets together.
 #[non_exhaustive]
@@ -61,8 +61,8 @@ pub enum FitError {
     #[error(
         "the rates change, but the iteration did not converge in {rounds} rounds at any radius of the test functions: the \
          noise of {noise:.3e} rad/s may hide the motion, torques may act, or the body may be slender; record longer, \
-         with a larger wobble, or set the radius{}{}{}",
-        slowed(*fall), smaller(*factor), known(axes)
+         with a larger wobble, or set the radius{}{}{}{}",
+        slowed(*fall), smaller(*factor), known(axes), left_handed(mirror.as_deref())
     )]
     Unsettled {
         /// Rounds of reweighting at each radius.
@@ -75,6 +75,22 @@ pub enum FitError {
         axes: Vec<AverageAxis>,
         /// Relative rate at which the rotation slows, 1/s, where it does and no torque was to be fitted.
         fall: Option<f64>,
+        /// Moments, shares of the trace, of the body that explains the record if its axes are left-handed.
+        mirror: Option<Box<[f64; 3]>>,
+    },
+    /// Torques drive the body: its motion is not that of a free one.
+    #[error(
+        "the body is driven, and no tensor can be told: {}; throw the body, cut out of the record what is free, or \
+         make sure of its units",
+        driven(*unexplained, *growth, *pull)
+    )]
+    Driven {
+        /// Share of |dω/dt|² that the motion of a free body under drag and a constant torque leaves unexplained.
+        unexplained: Option<f64>,
+        /// Relative change of |J ω| per second.
+        growth: f64,
+        /// Standard deviations by which the physical law moves the tensor.
+        pull: f64,
     },
     /// Nowhere in the record does the body rotate freely.
     #[error(
@@ -90,25 +106,30 @@ pub enum FitError {
         /// Largest of a flight.
         most: f64,
     },
-    /// Another unit of the rates or times explains the record far better.
-    /// Another unit of the rates or times explains the record far better, or as well by a body that is no sphere.
+    /// Other units of the rates or times explain the record, and those in which it was read do not.
     #[error(
-        "the units look mistaken: with rate x time {factor:.4e} times as large ({}) {}; name the units, or switch this \
-         check off",
-        alternatives(mistakes), improvement(*misfit, *better, *sphere)
+        "the units look mistaken: {}? A free body then leaves {} of the squared derivative of the rates unexplained, and {} \
+         as read; the motion tells the product of rate and time alone. Name the units, or switch this check off",
+        alternatives(products), per_cent(*better), per_cent(*unexplained)
     )]
     Units {
-        /// Factor on rate × time.
-        factor: f64,
-        /// What may have happened, the smallest factor first.
-        mistakes: Vec<MistakenUnit>,
-        /// χ² per degree of freedom as given.
-        misfit: f64,
-        /// The same with the factor.
+        /// What the units may be, the smallest product first.
+        products: Vec<UnitProduct>,
+        /// Share of |dω/dt|² that free bodies leave unexplained in the units that were read.
+        unexplained: f64,
+        /// The same in the best of the others.
         better: f64,
-        /// Distance from the sphere, as a share of the trace, of the tensor that explains the record as given, where the
-        /// misfits do not tell the units apart.
-        sphere: Option<f64>,
+    },
+    /// The body turns by more than half a turn from sample to sample.
+    #[error(
+        "from one sample to the next the body turns by {turn:.3e} rad, with a time step of {step:.3e} s: beyond pi = 3.14 no \
+         motion can be told from its samples; the units of rates or times are probably mistaken, else record faster"
+    )]
+    Undersampled {
+        /// Median of |ω| Δt, rad.
+        turn: f64,
+        /// Median of Δt, s.
+        step: f64,
     },
     /// Limits that exclude each other.
     #[error("{} and {} exclude each other: each would have to be relaxed by {:.3e} of the trace", demand(&.0.first), demand(&.0.second), .0.gap)]
@@ -191,19 +212,22 @@ pub enum FitError {
     #[error(
         "the prior tensor and the record exclude each other: (xx, yy, zz, xy, xz, yz) over the trace is {} by the prior \
          and {} by the record, chi squared {chi2:.1} of {dof} degrees of freedom; check the axes of the prior, the signs \
-         of its products and its unit, widen its deviations, or leave it out",
+         of its products and its unit, widen its deviations, or leave it out{}",
         six(prior),
-        six(record)
+        six(record),
+        left_handed(mirror.as_deref())
     )]
     PriorContradicted {
         /// Entries xx, yy, zz, xy, xz, yz of the prior, over its trace.
         prior: [f64; 6],
         /// The same of what the record says.
-        record: [f64; 6],
+        record: Box<[f64; 6]>,
         /// Square of their distance in standard deviations of it.
         chi2: f64,
         /// Its degrees of freedom.
         dof: usize,
+        /// Moments, shares of the trace, of the body that agrees with the prior if the axes of the record are left-handed.
+        mirror: Option<Box<[f64; 3]>>,
     },
     /// The prior tensor has another size than the known quantity says.
     #[error(
@@ -295,13 +319,44 @@ fn nearest(torque: Option<f64>, most: f64) -> String {
     })
 }
 
-fn improvement(misfit: f64, better: f64, sphere: Option<f64>) -> String {
-    match sphere {
-        Some(distance) => format!(
-            "an ordinary body moves like this; as given only one whose moments agree to {distance:.1e} of their sum does"
-        ),
-        None => format!("the misfit per equation falls from {misfit:.3e} to {better:.3e}"),
+/// A share in per cent, to two digits.
+pub(crate) fn per_cent(share: f64) -> String {
+    let value = 100.0 * share;
+    if value >= 10.0 {
+        format!("{value:.0} %")
+    } else if value >= 1.0 {
+        format!("{value:.1} %")
+    } else if value >= 1e-3 {
+        format!("{} %", polhode::num::Shown(format!("{value:.1e}").parse().unwrap_or(value)))
+    } else {
+        "less than 0.001 %".into()
     }
+}
+
+fn left_handed(moments: Option<&[f64; 3]>) -> String {
+    moments.map_or(String::new(), |[a, b, c]| {
+        format!(
+            ". A mirrored axis would explain it: with left-handed axes, as with one reversed or two exchanged, the record is \
+             that of I1 : I2 : I3 = {a:.4} : {b:.4} : {c:.4}"
+        )
+    })
+}
+
+fn driven(unexplained: Option<f64>, growth: f64, pull: f64) -> String {
+    let mut facts = Vec::new();
+    if let Some(share) = unexplained.filter(|share| *share >= 0.01) {
+        facts.push(format!(
+            "free motion with drag and a constant torque leaves {} of the squared derivative of the rates unexplained",
+            per_cent(share)
+        ));
+    }
+    if growth > 0.0 && growth.is_finite() {
+        facts.push(format!("|J w| grows by {:.2} per cent per second", 100.0 * growth));
+    }
+    if pull > 1.0 {
+        facts.push(format!("the physical law moves the tensor by {pull:.1} standard deviations"));
+    }
+    facts.join(", ")
 }
 
 fn slowed(fall: Option<f64>) -> String {

@@ -18,6 +18,7 @@ use crate::physical::failure::SolverFailure;
 use crate::physical::nearest::nearest;
 use crate::report::estimate::Estimate;
 use crate::report::facts::Facts;
+use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueNoise, TorqueScope};
@@ -25,11 +26,13 @@ use crate::signal::noise;
 use crate::signal::normalised::{Normalised, normalised};
 use crate::signal::stretch::Stretch;
 use crate::solve::joint::Joint;
-use crate::solve::ladder::{Demand, Halt, climb};
-use crate::solve::other_units::Better;
+use crate::solve::ladder::{Demand, climb};
 use crate::solve::radius::Failure;
 use crate::solve::rounds::Noise;
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
+use crate::units::Motion;
+use crate::verdict::driven::check_driven;
+use crate::verdict::units::open_units;
 
 /// Fits one tensor to all segments of a record.
 ///
@@ -62,10 +65,17 @@ use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 /// look mistaken; limits that contradict each other or the physical law; a program without a certified answer.
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
-    match if settings.leave_out_spikes { record.without_spikes() } else { None } {
-        Some((spikes, rest)) => fit_to(&rest, settings, spikes),
-        None => fit_to(record, settings, Vec::new()),
-    }
+    let fitted =
+        |record: &Record| match if settings.leave_out_spikes { record.without_spikes() } else { None } {
+            Some((spikes, rest)) => fit_to(&rest, settings, spikes),
+            None => fit_to(record, settings, Vec::new()),
+        };
+    fitted(record).map_err(|mut error| {
+        if let FitError::Unsettled { mirror, .. } | FitError::PriorContradicted { mirror, .. } = &mut error {
+            *mirror = reversed(record).and_then(|other| Some(Box::new(fitted(&other).ok()?.principal)));
+        }
+        error
+    })
 }
 
 /// The same of a record whose spikes were left out.
@@ -83,16 +93,18 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         noise: noise_of(settings, rms, variance),
         columns: &columns,
         alone: &alone,
-        units: settings.check_units && input.is_none(),
     };
-    let mut chosen = climb(&stretches, demand, variance).map_err(|halt| match halt {
-        Halt::Failure(failure) => without_estimate(failure, record, settings, &stretches, rms),
-        Halt::Units(misfit, better) => mistaken(misfit, &better),
-    })?;
+    // wheels and torques of the record are in units of their own
+    let motion = if input.is_none() { Motion::new(&stretches, variance) } else { None };
+    let open = open_units(record, &stretches, motion.as_ref().filter(|_| settings.check_units), rms)?;
+    let mut chosen = climb(&stretches, demand, variance)
+        .map_err(|failure| without_estimate(failure, record, settings, &stretches, rms))?;
     let case = Case { stretches: &stretches, settings, variance, rms, is_sized: input.is_some() };
     let (supported, completed) = match case.judge(&chosen)? {
-        Verdict::MistakenUnit(better) => return Err(mistaken(chosen.weak.misfit(variance), &better)),
-        Verdict::Unsettled { factor } => return Err(case.unsettled(&chosen.weak, factor)),
+        Verdict::Unsettled => {
+            let factors = open.iter().flat_map(|others| &others.products).map(|product| product.factor);
+            return Err(case.unsettled(&chosen.weak, factors.filter(|f| *f > 1.0).min_by(f64::total_cmp)));
+        }
         Verdict::UntoldTorque { names, rank } => return Err(FitError::Untold { names, rank }),
         Verdict::Undetermined(what) => return Err(FitError::Unidentifiable(Box::new(what))),
         Verdict::Completed(supported, by) => {
@@ -102,7 +114,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         }
         Verdict::Determined(supported) => (supported, None),
     };
-    let Supported { identifiability, prior, better } = *supported;
+    let Supported { identifiability, prior } = *supported;
     let weak = &chosen.weak;
     let misfit = weak.misfit(variance);
     let information = || FitError::Solver(SolverFailure::Information);
@@ -132,7 +144,9 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         prior: agreed,
         dissipation: &dissipation,
     };
-    facts.report(answer, identifiability, better.as_ref())
+    let estimate = facts.report(answer, identifiability, motion.as_ref(), open.as_ref())?;
+    check_driven(&estimate, motion.as_ref(), &stretches, rms)?;
+    Ok(estimate)
 }
 
 /// The columns that every model of the torque has beside its own.
@@ -206,16 +220,6 @@ pub(super) fn noise_of(settings: &Settings, rms: f64, variance: f64) -> Noise {
         TorqueNoise::None => Noise::White,
         TorqueNoise::Given(density) => Noise::Given(density / (rms * rms * rms) / variance),
         TorqueNoise::Fitted => Noise::Fitted,
-    }
-}
-
-fn mistaken(misfit: f64, b: &Better) -> FitError {
-    FitError::Units {
-        factor: b.factor,
-        mistakes: b.mistakes.clone(),
-        misfit,
-        better: b.misfit,
-        sphere: b.sphere,
     }
 }
 

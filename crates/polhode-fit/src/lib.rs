@@ -46,6 +46,7 @@ mod signal;
 mod simulate;
 mod solve;
 mod thresholds;
+mod units;
 mod verdict;
 mod wheel;
 
@@ -74,7 +75,7 @@ pub use settings::known::Known;
 pub use settings::sensor::SensorPriors;
 pub use settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
 pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_with};
-pub use verdict::mistaken_unit::MistakenUnit;
+pub use units::product::UnitProduct;
 pub use wheel::{WheelCalibration, calibrate_wheel};
 
 /// Chapters for those who measure.

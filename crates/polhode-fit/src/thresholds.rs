@@ -101,24 +101,26 @@ thresholds! {
         FURTHER: f64 = 1.5, "the same of each further coefficient, beyond that", UNMEASURED;
         HOPE: f64 = 0.5, "share of it that the equations without a torque must promise before it is fitted", UNMEASURED;
     }
-    units: "mistaken units" {
-        EQUAL: f64 = 50.0, "difference of chi squared up to which units explain a record equally well", UNMEASURED;
-        ANY: f64 = 1e12, "a factor beyond those of all units", "a_drowned_spin_tells_its_axis_and_no_mistake_of_units";
-        LISTED: usize = 3, "units that a message lists; more of them tell none", UNMEASURED;
-        EXPLAINED: f64 = 2.0,
-            "largest misfit of a unit that explains a record", "mistaken_units_are_named_where_no_tensor_settles";
-        HOPELESS: f64 = 10.0 * EXPLAINED,
-            "misfit of the first rounds from which no unit comes to explain a record", UNMEASURED;
-        FAR: f64 = 20.0,
-            "fall of the misfit that torque noise is not likely to hide", "mistaken_units_are_found_where_torques_would_explain_the_record";
-        SURELY: f64 = 10.0,
-            "standard deviations by which the unit that was read must explain less than one that noise explains", UNMEASURED;
-        SPHERICAL: f64 = 0.01,
-            "distance from the sphere, over the trace, below which another unit is asked for", UNMEASURED;
-        FARTHER: f64 = 20.0, "how much farther from the sphere the body must be in the other unit", UNMEASURED;
-        SAMPLES: usize = 1_500, "samples on which units are tried first", UNMEASURED;
-        CREDIBLE: f64 = 0.2,
-            "largest deviation of an estimate that supports its unit, over its distance from the sphere", UNMEASURED;
+    units: "units of rate and time" {
+        RADII: usize = 8, "widths of test functions, each twice the one before, at which a record is looked at", UNMEASURED;
+        TORQUES: [f64; 6] = [0.1, 1.0, 10.0, 1e2, 1e3, 1e4],
+            "torque noise over the noise of the rates in the derivatives of the rates", UNMEASURED;
+        STEPS: usize = 40, "most steps of least squares to the nearest free body", UNMEASURED;
+        GAINED: f64 = 1e-7, "relative gain of a step after which there is no further", UNMEASURED;
+        RAISED: f64 = 1e8, "damping of a step that is not raised further", UNMEASURED;
+        SMALLEST: f64 = 1e-3, "least share of the trace by which a start is inside of the physical law", UNMEASURED;
+        SAMPLES: usize = 1_500, "samples on which these widths are compared", UNMEASURED;
+        SAME: f64 = 1e-3, "relative difference of two products that are one", UNMEASURED;
+        APART: f64 = 2.0, "factor from which on two products are not taken for each other", UNMEASURED;
+        HELPLESS: f64 = 0.1,
+            "share of the size of the derivatives that the fastest body reaches in units that are not tried", UNMEASURED;
+        OUT_OF_QUESTION: f64 = 4.0, "times what is left as read, from which other units explain less", UNMEASURED;
+        OPEN: f64 = 10.0, "difference of log-likelihood up to which units explain a record equally well", UNMEASURED;
+        SURELY: f64 = 10.0, "gain of log-likelihood over the units as read of others that are named", UNMEASURED;
+        CLEARER: f64 = 2.0, "times as much is left as read as in units that are named", UNMEASURED;
+        EXPLAINED: f64 = 0.1, "largest share of the squared derivatives that is left in units that explain a record", UNMEASURED;
+        LISTED: usize = 3, "units that a message lists", UNMEASURED;
+        SECOND: f64 = 1.333_521_432_163_324, "ratio of one possible rate of numbered samples to the next: eight a decade", UNMEASURED;
     }
     radius: "the half width of the test functions" {
         SHORTEST: f64 = 0.5, "shortest radius, rad of the motion", UNMEASURED;
@@ -129,7 +131,6 @@ thresholds! {
         DENSE: f64 = 0.9,
             "equations over samples beyond which their covariance is all but singular", "a_radius_without_room_is_refused";
         PILOT_SAMPLES: usize = 8_000, "samples on which the radius is chosen: more would not change it", UNMEASURED;
-        TRIED: usize = 2, "radii at which a unit is tried before it is dropped", UNMEASURED;
     }
     walk: "columns of a random walk of the offsets" {
         STEPS: usize = 20, "steps of the walk in one stretch", UNMEASURED;
@@ -140,6 +141,12 @@ thresholds! {
             "chi squared of 5 and 6 degrees of freedom with a chance of 1e-6: prior and record exclude each other", DERIVED;
         OUTSIDE: f64 = 6.0,
             "standard deviations of a prior by which it may lie outside limits and law", "contradictions_are_named_with_their_numbers";
+        DRIVEN: f64 = 0.15,
+            "share of the squared derivative of the rates that no drag and constant torque explain, from which a body is driven", "a_body_that_a_hand_drives_gets_no_tensor";
+        GROWN: f64 = 0.1, "relative growth of |J w| over a segment that drag cannot make", UNMEASURED;
+        OUTSIDE_OF_LAW: f64 = 5.0,
+            "standard deviations of the physical tensor from the unconstrained one, beside such growth", UNMEASURED;
+        AUDIBLE: f64 = 0.5, "share of the squared derivative of the rates that noise may be where that of torques is told", UNMEASURED;
         UNTOLD: f64 = 1.0,
             "deviation of a torque, in units of the rate, beyond which the record says nothing of it", "torques_that_a_record_cannot_tell_are_named";
     }
@@ -152,6 +159,8 @@ thresholds! {
         UNCERTAIN: f64 = 5e-3,
             "deviation of the tensor, over the trace, beyond which the covariance is only approximate", UNMEASURED;
         APART: f64 = 3.0, "standard deviations that two moments must be apart to have axes of their own", UNMEASURED;
+        UNEXPLAINED: f64 = 0.01,
+            "share of the squared derivative of the rates from which torques at random are worth a warning", UNMEASURED;
         FEW: usize = 20, "degrees of freedom below which chi squared is no check", UNMEASURED;
     }
     trend: "trends of what a free body keeps, and whiteness" {
@@ -298,11 +307,13 @@ mod tests {
         "equations LOCAL",
         "equations OTHERS",
         "equations UNKNOWNS",
+        "free_body UNKNOWNS",
         "law LARGEST_SHARE",
         "levels SHARE",
         "moments WITH_SLOPE",
         "moments WITH_VALUE",
-        "other_units MISTAKES",
+        "product DEGREE",
+        "sums FEATURES",
         "test_functions LANES",
         "test_functions MOST",
         "test_functions PARTS",

@@ -7,10 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_files::record::{self, ReadOptions};
-use polhode_fit::{
-    Constraint, Disturbances, FitError, Gyroscope, Limit, Record, Settings, Undetermined, fit, simulate,
-    simulate_with,
-};
+use polhode_fit::{Constraint, FitError, Limit, Record, Settings, Undetermined, fit, simulate};
 
 use measured::{distance, entries, example, random_rotation, record, sampled, times, turned};
 
@@ -165,13 +162,14 @@ fn units_mistaken_by_57_are_named() {
     };
     let degrees = 180.0 / std::f64::consts::PI;
     for (unit, factor, hint) in [
-        ("", degrees, "degrees per second taken for radians per second"),
-        ("(deg/s)", 1.0, "radians per second taken for degrees per second"),
-        ("", 30.0 / std::f64::consts::PI, "revolutions per minute taken for radians per second"),
+        ("", degrees, "rates in deg/s read as rad/s"),
+        ("(deg/s)", 1.0, "rates in rad/s read as deg/s"),
+        ("", 30.0 / std::f64::consts::PI, "rates in rpm read as rad/s"),
     ] {
         let record = record::read(&text(unit, factor), "toss.csv", &ReadOptions::default()).unwrap().record;
-        let FitError::Units { mistakes, .. } = refusal(&record) else { panic!("{hint}") };
-        assert_eq!(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>(), [hint]);
+        let FitError::Units { products, unexplained, better } = refusal(&record) else { panic!("{hint}") };
+        assert_eq!(products[0].to_string(), hint);
+        assert!(unexplained > 1e-3 && better < 1e-3 * unexplained, "{hint}: {better} {unexplained}");
         let unchecked = Settings::default().with_check_units(false);
         if let Ok(estimate) = fit(&record, &unchecked) {
             assert!(!estimate.warnings.is_empty());
@@ -179,85 +177,6 @@ fn units_mistaken_by_57_are_named() {
     }
     let right = record::read(&text("(deg/s)", degrees), "toss.csv", &ReadOptions::default()).unwrap().record;
     assert!(fit(&right, &Settings::default()).unwrap().warnings.is_empty());
-}
-
-/// At the unit it is read in no tensor settles; of larger ones that explain it several are named where noise leaves
-/// several, and where it leaves them all the question is asked.
-#[test]
-fn mistaken_units_are_named_where_no_tensor_settles() {
-    let mut random = Random::new(3);
-    let pi = std::f64::consts::PI;
-    let rpm = "radians per second taken for revolutions per minute";
-    let mistakes = [
-        (1.0, pi / 30.0, rpm),
-        (1.0, pi / 180.0, "radians per second taken for degrees per second"),
-        (1e-3, 1.0, "seconds taken for milliseconds"),
-        (1e-6, 1.0, "seconds taken for microseconds"),
-    ];
-    let times = times(10);
-    let thrown = |moments: [f64; 3], omega: [f64; 3], noise: f64, random: &mut Random| {
-        let body = Inertia::from_moments(moments).unwrap();
-        simulate(&body, Vector3::from(omega), &times, noise, random).unwrap()
-    };
-    let read = |rates: &[Vector3<f64>], of_times: f64, of_rates: f64| {
-        let t: Vec<f64> = times.iter().map(|t| t * of_times).collect();
-        let w: Vec<_> = rates.iter().map(|w| w * of_rates).collect();
-        fit(&Record::from_samples(&t, &w).unwrap(), &Settings::default())
-    };
-    for (moments, omega, noise) in [
-        ([1.0, 2.0, 2.6], [0.4, 1.0, -0.3], 5e-2),
-        ([1.0, 1.5, 2.0], [3.0, 0.5, 0.4], 1e-2),
-        ([0.2, 0.35, 0.45], [0.1, 0.2, 1.5], 1e-3),
-    ] {
-        let rates = thrown(moments, omega, noise, &mut random);
-        assert!(read(&rates, 1.0, 1.0).is_ok(), "{moments:?}");
-        for (of_times, of_rates, hint) in mistakes {
-            match read(&rates, of_times, of_rates) {
-                Err(FitError::Units { mistakes, .. }) => {
-                    let named: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
-                    assert_eq!(named, [hint], "{moments:?}");
-                }
-                other => panic!("{moments:?}, {hint}: {other:?}"),
-            }
-        }
-    }
-    // in so much noise the wobble of a small body in the right unit is that of one next to a sphere in another
-    let rates = thrown([1.0, 1.5, 2.0], [3.0, 0.5, 0.4], 5e-2, &mut random);
-    for (of_times, of_rates, hint) in mistakes {
-        let message = read(&rates, of_times, of_rates).unwrap_err().to_string();
-        assert!(
-            message.contains("did not converge") && message.contains("are the units right?"),
-            "{hint}: {message}"
-        );
-    }
-    // next to a sphere two units may do, of which one is right
-    let rates = thrown([1.0, 1.05, 1.1], [1.0, 2.0, 1.0], 1e-3, &mut random);
-    let message = read(&rates, 1.0, pi / 30.0).unwrap_err().to_string();
-    assert!(message.contains(rpm) || message.contains("are the units right?"), "{message}");
-}
-
-/// In a wrong unit a body next to a sphere, slowed or shaken by torques, comes near to the record; in the right one the noise of
-/// the rates explains it.
-#[test]
-fn mistaken_units_are_found_where_torques_would_explain_the_record() {
-    let moments = [1.0, 2.0, 2.6].map(|moment| moment / 5.6);
-    let body = Inertia::from_moments(moments).unwrap();
-    let times: Vec<f64> = (0..3000).map(|i| f64::from(i) / 50.0).collect();
-    let drag = Disturbances::default().with_relative_drag(1e-2);
-    let sensor = Gyroscope::default().with_noise(1e-2);
-    let mut random = Random::new(7);
-    for (of_times, of_rates) in [(1.0, 180.0 / std::f64::consts::PI), (1e3, 1.0)].repeat(3) {
-        let omega = random.normal_vector().normalize();
-        let rates = simulate_with(&body, omega, &times, &drag, &sensor, &mut random).unwrap();
-        let read = |of_times: f64, of_rates: f64| {
-            let t: Vec<f64> = times.iter().map(|t| t * of_times).collect();
-            let w: Vec<_> = rates.iter().map(|w| w * of_rates).collect();
-            fit(&Record::from_samples(&t, &w).unwrap(), &Settings::default())
-        };
-        assert!(read(1.0, 1.0).is_ok(), "{omega}");
-        let wrong = read(of_times, of_rates);
-        assert!(matches!(wrong, Err(FitError::Units { .. })), "{omega} {of_times} {of_rates}: {wrong:?}");
-    }
 }
 
 #[test]

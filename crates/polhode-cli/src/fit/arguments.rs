@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;
 use polhode_files::error::Error;
 use polhode_files::numbers::{list, number, numbers, positive};
-use polhode_fit::{Known, Prior, SensorPriors, TorqueModel, TorqueScope};
+use polhode_fit::{Estimate, Known, Prior, SensorPriors, TorqueModel, TorqueScope};
 
 use crate::flags::body::described;
 
@@ -130,6 +130,18 @@ impl KnownArguments {
     /// The body that `--body` names.
     pub(super) fn body(&self) -> Result<Option<Inertia>, Error> {
         self.body.as_deref().map(|text| Ok(described(text)?.inertia)).transpose()
+    }
+
+    /// That the moments of --body are those of the record's mirror, where they are.
+    pub(super) fn other_hand(&self, estimate: &Estimate) -> Result<Option<String>, Error> {
+        let (Some(body), Some(mirror)) = (self.body()?, &estimate.mirror) else { return Ok(None) };
+        let of_body = body.shape().principal_moments();
+        let apart = |from: [f64; 3]| (0..3).map(|k| (from[k] - of_body[k]).abs()).fold(0.0, f64::max);
+        let largest = estimate.sigma_principal.iter().copied().fold(0.0, f64::max);
+        let (read, other) = (apart(estimate.principal), apart(mirror.principal_moments()));
+        Ok((read > 5.0 * largest && other < 0.2 * read).then(|| {
+            "the moments are not those of --body, and in left-handed axes they would be: a mirrored axis would explain it (--axes)".into()
+        }))
     }
 
     pub(super) fn known(&self) -> Result<Option<Known>, Error> {

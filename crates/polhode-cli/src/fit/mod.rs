@@ -41,7 +41,8 @@ const EXAMPLES: &str = "Examples:
 
 /// Inertia tensor of a torque-free body from its measured angular velocity
 ///
-/// Without one of --trace, --momentum, --twice-energy, --moment or --prior-inertia the tensor is known up to a factor, and its trace is
+/// The axes of the sensor are taken to be right-handed: the rates cannot tell, and left-handed axes give another tensor, which the
+/// report names; --axes undoes a mirrored axis. Without one of --trace, --momentum, --twice-energy, --moment or --prior-inertia the tensor is known up to a factor, and its trace is
 /// set to 1; columns `hx (N m s)`, hy, hz (momentum of wheels, with this unit in the header) and tx, ty, tz (known torque, N m) make it absolute, too. Exit code 1: the record does not determine the tensor; what it does determine is printed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -168,12 +169,16 @@ impl Fit {
             Err(error) => {
                 let reason = match &error {
                     FitError::NoFlight { .. } => format!("{error} (--window t0,t1)"),
+                    FitError::Driven { .. } => format!("{error} (--window t0,t1)"),
+                    FitError::Units { .. } => format!("{error} (--rate-unit, --time-unit; --trust-units)"),
+                    FitError::Undersampled { .. } => format!("{error} (--rate-unit, --time-unit)"),
                     _ => error.to_string(),
                 };
                 let (facts, failed) = match &error {
                     FitError::Unidentifiable(what) => (Some(Facts::unidentified(what)), true),
                     FitError::Unsettled { axes, .. } => (Some(Facts::unsettled(axes)), true),
                     FitError::NoFlight { .. } => (Some(Facts::not_free()), true),
+                    FitError::Driven { .. } => (Some(Facts::driven()), true),
                     FitError::NoRotation { .. } | FitError::Solver(_) => (None, true),
                     _ => (None, false),
                 };
@@ -204,6 +209,9 @@ impl Fit {
             None => None,
         };
         output.write_whole(&report::identified(&estimate, &record, &spans, format))?;
+        if let Some(remark) = self.known.other_hand(&estimate)? {
+            warn(&remark);
+        }
         // the JSON holds them too; a file of rows does not
         estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
         if let Some((file, text)) = page {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use polhode_files::SignedAxes;
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{number, numbers};
 use polhode_files::record;
@@ -22,6 +23,10 @@ pub(super) struct ReadingArguments {
     /// Unit of the rates where the header names none: rad/s, deg/s, rpm [default: rad/s]
     #[arg(long, value_name = "UNIT", value_parser = rate_unit, help_heading = "Reading")]
     rate_unit: Option<RateUnit>,
+    /// Axes of the sensor by the columns of the rates, which must be right-handed: which column, with a sign before those that
+    /// are reversed, is x, y and z; -y in x,-y,z undoes a mirrored axis. Before everything else [default: x,y,z]
+    #[arg(long, value_name = "x,-y,z", value_parser = SignedAxes::parse, allow_hyphen_values = true, help_heading = "Reading")]
+    axes: Option<SignedAxes>,
     /// Use only samples from t0 to t1, s; repeatable. With N: of the N-th file only [default: all samples if the body
     /// rotates freely from the first to the last, else the flights, which are found and listed]
     #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true, help_heading = "Reading")]
@@ -72,6 +77,17 @@ impl ReadingArguments {
             let rule = format!("there are {} files", data.len());
             return Err(Error::input("--window", &value, &rule, "count them from 1"));
         }
+        if let Some(axes) = self.axes {
+            let [x, y, z] = axes.apply([1.0, 2.0, 3.0]).map(|k| {
+                format!("{}{}", if k < 0.0 { "-" } else { "" }, ["x", "y", "z"][k.abs() as usize - 1])
+            });
+            let kind = if axes.is_mirror() {
+                "a mirror: left-handed columns become right-handed axes"
+            } else {
+                "a turn of the axes"
+            };
+            warn(&format!("the rates about x, y, z are those of the columns {x}, {y}, {z} ({kind})"));
+        }
         let mut all = Record::default();
         for (k, path) in data.iter().enumerate() {
             let record = self.read(path, wheel)?;
@@ -88,7 +104,8 @@ impl ReadingArguments {
     }
 
     fn read(&self, path: &Path, wheel: &WheelArguments) -> Result<Record, Error> {
-        let reading = self.table.reading(self.rate_unit).with_most_skipped(self.skip_rows);
+        let reading =
+            self.table.reading(self.rate_unit).with_most_skipped(self.skip_rows).with_axes(self.axes);
         let found = record::open(path, &reading, wheel.momentum()).map_err(|error| match error {
             Error::Table(error) if error.is_of_a_row() => {
                 let remedy = format!("{}, or allow for more such rows by --skip-rows FRACTION", error.remedy);

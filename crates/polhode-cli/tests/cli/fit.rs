@@ -278,11 +278,11 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     refused(
         2,
         &format!("fit {record} --rate-unit deg/s"),
-        &["record.csv: the units look mistaken", "radians per second taken for degrees per second"],
+        &["record.csv: the units look mistaken", "rates in rad/s read as deg/s", "--trust-units"],
     );
     refused(2, &format!("fit {record} --trace 1e308"), &["the known quantity is 1e308"]);
     refused(2, &format!("fit {record} --at-least 1,0,0,0.3 --at-most 1,0,0,0.3"), &["leave no room"]);
-    refused(2, &format!("fit {record} --time-unit ns"), &["seconds taken for nanoseconds"]);
+    refused(2, &format!("fit {record} --time-unit ns"), &["times in s read as ns"]);
     refused(2, &format!("fit {record} {record}"), &["the file is given twice"]);
     refused(2, &format!("fit {record} --radius 10"), &["a radius of 10 s needs a segment of 21.25"]);
     let nowhere = run(&format!("fit {record} --residuals /nowhere/r.svg"));
@@ -403,4 +403,40 @@ fn wheels_and_torques_are_columns() {
     refused(2, &format!("fit {record}"), &["line 1, column 5 (hx (g m)): 'g m'", "known: N m s"]);
     fs::write(&record, text.replace(" (N m s)", "")).unwrap();
     refused(2, &format!("fit {record}"), &["line 1, column 5 (hx): the column has no unit", "N m s"]);
+}
+
+/// A mirrored axis gives another body, which the report of each names; `--axes` undoes it, and says so.
+#[test]
+fn a_mirrored_axis_is_named_and_undone() {
+    let scratch = Scratch::new("mirrored");
+    let record = output("simulate --moments 1,2,2.6 --omega 0.3,1,0.4 --until 20 --every 0.02 --noise 1e-3");
+    let mirrored: Vec<String> = record
+        .lines()
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let reversed = cells[2].parse::<f64>().map_or(cells[2].to_string(), |rate| (-rate).to_string());
+            [cells[0], cells[1], &reversed, cells[3]].join(",")
+        })
+        .collect();
+    let (right, wrong) = (scratch.file("right.csv", &record), scratch.file("wrong.csv", mirrored.join("\n")));
+    let fitted = |flags: &str| json(&format!("fit {flags}"));
+    let (of_right, of_wrong) = (fitted(&right), fitted(&wrong));
+    let shape = |of: &Value, name: &str, k: usize| of[name][k][k].as_f64().unwrap();
+    for k in 0..3 {
+        assert!((shape(&of_right, "mirror", k) - shape(&of_wrong, "shape", k)).abs() < 2e-3, "{of_wrong}");
+    }
+    assert!(of_right["unexplained"].as_f64().unwrap() < 1e-3, "{of_right}");
+    let undone = fitted(&format!("{wrong} --axes x,-y,z"));
+    assert_eq!(undone["shape"], of_right["shape"]);
+    let answer = run(&format!("fit {wrong} --axes x,-y,z --format table"));
+    assert!(answer.err.contains("columns x, -y, z (a mirror"), "{}", answer.err);
+    assert!(answer.out.contains("if the axes are left-handed: I1 : I2 : I3 = 0.13"), "{}", answer.out);
+    assert!(answer.out.contains("of |dw/dt|^2 unexplained"), "{}", answer.out);
+    refused(2, &format!("fit {right} --axes x,x,z"), &["--axes", "names an axis twice"]);
+    // of a body that is known, one hand has its moments
+    let phone = output("simulate --body phone --omega 1,9,2 --until 5 --every 0.01 --noise 0.01");
+    let phone = scratch.file("phone.csv", phone);
+    let answer = run(&format!("fit {phone} --body phone --axes x,-y,z"));
+    assert!(answer.err.contains("mirrored axis would explain it"), "{}", answer.err);
+    assert!(!run(&format!("fit {phone} --body phone")).err.contains("mirrored"));
 }

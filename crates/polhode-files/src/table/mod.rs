@@ -1,6 +1,7 @@
 //! Tables: lines of cells under a header, read one row at a time.
 
 mod array;
+mod axes;
 mod cells;
 mod clock;
 mod dump;
@@ -19,6 +20,7 @@ use std::path::Path;
 
 use polhode::units::{RateUnit, TimeUnit};
 
+pub use axes::SignedAxes;
 pub(crate) use cells::{Delimiter, digits, plain, uncommented, width_rule};
 use clock::{Clock, Preamble};
 pub use flags::ColumnNames;
@@ -44,6 +46,8 @@ pub struct ReadOptions {
     pub sample_rate: Option<f64>,
     /// Share of the rows of a record that may be left out because they cannot be read, 0.02 without it.
     pub most_skipped: Option<f64>,
+    /// Which columns are the rates of a record about x, y and z, and with which signs; without it as they are named.
+    pub axes: Option<SignedAxes>,
 }
 
 impl ReadOptions {
@@ -75,6 +79,12 @@ impl ReadOptions {
     #[must_use]
     pub fn with_most_skipped(self, share: impl Into<Option<f64>>) -> Self {
         Self { most_skipped: share.into(), ..self }
+    }
+
+    /// With the columns that are the rates of a record about x, y and z.
+    #[must_use]
+    pub fn with_axes(self, axes: impl Into<Option<SignedAxes>>) -> Self {
+        Self { axes: axes.into(), ..self }
     }
 }
 

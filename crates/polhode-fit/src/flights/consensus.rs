@@ -111,7 +111,6 @@ pub(super) struct Contradiction {
     /// Tests beyond what any small torque makes.
     gross: Vec<Vec<bool>>,
     turning: usize,
-    x: Vector,
 }
 
 impl Contradiction {
@@ -134,19 +133,12 @@ impl Contradiction {
             !test.is_slow(speed) && left > torque * torque + SURE * SURE * test.noise(variance)
         };
         let gross = all.iter().map(|tests| tests.iter().map(gross).collect()).collect();
-        Some(Contradiction { gross, turning: all.iter().flatten().filter(turning).count(), x })
+        Some(Contradiction { gross, turning: all.iter().flatten().filter(turning).count() })
     }
 
     /// Whether the whole record may be that of a free body, or of one under the torques that a fit has columns for.
     pub(super) fn is_none(&self) -> bool {
         self.gross.iter().all(|gross| !gross.windows(LASTING).any(|run| run.iter().all(|g| *g)))
-    }
-
-    /// Mean square of the residuals over their noise.
-    pub(super) fn misfit(&self, all: &[Vec<Test>], variance: f64) -> f64 {
-        let tests = || all.iter().flatten();
-        let own = |test: &Test| test.residual(&self.x).norm_squared() / test.noise(variance);
-        tests().map(own).sum::<f64>() / tests().count().max(1) as f64
     }
 
     /// The share of the tests with a turning body.

@@ -13,7 +13,6 @@ mod extent;
 pub(crate) mod flight;
 
 use crate::flights::flight::{Flight, FlightLimit};
-use crate::solve::other_units::Support;
 use crate::thresholds::flights::{ALMOST_ALL, MOST_TORQUE};
 use crate::thresholds::noise::LEAST;
 
@@ -25,8 +24,9 @@ use crate::settings::Settings;
 use crate::signal::noise;
 use crate::signal::normalised::{Normalised, normalised};
 use crate::signal::stretch::Stretch;
-use crate::solve::other_units::better_unit;
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
+use crate::units::Motion;
+use crate::verdict::units::open_units;
 use consensus::{Contradiction, NoConsensus, consensus};
 use equations::{Test, tests};
 use extent::{Extent, extent, runs};
@@ -101,16 +101,10 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
     let none = |torque: Option<f64>| {
         // in a wrong unit of rate or time nothing is free
         let suspect = settings.check_units && contradiction.share() > ALMOST_ALL;
-        let better = if suspect { better_unit(&stretches, None, variance) } else { None };
-        match better.filter(|b| b.support == Support::Named) {
-            Some(b) => FitError::Units {
-                factor: b.factor,
-                mistakes: b.mistakes,
-                misfit: contradiction.misfit(&all, variance),
-                better: b.misfit,
-                sphere: None,
-            },
-            None => FitError::NoFlight { share: contradiction.share(), torque, most: MOST_TORQUE },
+        let motion = if suspect { Motion::new(&stretches, variance) } else { None };
+        match open_units(record, &stretches, motion.as_ref(), rms) {
+            Err(mistaken) => mistaken,
+            Ok(_) => FitError::NoFlight { share: contradiction.share(), torque, most: MOST_TORQUE },
         }
     };
     let agreed = consensus(&all, speed, variance)

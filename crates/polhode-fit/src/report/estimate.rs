@@ -116,6 +116,12 @@ pub struct Estimate {
     pub prior: Option<Agreement>,
     /// Each segment that was long enough.
     pub per_segment: Vec<SegmentSummary>,
+    /// Share of |dω/dt|² that the free motion of the answer leaves unexplained, beyond the noise of the rates; `None` where
+    /// wheels or known torques act, or the record is too short.
+    pub unexplained: Option<f64>,
+    /// The shape that explains the record as well if its axes are left-handed, as with one axis reversed or two exchanged;
+    /// `None` where wheels or known torques act.
+    pub mirror: Option<InertiaShape>,
     /// Samples that were left out because they stand out of their neighbours.
     pub spikes: Vec<Spike>,
     /// Residuals by segment.

@@ -20,6 +20,7 @@ use crate::physical::prior::{Prior, Told};
 use crate::physical::truncated::spread;
 use crate::report::estimate::{Estimate, Residuals};
 use crate::report::identifiability::Identifiability;
+use crate::report::mirror::mirrored;
 use crate::report::nuisance::{Agreement, Nuisance, Torque};
 use crate::report::nuisances::nuisances;
 use crate::report::segments::summaries;
@@ -31,8 +32,8 @@ use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::stretch::Stretch;
 use crate::solve::joint::Joint;
 use crate::solve::ladder::Chosen;
-use crate::solve::other_units::Better;
 use crate::thresholds::noise::SURE;
+use crate::units::{Motion, Others};
 
 /// What the report is drawn from.
 pub(crate) struct Facts<'a> {
@@ -71,7 +72,8 @@ impl Facts<'_> {
         &self,
         nearest: Nearest,
         identifiability: Identifiability,
-        better: Option<&Better>,
+        motion: Option<&Motion>,
+        open: Option<&Others>,
     ) -> Result<Estimate, FitError> {
         let weak = &self.chosen.weak;
         let Deviations { free, on_face, together, held } = self.deviations(&nearest)?;
@@ -138,23 +140,25 @@ impl Facts<'_> {
             systematic: systematic(weak, self.stretches, &v, &moments.into(), self.variance, self.rms),
             prior: self.prior,
             per_segment: summaries(weak, self.record, self.variance, self.rms),
+            unexplained: motion.and_then(|motion| motion.unexplained(&j)),
+            mirror: if self.input.is_none() { shape_of(&mirrored(&j)).ok() } else { None },
             spikes: self.spikes.clone(),
             residuals,
             warnings: Vec::new(),
             shape,
         };
-        let grounds = self.grounds(better);
+        let grounds = self.grounds(open);
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
     }
 
     /// What warnings are drawn from.
-    fn grounds<'b>(&'b self, better: Option<&'b Better>) -> Grounds<'b> {
+    fn grounds<'b>(&'b self, open: Option<&'b Others>) -> Grounds<'b> {
         Grounds {
             record: self.record,
             weak: &self.chosen.weak,
             misfit: self.misfit,
-            better,
+            open,
             found: self.settings.torque == TorqueModel::Auto,
             noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
             driven: self.input.is_some(),

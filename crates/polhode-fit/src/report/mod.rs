@@ -4,6 +4,7 @@ pub(crate) mod averages;
 pub(crate) mod estimate;
 pub(crate) mod facts;
 pub(crate) mod identifiability;
+pub(crate) mod mirror;
 pub(crate) mod motion;
 pub(crate) mod nuisance;
 pub(crate) mod nuisances;

@@ -2,10 +2,11 @@
 
 use core::fmt;
 
+use crate::error::per_cent;
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::nuisance::Torque;
 use crate::report::torque_free::{InvariantTrend, Whiteness};
-use crate::verdict::mistaken_unit::{MistakenUnit, alternatives};
+use crate::units::product::{UnitProduct, alternatives};
 
 /// What limits the use of an estimate. Its `Display` is a sentence.
 #[non_exhaustive]
@@ -28,10 +29,12 @@ pub enum Warning {
         /// Line of the first of them.
         line: usize,
     },
-    /// The residuals ask for a torque at random.
+    /// The residuals ask for a torque at random, which is more than a small part of what drives the body.
     TorqueNoise {
         /// Largest power spectral density of the angular acceleration among the segments, (rad/s²)² s.
         density: f64,
+        /// Share of |dω/dt|² that free motion leaves unexplained, where it is known.
+        unexplained: Option<f64>,
     },
     /// Segments were left out, as too short for the test functions.
     ShortSegments {
@@ -52,16 +55,14 @@ pub enum Warning {
         /// Standard deviations by which a further round would move the tensor.
         moved: f64,
     },
-    /// Other units explain the record better.
+    /// Other units explain the record as well as those in which it was read.
     Units {
-        /// Factor on rate × time.
-        factor: f64,
-        /// What may have happened, the smallest factor first.
-        mistakes: Vec<MistakenUnit>,
-        /// χ² per degree of freedom as given.
-        misfit: f64,
-        /// The same with the factor.
-        better: f64,
+        /// What else the units may be, the smallest product first.
+        products: Vec<UnitProduct>,
+        /// Share of |dω/dt|² that free bodies leave unexplained in the units that were read.
+        unexplained: f64,
+        /// The same in the best of the others.
+        other: f64,
     },
     /// The residuals are not white.
     Correlated(Whiteness),
@@ -123,11 +124,13 @@ impl fmt::Display for Warning {
                 "{} left out as standing far out of what their neighbours foresee; the first is in line {line}",
                 counted(*samples, "was", "were")
             ),
-            Self::TorqueNoise { density } => write!(
-                f,
-                "torques at random are part of the fit, with a density of up to {density:.1e} (rad/s^2)^2 s; an error of the \
-                 sensor may look like them, see the systematic changes"
-            ),
+            Self::TorqueNoise { density, unexplained } => {
+                write!(f, "torques at random are part of the fit, with a density of up to {density:.1e} (rad/s^2)^2 s")?;
+                if let Some(share) = unexplained {
+                    write!(f, ": free motion leaves {} of the squared derivative of the rates unexplained", per_cent(*share))?;
+                }
+                f.write_str("; an error of the sensor may look like them, see the systematic changes")
+            }
             Self::ShortSegments { short, segments } => {
                 write!(f, "{short} of {segments} segments are too short for the test functions")
             }
@@ -144,10 +147,13 @@ impl fmt::Display for Warning {
                 "the iteration did not converge: a further round would move the tensor by {moved:.2} standard \
                  deviations"
             ),
-            Self::Units { factor, mistakes, misfit, better } => write!(
+            Self::Units { products, unexplained, other } => write!(
                 f,
-                "with rate x time {factor:.4e} times as large the misfit falls from {misfit:.2e} to {better:.2e}: {}?",
-                alternatives(mistakes)
+                "the record cannot tell its units: {} would explain it as well by another body ({} of the squared derivative \
+                 of the rates is left, {} as read); make sure of them",
+                alternatives(products),
+                per_cent(*other),
+                per_cent(*unexplained)
             ),
             Self::Correlated(Whiteness { correlation, sigma }) => write!(
                 f,

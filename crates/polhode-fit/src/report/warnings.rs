@@ -2,14 +2,14 @@
 
 use crate::solve::weak_estimate::Convergence;
 use crate::thresholds::noise::DEVIATIONS;
-use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN};
+use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
 use polhode::record::Record;
 
 use crate::report::estimate::Estimate;
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
-use crate::solve::other_units::Better;
 use crate::solve::weak_estimate::WeakEstimate;
+use crate::units::Others;
 
 /// What warnings are drawn from, besides the estimate.
 pub(super) struct Grounds<'a> {
@@ -17,7 +17,8 @@ pub(super) struct Grounds<'a> {
     pub(super) weak: &'a WeakEstimate,
     /// Mean square of the residuals over the noise.
     pub(super) misfit: f64,
-    pub(super) better: Option<&'a Better>,
+    /// Units that explain the record as well.
+    pub(super) open: Option<&'a Others>,
     /// Whether the fit has found the torque by itself.
     pub(super) found: bool,
     /// The same of torque noise.
@@ -29,7 +30,14 @@ pub(super) struct Grounds<'a> {
 /// What of the record, the residuals and the answer limits the use of `e`.
 pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     let mut list = Vec::new();
-    let Grounds { record, weak, misfit, better, found, noise_found, driven } = *grounds;
+    let Grounds { record, weak, misfit, open, found, noise_found, driven } = *grounds;
+    if let Some(others) = open {
+        list.push(Warning::Units {
+            products: others.products.clone(),
+            unexplained: others.as_read,
+            other: others.best,
+        });
+    }
     if record.merged() > 0 {
         list.push(Warning::Merged { samples: record.merged() });
     }
@@ -48,10 +56,6 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     }
     if weak.convergence() != Convergence::Still {
         list.push(Warning::NotConverged { moved: weak.moved });
-    }
-    if let Some(b) = better {
-        let mistakes = b.mistakes.clone();
-        list.push(Warning::Units { factor: b.factor, mistakes, misfit, better: b.misfit });
     }
     if e.whiteness.significant() {
         list.push(Warning::Correlated(e.whiteness));
@@ -72,8 +76,8 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
         list.push(Warning::Torque(e.torque.clone()));
     }
     let density = e.per_segment.iter().map(|s| s.torque_noise).fold(0.0, f64::max);
-    if noise_found && density > 0.0 {
-        list.push(Warning::TorqueNoise { density });
+    if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
+        list.push(Warning::TorqueNoise { density, unexplained: e.unexplained });
     }
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);

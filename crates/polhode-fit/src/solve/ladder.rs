@@ -7,26 +7,11 @@ use crate::settings::torque::TorqueModel;
 use crate::signal::covariance::Levels;
 use crate::signal::stretch::Stretch;
 use crate::solve::levels::{Choice, likeliest};
-use crate::solve::other_units::{Better, Support, better_unit, suspicious};
 use crate::solve::radius::{Failure, descended, estimate};
 use crate::solve::rounds::Noise;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::{Convergence, WeakEstimate};
 use crate::thresholds::ladder::{FIRST, FURTHER, HOPE};
-
-/// Why there is no torque to choose.
-pub(crate) enum Halt {
-    /// There is no weak estimate.
-    Failure(Failure),
-    /// Another unit explains what this one does not: the misfit in the unit that was read, and the other.
-    Units(f64, Box<Better>),
-}
-
-impl From<Failure> for Halt {
-    fn from(failure: Failure) -> Self {
-        Halt::Failure(failure)
-    }
-}
 
 /// A weak estimate with the torque it was made with.
 pub(crate) struct Chosen {
@@ -36,8 +21,6 @@ pub(crate) struct Chosen {
     pub(crate) gain: Option<f64>,
     /// Coordinates without the torque.
     pub(crate) without: Option<Coordinates>,
-    /// Units that explain better what has no explanation without torques.
-    pub(crate) better: Option<Better>,
 }
 
 /// What a fit is asked to reckon with.
@@ -50,8 +33,6 @@ pub(crate) struct Demand<'a> {
     pub(crate) columns: &'a [Column],
     /// The stretches that have torques of their own; none where all share theirs.
     pub(crate) alone: &'a [usize],
-    /// Whether to ask for mistaken units.
-    pub(crate) units: bool,
 }
 
 impl Demand<'_> {
@@ -73,13 +54,13 @@ impl Demand<'_> {
 }
 
 /// The weak estimate that the demand asks for.
-pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) -> Result<Chosen, Halt> {
+pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) -> Result<Chosen, Failure> {
     Ladder { stretches, demand, variance }.choose()
 }
 
 /// A weak estimate of one model, compared with no other.
 fn plain(weak: WeakEstimate, model: TorqueModel) -> Chosen {
-    Chosen { weak, model, gain: None, without: None, better: None }
+    Chosen { weak, model, gain: None, without: None }
 }
 
 struct Ladder<'a> {
@@ -89,7 +70,7 @@ struct Ladder<'a> {
 }
 
 impl Ladder<'_> {
-    fn choose(&self) -> Result<Chosen, Halt> {
+    fn choose(&self) -> Result<Chosen, Failure> {
         let demand = &self.demand;
         if let Noise::Given(_) = demand.noise
             && demand.torque != TorqueModel::Auto
@@ -100,8 +81,7 @@ impl Ladder<'_> {
         let base = if demand.torque == TorqueModel::Auto { TorqueModel::None } else { demand.torque };
         let first = estimate(self.stretches, demand.radius, &demand.columns(base), self.variance)?;
         let explained = first.misfit(self.variance) <= first.expected_misfit();
-        let better = self.other_units(&first, explained)?;
-        let chosen = if explained && (!first.has_settled() || self.is_enough(&first)) {
+        Ok(if explained && (!first.has_settled() || self.is_enough(&first)) {
             plain(first, base)
         } else if demand.torque == TorqueModel::Auto {
             self.highest(first, explained)?
@@ -109,25 +89,11 @@ impl Ladder<'_> {
             let weak = self.descent(base, demand.radius)?;
             let keep = first.convergence() == Convergence::Still && !weak.has_settled();
             plain(if keep { first } else { weak }, base)
-        };
-        Ok(Chosen { better, ..chosen })
+        })
     }
 
     fn descent(&self, model: TorqueModel, radius: Option<f64>) -> Result<WeakEstimate, Failure> {
         descended(self.stretches, radius, &self.demand.columns(model), self.variance, self.demand.noise)
-    }
-
-    /// Units that explain the record where nothing but torques does in its own; refused before the descents, which would
-    /// not end soon either, where they can be named.
-    fn other_units(&self, first: &WeakEstimate, explained: bool) -> Result<Option<Better>, Halt> {
-        let asks =
-            self.demand.units && (!explained || !first.has_settled() || suspicious(first, self.variance));
-        match asks.then(|| better_unit(self.stretches, Some(first), self.variance)).flatten() {
-            Some(better) if better.support == Support::Named => {
-                Err(Halt::Units(first.misfit(self.variance), Box::new(better)))
-            }
-            better => Ok(better),
-        }
     }
 
     /// Whether an estimate that noise explains asks for neither torque nor torque noise.
@@ -164,7 +130,7 @@ impl Ladder<'_> {
             let before = likelihood(stretches, &best.weak, variance) - floor;
             let better = weak.has_settled() && (!best.weak.has_settled() || gain - before > asked);
             let gain = Some(gain).filter(|gain| gain.is_finite());
-            if better { Chosen { weak, model, gain, without, better: None } } else { best }
+            if better { Chosen { weak, model, gain, without } } else { best }
         };
         best = climb(best, TorqueModel::Drag, drag);
         if may_be_constant && let Ok(constant) = self.descent(TorqueModel::Constant, radius) {

@@ -27,7 +27,6 @@ pub(crate) mod joint;
 pub(crate) mod ladder;
 pub(crate) mod levels;
 pub(crate) mod linearised;
-pub(crate) mod other_units;
 pub(crate) mod radius;
 pub(crate) mod rounds;
 pub(crate) mod rows;

@@ -7,9 +7,7 @@ use crate::signal::test_functions::TestFunctions;
 use crate::solve::linearised::{Linearised, Whitened};
 use crate::solve::rounds::{Noise, Rounds};
 use crate::solve::weak_estimate::{Convergence, WeakEstimate};
-use crate::thresholds::radius::{
-    CANDIDATES, COMPARED, DENSE, OF_SHORT, PILOT_SAMPLES, ROOM, SHORTEST, TRIED,
-};
+use crate::thresholds::radius::{CANDIDATES, COMPARED, DENSE, OF_SHORT, PILOT_SAMPLES, ROOM, SHORTEST};
 use crate::thresholds::rounds::{RESTLESS, TORQUES};
 use crate::thresholds::test_functions::{ROUNDED, SAMPLES_PER_TEST};
 
@@ -240,31 +238,6 @@ pub(crate) fn descended(
     }
     let sphere = || Rounds::new(stretches, *radii.first()?, columns, origin.clone())?.at_sphere(variance);
     best.or_else(sphere).ok_or(Failure::Singular)
-}
-
-/// The weak estimate without torque noise, where rounds at one of two radii settle: enough to tell whether some unit
-/// explains a record. It is dropped where the first rounds leave a misfit of more than `most`.
-pub(crate) fn tried(
-    stretches: &[Stretch],
-    columns: &[Column],
-    variance: f64,
-    most: f64,
-) -> Option<WeakEstimate> {
-    let radii = candidates(stretches);
-    let compared = compared_at(stretches, &radii, columns, variance, None)?;
-    if most.is_finite() && compared.excess(variance).is_some_and(|excess| excess > most) {
-        return None;
-    }
-    let first = least_covariance(stretches, &radii, columns, variance, &compared);
-    let start = compared.at;
-    let radii = core::iter::successors(Some(first), |radius| Some(2.0 * radius)).take(TRIED);
-    radii
-        .filter_map(|radius| {
-            let mut rounds = Rounds::new(stretches, radius, columns, start.clone())?;
-            let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS)?;
-            rounds.finish(variance, moved).filter(|weak| weak.possible(variance))
-        })
-        .next()
 }
 
 /// The longest stretches, up to the samples of a pilot, in their order.

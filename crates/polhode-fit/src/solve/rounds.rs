@@ -106,12 +106,6 @@ impl<'a> Rounds<'a> {
         Stacked::new(&rows, self.columns, &self.at, variance.sqrt())
     }
 
-    /// Mean square of what the equations leave at these samples over that of the noise, where it is more than 1.
-    pub(crate) fn excess(&self, variance: f64) -> Option<f64> {
-        let whitened = self.whiten(&self.linearise())?;
-        Some(self.stack(&whitened, variance).excess(variance))
-    }
-
     /// One round, and by how many standard deviations it would move the tensor if it took its whole step.
     ///
     /// A ridge as weak as one reading keeps x finite before it is known that the record determines it.

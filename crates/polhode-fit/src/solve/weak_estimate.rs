@@ -1,7 +1,7 @@
 //! The weak estimate of a record: where its rounds ended.
 
 use crate::thresholds::noise::DEVIATIONS;
-use crate::thresholds::rounds::{BEYOND, RESTLESS, STILL, TORQUES};
+use crate::thresholds::rounds::{BEYOND, RESTLESS, STILL};
 use faer::Mat;
 use nalgebra::Vector3;
 
@@ -25,19 +25,6 @@ pub(crate) enum Convergence {
     Near,
     /// They went on, and there is no answer.
     None,
-}
-
-/// What explains a record in the unit that it was read in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Explanation {
-    /// The noise of the rates, and torques that have columns.
-    Noise,
-    /// Torques at random beside it.
-    TorqueNoise,
-    /// Torques that nothing in the fit stands for.
-    Torques,
-    /// Nothing: the rounds do not settle.
-    Nothing,
 }
 
 /// The weak estimate of a record: where its rounds ended.
@@ -142,19 +129,6 @@ impl WeakEstimate {
     /// Whether torque noise has a part in it.
     pub(crate) fn has_torque_noise(&self) -> bool {
         self.parts.iter().any(|part| part.levels.torque > 0.0)
-    }
-
-    /// What explains the record with it.
-    pub(crate) fn explanation(&self, variance: f64) -> Explanation {
-        if self.has_torque_noise() {
-            Explanation::TorqueNoise
-        } else if !self.has_settled() {
-            Explanation::Nothing
-        } else if self.misfit(variance) > TORQUES {
-            Explanation::Torques
-        } else {
-            Explanation::Noise
-        }
     }
 
     /// Equations beyond the unknowns.

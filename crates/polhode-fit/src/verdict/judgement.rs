@@ -14,21 +14,15 @@ use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::solve::completed::{Completed, completed};
 use crate::solve::ladder::Chosen;
-use crate::solve::other_units::{Better, Support, better_unit, suspicious};
-use crate::solve::weak_estimate::{Explanation, WeakEstimate};
+use crate::solve::weak_estimate::WeakEstimate;
 use crate::thresholds::judgement::UNTOLD;
 use crate::thresholds::rounds::ROUNDS;
 use crate::verdict::prior::consistent;
 
 /// What a record says of its fit.
 pub(crate) enum Verdict {
-    /// Units that can be named explain it, the one that it was read in does not.
-    MistakenUnit(Better),
     /// The rates change, and no tensor explains them.
-    Unsettled {
-        /// Factor on rate × time from which on units would, if they do.
-        factor: Option<f64>,
-    },
+    Unsettled,
     /// It cannot tell coefficients of the torque that was asked for.
     UntoldTorque {
         names: Vec<&'static str>,
@@ -47,8 +41,6 @@ pub(crate) enum Verdict {
 pub(crate) struct Supported {
     pub(crate) identifiability: Identifiability,
     pub(crate) prior: Option<Told>,
-    /// Units that explain the record as well, and are worth a warning.
-    pub(crate) better: Option<Better>,
 }
 
 /// A record that is judged, in its own units.
@@ -68,12 +60,6 @@ impl Case<'_> {
         let Case { stretches, settings, variance, .. } = *self;
         let weak = &chosen.weak;
         let misfit = weak.misfit(variance);
-        // a unit of any size must not convince: there is a tensor next to the sphere for any small wobble in large enough
-        // a unit
-        let better = match self.other_units(chosen) {
-            Some(better) if better.support == Support::Named => return Ok(Verdict::MistakenUnit(better)),
-            better => better,
-        };
         let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
         // what the noise does not explain enlarges the deviations
         let enlarged = variance * misfit.max(1.0);
@@ -83,23 +69,13 @@ impl Case<'_> {
         let filling = prior.as_ref().filter(|_| is_open && !self.is_sized);
         let filled =
             filling.and_then(|prior| completed(stretches, weak, &prior.shape_root(), prior.x, variance));
-        let (factor, support) = (better.as_ref().map(|b| b.factor), better.as_ref().map(|b| b.support));
-        let better = better.filter(|b| matches!(b.support, Support::Any { determined: true, .. }));
         if let Some(filled) = filled {
             let identifiability =
                 Identifiability::new(&filled.alone, &scatter_of(stretches), &tensor(&filled.weak.x()));
-            return Ok(Verdict::Completed(
-                Box::new(Supported { identifiability, prior, better }),
-                Box::new(filled),
-            ));
+            return Ok(Verdict::Completed(Box::new(Supported { identifiability, prior }), Box::new(filled)));
         }
-        let is_explained = match (support, weak.explanation(variance)) {
-            // torque noise that explains what a unit would explain without any explains nothing
-            (Some(Support::Any { far: true, .. }), Explanation::TorqueNoise) => false,
-            _ => weak.has_settled() || misfit <= weak.expected_misfit(),
-        };
-        if !is_explained {
-            return Ok(Verdict::Unsettled { factor });
+        if !weak.has_settled() && misfit > weak.expected_misfit() {
+            return Ok(Verdict::Unsettled);
         }
         let names = untold(weak, stretches, enlarged, &identifiability);
         // of a torque that was not asked for the message could ask for nothing simpler
@@ -107,24 +83,9 @@ impl Case<'_> {
             return Ok(Verdict::UntoldTorque { names, rank: identifiability.rank });
         }
         match identifiability.complete() {
-            true => Ok(Verdict::Determined(Box::new(Supported { identifiability, prior, better }))),
+            true => Ok(Verdict::Determined(Box::new(Supported { identifiability, prior }))),
             false => Ok(Verdict::Undetermined(identifiability)),
         }
-    }
-
-    /// Units that explain the record better: those that were found on the way, where more than noise is to explain it, or
-    /// those in which a body next to a sphere is an ordinary one.
-    fn other_units(&self, chosen: &Chosen) -> Option<Better> {
-        let weak = &chosen.weak;
-        // torque noise may hide a mistaken unit, which must then explain the record without any
-        let found = match weak.explanation(self.variance) {
-            Explanation::Noise => None,
-            Explanation::TorqueNoise | Explanation::Torques | Explanation::Nothing => chosen.better.clone(),
-        };
-        found.or_else(|| {
-            let asks = self.settings.check_units && !self.is_sized && suspicious(weak, self.variance);
-            asks.then(|| better_unit(self.stretches, Some(weak), self.variance)).flatten()
-        })
     }
 
     /// The rates are not constant, and still no tensor explains them.
@@ -135,7 +96,7 @@ impl Case<'_> {
         let (fall, _) = trends(stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0));
         let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
             .then_some(-fall.rate * rms);
-        FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall }
+        FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall, mirror: None }
     }
 }
 

@@ -49,5 +49,11 @@ pub(crate) fn check_agreement(
         return Ok(());
     }
     let six = |x: &Coordinates| ENTRIES.map(|entry| tensor(x)[entry]);
-    Err(FitError::PriorContradicted { prior: six(&prior.x), record: six(&weak.x()), chi2, dof })
+    Err(FitError::PriorContradicted {
+        prior: six(&prior.x),
+        record: Box::new(six(&weak.x())),
+        chi2,
+        dof,
+        mirror: None,
+    })
 }

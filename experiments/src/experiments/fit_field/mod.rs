@@ -1,9 +1,10 @@
-//! The fit with what real records have: drag, torque noise, wheels, sensors that are off, spikes, mistaken units.
+//! The fit with what real records have: drag, torque noise, wheels, sensors that are off, spikes, mistaken units, mirrored axes.
 
 mod bound;
 mod cases;
 mod tally;
 mod trial;
+mod units;
 
 use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row};
@@ -75,8 +76,11 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         .map(|(name, what, model)| table.view(name, what, &hidden, ("model", model.name())))
         .collect();
     views.push(totals.clone());
+    let (units, failed) = units::table(context)?;
+    views.push(units.clone());
+    failures.extend(failed);
     Ok(Report {
-        tables: vec![table, totals],
+        tables: vec![table, totals, units],
         views,
         timing: Some(timing),
         seed: Some(SEED),

@@ -9,7 +9,8 @@ use polhode_pages::document::{Block, Form};
 
 use super::flights::Spans;
 use super::report::{
-    Facts, SURE, coefficients, digits, sensor_lines, sizes, systematic, torque, unused, with_error,
+    Facts, SURE, coefficients, digits, mirror, sensor_lines, sizes, systematic, torque, unexplained, unused,
+    with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -90,6 +91,8 @@ fn answer(e: &Estimate) -> Vec<Block> {
     if off.is_some() {
         parts.push(Block::Paragraph(format!("Systematic: if the sensor is off by {}.", sizes(e))));
     }
+    let facts = [unexplained(e), mirror(e)].into_iter().flatten();
+    parts.extend(facts.map(|fact| Block::Paragraph(format!("{}{}.", fact[..1].to_uppercase(), &fact[1..]))));
     if let Some(prior) = e.prior {
         parts.push(Block::Paragraph(format!(
             "With a prior tensor; χ² of its distance from the record is {:.1} at {} degrees of freedom.",

@@ -62,6 +62,8 @@ fn answer(e: &Estimate) -> Value {
         "dof": e.dof,
         "momentum_drift": { "rate": e.momentum_trend.rate, "sigma": e.momentum_trend.sigma },
         "energy_drift": { "rate": e.energy_trend.rate, "sigma": e.energy_trend.sigma },
+        "unexplained": e.unexplained,
+        "mirror": e.mirror.as_ref().map(|mirror| square(&mirror.tensor())),
         "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
     })
 }

@@ -66,6 +66,11 @@ impl Facts {
         Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
     }
 
+    pub(super) fn driven() -> Self {
+        let open = "the tensor: torques drive the body";
+        Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
+    }
+
     pub(super) fn report(&self, record: &Record, spans: &Spans, format: Format) -> String {
         match format {
             Format::Json => pretty(&json!({
@@ -156,6 +161,19 @@ pub(super) fn sizes(e: &Estimate) -> String {
 /// The coefficients of the torque of one segment, or without it those that all share.
 pub(super) fn coefficients(e: &Estimate, segment: Option<usize>) -> Vec<&Nuisance> {
     e.torque.coefficients.iter().filter(|c| c.segment == segment).collect()
+}
+
+/// How much of the motion is not free, in one sentence.
+pub(super) fn unexplained(e: &Estimate) -> Option<String> {
+    let share = 100.0 * e.unexplained?;
+    let places = digits(share).min(4);
+    Some(format!("free motion leaves {share:.places$} % of |dw/dt|^2 unexplained"))
+}
+
+/// The moments that left-handed axes would mean, in one sentence.
+pub(super) fn mirror(e: &Estimate) -> Option<String> {
+    let [a, b, c] = e.mirror.as_ref()?.principal_moments().map(|moment| format!("{moment:.4}"));
+    Some(format!("if the axes are left-handed: I1 : I2 : I3 = {a} : {b} : {c} (--axes)"))
 }
 
 /// The model of a torque in words.

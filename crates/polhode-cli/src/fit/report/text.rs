@@ -4,7 +4,9 @@ use nalgebra::Matrix3;
 use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
 
 use super::super::flights::Spans;
-use super::{METHOD, SURE, coefficients, digits, sizes, systematic, torque, unused, with_error};
+use super::{
+    METHOD, SURE, coefficients, digits, mirror, sizes, systematic, torque, unexplained, unused, with_error,
+};
 
 /// The answer first, then what it rests on.
 pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans) -> String {
@@ -63,6 +65,8 @@ fn answer(e: &Estimate) -> Vec<String> {
         e.noise_sigma,
         if e.spikes.is_empty() { String::new() } else { format!(", spikes left out: {}", e.spikes.len()) }
     ));
+    lines.extend(unexplained(e));
+    lines.extend(mirror(e));
     lines
 }
 

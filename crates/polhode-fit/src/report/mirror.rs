@@ -1,0 +1,46 @@
+//! The tensor that explains a record as well where its axes are left-handed.
+//!
+//! In left-handed axes the cross product changes sign: J ω' = ω × J ω. The ratios (I₂ − I₃)/I₁ … of the body are then the
+//! negatives of those that right-handed axes show, and for every body there is one with the negated ratios.
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::record::{Record, Segment};
+
+use crate::physical::coordinates::eigen;
+
+/// The tensor of trace 1 with the same axes and the negated ratios.
+pub(crate) fn mirrored(j: &Matrix3<f64>) -> Matrix3<f64> {
+    let (moments, axes) = eigen(*j);
+    let [a, b] = [(moments[1] - moments[2]) / moments[0], (moments[2] - moments[0]) / moments[1]];
+    // (I₂ − I₃)/I₁ = −a and (I₃ − I₁)/I₂ = −b
+    let other = Vector3::new(1.0 + b, 1.0 - a, 1.0 + a * b).map(|moment| moment.max(0.0));
+    axes * Matrix3::from_diagonal(&(other / other.sum())) * axes.transpose()
+}
+
+/// The record with all rates reversed: the same body in axes of the other hand. `None` where wheels or torques act.
+pub(crate) fn reversed(record: &Record) -> Option<Record> {
+    let mut other = Record::default();
+    for segment in &record.segments {
+        if segment.inputs().is_some() {
+            return None;
+        }
+        let rates = segment.rates().iter().map(|w| -w).collect();
+        other.segments.push(Segment::new(segment.source(), segment.times().to_vec(), rates).ok()?);
+    }
+    Some(other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mirror_has_the_negated_ratios_and_is_its_own_inverse() {
+        // by hand: (1, 2, 2.6) has the ratios -0.6, 0.8, -0.3846; 1.8 : 1.6 : 0.52 has their negatives
+        let j = Matrix3::from_diagonal(&(Vector3::new(1.0, 2.0, 2.6) / 5.6));
+        let other = mirrored(&j);
+        let expected = Vector3::new(1.8, 1.6, 0.52) / 3.92;
+        assert!((other.diagonal() - expected).amax() < 1e-12, "{other}");
+        assert!((mirrored(&other) - j).amax() < 1e-12);
+    }
+}

@@ -1,0 +1,181 @@
+//! The free body that comes nearest to a record in given units.
+//!
+//! With rate × time f times as large as read, ω' + f J⁻¹ (ω × J ω) + k ω − a = 0, with drag k and a constant acceleration a. Its
+//! residuals are linear in the sums of the record, so that products of these are all that least squares over J asks for.
+//! J = tr(Σ) − Σ with Σ = L Lᵀ is every tensor that a body can have, and no other.
+
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+use super::sums::{FEATURES, Gram};
+use crate::columns::equation::crossed;
+use crate::physical::coordinates::{basis, eigen, symmetric, tensor};
+use crate::thresholds::units::{GAINED, RAISED, SMALLEST, STEPS};
+
+/// L, k, a.
+const UNKNOWNS: usize = 10;
+type Coefficients = SMatrix<f64, 3, FEATURES>;
+type Quadratic = SMatrix<f64, 3, 6>;
+
+/// A body that was fitted to a record in one unit.
+#[derive(Clone, Debug)]
+pub(super) struct FreeBody {
+    root: Matrix3<f64>,
+    drag: f64,
+    constant: [f64; 3],
+    /// Sum of squares of what it leaves of the derivatives.
+    pub(super) squares: f64,
+}
+
+/// ω × J ω by the entries of ω ωᵀ.
+fn products(j: &Matrix3<f64>) -> Quadratic {
+    let mut of = Quadratic::zeros();
+    (0..6).for_each(|k| of.set_column(k, &crossed(&symmetric(k), j)));
+    of
+}
+
+/// tr(Σ) − Σ, and back by half of it.
+fn turned(sigma: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::from_diagonal_element(sigma.trace()) - sigma
+}
+
+impl FreeBody {
+    /// The best of those that least squares reach from J by linear equations, and from the sphere.
+    pub(super) fn nearest(gram: &Gram, factor: f64) -> Option<FreeBody> {
+        let starts = [linear(gram, factor), Some(Matrix3::identity() / 3.0)];
+        let bodies = starts.into_iter().flatten().filter_map(|j| FreeBody::at(&j)?.descended(gram, factor));
+        bodies.min_by(|a, b| a.squares.total_cmp(&b.squares))
+    }
+
+    /// The same from this body on.
+    pub(super) fn descended(mut self, gram: &Gram, factor: f64) -> Option<FreeBody> {
+        let mut damping = 1e-3;
+        self.squares = inner(&self.coefficients(factor)?, &self.coefficients(factor)?, gram);
+        for _ in 0..STEPS {
+            let own = self.coefficients(factor)? * gram;
+            let slopes = self.slopes(factor)?;
+            let weighted = slopes.map(|slope| slope * gram);
+            let mut normal = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, k| weighted[i].dot(&slopes[k]));
+            let gradient = SVector::<f64, UNKNOWNS>::from_fn(|i, _| slopes[i].dot(&own));
+            let scale = normal.diagonal();
+            let least = scale.max() * f64::EPSILON;
+            (0..UNKNOWNS).for_each(|k| normal[(k, k)] += damping * scale[k] + least);
+            let next =
+                normal.cholesky().and_then(|normal| self.moved(&-normal.solve(&gradient), gram, factor));
+            match next.filter(|next| next.squares < self.squares) {
+                Some(next) => {
+                    let gained = self.squares - next.squares;
+                    let done = gained <= GAINED * next.squares;
+                    self = next;
+                    damping *= 0.1;
+                    if done {
+                        break;
+                    }
+                }
+                None if damping > RAISED => break,
+                None => damping *= 10.0,
+            }
+        }
+        self.squares.is_finite().then_some(self)
+    }
+
+    /// A known body that nothing but its motion drives.
+    pub(super) fn known(j: &Matrix3<f64>) -> Option<FreeBody> {
+        FreeBody::at(j)
+    }
+
+    /// What it leaves by other weights.
+    pub(super) fn squares_by(&self, gram: &Gram, factor: f64) -> Option<f64> {
+        let coefficients = self.coefficients(factor)?;
+        Some(inner(&coefficients, &coefficients, gram))
+    }
+
+    fn tensor(&self) -> Matrix3<f64> {
+        turned(&(self.root * self.root.transpose()))
+    }
+
+    fn at(j: &Matrix3<f64>) -> Option<FreeBody> {
+        let sigma = Matrix3::from_diagonal_element(0.5 * j.trace()) - j;
+        let (values, axes) = eigen(sigma);
+        let values = values.map(|value| value.max(SMALLEST * j.trace()));
+        let root = (axes * Matrix3::from_diagonal(&values) * axes.transpose()).cholesky()?.l();
+        Some(FreeBody { root, drag: 0.0, constant: [0.0; 3], squares: f64::INFINITY })
+    }
+
+    fn coefficients(&self, factor: f64) -> Option<Coefficients> {
+        let j = self.tensor();
+        let motion = j.try_inverse()? * products(&j) * factor;
+        let mut of = Coefficients::zeros();
+        of.fixed_view_mut::<3, 6>(0, 3).copy_from(&motion);
+        for p in 0..3 {
+            (of[(p, p)], of[(p, 9 + p)], of[(p, 12)]) = (1.0, self.drag, -self.constant[p]);
+        }
+        Some(of)
+    }
+
+    /// Their derivatives by the unknowns.
+    fn slopes(&self, factor: f64) -> Option<[Coefficients; UNKNOWNS]> {
+        let j = self.tensor();
+        let inverse = j.try_inverse()?;
+        let motion = inverse * products(&j);
+        Some(core::array::from_fn(|k| {
+            let mut of = Coefficients::zeros();
+            match k {
+                0..6 => {
+                    let (row, column) = ENTRIES_OF_ROOT[k];
+                    let mut change = Matrix3::zeros();
+                    change[(row, column)] = 1.0;
+                    let change = change * self.root.transpose();
+                    let change = turned(&(change + change.transpose()));
+                    let own = inverse * (products(&change) - change * motion) * factor;
+                    of.fixed_view_mut::<3, 6>(0, 3).copy_from(&own);
+                }
+                6 => (0..3).for_each(|p| of[(p, 9 + p)] = 1.0),
+                _ => of[(k - 7, 12)] = -1.0,
+            }
+            of
+        }))
+    }
+
+    fn moved(&self, step: &SVector<f64, UNKNOWNS>, gram: &Gram, factor: f64) -> Option<FreeBody> {
+        let mut next = self.clone();
+        for (k, (row, column)) in ENTRIES_OF_ROOT.into_iter().enumerate() {
+            next.root[(row, column)] += step[k];
+        }
+        // the size of the tensor says nothing
+        next.root /= next.root.norm();
+        next.drag += step[6];
+        (0..3).for_each(|p| next.constant[p] += step[7 + p]);
+        next.squares = next.squares_by(gram, factor)?;
+        Some(next)
+    }
+}
+
+/// Rows and columns of L.
+const ENTRIES_OF_ROOT: [(usize, usize); 6] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
+
+fn inner(a: &Coefficients, b: &Coefficients, gram: &Gram) -> f64 {
+    (a * gram).dot(b)
+}
+
+/// The tensor of least squares in J ω' + f ω × J ω − τ = 0, which is linear in it.
+fn linear(gram: &Gram, factor: f64) -> Option<Matrix3<f64>> {
+    let of = |j: &Matrix3<f64>| {
+        let mut coefficients = Coefficients::zeros();
+        coefficients.fixed_view_mut::<3, 3>(0, 0).copy_from(j);
+        coefficients.fixed_view_mut::<3, 6>(0, 3).copy_from(&(products(j) * factor));
+        coefficients
+    };
+    let origin = of(&(Matrix3::identity() / 3.0));
+    let slopes: [Coefficients; 8] = core::array::from_fn(|k| match k {
+        0..5 => of(&basis(k)),
+        _ => {
+            let mut constant = Coefficients::zeros();
+            constant[(k - 5, 12)] = -1.0;
+            constant
+        }
+    });
+    let normal = SMatrix::<f64, 8, 8>::from_fn(|i, k| inner(&slopes[i], &slopes[k], gram));
+    let gradient = SVector::<f64, 8>::from_fn(|i, _| inner(&slopes[i], &origin, gram));
+    let solved = normal.cholesky()?.solve(&-gradient);
+    Some(tensor(&solved.fixed_rows::<5>(0).into_owned()))
+}

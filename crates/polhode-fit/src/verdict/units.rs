@@ -1,0 +1,44 @@
+//! Whether a record is in the units in which it was read.
+
+use polhode::record::{Record, Segment};
+
+use crate::error::FitError;
+use crate::signal::stretch::Stretch;
+use crate::units::{Motion, Others, Units};
+
+/// Refuses units that are mistaken, or in which the body turns too far between samples; units that explain the record as well
+/// as those that were read.
+pub(crate) fn open_units(
+    record: &Record,
+    stretches: &[Stretch],
+    motion: Option<&Motion>,
+    rms: f64,
+) -> Result<Option<Others>, FitError> {
+    let [turn, step] = steps(stretches);
+    let units = motion.map(|motion| {
+        let read = record.segments.iter().find_map(Segment::rate_unit).unwrap_or_default();
+        let steps = record.segments.iter().flat_map(|s| s.times().windows(2)).map(|t| t[1] - t[0]);
+        motion.units(read, turn, steps.into_iter().all(|step| step == 1.0))
+    });
+    match units {
+        Some(Units::Mistaken(others)) => Err(FitError::Units {
+            products: others.products,
+            unexplained: others.as_read,
+            better: others.best,
+        }),
+        _ if turn > core::f64::consts::PI => Err(FitError::Undersampled { turn, step: step / rms }),
+        Some(Units::Open(others)) => Ok(Some(others)),
+        Some(Units::AsRead) | None => Ok(None),
+    }
+}
+
+/// Medians of |ω| Δt and of Δt.
+fn steps(stretches: &[Stretch]) -> [f64; 2] {
+    let each = stretches.iter().flat_map(|s| s.times.windows(2).zip(&s.rates));
+    let (mut turns, mut steps): (Vec<f64>, Vec<f64>) =
+        each.map(|(t, w)| ((t[1] - t[0]) * w.norm(), t[1] - t[0])).unzip();
+    let middle = turns.len() / 2;
+    [&mut turns, &mut steps].map(|list| {
+        if list.is_empty() { 0.0 } else { *list.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    })
+}
