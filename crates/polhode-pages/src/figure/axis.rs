@@ -132,6 +132,10 @@ impl Axis {
 
     fn linear_ticks(&self, most: f64) -> Vec<Tick> {
         let least = (self.last - self.first) / most;
+        // below the normal numbers no power of ten has the digits that marks need
+        if !least.is_normal() {
+            return Vec::new();
+        }
         let decade = libm::exp10(libm::floor(libm::log10(least)));
         let fits = |factor: &&f64| *factor * decade >= least * (1.0 - 1e-9);
         let tick = [1.0, 2.0, 5.0].iter().find(fits).map_or(10.0 * decade, |factor| factor * decade);
@@ -256,6 +260,11 @@ mod tests {
         let labels = labels(&decades, 800.0);
         assert_eq!((labels[0].as_str(), labels[1].as_str(), labels.len()), ("0", "10⁻¹²", 11));
         assert_eq!(ten_to(30), "10³⁰");
+    }
+
+    #[test]
+    fn an_axis_of_subnormal_length_has_no_marks() {
+        assert!(Axis::over(Scale::Linear, [0.0, 5e-324].into_iter()).ticks(300.0, 40.0).is_empty());
     }
 
     #[test]
