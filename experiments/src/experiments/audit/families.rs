@@ -47,7 +47,7 @@ struct Counts {
 impl Counts {
     fn of(scale: Scale) -> Self {
         scale.pick(
-            Counts { exact: 10, fault: 1, sphere: 1, method: 1, long: &[(3_000, 1)], every: 4 },
+            Counts { exact: 8, fault: 1, sphere: 1, method: 1, long: &[(3_000, 1)], every: 6 },
             Counts { exact: 200, fault: 5, sphere: 1, method: 4, long: &[(100_000, 1)], every: 1 },
             Counts {
                 exact: 2000,
@@ -149,9 +149,9 @@ impl Families {
         add("exact", &exact, "right", exact.right());
         let groups: [(&str, fn(&Family) -> bool); 5] = [
             ("one fault", |family| matches!(family, Family::Fault(_))),
-            ("one fault, sphere", |family| matches!(family, Family::Sphere(_))),
+            ("one fault of a sphere", |family| matches!(family, Family::Sphere(_))),
             ("methods that keep L", |family| matches!(family, Family::Method(_))),
-            ("long, with bad rows", |family| matches!(family, Family::Long { bad: 1.., .. })),
+            ("long with bad rows", |family| matches!(family, Family::Long { bad: 1.., .. })),
             ("all that are not exact", |family| !is_exact(family)),
         ];
         for (name, which) in groups {

@@ -104,6 +104,10 @@ pub(super) fn judged(specimen: &Specimen, style: Style, random: &mut Random) -> 
     question.tolerance = TOLERANCE;
     let rates = if style.columns == Columns::Attitude { 0.0 } else { style.noise * size };
     question.noise = Noise { attitude: style.noise, rates };
+    if rates > 0.0 {
+        // who declares a noise in rad/s knows the unit, which the motion of a sphere does not tell
+        question.claims.rate_unit = reading.rate_unit;
+    }
     let verdict = audit(&record, &question).map_err(unexpected)?;
     let limit = |rounding: f64| TOLERANCE.max(rounding).max(WITHIN_NOISE * style.noise);
     let limits = Distance { attitude: limit(rounding.attitude), rates: limit(rounding.rates) };
