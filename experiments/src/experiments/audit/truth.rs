@@ -236,6 +236,11 @@ fn least_excess(specimen: &Specimen, columns: Columns, limits: Distance) -> Opti
         }
         let most = sizes.iter().fold(0.0_f64, |most, size| most.max(*size));
         best = Some(best.map_or(most, |best: f64| best.min(most)));
+        let finite = |x: &f64| x.is_finite();
+        // a decomposition of what is not finite has no end
+        if most == 0.0 || !most.is_finite() || !normal.iter().chain(side.iter()).all(finite) {
+            break;
+        }
         for (weight, size) in weights.iter_mut().zip(&sizes) {
             *weight *= size / most;
         }
