@@ -8,6 +8,7 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::body::{Body, StateError};
 use crate::inertia::{Amount, Inertia, MassError, MassProperties, Solid};
+use crate::rotation::EulerSequence;
 
 /// A catalogued body.
 #[derive(Clone, Debug)]
@@ -25,13 +26,46 @@ pub struct NamedBody {
     pub inertia: Inertia,
     /// Weight times centre of mass, body axes, N m; zero for a free body.
     pub weight_moment: [f64; 3],
-    /// Attitude at the start of the reference motion, w, x, y, z.
+    /// Attitude at the start of the reference motion, from body axes to those of `orientation`, w, x, y, z; the identity where
+    /// none is known.
     pub attitude: [f64; 4],
+    /// What the attitude refers to, if it is known.
+    pub orientation: Option<Orientation>,
     /// Angular velocity of the reference motion, body axes, rad/s.
     pub omega_body: [f64; 3],
 }
 
+/// What the attitude of a catalogued body refers to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Orientation {
+    /// The axes of space.
+    pub frame: &'static str,
+    /// The date of the reference motion's start, UTC, if it has one.
+    pub epoch: Option<&'static str>,
+    /// Where the attitude comes from.
+    pub source: &'static str,
+}
+
 impl NamedBody {
+    /// What is known of the attitude at the start, in words.
+    ///
+    /// ```
+    /// use polhode::catalogue::body;
+    /// let words = |name: &str| body(name).map(|found| found.attitude_known());
+    /// assert_eq!(words("toutatis").as_deref(), Some("attitude in the frame ecliptic J2000 at 1992-11-09T17:49:47 UTC"));
+    /// assert_eq!(words("phone").as_deref(), Some("attitude unknown: identity"));
+    /// ```
+    pub fn attitude_known(&self) -> String {
+        match self.orientation {
+            Some(Orientation { frame, epoch: Some(epoch), .. }) => {
+                format!("attitude in the frame {frame} at {epoch} UTC")
+            }
+            Some(Orientation { frame, .. }) => format!("attitude in the frame {frame}"),
+            None => "attitude unknown: identity".into(),
+        }
+    }
+
     /// The body with its weight.
     ///
     /// # Errors
@@ -48,13 +82,14 @@ struct Entry {
     unit: &'static str,
     moments: Result<[f64; 3], MassError>,
     omega_body: [f64; 3],
+    /// Attitude and what it refers to, where it is known.
+    attitude: Option<([f64; 4], Orientation)>,
 }
 
 /// A body with a fixed point.
 struct Top {
     entry: Entry,
     weight_moment: [f64; 3],
-    attitude: [f64; 4],
 }
 
 const SI: &str = "kg m^2";
@@ -95,17 +130,29 @@ pub fn body(name: &str) -> Option<NamedBody> {
 
 impl Entry {
     fn build(self) -> Option<NamedBody> {
-        let Entry { name, summary, source, unit, moments, omega_body } = self;
+        let Entry { name, summary, source, unit, moments, omega_body, attitude } = self;
         let inertia = Inertia::from_moments(moments.ok()?).ok()?;
-        let (weight_moment, attitude) = ([0.0; 3], [1.0, 0.0, 0.0, 0.0]);
-        Some(NamedBody { name, summary, source, unit, inertia, weight_moment, attitude, omega_body })
+        let weight_moment = [0.0; 3];
+        let orientation = attitude.map(|(_, orientation)| orientation);
+        let attitude = attitude.map_or([1.0, 0.0, 0.0, 0.0], |(attitude, _)| attitude);
+        Some(NamedBody {
+            name,
+            summary,
+            source,
+            unit,
+            inertia,
+            weight_moment,
+            attitude,
+            orientation,
+            omega_body,
+        })
     }
 }
 
 impl Top {
     fn build(self) -> Option<NamedBody> {
-        let Top { entry, weight_moment, attitude } = self;
-        Some(NamedBody { weight_moment, attitude, ..entry.build()? })
+        let Top { entry, weight_moment } = self;
+        Some(NamedBody { weight_moment, ..entry.build()? })
     }
 }
 
@@ -120,6 +167,7 @@ fn entries() -> [Entry; 11] {
             unit: RATIO,
             moments: Ok([1.0, 3.0836, 3.235]),
             omega_body: [-98.5 * DEGREE_PER_DAY, 14.5 * DEGREE_PER_DAY, 33.7 * DEGREE_PER_DAY],
+            attitude: Some((toutatis(), TOUTATIS)),
         },
         Entry {
             name: "racket",
@@ -128,6 +176,7 @@ fn entries() -> [Entry; 11] {
             unit: RATIO,
             moments: Ok([0.0389, 0.4619, 0.4993]),
             omega_body: [0.3, 15.0, 0.2],
+            attitude: None,
         },
         Entry {
             name: "t-handle",
@@ -136,6 +185,7 @@ fn entries() -> [Entry; 11] {
             unit: SI,
             moments: t_handle(),
             omega_body: [20.0, 0.02, 0.01],
+            attitude: None,
         },
         Entry {
             name: "phone",
@@ -144,6 +194,7 @@ fn entries() -> [Entry; 11] {
             unit: SI,
             moments: phone(),
             omega_body: [0.2, 10.0, 0.3],
+            attitude: None,
         },
         Entry {
             name: "water",
@@ -152,6 +203,7 @@ fn entries() -> [Entry; 11] {
             unit: SI,
             moments: water(),
             omega_body: [2.0e13, 1.0e13, 0.5e13],
+            attitude: None,
         },
         Entry {
             name: "spacecraft",
@@ -160,6 +212,7 @@ fn entries() -> [Entry; 11] {
             unit: SI,
             moments: Ok([2.41e-2, 2.34e-2, 2.01e-2]),
             omega_body: [0.3, 1.0, 0.4],
+            attitude: None,
         },
         Entry {
             name: "textbook",
@@ -168,6 +221,7 @@ fn entries() -> [Entry; 11] {
             unit: RATIO,
             moments: Ok([1.0, 2.0, 3.0]),
             omega_body: [0.4, 1.0, -0.3],
+            attitude: None,
         },
         Entry {
             name: "dyadic",
@@ -176,6 +230,7 @@ fn entries() -> [Entry; 11] {
             unit: RATIO,
             moments: Ok([0.625, 0.75, 1.0]),
             omega_body: [2.8, 0.5, -0.875],
+            attitude: None,
         },
         Entry {
             name: "prolate",
@@ -184,6 +239,7 @@ fn entries() -> [Entry; 11] {
             unit: RATIO,
             moments: Ok([1.0, 1.0, 0.25]),
             omega_body: [0.3, 0.0, 1.0],
+            attitude: None,
         },
         Entry {
             name: "oblate",
@@ -192,6 +248,7 @@ fn entries() -> [Entry; 11] {
             unit: RATIO,
             moments: Ok([1.0, 1.0, 2.0]),
             omega_body: [0.3, 0.0, 1.0],
+            attitude: None,
         },
         Entry {
             name: "sphere",
@@ -200,9 +257,30 @@ fn entries() -> [Entry; 11] {
             unit: RATIO,
             moments: Ok([1.0, 1.0, 1.0]),
             omega_body: [0.3, 0.5, 1.0],
+            attitude: None,
         },
     ]
 }
+
+const TOUTATIS: Orientation = Orientation {
+    frame: "ecliptic J2000",
+    epoch: Some("1992-11-09T17:49:47"),
+    source: "3-1-3 angles of Takahashi, Busch and Scheeres, Astron. J. 146 (2013) 95, with body axes middle, short, long, as quoted in the tests of Principia; they give the pole 180.2, -54.75 degrees of Zhao et al., arXiv:1504.02024, to 0.3 degrees",
+};
+
+/// The angles are those of axes along the middle, the short and the long axis of the asteroid; ours are long, middle, short.
+fn toutatis() -> [f64; 4] {
+    let degrees = core::f64::consts::PI / 180.0;
+    let published = EulerSequence::default().attitude([147.5, 63.9, 241.5].map(|angle| angle * degrees));
+    // x to z, y to x, z to y
+    let named = UnitQuaternion::new_unchecked(Quaternion::new(0.5, -0.5, -0.5, -0.5));
+    let turn = published * named;
+    [turn.w, turn.i, turn.j, turn.k]
+}
+
+/// Tops stand where their problem puts them.
+const UPRIGHT: Orientation =
+    Orientation { frame: "gravity along -z", epoch: None, source: "by definition of the problem" };
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
@@ -223,9 +301,9 @@ fn top_entries() -> [Top; 4] {
                 unit: SI,
                 moments: gyroscope(),
                 omega_body: [0.0, 0.0, 400.0],
+                attitude: Some((tilted(30.0 * degrees), UPRIGHT)),
             },
             weight_moment: [0.0, 0.0, 0.1 * GRAVITY * 0.040],
-            attitude: tilted(30.0 * degrees),
         },
         Top {
             entry: Entry {
@@ -235,9 +313,9 @@ fn top_entries() -> [Top; 4] {
                 unit: SI,
                 moments: bicycle_wheel(),
                 omega_body: [0.0, 0.0, 25.0],
+                attitude: Some((tilted(90.0 * degrees), UPRIGHT)),
             },
             weight_moment: [0.0, 0.0, 1.5 * GRAVITY * 0.120],
-            attitude: tilted(90.0 * degrees),
         },
         Top {
             entry: Entry {
@@ -247,9 +325,9 @@ fn top_entries() -> [Top; 4] {
                 unit: SI,
                 moments: Ok([5.0, 5.0, 1.0]),
                 omega_body: [0.0, 0.0, 50.0],
+                attitude: Some((tilted(0.05), UPRIGHT)),
             },
             weight_moment: [0.0, 0.0, 20.0],
-            attitude: tilted(0.05),
         },
         Top {
             entry: Entry {
@@ -259,9 +337,9 @@ fn top_entries() -> [Top; 4] {
                 unit: SI,
                 moments: Ok([15.234_375, 0.468_75, 15.234_375]),
                 omega_body: [0.0, 150.0, -4.615_38],
+                attitude: Some((tilted(0.0), UPRIGHT)),
             },
             weight_moment: [0.0, 15.0 * 9.81, 0.0],
-            attitude: tilted(0.0),
         },
     ]
 }
@@ -317,6 +395,22 @@ mod tests {
         assert_eq!(bodies().len(), entries().len());
         assert_eq!(tops().len(), top_entries().len());
         assert!(bodies().iter().chain(&tops()).all(|named| named.body().is_ok()));
+    }
+
+    /// Zhao et al., arXiv:1504.02024: the pole of the angular momentum, which does not come from these angles.
+    #[test]
+    fn toutatis_points_to_its_published_pole() {
+        let toutatis = body("toutatis").unwrap();
+        let [w, x, y, z] = toutatis.attitude;
+        let attitude = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+        let motion = crate::flow::FreeMotion::from_omega(
+            &toutatis.inertia,
+            attitude,
+            Vector3::from(toutatis.omega_body),
+        );
+        let [longitude, latitude] = motion.unwrap().tumbling().unwrap().pole.map(f64::to_degrees);
+        assert!((longitude.rem_euclid(360.0) - 180.2).abs() < 0.3, "{longitude}");
+        assert!((latitude + 54.75).abs() < 0.3, "{latitude}");
     }
 
     #[test]

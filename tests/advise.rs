@@ -128,3 +128,64 @@ fn forces_decide_what_can_be_judged() {
     assert!(check(&pushed, &rest, &demand, &best).unwrap() <= 1e-6);
     assert_eq!(best.energy_error, None);
 }
+
+/// A thousand radians and more of bodies whose rate changes: the run that is advised was seen to its end, and the stated factor holds.
+#[test]
+fn the_stated_error_holds_where_the_rate_changes() {
+    let inertia = || Inertia::from_moments([1.0, 2.0, 2.5]).unwrap();
+    let torque = |x: f64, y: f64, z: f64| Force::constant_torque_body(Vector3::new(x, y, z)).unwrap();
+    for (force, until) in [
+        (torque(1e-4, 0.0, 0.0), 1000.0),
+        (torque(0.0, 0.0, 0.02), 400.0),
+        (Force::drag(5e-3, 1e-3).unwrap(), 3000.0),
+        (Force::gravity_gradient(0.05, 0.2).unwrap(), 300.0),
+    ] {
+        let body = Body::free(inertia()).with(force);
+        let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3)).unwrap();
+        let demand = without_closed_form(until, 1e-6);
+        let best = advise(&body, &start, &demand).unwrap().best;
+        let actual = check(&body, &start, &demand, &best).unwrap();
+        let stated = best.attitude_error.value * best.attitude_error.factor;
+        assert!(best.whole_time && actual <= 1e-6 && actual <= stated, "{actual:e}, {best:?}");
+    }
+}
+
+/// A torque that jumps is no chaos: methods that choose their steps pass it, and where they do not agree it is named.
+#[test]
+fn a_torque_that_jumps_is_called_that() {
+    let free = Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap());
+    let thruster = |t: f64, _, _| Vector3::new(if t > 60.0 && t < 65.0 { 0.05 } else { 0.0 }, 0.0, 0.0);
+    let body = free.with(Force::torque_fn("thruster", thruster));
+    let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3)).unwrap();
+    let advice = advise(&body, &start, &without_closed_form(100.0, 1e-5)).unwrap();
+    assert!(advice.jump.is_some_and(|time| (time - 60.0).abs() < 1e-3), "{:?}", advice.jump);
+    let later = |demand: f64| advise(&body, &start, &without_closed_form(100.0, demand));
+    match later(1e-13) {
+        Err(AdviseError::Jumps { time, .. }) => assert!((time - 60.0).abs() < 1e-3),
+        other => assert!(!matches!(other, Err(AdviseError::Chaotic { .. })), "{other:?}"),
+    }
+    let hammering = Force::torque_fn("hammer", |t: f64, _, _| {
+        Vector3::new(if (t * 20.0) as u64 % 2 == 0 { 0.3 } else { -0.3 }, 0.0, 0.0)
+    });
+    let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap()).with(hammering);
+    match advise(&body, &start, &without_closed_form(100.0, 1e-6)) {
+        Err(error) => assert!(error.to_string().starts_with("the torque jumps at t = 0.05"), "{error}"),
+        Ok(advice) => assert!(advice.jump.is_some(), "{advice:?}"),
+    }
+}
+
+#[test]
+fn a_chaotic_top_is_called_chaotic_and_a_body_that_spins_up_is_not() {
+    let inertia = Inertia::from_moments([0.5, 0.85, 1.0]).unwrap();
+    let top = Body::heavy(inertia, Vector3::new(0.0, 0.0, 1.0)).unwrap();
+    let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.1, 0.04, 0.0));
+    let start = top.state(tilted, Vector3::new(0.2, 0.235, 0.5)).unwrap();
+    match advise(&top, &start, &Demand::new(1000.0, 1e-6)) {
+        Err(AdviseError::Chaotic { agree_until, .. }) => assert!(agree_until > 10.0 && agree_until < 900.0),
+        other => panic!("{other:?}"),
+    }
+    let (free, _) = textbook();
+    let spun = free.with(Force::constant_torque_body(Vector3::new(0.0, 0.0, 0.2)).unwrap());
+    let start = spun.state(UnitQuaternion::identity(), Vector3::new(0.1, 0.2, 0.3)).unwrap();
+    assert!(advise(&spun, &start, &Demand::new(200.0, 1e-6)).is_ok());
+}

@@ -19,12 +19,10 @@ fn patient(parts: &[Part], extents: [f64; 3]) -> Patient {
         solid.with(Amount::Density(*density)).unwrap().moved(Vector3::from(*shift)).unwrap()
     });
     let body = MassProperties::sum(parts).unwrap();
-    let evidence = Evidence {
-        mass: Some(body.mass()),
-        center_of_mass: Some(body.center_of_mass()),
-        extents: Some(extents),
-        twin: None,
-    };
+    let evidence = Evidence::default()
+        .with_mass(body.mass())
+        .with_center_of_mass(body.center_of_mass())
+        .with_extents(extents);
     Patient { body, evidence }
 }
 
@@ -93,8 +91,8 @@ type Case = (&'static str, Matrix3<f64>, Evidence, &'static str, Matrix3<f64>);
 
 fn cases() -> Vec<Case> {
     let nothing = Evidence::default();
-    let mass_only = |p: &Patient| Evidence { mass: p.evidence.mass, ..nothing };
-    let without_extents = |p: &Patient| Evidence { extents: None, ..p.evidence };
+    let mass_only = |p: &Patient| nothing.with_mass(p.evidence.mass);
+    let without_extents = |p: &Patient| p.evidence.with_extents(None);
     let (bracket, forearm, phone, satellite) = (bracket(), forearm(), phone(), satellite());
     let [b, f, p, s] = [&bracket, &forearm, &phone, &satellite].map(|patient| patient.body.tensor());
     // a thin rod along (1, 1, 1) and a plate across it, whose products decide everything
@@ -104,13 +102,7 @@ fn cases() -> Vec<Case> {
     vec![
         ("signs, rod", products_flipped(rod), nothing, "product-signs", rod),
         ("signs, bar", products_flipped(bar), nothing, "product-signs", bar),
-        (
-            "signs, bar of known mass",
-            products_flipped(bar),
-            Evidence { mass: Some(3.0), ..nothing },
-            "product-signs",
-            bar,
-        ),
+        ("signs, bar of known mass", products_flipped(bar), nothing.with_mass(3.0), "product-signs", bar),
         ("subtracted twice, forearm", f - parallel_axis_term(&forearm), forearm.evidence, "another-point", f),
         (
             "subtracted twice, bracket",
@@ -186,9 +178,7 @@ fn the_true_cause_comes_first() {
 #[test]
 fn the_healthy_are_left_alone() {
     for patient in [bracket(), forearm(), phone(), satellite()] {
-        for evidence in
-            [Evidence::default(), Evidence { extents: None, ..patient.evidence }, patient.evidence]
-        {
+        for evidence in [Evidence::default(), patient.evidence.with_extents(None), patient.evidence] {
             let found = diagnose(patient.body.tensor(), &evidence).unwrap();
             assert_eq!(
                 found.verdict,
@@ -212,8 +202,7 @@ fn the_healthy_are_left_alone() {
         for k in 0..100 {
             let q = Quaternion::new(1.0, 0.1 * f64::from(k), 3.0 - 0.2 * f64::from(k), 0.7);
             let body = solid.with(Amount::Mass(1.5)).unwrap().turned(UnitQuaternion::new_normalize(q));
-            let found =
-                diagnose(body.tensor(), &Evidence { mass: Some(1.5), ..Evidence::default() }).unwrap();
+            let found = diagnose(body.tensor(), &Evidence::default().with_mass(1.5)).unwrap();
             assert_eq!(found.verdict, Validity::Valid, "{solid:?} {k}");
             assert!(found.distance < 1e-15 * body.tensor().amax());
         }
@@ -250,7 +239,7 @@ fn the_nearest_tensor_is_accepted_and_no_valid_one_is_nearer() {
 fn the_equivalent_box_is_the_box() {
     let body = Solid::Box([0.3, 1.7, 0.9]).with(Amount::Mass(2.5)).unwrap();
     let tilted = body.turned(UnitQuaternion::new_normalize(Quaternion::new(0.7, -0.3, 0.5, 0.2))).tensor();
-    let known = diagnose(tilted, &Evidence { mass: Some(2.5), ..Evidence::default() }).unwrap();
+    let known = diagnose(tilted, &Evidence::default().with_mass(2.5)).unwrap();
     for (edge, expected) in known.equivalent_box.into_iter().zip([1.7, 0.9, 0.3]) {
         assert!((edge - expected).abs() < 1e-14, "{:?}", known.equivalent_box);
     }
@@ -260,7 +249,7 @@ fn the_equivalent_box_is_the_box() {
 
 #[test]
 fn messages_say_law_margin_and_remedy() {
-    let evidence = Evidence { mass: Some(1.2), extents: Some([0.2, 0.1, 0.05]), ..Evidence::default() };
+    let evidence = Evidence::default().with_mass(1.2).with_extents([0.2, 0.1, 0.05]);
     let found = diagnose(Matrix3::from_diagonal(&Vector3::new(1250.0, 4250.0, 5000.0)), &evidence).unwrap();
     assert_eq!(found.violation, None);
     // a homogeneous box fills a third of what the extents allow
@@ -277,7 +266,7 @@ fn messages_say_law_margin_and_remedy() {
     );
     assert_eq!(found.distance, 0.5_f64.sqrt());
     let error = |tensor: Matrix3<f64>, evidence| diagnose(tensor, &evidence).unwrap_err().to_string();
-    let negative = Evidence { mass: Some(-1.0), ..Evidence::default() };
+    let negative = Evidence::default().with_mass(-1.0);
     assert_eq!(error(skew, negative), "mass is -1; it must be a finite number above zero");
     assert!(error(skew * f64::NAN, Evidence::default()).contains("every entry must be a finite number"));
 }
@@ -311,24 +300,17 @@ fn extremes_of_size_and_zeros_are_refused_in_words() {
     let one = Matrix3::identity();
     let max = f64::MAX;
     let spoiled = Matrix3::new(max, 3.4e-74, 1e-200, 3.4e-74, max, -max, 1e-200, -max, 1e-200);
-    out_of_range(spoiled, Evidence { mass: Some(0.798), ..Evidence::default() });
+    out_of_range(spoiled, Evidence::default().with_mass(0.798));
     out_of_range(one * 1e300, Evidence::default());
     out_of_range(one * 1e-300, Evidence::default());
-    out_of_range(one, Evidence { extents: Some([1.0, 1e-200, 1.0]), ..Evidence::default() });
-    out_of_range(one, Evidence { mass: Some(1e-250), extents: Some([1e-50; 3]), ..Evidence::default() });
-    out_of_range(
-        one,
-        Evidence { center_of_mass: Some(Vector3::new(1e200, 0.0, 0.0)), ..Evidence::default() },
-    );
+    out_of_range(one, Evidence::default().with_extents([1.0, 1e-200, 1.0]));
+    out_of_range(one, Evidence::default().with_mass(1e-250).with_extents([1e-50; 3]));
+    out_of_range(one, Evidence::default().with_center_of_mass(Vector3::new(1e200, 0.0, 0.0)));
     // a mass without extents has a box, however large
-    let light = diagnose(one, &Evidence { mass: Some(1e-310), ..Evidence::default() }).unwrap();
+    let light = diagnose(one, &Evidence::default().with_mass(1e-310)).unwrap();
     assert!(light.equivalent_box.iter().all(|edge| (1e155..1e156).contains(edge)), "{light:?}");
 
-    let evidence = Evidence {
-        mass: Some(1.0),
-        center_of_mass: Some(Vector3::new(1.0, 0.0, 0.0)),
-        ..Evidence::default()
-    };
+    let evidence = Evidence::default().with_mass(1.0).with_center_of_mass(Vector3::new(1.0, 0.0, 0.0));
     let nothing = diagnose(Matrix3::zeros(), &evidence).unwrap();
     assert_eq!(nothing.verdict, Validity::Invalid);
     assert_eq!(nothing.violation, Some(InertiaError::NotPositive { moments: [0.0; 3] }));

@@ -177,8 +177,9 @@ fn any_number_of_threads_gives_the_same_rows() {
     let steps: Vec<u64> = (0..2048).map(|n| n / 8).collect();
     let rows = |threads| {
         let ensemble = members(0..700).threads(threads);
-        let observed =
-            members(0..700).threads(threads).observing(Observed { invariants: true, attitude: true });
+        let observed = members(0..700)
+            .threads(threads)
+            .observing(Observed::default().with_invariants(true).with_attitude(true));
         let mut tally = Tally::new();
         let done = observed.advance(&method("two-turn").unwrap(), Clock::new(0.01), &[20], |rows| {
             tally.add(rows);
@@ -239,7 +240,7 @@ fn the_failure_of_one_is_a_row_of_its_own() {
     // twenty turns a step: rk4 diverges
     ensemble.push_omega(&inertia(0), attitude(0), Vector3::new(40.0, 3000.0, 50.0));
     ensemble.push_omega(&inertia(1), attitude(1), Vector3::new(1.0, 2.0, 3.0));
-    let ensemble = ensemble.observing(Observed { invariants: true, attitude: true });
+    let ensemble = ensemble.observing(Observed::default().with_invariants(true).with_attitude(true));
     let body = Body::free(inertia(0));
     let start = body.enter_omega(attitude(0).into(), Vector3::new(40.0, 3000.0, 50.0).into()).unwrap();
     let run = Run::from_point(&method("rk4").unwrap(), &body, start.to_f64(), Clock::new(0.01)).unwrap();

@@ -322,13 +322,42 @@ fn the_gravity_gradient_is_that_of_the_body_on_which_it_acts() {
     assert!((own - torque([1.0, 2.0, 2.5], &gradient) * Dd::of(50.0)).magnitude() > 1e-6);
 }
 
+/// A weight that a user writes: a potential linear in the vertical.
+struct OwnWeight(Vec3<f64>);
+
+impl<S: Real> Potential<S> for OwnWeight {
+    fn energy(&self, _: Time, attitude: Quat<S>) -> S {
+        attitude.rotate_back(Vec3::unit(2)).dot(Vec3::of(self.0))
+    }
+    fn torque(&self, _: Time, attitude: Quat<S>) -> Vec3<S> {
+        attitude.rotate_back(Vec3::unit(2)).cross(Vec3::of(self.0))
+    }
+    fn linear_moment(&self) -> Option<Vec3<f64>> {
+        Some(self.0)
+    }
+}
+
+#[test]
+fn a_linear_potential_of_a_user_is_served_as_gravity_is() {
+    let weight = [0.1, -0.2, 0.4];
+    let heavy = Body::heavy(inertia([1.0, 2.0, 2.5]), weight.into()).unwrap();
+    let own =
+        Body::free(inertia([1.0, 2.0, 2.5])).with(Force::potential("own weight", OwnWeight(Vec3(weight))));
+    assert_eq!((own.problem(), own.conserved()), (Problem::Linear, heavy.conserved()));
+    assert_eq!(own.forces().iter().map(Force::name).collect::<Vec<_>>(), ["own weight"]);
+    for method in ["implicit-midpoint", "gauss:4", "taylor:12", "kick-drift@chin-4a", "lie-poisson"] {
+        let end = |body: &Body| run(method, body, [0.4, 1.0, -0.3], 0.125).advance_to(100).unwrap().point;
+        assert_eq!(end(&own), end(&heavy), "{method}");
+    }
+}
+
 #[test]
 fn weight_is_a_force_like_any_other() {
     let weight = Vector3::new(0.1, -0.2, 0.4);
     let free = || Body::free(inertia([1.0, 2.0, 2.5]));
     let heavy = Body::heavy(inertia([1.0, 2.0, 2.5]), weight).unwrap();
     let with = free().with(Force::gravity(weight).unwrap());
-    assert_eq!((with.problem(), with.conserved()), (Problem::Gravity, heavy.conserved()));
+    assert_eq!((with.problem(), with.conserved()), (Problem::Linear, heavy.conserved()));
     let end = |body: &Body| run("implicit-midpoint", body, [0.4, 1.0, -0.3], 0.125).advance_to(100).unwrap();
     assert_eq!(end(&with).point, end(&heavy).point);
     // two weights are one, and opposite ones none

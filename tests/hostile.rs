@@ -8,7 +8,8 @@ use std::fmt::Display;
 use std::time::{Duration, Instant};
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::{Body, Clock, Force, State};
+use polhode::audit::{Attitudes, Noise, Question, Trajectory, audit};
+use polhode::body::{Body, Clock, Force, Problem, State};
 use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::inertia::{
     Amount, Closing, Evidence, FLOAT_WELD, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid,
@@ -376,12 +377,11 @@ fn surfaces() {
 #[test]
 fn doctor() {
     hostile(6, 1.0, |draw| {
-        let evidence = Evidence {
-            mass: draw.one_in(2).then(|| draw.list::<1>()[0].abs()),
-            center_of_mass: draw.one_in(2).then(|| draw.vector()),
-            extents: draw.one_in(2).then(|| draw.list::<3>().map(f64::abs)),
-            twin: draw.one_in(2).then(|| Twin { center_of_mass: draw.vector(), tensor: draw.tensor() }),
-        };
+        let evidence = Evidence::default()
+            .with_mass(draw.one_in(2).then(|| draw.list::<1>()[0].abs()))
+            .with_center_of_mass(draw.one_in(2).then(|| draw.vector()))
+            .with_extents(draw.one_in(2).then(|| draw.list::<3>().map(f64::abs)))
+            .with_twin(draw.one_in(2).then(|| Twin { center_of_mass: draw.vector(), tensor: draw.tensor() }));
         let tensor = draw.tensor();
         let found = match diagnose(tensor, &evidence) {
             Ok(found) => found,
@@ -612,7 +612,7 @@ fn check_state(body: &Body, x: &State, t: f64) -> Result<(), String> {
     let at = |what: &str| format!("{what} of {body:?}");
     all(x.is_finite(), &at("state"), x)?;
     all(finite(body.omega_body(x).as_slice()), &at("omega"), x)?;
-    if body.forces().is_empty() {
+    if matches!(body.problem(), Problem::Free | Problem::Linear) {
         all(body.energy_at(t, x).is_finite(), &at("energy"), x)?;
     }
     Ok(())
@@ -691,5 +691,55 @@ fn bodies_and_runs() {
         let text = run.checkpoint().to_string();
         let read = text.parse::<Checkpoint>().map_err(|error| error.to_string())?;
         all(read == run.checkpoint(), "checkpoint", &text)
+    });
+}
+
+/// Records of a motion with numbers of any size in some rows or in all.
+#[test]
+fn audits() {
+    hostile(12, 0.03, |draw| {
+        let rows = draw.below(60) as usize;
+        let inertia = Inertia::from_moments([1.0, 2.0, 2.5]).map_err(|error| error.to_string())?;
+        let (attitude, omega) = (draw.attitude(), Vector3::new(0.4, 1.0, -0.3));
+        let motion = FreeMotion::from_omega(&inertia, attitude, omega).map_err(|error| error.to_string())?;
+        let step = if draw.one_in(4) { draw.any() } else { 0.05 };
+        let times: Vec<f64> = (0..rows).map(|row| step * row as f64).collect();
+        let states = motion.at_many(&times).unwrap_or_default();
+        let body = Body::free(inertia);
+        let (mut q, mut w): (Vec<[f64; 4]>, Vec<[f64; 3]>) =
+            states.iter().map(|x| (x.attitude.components(), <[f64; 3]>::from(body.omega_body(x)))).unzip();
+        let all_rows = draw.one_in(3);
+        for row in 0..q.len() {
+            if all_rows || draw.one_in(10) {
+                if draw.one_in(2) {
+                    q[row] = draw.list();
+                } else {
+                    w[row] = draw.list();
+                }
+            }
+        }
+        let mut record = Trajectory::new(times);
+        if draw.one_in(2) {
+            record = record.with_attitude(Attitudes::Quaternions(q));
+        }
+        record = match draw.below(3) {
+            0 => record.with_rates(w),
+            1 => record.with_momentum(w),
+            _ => record,
+        };
+        let mut question = Question::new(if draw.one_in(2) { None } else { Some(body) });
+        if draw.one_in(3) {
+            question.tolerance = draw.any();
+        }
+        if draw.one_in(3) {
+            question.noise = Noise { attitude: draw.any(), rates: draw.any() };
+        }
+        match audit(&record, &question) {
+            Ok(verdict) => {
+                let numbers = format!("{:?} {:?}", verdict.conservation, verdict.attitude_error);
+                all(!numbers.contains("NaN"), "verdict", &numbers)
+            }
+            Err(error) => refused(&error),
+        }
     });
 }

@@ -12,7 +12,8 @@ use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use polhode::body::{
-    Body, Clock, Conserved, Field, Force, Free, Gravity, Point, Potential, Problem, State, Time, Torque,
+    Body, Clock, Conserved, Field, Force, Free, LinearPotential, Point, Potential, Problem, State, Time,
+    Torque,
 };
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
@@ -165,7 +166,7 @@ fn pushed() -> Case {
 fn cases() -> [(Problem, Case); 4] {
     [
         (Problem::Free, free()),
-        (Problem::Gravity, heavy()),
+        (Problem::Linear, heavy()),
         (Problem::Potential, potential()),
         (Problem::Torque, pushed()),
     ]
@@ -222,7 +223,7 @@ fn methods() -> Vec<Box<dyn AnyMethod>> {
 }
 
 fn takes_gravity(method: &dyn AnyMethod) -> bool {
-    method.claims(Problem::Gravity).is_some()
+    method.claims(Problem::Linear).is_some()
 }
 
 fn name(method: &dyn AnyMethod, problem: Problem) -> String {
@@ -317,8 +318,8 @@ fn each_method_converges_with_its_order_and_no_better() {
             };
             let exponents = match (problem, order) {
                 (_, 2..=4) if claims.cost.right_sides > 0 => 8..11,
-                (Problem::Gravity, 1) => 8..11,
-                (Problem::Gravity, _) => 6..9,
+                (Problem::Linear, 1) => 8..11,
+                (Problem::Linear, _) => 6..9,
                 (_, 1) => 8..11,
                 (_, 8..) => 5..8,
                 (Problem::Torque, 6..) => 6..9,
@@ -610,7 +611,7 @@ fn a_body_that_hangs_almost_still_is_no_unsolved_step() {
     for push in [0.0, 1e-12, 1e-8, 1e-5, 1e-3] {
         let start = body.state(Default::default(), [push, -0.5 * push, 0.25 * push].into()).unwrap();
         let solves =
-            |m: &dyn AnyMethod| m.claims(Problem::Gravity).is_some_and(|claims| claims.cost.solves > 0);
+            |m: &dyn AnyMethod| m.claims(Problem::Linear).is_some_and(|claims| claims.cost.solves > 0);
         for method in catalogue().iter().filter(|m| solves(m.as_ref())) {
             let end = Run::new(method, &body, &start, 0.1).unwrap().advance_to(10_000).unwrap();
             let energy = end.worst.energy.unwrap();
@@ -848,14 +849,14 @@ impl Precise for Counted {
 
 /// Gravity that counts how often its torque is asked for.
 #[derive(Clone, Copy, Debug)]
-struct CountedGravity(Gravity<Counted>);
+struct CountedGravity(LinearPotential<Counted>);
 
 impl Field<Counted> for CountedGravity {
-    const ACTS_BESIDES_GRAVITY: bool = false;
-    fn gravity(&self) -> Option<&Gravity<Counted>> {
+    const HAS_REMAINDER: bool = false;
+    fn linear_part(&self) -> Option<&LinearPotential<Counted>> {
         Some(&self.0)
     }
-    fn torque_besides_gravity(&self, _: Time, _: Quat<Counted>, _: Vec3<Counted>) -> Vec3<Counted> {
+    fn remainder(&self, _: Time, _: Quat<Counted>, _: Vec3<Counted>) -> Vec3<Counted> {
         Vec3::zero()
     }
     fn torque(&self, _: Time, attitude: Quat<Counted>, _: Vec3<Counted>) -> Vec3<Counted> {
@@ -884,7 +885,7 @@ fn counted<M: Method<Counted> + Claimed>(
         begin();
         map.advance(at, &mut x);
     } else {
-        let gravity = CountedGravity(Gravity { weight_moment: Vec3([0.1, -0.2, 0.4].map(Counted)) });
+        let gravity = CountedGravity(LinearPotential { moment: Vec3([0.1, -0.2, 0.4].map(Counted)) });
         let mut map = method.map(h, &rotor, &gravity);
         map.open(at, &mut x);
         begin();
@@ -901,7 +902,7 @@ const SYMMETRIC: [f64; 3] = [0.75, 0.75, 1.0];
 #[test]
 fn each_method_costs_what_it_claims() {
     fn assert_cost<M: Method<Counted> + Claimed>(method: &M, implicit: bool) {
-        for problem in [Problem::Free, Problem::Gravity] {
+        for problem in [Problem::Free, Problem::Linear] {
             let name = name(problem, method);
             let ([sines, roots, torques], cost) = counted(method, problem, ASYMMETRIC);
             if cost.free_flows == 0 {
@@ -912,7 +913,7 @@ fn each_method_costs_what_it_claims() {
                 let ([sines, ..], _) = counted(method, problem, SYMMETRIC);
                 assert_eq!(sines, 2 * cost.free_flows, "{name}: free flows");
             }
-            if problem == Problem::Gravity {
+            if problem == Problem::Linear {
                 assert_eq!(torques, cost.kicks + cost.right_sides, "{name}: torques");
             }
         }
@@ -963,7 +964,7 @@ fn costs_add_and_multiply_by_kind() {
 
 #[test]
 fn neighbouring_kicks_of_a_composition_are_merged() {
-    let claims = method("kick-drift@suzuki-4").unwrap().claims(Problem::Gravity).unwrap();
+    let claims = method("kick-drift@suzuki-4").unwrap().claims(Problem::Linear).unwrap();
     assert_eq!((claims.cost.free_flows, claims.cost.kicks), (5, 5));
     let claims = method("rattle@kahan-li-8").unwrap().claims(Problem::Potential).unwrap();
     assert_eq!((claims.cost.solves, claims.cost.kicks), (17, 17));
@@ -1139,7 +1140,7 @@ fn a_method_refuses_by_name_what_it_cannot_do() {
     assert!(FreeOnly.prepare_dd(Clock::new(0.1), &free().body).is_ok());
     let error = refused(&FreeOnly, &heavy().body);
     let expected =
-        StepError::Refused { method: "free-only".into(), force: "gravity".into(), problem: Problem::Gravity };
+        StepError::Refused { method: "free-only".into(), force: "gravity".into(), problem: Problem::Linear };
     assert_eq!(error, expected);
     assert_eq!(
         error.to_string(),

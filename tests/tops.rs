@@ -100,7 +100,7 @@ fn residual(top: &LagrangeTop, t: f64, rate: f64) -> f64 {
         * (Dd::ONE / Dd::of(60.0 * h));
     let x = at(0.0);
     let omega = x.momentum_body.times(body.rotor().inverse_moments());
-    let torque = body.gravity::<Dd>().unwrap().torque(x.attitude);
+    let torque = body.linear_potential::<Dd>().unwrap().torque(x.attitude);
     let momentum = slope.momentum_body - x.momentum_body.cross(omega) - torque;
     let attitude = slope.attitude - x.attitude.rate(omega);
     let size = x.momentum_body.magnitude().max(rate);

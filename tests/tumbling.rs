@@ -38,14 +38,9 @@ fn toutatis_and_apophis_go_to_omega_and_back() {
 
     // Pravec et al., Icarus 233 (2014) 48: moments, periods and pole of Apophis, and what they found for 2E I_3/L²
     let apophis = Inertia::from_moments([0.61, 0.965, 1.0]).unwrap();
-    let published = TumblingElements {
-        mode: Mode::ShortAxis,
-        precession_period: 27.38 * 3600.0,
-        rotation_period: 263.0 * 3600.0,
-        pole: [250.0 * PI / 180.0, -75.0 * PI / 180.0],
-        angles: [152.0 * PI / 180.0, 14.0 * PI / 180.0],
-        is_reversed: false,
-    };
+    let published = TumblingElements::new(Mode::ShortAxis, [27.38, 263.0].map(|hours| hours * 3600.0))
+        .with_pole([250.0, -75.0].map(|degrees| degrees * PI / 180.0))
+        .with_angles([152.0, 14.0].map(|degrees| degrees * PI / 180.0));
     let start = FreeMotion::from_point(&apophis, published.point(&apophis).unwrap());
     let found = start.tumbling().unwrap();
     assert_eq!((found.mode, found.is_reversed), (Mode::ShortAxis, false));
@@ -140,13 +135,8 @@ fn the_ratio_of_the_periods_grows_with_the_lean() {
 #[test]
 fn elements_without_a_motion_are_refused() {
     let apophis = Inertia::from_moments([0.61, 0.965, 1.0]).unwrap();
-    let elements = |mode, precession_period, rotation_period| TumblingElements {
-        mode,
-        precession_period,
-        rotation_period,
-        pole: [0.0; 2],
-        angles: [0.0; 2],
-        is_reversed: false,
+    let elements = |mode, precession_period, rotation_period| {
+        TumblingElements::new(mode, [precession_period, rotation_period]).with_pole([0.0; 2])
     };
     let refused = elements(Mode::ShortAxis, 1.0, 5.0).point(&apophis).unwrap_err();
     let TumblingError::Ratio { least, .. } = refused else { panic!("{refused}") };

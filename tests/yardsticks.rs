@@ -201,6 +201,24 @@ fn a_run_that_cannot_go_on_ends_with_time_state_and_estimate() {
     }
 }
 
+/// A torque of 1e100 N m turns the body by a radian in 1e-50 s.
+#[test]
+fn a_step_that_would_take_more_steps_than_anybody_waits_for_is_refused() {
+    let (body, start) = free();
+    for name in ["dop853", "tsit5", "taylor"] {
+        for torque in [1e30, 1e100] {
+            let torque = Force::constant_torque_body(Vector3::new(0.0, torque, 0.0)).unwrap();
+            let error = run(name, &(body.clone().with(torque), start), 1.0).advance_to(1).unwrap_err();
+            println!("{name}: {error}");
+            let RunError::Stuck { stuck, last } = &error else { panic!("{name}: {error}") };
+            assert!(stuck.needed.is_some_and(|needed| needed > 1e10), "{name}: {stuck:?}");
+            assert!(last.steps == 0 && stuck.step < 1e-10 && stuck.time < 1e-6, "{name}: {stuck:?}");
+            let told = error.to_string();
+            assert!(told.contains("that a step of the run would take (at most 1e10)"), "{name}: {told}");
+        }
+    }
+}
+
 #[test]
 fn tolerances_that_there_are_not_are_refused() {
     for name in ["dop853:1e-16", "dop853:0.1", "tsit5:x", "tsit5:NaN", "dop853:-1e-9", "tsit5:0"] {

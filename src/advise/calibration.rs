@@ -3,35 +3,46 @@
 use std::time::Instant;
 
 use super::candidate::Candidate;
-use super::reference::Reference;
-use super::trial::{Trial, trial};
-use super::{Advice, AdviseError, Choice, Demand, Predicted, Setting};
-use crate::body::{Body, Point};
+use super::progress::Stage;
+use super::reference::{Reference, Span};
+use super::trial::{SAME_RUN, Trial, trial};
+use super::{Advice, AdviseError, Choice, Demand, Predicted, Progress, Setting};
+use crate::body::Body;
 
-/// Steps of a candidate's longest run.
-const AFFORDABLE: f64 = 1e6;
+/// The longest run of a candidate on a body whose motion has a closed form, s of processor time.
+const AFFORDABLE: f64 = 3.0;
+
+/// Thinking ends after so many seconds and so many times the quickest run, as soon as one method has been run.
+const THOUGHT: (f64, f64) = (1.2, 6.0);
 
 /// Candidates whose settings are refined, and up to which multiple of the quickest's time.
 const FINALISTS: (usize, f64) = (6, 4.0);
 
 /// Nobody waits so many times longer than the quickest method takes.
-const SLOW: f64 = 100.0;
+const SLOW: f64 = 30.0;
+
+/// A short run may take so long in any case, s.
+const LEAST_PATIENCE: f64 = 2e-3;
 
 /// Rungs of a search, each half the step or a hundredth of the tolerance of the one before.
 const RUNGS: usize = 14;
 
+/// Runs of a candidate over the whole time at most.
+const REFINEMENTS: usize = 6;
+
 /// What part of the demand is aimed at, and between which parts a setting is taken.
-const AIM: f64 = 0.5;
-const TAKEN: (f64, f64) = (0.15, 0.8);
+const AIM: f64 = 0.4;
+const TAKEN: (f64, f64) = (0.12, 1.0 / SAME_RUN);
 
 pub(super) struct Calibration<'a> {
     body: &'a Body,
-    start: Point<f64>,
     demand: &'a Demand,
     reference: Reference,
     conditioning: f64,
     /// The least time of a setting that meets the demand so far, s.
     quickest: f64,
+    begun: Instant,
+    heed: &'a mut dyn FnMut(&Progress),
 }
 
 /// A setting of a candidate, and what it is expected to do over the whole time.
@@ -44,23 +55,36 @@ struct Found {
 impl<'a> Calibration<'a> {
     pub(super) fn new(
         body: &'a Body,
-        start: Point<f64>,
         demand: &'a Demand,
         reference: Reference,
+        (begun, heed): (Instant, &'a mut dyn FnMut(&Progress)),
     ) -> Result<Self, AdviseError> {
         let conditioning = reference.conditioning()?;
         let (wanted, until) = (demand.attitude_error, demand.until);
         if conditioning > wanted {
             return Err(AdviseError::Conditioning { demand: wanted, attainable: conditioning, until });
         }
-        Ok(Calibration { body, start, demand, reference, conditioning, quickest: f64::INFINITY })
+        Ok(Calibration { body, demand, reference, conditioning, quickest: f64::INFINITY, begun, heed })
+    }
+
+    /// Whether a thought of `seconds` more is too long.
+    fn late(&self, seconds: f64) -> bool {
+        let (least, times) = THOUGHT;
+        self.begun.elapsed().as_secs_f64() + seconds > least + times * self.quickest
     }
 
     pub(super) fn advice(mut self) -> Result<Advice, AdviseError> {
         let candidates = Candidate::all(self.body, self.demand);
         let (mut found, mut unfit) = (Vec::new(), Vec::new());
-        for candidate in &candidates {
-            match self.first(candidate) {
+        let mut fit = self.closed_form();
+        self.quickest = fit.first().map_or(f64::INFINITY, |closed| closed.seconds.value);
+        let short = self.reference.short()?;
+        for (place, candidate) in candidates.iter().enumerate() {
+            (self.heed)(&Progress::new(&Stage::Methods, place as f64 / candidates.len() as f64, None));
+            if !(found.is_empty() && fit.is_empty()) && self.late(0.0) {
+                break;
+            }
+            match self.first(candidate, &short) {
                 Ok(first) => {
                     self.quickest = self.quickest.min(first.choice.seconds.value);
                     found.push((candidate, first));
@@ -71,10 +95,19 @@ impl<'a> Calibration<'a> {
         found.sort_by(|a, b| a.1.choice.seconds.value.total_cmp(&b.1.choice.seconds.value));
         let quickest = found.first().map_or(0.0, |first| first.1.choice.seconds.value);
         let (most, multiple) = FINALISTS;
-        let (mut fit, mut rest) = (self.closed_form(), Vec::new());
+        let mut rest = Vec::new();
         for (place, (candidate, first)) in found.into_iter().enumerate() {
-            if place >= most || first.choice.seconds.value > multiple * quickest {
-                rest.push(first.choice);
+            let seconds = first.choice.seconds.value;
+            let more = place < most && seconds <= multiple * quickest && !self.late(seconds);
+            // one at least is run, and another few if none of those that were run is fit
+            if (!fit.is_empty() || place >= most) && !more {
+                // a short time may have been the whole
+                let seen = first.choice.whole_time && self.excess(&first.choice) + self.doubt() <= TAKEN.1;
+                if seen {
+                    fit.push(first.choice)
+                } else {
+                    rest.push(first.choice)
+                }
                 continue;
             }
             match self.refined(candidate, first) {
@@ -87,11 +120,12 @@ impl<'a> Calibration<'a> {
             return Err(self.unreached(&unfit));
         }
         let best = fit.remove(0);
+        let jump = self.reference.truth().jump();
         if let Some(budget) = self.demand.budget.filter(|budget| best.seconds.value > *budget) {
             return Err(AdviseError::Budget { budget, method: best.method, seconds: best.seconds.value });
         }
         fit.extend(rest);
-        Ok(Advice { best, others: fit, unfit, conditioning: self.conditioning })
+        Ok(Advice { best, others: fit, unfit, conditioning: self.conditioning, jump })
     }
 
     fn unreached(&self, unfit: &[(String, Option<f64>)]) -> AdviseError {
@@ -132,33 +166,54 @@ impl<'a> Calibration<'a> {
         }]
     }
 
-    /// A run of `candidate` at the step or tolerance `value` over the horizon `level`.
-    fn run(&mut self, candidate: &Candidate, value: f64, level: u32) -> Option<Trial> {
+    /// A run of `candidate` at the step or tolerance `value` over `span`, of which `stage` is told.
+    fn run(
+        &mut self,
+        candidate: &Candidate,
+        value: f64,
+        span: &Span,
+        stage: Option<(&Stage, f64)>,
+    ) -> Option<Trial> {
         let prepared = candidate.at(value).ok()?;
-        let horizon = self.reference.horizon(level);
-        let steps = if candidate.is_adaptive() || candidate.is_exact() { 1.0 } else { horizon / value };
-        let from = (self.body, self.start, self.demand.start_time);
-        let truth = self.reference.points(level).ok()?;
-        trial(prepared.method(), from, truth, (horizon, steps))
+        let steps = if candidate.is_adaptive() || candidate.is_exact() { 1.0 } else { span.horizon / value };
+        // of a short run what makes the whole one too slow
+        let slow = (SLOW * self.quickest / span.times_longer).max(LEAST_PATIENCE);
+        let patience = if stage.is_some() { f64::INFINITY } else { slow };
+        let heed = &mut self.heed;
+        let mut tell = |done| {
+            if let Some((stage, seconds)) = stage {
+                heed(&Progress::new(stage, done, Some(seconds)));
+            }
+        };
+        trial(prepared.method(), self.body, span, (steps, patience), &mut tell)
     }
 
-    /// What a run at `value` makes expect of the whole time.
-    fn expected(&self, candidate: &Candidate, value: f64, level: u32, run: &Trial) -> Choice {
-        let (until, looks) = (self.demand.until, self.reference.looks(level));
+    /// What a run at `value` over `span` makes expect of the whole time.
+    fn expected(&self, candidate: &Candidate, value: f64, span: &Span, run: &Trial) -> Choice {
+        let (until, looks) = (self.demand.until, span.points.len() as u64);
         // what is exact takes the whole time in one step, and did so from look to look
         let (steps, seconds) = if candidate.is_exact() {
             (1, run.price * run.horizon / looks as f64)
+        } else if candidate.is_adaptive() {
+            (1, run.price * run.horizon * span.times_longer)
         } else {
-            (libm::scalbn((looks * run.steps) as f64, level.cast_signed()) as u64, run.price * until)
+            let steps = libm::ceil((looks * run.steps) as f64 * (until / span.horizon));
+            (steps as u64, run.price * until)
         };
+        let mut attitude_error = run.attitude_at(until, self.reference.rate, candidate.drifts());
+        if attitude_error.value > 0.0 {
+            // the motion itself is known to so much
+            let known = attitude_error.value + 2.0 * self.reference.truth().apart();
+            attitude_error.factor = attitude_error.factor.max(known / attitude_error.value);
+        }
         Choice {
             method: candidate.name.clone(),
             setting: candidate.setting(value, until, steps),
             steps: (!candidate.is_adaptive()).then_some(steps),
-            attitude_error: run.attitude_at(until, self.reference.rate, candidate.drifts()),
-            energy_error: run.energy_at(until, candidate.drifts()),
+            attitude_error,
+            energy_error: run.energy_at(candidate.drifts()),
             seconds: Predicted { value: run.setup + seconds, factor: run.scatter },
-            whole_time: level == 0,
+            whole_time: span.times_longer <= 1.0,
         }
     }
 
@@ -169,15 +224,23 @@ impl<'a> Calibration<'a> {
         (choice.attitude_error.value / self.demand.attitude_error).max(energy)
     }
 
+    /// The part of the demand that the truth itself may be off by.
+    fn doubt(&self) -> f64 {
+        2.0 * self.reference.truth().apart() / self.demand.attitude_error
+    }
+
     /// A setting from short runs, or the smallest attitude error that was seen.
-    fn first(&mut self, candidate: &Candidate) -> Result<Found, Option<f64>> {
-        let (mut value, level) = (candidate.coarse(self.reference.rate), self.reference.short);
+    fn first(&mut self, candidate: &Candidate, short: &Span) -> Result<Found, Option<f64>> {
+        let mut value = candidate.coarse(self.reference.rate);
         let factor = if candidate.is_adaptive() { 0.01 } else { 0.5 };
         let (mut nearest, mut before, mut plausible): (Option<f64>, Option<f64>, Option<Found>) =
             Default::default();
         for _ in 0..RUNGS {
-            if let Some(run) = self.run(candidate, value, level) {
-                let choice = self.expected(candidate, value, level, &run);
+            if self.late(0.0) {
+                break;
+            }
+            if let Some(run) = self.run(candidate, value, short, None) {
+                let choice = self.expected(candidate, value, short, &run);
                 let (excess, error) = (self.excess(&choice), choice.attitude_error.value);
                 nearest = Some(nearest.map_or(error, |least: f64| least.min(error)));
                 let (seconds, doubt) = (choice.seconds.value, choice.attitude_error.factor);
@@ -214,24 +277,30 @@ impl<'a> Calibration<'a> {
         }
         let (mut value, mut nearest) = (first.value, None);
         let mut taken: Option<Choice> = None;
-        for _ in 0..6 {
-            let level = self.affordable(candidate, value);
-            let Some(run) = self.run(candidate, value, level) else {
-                value *= 0.5;
-                continue;
-            };
-            let choice = self.expected(candidate, value, level, &run);
-            let (excess, error) = (self.excess(&choice), choice.attitude_error.value);
-            nearest = Some(nearest.map_or(error, |least: f64| least.min(error)));
-            if excess <= TAKEN.1
-                && taken.as_ref().is_none_or(|best| choice.seconds.value < best.seconds.value)
-            {
-                taken = Some(choice);
-            }
-            if excess <= TAKEN.1 && excess >= TAKEN.0 {
+        let mut seconds = first.choice.seconds.value;
+        let (stage, doubt) = (Stage::Run(candidate.name.clone()), self.doubt());
+        let (aim, most) = ((AIM - doubt).max(0.1), TAKEN.1.min(1.0 - doubt));
+        for _ in 0..REFINEMENTS {
+            if taken.is_some() && self.late(seconds) {
                 break;
             }
-            let change = libm::pow(AIM / excess, 1.0 / candidate.power()).clamp(0.1, 4.0);
+            let span = self.reference.long(seconds / self.demand.until, AFFORDABLE).map_err(|_| nearest)?;
+            let Some(run) = self.run(candidate, value, &span, Some((&stage, seconds))) else {
+                value *= 0.5;
+                seconds *= 2.0;
+                continue;
+            };
+            let choice = self.expected(candidate, value, &span, &run);
+            seconds = choice.seconds.value;
+            let (excess, error) = (self.excess(&choice), choice.attitude_error.value);
+            nearest = Some(nearest.map_or(error, |least: f64| least.min(error)));
+            if excess <= most && taken.as_ref().is_none_or(|best| choice.seconds.value < best.seconds.value) {
+                taken = Some(choice);
+            }
+            if excess <= most && excess >= TAKEN.0 {
+                break;
+            }
+            let change = libm::pow(aim / excess, 1.0 / candidate.power()).clamp(0.1, 4.0);
             let larger = value * change;
             // a step of more than a radian is not asked of any method
             value = if candidate.is_adaptive() {
@@ -244,15 +313,6 @@ impl<'a> Calibration<'a> {
             }
         }
         taken.ok_or(nearest)
-    }
-
-    /// The level of the longest run at `value` that is affordable and can be judged.
-    fn affordable(&self, candidate: &Candidate, value: f64) -> u32 {
-        let step = if candidate.is_adaptive() { 0.25 / self.reference.rate } else { value };
-        let steps = |level| self.reference.horizon(level) / step;
-        (self.reference.longest..=self.reference.short.max(self.reference.longest))
-            .find(|level| steps(*level) <= AFFORDABLE)
-            .unwrap_or(self.reference.short)
     }
 }
 

@@ -32,6 +32,9 @@ const BESIDES: [&str; 24] = [
     "taylor:30",
 ];
 
+/// Methods that are quick on every body.
+const FIRST: [&str; 3] = ["dop853", "rk8", "two-turn@sofroniou-spaletta-10"];
+
 /// Where a search for a tolerance begins.
 const COARSE: f64 = 1e-4;
 
@@ -63,7 +66,10 @@ impl Candidate {
         });
         let mut all: Vec<Self> = taken.collect();
         // the quick ones first: they tell which need not be tried in short steps
-        all.sort_by_key(|candidate| core::cmp::Reverse(candidate.claims.order.unwrap_or(u32::MAX)));
+        all.sort_by_key(|candidate| {
+            let first = FIRST.iter().position(|name| *name == candidate.name).unwrap_or(FIRST.len());
+            (first, core::cmp::Reverse(candidate.claims.order.unwrap_or(u32::MAX)))
+        });
         all
     }
 

@@ -1,7 +1,8 @@
 //! What a choice really does.
 
-use super::reference::truth;
-use super::{AdviseError, Choice, Demand, Setting};
+use super::progress::Stage;
+use super::reference::{PATIENCE_OF_CHECKS, truth};
+use super::{AdviseError, Choice, Demand, Progress, Setting};
 use crate::body::{Body, Clock, State};
 use crate::method::method;
 use crate::num::Dd;
@@ -14,8 +15,8 @@ const LOOKS: u64 = 97;
 /// Runs `choice` over the whole time of `demand` and compares it with the [true motion](crate::truth): the largest attitude error that was seen, rad.
 ///
 /// # Errors
-/// A demand or a start as in [`advise`](super::advise), a method that does not exist or whose run fails, or a time too long for
-/// double-double.
+/// A demand or a start as in [`advise`](super::advise), a method that does not exist or whose run fails, or a motion that is not
+/// known to the end.
 ///
 /// ```
 /// use polhode::advise::{Demand, advise, check};
@@ -29,9 +30,26 @@ const LOOKS: u64 = 97;
 /// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn check(body: &Body, start: &State, demand: &Demand, choice: &Choice) -> Result<f64, AdviseError> {
+    check_telling(body, start, demand, choice, &mut |_| {})
+}
+
+/// As [`check`]; `heed` is told from time to time how far it has come, and how long the run of the choice takes.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_telling(
+    body: &Body,
+    start: &State,
+    demand: &Demand,
+    choice: &Choice,
+    heed: &mut dyn FnMut(&Progress),
+) -> Result<f64, AdviseError> {
     demand.check()?;
     let start = body.enter(start)?.to_f64();
-    let truth = truth(body, start, demand, &evenly(demand.until, LOOKS as u32))?;
+    let times = evenly(demand.until, LOOKS as u32);
+    let stage = Stage::Check(choice.method.clone());
+    let mut follow = |done| heed(&Progress::new(&Stage::Motion, done, None));
+    let truth = truth(body, start, demand, (&times, PATIENCE_OF_CHECKS), &mut follow)?;
     let (step, steps) = match choice.setting {
         Setting::Step(h) => (h, choice.steps.unwrap_or(1)),
         _ => (demand.until / LOOKS as f64, LOOKS),
@@ -57,6 +75,7 @@ pub fn check(body: &Body, start: &State, demand: &Demand, choice: &Choice) -> Re
     for k in 1..=LOOKS {
         let sample = run.advance_to(steps * k / LOOKS)?;
         worst = worst.max(truth.attitude_error(&sample.point.to_dd(), sample.elapsed)?);
+        heed(&Progress::new(&stage, k as f64 / LOOKS as f64, Some(choice.seconds.value)));
     }
     Ok(worst)
 }

@@ -19,6 +19,7 @@ pub enum Setting {
 
 /// A predicted quantity, and by which factor it may be wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Predicted {
     /// The quantity.
     pub value: f64,
@@ -55,9 +56,11 @@ pub struct Advice {
     /// The others that meet it, the quicker first. The first few were run as far as the best; of the rest times and errors are
     /// those of a first short run.
     pub others: Vec<Choice>,
-    /// Methods that meet the demand at no setting that was tried, or in more than a hundred times the time of the quickest, with
+    /// Methods that meet the demand at no setting that was tried, or in more than thirty times the time of the quickest, with
     /// the smallest attitude error at which they were seen, rad.
     pub unfit: Vec<(String, Option<f64>)>,
     /// How far a start with other last digits is away at the end, rad.
     pub conditioning: f64,
+    /// When the torque first jumps, s since the start, where two runs parted there: settings hold for this run alone.
+    pub jump: Option<f64>,
 }

@@ -52,9 +52,9 @@ pub enum AdviseError {
         "the forces on the body cannot be evaluated in double-double, so that no run can be judged; write them for every Real"
     )]
     NoReference,
-    /// Two runs in double-double part.
+    /// Two runs by different methods part, as do starts that differ by a rounding.
     #[error(
-        "two runs in double-double agree to {demand:.1e} rad up to t = {} s only: the motion is chaotic; ask for a time below that",
+        "two runs by different methods agree to {demand:.1e} rad up to t = {} s only: the motion is chaotic; ask for a time below that",
         Shown(*agree_until)
     )]
     Chaotic {
@@ -85,16 +85,42 @@ pub enum AdviseError {
         /// What it takes, s.
         seconds: f64,
     },
-    /// A choice cannot be checked: there is no closed form, and the time is too long for double-double.
+    /// Runs of the whole time would take too long.
     #[error(
-        "the motion has no closed form, and a run in double-double to t = {} s would take too long; check up to {} s",
-        Shown(*until), Shown(*reach)
+        "the motion has no closed form, and to t = {} s the body turns by about {turn:.1e} rad: a run of all of it takes minutes or \
+         more; ask for a time up to {reach:.3e} s", Shown(*until)
     )]
     TooLong {
         /// Duration, s.
         until: f64,
-        /// The longest that can be checked, s.
+        /// The turn to there, rad.
+        turn: f64,
+        /// About the longest duration that is run, s.
         reach: f64,
+    },
+    /// The torque jumps.
+    #[error(
+        "the torque jumps at t = {} s: no method has its order across a jump, and methods that choose their steps do not agree \
+         there to {demand:.1e} rad; end the run there and begin another, ask for a larger error, or write the torque without jumps",
+        Shown(*time)
+    )]
+    Jumps {
+        /// What was asked for, rad.
+        demand: f64,
+        /// When it first jumps, s since the start.
+        time: f64,
+    },
+    /// Two runs by different methods part, and neither chaos nor a jump of the torque is why.
+    #[error(
+        "two runs by different methods agree to {demand:.1e} rad up to t = {} s only: their rounding does not allow more, or a force \
+         changes too fast; ask for a larger error or for a time below that",
+        Shown(*agree_until)
+    )]
+    Undecided {
+        /// What was asked for, rad.
+        demand: f64,
+        /// Until when they agree, s.
+        agree_until: f64,
     },
     /// A choice that is none of this library's methods, or that the body or the step refuses.
     #[error("{method} cannot be run: {why}")]
@@ -115,12 +141,24 @@ pub enum AdviseError {
     NoCandidate,
 }
 
+impl AdviseError {
+    /// Why a true motion is not known, where `demand` rad were asked for.
+    pub(super) fn of(error: TruthError, demand: f64) -> Self {
+        match error {
+            TruthError::Jumps { time } => AdviseError::Jumps { demand, time },
+            error => error.into(),
+        }
+    }
+}
+
 impl From<TruthError> for AdviseError {
     fn from(error: TruthError) -> Self {
         match error {
             TruthError::State(error) => AdviseError::State(error),
             TruthError::NotFollowed(_) => AdviseError::NoReference,
-            TruthError::TooLong { until, reach, .. } => AdviseError::TooLong { until, reach },
+            TruthError::TooLong { until, steps, reach, .. } => {
+                AdviseError::TooLong { until, turn: steps, reach }
+            }
             error => AdviseError::Truth(error),
         }
     }

@@ -1,21 +1,29 @@
 //! Which method, with which step: from short runs of every candidate on the body itself.
 //!
-//! Each candidate of the catalogue runs over a part of the time, in steps that are halved until its error, which is measured
-//! against the [true motion](crate::truth), tells the step that the demand needs. The quickest of them
-//! then run over as much of the time as is affordable, in steps about twice as long as needed, and the step follows from what
-//! they showed and from the order of the method. Processor times are measured in the same runs.
+//! The motion is the closed form, or two runs of different methods in `f64` over the whole time, whose steps follow the rate of
+//! turning, as far as they agree to a tenth of the demand; where the digits of `f64` do not suffice, in double-double. Each candidate
+//! of the catalogue runs over a short part, where the body turns fastest, in steps that are halved until its error tells the step
+//! that the demand needs. The quickest of them then run over the whole time at the setting that is advised; only of
+//! bodies with a closed form, whose errors grow no faster than the time, are runs of more than a few seconds extrapolated. Processor
+//! times are measured in the same runs.
+//!
+//! A torque that acts for less than about a fiftieth of a radian of the turn may go unseen.
 
 mod calibration;
 mod candidate;
 mod check;
 mod choice;
 mod error;
+mod progress;
 mod reference;
 mod trial;
 
-pub use check::check;
+pub use check::{check, check_telling};
 pub use choice::{Advice, Choice, Predicted, Setting};
 pub use error::AdviseError;
+pub use progress::{Progress, Stage};
+
+use std::time::Instant;
 
 use crate::body::{Body, State};
 use calibration::Calibration;
@@ -113,8 +121,34 @@ impl Demand {
 /// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn advise(body: &Body, start: &State, demand: &Demand) -> Result<Advice, AdviseError> {
+    advise_telling(body, start, demand, &mut |_| {})
+}
+
+/// As [`advise`]; `heed` is told from time to time how far it has come, some ten times a second or more often.
+///
+/// # Errors
+/// As [`advise`].
+///
+/// ```
+/// use polhode::advise::{Demand, advise_telling};
+/// use polhode::{Body, Inertia};
+/// let body = Body::heavy(Inertia::from_moments([0.5, 0.85, 1.0])?, [0.0, 0.0, 1.0].into())?;
+/// let start = body.state(Default::default(), [0.4, 1.2, 0.4].into())?;
+/// let mut stages = Vec::new();
+/// advise_telling(&body, &start, &Demand::new(10.0, 1e-6), &mut |progress| stages.push(progress.stage.clone()))?;
+/// assert!(stages.iter().any(|stage| stage.to_string() == "following the motion by two methods"));
+/// # Ok::<(), polhode::Error>(())
+/// ```
+pub fn advise_telling(
+    body: &Body,
+    start: &State,
+    demand: &Demand,
+    heed: &mut dyn FnMut(&Progress),
+) -> Result<Advice, AdviseError> {
+    let begun = Instant::now();
     demand.check()?;
     let start = body.enter(start)?.to_f64();
-    let reference = Reference::new(body, start, demand)?;
-    Calibration::new(body, start, demand, reference)?.advice()
+    let mut follow = |done| heed(&Progress::new(&Stage::Motion, done, None));
+    let reference = Reference::new(body, start, demand, &mut follow)?;
+    Calibration::new(body, demand, reference, (begun, heed))?.advice()
 }

@@ -1,10 +1,9 @@
 //! The body of the question with its moments in every order.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use crate::body::Body;
 use crate::inertia::Inertia;
-use crate::num::Dd;
 
 /// The body with the moment number `order[k]` on axis k: rows and columns of its tensor change places, what acts stays.
 pub(super) fn reordered(body: &Body, order: [usize; 3]) -> Option<Body> {
@@ -18,10 +17,5 @@ pub(super) fn reordered(body: &Body, order: [usize; 3]) -> Option<Body> {
     } else {
         Inertia::from_tensor(Matrix3::from_fn(|i, j| tensor[(order[i], order[j])]))
     };
-    let weight = body.gravity::<Dd>().map_or(Vector3::zeros(), |gravity| {
-        let body_axes = inertia.frame().rotate(gravity.weight_moment);
-        Vector3::from(body_axes.0.map(|c| c.hi() * inertia.scale()))
-    });
-    let bare = Body::heavy(reordered.ok()?, weight).ok()?;
-    Some(body.forces().iter().cloned().fold(bare, Body::with))
+    Some(body.forces().iter().cloned().fold(Body::free(reordered.ok()?), Body::with))
 }

@@ -4,8 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::field::{Evaluated, Field, Forces, Witness};
-use super::force::Role;
-use super::{Conserved, Exit, Force, Gravity, Point, Rotor, State, Time};
+use super::{Conserved, Exit, Force, LinearPotential, Point, Rotor, State, Time};
 use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real, Shown};
 use crate::rotation::{Quat, Vec3};
@@ -57,15 +56,15 @@ pub enum StateError {
 pub enum Problem {
     /// Nothing acts.
     Free,
-    /// Uniform gravity about a fixed point, whose torque is linear in the vertical.
-    Gravity,
+    /// A potential that is [linear](LinearPotential) in the vertical, as that of uniform gravity about a fixed point.
+    Linear,
     /// Torques that come from potentials.
     Potential,
     /// Any torque.
     Torque,
 }
 
-/// A rigid body and what acts on it: nothing, uniform gravity about a fixed point, or any [forces](Force).
+/// A rigid body and the [forces](Force) that act on it, if any.
 ///
 /// A user's [`State`] refers to the body axes that the inertia was given in. Kernels work on a [`Point`] in the solver
 /// frame: along principal axes, with moments and momenta divided by a power of two, so that fourth powers neither over- nor
@@ -75,16 +74,16 @@ pub enum Problem {
 #[must_use]
 pub struct Body {
     inertia: Inertia,
-    /// In the solver frame.
-    gravity: Option<Gravity<Dd>>,
     forces: Vec<Force>,
+    /// The sum of those that are linear in the vertical, in the solver frame.
+    linear: Option<LinearPotential<Dd>>,
     witness: Option<Witness>,
 }
 
 impl Body {
     /// A body on which no torque acts.
     pub fn free(inertia: Inertia) -> Self {
-        Body { inertia, gravity: None, forces: Vec::new(), witness: None }
+        Body { inertia, forces: Vec::new(), linear: None, witness: None }
     }
 
     /// A body with a fixed point, the origin, under uniform gravity along −Z of space.
@@ -107,42 +106,38 @@ impl Body {
     pub fn heavy(inertia: Inertia, weight_moment: Vector3<f64>) -> Result<Self, StateError> {
         let given = Vec3::from(weight_moment);
         check("weight moment", &given.0)?;
-        if given == Vec3::zero() {
-            return Ok(Body::free(inertia));
-        }
-        let (weight, moment) = (given.magnitude(), inertia.scale());
         let body = Body::free(inertia);
-        let gravity = body.gravity_of(given);
-        let error = StateError::WeightOutOfRange { weight_moment: weight, moment };
-        Ok(Body { gravity: Some(gravity.ok_or(error)?), ..body })
+        if given != Vec3::zero() && !body.has_in_range(given) {
+            let (weight_moment, moment) = (given.magnitude(), body.scale());
+            return Err(StateError::WeightOutOfRange { weight_moment, moment });
+        }
+        let not_finite = |_| StateError::NotFinite { quantity: "weight moment", value: given.magnitude() };
+        Ok(body.with(Force::gravity(weight_moment).map_err(not_finite)?))
     }
 
     /// The same body with one more force; all add up.
     ///
-    /// The gravity gradient takes the inertia of this body. A weight whose moment is too large or too small beside the inertia for
-    /// the solver frame acts as any potential does.
+    /// The gravity gradient takes the inertia of this body. A linear potential whose moment is too large or too small beside the
+    /// inertia for the solver frame acts as any potential does.
     pub fn with(mut self, force: Force) -> Self {
-        let weight = match force.role {
-            Role::Gravity(given) if given == Vec3::zero() => return self,
-            Role::Gravity(given) => self.gravity_of(given),
-            Role::Law | Role::Gradient(_) => None,
-        };
-        match (weight, self.gravity) {
-            (Some(more), Some(Gravity { weight_moment })) => {
-                let weight_moment = weight_moment + more.weight_moment;
-                self.gravity = (weight_moment != Vec3::zero()).then_some(Gravity { weight_moment });
-            }
-            (Some(weight), None) => self.gravity = Some(weight),
-            (None, _) => self.forces.push(force.on(&self.inertia)),
+        let given = force.linear_moment();
+        if given == Some(Vec3::zero()) {
+            return self;
         }
+        if let Some(given) = given.filter(|given| self.has_in_range(*given)) {
+            let scaled = Vec3(given.0.map(|c| c / self.scale()));
+            let moment = self.inertia.frame().rotate_back(Vec3::of(scaled));
+            let moment = self.linear.map_or(moment, |linear| linear.moment + moment);
+            self.linear = (moment != Vec3::zero()).then_some(LinearPotential { moment });
+        }
+        self.forces.push(force.on(&self.inertia));
         self
     }
 
-    /// Uniform gravity in the solver frame by the weight moment, N m, body axes; `None` out of range.
-    fn gravity_of(&self, weight_moment: Vec3<f64>) -> Option<Gravity<Dd>> {
-        let scaled = Vec3(weight_moment.0.map(|c| c / self.scale()));
-        let in_range = clear(scaled.magnitude()) && clear(weight_moment.magnitude());
-        in_range.then(|| Gravity { weight_moment: self.inertia.frame().rotate_back(Vec3::of(scaled)) })
+    /// Whether the solver frame has digits for a potential linear in the vertical with this moment, N m.
+    fn has_in_range(&self, moment: Vec3<f64>) -> bool {
+        let scaled = Vec3(moment.0.map(|c| c / self.scale()));
+        clear(scaled.magnitude()) && clear(moment.magnitude())
     }
 
     /// Its inertia.
@@ -150,17 +145,23 @@ impl Body {
         &self.inertia
     }
 
-    /// The forces that act besides uniform gravity, which is [`gravity`](Self::gravity).
+    /// The forces that act on it, in the order in which they were given.
     pub fn forces(&self) -> &[Force] {
         &self.forces
     }
 
+    /// The forces that are not part of the [linear potential](Self::linear_potential).
+    pub(crate) fn remainder(&self) -> impl Iterator<Item = &Force> {
+        let is_linear = |force: &Force| force.linear_moment().is_some_and(|c| self.has_in_range(c));
+        self.forces.iter().filter(move |force| !is_linear(force))
+    }
+
     /// What kind of motion it makes.
     pub fn problem(&self) -> Problem {
-        match (&self.gravity, self.forces.is_empty()) {
-            (None, true) => Problem::Free,
-            (Some(_), true) => Problem::Gravity,
-            _ if self.forces.iter().all(Force::has_potential) => Problem::Potential,
+        match (&self.linear, self.remainder().next()) {
+            (None, None) => Problem::Free,
+            (Some(_), None) => Problem::Linear,
+            _ if self.remainder().all(Force::has_potential) => Problem::Potential,
             _ => Problem::Torque,
         }
     }
@@ -169,9 +170,9 @@ impl Body {
     pub fn conserved(&self) -> Vec<Conserved> {
         let free =
             vec![Conserved::Energy, Conserved::MomentumNorm, Conserved::Momentum, Conserved::MomentumZ];
-        let gravity = self.gravity.map(|_| vec![Conserved::Energy, Conserved::MomentumZ]);
-        let forces = self.forces.iter().map(Force::conserved);
-        gravity.into_iter().chain(forces).fold(free, |a, b| {
+        let linear = self.linear.map(|_| vec![Conserved::Energy, Conserved::MomentumZ]);
+        let others = self.remainder().map(Force::conserved);
+        linear.into_iter().chain(others).fold(free, |a, b| {
             let mut both = Vec::new();
             for quantity in a.iter().chain(&b) {
                 if follows(*quantity, &a) && follows(*quantity, &b) && !both.contains(quantity) {
@@ -182,10 +183,11 @@ impl Body {
         })
     }
 
-    /// Uniform gravity with the weight moment in the solver frame, divided by the [scale](Self::scale); `None` without it.
+    /// The sum of the forces whose potential is linear in the vertical, such as uniform gravity: in the solver frame, divided by
+    /// the [scale](Self::scale); `None` where there is none.
     #[must_use]
-    pub fn gravity<S: Real>(&self) -> Option<Gravity<S>> {
-        self.gravity.map(|g| Gravity { weight_moment: g.weight_moment.map(S::from_dd) })
+    pub fn linear_potential<S: Real>(&self) -> Option<LinearPotential<S>> {
+        self.linear.map(|linear| LinearPotential { moment: linear.moment.map(S::from_dd) })
     }
 
     /// The constants that kernels read.
@@ -200,8 +202,21 @@ impl Body {
 
     /// Every force in the solver frame, in one value.
     pub(crate) fn field<S: Evaluated>(&self) -> Forces<S> {
+        self.field_of(self.linear_potential(), self.remainder().cloned())
+    }
+
+    /// One force alone in the solver frame, evaluated by its law.
+    fn field_of_one(&self, force: &Force) -> Forces<Dd> {
+        self.field_of(None, core::iter::once(force.clone()))
+    }
+
+    fn field_of<S: Evaluated>(
+        &self,
+        linear: Option<LinearPotential<S>>,
+        others: impl Iterator<Item = Force>,
+    ) -> Forces<S> {
         let frame = (!self.inertia.is_along_principal_axes()).then(|| self.inertia.frame());
-        Forces::new(self.gravity(), &self.forces, frame, self.scale(), self.witness.clone())
+        Forces::new(linear, others, frame, self.scale(), self.witness.clone())
     }
 
     /// Kinetic and potential energy, J, at the time 0, where a potential depends on the time.
@@ -236,24 +251,21 @@ impl Body {
         kinetic + self.field().energy(at, x.attitude)
     }
 
-    /// Σ (|U| + |τ|) over the forces besides gravity at the point `x`, divided by the scale.
-    pub(crate) fn size_of_forces(&self, at: Time, x: &Point<Dd>) -> Dd {
+    /// Σ (|U| + |τ|) over the forces besides the linear potential at the point `x`, divided by the scale.
+    pub(crate) fn size_of_remainder(&self, at: Time, x: &Point<Dd>) -> Dd {
         let omega = x.momentum_body.times(self.rotor().inverse_moments());
-        let sizes = self.forces.iter().map(|force| {
-            let alone = Body { gravity: None, forces: vec![force.clone()], ..self.clone() }.field::<Dd>();
-            let torque = alone.torque_besides_gravity(at, x.attitude, omega).norm();
-            alone.energy_besides_gravity(at, x.attitude).abs() + torque
+        let sizes = self.remainder().map(|force| {
+            let alone = self.field_of_one(force);
+            let torque = alone.remainder(at, x.attitude, omega).norm();
+            alone.remainder_energy(at, x.attitude).abs() + torque
         });
         sizes.fold(Dd::ZERO, |sum, size| sum + size)
     }
 
     /// The name of a force whose potential energy is not finite.
     pub(crate) fn force_without_energy(&self, at: Time, x: &Point<Dd>) -> Option<&str> {
-        let of = |force: &&Force| {
-            let alone = Body { gravity: None, forces: vec![(*force).clone()], ..self.clone() };
-            !alone.field::<Dd>().energy(at, x.attitude).hi().is_finite()
-        };
-        self.forces.iter().find(of).map(Force::name)
+        let of = |force: &&Force| !self.field_of_one(force).energy(at, x.attitude).hi().is_finite();
+        self.remainder().find(of).map(Force::name)
     }
 
     /// The state with angular velocity `omega_body` (rad/s, body axes): m = I ω.

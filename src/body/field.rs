@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::force::{Law, SeriesLaw};
-use super::{Force, Gravity, Potential, Time, Torque};
+use super::{Force, LinearPotential, Potential, Time, Torque};
 use crate::num::{Dd, Precise, Real, Series};
 use crate::rotation::{Quat, Vec3};
 
@@ -14,31 +14,26 @@ pub trait Field<S: Real>: Clone + Send + Sync + 'static {
     /// Whether anything acts at all.
     const ACTS: bool = true;
 
-    /// Whether anything acts besides uniform gravity.
-    const ACTS_BESIDES_GRAVITY: bool = true;
+    /// Whether anything acts besides the linear part.
+    const HAS_REMAINDER: bool = true;
 
-    /// The part of uniform gravity, which is linear in the vertical.
-    fn gravity(&self) -> Option<&Gravity<S>>;
+    /// The linear part: the sum of the potentials that are linear in the vertical.
+    fn linear_part(&self) -> Option<&LinearPotential<S>>;
 
     /// The torque of all the rest.
-    fn torque_besides_gravity(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S>;
+    fn remainder(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S>;
 
     /// The same on power series; `None` where a force cannot be evaluated on them.
     #[inline]
-    fn series_besides_gravity(
-        &self,
-        _: Time,
-        _: Quat<Series<S>>,
-        _: Vec3<Series<S>>,
-    ) -> Option<Vec3<Series<S>>> {
+    fn remainder_series(&self, _: Time, _: Quat<Series<S>>, _: Vec3<Series<S>>) -> Option<Vec3<Series<S>>> {
         None
     }
 
     /// The whole torque, divided by the scale.
     #[inline]
     fn torque(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
-        let rest = self.torque_besides_gravity(at, attitude, omega_body);
-        self.gravity().map_or(rest, |gravity| gravity.torque(attitude) + rest)
+        let rest = self.remainder(at, attitude, omega_body);
+        self.linear_part().map_or(rest, |linear| linear.torque(attitude) + rest)
     }
 }
 
@@ -48,38 +43,38 @@ pub struct Free;
 
 impl<S: Real> Field<S> for Free {
     const ACTS: bool = false;
-    const ACTS_BESIDES_GRAVITY: bool = false;
+    const HAS_REMAINDER: bool = false;
     #[inline]
-    fn gravity(&self) -> Option<&Gravity<S>> {
+    fn linear_part(&self) -> Option<&LinearPotential<S>> {
         None
     }
     #[inline]
-    fn torque_besides_gravity(&self, _: Time, _: Quat<S>, _: Vec3<S>) -> Vec3<S> {
+    fn remainder(&self, _: Time, _: Quat<S>, _: Vec3<S>) -> Vec3<S> {
         Vec3::zero()
     }
 }
 
-impl<S: Real> Field<S> for Gravity<S> {
-    const ACTS_BESIDES_GRAVITY: bool = false;
+impl<S: Real> Field<S> for LinearPotential<S> {
+    const HAS_REMAINDER: bool = false;
     #[inline]
-    fn gravity(&self) -> Option<&Gravity<S>> {
+    fn linear_part(&self) -> Option<&LinearPotential<S>> {
         Some(self)
     }
     #[inline]
-    fn torque_besides_gravity(&self, _: Time, _: Quat<S>, _: Vec3<S>) -> Vec3<S> {
+    fn remainder(&self, _: Time, _: Quat<S>, _: Vec3<S>) -> Vec3<S> {
         Vec3::zero()
     }
     #[inline]
     fn torque(&self, _: Time, attitude: Quat<S>, _: Vec3<S>) -> Vec3<S> {
-        Gravity::torque(self, attitude)
+        LinearPotential::torque(self, attitude)
     }
 }
 
-/// Gravity, if any, and forces, each evaluated in SI units and body axes.
+/// The linear part in the solver frame, and all other forces, each evaluated in SI units and body axes.
 #[derive(Clone, Debug)]
 pub(crate) struct Forces<S> {
-    gravity: Option<Gravity<S>>,
-    forces: Arc<[Force]>,
+    linear: Option<LinearPotential<S>>,
+    others: Arc<[Force]>,
     /// Takes coordinates along principal axes to body coordinates; `None` where they are the same.
     frame: Option<Quat<S>>,
     /// What divides the torque.
@@ -153,27 +148,27 @@ evaluated!(Dd);
 
 impl<S: Evaluated> Forces<S> {
     pub(super) fn new(
-        gravity: Option<Gravity<S>>,
-        forces: &[Force],
+        linear: Option<LinearPotential<S>>,
+        others: impl Iterator<Item = Force>,
         frame: Option<Quat<Dd>>,
         scale: f64,
         witness: Option<Witness>,
     ) -> Self {
         let frame = frame.map(|frame| frame.map(S::from_dd));
-        Forces { gravity, forces: forces.into(), frame, scale, witness }
+        Forces { linear, others: others.collect(), frame, scale, witness }
     }
 
     /// Potential energy, divided by the scale.
     pub(crate) fn energy(&self, at: Time, attitude: Quat<S>) -> S {
-        let gravity = self.gravity.map_or(S::of(0.0), |gravity| gravity.potential(attitude));
-        if self.forces.is_empty() { gravity } else { gravity + self.energy_besides_gravity(at, attitude) }
+        let linear = self.linear.map_or(S::of(0.0), |linear| linear.energy(attitude));
+        if self.others.is_empty() { linear } else { linear + self.remainder_energy(at, attitude) }
     }
 
-    /// Potential energy besides that of gravity, divided by the scale.
-    pub(super) fn energy_besides_gravity(&self, at: Time, attitude: Quat<S>) -> S {
+    /// Potential energy of all but the linear part, divided by the scale.
+    pub(super) fn remainder_energy(&self, at: Time, attitude: Quat<S>) -> S {
         let attitude = self.frame.map_or(attitude, |frame| attitude * frame.conjugate());
         let mut energy = S::of(0.0);
-        for force in self.forces.iter() {
+        for force in self.others.iter() {
             energy = energy + S::energy(&force.law, at, attitude);
         }
         energy * S::of(1.0 / self.scale)
@@ -195,7 +190,7 @@ impl<S: Evaluated> Forces<S> {
             None => (attitude, omega_body),
         };
         let mut torque = Vec3::zero();
-        for force in self.forces.iter() {
+        for force in self.others.iter() {
             let one = evaluate(force, attitude, omega_body)?;
             if let Some(witness) = &self.witness
                 && !one.magnitude().is_finite()
@@ -213,17 +208,17 @@ impl<S: Evaluated> Forces<S> {
 
 impl<S: Evaluated> Field<S> for Forces<S> {
     #[inline]
-    fn gravity(&self) -> Option<&Gravity<S>> {
-        self.gravity.as_ref()
+    fn linear_part(&self) -> Option<&LinearPotential<S>> {
+        self.linear.as_ref()
     }
 
     #[inline(never)]
-    fn torque_besides_gravity(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
+    fn remainder(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
         let evaluate = |force: &Force, attitude, omega| Some(S::torque(&force.law, at, attitude, omega));
         self.sum((at, OUT_OF_RANGE), self.frame, attitude, omega_body, evaluate).unwrap_or(Vec3::zero())
     }
 
-    fn series_besides_gravity(
+    fn remainder_series(
         &self,
         at: Time,
         attitude: Quat<Series<S>>,

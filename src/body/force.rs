@@ -57,6 +57,13 @@ pub trait Potential<S: Real>: Send + Sync {
     fn conserved(&self) -> Vec<Conserved> {
         vec![Conserved::Energy]
     }
+
+    /// The moment c, N m, body axes, of a potential `U = c·Γ` that is linear in the vertical Γ = Qᵀ e_z, such as that of
+    /// [uniform gravity](Force::gravity); `None`, the default, of all others. Where it is given, energy and torque must be
+    /// those of c, and methods take them from it by the closed forms of a [linear potential](super::LinearPotential).
+    fn linear_moment(&self) -> Option<Vec3<f64>> {
+        None
+    }
 }
 
 /// A torque of any kind, such as drag or a thruster's.
@@ -93,19 +100,8 @@ pub struct Force {
     pub(crate) law: Law,
     /// The same law on power series; none of a closure.
     pub(crate) series: Option<SeriesLaw>,
-    /// What it takes from the body that it acts on.
-    pub(super) role: Role,
-}
-
-/// What a force takes from the body that it acts on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Role {
-    /// Nothing: the law says it all.
-    Law,
-    /// The solver frame, in which the torque of uniform gravity is linear in the vertical: by the weight moment, N m.
-    Gravity(Vec3<f64>),
-    /// The tensor: by the mean motion, rad/s, and the eccentricity.
-    Gradient([f64; 2]),
+    /// Mean motion, rad/s, and eccentricity of a gravity gradient, which takes the tensor of the body that it acts on.
+    pub(super) orbit: Option<[f64; 2]>,
 }
 
 #[derive(Clone)]
@@ -180,7 +176,7 @@ impl Force {
     {
         let law = Arc::new(potential);
         let series = Some(SeriesLaw::Potential(law.clone()));
-        Force { name: name.into(), law: Law::Potential(law), series, role: Role::Law }
+        Force { name: name.into(), law: Law::Potential(law), series, orbit: None }
     }
 
     /// The torque `torque`, called `name` in messages.
@@ -190,7 +186,7 @@ impl Force {
     {
         let law = Arc::new(torque);
         let series = Some(SeriesLaw::Torque(law.clone()));
-        Force { name: name.into(), law: Law::Torque(law), series, role: Role::Law }
+        Force { name: name.into(), law: Law::Torque(law), series, orbit: None }
     }
 
     /// A potential by two closures of the attitude, body → space: energy in J, and torque in N m, body axes.
@@ -204,7 +200,7 @@ impl Force {
         T: Fn(UnitQuaternion<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
         let law = Law::Potential(Arc::new(PotentialFn { energy, torque }));
-        Force { name: name.into(), law, series: None, role: Role::Law }
+        Force { name: name.into(), law, series: None, orbit: None }
     }
 
     /// A torque, N m, body axes, by a closure of the time (s), the attitude (body → space) and the angular velocity
@@ -229,19 +225,19 @@ impl Force {
         T: Fn(f64, UnitQuaternion<f64>, Vector3<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
         let law = Law::Torque(Arc::new(TorqueFn(torque)));
-        Force { name: name.into(), law, series: None, role: Role::Law }
+        Force { name: name.into(), law, series: None, orbit: None }
     }
 
-    /// The same force, which takes `role` from the body.
-    pub(super) fn taking(self, role: Role) -> Self {
-        Force { role, ..self }
+    /// The same force, a gravity gradient on the orbit `orbit`.
+    pub(super) fn on_orbit(self, orbit: [f64; 2]) -> Self {
+        Force { orbit: Some(orbit), ..self }
     }
 
     /// The same force as it acts on a body with the inertia `inertia`.
     pub(super) fn on(self, inertia: &Inertia) -> Self {
-        match self.role {
-            Role::Gradient(orbit) => Force::gradient_on(inertia.tensor(), orbit),
-            Role::Law | Role::Gravity(_) => self,
+        match self.orbit {
+            Some(orbit) => Force::gradient_on(inertia.tensor(), orbit),
+            None => self,
         }
     }
 
@@ -257,6 +253,14 @@ impl Force {
         match &self.law {
             Law::Potential(potential) => Potential::<f64>::conserved(&**potential),
             Law::Torque(_) => Vec::new(),
+        }
+    }
+
+    /// The moment of a potential that is linear in the vertical, N m, body axes.
+    pub(super) fn linear_moment(&self) -> Option<Vec3<f64>> {
+        match &self.law {
+            Law::Potential(potential) => Potential::<f64>::linear_moment(&**potential),
+            Law::Torque(_) => None,
         }
     }
 

@@ -9,6 +9,7 @@ mod field;
 mod force;
 mod gravity;
 mod gravity_gradient;
+mod linear_potential;
 mod point;
 #[cfg(any(test, feature = "random"))]
 mod population;
@@ -21,7 +22,7 @@ pub(crate) use exit::Exit;
 pub(crate) use field::{Evaluated, Forces, Witness};
 pub use field::{Field, Free};
 pub use force::{Conserved, Force, ForceError, Potential, Torque};
-pub use gravity::{Gravity, vertical};
+pub use linear_potential::{LinearPotential, vertical};
 pub(crate) use point::RENORMALIZE_EVERY;
 pub use point::{Phase, Point};
 #[cfg(any(test, feature = "random"))]

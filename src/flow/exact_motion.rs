@@ -63,9 +63,9 @@ impl ExactMotion {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn from_point(body: &Body, start: Point<Dd>) -> Result<Self, NoClosedForm> {
-        match (body.problem(), body.forces()) {
+        match (body.problem(), body.remainder().next()) {
             (Problem::Free, _) => Ok(Self::Free(Box::new(FreeMotion::from_point(body.inertia(), start)))),
-            (_, [force, ..]) => Err(NoClosedForm::Forced { force: force.name().into() }),
+            (_, Some(force)) => Err(NoClosedForm::Forced { force: force.name().into() }),
             _ => Ok(Self::Lagrange(Box::new(LagrangeTop::from_point(body, start)?))),
         }
     }

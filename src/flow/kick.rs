@@ -9,7 +9,7 @@ use crate::rotation::Vec3;
 
 /// The exact flow of U at fixed time and attitude: Φ_t: `m ← m + t τ(at, q)`.
 ///
-/// Under gravity it keeps L_z, as the torque has no part along the vertical. Where nothing acts nothing happens.
+/// In a linear potential, as under gravity, it keeps L_z, as the torque has no part along the vertical. Where nothing acts nothing happens.
 #[derive(Clone, Debug)]
 pub struct Kick<S, F> {
     field: F,

@@ -14,7 +14,7 @@ use crate::rotation::{Quat, Vec3};
 /// Keeps energy and |m|, being quadratic, and L, because the same Cayley map turns m' back into m. It keeps the
 /// Lie–Poisson bracket only to O(h²): conservation is not accuracy.
 ///
-/// Under gravity `Γ̄ × c` joins the right side, `Γ̄ = ½(Γ + Γ')`. The Cayley map moves Γ by the midpoint rule too, so
+/// In a linear potential, as under gravity, `Γ̄ × c` joins the right side, `Γ̄ = ½(Γ + Γ')`. The Cayley map moves Γ by the midpoint rule too, so
 /// that energy and L_z = m·Γ, quadratic in (m, Γ), are kept. Any other torque is taken in the middle of the step: at the
 /// middle time, at q and half of the turn, and at I⁻¹m̄. Then the energy of a potential is not kept: the map is not symplectic.
 ///
@@ -55,7 +55,7 @@ impl Claimed for ImplicitMidpoint {
     fn claims(&self, problem: Problem) -> Option<Claims> {
         let kept = match problem {
             Problem::Free => Kept::all_of_free_motion(Energy::Exact),
-            Problem::Gravity => Kept { energy: Energy::Exact, momentum_z: true, norm: true, ..Kept::NOTHING },
+            Problem::Linear => Kept { energy: Energy::Exact, momentum_z: true, norm: true, ..Kept::NOTHING },
             Problem::Potential | Problem::Torque => Kept { norm: true, ..Kept::NOTHING },
         };
         Some(Claims {
@@ -115,29 +115,29 @@ impl<S: Real, F: Field<S>> ImplicitMidpointMap<S, F> {
     fn forced(&self, at: Time, x: &Point<S>) -> (Vec3<S>, f64) {
         let (m, up) = (x.momentum_body, vertical(x.attitude));
         let rest = |middle: Vec3<S>| self.rest(at, x.attitude, middle);
-        let Some(gravity) = self.field.gravity() else {
+        let Some(linear) = self.field.linear_part() else {
             let increment = |middle: Vec3<S>| self.gyroscopic.at(middle) + rest(middle);
             let size = m.magnitude() + rest(m).magnitude();
             return iterate(size, increment(m), |delta| increment(m + delta * self.half));
         };
         let increment = |middle: Vec3<S>| {
             let c = middle.times(self.inverse_moments) * (self.h * self.half);
-            let torque = middle_vertical(up, c).cross(gravity.weight_moment);
+            let torque = middle_vertical(up, c).cross(linear.moment);
             let increment = self.gyroscopic.at(middle) + torque * self.h;
-            if F::ACTS_BESIDES_GRAVITY { increment + rest(middle) } else { increment }
+            if F::HAS_REMAINDER { increment + rest(middle) } else { increment }
         };
-        // next to an equilibrium torques are differences of terms as large as the weight moment
-        let weight = (gravity.weight_moment * self.h).magnitude();
-        let others = if F::ACTS_BESIDES_GRAVITY { rest(m).magnitude() } else { 0.0 };
-        iterate(m.magnitude() + weight + others, increment(m), |delta| increment(m + delta * self.half))
+        // next to an equilibrium torques are differences of terms as large as the moment
+        let moment = (linear.moment * self.h).magnitude();
+        let others = if F::HAS_REMAINDER { rest(m).magnitude() } else { 0.0 };
+        iterate(m.magnitude() + moment + others, increment(m), |delta| increment(m + delta * self.half))
     }
 
-    /// The change of m by what acts besides gravity, in the middle of a step with the mean momentum `middle`.
+    /// The change of m by all but the linear part, in the middle of a step with the mean momentum `middle`.
     #[inline(never)]
     fn rest(&self, at: Time, attitude: Quat<S>, middle: Vec3<S>) -> Vec3<S> {
         let omega = middle.times(self.inverse_moments);
         let attitude = attitude * half_turn(omega * (self.h * self.half));
-        self.field.torque_besides_gravity(at.later(self.half_duration), attitude, omega) * self.h
+        self.field.remainder(at.later(self.half_duration), attitude, omega) * self.h
     }
 }
 

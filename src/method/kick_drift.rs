@@ -22,7 +22,7 @@ pub type KickDrift = Splitting<ExactFlow, Kicks>;
 /// use polhode::method::{Claimed, ExactFlow, KickDrift, Kicks};
 /// let method = KickDrift::strang(ExactFlow, Kicks);
 /// assert_eq!(method.claims(Problem::Free).and_then(|claims| claims.order), None); // exact at any step
-/// assert_eq!(method.claims(Problem::Gravity).and_then(|claims| claims.order), Some(2));
+/// assert_eq!(method.claims(Problem::Linear).and_then(|claims| claims.order), Some(2));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExactFlow;

@@ -42,7 +42,7 @@ impl Claimed for LieNewmark {
     }
     fn claims(&self, problem: Problem) -> Option<Claims> {
         let energy = match problem {
-            Problem::Free | Problem::Gravity => Energy::Bounded,
+            Problem::Free | Problem::Linear => Energy::Bounded,
             Problem::Potential | Problem::Torque => Energy::Drifts,
         };
         let kept = Kept { energy, norm: true, ..Kept::NOTHING };

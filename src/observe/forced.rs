@@ -6,8 +6,8 @@ use crate::num::{Dd, Real};
 /// What a motion with forces conserves, and what its errors are measured by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Forced {
-    /// Whether uniform gravity is all that acts, and energy and L_z all that is conserved.
-    pub(super) gravity_alone: bool,
+    /// Whether a linear potential is all that acts, and energy and L_z all that is conserved.
+    pub(super) linear_alone: bool,
     pub(super) energy: bool,
     pub(super) momentum_norm: bool,
     pub(super) momentum_vector: bool,
@@ -21,15 +21,16 @@ pub(super) struct Forced {
 
 impl Forced {
     pub(super) fn of(body: &Body, at: Time, start: &Point<Dd>, kinetic: Dd) -> Option<Self> {
-        if body.problem() == Problem::Free {
+        let problem = body.problem();
+        if problem == Problem::Free {
             return None;
         }
         let mut energy = kinetic;
-        if let Some(gravity) = body.gravity::<Dd>() {
-            energy = energy + gravity.weight_moment.norm_of_any_size();
+        if let Some(linear) = body.linear_potential::<Dd>() {
+            energy = energy + linear.moment.norm_of_any_size();
         }
-        if !body.forces().is_empty() {
-            energy = energy + body.size_of_forces(at, start);
+        if problem != Problem::Linear {
+            energy = energy + body.size_of_remainder(at, start);
         }
         // a force so large that its size is no double ends the run at its first step
         let energy_scale = if energy.hi().is_finite() { energy.hi() } else { f64::MAX };
@@ -41,9 +42,9 @@ impl Forced {
             _ => None,
         });
         let turning = (start.momentum_body.norm_of_any_size() * jacobi.unwrap_or(0.0)).magnitude();
-        let alone = body.forces().is_empty() && jacobi.is_none();
+        let alone = problem == Problem::Linear && jacobi.is_none();
         Some(Forced {
-            gravity_alone: alone
+            linear_alone: alone
                 && conserved == [Conserved::Energy, Conserved::MomentumZ]
                 && energy_scale > 0.0,
             energy: has(Conserved::Energy),

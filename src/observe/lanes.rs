@@ -6,7 +6,7 @@ use multiversion::target::target_cfg_f;
 
 use super::Invariants;
 use super::monitor::BLOCK;
-use crate::body::{Gravity, Point};
+use crate::body::{LinearPotential, Point};
 use crate::num::error_free::two_prod;
 use crate::num::{Compensated, Dd};
 use crate::rotation::{Quat, Vec3};
@@ -56,7 +56,7 @@ pub(super) struct Reference {
     energy: [f64; 2],
     momentum_squared: [f64; 2],
     momentum_space: [Vec3<f64>; 2],
-    weight_moment: [Vec3<f64>; 2],
+    moment: [Vec3<f64>; 2],
     /// No product that matters is near the smallest numbers: then the error of a product is the same number by Dekker's
     /// way and by a fused multiply-add.
     ordinary: bool,
@@ -66,20 +66,24 @@ pub(super) struct Reference {
 const NOTHING: f64 = 1e-280;
 
 impl Reference {
-    pub(super) fn new(inverse_moments: Vec3<Dd>, start: &Invariants, gravity: Option<Gravity<Dd>>) -> Self {
+    pub(super) fn new(
+        inverse_moments: Vec3<Dd>,
+        start: &Invariants,
+        linear: Option<LinearPotential<Dd>>,
+    ) -> Self {
         let parts = |x: Dd| [x.hi(), x.lo()];
         let vector = |v: Vec3<Dd>| [v.map(Dd::hi), v.map(Dd::lo)];
-        let weight_moment = gravity.map_or(Vec3::zero(), |gravity| gravity.weight_moment);
+        let moment = linear.map_or(Vec3::zero(), |linear| linear.moment);
         let ordinary = |x: f64| (1e-100..1e100).contains(&x);
         Reference {
             inverse_moments: vector(inverse_moments),
             energy: parts(start.energy),
             momentum_squared: parts(start.momentum_squared),
             momentum_space: vector(start.momentum_space),
-            weight_moment: vector(weight_moment),
+            moment: vector(moment),
             ordinary: inverse_moments.0.iter().all(|x| ordinary(x.hi()))
                 && ordinary(start.momentum_squared.hi())
-                && (gravity.is_none() || ordinary(weight_moment.norm_squared().hi())),
+                && (linear.is_none() || ordinary(moment.norm_squared().hi())),
         }
     }
 
@@ -88,7 +92,7 @@ impl Reference {
         self.settled(free(self, &Lanes::of(points)))
     }
 
-    /// |E − E₀| and |L_z − L_z₀| of each point, under uniform gravity.
+    /// |E − E₀| and |L_z − L_z₀| of each point, in a linear potential.
     pub(super) fn heavy(&self, points: &[Point<f64>]) -> [Lane; 2] {
         self.settled(heavy(self, &Lanes::of(points)))
     }
@@ -124,7 +128,7 @@ impl Reference {
         self.add_kinetic::<FUSED>(&mut twice_energy, m);
         let (w, Vec3([x, y, z])) = (q.w, q.v);
         // 2 U = c · 2Γ, with ½Γ₁ = xz − wy, ½Γ₂ = yz + wx and Γ₃ = w² + z² − x² − y²
-        let [high, low] = self.weight_moment;
+        let [high, low] = self.moment;
         let mut vertical = Compensated::new(0.0);
         vertical.add_product_by::<FUSED>(x, z);
         vertical.add_product_by::<FUSED>(-w, y);
@@ -289,7 +293,7 @@ mod tests {
             })
             .collect();
         let start = Invariants::of(&body, Time::from_seconds(0.0), &points[0]);
-        let reference = Reference::new(body.rotor().inverse_moments(), &start, body.gravity());
+        let reference = Reference::new(body.rotor().inverse_moments(), &start, body.linear_potential());
         assert!(reference.ordinary);
         for x in &points {
             let (q, m) = (x.attitude, x.momentum_body);

@@ -10,7 +10,7 @@ use crate::rotation::Vec3;
 
 /// Watches the steps of a run: the largest error of each invariant, and how often the body flipped.
 ///
-/// Steps come in blocks. Blocks of free motion and of motion under uniform gravity are evaluated with error-free
+/// Steps come in blocks. Blocks of free motion and of motion in a linear potential are evaluated with error-free
 /// transformations, to about 1e-30 and in vectorised loops; with other forces every step is evaluated in double-double.
 #[derive(Clone, Debug)]
 pub struct Monitor {
@@ -51,7 +51,7 @@ impl Monitor {
             clock,
             inverse_moments: rotor.inverse_moments(),
             forced,
-            reference: Reference::new(rotor.inverse_moments(), &start, body.gravity()),
+            reference: Reference::new(rotor.inverse_moments(), &start, body.linear_potential()),
             start,
             worst: Errors::NONE,
             flips,
@@ -80,7 +80,7 @@ impl Monitor {
                 self.worst = self.worst.max(self.errors_of(found));
                 finite
             }
-            Some(forced) if forced.gravity_alone => {
+            Some(forced) if forced.linear_alone => {
                 let ([energy, momentum_z], finite) = largest(self.reference.heavy(points), points.len());
                 let (energy, momentum_z) = (energy / forced.energy_scale, momentum_z / forced.momentum_scale);
                 let found = Errors { energy: Some(energy), momentum_z: Some(momentum_z), ..Errors::NONE };

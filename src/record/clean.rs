@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::error::RecordError;
-use super::rows::Rows;
+use super::rows::RawRows;
 use super::segment::Segment;
 
 /// What was found among the rows.
@@ -28,8 +28,8 @@ pub(super) struct Cleaned {
 }
 
 /// The segments that `rows` hold.
-pub(super) fn cleaned(file: &str, rows: Rows) -> Result<Cleaned, RecordError> {
-    let Rows { rows, names, columns, rate_unit, .. } = rows;
+pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError> {
+    let RawRows { rows, names, columns, rate_unit, .. } = rows;
     let mut segments: Vec<Segment> = Vec::new();
     let mut findings = Vec::new();
     let mut merged: Vec<([f64; 4], f64, usize)> = Vec::with_capacity(rows.len());

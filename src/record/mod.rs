@@ -13,7 +13,7 @@ use crate::units::RateUnit;
 use clean::{Cleaned, Finding, cleaned};
 pub use error::RecordError;
 #[doc(hidden)]
-pub use rows::Rows;
+pub use rows::RawRows;
 #[doc(hidden)]
 pub use segment::Inputs;
 use segment::NAMES;
@@ -64,7 +64,7 @@ impl Record {
             times.iter().zip(rates).enumerate().map(|(i, (t, w))| (i + 1, [*t, w.x, w.y, w.z])).collect();
         Record::cleaned(
             "samples",
-            Rows {
+            RawRows {
                 rows,
                 names: NAMES.map(String::from),
                 columns: [1, 2, 3, 4],
@@ -78,7 +78,7 @@ impl Record {
     /// # Errors
     /// Values that are not finite, times that decrease, no rows.
     #[doc(hidden)]
-    pub fn cleaned(file: &str, mut rows: Rows) -> Result<Record, RecordError> {
+    pub fn cleaned(file: &str, mut rows: RawRows) -> Result<Record, RecordError> {
         let unused = core::mem::take(&mut rows.unused).into_iter().map(|name| (file.into(), name)).collect();
         let Cleaned { segments, findings } = cleaned(file, rows)?;
         Ok(Record { segments, findings, unused })

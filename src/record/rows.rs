@@ -4,7 +4,7 @@ use crate::units::RateUnit;
 
 /// The rows of a text: line and values of each, in s and rad/s, with the names and numbers of their columns.
 #[derive(Clone, Debug)]
-pub struct Rows {
+pub struct RawRows {
     /// Line, and time and rates.
     pub rows: Vec<(usize, [f64; 4])>,
     /// Names of the columns.

@@ -81,10 +81,10 @@ pub(super) fn identity(body: &Body, clock: Clock, start: &Point<f64>) -> Vec<Str
     let numbers =
         |v: Vec3<Dd>| v.0.iter().map(|x| format!("{:?} {:?}", x.hi(), x.lo())).collect::<Vec<_>>().join(" ");
     let moments = format!("moments {} times {:?}", numbers(body.rotor().moments()), body.scale());
-    let weight = body.gravity::<Dd>().map(|gravity| format!("weight {}", numbers(gravity.weight_moment)));
+    let weight = body.linear_potential::<Dd>().map(|linear| format!("weight {}", numbers(linear.moment)));
     let axes = body.inertia().principal_axes();
     let axes = format!("axes {:?} {:?} {:?} {:?}", axes.w, axes.i, axes.j, axes.k);
-    let forces = body.forces().iter().map(|force| format!("force {:?}", force.name()));
+    let forces = body.remainder().map(|force| format!("force {:?}", force.name()));
     let (at, start) = (clock.at(0), start.to_dd());
     let energy = body.energy_of(at, &start);
     let at_start =

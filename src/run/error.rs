@@ -104,6 +104,9 @@ impl RunError {
 }
 
 fn left(stuck: &Stuck) -> String {
+    if let Some(needed) = stuck.needed {
+        return format!("is one of {needed:.0e} that a step of the run would take (at most 1e10)");
+    }
     match stuck.estimate {
         Some(estimate) => format!("still has an error of {estimate:.1e} times the tolerance"),
         None => "still leads to a state that is not finite".into(),

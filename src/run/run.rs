@@ -89,7 +89,7 @@ impl Run {
         {
             return Err(StateError::NotFinite { quantity: "the start", value }.into());
         }
-        let probe = if body.forces().is_empty() {
+        let probe = if body.remainder().next().is_none() {
             None
         } else {
             let witness = Arc::new(OnceLock::new());

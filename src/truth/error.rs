@@ -44,6 +44,24 @@ pub enum TruthError {
         /// About how far these lead, s since the start.
         reach: f64,
     },
+    /// The numbers of a run are no longer those of a motion.
+    #[error(
+        "no run goes on beyond t = {} s after the start: a force or the state is not finite there, or no step can be solved; ask \
+         for a time below that", Shown(*.time)
+    )]
+    Lost {
+        /// When, s since the start.
+        time: f64,
+    },
+    /// The torque jumps.
+    #[error(
+        "the torque jumps at t = {} s after the start: no method has its order across a jump; end the run there and begin \
+         another, or write the torque without jumps", Shown(*.time)
+    )]
+    Jumps {
+        /// When first, s since the start.
+        time: f64,
+    },
     /// The motion is not known there.
     #[error("the motion is known from 0 s to {} s after its start, not at {} s", Shown(*.known_until), Shown(*.time))]
     Unknown {

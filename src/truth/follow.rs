@@ -1,8 +1,8 @@
 //! Two runs in double-double, as long as they agree.
 
-use std::sync::mpsc;
-use std::thread;
+use std::time::Instant;
 
+use super::together::together;
 use super::{TruthError, attitude_error};
 use crate::body::{Body, Clock, Point, Time};
 use crate::method::{AdaptiveTaylor, AnyMethod as _, Rk8, Step, StepError};
@@ -18,6 +18,9 @@ const ANGLE: f64 = 0.25;
 
 /// Intervals of a run, and series of its own, at most: a minute or a few, by force.
 const MOST_STEPS: u64 = 1 << 17;
+
+/// A rate of so many times that at the start sets intervals of its own.
+const SPUN_UP: f64 = 2.0;
 
 /// Steps of the Runge–Kutta method in an interval, for forces that no series takes.
 const FINE: u64 = 16;
@@ -48,15 +51,28 @@ pub(super) struct Follower {
     speed: f64,
 }
 
+/// |ω| at the time `at`, s, of the clock of the forces, and the rate at which weight or torque can turn the body, rad/s.
+fn speed(body: &Body, at: f64, x: &Point<Dd>) -> f64 {
+    let least = body.rotor().moments::<f64>().0.into_iter().fold(f64::INFINITY, f64::min);
+    let weight = body.linear_potential::<f64>().map_or(0.0, |linear| linear.moment.norm());
+    let torque = body.torque_of(Time::from_seconds(at), x);
+    // the square of one may be beyond the range of numbers
+    let torque = Some(torque.norm().hi()).filter(|norm| norm.is_finite()).unwrap_or(torque.magnitude());
+    body.omega_of(x).norm() + libm::sqrt(weight.max(torque) / least)
+}
+
 impl Follower {
     pub(super) fn new(body: &Body, start: &Point<Dd>, start_time: f64) -> Self {
-        let least = body.rotor().moments::<f64>().0.into_iter().fold(f64::INFINITY, f64::min);
-        let weight = body.gravity::<f64>().map_or(0.0, |gravity| gravity.weight_moment.norm());
-        let torque = body.torque_of(Time::from_seconds(start_time), start);
-        // the square of one may be beyond the range of numbers
-        let torque = Some(torque.norm().hi()).filter(|norm| norm.is_finite()).unwrap_or(torque.magnitude());
-        let speed = body.omega_of(start).norm() + libm::sqrt(weight.max(torque) / least);
+        let speed = speed(body, start_time, start);
         Follower { body: body.clone(), start_time, speed }
+    }
+
+    /// How long two runs to `until` take about, s, from the time of one series: of one thread each.
+    pub(super) fn seconds(&self, x: &Point<Dd>, angle: f64) -> Result<f64, TruthError> {
+        let begun = Instant::now();
+        let h = ANGLE / self.speed;
+        self.carry(&mut x.clone(), (0.0, h, h), &mut 0, Steps::Anew)?;
+        Ok(begun.elapsed().as_secs_f64() * angle / ANGLE)
     }
 
     /// How far a run leads, s since the start.
@@ -73,36 +89,25 @@ impl Follower {
         agreement: f64,
     ) -> Result<Vec<Followed>, TruthError> {
         let until = times.last().copied().unwrap_or(0.0);
-        let pass = |steps: Steps| {
+        let pass = |which: usize| {
+            let steps = if which == 0 { Steps::OfTheirOwn } else { Steps::Anew };
             let (mut x, mut from, mut taken) = (start, 0.0, 0);
             move |&elapsed: &f64| {
                 let flips = self.carry(&mut x, (from, elapsed, until), &mut taken, steps)?;
                 from = elapsed;
-                Ok(Followed { elapsed, point: x, flips })
+                Ok::<_, TruthError>(Followed { elapsed, point: x, flips })
             }
         };
-        thread::scope(|scope| {
-            let (send, sent) = mpsc::sync_channel(1);
-            let second = pass(Steps::Anew);
-            let spawned = thread::Builder::new().spawn_scoped(scope, move || {
-                // nobody receives any more once the runs have parted
-                let _ = times.iter().map(second).all(|look| send.send(look).is_ok());
-            });
-            let second: Box<dyn Iterator<Item = Result<Followed, TruthError>>> = match spawned {
-                Ok(_) => Box::new(sent.into_iter()),
-                Err(_) => Box::new(times.iter().map(pass(Steps::Anew))),
-            };
-            let mut agreed = Vec::with_capacity(times.len());
-            for (look, other) in times.iter().map(pass(Steps::OfTheirOwn)).zip(second) {
-                let look: Followed = look?;
-                let apart = attitude_error(other?.point.attitude, look.point.attitude);
-                if apart.is_nan() || apart > agreement {
-                    break;
-                }
+        let mut agreed: Vec<Followed> = Vec::with_capacity(times.len());
+        together(times, pass, |look: Followed, other: Followed| {
+            let apart = attitude_error(other.point.attitude, look.point.attitude);
+            let agree = apart <= agreement;
+            if agree {
                 agreed.push(look);
             }
-            Ok(agreed)
-        })
+            agree
+        })?;
+        Ok(agreed)
     }
 
     /// One run from `start` to `until`, s since the start.
@@ -122,9 +127,12 @@ impl Follower {
     ) -> Result<u64, TruthError> {
         let too_long = |steps: f64, reach: f64| TruthError::TooLong { until, steps, most: MOST_STEPS, reach };
         let span = to - from;
-        let count = libm::ceil(span * self.speed / ANGLE).max(1.0);
+        // a body that spins up turns faster than at its start
+        let now = speed(&self.body, self.start_time + from, x);
+        let speed = if now > SPUN_UP * self.speed { now } else { self.speed };
+        let count = libm::ceil(span * speed / ANGLE).max(1.0);
         // the count is known before the first step
-        let all = until * self.speed / ANGLE;
+        let all = (until * self.speed / ANGLE).max(count);
         if all.is_nan() || all > MOST_STEPS as f64 {
             return Err(too_long(all, self.reach()));
         }

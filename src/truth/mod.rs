@@ -24,14 +24,19 @@ mod ending;
 mod error;
 mod follow;
 mod judge;
+mod pair;
+mod together;
 #[allow(clippy::module_inception)]
 mod truth;
+mod turning;
 
 pub use ending::{Ending, LOST};
 pub use error::TruthError;
 pub use follow::AGREEMENT;
 pub use judge::{Care, Judged, Look};
+pub(crate) use truth::Wanted;
 pub use truth::{Truth, evenly};
+pub(crate) use turning::Turning;
 
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, rotation_angle};

@@ -1,10 +1,13 @@
 //! The true motion from one start, known at its looks and near them.
 
+use std::time::Instant;
+
 use super::follow::Follower;
-use super::{AGREEMENT, TruthError, attitude_error};
-use crate::body::{Body, Point, State};
+use super::turning::{self, Turning};
+use super::{AGREEMENT, TruthError, attitude_error, pair};
+use crate::body::{Body, Point, Problem, State};
 use crate::flow::ExactMotion;
-use crate::method::StepError;
+use crate::method::{Dop853, StepError};
 use crate::num::Dd;
 use crate::observe::Errors;
 use crate::rotation::Vec3;
@@ -22,7 +25,40 @@ pub struct Truth {
     closed: Option<ExactMotion>,
     follower: Follower,
     looks: Vec<Known>,
+    /// The largest angle between two runs in `f64`, rad, of a motion that is known from them.
+    apart: Option<f64>,
+    /// When the torque first jumps, s since the start, where that was noticed.
+    jump: Option<f64>,
+    /// How the body turns, where it was asked.
+    turning: Option<Turning>,
 }
+
+/// What a motion is to be known for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wanted {
+    /// Two runs are to agree to this angle, rad.
+    pub(crate) accuracy: f64,
+    /// Where they do not, to this one at least, rad.
+    pub(crate) bearable: f64,
+    /// Nothing is followed where a start with another last digit is further away at the end, rad.
+    pub(crate) attainable: f64,
+    /// For how long runs in double-double may go on, s, where two in `f64` do not agree.
+    pub(crate) patience: f64,
+}
+
+/// By what their steps are shortened where two runs do not agree, and which part of their distance has to be left then.
+const FINER: f64 = 0.6;
+const SHRINKS: f64 = 0.3;
+const ATTEMPTS: i32 = 4;
+
+/// The part of an accuracy that runs are made for.
+const AIM: f64 = 0.2;
+
+/// Of what rounding amounts to at most, the part by which two runs that agreed were seen off Taylor's method in double-double.
+const ROUNDED: f64 = 0.1;
+
+/// Parts of an accuracy, one after the other, for runs across a jump of the torque, whose error is not that of smooth ones.
+const JUMPING: [f64; 3] = [0.1, 1e-3, 1e-5];
 
 /// The motion at a look.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +66,8 @@ struct Known {
     /// s since the start; ascending, from 0 on.
     elapsed: f64,
     point: Point<Dd>,
-    /// Flips so far; of a closed form, which has them at any time, none.
-    flips: u64,
+    /// Flips so far; of a closed form, which has them at any time, and of runs in `f64` not counted.
+    flips: Option<u64>,
 }
 
 /// `count` times at equal distances up to `span`, s.
@@ -67,30 +103,138 @@ impl Truth {
         times: &[f64],
         agreement: f64,
     ) -> Result<Self, TruthError> {
-        let mut before = 0.0;
-        for &time in times {
-            if !(time.is_finite() && time > before) {
-                return Err(TruthError::Order { time, before });
-            }
-            before = time;
-        }
+        let before = span(times)?;
         // the rounding of |q| would scale the torque
         let point = Point::new(start.to_dd().attitude.normalized(), start.to_dd().momentum_body);
         let closed = ExactMotion::from_point(body, point).ok();
         let follower = Follower::new(body, &point, start_time);
-        let mut looks = vec![Known { elapsed: 0.0, point, flips: 0 }];
+        let mut looks = vec![Known { elapsed: 0.0, point, flips: Some(0) }];
         if let Some(motion) = &closed {
             motion.check_time(before)?;
-            let at = |&elapsed: &f64| Known { elapsed, point: motion.point_at_dd(elapsed.into()), flips: 0 };
+            let at =
+                |&elapsed: &f64| Known { elapsed, point: motion.point_at_dd(elapsed.into()), flips: None };
             looks.extend(times.iter().map(at));
         } else {
             let mut count = 0;
             for look in follower.agreeing(point, times, agreement)? {
                 count += look.flips;
-                looks.push(Known { elapsed: look.elapsed, point: look.point, flips: count });
+                looks.push(Known { elapsed: look.elapsed, point: look.point, flips: Some(count) });
             }
         }
-        Ok(Truth { body: body.clone(), start, start_time, span: before, closed, follower, looks })
+        let (body, span) = (body.clone(), before);
+        let (apart, jump, turning) = (None, None, None);
+        Ok(Truth { body, start, start_time, span, closed, follower, looks, apart, jump, turning })
+    }
+
+    /// As [`from_point`](Self::from_point), as well as `wanted`, at least cost: the closed form, else two runs of different methods
+    /// in `f64`, else two in double-double. `heed` is told from time to time what part of a pass is done.
+    ///
+    /// # Errors
+    /// As [`from_point`](Self::from_point), and a torque that jumps.
+    pub(crate) fn within(
+        body: &Body,
+        start: Point<f64>,
+        start_time: f64,
+        times: &[f64],
+        wanted: Wanted,
+        heed: &mut dyn FnMut(f64),
+    ) -> Result<Self, TruthError> {
+        let until = span(times)?;
+        let mut truth = Truth::from_point(body, start, start_time, &[], wanted.accuracy)?;
+        if truth.closed.is_some() {
+            return Truth::from_point(body, start, start_time, times, wanted.accuracy);
+        }
+        let from = truth.looks[0].point;
+        let start = from.to_f64();
+        let turning = Turning::of(body, start, start_time, times, heed)?;
+        if f64::EPSILON * turning.growth > wanted.attainable && !turning.is_chaotic() {
+            // no run can be asked for that
+            (truth.span, truth.turning) = (until, Some(turning));
+            return Ok(truth);
+        }
+        let (mut best, mut nearest, mut jump) = (pair::Pair::default(), f64::INFINITY, None);
+        for attempt in 0..ATTEMPTS {
+            let legs = pair::smooth(&turning, AIM * wanted.accuracy, libm::pow(FINER, f64::from(attempt)));
+            let pair = pair::run(&turning, start, times, &legs, heed)?;
+            let (worst, before) = (pair.worst(times), nearest);
+            if worst <= nearest {
+                (best, nearest) = (pair, worst);
+            }
+            if worst <= wanted.accuracy.max(turning.rounding()) {
+                break;
+            }
+            // a closure may do what no law on series does
+            if attempt == 0 && body.forces().iter().any(|force| force.series.is_none()) {
+                let parted = times.get(best.agreed(wanted.accuracy)).copied().unwrap_or(until);
+                jump = turning.jumps(start, parted);
+                if jump.is_some() {
+                    break;
+                }
+            }
+            // shorter steps do not help: chaos, or a torque that jumps
+            if attempt > 0 && (worst.is_infinite() || worst > SHRINKS * before) {
+                let parted = times.get(best.agreed(wanted.accuracy)).copied().unwrap_or(until);
+                jump = turning.jumps(start, parted);
+                break;
+            }
+        }
+        if let Some((time, count)) = jump {
+            nearest = f64::INFINITY;
+            let begun = Instant::now();
+            for error in JUMPING {
+                if begun.elapsed().as_secs_f64() > wanted.patience {
+                    break;
+                }
+                let legs = pair::jumping(&turning, error * wanted.accuracy).filter(|_| count < turning::MANY);
+                let Some(legs) = legs else { break };
+                let pair = pair::run(&turning, start, times, &legs, heed)?;
+                let worst = pair.worst(times);
+                if worst < nearest {
+                    (best, nearest) = (pair, worst);
+                }
+                if nearest <= wanted.accuracy {
+                    break;
+                }
+            }
+            if nearest > wanted.bearable {
+                return Err(TruthError::Jumps { time });
+            }
+        }
+        if nearest > wanted.accuracy && jump.is_none() {
+            let seconds = truth.follower.seconds(&from, turning.angle)?;
+            let slow = seconds > wanted.patience;
+            let doubled = || Truth::from_point(body, truth.start, start_time, times, wanted.accuracy).ok();
+            if let Some(mut truth) = (!slow).then(doubled).flatten() {
+                truth.turning = Some(turning);
+                return Ok(truth);
+            }
+        }
+        let limit = if nearest > wanted.bearable { wanted.accuracy } else { wanted.bearable };
+        let agreed = best.agreed(limit);
+        let known = times.iter().zip(&best.looks).take(agreed);
+        let known = known.map(|(&elapsed, point)| Known { elapsed, point: point.to_dd(), flips: None });
+        truth.looks.extend(known);
+        truth.span = until;
+        let apart = best.apart.iter().take(agreed).copied().fold(0.0, f64::max);
+        (truth.apart, truth.jump, truth.turning) = (Some(apart), jump.map(|(time, _)| time), Some(turning));
+        Ok(truth)
+    }
+
+    /// How far the motion itself may be off, rad, where it is known from runs in `f64`: what the two are apart, and at least what both
+    /// may have rounded alike; 0 of any other.
+    pub(crate) fn apart(&self) -> f64 {
+        let rounded = self.turning.as_ref().map_or(0.0, |turning| ROUNDED * turning.rounding());
+        self.apart.map_or(0.0, |apart| apart.max(rounded))
+    }
+
+    /// When the torque first jumps, s since the start, where that was noticed.
+    pub(crate) fn jump(&self) -> Option<f64> {
+        self.jump
+    }
+
+    /// How the body turns, of a motion that was asked for by [`within`](Self::within) and has no closed form.
+    pub(crate) fn turning(&self) -> Option<&Turning> {
+        self.turning.as_ref()
     }
 
     /// The closed form, where there is one.
@@ -165,7 +309,10 @@ impl Truth {
         match &self.closed {
             _ if apart.hi() == 0.0 => Ok(near.point),
             Some(motion) => Ok(motion.point_at_dd(elapsed)),
-            None => self.follower.nudged(&near.point, near.elapsed, apart),
+            None => match self.turning.as_ref().filter(|_| self.apart.is_some()) {
+                Some(turning) => Ok(moved(turning, near, apart)),
+                None => self.follower.nudged(&near.point, near.elapsed, apart),
+            },
         }
     }
 
@@ -184,17 +331,17 @@ impl Truth {
         match &self.closed {
             Some(ExactMotion::Free(free)) => Some(free.flips(elapsed.into())),
             Some(_) => None,
-            None => self.looks.iter().find(|look| look.elapsed == elapsed).map(|look| look.flips),
+            None => self.looks.iter().find(|look| look.elapsed == elapsed).and_then(|look| look.flips),
         }
     }
 
     /// max |E − E₀| of the errors `worst` of a run over max U − min U at the looks, what kinetic and potential energy exchange;
-    /// `None` of all but uniform gravity.
+    /// `None` of all but a linear potential, such as that of gravity.
     #[must_use]
     pub fn exchanged_energy_error(&self, worst: &Errors) -> Option<f64> {
-        let gravity = self.body.gravity::<Dd>().filter(|_| self.body.forces().is_empty())?;
+        let linear = self.body.linear_potential::<Dd>().filter(|_| self.body.problem() == Problem::Linear)?;
         let vertical = Vec3([Dd::ZERO, Dd::ZERO, Dd::ONE]);
-        let height = |look: &Known| look.point.attitude.rotate_back(vertical).dot(gravity.weight_moment).hi();
+        let height = |look: &Known| look.point.attitude.rotate_back(vertical).dot(linear.moment).hi();
         let (low, high) = self
             .looks
             .iter()
@@ -204,7 +351,7 @@ impl Truth {
         let exchanged = Some((high - low) * scale).filter(|range| *range > 0.0)?;
         let m = self.start.to_dd().momentum_body;
         let kinetic = 0.5 * m.dot(m.times(self.body.rotor().inverse_moments())).hi();
-        let weight = gravity.weight_moment.map(Dd::hi).norm() * scale;
+        let weight = linear.moment.map(Dd::hi).norm() * scale;
         Some(worst.energy? * (kinetic * scale + weight) / exchanged)
     }
 
@@ -215,4 +362,24 @@ impl Truth {
             _ => self.follower.once(start, elapsed),
         }
     }
+}
+
+/// The point `apart` s behind a look, or before it, in `f64`.
+fn moved(turning: &Turning, look: &Known, apart: Dd) -> Point<Dd> {
+    let mut x = look.point.to_f64();
+    let (method, to) = (Dop853::of_tolerance(1e-14), look.elapsed + apart.hi());
+    let moved = method.map(|method| turning.carry(&method, f64::INFINITY, &mut x, (look.elapsed, to)));
+    if matches!(moved, Ok(Ok(()))) { x.to_dd() } else { look.point }
+}
+
+/// The last of `times`, s since the start.
+fn span(times: &[f64]) -> Result<f64, TruthError> {
+    let mut before = 0.0;
+    for &time in times {
+        if !(time.is_finite() && time > before) {
+            return Err(TruthError::Order { time, before });
+        }
+        before = time;
+    }
+    Ok(before)
 }

@@ -1,13 +1,19 @@
 //! `polhode advise`: which method, with which step.
 
+use std::io::IsTerminal as _;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use clap::Args;
-use polhode::advise::{Advice, AdviseError, Choice, Demand, Setting, advise, check};
+use indicatif::{ProgressBar, ProgressStyle};
+use polhode::advise::{
+    Advice, AdviseError, Choice, Demand, Progress, Setting, advise_telling, check_telling,
+};
 use polhode::method::method;
-use polhode_files::error::{Error, warn};
+use polhode_files::error::{Error, tell, warn};
 use polhode_files::moment::{duration, positive_duration};
 use polhode_files::numbers::positive;
+use polhode_files::text::short;
 use polhode_pages::output::emit;
 use polhode_pages::table::{Cell, Column, Format, Table, row};
 use serde_json::json;
@@ -27,9 +33,10 @@ const EXAMPLES: &str = "Examples:
 
 /// Which method and step for this body, time and accuracy, and what it costs
 ///
-/// Every method runs on the body itself for a short time, in shorter and shorter steps, and is compared with the exact motion. Those
-/// that would be quickest run longer. The first row is the advice; `propagate` takes its method, step and tolerance as they
-/// stand. Times are of this machine.
+/// Every method runs on the body itself for a short time, in shorter and shorter steps, and is compared with the exact motion, or with
+/// two runs of different methods that agree. Those that would be quickest run to the end. The first row is the advice; `propagate`
+/// takes its method, step and tolerance as they stand. Times are of this machine; the search takes at most two seconds and ten times
+/// the run that it finds.
 ///
 /// Columns: predicted_error and predicted_energy_error, the largest errors up to T; factor, by which predicted_error may be wrong;
 /// predicted_cost, processor time, s; times_longer, that time over the least; whole_time (csv and json), whether the runs behind the
@@ -38,7 +45,7 @@ const EXAMPLES: &str = "Examples:
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Advise {
     #[command(flatten)]
-    motion: MotionArguments,
+    pub(crate) motion: MotionArguments,
     /// Duration of the motion, s, or with a unit, as 30d
     #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Demand")]
     until: f64,
@@ -57,7 +64,8 @@ pub(crate) struct Advise {
     /// Time of the start, s, or with a unit, for forces that depend on time
     #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", help_heading = "Demand")]
     start_time: f64,
-    /// Run the advice to T and compare with the exact motion; exit code 1 if the error is larger than asked for
+    /// Run the advice to T and compare with the exact motion, or with two runs of different methods that agree; exit code 1 if the
+    /// error is larger than asked for
     #[arg(long, help_heading = "Output")]
     check: bool,
     /// Show every method that meets the demand, not only the quickest ten
@@ -93,15 +101,20 @@ impl Advise {
         demand.budget = self.budget;
         demand.excluded.clone_from(&self.exclude);
         demand.start_time = self.start_time;
-        let advice = advise(&body, &start, &demand).map_err(told)?;
+        let mut patience = Patience::new();
+        let advice = advise_telling(&body, &start, &demand, &mut |progress| patience.heed(progress));
+        patience.end();
+        let advice = advice.map_err(told)?;
         let actual = if self.check {
-            match check(&body, &start, &demand, &advice.best) {
-                Ok(error) => Some(error),
-                Err(error @ AdviseError::TooLong { .. }) => {
-                    return Err(Error::Input(format!("--check: {error}")));
-                }
-                Err(error) => return Err(Error::Failed(format!("--check: {error}"))),
+            let cost = CHECK * advice.best.seconds.value;
+            if cost > QUIET.as_secs_f64() {
+                let cost = short(format!("{cost:.1e}").parse().unwrap_or(cost));
+                tell("note", &format!("--check follows the motion to the end again: up to about {cost} s"));
             }
+            let heed = &mut |progress: &Progress| patience.heed(progress);
+            let checked = check_telling(&body, &start, &demand, &advice.best, heed);
+            patience.end();
+            Some(checked.map_err(|error| Error::Failed(format!("--check: {error}")))?)
         } else {
             None
         };
@@ -111,6 +124,12 @@ impl Advise {
             _ => format.write(&self.table(&advice, actual)),
         };
         emit(&text, self.out.as_deref())?;
+        if let Some(time) = advice.jump {
+            warn(&format!(
+                "the torque jumps, first at t = {} s: steps and tolerances hold for this start and time alone",
+                short(self.start_time + time)
+            ));
+        }
         if !advice.best.whole_time && actual.is_none() {
             warn("the error over the whole time was not seen but extrapolated; --check runs it");
         }
@@ -212,12 +231,71 @@ fn json(advice: &Advice, actual: Option<f64>) -> String {
     format!("{object:#}\n")
 }
 
+/// What a check costs at most, in runs of the advice.
+const CHECK: f64 = 10.0;
+
+/// After this time a line says what is being done, where no bar does.
+const QUIET: Duration = Duration::from_millis(1500);
+
+/// Progress on a terminal for work over a second; elsewhere one line for work that takes longer.
+struct Patience {
+    begun: Instant,
+    bar: Option<ProgressBar>,
+    told: bool,
+    seen: Instant,
+}
+
+impl Patience {
+    fn new() -> Self {
+        let bar = std::io::stderr().is_terminal().then(|| {
+            let bar = ProgressBar::new(100);
+            bar.set_style(
+                ProgressStyle::with_template("{msg} {bar:30} {pos} % {elapsed}")
+                    .unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar
+        });
+        Self { begun: Instant::now(), bar, told: false, seen: Instant::now() }
+    }
+
+    fn heed(&mut self, progress: &Progress) {
+        if self.begun.elapsed() < QUIET {
+            return;
+        }
+        match &self.bar {
+            Some(bar) => {
+                if self.seen.elapsed() > Duration::from_millis(100) {
+                    self.seen = Instant::now();
+                    bar.set_message(progress.stage.to_string());
+                    bar.set_position((100.0 * progress.done) as u64);
+                }
+            }
+            None if !self.told => {
+                self.told = true;
+                tell(
+                    "note",
+                    &format!("{}; this may take up to ten times the run that is found", progress.stage),
+                );
+            }
+            None => {}
+        }
+    }
+
+    fn end(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// The flag that an error is about, and its message.
 fn told(error: AdviseError) -> Error {
     let flag = match &error {
-        AdviseError::NotPositive { .. } | AdviseError::Chaotic { .. } | AdviseError::TooLong { .. } => {
-            "--until"
-        }
+        AdviseError::NotPositive { .. }
+        | AdviseError::Chaotic { .. }
+        | AdviseError::Jumps { .. }
+        | AdviseError::Undecided { .. }
+        | AdviseError::TooLong { .. } => "--until",
         AdviseError::Lost { .. } | AdviseError::Conditioning { .. } | AdviseError::Unreached { .. } => {
             "--attitude-error"
         }

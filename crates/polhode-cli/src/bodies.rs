@@ -60,7 +60,14 @@ fn quantities(body: &NamedBody) -> Vec<(&'static str, &'static str, Cell)> {
     all.extend(vector(["omega_body_x", "omega_body_y", "omega_body_z"], "rad/s", body.omega_body));
     all.extend(["q_w", "q_x", "q_y", "q_z"].into_iter().zip(body.attitude).map(|(n, x)| (n, "", x.into())));
     all.extend(vector(["weight_moment_x", "weight_moment_y", "weight_moment_z"], "N m", body.weight_moment));
-    all.extend([("summary", "", body.summary.into()), ("source", "", body.source.into())]);
+    let orientation = body.orientation;
+    all.extend([
+        ("frame", "", orientation.map_or("unknown", |found| found.frame).into()),
+        ("epoch", "", orientation.and_then(|found| found.epoch).into()),
+        ("summary", "", body.summary.into()),
+        ("source", "", body.source.into()),
+        ("attitude_source", "", orientation.map(|found| found.source).into()),
+    ]);
     all
 }
 
@@ -88,10 +95,12 @@ fn sheet(body: &NamedBody) -> String {
     ];
     let mut table = Table::new("body", "A body of the catalogue.", columns);
     for (name, unit, value) in quantities(body) {
-        if !matches!(name, "summary" | "source") {
+        if !matches!(name, "summary" | "source" | "frame" | "epoch" | "attitude_source") {
             let unit = if name.starts_with("moment") { body.unit } else { unit };
             table.push(row![name, value, unit]);
         }
     }
-    format!("{}\n{}\nsource: {}\n", table.terminal(), body.summary, body.source)
+    let of_attitude = body.orientation.map_or(String::new(), |found| format!(" ({})", found.source));
+    let attitude = body.attitude_known();
+    format!("{}\n{}\nsource: {}\n{attitude}{of_attitude}\n", table.terminal(), body.summary, body.source)
 }

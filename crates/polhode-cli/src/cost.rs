@@ -1,6 +1,5 @@
 //! What a run of many steps will cost, said before it begins.
 
-use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
 use polhode::body::{Body, Clock, Point};
@@ -69,11 +68,8 @@ pub(crate) fn check_all(place: &str, members: u64, steps: f64) -> Result<(), Err
     Err(Error::input(place, "", &rule, remedy))
 }
 
-/// Says on a terminal how long a run of `steps` takes, where that is long.
+/// Says how long a run of `steps` takes, where that is long.
 pub(crate) fn announce(method: &dyn AnyMethod, body: &Body, start: Point<f64>, clock: Clock, steps: u64) {
-    if !io::stderr().is_terminal() {
-        return;
-    }
     let Some(whole) = estimate(method, body, start, clock, steps).filter(|whole| *whole > LONG) else {
         return;
     };

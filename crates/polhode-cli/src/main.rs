@@ -74,11 +74,11 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::Experiment(command) => command.run(),
-        Command::Propagate(propagate) => propagate.run(),
-        Command::Motion(motion) => motion.run(),
-        Command::Advise(advise) => advise.run(),
-        Command::Compare(compare) => compare.run(),
-        Command::Plot(plot) => plot.run(),
+        Command::Propagate(propagate) => propagate.run().inspect(|()| propagate.motion.note()),
+        Command::Motion(motion) => motion.run().inspect(|()| motion.start.note(&motion.body)),
+        Command::Advise(advise) => advise.run().inspect(|()| advise.motion.note()),
+        Command::Compare(compare) => compare.run().inspect(|()| compare.motion.note()),
+        Command::Plot(plot) => plot.run().inspect(|()| plot.motion.note()),
         Command::Audit(audit) => audit.run(),
         Command::Ensemble(ensemble) => ensemble.run(),
         Command::Gather(gather) => gather.run(),

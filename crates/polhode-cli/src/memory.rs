@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use polhode_files::error::Error;
+use polhode_files::inputs;
 
 /// Of what the shell allows, bytes for the stacks of threads and for work that is small.
 const SPARE: u64 = 16_000_000;
@@ -25,15 +26,20 @@ pub(crate) fn check_files(paths: &[PathBuf], times: u64) -> Result<(), Error> {
 /// Bytes that this process can still take: what the system has, what its group may have, and what the shell allows (`ulimit -v`);
 /// `None` where nothing is told.
 pub(crate) fn free() -> Option<u64> {
-    let kilobytes = std::fs::read_to_string("/proc/meminfo").ok();
+    let kilobytes = of_system("/proc/meminfo");
     let system = kilobytes.as_deref().and_then(available);
     // a container or a job of a scheduler
-    let number = |name: &str| std::fs::read_to_string(name).ok()?.trim().parse::<u64>().ok();
+    let number = |name: &str| of_system(name)?.trim().parse::<u64>().ok();
     let group = number("/sys/fs/cgroup/memory.max")
         .map(|most| most.saturating_sub(number("/sys/fs/cgroup/memory.current").unwrap_or(0)));
-    let text = |name: &str| std::fs::read_to_string(name).unwrap_or_default();
+    let text = |name: &str| of_system(name).unwrap_or_default();
     let addresses = addresses(&text("/proc/self/limits"), &text("/proc/self/status"));
     [system, group, addresses].into_iter().flatten().min()
+}
+
+/// What a file of the system says.
+fn of_system(name: &str) -> Option<String> {
+    std::io::read_to_string(inputs::open_own(Path::new(name)).ok()?).ok()
 }
 
 /// What is left of the limit on addresses, where there is one.

@@ -47,15 +47,17 @@ const EXAMPLES: &str = "Examples:
 ///   lambda, beta         longitude and latitude of L in space
 ///   phi, psi             Euler angles at the start (z-x-z, z along L and along
 ///                        the axis)
+///   frame, epoch         of a catalogued body: the axes of space (unknown: the
+///                        attitude at the start is the identity) and the date
 ///
 /// csv and json have angles in rad and times in s.
 #[derive(Args, Clone, Debug)]
 #[command(verbatim_doc_comment, override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Motion {
     #[command(flatten)]
-    body: BodyArguments,
+    pub(crate) body: BodyArguments,
     #[command(flatten)]
-    start: StartArguments,
+    pub(crate) start: StartArguments,
     /// How the quantities are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
@@ -70,10 +72,16 @@ type Quantity = (&'static str, &'static str, &'static str, &'static str, Cell);
 impl Motion {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let body = self.body.free()?;
-        let start = self.start.inside(&body, self.body.published_start())?;
+        let published = self.body.published_start();
+        let start = self.start.inside(&body, published.clone())?;
         let motion = FreeMotion::from_point(body.inertia(), start);
         let character = motion.character().map_err(|error| Error::Input(format!("--omega: {error}")))?;
-        let quantities = quantities(&body, &start, &motion, &character);
+        let mut quantities = quantities(&body, &start, &motion, &character);
+        let published = published.filter(|_| !self.start.has_attitude());
+        let frame = published.as_ref().map(|found| found.orientation.map_or("unknown", |known| known.frame));
+        let epoch = published.and_then(|found| found.orientation?.epoch);
+        quantities.push(("frame", "", "", "axes of space, of the catalogue", frame.into()));
+        quantities.push(("epoch", "", "", "of the start, UTC", epoch.into()));
         let format = Format::of(self.format, self.out.as_deref())?;
         let text = if format == Format::Table { sheet(quantities) } else { format.write(&wide(quantities)) };
         emit(&text, self.out.as_deref())
@@ -146,7 +154,13 @@ fn quantities(body: &Body, start: &Point<Dd>, motion: &FreeMotion, character: &C
         ),
         ("theta_min", "theta", "rad", "least angle of the axis to L", tilt.map(|tilt| tilt[0]).into()),
         ("theta_max", "theta", "rad", "largest", tilt.map(|tilt| tilt[1]).into()),
-        ("lambda", "lambda", "rad", "longitude of L in space", pole.map(|pole| pole[0]).into()),
+        (
+            "lambda",
+            "lambda",
+            "rad",
+            "longitude of L in space, 0 to 2 pi",
+            pole.map(|pole| pole[0].rem_euclid(core::f64::consts::TAU)).into(),
+        ),
         ("beta", "beta", "rad", "latitude of L in space", pole.map(|pole| pole[1]).into()),
         ("phi", "phi_0", "rad", "of the axis about L at the start", angles.map(|angles| angles[0]).into()),
         (

@@ -1,11 +1,10 @@
 //! Mass, centre of mass and inertia tensor of a closed triangle mesh:
 //! cargo run --release --example tensor_from_mesh -- part.stl
 
-use std::fs::File;
 use std::io::BufReader;
 
 use polhode::inertia::Amount;
-use polhode_files::mesh;
+use polhode_files::{inputs, mesh};
 
 /// A cube of one metre as an OBJ file; a path on the command line takes its place.
 const CUBE: &str = "
@@ -15,8 +14,8 @@ const CUBE: &str = "
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let surface = match std::env::args().nth(1) {
-        Some(path) if path.ends_with(".stl") => mesh::stl(File::open(path)?)?,
-        Some(path) => mesh::obj(BufReader::new(File::open(path)?))?,
+        Some(path) if path.ends_with(".stl") => mesh::stl(inputs::open(path.as_ref())?)?,
+        Some(path) => mesh::obj(BufReader::new(inputs::open(path.as_ref())?))?,
         None => mesh::obj(CUBE.as_bytes())?,
     };
     let body = surface.mesh()?.with(Amount::Density(2700.0))?; // lengths in m, kg/m³

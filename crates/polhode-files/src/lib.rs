@@ -6,13 +6,13 @@
 //! line, column, value, rule and remedy ([`TableError`]).
 //!
 //! ```
-//! use polhode_files::{Reading, record};
+//! use polhode_files::{ReadOptions, record};
 //! let log = "Timestamp,gyro.x,gyro.y,gyro.z\n100,0,90,0\n110,0,90,1\n";
-//! let found = record::read(log, "crazyflie.csv", &Reading::default())?;
+//! let found = record::read(log, "crazyflie.csv", &ReadOptions::default())?;
 //! let segment = &found.record.segments[0];
 //! assert_eq!((segment.times().len(), segment.rates()[0].y), (2, core::f64::consts::FRAC_PI_2));
 //!
-//! let torn = record::read("t,wx,wy,wz\n0,1,2,3\n0.1,1,2", "log.csv", &Reading::default());
+//! let torn = record::read("t,wx,wy,wz\n0,1,2,3\n0.1,1,2", "log.csv", &ReadOptions::default());
 //! assert!(torn.unwrap_err().to_string().starts_with("log.csv, line 3: the file ends in the middle of this row"));
 //! # Ok::<(), polhode_files::Error>(())
 //! ```
@@ -23,9 +23,12 @@
 #[cfg(doctest)]
 struct Readme;
 
+pub mod bodies;
+mod did_you_mean;
 pub mod error;
 pub mod given;
 pub mod inputs;
+pub mod members;
 pub mod mesh;
 pub mod moment;
 pub mod npy;
@@ -41,4 +44,4 @@ pub mod trajectory;
 
 pub use error::{Broken, Error, Rule, TableError};
 pub use read::{read, read_own};
-pub use table::{ColumnNames, Reading};
+pub use table::{ColumnNames, ReadOptions};

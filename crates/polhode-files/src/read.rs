@@ -17,7 +17,7 @@ pub fn read(path: &Path, remedy: &str) -> Result<String, Error> {
 
 /// The same for a file of the program's own, which it writes again: a record of results, a page with generated blocks.
 pub fn read_own(path: &Path, remedy: &str) -> Result<String, Error> {
-    text(path, |path| File::open(path), remedy)
+    text(path, inputs::open_own, remedy)
 }
 
 fn text(path: &Path, open: fn(&Path) -> io::Result<File>, remedy: &str) -> Result<String, Error> {

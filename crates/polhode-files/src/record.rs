@@ -4,12 +4,13 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use polhode::audit::Frame;
-use polhode::record::{Record, RecordError, Rows};
+use polhode::record::{RawRows, Record, RecordError};
 use polhode::units::{MomentumUnit, RateUnit, TorqueUnit};
 
 use crate::error::{Error, Rule, TableError};
-pub use crate::table::Reading;
+pub use crate::table::ReadOptions;
 use crate::table::Table;
+use crate::text::visible;
 
 /// Share of bad rows that is passed over.
 const MOST_SKIPPED: f64 = 0.02;
@@ -17,7 +18,7 @@ const MOST_SKIPPED: f64 = 0.02;
 /// A record, and what was not read of its file.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Found {
+pub struct FoundRecord {
     /// The samples.
     pub record: Record,
     /// Why rows were left out, one by one.
@@ -31,37 +32,37 @@ pub struct Found {
 /// Cells are separated by comma, semicolon or tab, or by blanks, with decimal commas where semicolons or tabs separate them,
 /// or within quotes. Lines before the header and lines that begin with `#`, `%` or `//` may hold anything, and so may columns
 /// that are not needed. Columns are found by the names that phones, loggers, flight controllers and ROS give them, or as
-/// [`Reading::columns`] says; four columns of numbers need no header. Of several times the one whose name has a unit is read;
+/// [`ReadOptions::columns`] says; four columns of numbers need no header. Of several times the one whose name has a unit is read;
 /// dates, and counts since 1970, are taken from the first row on. Columns `hx, hy, hz` (N m s) are the momentum of wheels,
 /// `tx, ty, tz` (N m) a torque.
 ///
-/// Rows that cannot be read are [left out](Found::skipped), up to a [share](Reading::most_skipped).
+/// Rows that cannot be read are [left out](FoundRecord::skipped), up to a [share](ReadOptions::most_skipped).
 ///
 /// ```
 /// use polhode_files::ColumnNames;
-/// use polhode_files::record::{Reading, read};
+/// use polhode_files::record::{ReadOptions, read};
 /// let text = "when;p_gyro;q_gyro;r_gyro\n22-Nov-2025 10:00:00.00;1;2;3\n22-Nov-2025 10:00:00.01;1;2;3\n";
 /// let columns = ColumnNames::parse("t=when,x=p_gyro,y=q_gyro,z=r_gyro").unwrap();
-/// let record = read(text, "flight.csv", &Reading { columns, ..Reading::default() })?.record;
+/// let record = read(text, "flight.csv", &ReadOptions::default().with_columns(columns))?.record;
 /// assert_eq!(record.segments[0].times(), [0.0, 0.01]);
 ///
 /// let text = "t (ms), wx (deg/s), wy (deg/s), wz (deg/s)\n0, 0, 90, 180\n10, 1, 90, 180\n10, 3, 90, 180\n";
-/// let record = read(text, "toss.csv", &Reading::default())?.record;
+/// let record = read(text, "toss.csv", &ReadOptions::default())?.record;
 /// assert_eq!((record.samples(), record.merged()), (2, 1)); // rows of the same time are averaged
 /// assert_eq!(record.segments[0].rates()[1].z, core::f64::consts::PI);
 ///
-/// let broken = read("t,wx,wy,wz\n0,1,2,3\n1,1,nan,3\n", "toss.csv", &Reading::default());
+/// let broken = read("t,wx,wy,wz\n0,1,2,3\n1,1,nan,3\n", "toss.csv", &ReadOptions::default());
 /// assert!(broken.unwrap_err().to_string().starts_with("toss.csv, line 3, column 3 (wy): 'nan'"));
 ///
 /// let text = "t,wx,wy,wz,temperature\n0,1,2,3,20\n0.1,1,2,3,20\n";
-/// let record = read(text, "toss.csv", &Reading::default())?.record;
+/// let record = read(text, "toss.csv", &ReadOptions::default())?.record;
 /// assert_eq!(record.unused_columns(), [("toss.csv".to_string(), "temperature".to_string())]);
 /// # Ok::<(), polhode_files::Error>(())
 /// ```
 ///
 /// # Errors
 /// Missing columns, unknown units, more bad rows than may be left out: the first of them.
-pub fn read(text: &str, file: &str, reading: &Reading) -> Result<Found, Error> {
+pub fn read(text: &str, file: &str, reading: &ReadOptions) -> Result<FoundRecord, Error> {
     Ok(found(Table::of_text(text, file, reading)?, reading, None)?)
 }
 
@@ -70,7 +71,7 @@ pub fn read(text: &str, file: &str, reading: &Reading) -> Result<Found, Error> {
 ///
 /// # Errors
 /// As [`read`], and a column `wheel` that is missing or without unit.
-pub fn open(path: &Path, reading: &Reading, wheel: Option<Vector3<f64>>) -> Result<Found, Error> {
+pub fn open(path: &Path, reading: &ReadOptions, wheel: Option<Vector3<f64>>) -> Result<FoundRecord, Error> {
     Ok(found(Table::open(path, reading)?, reading, wheel)?)
 }
 
@@ -84,7 +85,11 @@ struct Inputs {
     rows: Vec<[Vector3<f64>; 2]>,
 }
 
-fn found(mut table: Table, reading: &Reading, wheel: Option<Vector3<f64>>) -> Result<Found, TableError> {
+fn found(
+    mut table: Table,
+    reading: &ReadOptions,
+    wheel: Option<Vector3<f64>>,
+) -> Result<FoundRecord, TableError> {
     let rates = rates(&table)?;
     let mut remarks = Vec::new();
     let mut inputs = Inputs::of(&table, wheel, &mut remarks)?;
@@ -92,11 +97,15 @@ fn found(mut table: Table, reading: &Reading, wheel: Option<Vector3<f64>>) -> Re
     let units = named.map(Option::unwrap_or_default);
     let scale = table.scale(rates[0]);
     let (mut rows, mut skipped): (Vec<(usize, [f64; 4])>, Vec<TableError>) = (Vec::new(), Vec::new());
+    let mut owner = Owner::default();
     while table.next()? {
         let before = rows.last().map(|(_, row)| row[0]);
         let row = row(&mut table, rates, units, scale, before);
         match row.and_then(|row| inputs.push(&table).map(|()| row)) {
-            Ok(row) => rows.push((usize::try_from(table.line()).unwrap_or(usize::MAX), row)),
+            Ok(row) => {
+                owner.check(&table, before == Some(row[0]))?;
+                rows.push((usize::try_from(table.line()).unwrap_or(usize::MAX), row));
+            }
             // a first row that is text is no row of numbers
             Err(error) if rows.is_empty() && matches!(error.rule, Rule::Number | Rule::Comma) => {
                 return Err(error);
@@ -123,14 +132,42 @@ fn found(mut table: Table, reading: &Reading, wheel: Option<Vector3<f64>>) -> Re
     let unused = others.map(|(place, name)| called((place, name.text.as_str()))).collect();
     let names = columns.map(|column| header.names[column].text.clone());
     let lines: Vec<usize> = rows.iter().map(|(line, _)| *line).collect();
-    let rows = Rows { rows, names, columns: columns.map(|column| column + 1), rate_unit: named[0], unused };
+    let rows =
+        RawRows { rows, names, columns: columns.map(|column| column + 1), rate_unit: named[0], unused };
     let refused = |error: RecordError| match error {
         RecordError::Empty { .. } => TableError::of(table.name(), Rule::Rows),
         other => TableError::of(table.name(), Rule::Other(other.to_string())),
     };
     let record = Record::cleaned(table.name(), rows).map_err(refused)?;
     let record = inputs.complete(record, &lines).map_err(refused)?;
-    Ok(Found { record, skipped, remarks })
+    Ok(FoundRecord { record, skipped, remarks })
+}
+
+/// The body of the row before, where rows have names.
+#[derive(Default)]
+struct Owner {
+    name: String,
+    /// The first name that shared its time with another.
+    partner: Option<String>,
+}
+
+impl Owner {
+    /// Refuses rows of several bodies; a counter, which may go on within one tick of a clock, shows no name again.
+    fn check(&mut self, table: &Table, at_the_same_time: bool) -> Result<(), TableError> {
+        let Some(id) = table.header.id else { return Ok(()) };
+        let name = table.cell(id);
+        if at_the_same_time && name != self.name {
+            if self.partner.as_deref() == Some(name) {
+                let before = visible(&self.name);
+                let rule = format!("of another body than the row before, '{before}', at the same time");
+                return Err(table.refused_cell(id, Rule::Other(rule)).with_remedy("name a file of one body"));
+            }
+            self.partner.get_or_insert_with(|| name.into());
+        }
+        self.name.clear();
+        self.name.push_str(name);
+        Ok(())
+    }
 }
 
 /// The columns of the rates, which must be those of one body in its own axes.

@@ -7,7 +7,9 @@ use polhode::units::TimeUnit;
 
 use crate::error::{Error, Rule, TableError};
 use crate::moment::{is_moment, seconds};
-use crate::table::{Delimiter, Lines as Text, Name, uncommented, width_rule};
+use crate::table::{
+    ColumnNames, Delimiter, Lines as Text, Name, ReadOptions, Source as Rows, Table, uncommented, width_rule,
+};
 use crate::text::visible;
 
 /// Where times come from.
@@ -21,7 +23,7 @@ pub enum Source {
 
 /// A column of times.
 #[derive(Clone, Debug)]
-pub struct Column {
+pub struct TimesColumn {
     /// The text that holds it.
     pub source: Source,
     /// Its name or its number, from 1.
@@ -41,7 +43,7 @@ pub struct Asked {
     pub column: &'static str,
 }
 
-impl Column {
+impl TimesColumn {
     /// Whether the text can be read a second time; a pipe cannot.
     pub fn is_read_again(&self) -> bool {
         match &self.source {
@@ -60,8 +62,28 @@ impl Column {
             Source::Standard => Text::open(Path::new("-")),
         };
         let text = text.map_err(|error| self.named(&error))?;
-        let header = None;
-        Ok(Times { column: self, text, header, place: None, is_empty: true, is_over: false })
+        let text = match Rows::new(text)? {
+            Rows::Plain(mut lines, first) => {
+                let is_ahead = first.is_some();
+                lines.text = first.map(|line| line.text).unwrap_or_default();
+                Layout::Lines { lines, is_ahead, header: None, place: None }
+            }
+            rows => Layout::Blocks { table: Box::new(self.blocks(rows)?), last: None },
+        };
+        Ok(Times { column: self, text, is_empty: true, is_over: false })
+    }
+
+    /// Dumps and messages as a table, which must tell a time.
+    fn blocks(&self, rows: Rows<'static>) -> Result<Table<'static>, TableError> {
+        let columns = self.wanted.as_deref().and_then(|name| ColumnNames::parse(&format!("t={name}")).ok());
+        let table = Table::new(rows, &ReadOptions::default().with_columns(columns.unwrap_or_default()))?;
+        match table.header.time {
+            Some(time) if table.counts_steps() => {
+                let remedy = "have the times dumped too, by dump_modify time yes";
+                Err(table.refused_column(time, Rule::Time).with_remedy(remedy))
+            }
+            _ => Ok(table),
+        }
     }
 
     /// A refusal of the file as a whole, with the flag that names it.
@@ -72,14 +94,26 @@ impl Column {
 
 /// The times of a column, s, as they are read.
 pub struct Times<'c> {
-    column: &'c Column,
-    text: Text<'static>,
-    /// The last comment above the rows, which may name the columns.
-    header: Option<String>,
-    /// Known with the first line.
-    place: Option<Place>,
+    column: &'c TimesColumn,
+    text: Layout,
     is_empty: bool,
     is_over: bool,
+}
+
+/// How times stand in a text.
+enum Layout {
+    /// Plain lines.
+    Lines {
+        lines: Text<'static>,
+        /// Whether the present line is still to be read.
+        is_ahead: bool,
+        /// The last comment above the rows, which may name the columns.
+        header: Option<String>,
+        /// Known with the first line.
+        place: Option<Place>,
+    },
+    /// Blocks that all have one time each: dumps of LAMMPS, messages of ROS.
+    Blocks { table: Box<Table<'static>>, last: Option<f64> },
 }
 
 /// Where the times stand in a line.
@@ -109,40 +143,54 @@ impl Iterator for Times<'_> {
 impl Times<'_> {
     /// The next time.
     fn advance(&mut self) -> Result<Option<f64>, TableError> {
-        loop {
-            if !self.text.advance()? {
-                let refused =
-                    || TableError::of(&self.text.name, Rule::Rows).with_remedy("write one time a line");
-                return if self.is_empty { Err(refused()) } else { Ok(None) };
+        let none = |name: &str| TableError::of(name, Rule::Rows).with_remedy("write one time a line");
+        let (lines, is_ahead, header, found) = match &mut self.text {
+            Layout::Lines { lines, is_ahead, header, place } => (lines, is_ahead, header, place),
+            Layout::Blocks { table, last } => {
+                while table.next()? {
+                    table.check()?;
+                    let time = table.time()?;
+                    // each atom of a block has its time
+                    if last.replace(time) != Some(time) {
+                        self.is_empty = false;
+                        return Ok(Some(time));
+                    }
+                }
+                return if self.is_empty { Err(none(table.name())) } else { Ok(None) };
             }
-            let text = self.text.text.trim();
+        };
+        loop {
+            if !std::mem::take(is_ahead) && !lines.advance()? {
+                return if self.is_empty { Err(none(&lines.name)) } else { Ok(None) };
+            }
+            let text = lines.text.trim();
             if let Some(comment) = uncommented(text) {
-                self.header = Some(comment.into());
+                *header = Some(comment.into());
                 continue;
             }
             if text.is_empty() {
                 continue;
             }
-            if self.place.is_none() {
+            if found.is_none() {
                 let asked = (self.column.wanted.as_deref(), self.column.asked.column);
                 let own = place(text, asked.0, asked.1);
-                let named = self.header.as_deref().filter(|_| own.is_err());
+                let named = header.as_deref().filter(|_| own.is_err());
                 let named = named.and_then(|header| place(header, asked.0, asked.1).ok());
                 let delimiter = Delimiter::of(text);
                 let columns = delimiter.names(text).len();
                 let (place, is_header) =
                     match named.filter(|(place, is_header)| *is_header && place.columns == columns) {
                         Some((place, _)) => (Place { delimiter, ..place }, false),
-                        None => own.map_err(|(rule, remedy)| self.text.refused(rule).with_remedy(&remedy))?,
+                        None => own.map_err(|(rule, remedy)| lines.refused(rule).with_remedy(&remedy))?,
                     };
-                self.place = Some(place);
+                *found = Some(place);
                 if is_header {
                     continue;
                 }
             }
-            let Some(place) = &self.place else { continue };
+            let Some(place) = found else { continue };
             self.is_empty = false;
-            return place.time(&self.text, self.column.epoch.as_ref()).map(Some);
+            return place.time(lines, self.column.epoch.as_ref()).map(Some);
         }
     }
 }
@@ -241,7 +289,7 @@ mod tests {
         let scratch = tempfile::tempdir().unwrap();
         let path = scratch.path().join("epochs.txt");
         std::fs::write(&path, text).unwrap();
-        let column = Column {
+        let column = TimesColumn {
             source: Source::File(path),
             wanted: wanted.map(String::from),
             epoch: epoch.map(|date| date.parse().unwrap()),

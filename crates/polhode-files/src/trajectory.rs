@@ -7,13 +7,13 @@ use polhode::audit::{Attitudes, Convention, Digits, Direction, Frame, Quaternion
 use polhode::units::AngleUnit;
 
 use crate::error::{Error, Rule, TableError};
-use crate::table::{Columns, Group, Quantity, Reading, Table, digits};
+use crate::table::{Columns, Group, Quantity, ReadOptions, Table, digits};
 use crate::text::visible;
 
 /// What a file holds.
 #[derive(Debug)]
 #[non_exhaustive]
-pub struct Found {
+pub struct FoundTrajectory {
     /// Trajectories with the name of their body, where there are several.
     pub bodies: Vec<(Option<String>, Trajectory)>,
     /// What names and layout claim of the convention.
@@ -28,14 +28,14 @@ pub struct Found {
 ///
 /// Rows hold a time and an attitude (quaternion, matrix, Euler angles, modified Rodrigues parameters), an angular velocity or
 /// an angular momentum, in columns of any common names; several bodies by a column `id`, by the `qpos` and `qvel` of MuJoCo, or
-/// in a dump of LAMMPS. Times are in s; other numbers are as they stand, with what their names [claim](Found::claims).
+/// in a dump of LAMMPS. Times are in s; other numbers are as they stand, with what their names [claim](FoundTrajectory::claims).
 ///
 /// ```
 /// use polhode::audit::QuaternionOrder;
-/// use polhode_files::{Reading, trajectory};
+/// use polhode_files::{ReadOptions, trajectory};
 /// let file = std::env::temp_dir().join(format!("polhode-run-{}.csv", std::process::id()));
 /// std::fs::write(&file, "time (ms),qw,qx,qy,qz\n0,1,0,0,0\n10,0.8,0,0,0.6\n")?;
-/// let found = trajectory::read(&file, &Reading::default())?;
+/// let found = trajectory::read(&file, &ReadOptions::default())?;
 /// assert_eq!(found.bodies[0].1.times, [0.0, 0.01]);
 /// assert_eq!(found.claims.quaternion, Some(QuaternionOrder::ScalarFirst));
 /// # std::fs::remove_file(file)?;
@@ -44,11 +44,11 @@ pub struct Found {
 ///
 /// # Errors
 /// A file without the columns of a trajectory, and rows that cannot be read, by line and column.
-pub fn read(path: &Path, reading: &Reading) -> Result<Found, Error> {
+pub fn read(path: &Path, reading: &ReadOptions) -> Result<FoundTrajectory, Error> {
     Ok(found(Table::open(path, reading)?)?)
 }
 
-fn found(mut table: Table) -> Result<Found, TableError> {
+fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
     let claims = claims(&table)?;
     let mut rows = Bodies::default();
     while table.next()? {
@@ -60,7 +60,7 @@ fn found(mut table: Table) -> Result<Found, TableError> {
     let several = rows.bodies.len() > 1;
     let bodies =
         rows.bodies.into_iter().map(|body| (body.name.clone().filter(|_| several), body.trajectory()));
-    Ok(Found {
+    Ok(FoundTrajectory {
         bodies: bodies.collect(),
         claims,
         counts_steps: table.counts_steps(),

@@ -4,12 +4,12 @@
 
 use polhode::units::{RateUnit, TimeUnit};
 use polhode_files::ColumnNames;
-use polhode_files::record::{self, Reading};
+use polhode_files::record::{self, ReadOptions};
 
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
 
 /// Times and rates of the only segment.
-fn read(text: &str, reading: Reading) -> (Vec<f64>, Vec<[f64; 3]>) {
+fn read(text: &str, reading: ReadOptions) -> (Vec<f64>, Vec<[f64; 3]>) {
     let record = record::read(text, "log", &reading).unwrap_or_else(|error| panic!("{error}\n{text}")).record;
     assert_eq!(record.segments.len(), 1, "{text}");
     let segment = &record.segments[0];
@@ -18,7 +18,7 @@ fn read(text: &str, reading: Reading) -> (Vec<f64>, Vec<[f64; 3]>) {
 
 /// Reads the sample `text`; its rows are 10 ms apart, and its rates are in `unit` rad/s.
 fn check(name: &str, text: &str, unit: f64) {
-    let (times, rates) = read(text, Reading::default());
+    let (times, rates) = read(text, ReadOptions::default());
     assert_eq!(times.len(), 2, "{name}");
     assert!((times[1] - times[0] - 0.01).abs() < 1e-9, "{name}: {times:?}");
     for (found, expected) in rates.concat().into_iter().zip([0.5, -1.0, 2.0, 0.25, 1.0, -2.0]) {
@@ -205,7 +205,7 @@ fn times_of_the_clock_and_no_header() {
         ("s since 1970", ["1727600000.25", "1727600000.26"]),
     ] {
         let text = format!("timestamp,wx,wy,wz\n{},0.5,-1,2\n{},0.25,1,-2\n", times[0], times[1]);
-        let (found, _) = read(&text, Reading::default());
+        let (found, _) = read(&text, ReadOptions::default());
         assert!((found[1] - found[0] - 0.01).abs() < 3e-7, "{name}: {found:?}");
     }
     check("no header", "0.01,0.5,-1,2\n0.02,0.25,1,-2\n", 1.0);
@@ -218,7 +218,7 @@ fn times_of_the_clock_and_no_header() {
 fn columns_are_named_or_numbered() {
     let of = |[t, x, y, z]: [&str; 4]| {
         let columns = ColumnNames::parse(&format!("t={t},x={x},y={y},z={z}")).unwrap();
-        Reading { columns, ..Reading::default() }
+        ReadOptions::default().with_columns(columns)
     };
     let expected = (vec![0.0, 0.5], vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     let text = "note,A,B,C,D\nr1,3,2,1,0\nr2,6,5,4,0.5\n";
@@ -234,11 +234,9 @@ fn columns_are_named_or_numbered() {
         "{message}"
     );
     assert!(refused("1,2,3,4\n", ["1", "2", "3", "5"]).contains("no column for "));
-    let units = Reading {
-        time_unit: Some(TimeUnit::Multiple(0.005)),
-        rate_unit: Some(RateUnit::DegreesPerSecond),
-        ..of(["1", "2", "3", "4"])
-    };
+    let units = of(["1", "2", "3", "4"])
+        .with_time_unit(TimeUnit::Multiple(0.005))
+        .with_rate_unit(RateUnit::DegreesPerSecond);
     let (times, rates) = read("0,90,0,0\n2,90,0,0\n", units);
     assert_eq!((times[1], rates[1][0]), (0.01, 90.0 * DEGREE));
 }
@@ -253,27 +251,27 @@ fn bad_rows_are_left_out_up_to_a_share_and_counted() {
         "t,wx,wy,wz\n".to_string() + &(0..rows).map(line).collect::<String>()
     };
     for bad in ["0.5,,1,2", "0.5,nan,1,2", "0.5,1", "0.1,1,2,3", "0.5,1,2,3,4,5", "0.5,x,1,2", ""] {
-        let found = record::read(&log(&[(50, bad)], 100), "log", &Reading::default()).unwrap();
+        let found = record::read(&log(&[(50, bad)], 100), "log", &ReadOptions::default()).unwrap();
         let skipped = &found.skipped;
         assert_eq!((found.record.samples(), skipped.len()), (99, usize::from(!bad.is_empty())), "{bad}");
         assert!(skipped.iter().all(|error| error.to_string().starts_with("log, line 52")), "{skipped:?}");
     }
     // two rows that have changed places cost one
     let swapped =
-        record::read(&log(&[(50, "0.51,1,2,3"), (51, "0.5,1,2,3")], 100), "log", &Reading::default());
+        record::read(&log(&[(50, "0.51,1,2,3"), (51, "0.5,1,2,3")], 100), "log", &ReadOptions::default());
     assert_eq!(swapped.unwrap().skipped.len(), 1);
     // three of a hundred are too many, unless more are allowed
     let three = log(&[(50, "a,,,"), (60, ",,,"), (70, "0.7,1,2,")], 100);
-    let error = record::read(&three, "log", &Reading::default()).unwrap_err().to_string();
+    let error = record::read(&three, "log", &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.starts_with("log, line 52, column 1 (t): 'a'"), "{error}");
-    let allowed = Reading { most_skipped: Some(0.05), ..Reading::default() };
+    let allowed = ReadOptions::default().with_most_skipped(0.05);
     assert_eq!(record::read(&three, "log", &allowed).unwrap().skipped.len(), 3);
-    let none = Reading { most_skipped: Some(0.0), ..Reading::default() };
+    let none = ReadOptions::default().with_most_skipped(0.0);
     assert!(record::read(&log(&[(50, "")], 100), "log", &none).is_ok());
     assert!(record::read(&log(&[(50, "x,1,2,3")], 100), "log", &none).is_err());
     // the file ends in the middle of a row
     let torn = log(&[], 60) + "0.6,0.5,-";
-    let found = record::read(&torn, "log", &Reading::default()).unwrap();
+    let found = record::read(&torn, "log", &ReadOptions::default()).unwrap();
     assert_eq!((found.record.samples(), found.skipped.len()), (60, 1));
     let says = "log, line 62: the file ends in the middle of this row";
     assert!(found.skipped[0].to_string().starts_with(says), "{}", found.skipped[0]);
@@ -326,16 +324,16 @@ fn loggers_of_the_second_review() {
 #[test]
 fn a_counter_needs_the_rate_of_its_samples() {
     let text = "Packet number,Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s)\n7,0.5,-1,2\n8,0.25,1,-2\n";
-    let refused = record::read(text, "log", &Reading::default()).unwrap_err().to_string();
+    let refused = record::read(text, "log", &ReadOptions::default()).unwrap_err().to_string();
     assert!(refused.starts_with("log, line 1, column 1 (Packet number): counts samples"), "{refused}");
     assert!(refused.contains("--sample-rate HZ"), "{refused}");
-    let rated = Reading { sample_rate: Some(100.0), ..Reading::default() };
+    let rated = ReadOptions::default().with_sample_rate(100.0);
     let found = record::read(text, "log", &rated).unwrap().record;
     assert!((found.segments[0].times()[1] - found.segments[0].times()[0] - 0.01).abs() < 1e-15);
     // rows without a time are counted
     let bare = "gx,gy,gz\n0.5,-1,2\n0.25,1,-2\n";
     assert_eq!(record::read(bare, "log", &rated).unwrap().record.segments[0].times(), [0.0, 0.01]);
-    assert!(record::read(bare, "log", &Reading::default()).is_err());
+    assert!(record::read(bare, "log", &ReadOptions::default()).is_err());
     // a time is not counted
     let timed = record::read("t,gx,gy,gz\n0,1,2,3\n", "log", &rated).unwrap_err().to_string();
     assert!(timed.contains("drop --sample-rate"), "{timed}");

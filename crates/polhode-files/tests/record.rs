@@ -5,10 +5,10 @@ use nalgebra::Vector3;
 use polhode::record::{Record, RecordError, Segment};
 use polhode::units::{RateUnit, TimeUnit};
 use polhode_files::Error;
-use polhode_files::record::{self, Reading};
+use polhode_files::record::{self, ReadOptions};
 
 fn read(text: &str) -> Result<Record, Error> {
-    record::read(text, "a.csv", &Reading::default()).map(|found| found.record)
+    record::read(text, "a.csv", &ReadOptions::default()).map(|found| found.record)
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn broken_rows_are_named_by_line_and_column() {
         let message = read(text).unwrap_err().to_string();
         assert!(message.starts_with(expected), "{message}");
     }
-    let setting = Reading { rate_unit: Some(RateUnit::DegreesPerSecond), ..Reading::default() };
+    let setting = ReadOptions::default().with_rate_unit(RateUnit::DegreesPerSecond);
     let clash = record::read("t,wx (rad/s),wy,wz\n1,1,2,3\n", "a.csv", &setting).unwrap_err().to_string();
     assert!(clash.contains("says rad/s") && clash.contains("says deg/s"), "{clash}");
 }
@@ -132,10 +132,7 @@ fn overlapping_windows_are_one_and_units_end_names() {
     let twice = record.windows(&[(0.3, 0.6), (0.0, 0.4), (0.6, 0.9), (0.0, 0.4)]).unwrap();
     assert_eq!((twice.segments.len(), twice.samples()), (2, 61 + 31));
     assert_eq!(read(&text.replace("time_ms", "timestampNs")).unwrap().segments[0].times()[99], 990e-9);
-    assert!(
-        record::read(&text, "a", &Reading { time_unit: Some(TimeUnit::Seconds), ..Reading::default() })
-            .is_err()
-    );
+    assert!(record::read(&text, "a", &ReadOptions::default().with_time_unit(TimeUnit::Seconds)).is_err());
 }
 
 fn only(text: &str) -> (Vec<f64>, Vec<[f64; 3]>) {
@@ -211,7 +208,7 @@ fn a_time_with_a_unit_wins_over_a_bare_one() {
     }
     // the unit of the name is not overruled
     for name in ["seconds_elapsed", "time_s"] {
-        let setting = Reading { time_unit: Some(TimeUnit::Nanoseconds), ..Reading::default() };
+        let setting = ReadOptions::default().with_time_unit(TimeUnit::Nanoseconds);
         let text = format!("time,{name},z,y,x\n1,0.25,3,2,1\n");
         let clash = record::read(&text, "a.csv", &setting).unwrap_err().to_string();
         assert!(clash.contains(&format!("({name}): the header says s, the flag says ns")), "{clash}");
@@ -326,4 +323,18 @@ fn a_flat_top_next_to_an_end_of_the_record_needs_no_fall_there() {
     }
     assert_eq!(saturated(&near, &falls), 0);
     assert_eq!(saturated(&falls, &near), 0);
+}
+
+#[test]
+fn rows_of_several_bodies_are_no_record_and_a_counter_is_no_body() {
+    let told = |ids: [u32; 6]| {
+        let row = |(k, id): (usize, u32)| format!("{},{id},{k},2,3\n", 0.1 * (k / 2) as f64);
+        let text = "t,id,wx,wy,wz\n".to_string() + &ids.into_iter().enumerate().map(row).collect::<String>();
+        record::read(&text, "a", &ReadOptions::default())
+            .map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    let bodies = told([7, 8, 7, 8, 7, 8]);
+    let rule = "a, line 5, column 2 (id): '8': of another body than the row before, '7', at the same time";
+    assert_eq!(bodies, format!("{rule}; name a file of one body"));
+    assert!(!told([1, 2, 3, 4, 5, 6]).contains("another body"));
 }

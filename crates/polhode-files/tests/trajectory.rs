@@ -2,14 +2,14 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use polhode::audit::{Attitudes, Direction, Frame, QuaternionOrder};
-use polhode_files::trajectory::{Found, read};
-use polhode_files::{ColumnNames, Reading};
+use polhode_files::trajectory::{FoundTrajectory, read};
+use polhode_files::{ColumnNames, ReadOptions};
 
-fn found(text: &str, columns: &str) -> Result<Found, String> {
+fn found(text: &str, columns: &str) -> Result<FoundTrajectory, String> {
     let scratch = tempfile::tempdir().unwrap();
     let path = scratch.path().join("run.csv");
     std::fs::write(&path, text).unwrap();
-    let mut reading = Reading::default();
+    let mut reading = ReadOptions::default();
     if !columns.is_empty() {
         reading.columns = ColumnNames::parse(columns).unwrap();
     }
@@ -18,7 +18,7 @@ fn found(text: &str, columns: &str) -> Result<Found, String> {
     })
 }
 
-fn quaternions(found: &Found, body: usize) -> &[[f64; 4]] {
+fn quaternions(found: &FoundTrajectory, body: usize) -> &[[f64; 4]] {
     match &found.bodies[body].1.attitude {
         Some(Attitudes::Quaternions(rows)) => rows,
         other => panic!("{other:?}"),

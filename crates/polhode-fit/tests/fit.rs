@@ -6,7 +6,7 @@ mod measured;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
-use polhode_files::record::{self, Reading};
+use polhode_files::record::{self, ReadOptions};
 use polhode_fit::{Constraint, Estimate, FitError, Known, Record, Settings, fit, foreseen_bound, simulate};
 
 use measured::{ENTRIES, distance, entries, example, random_rotation, record, sampled, times, turned};
@@ -244,7 +244,7 @@ fn irregular_times_and_several_segments_share_one_tensor() {
 #[test]
 fn a_record_made_elsewhere_gives_the_tensor_it_was_made_of() {
     let text = include_str!("data/fit/asymmetric.csv");
-    let record = record::read(text, "asymmetric.csv", &Reading::default()).unwrap().record;
+    let record = record::read(text, "asymmetric.csv", &ReadOptions::default()).unwrap().record;
     let estimate = fit(&record, &Settings::default()).unwrap();
     let j = Matrix3::new(0.25, -0.03, 0.02, -0.03, 0.35, 0.05, 0.02, 0.05, 0.4);
     let e = entries(&(estimate.shape.tensor() - j));

@@ -6,7 +6,7 @@ mod measured;
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
-use polhode_files::record::{self, Reading};
+use polhode_files::record::{self, ReadOptions};
 use polhode_fit::{
     Constraint, Disturbances, FitError, Gyroscope, Limit, Record, Settings, Undetermined, fit, simulate,
     simulate_with,
@@ -169,7 +169,7 @@ fn units_mistaken_by_57_are_named() {
         ("(deg/s)", 1.0, "radians per second taken for degrees per second"),
         ("", 30.0 / std::f64::consts::PI, "revolutions per minute taken for radians per second"),
     ] {
-        let record = record::read(&text(unit, factor), "toss.csv", &Reading::default()).unwrap().record;
+        let record = record::read(&text(unit, factor), "toss.csv", &ReadOptions::default()).unwrap().record;
         let FitError::Units { mistakes, .. } = refusal(&record) else { panic!("{hint}") };
         assert_eq!(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>(), [hint]);
         let unchecked = Settings::default().with_check_units(false);
@@ -177,7 +177,7 @@ fn units_mistaken_by_57_are_named() {
             assert!(!estimate.warnings.is_empty());
         }
     }
-    let right = record::read(&text("(deg/s)", degrees), "toss.csv", &Reading::default()).unwrap().record;
+    let right = record::read(&text("(deg/s)", degrees), "toss.csv", &ReadOptions::default()).unwrap().record;
     assert!(fit(&right, &Settings::default()).unwrap().warnings.is_empty());
 }
 

@@ -6,7 +6,7 @@ mod measured;
 use nalgebra::Vector3;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
-use polhode_files::record::{self, Reading};
+use polhode_files::record::{self, ReadOptions};
 use polhode_fit::{
     Disturbances, FitError, Gyroscope, Record, Segment, SensorPriors, Settings, TorqueModel, calibrate_wheel,
     fit, simulate_with,
@@ -108,7 +108,7 @@ fn a_named_unit_beside_a_guessed_one_is_refused() {
         for i in 0..100 {
             text += &format!("{},{},{},2\n", 0.01 * f64::from(i), i % 7, i % 5);
         }
-        record::read(&text, name, &Reading::default()).unwrap().record
+        record::read(&text, name, &ReadOptions::default()).unwrap().record
     };
     let mixed = read(" (deg/s)", "a.csv").join(read("", "b.csv"));
     let text = fit(&mixed, &Settings::default()).unwrap_err().to_string();

@@ -35,7 +35,7 @@ impl Form {
     }
 
     /// The text of the document.
-    pub fn write(self, title: &str, parts: &[Part]) -> String {
+    pub fn write(self, title: &str, parts: &[Block]) -> String {
         match self {
             Self::Html => html(title, parts),
             Self::Markdown => markdown(title, parts),
@@ -44,7 +44,7 @@ impl Form {
 }
 
 /// A part.
-pub enum Part {
+pub enum Block {
     /// Of a chapter.
     Heading(String),
     /// Plain text.
@@ -64,7 +64,7 @@ td:first-child,th:first-child{text-align:left}td{font-variant-numeric:tabular-nu
 figure{margin:1rem 0}figure svg{max-width:100%;height:auto}figcaption{font-size:.9rem;color:#444}\
 .warning{border-left:4px solid #d55e00;padding-left:.8rem}";
 
-fn html(title: &str, parts: &[Part]) -> String {
+fn html(title: &str, parts: &[Block]) -> String {
     let title = escaped(title);
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -73,13 +73,13 @@ fn html(title: &str, parts: &[Part]) -> String {
     );
     for part in parts {
         let _ = match part {
-            Part::Heading(heading) => writeln!(text, "<h2>{}</h2>", escaped(heading)),
-            Part::Paragraph(words) => writeln!(text, "<p>{}</p>", escaped(words)),
-            Part::List(items) => {
+            Block::Heading(heading) => writeln!(text, "<h2>{}</h2>", escaped(heading)),
+            Block::Paragraph(words) => writeln!(text, "<p>{}</p>", escaped(words)),
+            Block::List(items) => {
                 let items: String = items.iter().map(|i| format!("<li>{}</li>\n", escaped(i))).collect();
                 writeln!(text, "<ul class=\"warning\">\n{items}</ul>")
             }
-            Part::Table(head, rows) => {
+            Block::Table(head, rows) => {
                 let row = |cells: &[String], tag: &str| {
                     let cells: String =
                         cells.iter().map(|c| format!("<{tag}>{}</{tag}>", escaped(c))).collect();
@@ -92,7 +92,7 @@ fn html(title: &str, parts: &[Part]) -> String {
                     row(head, "th")
                 )
             }
-            Part::Figure(svg, caption) => writeln!(
+            Block::Figure(svg, caption) => writeln!(
                 text,
                 "<figure role=\"img\" aria-label=\"{0}\">\n{svg}\n<figcaption>{0}</figcaption>\n</figure>",
                 escaped(caption)
@@ -103,17 +103,17 @@ fn html(title: &str, parts: &[Part]) -> String {
 }
 
 /// Drawings stand in it as SVG, which Markdown passes on.
-fn markdown(title: &str, parts: &[Part]) -> String {
+fn markdown(title: &str, parts: &[Block]) -> String {
     let mut text = format!("# {title}\n");
     for part in parts {
         let _ = match part {
-            Part::Heading(heading) => writeln!(text, "\n## {heading}"),
-            Part::Paragraph(words) => writeln!(text, "\n{words}"),
-            Part::List(items) => {
+            Block::Heading(heading) => writeln!(text, "\n## {heading}"),
+            Block::Paragraph(words) => writeln!(text, "\n{words}"),
+            Block::List(items) => {
                 let items: String = items.iter().map(|item| format!("- {item}\n")).collect();
                 write!(text, "\n{items}")
             }
-            Part::Table(head, rows) => {
+            Block::Table(head, rows) => {
                 let row = |cells: &[String]| {
                     let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
                     format!("| {} |\n", cells.join(" | "))
@@ -123,7 +123,7 @@ fn markdown(title: &str, parts: &[Part]) -> String {
                 let rows: String = rows.iter().map(|cells| row(cells)).collect();
                 write!(text, "\n{}{}{rows}", row(head), row(&rule))
             }
-            Part::Figure(svg, caption) => {
+            Block::Figure(svg, caption) => {
                 let lines: String = svg.lines().filter(|line| !line.trim().is_empty()).collect();
                 writeln!(text, "\n<figure>{lines}</figure>\n\n{caption}")
             }
@@ -139,11 +139,11 @@ mod tests {
     #[test]
     fn both_forms_hold_every_part_and_no_text_is_markup() {
         let parts = [
-            Part::Heading("a < b".into()),
-            Part::Paragraph("c & d".into()),
-            Part::List(vec!["\"e\"".into()]),
-            Part::Table(vec!["name".into(), "x|y".into()], vec![vec!["f".into(), "1".into()]]),
-            Part::Figure("<svg>\n\n</svg>".into(), "g".into()),
+            Block::Heading("a < b".into()),
+            Block::Paragraph("c & d".into()),
+            Block::List(vec!["\"e\"".into()]),
+            Block::Table(vec!["name".into(), "x|y".into()], vec![vec!["f".into(), "1".into()]]),
+            Block::Figure("<svg>\n\n</svg>".into(), "g".into()),
         ];
         let page = html("t", &parts);
         for piece in ["<h2>a &lt; b</h2>", "c &amp; d", "&quot;e&quot;", "<td>f</td><td>1</td>", "<svg>"] {

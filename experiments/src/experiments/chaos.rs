@@ -13,7 +13,7 @@ use polhode::num::{Dd, Precise};
 use polhode::rotation::{Quat, Vec3};
 use polhode::truth::{AGREEMENT, Care, Ending, Truth, evenly};
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::{Figure, Scale, Series, sheet};
+use polhode_pages::figure::{Curve, Figure, Scale, sheet};
 use polhode_pages::table::{Cell, Column, Table, row};
 
 use crate::experiment::{Context, Report};
@@ -114,7 +114,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                 let drawn = figure.series.iter_mut().find(|series| series.name == name);
                 match drawn {
                     Some(series) => series.points.insert(0, (h, value)),
-                    None => figure.series.push(Series::new(name, vec![(h, value)])),
+                    None => figure.series.push(Curve::new(name, vec![(h, value)])),
                 }
             }
             table.push(row.cells(orbit.name, name, h));

@@ -8,7 +8,7 @@ use polhode::rotation::Vec3;
 use polhode::run::{Run, RunError, Sample, Schedule, Watch};
 use polhode::truth::Ending;
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::{Figure, Scale, Series, sheet, ten_to};
+use polhode_pages::figure::{Curve, Figure, Scale, sheet, ten_to};
 use polhode_pages::table::{Column, Table, row};
 
 use super::followed::status;
@@ -74,7 +74,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         for (k, panel) in panels.iter_mut().enumerate() {
             let furthest = |(low, high): (f64, f64)| if high.abs() >= low.abs() { high } else { low };
             let points = intervals.iter().map(|i| (i.time, furthest(i.range[k]))).collect();
-            panel.series.push(Series::new(label(name, order), points));
+            panel.series.push(Curve::new(label(name, order), points));
         }
         for (n, interval) in intervals.iter().enumerate() {
             let [energy, norm, direction] = interval.range;

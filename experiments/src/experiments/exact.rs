@@ -12,7 +12,7 @@ use polhode::num::{Dd, Precise, Random};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode::truth::LOST;
 use polhode_files::error::Error;
-use polhode_pages::figure::{Figure, Series};
+use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
@@ -164,7 +164,7 @@ fn fixtures(report: &mut Report) -> Result<(), Error> {
     );
     let curve = |name: &str, error: fn(&Worst) -> Option<f64>| {
         let point = |(power, worst): (&i32, &Worst)| Some((libm::exp10(f64::from(*power)), error(worst)?));
-        Series::new(name, by_time.iter().filter_map(point).collect())
+        Curve::new(name, by_time.iter().filter_map(point).collect())
     };
     figure.series =
         vec![curve("double-double", |worst| Some(worst.attitude)), curve("f64 only", Worst::held_plain)];

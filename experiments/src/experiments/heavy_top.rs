@@ -21,7 +21,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut parts = Vec::new();
     for top in catalogue::tops() {
         for angle in [0.1, 0.025] {
-            for method in catalogue().into_iter().filter(|method| method.claims(Problem::Gravity).is_some()) {
+            for method in catalogue().into_iter().filter(|method| method.claims(Problem::Linear).is_some()) {
                 parts.push((top.clone(), step_size(&top, angle)?, method));
             }
         }
@@ -134,7 +134,7 @@ fn measure(top: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Resul
     let exchanged = exact.as_ref().map(|exact| exchanged_energy(&body, exact, last.elapsed.hi()));
     let over_exchanged =
         of_whole(last.worst.energy).zip(exchanged).map(|(energy, exchanged)| energy * scale / exchanged);
-    let [evaluations, rejected] = effort(&run, method, Problem::Gravity, last.steps);
+    let [evaluations, rejected] = effort(&run, method, Problem::Linear, last.steps);
     Ok(row![
         top.name,
         method.name(),

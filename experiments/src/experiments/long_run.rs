@@ -9,7 +9,7 @@ use polhode::method::method;
 use polhode::run::{Run, Schedule};
 use polhode::truth::{Ending, LOST, attitude_error};
 use polhode_files::error::Error;
-use polhode_pages::figure::{Figure, Series, ten_to};
+use polhode_pages::figure::{Curve, Figure, ten_to};
 use polhode_pages::table::{Cell, Column, Table, row};
 
 use super::followed::status;
@@ -100,7 +100,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                 Some((Cell::Integer(n), Cell::Number(x))) => Some((n as f64, x)),
                 _ => None,
             };
-            Series::new(name, rows.iter().filter_map(point).collect())
+            Curve::new(name, rows.iter().filter_map(point).collect())
         };
         energy.series.push(curve("energy_error"));
         attitude.series.push(curve("attitude_error"));

@@ -1,5 +1,6 @@
 //! The experiments, one file each, and what two of them share.
 
+mod advice;
 mod audit;
 mod chaos;
 mod conservation;
@@ -119,5 +120,10 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "audit",
         question: "whether an audit finds the convention of a trajectory, its mistakes, and whether it is right",
         run: audit::run,
+    },
+    Experiment {
+        name: "advice",
+        question: "whether the method and step that are advised keep the error that is stated, under every kind of force",
+        run: advice::run,
     },
 ];

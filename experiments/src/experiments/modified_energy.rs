@@ -16,7 +16,7 @@ use polhode::method::{AxisOrder, Step, TwoAxes, method};
 use polhode::num::{Dd, Real};
 use polhode::rotation::{Quat, Vec3};
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::{Figure, Scale, Series};
+use polhode_pages::figure::{Curve, Figure, Scale};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
@@ -63,8 +63,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     for (name, rows) in SPLITTINGS.iter().zip(swings) {
         let rows = rows?;
         let points = |pick: fn(&Swing) -> f64| rows.iter().rev().map(|row| (row.h, pick(row))).collect();
-        swing.series.push(Series::new(format!("{name}: H"), points(|row| row.energy)));
-        swing.series.push(Series::new(format!("{name}: H + h²H₃"), points(|row| row.modified)));
+        swing.series.push(Curve::new(format!("{name}: H"), points(|row| row.energy)));
+        swing.series.push(Curve::new(format!("{name}: H + h²H₃"), points(|row| row.modified)));
         for (k, now) in rows.iter().enumerate() {
             let order = |pick: fn(&Swing) -> f64| {
                 k.checked_sub(1).map(|before| libm::log2(pick(&rows[before]) / pick(now)))
@@ -101,7 +101,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     for (name, rows) in named.zip(rests) {
         let rows = rows?;
         failures.extend(failure(name, &rows));
-        fall.series.push(Series::new(name, rows.iter().map(|(h, rest)| (1.0 / h, *rest)).collect()));
+        fall.series.push(Curve::new(name, rows.iter().map(|(h, rest)| (1.0 / h, *rest)).collect()));
         for (k, &(h, size)) in rows.iter().enumerate() {
             let slope = k.checked_sub(1).and_then(|before| slope(rows[before], (h, size)));
             rest.push(row![name, h, 1.0 / h, size, slope]);

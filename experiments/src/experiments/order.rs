@@ -5,7 +5,7 @@ use polhode::catalogue;
 use polhode::method::{AnyMethod, without_projections};
 use polhode::run::{Halving, halvings};
 use polhode_files::error::Error;
-use polhode_pages::figure::{Figure, Series};
+use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Column, Table, row};
 
 use super::followed::claimed_evaluations;
@@ -97,7 +97,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         orders.push(row![method.name(), order(&method).map(u64::from), last.0, last.1]);
         let claimed = order(&method).map_or(String::new(), |order| format!(" ({order})"));
         let points = halved.iter().map(|e| (e.h, e.attitude_error)).collect();
-        figure.series.push(Series::new(method.name() + &claimed, points));
+        figure.series.push(Curve::new(method.name() + &claimed, points));
     }
     // a fan of slopes in the corner that no curve reaches
     let widest = figure.series.iter().flat_map(|s| s.points.iter().map(|p| p.0)).fold(0.0, f64::max);

@@ -18,7 +18,7 @@ use polhode::num::{Dd, Random, Real};
 use polhode::rotation::{Quat, Vec3};
 use polhode::run::{Run, RunError};
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::{Figure, Series, ten_to};
+use polhode_pages::figure::{Curve, Figure, ten_to};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
@@ -132,7 +132,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         rows.sort_by_key(|row| row.2);
         let points = rows.iter().map(|row| (ten(row.2), row.4)).collect();
         let bars = rows.iter().map(|row| (row.3, row.5)).collect();
-        figure.series.push(Series::new(format!("{name}, 1/{} s", 1.0 / h), points).with_spread(bars));
+        figure.series.push(Curve::new(format!("{name}, 1/{} s", 1.0 / h), points).with_spread(bars));
     }
     Ok(Report {
         tables: vec![table],

@@ -8,7 +8,7 @@ use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
 use polhode::truth::{AGREEMENT, Care, Truth, evenly};
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::{Figure, Series};
+use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Cell, Column, Table, row};
 
 use crate::experiment::{Context, Report};
@@ -113,7 +113,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             table.push(row.cells(subject.name));
         }
         all.extend(points.iter().map(|point| point.0));
-        figure.series.push(Series::new(subject.name, points));
+        figure.series.push(Curve::new(subject.name, points));
     }
     let ends = [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(0.0, f64::max)];
     if ends[0] < ends[1] {

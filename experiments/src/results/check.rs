@@ -1,5 +1,7 @@
 //! `polhode experiment check`: the committed numbers are those that the program finds.
 
+use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use polhode_files::error::Error;
@@ -7,6 +9,7 @@ use polhode_files::read_own;
 use polhode_pages::output::emit;
 use polhode_pages::table::Table;
 
+use super::run::{finished, write as write_run};
 use super::{RESULTS, chosen};
 use crate::experiment::{Experiment, Report, Scale};
 
@@ -59,11 +62,7 @@ pub(super) fn run(names: &[String], scale: Committed, root: &Path, accept: bool)
         let rule = "the tables of README.md and paper/generated have to follow these numbers";
         return Err(Error::input("--accept with --scale", "paper", rule, remedy));
     }
-    if !root.join(scale.folder()).is_dir() {
-        let value = root.display().to_string();
-        let rule = format!("holds no {}", scale.folder());
-        return Err(Error::input("--root", &value, &rule, "name the project's root"));
-    }
+    check_root(root, scale)?;
     let mut differences = Vec::new();
     for experiment in chosen("experiment check", names)? {
         let report = experiment.report(scale.scale())?;
@@ -74,6 +73,82 @@ pub(super) fn run(names: &[String], scale: Committed, root: &Path, accept: bool)
             differences.extend(compare(root, scale, experiment, &report)?);
         }
     }
+    told(differences, if accept { None } else { Some(scale.remedy()) })
+}
+
+/// The same with runs of paper scale that are kept in `folder`.
+pub(super) fn resumed(names: &[String], scale: Committed, root: &Path, folder: &Path) -> Result<(), Error> {
+    if scale != Committed::Paper {
+        let value = folder.display().to_string();
+        let rule = "runs of smoke scale take seconds and are not kept";
+        return Err(Error::input("--resume", &value, rule, "leave it out, or add --scale paper"));
+    }
+    check_root(root, scale)?;
+    let mut differences = Vec::new();
+    for experiment in chosen("experiment check", names)? {
+        let place = folder.join(scale.scale().to_string()).join(experiment.name);
+        let failures = match finished(experiment, scale.scale(), &place) {
+            Some(finished) => {
+                differences.extend(compare_files(root, experiment, &place, &finished.timing)?);
+                finished.failures
+            }
+            None => {
+                let report = experiment.report(scale.scale())?;
+                write_run(experiment, scale.scale(), &report, &place)?;
+                differences.extend(compare(root, scale, experiment, &report)?);
+                report.failures
+            }
+        };
+        differences.extend(failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));
+    }
+    told(differences, Some(scale.remedy()))
+}
+
+fn check_root(root: &Path, scale: Committed) -> Result<(), Error> {
+    if root.join(scale.folder()).is_dir() {
+        return Ok(());
+    }
+    let value = root.display().to_string();
+    let rule = format!("holds no {}", scale.folder());
+    Err(Error::input("--root", &value, &rule, "name the project's root"))
+}
+
+/// The tables of paper scale in two folders, but for those of times.
+fn compare_files(
+    root: &Path,
+    experiment: &Experiment,
+    folder: &Path,
+    timing: &[String],
+) -> Result<Vec<String>, Error> {
+    let committed = Path::new(RESULTS).join(experiment.name);
+    let tables = |folder: &Path| -> Vec<OsString> {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
+        let names = entries.map(|entry| entry.file_name());
+        names
+            .filter(|name| is_table(Path::new(name)) && timing.iter().all(|other| name != other.as_str()))
+            .collect()
+    };
+    let names: BTreeSet<OsString> =
+        tables(folder).into_iter().chain(tables(&root.join(&committed))).collect();
+    let mut found = Vec::new();
+    for name in names {
+        let (path, run) = (committed.join(&name), folder.join(&name));
+        match (root.join(&path).is_file(), run.is_file()) {
+            (true, true) => {
+                let remedy = Committed::Paper.remedy();
+                let (old, new) = (read_own(&root.join(&path), remedy)?, read_own(&run, remedy)?);
+                let told = differences(&path, &old, &new);
+                found.extend(told.map_err(|reason| Error::Failed(format!("{reason}; {remedy}")))?);
+            }
+            (false, _) => found.push(format!("{}: is not there", path.display())),
+            (true, false) => found.push(format!("{}: no table is called so", path.display())),
+        }
+    }
+    Ok(found)
+}
+
+/// The first differences, if there are any.
+fn told(mut differences: Vec<String>, remedy: Option<&str>) -> Result<(), Error> {
     if differences.is_empty() {
         return Ok(());
     }
@@ -82,9 +157,7 @@ pub(super) fn run(names: &[String], scale: Committed, root: &Path, accept: bool)
     if more > 0 {
         differences.push(format!("and {more} more"));
     }
-    if !accept {
-        differences.push(scale.remedy().into());
-    }
+    differences.extend(remedy.map(String::from));
     Err(Error::Failed(differences.join("\n")))
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use polhode_files::error::Error;
 use polhode_files::read_own;
 use polhode_pages::output::MARK;
-use polhode_pages::table::{Part, Shown, Table};
+use polhode_pages::table::{Selection, ShownColumn, Table};
 use serde::Deserialize;
 
 use super::which::Which;
@@ -31,13 +31,13 @@ pub(super) struct Origin {
     #[serde(default)]
     tables: BTreeMap<String, Described>,
     #[serde(default)]
-    views: BTreeMap<String, Part>,
+    views: BTreeMap<String, Selection>,
 }
 
 #[derive(Deserialize)]
 struct Described {
     #[serde(default)]
-    shown: Vec<Shown>,
+    shown: Vec<ShownColumn>,
 }
 
 impl fmt::Display for Origin {

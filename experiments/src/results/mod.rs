@@ -66,6 +66,9 @@ pub enum ExperimentCommand {
         /// Write all results as one page, which needs no network: a file that ends in .html
         #[arg(long, value_name = "FILE")]
         report: Option<PathBuf>,
+        /// Leave out experiments that this program, from an unchanged commit, has finished there
+        #[arg(long, conflicts_with = "report")]
+        resume: bool,
     },
     /// Run experiments and compare every number with the committed ones
     ///
@@ -86,6 +89,9 @@ pub enum ExperimentCommand {
         /// Replace the committed numbers of smoke scale by the new ones; of paper scale, `polhode experiment publish --from` does
         #[arg(long)]
         accept: bool,
+        /// Keep the runs of paper scale in this folder, and compare those that this program, from an unchanged commit, has finished there without running them again
+        #[arg(long, value_name = "DIR", conflicts_with = "accept")]
+        resume: Option<PathBuf>,
     },
     /// Write tables of the committed results of paper scale into README.md,
     /// docs/methods.md and paper/generated
@@ -110,8 +116,13 @@ impl ExperimentCommand {
     pub fn run(self) -> Result<(), Error> {
         match self {
             Self::List { format } => list(format),
-            Self::Run { names, scale, out, report } => run::run(&names, scale, &out, report.as_deref()),
-            Self::Check { names, scale, root, accept } => check::run(&names, scale, &root, accept),
+            Self::Run { names, scale, out, report, resume } => {
+                run::run(&names, scale, &out, report.as_deref(), resume)
+            }
+            Self::Check { names, scale, root, accept, resume } => match resume {
+                Some(folder) => check::resumed(&names, scale, &root, &folder),
+                None => check::run(&names, scale, &root, accept),
+            },
             Self::Publish { root, from } => publish::run(&root, from.as_deref()),
         }
     }

@@ -1,9 +1,12 @@
 //! Where results come from: `run.toml` beside them.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
-use polhode_pages::table::{Part, Shown, Table};
-use serde::Serialize;
+use polhode_files::read_own;
+use polhode_pages::output::MARK;
+use polhode_pages::table::{Selection, ShownColumn, Table};
+use serde::{Deserialize, Serialize};
 
 use crate::build;
 use crate::experiment::{Report, Scale};
@@ -26,9 +29,15 @@ struct Provenance<'a> {
     seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
+    /// Claims that the run contradicts.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    failures: Vec<String>,
+    /// Files of times, which are this machine's.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    timing: Vec<String>,
     tables: BTreeMap<String, Columns<'a>>,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    views: BTreeMap<&'a str, &'a Part>,
+    views: BTreeMap<&'a str, &'a Selection>,
 }
 
 #[derive(Serialize)]
@@ -38,7 +47,7 @@ struct Columns<'a> {
     columns: BTreeMap<&'a str, String>,
     /// How the rows are rounded for readers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    shown: Vec<Shown>,
+    shown: Vec<ShownColumn>,
 }
 
 /// The contents of `run.toml`.
@@ -71,10 +80,46 @@ pub(super) fn describe<'a>(experiment: &'a str, scale: Scale, report: &'a Report
         cores: std::thread::available_parallelism().map_or(1, usize::from),
         seconds: (report.took.as_secs_f64() * 10.0).round() / 10.0,
         seed: report.seed,
+        failures: report.failures.clone(),
+        timing: report
+            .timing
+            .iter()
+            .chain(&report.times)
+            .map(|table| format!("{}.csv", table.name))
+            .collect(),
         tables: rounded.chain(others).collect(),
         views: views.collect(),
     };
     toml::to_string(&provenance).unwrap_or_default()
+}
+
+/// What is told of a run that this very program has finished.
+#[derive(Deserialize)]
+pub(super) struct Finished {
+    scale: String,
+    version: String,
+    commit: String,
+    changed: String,
+    profile: String,
+    target: String,
+    /// Claims that it contradicts.
+    #[serde(default)]
+    pub(super) failures: Vec<String>,
+    /// Files of times.
+    #[serde(default)]
+    pub(super) timing: Vec<String>,
+}
+
+impl Finished {
+    /// Of the results in `folder`; `None` where another commit, changed sources or another scale made them.
+    pub(super) fn of(folder: &Path, scale: Scale) -> Option<Self> {
+        let text = read_own(&folder.join(MARK), "").ok()?;
+        let found: Self = toml::from_str(&text).ok()?;
+        let is_same = found.scale == scale.to_string()
+            && (&*found.version, &*found.commit) == (env!("CARGO_PKG_VERSION"), build::COMMIT)
+            && (&*found.profile, &*found.target) == (build::PROFILE, build::TARGET);
+        (is_same && found.changed == "false" && build::CHANGED == "false").then_some(found)
+    }
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -2,15 +2,23 @@
 
 use std::path::Path;
 
-use polhode_files::error::Error;
+use polhode_files::error::{Error, tell};
 use polhode_pages::output::{MARK, Staging, emit};
 
+use super::chosen;
 use super::page::{Page, is_page};
-use super::{chosen, provenance};
+use super::provenance::{self, Finished};
 use crate::experiment::{Experiment, Report, Scale};
 
-/// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`, and the page `page` of all of them.
-pub(super) fn run(names: &[String], scale: Scale, out: &Path, page: Option<&Path>) -> Result<(), Error> {
+/// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`, and the page `page` of all of them;
+/// where it `resumes`, without those that are finished there.
+pub(super) fn run(
+    names: &[String],
+    scale: Scale,
+    out: &Path,
+    page: Option<&Path>,
+    resumes: bool,
+) -> Result<(), Error> {
     let with_folder =
         |experiment: &'static Experiment| (experiment, out.join(scale.to_string()).join(experiment.name));
     let chosen: Vec<_> = chosen("experiment run", names)?.into_iter().map(with_folder).collect();
@@ -21,6 +29,11 @@ pub(super) fn run(names: &[String], scale: Scale, out: &Path, page: Option<&Path
     }
     let mut failures = Vec::new();
     for (experiment, folder) in chosen {
+        if let Some(finished) = finished(experiment, scale, &folder).filter(|_| resumes) {
+            failures
+                .extend(finished.failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));
+            continue;
+        }
         let report = experiment.report(scale)?;
         write(experiment, scale, &report, &folder)?;
         show(experiment, &report, &folder)?;
@@ -35,6 +48,13 @@ pub(super) fn run(names: &[String], scale: Scale, out: &Path, page: Option<&Path
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.join("\n"))) }
 }
 
+/// What this very program has finished in `folder`, said on standard error.
+pub(super) fn finished(experiment: &Experiment, scale: Scale, folder: &Path) -> Option<Finished> {
+    let finished = Finished::of(folder, scale)?;
+    tell("note", &format!("{}: finished by this program in {}", experiment.name, folder.display()));
+    Some(finished)
+}
+
 /// The page, which may stand in the folder of results.
 fn opened(path: &Path, scale: Scale, out: &Path) -> Result<Page, Error> {
     is_page(path)?;
@@ -45,7 +65,13 @@ fn opened(path: &Path, scale: Scale, out: &Path) -> Result<Page, Error> {
     Page::new(path, scale)
 }
 
-fn write(experiment: &Experiment, scale: Scale, report: &Report, folder: &Path) -> Result<(), Error> {
+/// Replaces the results in `folder`.
+pub(super) fn write(
+    experiment: &Experiment,
+    scale: Scale,
+    report: &Report,
+    folder: &Path,
+) -> Result<(), Error> {
     let staging = Staging::new(folder)?;
     for table in report.tables.iter().chain(&report.data).chain(&report.timing).chain(&report.times) {
         staging.write(&format!("{}.csv", table.name), table.csv().as_bytes())?;

@@ -22,20 +22,17 @@ use crate::rotation::{Quat, Vec3};
 /// use polhode::flow::{FreeMotion, Mode, TumblingElements};
 /// use polhode::inertia::Inertia;
 /// let ratios = Inertia::from_moments([0.61, 0.965, 1.0])?; // (99942) Apophis
-/// let published = TumblingElements {
-///     mode: Mode::ShortAxis,
-///     precession_period: 27.38, // h
-///     rotation_period: 263.0,
-///     pole: [250_f64.to_radians(), (-75_f64).to_radians()],
-///     angles: [152_f64.to_radians(), 14_f64.to_radians()],
-///     is_reversed: false,
-/// };
+/// let [periods, pole, angles] = [[27.38, 263.0], [250.0, -75.0], [152.0, 14.0]]; // h, degrees
+/// let published = TumblingElements::new(Mode::ShortAxis, periods)
+///     .with_pole(pole.map(f64::to_radians))
+///     .with_angles(angles.map(f64::to_radians));
 /// let motion = FreeMotion::from_point(&ratios, published.point(&ratios)?);
 /// let found = motion.tumbling().ok_or("it tumbles")?;
 /// assert!((found.rotation_period / 263.0 - 1.0).abs() < 1e-12);
 /// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TumblingElements {
     /// [`Mode::LongAxis`] or [`Mode::ShortAxis`].
     pub mode: Mode,
@@ -121,6 +118,32 @@ fn to_pole(longitude: Dd, latitude: Dd) -> Quat<Dd> {
 }
 
 impl TumblingElements {
+    /// Of a motion with the periods `[P_φ, P_ψ]` in this mode, in one unit of time: L along z of space, both angles 0 at t = 0,
+    /// z' on the side of L.
+    #[must_use]
+    pub fn new(mode: Mode, [precession_period, rotation_period]: [f64; 2]) -> Self {
+        let (pole, angles) = ([0.0, core::f64::consts::FRAC_PI_2], [0.0; 2]);
+        TumblingElements { mode, precession_period, rotation_period, pole, angles, is_reversed: false }
+    }
+
+    /// With longitude λ and latitude β of L in space, rad.
+    #[must_use]
+    pub fn with_pole(self, pole: [f64; 2]) -> Self {
+        TumblingElements { pole, ..self }
+    }
+
+    /// With φ and ψ at t = 0, rad.
+    #[must_use]
+    pub fn with_angles(self, angles: [f64; 2]) -> Self {
+        TumblingElements { angles, ..self }
+    }
+
+    /// With z' pointing away from L, or not.
+    #[must_use]
+    pub fn with_reversed(self, is_reversed: bool) -> Self {
+        TumblingElements { is_reversed, ..self }
+    }
+
     /// The point of the solver frame at t = 0 of a body with `inertia`, of which only the ratios matter.
     ///
     /// # Errors

@@ -148,10 +148,10 @@ impl LagrangeTop {
     /// # Errors
     /// A body that is not a Lagrange top, a weight that is too weak or a start too near to rest on the vertical.
     pub fn from_point(body: &Body, start: Point<Dd>) -> Result<Self, LagrangeError> {
-        if let Some(force) = body.forces().first() {
+        if let Some(force) = body.remainder().next() {
             return Err(LagrangeError::Forced { force: force.name().into() });
         }
-        let weight_moment = body.gravity::<Dd>().ok_or(LagrangeError::Free)?.weight_moment;
+        let weight_moment = body.linear_potential::<Dd>().ok_or(LagrangeError::Free)?.moment;
         let (axis, transverse, axial) = symmetry_axis(body, weight_moment)?;
         let frame = turn_to(axis);
         let weight = weight_moment.norm_of_any_size();

@@ -21,7 +21,14 @@ pub use twin::Twin;
 const ORDINARY: f64 = 14.0;
 
 /// Known properties of the body besides its tensor. All are optional; each narrows the causes down.
+///
+/// ```
+/// use polhode::inertia::Evidence;
+/// let evidence = Evidence::default().with_mass(0.5).with_extents([0.2, 0.2, 0.1]);
+/// assert_eq!((evidence.mass, evidence.twin), (Some(0.5), None));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Evidence {
     /// Mass, kg.
     pub mass: Option<f64>,
@@ -153,7 +160,7 @@ pub struct Diagnosis {
 /// let tensor = Matrix3::from_diagonal(&Vector3::new(14.0, 14.0, 2.0));
 /// let center_of_mass = Some(Vector3::new(0.0, 0.0, 1.0));
 /// let evidence =
-///     Evidence { mass: Some(12.0), center_of_mass, extents: Some([1.0; 3]), ..Evidence::default() };
+///     Evidence::default().with_mass(12.0).with_center_of_mass(center_of_mass).with_extents([1.0; 3]);
 /// let found = diagnose(tensor, &evidence)?;
 /// assert_eq!(found.verdict, Validity::Invalid); // no such mass distribution fits into the cube
 /// assert_eq!((&found.causes[0].cause, found.causes[0].corrected[(0, 0)]), (&Cause::AboutOrigin, 2.0));
@@ -253,6 +260,30 @@ fn second_moments(spectrum: &Spectrum) -> [f64; 3] {
 }
 
 impl Evidence {
+    /// With the mass, kg; `None` where it is not known.
+    #[must_use]
+    pub fn with_mass(self, mass: impl Into<Option<f64>>) -> Self {
+        Evidence { mass: mass.into(), ..self }
+    }
+
+    /// With the centre of mass as seen from the origin of the frame, m; `None` where it is not known.
+    #[must_use]
+    pub fn with_center_of_mass(self, center_of_mass: impl Into<Option<Vector3<f64>>>) -> Self {
+        Evidence { center_of_mass: center_of_mass.into(), ..self }
+    }
+
+    /// With the edges of the box around the body along the axes of the tensor, m; `None` where they are not known.
+    #[must_use]
+    pub fn with_extents(self, extents: impl Into<Option<[f64; 3]>>) -> Self {
+        Evidence { extents: extents.into(), ..self }
+    }
+
+    /// With the body that it mirrors; `None` where there is none.
+    #[must_use]
+    pub fn with_twin(self, twin: impl Into<Option<Twin>>) -> Self {
+        Evidence { twin: twin.into(), ..self }
+    }
+
     /// The axis whose second moment most exceeds M L²/4 (Popoviciu's bound on a variance), if one does.
     fn misfit(&self, tensor: &Matrix3<f64>) -> Option<Misfit> {
         let ratios = self.fill(tensor)?;

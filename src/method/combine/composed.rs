@@ -1,8 +1,8 @@
 //! Higher order by composition: one symmetric map, taken with steps of several lengths.
 
+use super::lengths::lengths;
 use super::processor::Processor;
 use super::schemes::{Part, Scheme};
-use super::splitting::lengths;
 use crate::body::{Field, Point, Problem, Rotor, Time};
 use crate::method::{Claimed, Claims, Map, Method, SchemeError};
 use crate::num::{Dd, Real};

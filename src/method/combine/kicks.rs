@@ -45,8 +45,8 @@ impl<S: Real, F: Field<S>> KickMap<S, F> {
 impl<S: Real, F: Field<S>> Map<S> for KickMap<S, F> {
     #[inline]
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
-        let gradient = self.gradient.zip(self.kick.field().gravity()).map(|(gradient, gravity)| {
-            gravity.gradient_of_squared_torque(gradient.inverse_moments, x.attitude) * gradient.share
+        let gradient = self.gradient.zip(self.kick.field().linear_part()).map(|(gradient, linear)| {
+            linear.gradient_of_squared_torque(gradient.inverse_moments, x.attitude) * gradient.share
         });
         self.kick.flow(at, self.h, x);
         if let Some(gradient) = gradient {

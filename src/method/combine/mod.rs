@@ -2,11 +2,15 @@
 
 mod composed;
 mod kicks;
+mod lengths;
 mod processor;
+mod scheme_error;
 pub mod schemes;
 mod splitting;
+mod splitting_map;
 
 pub use composed::{Composed, Symmetric};
 pub use kicks::Kicks;
-pub(super) use splitting::lengths;
-pub use splitting::{FreePart, SchemeError, Splitting};
+pub(super) use lengths::lengths;
+pub use scheme_error::SchemeError;
+pub use splitting::{FreePart, Splitting};

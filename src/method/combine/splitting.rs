@@ -1,12 +1,13 @@
 //! Splittings: two maps in turn, by the coefficients of a scheme.
 
-use thiserror::Error;
-
+use super::SchemeError;
 use super::kicks::KickMap;
+use super::lengths::lengths;
 use super::processor::{Processor, Timed};
 use super::schemes::{Part, STRANG, Scheme, Stages};
-use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::{Claimed, Claims, Cost, Energy, Kept, Kicks, Map, Method, SideBySide, Symmetric};
+use super::splitting_map::{Ends, SplittingMap};
+use crate::body::{Field, Problem, Rotor};
+use crate::method::{Claimed, Claims, Cost, Energy, Kept, Kicks, Method, Symmetric};
 use crate::num::{Dd, Real};
 
 /// A splitting of H = A + B: maps of A and of B in turn, for the shares of the step that `scheme` gives.
@@ -44,71 +45,6 @@ pub trait FreePart: Symmetric {
     fn source(&self) -> &'static str;
 }
 
-/// A scheme does not fit its base.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum SchemeError {
-    /// The scheme alternates two flows, and the free part of the base has a lower order than the scheme.
-    #[error(
-        "scheme {scheme:?} alternates kicks with free motion that is exact or at least of its own order, and that of {base} has \
-         order {order}; take a composition, such as suzuki-4, or kick-drift@{scheme}"
-    )]
-    Inexact {
-        /// Name of the scheme.
-        scheme: &'static str,
-        /// Name of the base.
-        base: String,
-        /// Order of its free part.
-        order: u32,
-    },
-    /// The scheme alternates two flows, and the base is one map.
-    #[error(
-        "scheme {scheme:?} alternates two flows, and {base} is one map; take a composition, such as suzuki-4"
-    )]
-    OneMap {
-        /// Name of the scheme.
-        scheme: &'static str,
-        /// Name of the base.
-        base: String,
-    },
-    /// The two lists of a scheme do not alternate.
-    #[error(
-        "scheme {scheme:?} lists {outer} shares of the flow that is first and {inner} of the other; of the first there are as \
-         many or one more"
-    )]
-    Lengths {
-        /// Name of the scheme.
-        scheme: &'static str,
-        /// Shares listed of the flow that is first and last.
-        outer: usize,
-        /// Shares listed of the other.
-        inner: usize,
-    },
-    /// A composition needs a base that is symmetric under every force.
-    #[error(
-        "{base} foretells ω at the end of a step, so that it is symmetric only where the torque does not depend on ω, and scheme \
-         {scheme:?} raises the order of methods that are symmetric under every force; take implicit-midpoint, rattle, lie-poisson \
-         or kick-drift"
-    )]
-    Foretells {
-        /// Name of the scheme.
-        scheme: &'static str,
-        /// Name of the base.
-        base: String,
-    },
-    /// A composition is of higher order only over a symmetric base.
-    #[error(
-        "{base} is not symmetric, and scheme {scheme:?} raises the order of symmetric methods only; take implicit-midpoint, \
-         rattle, lie-poisson or kick-drift"
-    )]
-    NotSymmetric {
-        /// Name of the scheme.
-        scheme: &'static str,
-        /// Name of the base.
-        base: String,
-    },
-}
-
 impl<A, B> Splitting<A, B> {
     /// Strang's splitting of `a` and `b`.
     pub const fn strang(a: A, b: B) -> Self {
@@ -139,7 +75,7 @@ impl<A: FreePart> Splitting<A, Kicks> {
     /// use polhode::method::{Claimed, Dmv, ExactFlow, Splitting};
     /// let method = Splitting::kicked(ExactFlow, SUZUKI_4)?;
     /// assert_eq!(method.name(), "kick-drift@suzuki-4");
-    /// let claims = method.claims(Problem::Gravity).unwrap();
+    /// let claims = method.claims(Problem::Linear).unwrap();
     /// assert_eq!((claims.order, claims.cost.to_string()), (Some(4), "5 free flows, 5 kicks".into()));
     /// assert!(Splitting::kicked(Dmv, SRKN_6B).is_err());
     /// # Ok::<(), polhode::method::SchemeError>(())
@@ -202,9 +138,9 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
                 Some(claims(order, Kept::all_of_free_motion(self.a.energy()), free))
             }
             // the kicks would alternate with free motion of a lower order
-            Problem::Gravity | Problem::Potential if self.is_for_free_motion() => None,
+            Problem::Linear | Problem::Potential if self.is_for_free_motion() => None,
             Problem::Potential if !self.scheme.gradients().is_empty() => None,
-            Problem::Gravity | Problem::Potential => {
+            Problem::Linear | Problem::Potential => {
                 let kept = Kept { energy: Energy::Bounded, momentum_z: true, norm: true, ..Kept::NOTHING };
                 Some(claims(Some(self.scheme.order), kept, free + Cost::kicks(count(Part::B))))
             }
@@ -281,142 +217,4 @@ impl<S: Real, A: Method<S> + FreePart> Method<S> for Splitting<A, Kicks> {
         };
         SplittingMap { h, processor, opening, pairs, closing: free, ends }
     }
-}
-
-/// A prepared [`Splitting`]: B where it comes first, pairs of A and B, A where it comes last.
-#[derive(Clone, Debug)]
-pub struct SplittingMap<A, B> {
-    h: Dd,
-    processor: Processor<A, B>,
-    opening: Option<Timed<B>>,
-    pairs: Vec<(Timed<A>, Timed<B>)>,
-    closing: Option<Timed<A>>,
-    ends: Ends<A, B>,
-}
-
-/// What becomes of the last flow of a step and the first of the next, which are equal.
-#[derive(Clone, Debug)]
-enum Ends<A, B> {
-    /// Without forces: what A itself merges, if the step is one A.
-    OfA,
-    /// Nothing: the two flows are of different parts, or not exact.
-    Apart,
-    /// Two flows of A as one, and the one that takes half of it back.
-    A { merged: Timed<A>, back: A },
-    /// Two flows of B likewise.
-    B { merged: Timed<B>, back: B },
-}
-
-impl<A, B> SplittingMap<A, B> {
-    /// One step without processor.
-    #[inline]
-    fn kernel<S: Real>(&mut self, at: Time, x: &mut Point<S>)
-    where
-        A: Map<S>,
-        B: Map<S>,
-    {
-        if let Some(b) = &mut self.opening {
-            b.apply(at, x);
-        }
-        for (a, b) in &mut self.pairs {
-            a.apply(at, x);
-            b.apply(at, x);
-        }
-        if let Some(a) = &mut self.closing {
-            a.apply(at, x);
-        }
-    }
-}
-
-impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
-    #[inline]
-    fn apply(&mut self, at: Time, x: &mut Point<S>) {
-        self.processor.apply(at, x);
-        self.kernel(at, x);
-        self.processor.take_back(at.later(self.h), x);
-    }
-
-    fn open(&mut self, at: Time, x: &mut Point<S>) {
-        self.processor.apply(at, x);
-        match (&self.ends, &mut self.pairs[..], &mut self.opening) {
-            (Ends::OfA, [(a, _)], _) => a.map.open(at, x),
-            (Ends::A { .. }, [(a, _), ..], _) => a.map.apply(at, x),
-            (Ends::B { .. }, _, Some(b)) => b.map.apply(at, x),
-            _ => {}
-        }
-    }
-
-    #[inline]
-    fn advance(&mut self, at: Time, x: &mut Point<S>) {
-        match (&mut self.ends, &mut self.pairs[..]) {
-            (Ends::OfA, [(a, _)]) => a.map.advance(at, x),
-            (Ends::A { merged, .. }, [(_, first), pairs @ ..]) => {
-                first.apply(at, x);
-                for (a, b) in pairs {
-                    a.apply(at, x);
-                    b.apply(at, x);
-                }
-                merged.apply(at, x);
-            }
-            (Ends::B { merged, .. }, [pairs @ .., (last, _)]) => {
-                for (a, b) in pairs {
-                    a.apply(at, x);
-                    b.apply(at, x);
-                }
-                last.apply(at, x);
-                merged.apply(at, x);
-            }
-            _ => self.kernel(at, x),
-        }
-    }
-
-    #[inline]
-    fn close(&mut self, at: Time, x: &mut Point<S>) {
-        match (&mut self.ends, &mut self.pairs[..]) {
-            (Ends::OfA, [(a, _)]) => a.map.close(at, x),
-            (Ends::A { back, .. }, _) => back.apply(at, x),
-            (Ends::B { back, .. }, _) => back.apply(at, x),
-            _ => {}
-        }
-        self.processor.take_back(at, x);
-    }
-
-    fn synchronize(&self, elapsed: Dd, x: &mut Point<S>) {
-        if let (Ends::OfA, [(a, _)]) = (&self.ends, &self.pairs[..]) {
-            a.map.synchronize(elapsed, x);
-        }
-    }
-
-    fn side_by_side(&self) -> Option<SideBySide<S>> {
-        match (&self.ends, &self.pairs[..]) {
-            (Ends::OfA, [(a, _)]) if self.processor.is_empty() => a.map.side_by_side(),
-            _ => None,
-        }
-    }
-
-    fn worst_residual(&self) -> f64 {
-        let pairs = self.pairs.iter().map(|(a, b)| a.map.worst_residual().max(b.map.worst_residual()));
-        let opening = self.opening.iter().map(|b| b.map.worst_residual());
-        let closing = self.closing.iter().map(|a| a.map.worst_residual());
-        let merged = match &self.ends {
-            Ends::A { merged, .. } => merged.map.worst_residual(),
-            _ => 0.0,
-        };
-        pairs.chain(opening).chain(closing).fold(merged.max(self.processor.worst_residual()), f64::max)
-    }
-}
-
-/// The `shares` of `h`, rounded to the digits of `S`; what closes the palindrome, or the last without one, takes up what rounding the others has
-/// changed, or the clock would be off.
-pub(in crate::method) fn lengths<S: Real>(h: Dd, shares: &[Dd]) -> Vec<Dd> {
-    let n = shares.len();
-    if !shares.iter().eq(shares.iter().rev()) {
-        let but_last = shares[..n - 1].iter().map(|&share| S::rounded(h * share)).collect::<Vec<_>>();
-        let left = but_last.iter().fold(h, |left, &length| left - length);
-        return but_last.into_iter().chain([S::rounded(left)]).collect();
-    }
-    let outer: Vec<Dd> = shares[..(n - 1) / 2].iter().map(|&share| S::rounded(h * share)).collect();
-    let left = outer.iter().fold(h, |left, &length| left - length * 2.0);
-    let centre = if n % 2 == 1 { vec![S::rounded(left)] } else { vec![S::rounded(left * 0.5); 2] };
-    outer.iter().copied().chain(centre).chain(outer.iter().rev().copied()).collect()
 }

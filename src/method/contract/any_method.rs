@@ -80,25 +80,22 @@ where
     }
     let problem = body.problem();
     if method.claims(problem).is_none() {
-        let what =
-            match body.forces().iter().find(|force| problem != Problem::Torque || !force.has_potential()) {
-                Some(force) => force.name().into(),
-                None => "gravity".into(),
-            };
-        if problem == Problem::Potential && method.claims(Problem::Gravity).is_some() {
+        let what = body.remainder().find(|force| problem != Problem::Torque || !force.has_potential());
+        let what = what.or(body.forces().first()).map_or(String::new(), |force| force.name().into());
+        if problem == Problem::Potential && method.claims(Problem::Linear).is_some() {
             return Err(StepError::NoGradient { method: method.name(), force: what });
         }
         return Err(StepError::Refused { method: method.name(), force: what, problem });
     }
     if method.needs_series()
-        && let Some(force) = body.forces().iter().find(|force| force.series.is_none())
+        && let Some(force) = body.remainder().find(|force| force.series.is_none())
     {
         return Err(StepError::Closure { method: method.name(), force: force.name().into() });
     }
     let (h, rotor) = (Dd::from(clock.step), body.rotor());
-    Ok(match (problem, body.gravity::<S>()) {
+    Ok(match (problem, body.linear_potential::<S>()) {
         (Problem::Free, _) => Box::new(Stepper::new(method.map(h, &rotor, &Free), clock)),
-        (Problem::Gravity, Some(gravity)) => Box::new(Stepper::new(method.map(h, &rotor, &gravity), clock)),
+        (Problem::Linear, Some(linear)) => Box::new(Stepper::new(method.map(h, &rotor, &linear), clock)),
         _ => Box::new(Stepper::new(method.map(h, &rotor, &body.field::<S>()), clock)),
     })
 }

@@ -49,7 +49,7 @@ use crate::num::{Dd, Real};
 ///         let mut kept = Kept::NOTHING;
 ///         (kept.energy, kept.momentum_z, kept.norm) = (Energy::Bounded, true, true);
 ///         let cost = Cost::kicks(1) + Cost::free_flows(1);
-///         (problem == Problem::Gravity).then(|| Claims::new(Some(1), kept, cost, "symplectic Euler"))
+///         (problem == Problem::Linear).then(|| Claims::new(Some(1), kept, cost, "symplectic Euler"))
 ///     }
 /// }
 ///
@@ -156,7 +156,7 @@ pub struct Work {
     pub rejected: u64,
 }
 
-/// Where no step that a map can choose has an error within its tolerance.
+/// Where no step that a map can choose has an error within its tolerance, or those that have are too short.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Stuck {
@@ -164,8 +164,10 @@ pub struct Stuck {
     pub time: f64,
     /// The last step tried, s.
     pub step: f64,
-    /// The error estimate of the last step tried, in units of the tolerance; `None` where it is not finite.
+    /// The error estimate of the last step tried, in units of the tolerance; `None` where it is not finite or not known.
     pub estimate: Option<f64>,
+    /// How many steps like those so far one step of the run would take, where these are too many: above 1e10.
+    pub needed: Option<f64>,
 }
 
 /// Whole steps, counted and timed: what the dynamic outside sees of a [`Map`], with one virtual call for many steps.

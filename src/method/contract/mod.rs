@@ -7,6 +7,7 @@ pub(super) mod lanes;
 mod listing;
 mod map;
 mod name;
+mod own_steps;
 mod tolerance;
 
 pub use any_method::{AnyMethod, StepError};
@@ -16,4 +17,5 @@ pub use lanes::SideBySide;
 pub use listing::{Listing, listing};
 pub use map::{Map, Method, Step, Stuck, Work};
 pub use name::{UnknownMethod, method};
+pub(super) use own_steps::OwnSteps;
 pub use tolerance::ToleranceError;

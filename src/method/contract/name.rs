@@ -29,7 +29,7 @@ use crate::num::Dd;
 /// use polhode::body::Problem;
 /// use polhode::method::{Claimed, method};
 /// assert_eq!(method("rattle")?.claims(Problem::Free).unwrap().order, Some(2));
-/// assert_eq!(method("kick-drift@srkn-11b")?.claims(Problem::Gravity).unwrap().order, Some(6));
+/// assert_eq!(method("kick-drift@srkn-11b")?.claims(Problem::Linear).unwrap().order, Some(6));
 /// assert!(method("rk5").is_err());
 /// # Ok::<(), polhode::method::UnknownMethod>(())
 /// ```

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use self::tableau::{MOST_STAGES, Tableau};
 use super::{Claimed, Claims, Cost, Energy, Kept, Map, Method};
-use crate::body::{Field, Gyroscopic, Phase, Point, Problem, Rotor, Time, vertical};
+use crate::body::{Field, Gyroscopic, Phase, Point, Problem, Rotor, Time};
 use crate::method::solve::stagnation::iterate_phases;
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
@@ -18,9 +18,9 @@ use crate::rotation::Vec3;
 /// Math. Comp. 18 (1964) 50; Hairer, Lubich and Wanner, Geometric Numerical Integration, II.1.3).
 ///
 /// Keeps every quadratic invariant of (m, q), as μ_ij + μ_ji = 1 (Cooper, IMA J. Numer. Anal. 7 (1987) 1): energy, |m| and |q| in
-/// free motion, energy and |q| under gravity, as the vertical in the body is quadratic in q. L is cubic: its error is that of the
+/// free motion, energy and |q| in a potential linear in the vertical, which is quadratic in q. L is cubic: its error is that of the
 /// order. The other triangle of μ is the difference to 1, so that the invariants do not follow the rounding of the coefficients
-/// (Antoñana, Makazaga and Murua, Numer. Algorithms 76 (2017) 861). Forces but uniform gravity are taken at the stage's attitude
+/// (Antoñana, Makazaga and Murua, Numer. Algorithms 76 (2017) 861). All other forces are taken at the stage's attitude
 /// divided by its norm. The equations of the stages are iterated until rounding lets the iteration get no further, which takes
 /// a turn of less than a radian a step.
 ///
@@ -76,7 +76,7 @@ impl Claimed for Gauss {
     fn claims(&self, problem: Problem) -> Option<Claims> {
         let free = problem == Problem::Free;
         let energy = match problem {
-            Problem::Free | Problem::Gravity => Energy::Exact,
+            Problem::Free | Problem::Linear => Energy::Exact,
             Problem::Potential | Problem::Torque => Energy::Drifts,
         };
         let kept = Kept { energy, momentum_norm: free, norm: true, ..Kept::NOTHING };
@@ -154,11 +154,11 @@ impl<S: Real, F: Field<S>> GaussMap<S, F> {
     fn rise(&self, at: Time, x: &Phase<S>) -> Phase<S> {
         let omega = x.momentum_body.times(self.inverse_moments);
         let mut momentum = self.gyroscopic.at(x.momentum_body);
-        if let Some(gravity) = self.field.gravity() {
-            momentum = momentum + vertical(x.attitude).cross(gravity.weight_moment) * self.h;
+        if let Some(linear) = self.field.linear_part() {
+            momentum = momentum + linear.torque(x.attitude) * self.h;
         }
-        if F::ACTS_BESIDES_GRAVITY {
-            let torque = self.field.torque_besides_gravity(at, x.attitude.normalized(), omega);
+        if F::HAS_REMAINDER {
+            let torque = self.field.remainder(at, x.attitude.normalized(), omega);
             momentum = momentum + torque * self.h;
         }
         Phase { attitude: x.attitude.rate(omega) * self.h, momentum_body: momentum }
@@ -185,14 +185,14 @@ impl<S: Real, F: Field<S>> GaussMap<S, F> {
     /// The size of the terms that the sums of momenta are rounded at.
     fn size(&self, at: Time, x: &Phase<S>, start: &Phase<S>) -> f64 {
         let momentum = x.momentum_body.magnitude();
-        // next to an equilibrium torques are differences of terms as large as the weight moment
-        let weight = self.field.gravity().map_or(0.0, |gravity| (gravity.weight_moment * self.h).magnitude());
-        let others = if F::ACTS_BESIDES_GRAVITY {
+        // next to an equilibrium torques are differences of terms as large as the moment
+        let moment = self.field.linear_part().map_or(0.0, |linear| (linear.moment * self.h).magnitude());
+        let others = if F::HAS_REMAINDER {
             let omega = x.momentum_body.times(self.inverse_moments);
-            (self.field.torque_besides_gravity(at, x.attitude, omega) * self.h).magnitude()
+            (self.field.remainder(at, x.attitude, omega) * self.h).magnitude()
         } else {
             0.0
         };
-        momentum.max(start.momentum_body.magnitude()) + weight + others
+        momentum.max(start.momentum_body.magnitude()) + moment + others
     }
 }

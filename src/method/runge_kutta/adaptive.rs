@@ -5,6 +5,7 @@ use core::marker::PhantomData;
 use super::equations::Equations;
 use super::pair::{LEAST_ESTIMATE, Pair, RATES, Stage, sum};
 use crate::body::{Field, Phase, Point, Rotor, Time};
+use crate::method::contract::OwnSteps;
 use crate::method::solve::length::length;
 use crate::method::{Map, Stuck, Work};
 use crate::num::{Dd, Real};
@@ -133,7 +134,7 @@ impl<S: Real, F: Field<S>, P: Pair> EmbeddedMap<S, F, P> {
             if !(size.is_normal() && 0.1 * size > self.base.hi().abs() * f64::ROUNDOFF) {
                 let time = at.at_elapsed(self.base, 1.0).seconds();
                 let estimate = Some(estimate).filter(|estimate| estimate.is_finite());
-                self.stuck = Some(Stuck { time, step: size, estimate });
+                self.stuck = Some(Stuck { time, step: size, estimate, needed: None });
                 return None;
             }
             let h = if self.h.hi() < 0.0 { -size } else { size };
@@ -198,7 +199,8 @@ impl<S: Real, F: Field<S>, P: Pair> Map<S> for EmbeddedMap<S, F, P> {
     }
 
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
-        let end = at.elapsed() + self.h;
+        let (begun, end) = (self.base, at.elapsed() + self.h);
+        let mut own = OwnSteps::default();
         loop {
             let Some(Current { h, change, next, .. }) = self.accepted(at, x) else {
                 x.add_momentum(Vec3([S::of(f64::NAN); 3]));
@@ -210,6 +212,13 @@ impl<S: Real, F: Field<S>, P: Pair> Map<S> for EmbeddedMap<S, F, P> {
             }
             x.add_momentum(change.momentum_body);
             x.add_attitude(change.attitude);
+            if let Some(needed) = own.needed((behind - begun).hi(), (end - begun).hi()) {
+                let time = at.at_elapsed(behind, 1.0).seconds();
+                self.stuck = Some(Stuck { time, step: h.abs(), estimate: None, needed: Some(needed) });
+                self.current = None;
+                x.add_momentum(Vec3([S::of(f64::NAN); 3]));
+                return;
+            }
             let rate = self.rates[P::END];
             self.restart(behind, next);
             (self.rates[0], self.begun) = (rate, true);

@@ -3,7 +3,8 @@
 use super::motion_series::MotionSeries;
 use super::{SOURCE, add_change, unit};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::{AnyMethod, Claimed, Claims, Cost, Kept, Map, Method, ToleranceError, Work};
+use crate::method::contract::OwnSteps;
+use crate::method::{AnyMethod, Claimed, Claims, Cost, Kept, Map, Method, Stuck, ToleranceError, Work};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
@@ -97,6 +98,7 @@ impl<S: Real> Method<S> for AdaptiveTaylor {
             series: MotionSeries::new(AdaptiveTaylor::order(tolerance), rotor, field),
             base: Dd::ZERO,
             current: None,
+            stuck: None,
             work: Work::default(),
         }
     }
@@ -113,6 +115,7 @@ pub struct AdaptiveTaylorMap<S, F> {
     base: Dd,
     /// The series, once it is worked out.
     current: Option<Current>,
+    stuck: Option<Stuck>,
     work: Work,
 }
 
@@ -126,7 +129,7 @@ struct Current {
 impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
     /// The point is of the time `base` now.
     fn restart(&mut self, base: Dd) {
-        (self.base, self.current) = (base, None);
+        (self.base, self.current, self.stuck) = (base, None, None);
     }
 
     /// The series about the point `x` at the time of the base.
@@ -158,8 +161,9 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
     }
 
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
-        let end = at.elapsed() + self.h;
-        loop {
+        let (begun, end) = (self.base, at.elapsed() + self.h);
+        let mut own = OwnSteps::default();
+        while self.stuck.is_none() {
             let Current { unit, reach } = self.expanded(at, x);
             let next = self.base + Dd::product(reach, unit);
             if reach.is_infinite() || (end - next).hi() * unit < 0.0 {
@@ -174,7 +178,13 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
             x.renormalize();
             self.restart(next);
             self.work.accepted += 1;
+            let needed = own.needed((next - begun).hi(), (end - begun).hi());
+            self.stuck = needed.map(|needed| {
+                let (time, step) = (at.at_elapsed(next, 1.0).seconds(), (reach * unit).abs());
+                Stuck { time, step, estimate: None, needed: Some(needed) }
+            });
         }
+        x.add_momentum(Vec3([S::of(f64::NAN); 3]));
     }
 
     fn close(&mut self, at: Time, x: &mut Point<S>) {
@@ -188,6 +198,10 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
     /// A series of the order K counts as K evaluations; no step is rejected.
     fn work(&self) -> Option<Work> {
         Some(self.work)
+    }
+
+    fn stuck(&self) -> Option<Stuck> {
+        self.stuck
     }
 
     fn memory(&self) -> Vec<f64> {

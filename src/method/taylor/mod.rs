@@ -20,7 +20,7 @@ const SOURCE: &str = "Jorba and Zou, Experimental Math. 14 (2005) 99";
 /// Taylor's method of a fixed order K, from 8 to 40.
 ///
 /// Φ_h: `m + Σ h^n m_n`, `q + Σ h^n q_n`, n from 1 to K, the coefficients by recurrences (Jorba and Zou, Experimental Math. 14
-/// (2005) 99). Free motion and uniform gravity have recurrences of their own, of K² operations. Any other force is evaluated on
+/// (2005) 99). Free motion and linear potentials have recurrences of their own, of K² operations. Any other force is evaluated on
 /// [series](crate::num::Series) K times a step, of K³ operations in all; it has to be analytic along the motion, and a closure
 /// in `f64` cannot be taken. Keeps nothing; |q| is brought back to 1 in every eighth step.
 ///

@@ -11,7 +11,7 @@ use crate::rotation::{Quat, Vec3};
 ///
 /// With `m = Σ m_n`, `q = Σ q_n` and the unit u: `(n + 1) m_{n+1} = u (Σ m_k × I⁻¹m_{n−k} + τ_n)` and
 /// `2 (n + 1) q_{n+1} = u Σ q_k ∘ I⁻¹m_{n−k}`, k ≤ n. The first sum is taken as `D_i Σ (m_k)_j (m_{n−k})_l`,
-/// `D_i = 1/I_l − 1/I_j`, as its products cancel along the axis of a rod. Of uniform gravity τ_n is `Γ_n × c`, with
+/// `D_i = 1/I_l − 1/I_j`, as its products cancel along the axis of a rod. Of a linear potential τ_n is `Γ_n × c`, with
 /// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; of all other forces it is the coefficient n of their law, evaluated on the series
 /// so far, anew for each n. The unit is a power of two, so that it costs no rounding.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub(super) struct MotionSeries<S, F> {
     shares: Vec<S>,
     momentum: Vec<Turned<S>>,
     attitude: Vec<Spun<S>>,
-    /// ω and Γ; empty without gravity.
+    /// ω and Γ; empty without a linear potential.
     fall: Vec<[Turned<S>; 2]>,
 }
 
@@ -80,7 +80,7 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
             shares: (1..=order).map(|n| S::from_dd(Dd::ONE / Dd::of(n as f64))).collect(),
             momentum: Vec::with_capacity(order + 1),
             attitude: Vec::with_capacity(order + 1),
-            fall: Vec::with_capacity(if field.gravity().is_some() { order + 1 } else { 0 }),
+            fall: Vec::with_capacity(if field.linear_part().is_some() { order + 1 } else { 0 }),
         }
     }
 
@@ -89,8 +89,8 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
     pub(super) fn rate(&self, x: &Point<S>, others: Vec3<S>) -> f64 {
         let inverse = self.inverse_moments;
         let mut acceleration = others.times(inverse).magnitude();
-        if let Some(gravity) = self.field.gravity() {
-            let (c, inverse) = (gravity.weight_moment.map(S::magnitude), inverse.map(S::magnitude));
+        if let Some(linear) = self.field.linear_part() {
+            let (c, inverse) = (linear.moment.map(S::magnitude), inverse.map(S::magnitude));
             for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
                 acceleration = acceleration.max(c[j].max(c[k]) * inverse[i]);
             }
@@ -98,40 +98,40 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
         x.momentum_body.times(inverse).magnitude().max(acceleration.sqrt())
     }
 
-    /// The torque of all but gravity at `x`.
+    /// The torque of all but the linear part at `x`.
     pub(super) fn others(&self, at: Time, x: &Point<S>) -> Vec3<S> {
-        if !F::ACTS_BESIDES_GRAVITY {
+        if !F::HAS_REMAINDER {
             return Vec3::zero();
         }
         let omega = x.momentum_body.times(self.inverse_moments);
         self.torque(at, x.attitude.map(Series::number), omega.map(Series::number), 0)
     }
 
-    /// The coefficient n of the torque of all but gravity.
+    /// The coefficient n of the torque of all but the linear part.
     fn torque(&self, at: Time, q: Quat<Series<S>>, omega: Vec3<Series<S>>, n: usize) -> Vec3<S> {
-        let torque = self.field.series_besides_gravity(at, q, omega);
+        let torque = self.field.remainder_series(at, q, omega);
         torque.map_or(Vec3([S::of(f64::NAN); 3]), |torque| torque.map(|series| series.coefficient(n)))
     }
 
     /// Works out the series about `x`. Series that `at` makes of the time count in `unit`, s; `others` is the torque of all but
-    /// gravity at `x`.
+    /// the linear part at `x`.
     pub(super) fn expand(&mut self, at: Time, unit: f64, x: &Point<S>, others: Vec3<S>) {
         let (m, q, inverse) = (x.momentum_body, x.attitude, self.inverse_moments);
-        let gravity = self.field.gravity().copied();
+        let linear = self.field.linear_part().copied();
         self.momentum.clear();
         self.attitude.clear();
         self.fall.clear();
         self.momentum.push(Turned::new(m));
         self.attitude.push(Spun::new(q.components(), inverse));
-        if gravity.is_some() {
+        if linear.is_some() {
             self.fall.push([Turned::new(m.times(inverse)), Turned::new(vertical(q))]);
         }
-        let mut known = F::ACTS_BESIDES_GRAVITY.then(|| Known::new(q, m.times(inverse)));
+        let mut known = F::HAS_REMAINDER.then(|| Known::new(q, m.times(inverse)));
         for n in 0..self.order {
             let (mut rate, spin) = self.gyroscopic_term_and_spin();
-            if let Some(gravity) = &gravity {
+            if let Some(linear) = &linear {
                 let up = Vec3(self.fall[n][1].components());
-                rate = rate + up.cross(gravity.weight_moment);
+                rate = rate + up.cross(linear.moment);
             }
             if let Some(known) = &known {
                 rate = rate
@@ -142,7 +142,7 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
             }
             let share = self.shares[n] * S::of(unit);
             let q = spin.map(|c| c * share);
-            let up = gravity.map(|_| self.fall_term() * share);
+            let up = linear.map(|_| self.fall_term() * share);
             let m = rate * share;
             self.momentum.push(Turned::new(m));
             self.attitude.push(Spun::new(q, inverse));

@@ -32,11 +32,26 @@ type Acting = Arc<dyn Fn(Inertia) -> Result<Body, StateError> + Send + Sync>;
 
 /// What is compared with the start or with the exact motion in every row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Observed {
     /// Relative errors of the invariants, in double-double.
     pub invariants: bool,
     /// The angle to the exact attitude, rad, where the motion has a closed form.
     pub attitude: bool,
+}
+
+impl Observed {
+    /// With the relative errors of the invariants, or without.
+    #[must_use]
+    pub fn with_invariants(self, invariants: bool) -> Self {
+        Observed { invariants, ..self }
+    }
+
+    /// With the angle to the exact attitude, or without.
+    #[must_use]
+    pub fn with_attitude(self, attitude: bool) -> Self {
+        Observed { attitude, ..self }
+    }
 }
 
 /// Bodies with their starts, propagated together.
@@ -215,7 +230,7 @@ impl Ensemble {
     /// use polhode::method::method;
     /// use polhode::run::{Ensemble, EnsembleError, Observed, Tally};
     /// let inertia = Inertia::from_moments([1.0, 2.0, 3.0])?;
-    /// let mut ensemble = Ensemble::new().observing(Observed { invariants: true, attitude: true });
+    /// let mut ensemble = Ensemble::new().observing(Observed::default().with_invariants(true).with_attitude(true));
     /// for k in 0..100 {
     ///     let omega = Vector3::new(0.4, 1.0, -0.01 * f64::from(k));
     ///     ensemble.push_omega(&inertia, UnitQuaternion::identity(), omega);

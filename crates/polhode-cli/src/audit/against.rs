@@ -7,7 +7,7 @@ use polhode::audit::{Reading, Trajectory, Verdict};
 use polhode::body::Body;
 use polhode::inertia::Inertia;
 use polhode::rotation::rotation_angle;
-use polhode_files::Reading as TableReading;
+use polhode_files::ReadOptions;
 use polhode_files::error::Error;
 use polhode_files::numbers::numbers;
 use polhode_files::text::visible;
@@ -52,7 +52,7 @@ impl Difference {
 impl Golden {
     /// Of a file that `polhode audit --golden` has written, or one with the same columns and the line `# moments: I1,I2,I3`.
     pub(super) fn read(path: &Path) -> Result<Self, Error> {
-        let found = read(path, &TableReading::default())?;
+        let found = read(path, &ReadOptions::default())?;
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |value: &str, rule: &str| {
             Error::input(&name, value, rule, "write golden trajectories by `polhode audit --golden DIR`")

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use polhode::audit::{Angles, Convention, Direction, Frame, Turns};
 use polhode::rotation::EulerSequence;
 use polhode::units::{AngleUnit, RateUnit};
-use polhode_files::Reading;
+use polhode_files::ReadOptions;
 
 use crate::flags::table::{Order, TableArguments, rate_unit};
 
@@ -88,7 +88,7 @@ fn sequence(text: &str) -> Result<(EulerSequence, Turns), String> {
 
 impl ReadingArguments {
     /// How the table is read.
-    pub(super) fn table(&self) -> Reading {
+    pub(super) fn table(&self) -> ReadOptions {
         self.table.reading(self.rate_unit)
     }
 

@@ -3,7 +3,7 @@
 use polhode::audit::Traces;
 use polhode_files::error::Error;
 use polhode_pages::figure::Drawing;
-use polhode_pages::figure::{Figure, Scale, Series, sheet};
+use polhode_pages::figure::{Curve, Figure, Scale, sheet};
 
 use super::outcome::Outcome;
 
@@ -30,7 +30,7 @@ pub(super) fn panels(name: &str, outcomes: &[Outcome]) -> Result<Drawing, Error>
                 traces.times.iter().copied().zip(values(traces).iter().copied()).collect();
             if !points.is_empty() {
                 let name = outcome.body.clone().unwrap_or_else(|| "record".into());
-                figure.series.push(Series::new(name, points));
+                figure.series.push(Curve::new(name, points));
             }
         }
         figure

@@ -110,7 +110,7 @@ pub(super) fn write(folder: &Path) -> Result<(), Error> {
         Error::input("--golden", &folder.display().to_string(), &rule, "name another folder")
     })?;
     let [(readme, ours), ..] = FILES;
-    if let (Ok(found), Some(title)) = (std::fs::read_to_string(folder.join(readme)), ours.lines().next())
+    if let (Ok(found), Some(title)) = (polhode_files::read_own(&folder.join(readme), ""), ours.lines().next())
         && !found.starts_with(title)
     {
         let rule = format!("has a {readme} of another kind");

@@ -120,14 +120,17 @@ impl Audit {
             Format::Json => json::text(&outcomes),
             Format::Csv => text::rows(&outcomes).csv(),
         };
-        if let Some(path) = &self.figure {
-            let drawing = figure::panels(&name, &outcomes)?;
-            Output::to_file("--figure", path)?.write_whole(&drawing.svg)?;
+        // all places are found to be usable before the first is written
+        let figure = self.figure.as_deref().map(|path| Output::to_file("--figure", path)).transpose()?;
+        let report = self.report.as_deref().map(|path| Output::to_file("--report", path)).transpose()?;
+        let output = Output::new(self.out.as_deref())?;
+        if let Some(file) = figure {
+            file.write_whole(&figure::panels(&name, &outcomes)?.svg)?;
         }
-        if let Some((path, form)) = self.report.as_deref().zip(form) {
-            Output::to_file("--report", path)?.write_whole(&page::page(&name, &outcomes, form)?)?;
+        if let Some((file, form)) = report.zip(form) {
+            file.write_whole(&page::page(&name, &outcomes, form)?)?;
         }
-        Output::new(self.out.as_deref())?.write_whole(&text)?;
+        output.write_whole(&text)?;
         if format == Format::Csv {
             // words and JSON hold them too
             outcomes.iter().flat_map(Outcome::warnings).for_each(|warning| warn(&warning));

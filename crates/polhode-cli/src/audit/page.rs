@@ -2,7 +2,7 @@
 
 use polhode_files::error::Error;
 use polhode_files::text::short;
-use polhode_pages::document::{Form, Part};
+use polhode_pages::document::{Block, Form};
 
 use super::figure::panels;
 use super::outcome::{Outcome, named, sentence};
@@ -13,31 +13,31 @@ pub(super) fn page(name: &str, outcomes: &[Outcome], form: Form) -> Result<Strin
     let mut parts = Vec::new();
     for outcome in outcomes {
         if let Some(body) = &outcome.body {
-            parts.push(Part::Heading(format!("Body {body}")));
+            parts.push(Block::Heading(format!("Body {body}")));
         }
         parts.extend(one(outcome));
     }
-    parts.push(Part::Heading("Errors against time".into()));
+    parts.push(Block::Heading("Errors against time".into()));
     let caption = "Energy and |m| as relative changes from the first row, the angle of L in space from its first direction, and \
                    the angle of the attitude from the motion; the axes are logarithmic, with positive values above the middle and negative ones below.";
-    parts.push(Part::Figure(panels(name, outcomes)?.svg, caption.into()));
+    parts.push(Block::Figure(panels(name, outcomes)?.svg, caption.into()));
     Ok(form.write(&format!("Audit of {name}"), &parts))
 }
 
-fn one(outcome: &Outcome) -> Vec<Part> {
+fn one(outcome: &Outcome) -> Vec<Block> {
     let verdict = &outcome.verdict;
     let suspect =
         if outcome.is_suspected() { format!(" Suspect: {}.", outcome.suspect()) } else { String::new() };
     let mut parts = vec![
-        Part::Paragraph(format!("Verdict on {} rows: {}.{suspect}", outcome.rows, outcome.judgement())),
-        Part::Paragraph(format!("Reading: {}.", outcome.reading())),
+        Block::Paragraph(format!("Verdict on {} rows: {}.{suspect}", outcome.rows, outcome.judgement())),
+        Block::Paragraph(format!("Reading: {}.", outcome.reading())),
     ];
     if let Some(tie) = &verdict.tie {
-        parts.push(Part::Paragraph(format!("{} readings fit alike: {}.", tie.readings.len(), tie.reason)));
-        parts.push(Part::List(tie.readings.iter().map(ToString::to_string).collect()));
+        parts.push(Block::Paragraph(format!("{} readings fit alike: {}.", tie.readings.len(), tie.reason)));
+        parts.push(Block::List(tie.readings.iter().map(ToString::to_string).collect()));
     }
-    parts.extend(attitude(outcome).into_iter().map(Part::Paragraph));
-    parts.extend(causes(outcome).into_iter().map(Part::Paragraph));
+    parts.extend(attitude(outcome).into_iter().map(Block::Paragraph));
+    parts.extend(causes(outcome).into_iter().map(Block::Paragraph));
     let number = |x: f64| format!("{x:.1e}").replace('-', "\u{2212}");
     let optional = |x: Option<f64>| x.map_or("–".into(), number);
     let head = ["quantity", "largest relative change", "slope (1/s)", "±", "resolution", "conserved"];
@@ -51,14 +51,14 @@ fn one(outcome: &Outcome) -> Vec<Part> {
             if line.conserved { "yes" } else { "no" }.into(),
         ]
     });
-    parts.push(Part::Table(head.map(String::from).to_vec(), rows.collect()));
+    parts.push(Block::Table(head.map(String::from).to_vec(), rows.collect()));
     let tie = usize::from(verdict.tie.is_some());
     let warnings = outcome.warnings();
     let remarks: Vec<String> = warnings[..warnings.len() - tie].iter().map(|text| sentence(text)).collect();
     if !remarks.is_empty() {
-        parts.push(Part::List(remarks));
+        parts.push(Block::List(remarks));
     }
-    parts.push(Part::Heading("Readings, the most likely first".into()));
+    parts.push(Block::Heading("Readings, the most likely first".into()));
     let head = ["reading", "log-likelihood ratio", "attitude defect (rad)", "rate defect"];
     let rows = verdict.ranking.iter().take(super::RANKED).map(|ranked| {
         vec![
@@ -68,6 +68,6 @@ fn one(outcome: &Outcome) -> Vec<Part> {
             optional(ranked.rate_defect),
         ]
     });
-    parts.push(Part::Table(head.map(String::from).to_vec(), rows.collect()));
+    parts.push(Block::Table(head.map(String::from).to_vec(), rows.collect()));
     parts
 }

@@ -14,7 +14,7 @@ use polhode::truth::{Ending, LOST, Truth};
 use polhode::units::RateUnit;
 use polhode_files::error::{Error, unexpected};
 use polhode_files::text::{short, visible};
-use polhode_files::{Reading as TableReading, trajectory};
+use polhode_files::{ReadOptions, trajectory};
 
 /// Rows of a file.
 pub(super) struct Trajectory {
@@ -45,7 +45,7 @@ impl Trajectory {
     /// Of the file at `path`, whose times lie from the start to the end; `order`: the place of the scalar, where a flag says it.
     pub(super) fn read(
         path: &Path,
-        table: &TableReading,
+        table: &ReadOptions,
         order: Option<QuaternionOrder>,
         body: &Body,
         (start, end): (f64, f64),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::{Figure, Scale, Series};
+use polhode_pages::figure::{Curve, Figure, Scale};
 use polhode_pages::output::MARK;
 use polhode_pages::table::{Cell, Column, Table};
 
@@ -161,7 +161,7 @@ fn figure(reduced: &[Option<Reduced>], shares: &Shares) -> Figure {
         let mut points: Vec<(f64, f64)> =
             shares.times.iter().zip(reduced).filter_map(|(t, row)| Some((*t, of(row.as_ref()?)))).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        figure.series.push(Series::new(name, points));
+        figure.series.push(Curve::new(name, points));
     }
     figure
 }

@@ -141,7 +141,7 @@ fn members(spec: &Spec, range: Range<u64>, means: Means, shares: &mut Shares) ->
     let acting = spec.acting();
     let mut ensemble = Ensemble::with_capacity((range.end - range.start) as usize)
         .acted_on(move |inertia| acting.on(inertia))
-        .observing(Observed { invariants: spec.plan.errors, attitude: false })
+        .observing(Observed::default().with_invariants(spec.plan.errors))
         .by(means.instructions)
         .threads(means.threads);
     for k in range {

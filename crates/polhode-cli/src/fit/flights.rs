@@ -1,7 +1,7 @@
 //! What of a recording is fitted: windows of the user's, the whole, or the flights in it.
 
 use polhode_fit::{FitError, Flight, FlightLimit, Flights, Record, Settings, during, flights};
-use polhode_pages::document::Part;
+use polhode_pages::document::Block;
 use serde_json::{Value, json};
 
 /// The spans of a record that a fit uses, where no window was given.
@@ -103,13 +103,13 @@ impl Spans {
     }
 
     /// As part of a page.
-    pub(super) fn parts(&self) -> Vec<Part> {
+    pub(super) fn parts(&self) -> Vec<Block> {
         let Some(remark) = &self.remark else { return Vec::new() };
         vec![
-            Part::Heading("Flights".into()),
-            Part::Paragraph(format!("Note: {remark}.")),
-            Part::Table(self.head(), self.rows()),
-            Part::Paragraph(EXPLAINED.into()),
+            Block::Heading("Flights".into()),
+            Block::Paragraph(format!("Note: {remark}.")),
+            Block::Table(self.head(), self.rows()),
+            Block::Paragraph(EXPLAINED.into()),
         ]
     }
 }

@@ -1,7 +1,7 @@
 //! Plots of a fit against time.
 
 use polhode_fit::Estimate;
-use polhode_pages::figure::{Figure, Scale, Series};
+use polhode_pages::figure::{Curve, Figure, Scale};
 
 /// Names of the axes.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
@@ -41,7 +41,7 @@ pub(super) fn residuals(estimate: &Estimate) -> Figure {
     let mut figure = over_time(title, "residual (std. deviations)", single, 380.0);
     figure.band(2.0);
     figure.series = (0..3)
-        .map(|axis| Series::new(AXES[axis], values().map(|(t, v)| (*t, v[axis])).collect()).dots())
+        .map(|axis| Curve::new(AXES[axis], values().map(|(t, v)| (*t, v[axis])).collect()).dots())
         .collect();
     figure
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{number, numbers};
-use polhode_files::record::{self, Reading};
+use polhode_files::record;
 use polhode_fit::{RateUnit, Record};
 
 use super::inputs::WheelArguments;
@@ -88,7 +88,7 @@ impl ReadingArguments {
     }
 
     fn read(&self, path: &Path, wheel: &WheelArguments) -> Result<Record, Error> {
-        let reading = Reading { most_skipped: self.skip_rows, ..self.table.reading(self.rate_unit) };
+        let reading = self.table.reading(self.rate_unit).with_most_skipped(self.skip_rows);
         let found = record::open(path, &reading, wheel.momentum()).map_err(|error| match error {
             Error::Table(error) if error.is_of_a_row() => {
                 let remedy = format!("{}, or allow for more such rows by --skip-rows FRACTION", error.remedy);

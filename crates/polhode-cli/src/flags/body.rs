@@ -3,13 +3,12 @@
 use clap::Args;
 use nalgebra::Matrix3;
 use polhode::body::Body;
-use polhode::catalogue;
+use polhode::catalogue::{self, Orientation};
 use polhode::inertia::Inertia;
+use polhode_files::bodies;
 use polhode_files::error::Error;
 use polhode_files::numbers::{list, numbers};
 use polhode_files::text::visible;
-
-use crate::flags::body_file;
 
 /// A body: exactly one of three flags.
 #[derive(Args, Clone, Debug)]
@@ -57,7 +56,7 @@ pub(crate) fn described(text: &str) -> Result<Described, Error> {
     if let Some(found) = catalogue::body(text).or_else(|| catalogue::top(text)) {
         return Ok(Described { inertia: found.inertia, weight_moment: found.weight_moment });
     }
-    if let Some(inertia) = body_file::inertia(text)? {
+    if let Some(inertia) = bodies::inertia("--body", text)? {
         return Ok(Described::alone(inertia));
     }
     let known: Vec<&str> =
@@ -113,7 +112,12 @@ impl BodyArguments {
     pub(crate) fn published_start(&self) -> Option<PublishedStart> {
         let name = self.body.as_deref()?;
         let found = catalogue::body(name).or_else(|| catalogue::top(name))?;
-        Some(PublishedStart { omega: found.omega_body, attitude: found.attitude })
+        Some(PublishedStart {
+            omega: found.omega_body,
+            attitude: found.attitude,
+            known: format!("{}: {}", found.name, found.attitude_known()),
+            orientation: found.orientation,
+        })
     }
 
     fn described(&self) -> Result<Described, Error> {
@@ -132,9 +136,12 @@ impl BodyArguments {
 }
 
 /// The start that a body is published with.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct PublishedStart {
     /// Body axes, rad/s.
     pub(crate) omega: [f64; 3],
     pub(crate) attitude: [f64; 4],
+    /// What is known of the attitude, in words.
+    pub(crate) known: String,
+    pub(crate) orientation: Option<Orientation>,
 }

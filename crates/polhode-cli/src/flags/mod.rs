@@ -1,7 +1,6 @@
 //! Flags that several commands share.
 
 pub(crate) mod body;
-pub(crate) mod body_file;
 pub(crate) mod force;
 pub(crate) mod motion;
 pub(crate) mod start;

@@ -29,4 +29,9 @@ impl MotionArguments {
     pub(crate) fn start(&self, body: &Body) -> Result<Point<Dd>, Error> {
         self.start.inside(body, self.body.published_start())
     }
+
+    /// Says what the attitude at the start refers to where it is that of the catalogue.
+    pub(crate) fn note(&self) {
+        self.start.note(&self.body);
+    }
 }

@@ -5,11 +5,11 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use polhode::body::{Body, Point, State};
 use polhode::num::Dd;
 use polhode::rotation::{EulerSequence, Quat, Vec3};
-use polhode_files::error::{Error, warn};
+use polhode_files::error::{Error, tell, warn};
 use polhode_files::moment::seconds_in;
 use polhode_files::numbers::{numbers, quaternion, turn};
 
-use crate::flags::body::PublishedStart;
+use crate::flags::body::{BodyArguments, PublishedStart};
 use crate::flags::tumbling::TumblingArguments;
 
 /// Attitude and spin at the start.
@@ -29,7 +29,7 @@ pub(crate) struct StartArguments {
     #[arg(long, value_name = "Lx,Ly,Lz", value_parser = numbers::<3>, allow_hyphen_values = true,
           conflicts_with_all = ["omega", "momentum_body"])]
     momentum_space: Option<[f64; 3]>,
-    /// Attitude at the start: quaternion that turns body axes to space axes, scalar first; it is divided by its norm [default: 1,0,0,0]
+    /// Attitude at the start: quaternion that turns body axes to space axes, scalar first; it is divided by its norm [default: that of the catalogue's body, else 1,0,0,0]
     #[arg(long, value_name = "w,x,y,z", value_parser = quaternion, allow_hyphen_values = true)]
     attitude: Option<[f64; 4]>,
     /// Attitude at the start by Euler angles in the sequence of --euler, rad or --angle-unit
@@ -113,18 +113,32 @@ fn rotation(text: &str) -> Result<TypedRotation, String> {
 }
 
 impl StartArguments {
-    /// The exact start of `body` in the solver frame; what is not given is `published` with the body, if it is.
+    /// Whether the attitude at the start is given, so that a published one does not count.
+    pub(crate) fn has_attitude(&self) -> bool {
+        self.attitude.is_some()
+            || self.rotation.is_some()
+            || self.angles.is_some()
+            || self.tumbling.is_given()
+    }
+
+    /// Says what the attitude refers to where it is that of the catalogue.
+    pub(crate) fn note(&self, body: &BodyArguments) {
+        if let Some(published) = body.published_start().filter(|_| !self.has_attitude()) {
+            tell("note", &published.known);
+        }
+    }
+
+    /// The exact start of `body` in the solver frame; attitude and spin that are not given are those that are `published` with the
+    /// body, if they are.
     pub(crate) fn inside(&self, body: &Body, published: Option<PublishedStart>) -> Result<Point<Dd>, Error> {
         let angle_unit = self.angle_unit.map_or(1.0, |Factor(unit)| unit);
         if let Some(elements) = self.tumbling.elements(angle_unit)? {
             return elements.point(body.inertia()).map_err(|error| self.tumbling.refused(&error));
         }
-        let is_published =
-            self.omega.is_none() && self.momentum_body.is_none() && self.momentum_space.is_none();
-        let published = published.filter(|_| is_published);
-        let attitude = match self.attitude(angle_unit) {
-            Some(attitude) => attitude,
-            None => Quat::from_components(published.map_or([1.0, 0.0, 0.0, 0.0], |start| start.attitude)),
+        let attitude = match (self.attitude(angle_unit), &published) {
+            (Some(attitude), _) => attitude,
+            (None, Some(published)) => Quat::from_components(published.attitude),
+            (None, None) => Quat::from_components([1.0, 0.0, 0.0, 0.0]),
         };
         let from_momentum = |flag: &str, momentum_body: Vec3<f64>| {
             let start = body.enter(&State { attitude, momentum_body });

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use polhode::audit::QuaternionOrder;
 use polhode::units::{RateUnit, TimeUnit};
 use polhode_files::numbers::positive;
-use polhode_files::{ColumnNames, Reading};
+use polhode_files::{ColumnNames, ReadOptions};
 
 /// Columns and times of a table.
 #[derive(Args, Clone, Debug)]
@@ -23,14 +23,12 @@ pub(crate) struct TableArguments {
 
 impl TableArguments {
     /// What they say, with the unit of the angular velocity.
-    pub(crate) fn reading(&self, rate_unit: Option<RateUnit>) -> Reading {
-        Reading {
-            columns: self.columns.clone().unwrap_or_default(),
-            time_unit: self.time_unit,
-            sample_rate: self.sample_rate,
-            rate_unit,
-            ..Reading::default()
-        }
+    pub(crate) fn reading(&self, rate_unit: Option<RateUnit>) -> ReadOptions {
+        ReadOptions::default()
+            .with_columns(self.columns.clone().unwrap_or_default())
+            .with_time_unit(self.time_unit)
+            .with_sample_rate(self.sample_rate)
+            .with_rate_unit(rate_unit)
     }
 }
 

@@ -47,23 +47,22 @@ enum ModeArgument {
 }
 
 impl TumblingArguments {
+    pub(crate) fn is_given(&self) -> bool {
+        self.periods.is_some()
+    }
+
     /// The elements that the flags state, if they do.
     pub(crate) fn elements(&self, angle_unit: f64) -> Result<Option<TumblingElements>, Error> {
-        let Some(Periods([precession_period, rotation_period])) = self.periods else { return Ok(None) };
+        let Some(Periods(periods)) = self.periods else { return Ok(None) };
         let mode = match self.mode {
             Some(ModeArgument::Lam) => Mode::LongAxis,
             Some(ModeArgument::Sam) => Mode::ShortAxis,
             None => return Err(Error::input("--mode", "", "missing beside --periods", "give lam or sam")),
         };
         let angles = |typed: Option<[f64; 2]>| typed.map(|angles| angles.map(|angle| angle * angle_unit));
-        Ok(Some(TumblingElements {
-            mode,
-            precession_period,
-            rotation_period,
-            pole: angles(self.pole).unwrap_or([0.0, core::f64::consts::FRAC_PI_2]),
-            angles: angles(self.phases).unwrap_or_default(),
-            is_reversed: self.reversed,
-        }))
+        let elements = TumblingElements::new(mode, periods).with_reversed(self.reversed);
+        let elements = angles(self.pole).map_or(elements, |pole| elements.with_pole(pole));
+        Ok(Some(angles(self.phases).map_or(elements, |phases| elements.with_angles(phases))))
     }
 
     /// What is wrong with them for a body.

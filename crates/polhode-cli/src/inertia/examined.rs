@@ -54,12 +54,11 @@ impl Examined {
                 about: point.map(|point| (point, None)),
             });
         }
-        let evidence = Evidence {
-            mass: given.mass,
-            center_of_mass: Some(given.turn.inverse() * given.center_of_mass),
-            extents: given.extents,
-            twin: given.twin,
-        };
+        let evidence = Evidence::default()
+            .with_mass(given.mass)
+            .with_center_of_mass(given.turn.inverse() * given.center_of_mass)
+            .with_extents(given.extents)
+            .with_twin(given.twin);
         let mut diagnosis = diagnose(given.tensor, &evidence)?;
         if given.computed && diagnosis.verdict == Validity::Suspicious {
             diagnosis.verdict = Validity::Valid;

@@ -4,7 +4,6 @@ mod examined;
 mod links;
 mod meshes;
 mod output;
-mod parts;
 mod repair;
 mod summary;
 mod twins;
@@ -14,11 +13,12 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, InertiaError, MassError, MassProperties, Solid};
+use polhode_files::bodies;
 use polhode_files::error::{Error, warn};
 use polhode_files::given::{self, Given};
 use polhode_files::numbers::{list, numbers, positive};
 use polhode_files::read;
-use polhode_files::robots::{self as models, Language};
+use polhode_files::robots::Language;
 use polhode_files::text::{short, visible};
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
@@ -280,7 +280,7 @@ impl Inertia {
         match shape {
             "tensor" => single(self.tensor()?),
             "mesh" => single(Given::body(self.mesh.body(path, self.amount()?)?)),
-            "parts" => single(Given::body(parts::read_parts(path)?)),
+            "parts" => single(Given::body(bodies::parts(path)?)),
             "json" => given::from_json(path, &read(path, "name a JSON file of this command")?),
             _ => {
                 if !Solid::names().any(|name| name == shape) {
@@ -369,27 +369,4 @@ impl Inertia {
         }
         Ok(given)
     }
-}
-
-/// Name and tensor of every body of a file of the `kind`: toml, urdf, mjcf, sdf or xml.
-pub(crate) fn tensors_of_file(path: &Path, kind: &str) -> Result<Vec<(String, Matrix3<f64>)>, Error> {
-    if kind == "toml" {
-        return Ok(vec![(String::new(), parts::read_parts(path)?.tensor())]);
-    }
-    let text = read(path, "name a URDF, MJCF or SDF file")?;
-    let language = Language::named(kind).unwrap_or(if text.contains("<robot") {
-        Language::Urdf
-    } else if text.contains("<sdf") {
-        Language::Sdf
-    } else {
-        Language::Mjcf
-    });
-    let tensor = |body: &Given| {
-        let turn = body.turn.to_rotation_matrix();
-        turn * body.tensor * turn.transpose()
-    };
-    let links = models::read(language, path, &text, None)?;
-    // a frame without a body, and a link that states no tensor, have none to give
-    let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
-    Ok(bodies.map(|body| (body.name.clone(), tensor(body))).collect())
 }

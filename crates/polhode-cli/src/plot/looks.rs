@@ -104,7 +104,7 @@ impl Looks {
 
     /// The direction of the weight moment in body axes; `None` without gravity.
     pub(super) fn weight(&self) -> Option<Vector3<f64>> {
-        let weight = self.body.gravity::<f64>()?.weight_moment;
+        let weight = self.body.linear_potential::<f64>()?.moment;
         // a momentum goes the same way out of the solver frame
         let moment = self.body.leave(&Point::new(Quat::identity(), weight)).momentum();
         Some(moment.normalize())
@@ -248,9 +248,7 @@ impl Looks {
 
     /// What acts on the body, as part of a title.
     pub(super) fn forces(&self) -> String {
-        let gravity = self.body.gravity::<f64>().map(|_| "gravity");
-        let names = gravity.into_iter().chain(self.body.forces().iter().map(|force| force.name()));
-        let names = names.collect::<Vec<_>>();
+        let names = self.body.forces().iter().map(|force| force.name()).collect::<Vec<_>>();
         if names.is_empty() { String::new() } else { format!(" under {}", names.join(", ")) }
     }
 }

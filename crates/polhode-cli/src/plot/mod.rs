@@ -102,7 +102,7 @@ pub(crate) struct Plot {
     #[arg(value_enum, value_name = "KIND")]
     kind: Kind,
     #[command(flatten)]
-    motion: MotionArguments,
+    pub(crate) motion: MotionArguments,
     /// End of the motion: s, or with a unit (ms, min, h, d)
     #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Motion")]
     until: f64,

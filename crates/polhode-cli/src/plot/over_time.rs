@@ -4,16 +4,16 @@ use polhode::flow::LagrangeTop;
 use polhode::observe::Errors;
 use polhode::rotation::EulerSequence;
 use polhode_files::error::Error;
-use polhode_pages::figure::{Canvas, Figure, Scale, Series, page_of};
+use polhode_pages::figure::{Canvas, Curve, Figure, Scale, page_of};
 
 use super::looks::Looks;
 use super::{Plot, short};
 
 impl Looks {
     /// A curve against time: a line where the looks are close enough, else dots.
-    fn curve(&self, name: &str, values: impl Iterator<Item = Option<f64>>) -> Series {
+    fn curve(&self, name: &str, values: impl Iterator<Item = Option<f64>>) -> Curve {
         let points = self.times.iter().zip(values).filter_map(|(t, value)| Some((*t, value?))).collect();
-        let series = Series::new(name, points);
+        let series = Curve::new(name, points);
         if self.is_resolved() { series.plain() } else { series.dots() }
     }
 }
@@ -113,7 +113,7 @@ fn potential(looks: &Looks, top: &LagrangeTop, [width, height]: [f64; 2]) -> Opt
         ("V(θ) − E (J)", Scale::Linear),
     )
     .sized(width, height);
-    figure.series.push(Series::new("", points).plain());
+    figure.series.push(Curve::new("", points).plain());
     figure.level("E", 0.0);
     let turning = if most > least { vec![least, most] } else { vec![least] };
     let label = match turning.len() {

@@ -5,7 +5,7 @@ use polhode::flow::Stability;
 use polhode_files::error::Error;
 use polhode_pages::figure::sphere::{View, circle};
 use polhode_pages::figure::style::{BLACK, BLUE, Colour, GREY, ORANGE};
-use polhode_pages::figure::{Canvas, Figure, Fill, Scale, Series};
+use polhode_pages::figure::{Canvas, Curve, Figure, Fill, Scale};
 
 use super::looks::Looks;
 use super::{BodyAxis, Plot};
@@ -268,20 +268,20 @@ pub(super) fn herpolhode(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
             .sized(width, height);
     if outer <= POINT * size {
         title += "; the herpolhode is a point: ω lies along L";
-        figure.series.push(Series::new("", vec![(0.0, 0.0)]));
+        figure.series.push(Curve::new("", vec![(0.0, 0.0)]));
     } else {
-        figure.series.push(Series::new("", points.first().copied().into_iter().collect()));
+        figure.series.push(Curve::new("", points.first().copied().into_iter().collect()));
         if is_free {
             let round = (outer - inner) <= 1e-6 * outer;
             title += if round { "; a circle" } else { "; grey: the circles that it touches" };
             for radius in if round { vec![] } else { vec![inner, outer] } {
                 let ring = circle(V::z(), V::new(radius, 0.0, 0.0));
                 let ring = ring.into_iter().map(|v| (v.x, v.y)).collect();
-                figure.series.push(Series::new("", ring).plain().coloured(7));
+                figure.series.push(Curve::new("", ring).plain().coloured(7));
             }
         }
         title += "; dot: the start";
-        let path = Series::new("", points).coloured(2);
+        let path = Curve::new("", points).coloured(2);
         figure.series.push(if looks.is_resolved() { path.plain() } else { path.dots() });
     }
     figure.title = title;

@@ -15,7 +15,7 @@ use polhode::run::{Run, RunError, Sample, Schedule, ScheduleError, Watch};
 use polhode_files::error::{Error, warn};
 use polhode_files::moment::positive_duration;
 use polhode_files::numbers::positive;
-use polhode_pages::table::{Format, Rows};
+use polhode_pages::table::{Format, RowWriter};
 
 use crate::cost;
 use crate::flags::motion::MotionArguments;
@@ -33,7 +33,7 @@ const EXAMPLES: &str = "Examples:
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --times 0,10,1e6
   polhode propagate --body toutatis --until 30d --every 6h --fields t,q,omega
   polhode propagate --body gyroscope --until 1 --every 0.1 --euler zxz
-  polhode propagate --body toutatis --epoch 1992-11-09T17:50 \\
+  polhode propagate --body toutatis --epoch 1992-11-09T17:49:47 \\
     --times 1992-11-10,1992-12-04 --fields t,omega
   polhode propagate --body phone --omega 0,10,1 --until 5 --every 1 \\
     --drag 1e-5 --method rk4 --step 0.01
@@ -45,7 +45,7 @@ const EXAMPLES: &str = "Examples:
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Propagate {
     #[command(flatten)]
-    motion: MotionArguments,
+    pub(crate) motion: MotionArguments,
     #[command(flatten)]
     times: TimeArguments,
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
@@ -74,6 +74,10 @@ impl Propagate {
         let columns = Columns::chosen(&self.fields, self.motion.start.euler, &body)?;
         let start = self.motion.start(&body)?;
         let times = self.times.output()?;
+        let published = self.motion.body.published_start().filter(|_| !self.motion.start.has_attitude());
+        if let Some(epoch) = published.and_then(|start| start.orientation?.epoch) {
+            self.times.compare_epoch(epoch);
+        }
         if self.method == "exact" {
             self.exact(&body, start, &times, columns)
         } else {
@@ -86,9 +90,9 @@ impl Propagate {
         &self,
         columns: &Columns,
         count: Option<usize>,
-        fill: impl FnOnce(&mut Rows) -> Result<(), Error>,
+        fill: impl FnOnce(&mut RowWriter) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        let mut rows = Rows::new(columns.table(), self.format, self.out.as_deref(), count)?;
+        let mut rows = RowWriter::new(columns.table(), self.format, self.out.as_deref(), count)?;
         let ended = fill(&mut rows);
         if matches!(ended, Ok(()) | Err(Error::Failed(_))) {
             rows.finish()?;

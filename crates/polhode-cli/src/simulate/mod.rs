@@ -11,7 +11,7 @@ use polhode::num::Random;
 use polhode_files::error::Error;
 use polhode_files::numbers::{not_negative, number, numbers, positive};
 use polhode_fit::simulate_with;
-use polhode_pages::table::{Cell, Column, Format, Rows, Table};
+use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
 use crate::flags::body::BodyArguments;
 use crate::flags::times::{Regular, regular};
@@ -104,7 +104,7 @@ impl Simulate {
             let rule = format!("{} samples each, and at most {MOST_SAMPLES} are written", grid.len());
             return Err(Error::input("--tosses", &tosses.to_string(), &rule, "give fewer, or a larger DT"));
         }
-        let mut rows = Rows::new(self.table(), self.format, self.out.as_deref(), tosses * grid.len())?;
+        let mut rows = RowWriter::new(self.table(), self.format, self.out.as_deref(), tosses * grid.len())?;
         let pause = self.pause.unwrap_or(20.0 * self.every);
         for toss in 0..tosses {
             let mut scattered = |share: f64, times: &[f64]| -> Vec<f64> {

@@ -302,33 +302,6 @@ fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
     assert_eq!(fs::read_to_string(own).unwrap(), "# Mine\n");
 }
 
-/// Logs that MuJoCo 4.0.0 wrote: tests/data/mujoco/generate.py.
-#[test]
-fn the_integrators_of_mujoco_are_named_and_what_to_switch_to() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mujoco");
-    let cases = [
-        ("euler", "", "semi-implicit-euler"),
-        ("implicit", "", "linearly-implicit-euler"),
-        ("implicitfast", "", "linearly-implicit-euler"),
-        ("rk4", " --tolerance 1e-8", "mujoco-rk4"),
-    ];
-    for (log, flags, method) in cases {
-        let file = folder.join(format!("{log}.csv")).display().to_string();
-        let answer = run(&format!("audit {file} --moments 1,2,2.5{flags} --format json"));
-        let found = verdict(&answer);
-        assert_eq!(answer.code, 1, "{log}: {}", answer.err);
-        assert_eq!(found["suspect"], format!("integrator:{method}"), "{log}: {found:#}");
-        let step = found["integrator"]["step"].as_f64().unwrap();
-        assert!((step - 0.05).abs() < 1e-9, "{log}: {found:#}");
-        // without it where thought takes longer than two seconds
-        let advice = &found["advice"];
-        assert!(advice.is_null() || advice["step"].as_f64().unwrap() > 0.0, "{log}: {advice:#}");
-    }
-    // within the tolerance by default
-    let file = folder.join("rk4.csv").display().to_string();
-    assert_eq!(run(&format!("audit {file} --moments 1,2,2.5")).code, 0);
-}
-
 #[test]
 fn rodrigues_parameters_are_named_in_the_reading() {
     let scratch = Scratch::new("audit-rodrigues");

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::harness::{Scratch, names, output, refused, run, words};
+use crate::harness::{Scratch, names, output, polhode, refused, run, words};
 
 /// Every file below `folder` with its bytes, by path.
 fn tree(folder: &Path) -> Vec<(String, Vec<u8>)> {
@@ -191,4 +191,27 @@ fn experiments_go_on_where_the_system_refuses_threads() {
     let mut alone = Command::new(env!("CARGO_BIN_EXE_polhode"));
     let done = alone.args(words(&line)).env("RUST_MIN_STACK", stack).output().unwrap();
     assert_eq!((done.status.code(), String::from_utf8_lossy(&done.stderr).as_ref()), (Some(0), ""));
+}
+
+/// Sources that differ from their commit make no results that can be kept; a clean clone sees the other half.
+#[test]
+fn what_this_program_has_finished_is_not_run_again() {
+    let scratch = Scratch::new("experiment-resume");
+    let line = "experiment run order lecture --scale smoke --out results --resume";
+    let first = polhode(&words(line), &scratch.0);
+    assert_eq!(first.code, 0, "{}", first.err);
+    let mark = scratch.0.join("results/smoke/order/run.toml");
+    let text = fs::read_to_string(&mark).unwrap();
+    let is_clean = text.contains("changed = \"false\"");
+    fs::remove_dir_all(scratch.0.join("results/smoke/lecture")).unwrap();
+    let again = polhode(&words(line), &scratch.0);
+    assert_eq!(again.code, 0, "{}", again.err);
+    assert_eq!(again.err.contains("note: order: finished by this program"), is_clean, "{}", again.err);
+    assert!(!again.err.contains("lecture"), "{}", again.err);
+    // another program's results are run again
+    fs::write(&mark, text.replace("commit = \"", "commit = \"0")).unwrap();
+    assert!(!polhode(&words(line), &scratch.0).err.contains("order: finished"));
+    let smoke = polhode(&words("experiment check order --resume results"), &scratch.0);
+    assert_eq!(smoke.code, 2);
+    assert!(smoke.err.contains("add --scale paper"), "{}", smoke.err);
 }

@@ -47,18 +47,22 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
 pub(crate) struct Answer {
     pub(crate) code: i32,
     pub(crate) out: String,
+    /// What it complains of.
     pub(crate) err: String,
+    /// What the attitude of a catalogued body refers to.
+    pub(crate) notes: String,
 }
 
 /// Runs `polhode` in `folder`; whatever it is asked, it neither panics nor prints what is not a number.
 pub(crate) fn polhode(arguments: &[&str], folder: &Path) -> Answer {
     let done =
         Command::new(env!("CARGO_BIN_EXE_polhode")).args(arguments).current_dir(folder).output().unwrap();
-    let answer = Answer {
-        code: done.status.code().unwrap(),
-        out: String::from_utf8(done.stdout).unwrap(),
-        err: String::from_utf8(done.stderr).unwrap(),
-    };
+    let told = String::from_utf8(done.stderr).unwrap();
+    let (notes, err) = told
+        .split_inclusive('\n')
+        .partition(|line| line.starts_with("note: ") && line.contains(": attitude "));
+    let out = String::from_utf8(done.stdout).unwrap();
+    let answer = Answer { code: done.status.code().unwrap(), out, err, notes };
     for text in [&answer.out, &answer.err] {
         assert!(!text.contains("panicked"), "{arguments:?}: {text}");
     }
@@ -107,7 +111,7 @@ pub(crate) fn refused(line: &str, says: &[&str]) {
 /// [`refused`] for arguments that may hold blanks or nothing.
 pub(crate) fn refused_with(arguments: &[&str], says: &[&str]) {
     let answer = polhode(arguments, Path::new("."));
-    let Answer { code, out, err } = &answer;
+    let Answer { code, out, err, .. } = &answer;
     assert_eq!((*code, out.as_str()), (2, ""), "{arguments:?}: {err}");
     assert!(err.starts_with("error: "), "{arguments:?}: {err}");
     assert_eq!(err.lines().filter(|line| line.starts_with("error:")).count(), 1, "{arguments:?}: {err}");

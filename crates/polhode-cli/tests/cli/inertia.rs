@@ -431,7 +431,7 @@ fn no_number_is_written_out_to_hundreds_of_digits() {
         ("tensor 1e100,1e100,3e100,0,0,0 --mass 1", 1),
         ("sphere 1e-170 --mass 1", 2),
     ] {
-        let Answer { code, out, err } = scratch.run(line);
+        let Answer { code, out, err, .. } = scratch.run(line);
         assert_eq!(code, expected, "{line}: {err}");
         let mut runs = [&out, &err].into_iter().flat_map(|text| text.split(|c: char| !c.is_ascii_digit()));
         assert!(!runs.any(|digits| digits.len() > 25), "{line}: {out} {err}");
@@ -469,7 +469,7 @@ fn what_a_terminal_would_obey_is_written_out() {
         "parts shape.toml",
         "urdf name.urdf",
     ] {
-        let Answer { code, out, err } = scratch.run(line);
+        let Answer { code, out, err, .. } = scratch.run(line);
         assert!(!out.contains(obeyed) && !err.contains(obeyed), "{line}: {out:?} {err:?}");
         assert!((code == 0) == line.contains("valid.json --format"), "{line}: {err}");
         assert!(format!("{out}{err}").contains("\\u"), "{line}: {out:?} {err:?}");

@@ -129,3 +129,30 @@ fn a_folder_of_results_that_holds_an_input_is_not_replaced() {
     scratch.file("spec.toml", EXACT.replace("seed = 7", "seed = 9"));
     polhode(&words(other), &scratch.0).silent(other);
 }
+
+#[test]
+fn two_outputs_of_one_command_are_two_files() {
+    let scratch = Scratch::new("own-outputs");
+    let body = "--moments 1,2,3";
+    let start = format!("{body} --omega 0.4,1,-0.3");
+    let line = format!("propagate {start} --until 5 --every 0.1 --fields t,q,omega --out run.csv");
+    polhode(&words(&line), &scratch.0).silent(&line);
+    for (line, first, second) in [
+        (format!("audit run.csv {body} --report a.md --format csv --out ./a.md"), "--out", "--report"),
+        (format!("audit run.csv {body} --figure a.svg --format csv --out a.svg"), "--out", "--figure"),
+        (
+            format!("compare {start} --until 1 --methods rk4 --steps 0.5 --figure a.svg --out a.svg"),
+            "--out",
+            "--figure",
+        ),
+        ("fit run.csv --residuals a.csv --out a.csv".into(), "--residuals", "--out"),
+    ] {
+        let answer = polhode(&words(&line), &scratch.0);
+        let rule = format!("it would replace {second}");
+        assert_eq!(answer.code, 2, "{line}: {}", answer.err);
+        assert!(answer.err.contains(first) && answer.err.contains(&rule), "{line}: {}", answer.err);
+        assert_eq!(scratch.names(), ["run.csv"], "{line}");
+    }
+    let line = format!("audit run.csv {body} --figure /dev/null --out /dev/null --format csv");
+    assert!(!polhode(&words(&line), &scratch.0).err.contains("it would replace"));
+}

@@ -3,6 +3,7 @@
 //! `POLHODE_BLESS=1 cargo test -p polhode-cli --test cli` rewrites the golden files; read the difference.
 
 #![allow(clippy::unwrap_used)]
+#![allow(clippy::disallowed_methods, reason = "tests look at files that a command has written")]
 
 mod advise;
 mod audit;
@@ -17,6 +18,7 @@ mod flights;
 mod forces;
 mod general;
 mod harness;
+mod hostile;
 mod inertia;
 #[cfg(unix)]
 mod inputs;
@@ -25,6 +27,7 @@ mod interrupted;
 mod logs;
 mod motion;
 mod plot;
+mod programs;
 mod propagate;
 mod report;
 mod robots;

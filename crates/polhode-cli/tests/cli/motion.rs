@@ -46,7 +46,7 @@ fn periods_make_a_start_and_come_back() {
     for (name, expected) in [
         ("precession_period", 27.38 * 3600.0),
         ("polhode_period", 263.0 * 3600.0),
-        ("lambda", -110.0_f64.to_radians()),
+        ("lambda", 250_f64.to_radians()),
         ("beta", -75_f64.to_radians()),
         ("phi", 152_f64.to_radians()),
         ("psi", 14_f64.to_radians()),

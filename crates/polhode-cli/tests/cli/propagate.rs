@@ -129,7 +129,7 @@ fn a_body_at_rest_stays() {
 }
 
 /// The cells of a column of CSV, as numbers.
-fn column(text: &str, name: &str) -> Vec<f64> {
+pub(crate) fn column(text: &str, name: &str) -> Vec<f64> {
     let mut rows = csv::Reader::from_reader(text.as_bytes());
     let place = rows.headers().unwrap().iter().position(|header| header.starts_with(name)).unwrap();
     rows.records().map(|row| row.unwrap()[place].parse().unwrap()).collect()

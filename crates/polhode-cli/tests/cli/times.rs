@@ -4,6 +4,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use crate::harness::{DYADIC, Scratch, output, refused, run, with, words};
+use crate::propagate::column;
 
 #[test]
 fn times_of_a_file_a_pipe_and_a_list_give_the_same_rows() {
@@ -153,4 +154,32 @@ fn the_start_of_the_catalogue_is_that_of_the_body() {
     let top = output("propagate --body gyroscope --times 0 --fields q,omega");
     assert!(top.lines().nth(1).unwrap().starts_with("0.96592582628906"), "{top}");
     assert!(DYADIC.contains("--omega"));
+}
+
+#[test]
+fn the_attitude_of_the_catalogue_stays_unless_another_is_given() {
+    let tilted = |flags: &str| {
+        let answer = run(&format!("propagate --body gyroscope {flags} --times 0 --fields q"));
+        (answer.out.lines().nth(1).unwrap().starts_with("0.96592582628906"), answer.notes)
+    };
+    for flags in ["", "--omega 0,0,60", "--momentum-body 0,0,0.003"] {
+        assert_eq!(
+            tilted(flags),
+            (true, "note: gyroscope: attitude in the frame gravity along -z\n".into()),
+            "{flags}"
+        );
+    }
+    assert_eq!(tilted("--omega 0,0,60 --attitude 1,0,0,0"), (false, String::new()));
+    let unknown = run("propagate --body racket --times 0");
+    assert_eq!(unknown.notes, "note: racket: attitude unknown: identity\n");
+    // published: doi of arXiv:1504.02024
+    let toutatis = run("motion --body toutatis");
+    for (name, expected) in [("lambda", 180.2_f64), ("beta", -54.75)] {
+        let found = column(&toutatis.out, name)[0].to_degrees();
+        let apart = (found - expected).rem_euclid(360.0);
+        assert!(apart.min(360.0 - apart) < 0.3, "{name} {found}");
+    }
+    let dated = |epoch: &str| run(&format!("propagate --body toutatis --epoch {epoch} --times 1992-11-10"));
+    assert_eq!(dated("1992-11-09T17:49:47").err, "");
+    assert!(dated("1992-11-09T17:50").err.contains("published start is of 1992-11-09T17:49:47 UTC"));
 }

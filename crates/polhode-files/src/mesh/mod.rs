@@ -1,5 +1,6 @@
-//! Triangles from STL, OBJ and PLY files.
+//! Triangles from STL, OBJ and PLY files, and the bodies that they enclose.
 
+mod body;
 mod error;
 mod obj;
 mod ply;
@@ -14,6 +15,7 @@ use polhode::inertia::Surface;
 use crate::error::Error;
 use crate::inputs;
 use crate::text::visible;
+pub use body::{MeshOptions, length_unit};
 pub use error::MeshFileError;
 pub use obj::read as obj;
 pub use ply::read as ply;

@@ -1,9 +1,9 @@
-//! Dumps of LAMMPS as rows: blocks of atoms, each with a time step and, where it was asked for, a time.
+//! Dumps of LAMMPS as rows: blocks of atoms or of local entries, each with a time step and, where it was asked for, a time.
 
 use super::lines::{Line, Lines};
 use crate::error::{Rule, TableError};
 
-/// Blocks of a dump; each atom is a row, with the time of its block in front.
+/// Blocks of a dump; each atom or entry is a row, with the time of its block in front.
 pub(crate) struct Dump<'t> {
     pub(crate) lines: Lines<'t>,
     /// The item that was read last.
@@ -11,7 +11,7 @@ pub(crate) struct Dump<'t> {
     /// What the block says before its rows.
     step: Option<String>,
     time: Option<String>,
-    atoms: Option<u64>,
+    rows: Option<u64>,
     /// Rows of the block that are left, and of how many.
     left: (u64, u64),
     /// The time of the block.
@@ -25,10 +25,10 @@ impl<'t> Dump<'t> {
     pub(crate) fn new(lines: Lines<'t>, item: &str) -> Self {
         let item = item.strip_prefix("ITEM:").map(|item| item.trim().to_string());
         let now = String::new();
-        Self { lines, item, step: None, time: None, atoms: None, left: (0, 0), now, names: None }
+        Self { lines, item, step: None, time: None, rows: None, left: (0, 0), now, names: None }
     }
 
-    /// Reads the header, then a row for each atom.
+    /// Reads the header, then a row for each atom or entry.
     pub(crate) fn advance(&mut self, line: &mut Line) -> Result<bool, TableError> {
         while self.left.0 == 0 {
             let Some(item) = self.item.take() else {
@@ -45,15 +45,15 @@ impl<'t> Dump<'t> {
             match item.as_str() {
                 "TIMESTEP" => self.step = Some(self.number()?),
                 "TIME" => self.time = Some(self.number()?),
-                "NUMBER OF ATOMS" => self.atoms = self.number()?.parse().ok(),
-                text if text.starts_with("ATOMS") => {
+                "NUMBER OF ATOMS" | "NUMBER OF ENTRIES" => self.rows = self.number()?.parse().ok(),
+                text if text.starts_with("ATOMS") || text.starts_with("ENTRIES") => {
                     let other = |rule: &str, remedy: &str| {
                         Err(self.lines.refused(Rule::Other(rule.into())).with_remedy(remedy))
                     };
-                    let Some(atoms) = self.atoms.take() else {
+                    let Some(rows) = self.rows.take() else {
                         return other(
-                            "a block of atoms without their number",
-                            "dump it with ITEM: NUMBER OF ATOMS",
+                            "a block of rows without their number",
+                            "dump it with ITEM: NUMBER OF ATOMS or ENTRIES",
                         );
                     };
                     let (time, name) = match (self.time.take(), self.step.take()) {
@@ -61,13 +61,14 @@ impl<'t> Dump<'t> {
                         (None, Some(step)) => (step, "timestep"),
                         (None, None) => {
                             return other(
-                                "a block of atoms without a time step",
+                                "a block of rows without a time step",
                                 "dump it with ITEM: TIMESTEP",
                             );
                         }
                     };
-                    let names = format!("{name} {}", named(text.split_whitespace().skip(1)).join(" "));
-                    (self.now, self.left) = (time, (atoms, atoms));
+                    let names: Vec<&str> = text.split_whitespace().skip(1).collect();
+                    let names = format!("{name} {}", names.join(" "));
+                    (self.now, self.left) = (time, (rows, rows));
                     match &self.names {
                         None => {
                             line.text.clone_from(&names);
@@ -88,7 +89,7 @@ impl<'t> Dump<'t> {
             }
         }
         if !self.lines.advance()? {
-            let rule = format!("the file ends within a block of {} atoms", self.left.1);
+            let rule = format!("the file ends within a block of {} rows", self.left.1);
             return Err(self
                 .lines
                 .refused(Rule::Other(rule))
@@ -112,16 +113,17 @@ impl<'t> Dump<'t> {
 }
 
 /// Names of columns without the marks of computes, fixes and variables; four components of one compute are a quaternion.
-fn named<'a>(columns: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let columns: Vec<&str> = columns.collect();
-    let part = |name: &'a str| name.strip_suffix(']')?.rsplit_once('[');
+pub(crate) fn spelled(columns: &[String]) -> Vec<String> {
+    fn part(name: &str) -> Option<(&str, &str)> {
+        name.strip_suffix(']')?.rsplit_once('[')
+    }
     let size =
         |stem: &str| columns.iter().filter(|name| part(name).is_some_and(|(other, _)| other == stem)).count();
     let plain = |name: &str| {
         let stripped = ["c_", "f_", "v_"].iter().find_map(|mark| name.strip_prefix(mark));
         stripped.unwrap_or(name).to_string()
     };
-    let name = |name: &&'a str| match part(name) {
+    let name = |name: &String| match part(name) {
         Some((stem, number)) if size(stem) == 4 => {
             let letters = ["w", "x", "y", "z"];
             let letter = number.parse::<usize>().ok().and_then(|n| letters.get(n.checked_sub(1)?));
@@ -134,12 +136,13 @@ fn named<'a>(columns: impl Iterator<Item = &'a str>) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::named;
+    use super::spelled;
 
     #[test]
     fn four_components_of_a_compute_are_a_quaternion() {
         let header = "id type c_orient[1] c_orient[2] c_orient[3] c_orient[4] angmomx c_omega[1] v_k";
-        let names = named(header.split_whitespace());
+        let columns: Vec<String> = header.split_whitespace().map(String::from).collect();
+        let names = spelled(&columns);
         assert_eq!(names, ["id", "type", "q_w", "q_x", "q_y", "q_z", "angmomx", "omega[1]", "k"]);
     }
 }

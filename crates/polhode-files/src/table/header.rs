@@ -53,7 +53,18 @@ pub(crate) struct Header {
 impl Header {
     /// Of the cells of a line; `counts_rows` where rows without a time may be counted.
     pub(crate) fn of(cells: &[String], flags: &ColumnNames, counts_rows: bool) -> Result<Self, Rule> {
-        let names: Vec<Name> = cells.iter().map(|cell| Name::of(cell)).collect();
+        Self::spelled(cells, cells, flags, counts_rows)
+    }
+
+    /// The same, where `spelled` says what the cells mean, as those of a dump.
+    pub(crate) fn spelled(
+        cells: &[String],
+        spelled: &[String],
+        flags: &ColumnNames,
+        counts_rows: bool,
+    ) -> Result<Self, Rule> {
+        let named = |(cell, meant): (&String, &String)| Name { text: cell.clone(), ..Name::of(meant) };
+        let names: Vec<Name> = cells.iter().zip(spelled).map(named).collect();
         let mut header = Header { time: flags.place("t", cells)?, ..Header::default() };
         header.time_is_named = header.time.is_some();
         header.id = match flags.place("id", cells)? {
@@ -87,10 +98,11 @@ impl Header {
                 header.is_generalized = true;
                 bodies?
             }
-            None => {
-                let found = if wanted.is_empty() { groups(&names)? } else { wanted };
-                vec![Columns::of(found, &names)?]
+            None if wanted.is_empty() => {
+                let found = vec![Columns::of(groups(&names)?, &names)?];
+                if found.iter().any(Columns::is_empty) { owned(&names)?.unwrap_or(found) } else { found }
             }
+            None => vec![Columns::of(wanted, &names)?],
         };
         header.names = names;
         let missing = header.missing(cells);
@@ -193,6 +205,10 @@ impl Group {
 }
 
 impl Columns {
+    fn is_empty(&self) -> bool {
+        self.attitude.is_none() && self.rates.is_none() && self.momentum.is_none()
+    }
+
     /// Of groups, of which each quantity may have one.
     fn of(groups: Vec<Group>, names: &[Name]) -> Result<Self, Rule> {
         let mut columns = Columns::default();
@@ -265,6 +281,33 @@ fn groups(names: &[Name]) -> Result<Vec<Group>, Rule> {
         }
     }
     Ok(found)
+}
+
+/// Bodies whose names stand in front of their quantities, as in the states of Drake: `model_body_qw`; those that have an attitude.
+fn owned(names: &[Name]) -> Result<Option<Vec<Columns>>, Rule> {
+    let parts: Vec<Option<(&str, &str)>> = names.iter().map(|name| name.text.rsplit_once('_')).collect();
+    let mut owners: Vec<&str> = parts.iter().flatten().map(|(owner, _)| *owner).collect();
+    owners.sort_unstable();
+    owners.dedup();
+    let mut bodies = Vec::new();
+    for owner in owners {
+        let own = |(place, part): (usize, &Option<(&str, &str)>)| {
+            part.filter(|part| part.0 == owner).map(|(_, quantity)| (place, Name::of(quantity)))
+        };
+        let (places, own): (Vec<usize>, Vec<Name>) = parts.iter().enumerate().filter_map(own).unzip();
+        let mut columns = Columns::of(groups(&own)?, &own)?;
+        if columns.attitude.as_ref().is_some_and(|attitude| !attitude.yields) {
+            let groups = [&mut columns.attitude, &mut columns.rates, &mut columns.momentum];
+            for place in groups.into_iter().flatten().flat_map(|group| &mut group.places) {
+                *place = places[*place];
+            }
+            bodies.push(Columns { label: Some(owner.to_string()), ..columns });
+        }
+    }
+    if let [alone] = &mut bodies[..] {
+        alone.label = None;
+    }
+    Ok((!bodies.is_empty()).then_some(bodies))
 }
 
 /// Free joints of MuJoCo: `qpos` holds three positions and a quaternion, scalar first, for each; `qvel` three velocities and
@@ -343,6 +386,12 @@ mod tests {
                 "t,gyroRotationX,gyroRotationY,gyroRotationZ,motionRotationRateX,motionRotationRateY,motionRotationRateZ"
             ),
             [(Rates, vec![1, 2, 3])]
+        );
+        assert_eq!(
+            found(
+                "time,model_a_qw,model_a_qx,model_a_qy,model_a_qz,model_a_x,model_a_y,model_a_z,model_a_wx,model_a_wy,model_a_wz"
+            ),
+            [(Quaternion, vec![1, 2, 3, 4]), (Rates, vec![8, 9, 10])]
         );
         assert_eq!(found("t,a,b"), []);
     }

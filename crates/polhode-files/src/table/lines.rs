@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
+use super::array::{ArrayText, MAGIC};
 use crate::error::{Rule, TableError};
 use crate::inputs;
 use crate::text::visible;
@@ -40,7 +41,7 @@ pub(crate) struct Lines<'t> {
 impl<'t> Lines<'t> {
     /// Of the file at `path`, or of standard input where that is `-`.
     pub(crate) fn open(path: &Path) -> Result<Lines<'static>, TableError> {
-        let (name, reader): (String, Box<dyn BufRead>) = if path.as_os_str() == "-" {
+        let (name, mut reader): (String, Box<dyn BufRead>) = if path.as_os_str() == "-" {
             ("standard input".into(), Box::new(BufReader::with_capacity(1 << 18, inputs::standard())))
         } else {
             let name = visible(&path.display().to_string()).into_owned();
@@ -48,6 +49,10 @@ impl<'t> Lines<'t> {
                 .map_err(|reason| TableError::of(&name, Rule::Readable(reason.to_string())))?;
             (name, Box::new(BufReader::with_capacity(1 << 18, file)))
         };
+        let unread = |reason: std::io::Error| TableError::of(&name, Rule::Readable(reason.to_string()));
+        if reader.fill_buf().map_err(unread)?.starts_with(MAGIC) {
+            reader = Box::new(ArrayText::new(reader).map_err(unread)?);
+        }
         Ok(Lines::new(reader, name))
     }
 

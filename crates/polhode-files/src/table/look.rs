@@ -2,8 +2,9 @@
 
 use std::collections::VecDeque;
 
-use super::Reading;
+use super::ReadOptions;
 use super::cells::{Delimiter, is_number, uncommented};
+use super::dump::spelled;
 use super::header::Header;
 use super::lines::Line;
 use super::source::Source;
@@ -42,7 +43,7 @@ struct Candidate {
 }
 
 /// Looks for the header: the last line to name a time and a quantity before the first row of numbers.
-pub(crate) fn look(source: &mut Source, reading: &Reading) -> Result<Looked, TableError> {
+pub(crate) fn look(source: &mut Source, reading: &ReadOptions) -> Result<Looked, TableError> {
     let mut lines: Vec<Line> = Vec::new();
     let mut best: Option<Candidate> = None;
     let mut line = Line::default();
@@ -53,7 +54,7 @@ pub(crate) fn look(source: &mut Source, reading: &Reading) -> Result<Looked, Tab
         }
         let comment = uncommented(&line.text);
         let text = comment.unwrap_or(&line.text);
-        if let Some((header, delimiter)) = header_of(text, reading) {
+        if let Some((header, delimiter)) = header_of(text, source.is_dump(), reading) {
             // prose may name t, x, y, z as well
             if comment.is_none() || best.as_ref().is_none_or(|best| best.is_comment) {
                 let (end, is_comment) = (lines.len() + 1, comment.is_some());
@@ -100,10 +101,12 @@ pub(crate) fn look(source: &mut Source, reading: &Reading) -> Result<Looked, Tab
 }
 
 /// The header in a line, if it is one. Names separated by blanks may hold single blanks.
-fn header_of(text: &str, reading: &Reading) -> Option<(Header, Delimiter)> {
+fn header_of(text: &str, is_dump: bool, reading: &ReadOptions) -> Option<(Header, Delimiter)> {
     let of = |delimiter: Delimiter| {
         let cells = delimiter.names(text);
-        let header = Header::of(&cells, &reading.columns, reading.sample_rate.is_some()).ok()?;
+        let spelled = if is_dump { spelled(&cells) } else { cells.clone() };
+        let header =
+            Header::spelled(&cells, &spelled, &reading.columns, reading.sample_rate.is_some()).ok()?;
         // a row of numbers has columns of these numbers as well
         let is_row = header.columns().iter().any(|place| is_number(&cells[*place]));
         (!is_row).then_some((header, delimiter))
@@ -129,7 +132,7 @@ fn is_row(text: &str, header: Option<&Candidate>) -> bool {
 }
 
 /// Rows of numbers without a header: columns that are named by number, time and three rates, or messages of ROS 2.
-fn headless(lines: &[Line], reading: &Reading) -> Option<(Header, Delimiter)> {
+fn headless(lines: &[Line], reading: &ReadOptions) -> Option<(Header, Delimiter)> {
     let mut rows = lines.iter().map(|line| line.text.as_str()).filter(|text| uncommented(text).is_none());
     let first = rows.next()?;
     let delimiter = Delimiter::of(first);

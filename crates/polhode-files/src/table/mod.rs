@@ -1,5 +1,6 @@
 //! Tables: lines of cells under a header, read one row at a time.
 
+mod array;
 mod cells;
 mod clock;
 mod dump;
@@ -31,7 +32,8 @@ use crate::error::{Rule, TableError};
 
 /// How a table is read, where its header leaves it open.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Reading {
+#[non_exhaustive]
+pub struct ReadOptions {
     /// Columns that are named by a flag.
     pub columns: ColumnNames,
     /// Unit of time where the header names none; without it that of the layout, or s.
@@ -42,6 +44,38 @@ pub struct Reading {
     pub sample_rate: Option<f64>,
     /// Share of the rows of a record that may be left out because they cannot be read, 0.02 without it.
     pub most_skipped: Option<f64>,
+}
+
+impl ReadOptions {
+    /// With columns that are named by a flag.
+    #[must_use]
+    pub fn with_columns(self, columns: ColumnNames) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// With the unit of time where the header names none.
+    #[must_use]
+    pub fn with_time_unit(self, unit: impl Into<Option<TimeUnit>>) -> Self {
+        Self { time_unit: unit.into(), ..self }
+    }
+
+    /// With the unit of the rates where the header names none.
+    #[must_use]
+    pub fn with_rate_unit(self, unit: impl Into<Option<RateUnit>>) -> Self {
+        Self { rate_unit: unit.into(), ..self }
+    }
+
+    /// With the samples a second, where a column counts samples or rows have no time.
+    #[must_use]
+    pub fn with_sample_rate(self, rate: impl Into<Option<f64>>) -> Self {
+        Self { sample_rate: rate.into(), ..self }
+    }
+
+    /// With the share of the rows of a record that may be left out because they cannot be read.
+    #[must_use]
+    pub fn with_most_skipped(self, share: impl Into<Option<f64>>) -> Self {
+        Self { most_skipped: share.into(), ..self }
+    }
 }
 
 const TIME_UNITS: &str = "s, ms, us, ns, min, h";
@@ -72,18 +106,18 @@ pub(crate) struct Table<'t> {
 
 impl Table<'static> {
     /// Of the file at `path`, or of standard input where that is `-`.
-    pub(crate) fn open(path: &Path, reading: &Reading) -> Result<Self, TableError> {
+    pub(crate) fn open(path: &Path, reading: &ReadOptions) -> Result<Self, TableError> {
         Table::new(Source::new(Lines::open(path)?)?, reading)
     }
 }
 
 impl<'t> Table<'t> {
     /// Of a text in memory, which messages call `name`.
-    pub(crate) fn of_text(text: &'t str, name: &str, reading: &Reading) -> Result<Self, TableError> {
+    pub(crate) fn of_text(text: &'t str, name: &str, reading: &ReadOptions) -> Result<Self, TableError> {
         Table::new(Source::new(Lines::of_text(text, name))?, reading)
     }
 
-    fn new(mut source: Source<'t>, reading: &Reading) -> Result<Self, TableError> {
+    pub(crate) fn new(mut source: Source<'t>, reading: &ReadOptions) -> Result<Self, TableError> {
         let looked = look::look(&mut source, reading)?;
         let preamble = Preamble::of(&looked.before);
         let comments =
@@ -289,7 +323,7 @@ impl<'t> Table<'t> {
     /// The unit of the times: that of the names, a setting, the layout, or the lines above; they must not contradict each other.
     fn resolve_time(
         &self,
-        reading: &Reading,
+        reading: &ReadOptions,
         below: Option<TimeUnit>,
     ) -> Result<Option<TimeUnit>, TableError> {
         let counted = reading.sample_rate.map(|rate| TimeUnit::Multiple(1.0 / rate));
@@ -322,7 +356,7 @@ impl<'t> Table<'t> {
     }
 
     /// The units of the angular velocity are known, and do not contradict a setting.
-    fn resolve_rates(&mut self, reading: &Reading) -> Result<(), TableError> {
+    fn resolve_rates(&mut self, reading: &ReadOptions) -> Result<(), TableError> {
         let implied = self.header.rate_unit.or(self.preamble.rate_unit());
         let stated = self.header.bodies.iter().filter_map(|body| body.rates.as_ref());
         for (place, text) in stated.flat_map(|rates| rates.places.iter().zip(&rates.units)) {

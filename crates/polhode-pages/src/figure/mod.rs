@@ -47,7 +47,7 @@ pub struct Drawing {
 
 /// A named curve.
 #[derive(Clone, Debug)]
-pub struct Series {
+pub struct Curve {
     /// Its name, in the legend or beside its end; nothing for a curve that another one names.
     pub name: String,
     /// Points, ascending in x.
@@ -101,12 +101,12 @@ pub struct Figure {
     /// Half width of a grey band about zero.
     band: Option<f64>,
     /// The curves.
-    pub series: Vec<Series>,
+    pub series: Vec<Curve>,
     guides: Vec<Guide>,
     events: Vec<Events>,
 }
 
-impl Series {
+impl Curve {
     /// A curve through points, with a mark at each.
     pub fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), points, spread: Vec::new(), look: Look::Marked, colour: None }
@@ -249,7 +249,7 @@ mod tests {
         let mut figure = Figure::log_log("test", "Curves & more", "steps", "error (rad)");
         for k in 0..curves {
             let curve = (1..9).map(|n| (f64::from(n), f64::from(n) * libm::exp10(-(k as f64)))).collect();
-            figure.series.push(Series::new(format!("curve-{k}"), curve));
+            figure.series.push(Curve::new(format!("curve-{k}"), curve));
         }
         figure
     }
@@ -304,7 +304,7 @@ mod tests {
         let mut one = figure(2);
         one.guide("slope 1", 1.0, (2.0, 1.0), [1.0, 4.0]);
         one.level("lost beyond 1 rad", 1.0);
-        one.series.push(Series::new("envelope", vec![(1.0, 2.0), (8.0, 3.0)]).wide());
+        one.series.push(Curve::new("envelope", vec![(1.0, 2.0), (8.0, 3.0)]).wide());
         let drawing = sheet("sheet", "Two panels", 2, &[one, figure(7)]).unwrap();
         let texts = texts(&drawing.svg);
         for name in ["slope 1", "lost beyond 1 rad", "envelope", "Two panels", "curve-6"] {

@@ -4,14 +4,14 @@ use super::canvas::{Anchor, Canvas, Fill, Stroke};
 use super::labels::spread;
 use super::marks::mark;
 use super::style::{BLACK, CURVE, Colour, DOTTED, GREY, LINE, NAME, NAMES, WIDE};
-use super::{Figure, Guide, Look, Series, font};
+use super::{Curve, Figure, Guide, Look, font};
 
 /// Length of a line in a legend.
 const SAMPLE: f64 = 28.0;
 
 /// What a line of a legend shows.
 pub(super) enum Entry<'a> {
-    Curve(usize, &'a Series),
+    Curve(usize, &'a Curve),
     Events(&'a str),
 }
 
@@ -21,7 +21,7 @@ impl Figure {
         self.joined && self.named().count() > 1
     }
 
-    pub(super) fn named(&self) -> impl Iterator<Item = (usize, &Series)> {
+    pub(super) fn named(&self) -> impl Iterator<Item = (usize, &Curve)> {
         self.series.iter().enumerate().filter(|(_, series)| !series.name.is_empty())
     }
 
@@ -77,7 +77,7 @@ impl Figure {
         heights: &[f64],
         [[left, right], [top, bottom]]: [[f64; 2]; 2],
     ) {
-        let named: Vec<(usize, &Series)> = if self.is_direct() { self.named().collect() } else { Vec::new() };
+        let named: Vec<(usize, &Curve)> = if self.is_direct() { self.named().collect() } else { Vec::new() };
         let inside = |at: f64| at.clamp(top, bottom);
         let mut wanted: Vec<f64> =
             named.iter().map(|(k, _)| ends[*k].map_or(bottom, |end| inside(end[1]))).collect();

@@ -9,7 +9,7 @@ use super::style::{
     AXIS, BLACK, COLOURS, COLUMN, CURVE, Colour, DASHED, DOTTED, FAINT, GREY, HEIGHT, LABEL, LINE, NAME,
     NAMES, THIN, TITLE, WIDE, is_dashed,
 };
-use super::{Figure, Guide, Look, Series, font};
+use super::{Curve, Figure, Guide, Look, font};
 
 /// A curve has about so many marks.
 const MARKS: f64 = 9.0;
@@ -288,7 +288,7 @@ impl Guide {
     }
 }
 
-impl Series {
+impl Curve {
     pub(super) fn colour(&self, k: usize) -> Colour {
         COLOURS[self.colour.unwrap_or(k) % COLOURS.len()]
     }

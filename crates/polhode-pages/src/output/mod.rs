@@ -1,5 +1,6 @@
 //! Files that are written whole or not at all.
 
+mod claimed;
 mod replacement;
 mod signals;
 mod staging;
@@ -38,10 +39,11 @@ impl Output {
     /// To the file that `flag` names.
     ///
     /// # Errors
-    /// A place that cannot be written; a file that this process reads, under whichever name. What is read only after this is
-    /// refused in [`finish`](Self::finish).
+    /// A place that cannot be written; a file that this process reads, under whichever name, or that another flag names too. What
+    /// is read only after this is refused in [`finish`](Self::finish).
     pub fn to_file(flag: &'static str, path: &Path) -> Result<Self, Error> {
         check_is_no_input(flag, path)?;
+        claimed::claim(flag, path)?;
         let file = Replacement::new(path).map_err(|reason| unwritable(flag, path, &reason))?;
         Ok(Self::File { file, flag, path: path.to_path_buf() })
     }

@@ -6,7 +6,7 @@ use super::{Cell, Column, DIGITS, Table};
 
 /// A column of the rounded rows; those that are kept out of them have none.
 #[derive(Debug, Deserialize, Serialize)]
-pub struct Shown {
+pub struct ShownColumn {
     name: String,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     unit: String,
@@ -19,9 +19,9 @@ pub struct Shown {
     digits: Option<usize>,
 }
 
-/// A view: the rows of another table that hold `value` in `column`.
+/// A selection: the rows of another table that hold `value` in `column`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct Part {
+pub struct Selection {
     /// Name of that table.
     pub table: String,
     column: String,
@@ -29,7 +29,7 @@ pub struct Part {
     hidden: Vec<String>,
 }
 
-impl Part {
+impl Selection {
     pub(super) fn new(table: &str, column: &str, value: &str, hidden: &[&str]) -> Self {
         let hidden = hidden.iter().map(ToString::to_string).collect();
         Self { table: table.into(), column: column.into(), value: value.into(), hidden }
@@ -44,8 +44,8 @@ impl Part {
 
 impl Table {
     /// The columns of the rounded rows.
-    pub fn layout(&self) -> Vec<Shown> {
-        let layout = |(k, column): (usize, &Column)| Shown {
+    pub fn layout(&self) -> Vec<ShownColumn> {
+        let layout = |(k, column): (usize, &Column)| ShownColumn {
             name: column.name.to_string(),
             unit: column.unit.to_string(),
             heading: (column.heading != column.name).then(|| column.heading.to_string()),
@@ -59,7 +59,7 @@ impl Table {
     ///
     /// # Errors
     /// Rows that are no CSV, a column that is missing, and a cell that should be a number: line, column and value.
-    pub fn from_csv(name: &str, csv: &str, layout: &[Shown]) -> Result<Self, String> {
+    pub fn from_csv(name: &str, csv: &str, layout: &[ShownColumn]) -> Result<Self, String> {
         let mut reader = csv::Reader::from_reader(csv.as_bytes());
         let header = reader.headers().map_err(|error| error.to_string())?.clone();
         if let Some(missing) = layout.iter().find(|shown| header.iter().all(|name| name != shown.name)) {
@@ -81,7 +81,7 @@ impl Table {
     }
 }
 
-fn column(name: &str, shown: Option<&Shown>) -> Column {
+fn column(name: &str, shown: Option<&ShownColumn>) -> Column {
     let unnamed = Column { name: name.to_string().into(), ..Column::new("", "", "") };
     let Some(shown) = shown else { return unnamed.hidden() };
     Column {
@@ -113,7 +113,8 @@ mod tests {
         whole.push(row!["2.50", f64::NAN, 4_u64, -1e-300]);
         let described =
             toml::to_string(&std::collections::BTreeMap::from([("shown", whole.layout())])).unwrap();
-        let described: std::collections::BTreeMap<String, Vec<Shown>> = toml::from_str(&described).unwrap();
+        let described: std::collections::BTreeMap<String, Vec<ShownColumn>> =
+            toml::from_str(&described).unwrap();
         let read = Table::from_csv("drift", &whole.csv(), &described["shown"]).unwrap();
         assert_eq!(read.markdown(), whole.markdown());
         assert_eq!(read.latex(), whole.latex());

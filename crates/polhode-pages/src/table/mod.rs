@@ -4,7 +4,7 @@ mod layout;
 mod markup;
 mod print;
 mod rounded;
-mod rows;
+mod row_writer;
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -14,8 +14,8 @@ use polhode_files::error::Error;
 use polhode_files::text::{visible_json, visible_lines};
 use serde_json::Value;
 
-pub use layout::{Part, Shown};
-pub use rows::Rows;
+pub use layout::{Selection, ShownColumn};
+pub use row_writer::RowWriter;
 
 /// One value of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,7 +161,7 @@ pub struct Table {
     pub columns: Vec<Column>,
     rows: Vec<Vec<Cell>>,
     /// Of a view: which part of which table it is.
-    pub part: Option<Part>,
+    pub part: Option<Selection>,
 }
 
 /// One row from values of any kind: `row!["rk4", 0.01, 1000_u64, None::<f64>]`.
@@ -196,7 +196,7 @@ impl Table {
             caption: caption.into(),
             columns: self.columns.iter().map(shown).collect(),
             rows: self.rows.iter().filter(keep).cloned().collect(),
-            part: Some(Part::new(&self.name, column, value, hide)),
+            part: Some(Selection::new(&self.name, column, value, hide)),
         }
     }
 

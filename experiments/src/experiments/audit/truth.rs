@@ -1,6 +1,6 @@
 //! What is allowed of a record, and whether it is further off than that.
 
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix6, SVD, Vector3, Vector6};
 use polhode::audit::{Frame, Judgement, Noise, Question, Reading, Trajectory, audit};
 use polhode::flow::FreeMotion;
 use polhode::num::Random;
@@ -187,6 +187,9 @@ fn rounding(specimen: &Specimen, reading: &Reading, style: Style, random: &mut R
 /// Rounds of Lawson's iteration, by which the largest distance becomes small.
 const ROUNDS: usize = 40;
 
+/// Most sweeps of a decomposition.
+const SWEEPS: usize = 1000;
+
 /// Change of the start for derivatives, rad and relative.
 const CHANGE: f64 = 1e-6;
 
@@ -237,7 +240,6 @@ fn least_excess(specimen: &Specimen, columns: Columns, limits: Distance) -> Opti
         let most = sizes.iter().fold(0.0_f64, |most, size| most.max(*size));
         best = Some(best.map_or(most, |best: f64| best.min(most)));
         let finite = |x: &f64| x.is_finite();
-        // a decomposition of what is not finite has no end
         if most == 0.0 || !most.is_finite() || !normal.iter().chain(side.iter()).all(finite) {
             break;
         }
@@ -246,7 +248,8 @@ fn least_excess(specimen: &Specimen, columns: Columns, limits: Distance) -> Opti
         }
         let total: f64 = weights.iter().sum();
         weights.iter_mut().for_each(|weight| *weight *= rows.len() as f64 / total);
-        p += normal.pseudo_inverse(1e-14 * normal.norm()).ok()? * side;
+        let parts = SVD::try_new(normal, true, true, f64::EPSILON, SWEEPS)?;
+        p += parts.pseudo_inverse(1e-14 * normal.norm()).ok()? * side;
     }
     best.filter(|excess| excess.is_finite())
 }

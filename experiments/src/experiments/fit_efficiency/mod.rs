@@ -9,7 +9,7 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_files::error::{Error, unexpected};
 use polhode_fit::{FitError, Record, Settings, fit, foreseen_bound, simulate};
-use polhode_pages::figure::{Figure, Series};
+use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Cell, Column, Table};
 
 use crate::experiment::{Context, Report};
@@ -70,7 +70,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         "error over bound",
     );
     let mut failures = Vec::new();
-    let mut curves: Vec<Series> = Vec::new();
+    let mut curves: Vec<Curve> = Vec::new();
     for (&(body, noise), cell) in cells.iter().zip(results.chunks(trials as usize)) {
         let (name, level) = (BODIES[body].0, NOISES[noise]);
         let likelihood: Vec<Option<Outcome>> = match RIVALS.iter().position(|r| *r == Rival::OutputError) {
@@ -88,7 +88,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             let value = (level, summary.over_bound);
             match curves.iter_mut().find(|s| s.name == label) {
                 Some(series) => series.push(value, summary.interval),
-                None => curves.push(Series::new(label, vec![value]).with_spread(vec![summary.interval])),
+                None => curves.push(Curve::new(label, vec![value]).with_spread(vec![summary.interval])),
             }
         };
         table.push(summary.row(name, OWN, "", level, Some(refused)));
@@ -131,7 +131,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
 }
 
 /// The curves of the asymmetric body as a table: a row for each formulation, a column for each noise.
-fn comparison(curves: &[Series]) -> Table {
+fn comparison(curves: &[Curve]) -> Table {
     let mut columns = vec![Column::new("formulation", "", "how the equation of motion is used")];
     let at = "error over bound at this noise, a share of the rate";
     columns.extend(NOISE_COLUMNS.map(|(name, heading)| Column::new(name, "", at).heading(heading)));

@@ -72,12 +72,10 @@ fn patient(random: &mut Random) -> Result<Patient, Error> {
     }
     let body = MassProperties::sum(parts).map_err(|error| failed(&error))?;
     let about_origin = body.tensor_about(Vector3::zeros()).map_err(|error| failed(&error))?;
-    let evidence = Evidence {
-        mass: Some(body.mass()),
-        center_of_mass: Some(body.center_of_mass()),
-        extents: Some((high - low).into()),
-        twin: None,
-    };
+    let evidence = Evidence::default()
+        .with_mass(body.mass())
+        .with_center_of_mass(body.center_of_mass())
+        .with_extents(<[f64; 3]>::from(high - low));
     Ok(Patient { body, about_origin, evidence })
 }
 
@@ -106,7 +104,7 @@ pub(super) fn rates(context: &Context, random: &Random, failures: &mut Vec<Strin
             let spoiled = spoil(&patient, &mut random);
             let evidence = match known {
                 0 => Evidence::default(),
-                1 => Evidence { extents: None, ..patient.evidence },
+                1 => patient.evidence.with_extents(None),
                 _ => patient.evidence,
             };
             let found = diagnose(spoiled, &evidence).map_err(|error| failed(&error))?;

@@ -11,7 +11,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::{Amount, MassProperties, Mesh, MeshError, Solid, integrate_mass};
 use polhode::num::Random;
 use polhode_files::error::Error;
-use polhode_pages::figure::{Figure, Series};
+use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
@@ -153,7 +153,7 @@ fn spheres(finest: usize, failures: &mut Vec<String>) -> Result<(Table, Figure),
     if let Some(&(h, error)) = volumes.last() {
         figure.guide("slope 2", 2.0, (h, 0.5 * error), [h, 4.0 * h]);
     }
-    figure.series = vec![Series::new("volume", volumes), Series::new("moments", moments)];
+    figure.series = vec![Curve::new("volume", volumes), Curve::new("moments", moments)];
     Ok((table, figure))
 }
 

@@ -58,14 +58,14 @@ const MISTAKES: [Mistake; 6] = [
         mirror[(axis, axis)] = -1.0;
         let tensor = mirror * link.tensor * mirror;
         let twin = Twin { center_of_mass: mirror * link.center_of_mass, tensor };
-        (tensor, Evidence { twin: Some(twin), ..link.known() })
+        (tensor, link.known().with_twin(twin))
     }),
 ];
 
 impl Link {
     /// What a model states besides the tensor.
     fn known(&self) -> Evidence {
-        Evidence { mass: Some(self.mass), center_of_mass: Some(self.center_of_mass), ..Evidence::default() }
+        Evidence::default().with_mass(self.mass).with_center_of_mass(self.center_of_mass)
     }
 }
 

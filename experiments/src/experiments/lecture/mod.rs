@@ -21,10 +21,10 @@ use crate::experiment::{Context, Report};
 const RATE_TOLERANCE: f64 = 0.03;
 
 /// Adds the statements of a part of the lecture.
-type Part = fn(&mut Statements) -> Result<(), Error>;
+type Block = fn(&mut Statements) -> Result<(), Error>;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let parts: Vec<Part> =
+    let parts: Vec<Block> =
         vec![motion::general, motion::equations, free::statements, symmetric::statements, heavy::statements];
     let found = context.in_parallel(parts, |part| {
         let mut statements = Statements::default();

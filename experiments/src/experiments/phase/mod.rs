@@ -16,7 +16,7 @@ use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode::run::{Run, Watch};
 use polhode::truth::attitude_error;
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::{Figure, Series, sheet};
+use polhode_pages::figure::{Curve, Figure, sheet};
 use polhode_pages::table::{Cell, Column, Table, row};
 
 use crate::experiment::{Context, Report};
@@ -97,7 +97,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                     let first = points.first().map_or(last, |point| point.0);
                     figure.guide("", 1.0, (last, rate.abs() * last), [first, last]);
                 }
-                figure.series.push(Series::new(method.clone(), points));
+                figure.series.push(Curve::new(method.clone(), points));
             }
         }
         table.push(row);

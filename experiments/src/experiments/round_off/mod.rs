@@ -13,7 +13,7 @@ use polhode::method::{Claimed, Energy, Kept, Step, method};
 use polhode::num::{Dd, Precise, Random, Real};
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::{Figure, Series, sheet};
+use polhode_pages::figure::{Curve, Figure, sheet};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
@@ -131,7 +131,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                 let bars = rows.iter().map(|s| (s.rms_low, s.rms_high)).collect();
                 panels[q]
                     .series
-                    .push(Series::new(format!("{name}, {}", form.name()), points).with_spread(bars));
+                    .push(Curve::new(format!("{name}, {}", form.name()), points).with_spread(bars));
             }
         }
     }

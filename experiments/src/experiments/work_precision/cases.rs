@@ -1,6 +1,6 @@
 //! The bodies, starts and forces of the comparison.
 
-use polhode::body::{Body, Force, Point};
+use polhode::body::{Body, Force, Point, Problem};
 use polhode::catalogue;
 use polhode::inertia::Inertia;
 use polhode::num::{Dd, Random};
@@ -191,7 +191,7 @@ impl Case {
         let starts = starts.into_iter().map(point).collect::<Result<_, _>>()?;
         let moments = body.rotor().moments::<f64>();
         let least = moments.0.into_iter().fold(f64::INFINITY, f64::min);
-        let weight = body.gravity::<f64>().map_or(0.0, |gravity| gravity.weight_moment.norm());
+        let weight = body.linear_potential::<f64>().map_or(0.0, |linear| linear.moment.norm());
         // a top at rest moves at the rate of a pendulum
         let rate = speed + libm::sqrt(weight / least);
         let unit = libm::exp2(libm::round(-libm::log2(rate)));
@@ -203,7 +203,7 @@ impl Case {
 
     /// Whether nothing acts on the body.
     pub(super) fn is_free(&self) -> bool {
-        self.body.forces().is_empty() && self.body.gravity::<f64>().is_none()
+        self.body.problem() == Problem::Free
     }
 
     /// Times of the looks, s: 32 up to each horizon.

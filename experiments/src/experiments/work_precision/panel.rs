@@ -1,6 +1,6 @@
 //! One panel of the figure.
 
-use polhode_pages::figure::{Figure, Series};
+use polhode_pages::figure::{Curve, Figure};
 
 use super::contest::{CLOSED_FORM, Contestant, Currency};
 use super::tables::Contest;
@@ -37,7 +37,7 @@ pub(super) fn panel(contest: &Contest, currency: Currency) -> Figure {
     }
     envelope.sort_by(|a, b| a.0.total_cmp(&b.0));
     if envelope.len() > 1 {
-        figure.series.push(Series::new(least, envelope).wide());
+        figure.series.push(Curve::new(least, envelope).wide());
     }
     for name in shown.into_iter().chain([CLOSED_FORM]) {
         let Some(one) = contest.contestants.iter().find(|one| one.name == name) else { continue };
@@ -46,7 +46,7 @@ pub(super) fn panel(contest: &Contest, currency: Currency) -> Figure {
             // starts that are lost are beyond the frame
             let spread = points.iter().map(|(_, errors)| (errors.low, errors.high.min(1.0))).collect();
             let medians = points.iter().map(|(cost, errors)| (*cost, errors.median)).collect();
-            figure.series.push(Series::new(name, medians).with_spread(spread));
+            figure.series.push(Curve::new(name, medians).with_spread(spread));
         }
     }
     figure.level("1 rad", 1.0);

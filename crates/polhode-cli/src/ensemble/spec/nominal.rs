@@ -7,7 +7,7 @@ use polhode::body::Body;
 use polhode::catalogue;
 use polhode::inertia::Inertia;
 use polhode::rotation::{Quat, Vec3};
-use polhode_files::error::Error;
+use polhode_files::error::{Error, tell};
 use polhode_files::toml_file::Section;
 
 use super::Acting;
@@ -73,7 +73,9 @@ impl Nominal {
             return Err(start.at("attitude", "the zero quaternion has no direction; any other norm is fine"));
         }
         let omega = start.numbers::<3>("omega")?.map(|omega| omega.map(|rate| rate * units.rate));
-        let published = published.filter(|_| omega.is_none());
+        if let (None, Some(published)) = (typed, &published) {
+            tell("note", &format!("{}: {}", published.name, published.attitude_known()));
+        }
         let attitude =
             typed.or(published.as_ref().map(|found| found.attitude)).unwrap_or([1.0, 0.0, 0.0, 0.0]);
         let omega = omega.or(published.map(|found| found.omega_body));

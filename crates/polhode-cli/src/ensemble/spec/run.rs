@@ -94,7 +94,7 @@ impl Plan {
                 let key = if run.value("times_file").is_some() { "times_file" } else { "times" };
                 return Err(run.at(key, &format!("{rule}; sort them, or use method exact")));
             }
-            let name = tolerance.map_or(name.into(), |tolerance| format!("{name}:{tolerance:e}"));
+            let name = if tolerance.is_some() { found.name() } else { name.into() };
             Motion::Stepped { name, method: found.into(), clock, steps }
         };
         let errors = match run.value("errors").map(toml::Spanned::get_ref) {

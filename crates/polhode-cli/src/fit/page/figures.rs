@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use polhode_files::error::Error;
 use polhode_fit::{Estimate, FittedMotion, Record};
-use polhode_pages::document::Part;
-use polhode_pages::figure::{Canvas, Figure, Series, page_of};
+use polhode_pages::document::Block;
+use polhode_pages::figure::{Canvas, Curve, Figure, page_of};
 
 use super::super::plot::{self, AXES, over_time, without_gaps};
 use super::noise;
@@ -16,15 +16,15 @@ const DRAWN: usize = 8;
 const SMALL: f64 = 260.0;
 
 /// Measured and fitted rates of each segment, or of those that fit worst.
-pub(super) fn motions(motion: &[FittedMotion], record: &Record) -> Result<Vec<Part>, Error> {
+pub(super) fn motions(motion: &[FittedMotion], record: &Record) -> Result<Vec<Block>, Error> {
     let mut chosen: Vec<&FittedMotion> = motion.iter().collect();
     worst_first(&mut chosen);
-    let mut parts = vec![Part::Heading("Measured and fitted rates".into())];
+    let mut parts = vec![Block::Heading("Measured and fitted rates".into())];
     if motion.len() > DRAWN {
-        parts.push(Part::Paragraph(format!("The {DRAWN} segments of {} that fit worst.", motion.len())));
+        parts.push(Block::Paragraph(format!("The {DRAWN} segments of {} that fit worst.", motion.len())));
     }
     for (figure, caption) in chosen.into_iter().filter_map(|m| followed(m, record)) {
-        parts.push(Part::Figure(figure.svg()?, caption));
+        parts.push(Block::Figure(figure.svg()?, caption));
     }
     Ok(parts)
 }
@@ -36,9 +36,9 @@ fn followed(m: &FittedMotion, record: &Record) -> Option<(Figure, String)> {
     let mut figure = over_time(title, "angular velocity (rad/s)", true, SMALL);
     let lines = m.fitted.as_deref();
     let dots = rates(s.times(), &m.measured, lines.is_none());
-    figure.series.extend(dots.into_iter().map(Series::dots));
+    figure.series.extend(dots.into_iter().map(Curve::dots));
     if let Some(fitted) = lines {
-        figure.series.extend(rates(s.times(), fitted, true).into_iter().map(Series::plain));
+        figure.series.extend(rates(s.times(), fitted, true).into_iter().map(Curve::plain));
     }
     let caption = match m.rms() {
         Some(rms) => format!("Segment {}: rms of the difference {rms:.2e} rad/s.", m.segment + 1),
@@ -66,21 +66,21 @@ fn worst_first(chosen: &mut Vec<&FittedMotion>) {
 }
 
 /// The three components of rates, each with its colour, named or not.
-fn rates(times: &[f64], rates: &[Vector3<f64>], named: bool) -> Vec<Series> {
+fn rates(times: &[f64], rates: &[Vector3<f64>], named: bool) -> Vec<Curve> {
     (0..3)
         .map(|axis| {
             let points = times.iter().zip(rates).map(|(t, w)| (*t, w[axis])).collect();
-            Series::new(if named { AXES[axis] } else { "" }, points).coloured(axis)
+            Curve::new(if named { AXES[axis] } else { "" }, points).coloured(axis)
         })
         .collect()
 }
 
 /// Residuals: whitened against time, their spectrum and their Allan deviation.
-pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Vec<Part>, Error> {
-    let mut parts = vec![Part::Heading("Residuals".into())];
+pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Vec<Block>, Error> {
+    let mut parts = vec![Block::Heading("Residuals".into())];
     let caption =
         "Residuals of the weak equations in standard deviations; the band is two of them wide on each side.";
-    parts.push(Part::Figure(plot::residuals(e).svg()?, caption.into()));
+    parts.push(Block::Figure(plot::residuals(e).svg()?, caption.into()));
     let left: Vec<_> = motion.iter().filter_map(FittedMotion::residuals).collect();
     let times = motion.iter().filter_map(|m| record.segments.get(m.segment)).map(|s| s.times());
     let Some(interval) = interval(times).filter(|_| !left.is_empty()) else { return Ok(parts) };
@@ -90,13 +90,13 @@ pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) 
         let mut figure =
             Figure::log_log("spectrum", "Spectrum of measured less fitted", "frequency (Hz)", "(rad/s)²/Hz");
         let white = vec![(first.0, level), (last.0, level)];
-        figure.series = vec![Series::new("residuals", spectrum.clone()), Series::new("white noise", white)];
+        figure.series = vec![Curve::new("residuals", spectrum.clone()), Curve::new("white noise", white)];
         let caption = format!(
             "Power spectral density of measured less fitted rates, mean of the axes; the line is the level of \
              white noise of {:.2e} rad/s.",
             e.noise_sigma
         );
-        parts.push(Part::Figure(figure.svg()?, caption));
+        parts.push(Block::Figure(figure.svg()?, caption));
     }
     let allan = noise::allan(&left, interval);
     if let (Some(first), Some(last)) = (allan.first(), allan.last()) {
@@ -107,12 +107,12 @@ pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) 
             "averaging time (s)",
             "Allan deviation (rad/s)",
         );
-        figure.series = vec![Series::new("residuals", allan), Series::new("white noise", white)];
+        figure.series = vec![Curve::new("residuals", allan), Curve::new("white noise", white)];
         let caption = format!(
             "Allan deviation of the same, mean of the axes, with white noise of {:.2e} rad/s.",
             e.noise_sigma
         );
-        parts.push(Part::Figure(figure.svg()?, caption));
+        parts.push(Block::Figure(figure.svg()?, caption));
     }
     Ok(parts)
 }
@@ -126,9 +126,9 @@ fn interval<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
 }
 
 /// |J ω| and ω·J ω of the samples over their means.
-pub(super) fn invariants(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Part, Error> {
+pub(super) fn invariants(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Block, Error> {
     let caption = "Angular momentum |Jω| and twice the energy, 2T = ω·Jω, which a free body keeps.";
-    Ok(Part::Figure(kept(e, motion, record).svg()?, caption.into()))
+    Ok(Block::Figure(kept(e, motion, record).svg()?, caption.into()))
 }
 
 fn kept(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Figure {
@@ -149,7 +149,7 @@ fn kept(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Figure {
             let mean = used().map(|((w, _), _)| of(w)).sum::<f64>() / count;
             points.extend(used().map(|((w, t), _)| (*t, of(w) / mean)));
         }
-        Series::new(name, points).dots()
+        Curve::new(name, points).dots()
     };
     let title = "Angular momentum and energy along the record";
     let mut figure = over_time(title, "over the segment's mean", single, 320.0);
@@ -158,16 +158,16 @@ fn kept(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Figure {
 }
 
 /// The readings of a record that was refused.
-pub(super) fn readings(record: &Record) -> Result<Vec<Part>, Error> {
+pub(super) fn readings(record: &Record) -> Result<Vec<Block>, Error> {
     let shown = record.segments.iter().enumerate().take(DRAWN);
     let mut parts = Vec::new();
     for (k, s) in shown {
         let mut figure = over_time(format!("Segment {}", k + 1), "angular velocity (rad/s)", true, SMALL);
-        figure.series = rates(s.times(), s.rates(), true).into_iter().map(Series::dots).collect();
-        parts.push(Part::Figure(figure.svg()?, format!("Segment {} of {}.", k + 1, s.source())));
+        figure.series = rates(s.times(), s.rates(), true).into_iter().map(Curve::dots).collect();
+        parts.push(Block::Figure(figure.svg()?, format!("Segment {} of {}.", k + 1, s.source())));
     }
     if record.segments.len() > DRAWN {
-        parts.push(Part::Paragraph(format!("The first {DRAWN} segments of {}.", record.segments.len())));
+        parts.push(Block::Paragraph(format!("The first {DRAWN} segments of {}.", record.segments.len())));
     }
     let lengths = record.segments.iter().flat_map(|s| s.times().iter().zip(s.rates()));
     let single = record.segments.len() == 1;
@@ -178,8 +178,8 @@ pub(super) fn readings(record: &Record) -> Result<Vec<Part>, Error> {
         times.into_iter().flatten().zip(lengths).map(|(t, (_, w))| (t, w.norm())).collect()
     };
     let mut figure = over_time("Size of the rate along the record", "|ω| (rad/s)", single, SMALL);
-    figure.series = vec![Series::new("|ω|", points).dots()];
-    parts.push(Part::Figure(
+    figure.series = vec![Curve::new("|ω|", points).dots()];
+    parts.push(Block::Figure(
         figure.svg()?,
         "Size of the rate: jumps are blows or catches, a fall is drag.".into(),
     ));

@@ -5,7 +5,7 @@ mod noise;
 
 use polhode_files::error::Error;
 use polhode_fit::{Estimate, FittedMotion, Nuisance, Record};
-use polhode_pages::document::{Form, Part};
+use polhode_pages::document::{Block, Form};
 
 use super::flights::Spans;
 use super::report::{
@@ -23,13 +23,13 @@ pub(super) fn estimated(
 ) -> Result<String, Error> {
     let mut parts = answer(e);
     if !e.warnings.is_empty() {
-        parts.push(Part::Heading("What speaks against it".into()));
-        parts.push(Part::List(e.warnings.iter().map(ToString::to_string).collect()));
+        parts.push(Block::Heading("What speaks against it".into()));
+        parts.push(Block::List(e.warnings.iter().map(ToString::to_string).collect()));
     }
     parts.extend(spans.parts());
     parts.extend(torques(e));
     parts.extend(sensor(e));
-    parts.push(Part::Heading("Segments".into()));
+    parts.push(Block::Heading("Segments".into()));
     parts.push(segments(e, record, motion));
     parts.extend(figures::motions(motion, record)?);
     parts.extend(figures::residuals(e, motion, record)?);
@@ -37,7 +37,7 @@ pub(super) fn estimated(
     parts.extend(spikes(e, record));
     let columns = unused(record);
     if !columns.is_empty() {
-        parts.push(Part::Paragraph(format!("Columns not used: {}.", columns.join(", "))));
+        parts.push(Block::Paragraph(format!("Columns not used: {}.", columns.join(", "))));
     }
     Ok(form.write(&format!("Inertia from {names}"), &parts))
 }
@@ -51,21 +51,21 @@ pub(super) fn refused(
     names: &str,
     form: Form,
 ) -> Result<String, Error> {
-    let mut parts = vec![Part::Paragraph(format!("No inertia tensor: {reason}."))];
+    let mut parts = vec![Block::Paragraph(format!("No inertia tensor: {reason}."))];
     if let Some(facts) = facts {
-        parts.push(Part::Heading("Known".into()));
+        parts.push(Block::Heading("Known".into()));
         let known = if facts.known.is_empty() { vec!["nothing".into()] } else { facts.known.clone() };
-        parts.push(Part::List(known));
-        parts.push(Part::Heading("Undetermined".into()));
-        parts.push(Part::List(facts.open.clone()));
+        parts.push(Block::List(known));
+        parts.push(Block::Heading("Undetermined".into()));
+        parts.push(Block::List(facts.open.clone()));
     }
     parts.extend(spans.parts());
-    parts.push(Part::Heading("Readings".into()));
+    parts.push(Block::Heading("Readings".into()));
     parts.extend(figures::readings(record)?);
     Ok(form.write(&format!("No inertia from {names}"), &parts))
 }
 
-fn answer(e: &Estimate) -> Vec<Part> {
+fn answer(e: &Estimate) -> Vec<Block> {
     let off = systematic(e);
     let row = |name: String, value: f64, sigma: f64, off: Option<f64>| {
         let places = digits(SURE * sigma);
@@ -84,14 +84,14 @@ fn answer(e: &Estimate) -> Vec<Part> {
         rows.push(row(name.into(), e.ratios[k], e.sigma_ratios[k], off));
     }
     let mut parts = vec![
-        Part::Paragraph(format!("I1 : I2 : I3 = {a} : {b} : {c}, as shares of the trace.")),
-        Part::Table(head, rows),
+        Block::Paragraph(format!("I1 : I2 : I3 = {a} : {b} : {c}, as shares of the trace.")),
+        Block::Table(head, rows),
     ];
     if off.is_some() {
-        parts.push(Part::Paragraph(format!("Systematic: if the sensor is off by {}.", sizes(e))));
+        parts.push(Block::Paragraph(format!("Systematic: if the sensor is off by {}.", sizes(e))));
     }
     if let Some(prior) = e.prior {
-        parts.push(Part::Paragraph(format!(
+        parts.push(Block::Paragraph(format!(
             "With a prior tensor; χ² of its distance from the record is {:.1} at {} degrees of freedom.",
             prior.chi2, prior.dof
         )));
@@ -100,7 +100,7 @@ fn answer(e: &Estimate) -> Vec<Part> {
             let text = format!(
                 "The record alone determines {rank} of the 5 numbers of the shape, the prior the rest."
             );
-            parts.push(Part::Paragraph(text));
+            parts.push(Block::Paragraph(text));
         }
     }
     let axes = e.axes.to_rotation_matrix();
@@ -113,9 +113,9 @@ fn answer(e: &Estimate) -> Vec<Part> {
         cells.push(turn);
         cells
     });
-    parts.push(Part::Table(head, rows.collect()));
+    parts.push(Block::Table(head, rows.collect()));
     if let Some(inertia) = &e.inertia {
-        parts.push(Part::Paragraph("Inertia tensor, kg m², sensor axes:".into()));
+        parts.push(Block::Paragraph("Inertia tensor, kg m², sensor axes:".into()));
         let entries = inertia.tensor();
         let head = ["", "x", "y", "z"].map(String::from).to_vec();
         let row = |i: usize| {
@@ -123,27 +123,27 @@ fn answer(e: &Estimate) -> Vec<Part> {
             cells.extend((0..3).map(|k| format!("{:.6e}", entries[(i, k)])));
             cells
         };
-        parts.push(Part::Table(head, (0..3).map(row).collect()));
+        parts.push(Block::Table(head, (0..3).map(row).collect()));
     }
     parts
 }
 
-fn numbers(of: &[&Nuisance]) -> Part {
+fn numbers(of: &[&Nuisance]) -> Block {
     let head = ["", "value", "unit", "prior"].map(String::from).to_vec();
     let row = |n: &&Nuisance| {
         let prior = n.prior.map_or("–".into(), |prior| format!("± {prior}"));
         vec![n.name.into(), with_error(n.value, n.sigma).replace("+-", "±"), n.unit.into(), prior]
     };
-    Part::Table(head, of.iter().map(row).collect())
+    Block::Table(head, of.iter().map(row).collect())
 }
 
-fn torques(e: &Estimate) -> Vec<Part> {
+fn torques(e: &Estimate) -> Vec<Block> {
     if e.torque.coefficients.is_empty() {
         return Vec::new();
     }
-    let mut parts = vec![Part::Heading("Torque".into())];
+    let mut parts = vec![Block::Heading("Torque".into())];
     let model = torque(e.torque.model);
-    parts.push(Part::Paragraph(match e.torque.gain {
+    parts.push(Block::Paragraph(match e.torque.gain {
         Some(gain) => format!("Model: {model}. It gains {gain:.1} in log-likelihood over none."),
         None => format!("Model: {model}."),
     }));
@@ -157,34 +157,35 @@ fn torques(e: &Estimate) -> Vec<Part> {
             let with = with_error(e.ratios[k], e.sigma_ratios[k]).replace("+-", "±");
             vec![name.to_string(), with, format!("{:.5}", without[k])]
         };
-        parts.push(Part::Table(head, vec![row(0, "I1/I3"), row(1, "I2/I3")]));
+        parts.push(Block::Table(head, vec![row(0, "I1/I3"), row(1, "I2/I3")]));
     }
     parts
 }
 
-fn sensor(e: &Estimate) -> Vec<Part> {
+fn sensor(e: &Estimate) -> Vec<Block> {
     let mut parts = Vec::new();
     if !e.nuisances.is_empty() || !e.systematic.is_empty() {
-        parts.push(Part::Heading("Sensor".into()));
+        parts.push(Block::Heading("Sensor".into()));
     }
     if !e.nuisances.is_empty() {
         parts.push(numbers(&e.nuisances.iter().collect::<Vec<_>>()));
     }
     if !e.systematic.is_empty() {
-        parts
-            .push(Part::Paragraph("Change of the moments with errors that the fit takes to be zero:".into()));
+        parts.push(Block::Paragraph(
+            "Change of the moments with errors that the fit takes to be zero:".into(),
+        ));
         let head = ["error", "size", "unit", "I1", "I2", "I3"].map(String::from).to_vec();
         let rows = e.systematic.iter().map(|line| {
             let mut cells = vec![line.name.to_string(), format!("{}", line.size), line.unit.to_string()];
             cells.extend(line.principal.iter().map(|x| format!("{x:.1e}").replace('-', "\u{2212}")));
             cells
         });
-        parts.push(Part::Table(head, rows.collect()));
+        parts.push(Block::Table(head, rows.collect()));
     }
     parts
 }
 
-fn segments(e: &Estimate, record: &Record, motion: &[FittedMotion]) -> Part {
+fn segments(e: &Estimate, record: &Record, motion: &[FittedMotion]) -> Block {
     let names = [
         "segment",
         "from (s)",
@@ -223,10 +224,10 @@ fn segments(e: &Estimate, record: &Record, motion: &[FittedMotion]) -> Part {
         cells.extend(torques);
         Some(cells)
     });
-    Part::Table(names.into_iter().chain(own.iter().copied()).map(String::from).collect(), rows.collect())
+    Block::Table(names.into_iter().chain(own.iter().copied()).map(String::from).collect(), rows.collect())
 }
 
-fn spikes(e: &Estimate, record: &Record) -> Vec<Part> {
+fn spikes(e: &Estimate, record: &Record) -> Vec<Block> {
     if e.spikes.is_empty() {
         return Vec::new();
     }
@@ -236,9 +237,9 @@ fn spikes(e: &Estimate, record: &Record) -> Vec<Part> {
     };
     let shown = e.spikes.iter().take(50).map(line).collect();
     let mut parts =
-        vec![Part::Heading(format!("Spikes: {} samples left out", e.spikes.len())), Part::List(shown)];
+        vec![Block::Heading(format!("Spikes: {} samples left out", e.spikes.len())), Block::List(shown)];
     if e.spikes.len() > 50 {
-        parts.push(Part::Paragraph(format!("and {} more.", e.spikes.len() - 50)));
+        parts.push(Block::Paragraph(format!("and {} more.", e.spikes.len() - 50)));
     }
     parts
 }

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use polhode::units::Date;
-use polhode_files::error::Error;
+use polhode_files::error::{Error, warn};
 use polhode_files::moment::{duration, epoch, is_moment, seconds};
-use polhode_files::times::{Asked, Column, Source};
+use polhode_files::times::{Asked, Source, TimesColumn};
 
 pub(crate) use regular::{Regular, regular};
 
@@ -20,7 +20,7 @@ pub(crate) struct TimeArguments {
     #[arg(long, value_name = "LIST|FILE|-", value_parser = times, allow_hyphen_values = true,
           conflicts_with_all = ["until", "every"])]
     times: Option<Times>,
-    /// Column of the file of --times, by its name or number [default: t]
+    /// TimesColumn of the file of --times, by its name or number [default: t]
     #[arg(long, value_name = "NAME|N")]
     times_column: Option<String>,
     /// Last output time, with --every: s, with a unit, or a date with --epoch
@@ -81,6 +81,19 @@ impl TimeArguments {
         self.moment("--start-time", &self.start_time)
     }
 
+    /// Says so where t = 0 is another date than that of the `published` start.
+    pub(crate) fn compare_epoch(&self, published: &str) {
+        let published_date = published.parse::<Date>().ok();
+        if let (Some(given), Some(date)) = (&self.epoch, published_date)
+            && given.seconds_since(&date) != 0.0
+        {
+            warn(&format!(
+                "--epoch: the published start is of {published} UTC; here it is that of --start-time, {:+.0} s from there",
+                given.seconds_since(&date) + self.start().unwrap_or_default()
+            ));
+        }
+    }
+
     /// The flag that the last time comes from.
     pub(crate) fn flag(&self) -> &'static str {
         if self.until.is_some() { "--until" } else { "--times" }
@@ -130,9 +143,9 @@ impl TimeArguments {
         }
     }
 
-    fn column(&self, source: Source) -> Column {
+    fn column(&self, source: Source) -> TimesColumn {
         let asked = Asked { file: "--times".into(), column: "--times-column" };
-        Column { source, wanted: self.times_column.clone(), epoch: self.epoch, asked }
+        TimesColumn { source, wanted: self.times_column.clone(), epoch: self.epoch, asked }
     }
 
     fn moment(&self, flag: &str, text: &str) -> Result<f64, Error> {
@@ -145,14 +158,14 @@ impl TimeArguments {
 /// The times in the file `path`, s, that is named at `place` of a specification, its column by the key `times_column`.
 pub(crate) fn of_file(path: PathBuf, column: Option<String>, place: String) -> Result<Vec<f64>, Error> {
     let asked = Asked { file: place, column: "times_column" };
-    Column { source: Source::File(path), wanted: column, epoch: None, asked }.read()?.collect()
+    TimesColumn { source: Source::File(path), wanted: column, epoch: None, asked }.read()?.collect()
 }
 
 /// Output times, s, in the order in which they were given.
 pub(crate) enum OutputTimes {
     List(Vec<f64>),
     Regular(Regular),
-    Column(Column),
+    Column(TimesColumn),
 }
 
 impl OutputTimes {

@@ -4,20 +4,23 @@ use std::path::Path;
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, MassError, MassProperties, Solid};
-use polhode_files::error::Error;
-use polhode_files::numbers::turn;
-use polhode_files::read;
-use polhode_files::toml_file::{Section, TomlFile};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::meshes::{MeshArguments, unit};
+use crate::error::Error;
+use crate::mesh::{MeshOptions, length_unit};
+use crate::numbers::turn;
+use crate::read;
+use crate::toml_file::{Section, TomlFile};
 
 const KEYS: [&str; 10] =
     ["name", "shape", "size", "mass", "density", "at", "turn", "file", "length_unit", "inertia"];
 
-/// The sum of the parts of a file.
-pub(super) fn read_parts(path: &Path) -> Result<MassProperties, Error> {
+/// The sum of the parts of a TOML file: its `[[part]]` tables.
+///
+/// # Errors
+/// A file that cannot be read; a key that is unknown, missing, or has a value that cannot be used, with its line.
+pub fn parts(path: &Path) -> Result<MassProperties, Error> {
     let text = read(path, "name a TOML file with [[part]] tables")?;
     let file = TomlFile { path, text: &text };
     let document = file.parse()?;
@@ -62,9 +65,9 @@ impl Part<'_> {
                 let file =
                     self.0.text("file")?.ok_or_else(|| self.missing("file", "name an STL or OBJ file"))?;
                 let folder = self.0.file.path.parent().unwrap_or(Path::new("."));
-                let length_unit = self.length_unit()?;
-                let mesh = MeshArguments { length_unit, ..MeshArguments::default() };
-                mesh.body(&folder.join(file), self.amount()?)
+                let options = MeshOptions::default().with_length_unit(self.length_unit()?);
+                options
+                    .body(&folder.join(file), self.amount()?)
                     .map_err(|error| self.0.at("file", &error.to_string()))?
             }
             "tensor" => {
@@ -109,7 +112,7 @@ impl Part<'_> {
     fn length_unit(&self) -> Result<Option<f64>, Error> {
         match self.0.value("length_unit").map(Spanned::get_ref) {
             Some(DeValue::String(text)) => {
-                unit(text).map(Some).map_err(|error| self.0.at("length_unit", &error))
+                length_unit(text).map(Some).map_err(|error| self.0.at("length_unit", &error))
             }
             _ => self.0.positive("length_unit"),
         }

@@ -11,7 +11,7 @@ use crate::output::Output;
 const READABLE: usize = 10_000;
 
 /// A table on its way out: CSV and JSON need no memory for it, however long the run.
-pub struct Rows {
+pub struct RowWriter {
     /// Its columns, and for [`Format::Table`] its rows.
     table: Table,
     format: Format,
@@ -21,7 +21,7 @@ pub struct Rows {
     is_empty: bool,
 }
 
-impl Rows {
+impl RowWriter {
     /// Opens the file of `--out`, or standard output, for the rows of `table`, which are `count` if all goes well, where
     /// that is known.
     ///
@@ -100,7 +100,7 @@ mod tests {
         for part in [empty.clone(), example()] {
             for format in [Format::Csv, Format::Json, Format::Table] {
                 let count = part.rows().len();
-                let mut rows = Rows::new(empty.clone(), Some(format), Some(&path), count).unwrap();
+                let mut rows = RowWriter::new(empty.clone(), Some(format), Some(&path), count).unwrap();
                 part.rows().iter().for_each(|row| rows.push(row.clone()).unwrap());
                 rows.finish().unwrap();
                 assert_eq!(std::fs::read_to_string(&path).unwrap(), format.write(&part), "{format:?}");

@@ -1,0 +1,136 @@
+//! The rows of a comparison.
+
+use polhode::body::{Body, Conserved};
+use polhode::method::Claimed;
+use polhode::truth::{Ending, Judged, Truth};
+use polhode_files::error::Error;
+use polhode_pages::table::{Cell, Column, row};
+
+use super::Compare;
+use super::entries::Entry;
+use super::trajectory::Trajectory;
+
+impl Compare {
+    pub(super) fn row(
+        &self,
+        truth: &Truth,
+        entry: &Entry,
+        judged: &Judged,
+        (seconds, rk4_steps): (f64, f64),
+    ) -> Vec<Cell> {
+        let Judged { last, ending, evaluations, .. } = judged;
+        let known = truth.known_until();
+        let whole = last.elapsed.hi() <= known * (1.0 + 1e-12);
+        let flips = last.flips.filter(|_| whole && matches!(ending, Ending::Held | Ending::Lost(_)));
+        let exact = flips.and_then(|_| truth.flips(known));
+        let right = match (flips, exact) {
+            (Some(flips), Some(exact)) => Some(if flips == exact { "right" } else { "wrong" }),
+            _ => None,
+        };
+        let worst = last.worst;
+        let attitude = judged.attitude_error();
+        row![
+            entry.method.name(),
+            entry.step,
+            entry.tolerance,
+            attitude,
+            judged.largest_attitude_error(known),
+            attitude.map(|_| self.start_time + known),
+            worst.energy,
+            truth.exchanged_energy_error(&worst),
+            worst.momentum_norm,
+            worst.momentum_vector,
+            worst.momentum_z,
+            worst.jacobi,
+            *evaluations,
+            seconds,
+            rk4_steps,
+            last.flips,
+            exact,
+            right,
+            ending.by_clock(self.start_time).to_string(),
+        ]
+        .to_vec()
+    }
+
+    pub(super) fn foreign(&self, truth: &Truth, trajectory: &Trajectory) -> Result<Vec<Cell>, Error> {
+        let found = trajectory.against(truth, self.start_time)?;
+        let columns = columns(truth.body());
+        let mut row = vec![Cell::Empty; columns.len()];
+        let mut set = |name: &str, value: Cell| {
+            if let Some(place) = columns.iter().position(|column| column.name == name) {
+                row[place] = value;
+            }
+        };
+        set("method", trajectory.name.clone().into());
+        set("status", found.ending.by_clock(self.start_time).to_string().into());
+        if let Some((worst, flips, exact)) = found.invariants {
+            set("energy_error", worst.energy.into());
+            set("exchanged_energy_error", truth.exchanged_energy_error(&worst).into());
+            set("momentum_error", worst.momentum_norm.into());
+            set("momentum_vector_error", worst.momentum_vector.into());
+            set("momentum_z_error", worst.momentum_z.into());
+            set("flips", flips.into());
+            set("flips_exact", exact.into());
+            set("flips_right", exact.map(|exact| if flips == exact { "right" } else { "wrong" }).into());
+        }
+        if found.ending == Ending::Held {
+            set("attitude_error", found.attitude_error.into());
+            set("attitude_time", found.at.map(|at| self.start_time + at).into());
+        }
+        Ok(row)
+    }
+}
+
+pub(super) fn columns(body: &Body) -> Vec<Column> {
+    let conserved = body.conserved();
+    let free = conserved.contains(&Conserved::Momentum);
+    let shown = |column: Column, shown: bool| if shown { column } else { column.hidden() };
+    let energy = conserved.contains(&Conserved::Energy);
+    let jacobi = !energy && !conserved.is_empty();
+    vec![
+        Column::new("method", "", "name in the catalogue, or the file of the trajectory"),
+        Column::new("step", "s", "step").heading("h"),
+        Column::new("tolerance", "", "tolerance of a method that chooses its steps").hidden(),
+        Column::new("attitude_error", "rad", "angle to the true attitude at the end")
+            .heading("attitude")
+            .digits(2),
+        Column::new("largest_attitude_error", "rad", "the largest at 64 times up to then").hidden(),
+        Column::new("attitude_time", "s", "time of the attitude error").hidden(),
+        shown(
+            Column::new("energy_error", "", "largest relative error of the energy")
+                .heading("energy")
+                .digits(2),
+            energy,
+        ),
+        Column::new("exchanged_energy_error", "", "max |E - E0| over (max U - min U), under gravity")
+            .hidden(),
+        Column::new("momentum_error", "", "largest relative error of |m|").hidden(),
+        shown(
+            Column::new("momentum_vector_error", "", "largest relative error of L in space")
+                .heading("L")
+                .digits(2),
+            free,
+        ),
+        shown(
+            Column::new("momentum_z_error", "", "largest relative error of L along space z, under torque")
+                .heading("L_z")
+                .digits(2),
+            energy && !free,
+        ),
+        shown(
+            Column::new("jacobi_error", "", "largest relative error of E - n L_z")
+                .heading("Jacobi")
+                .digits(2),
+            jacobi,
+        ),
+        Column::new("evaluations", "", "right sides, turns, flows, solutions and kicks together")
+            .heading("evals"),
+        Column::new("seconds", "s", "processor time, unwatched").hidden(),
+        Column::new("rk4_steps", "", "the same in steps of rk4").heading("rk4 steps").digits(2),
+        Column::new("flips", "", "changes of sign of the momentum along the middle axis").hidden(),
+        Column::new("flips_exact", "", "the same of the true motion").hidden(),
+        Column::new("flips_right", "", "whether they agree").heading("flips"),
+        Column::new("status", "", "ok, or what became of the run"),
+    ]
+}

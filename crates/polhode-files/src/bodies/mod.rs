@@ -1,0 +1,101 @@
+//! Bodies from files of every kind: JSON of `inertia` and `fit`, TOML lists of parts, robot models.
+
+mod json;
+mod parts;
+
+use std::path::Path;
+
+use nalgebra::Matrix3;
+use polhode::inertia::Inertia;
+
+use crate::error::Error;
+use crate::given::Given;
+use crate::read;
+use crate::robots::{self, Language};
+use crate::text::visible;
+pub use parts::parts;
+
+/// Name and tensor of a body in the axes of its frame, about its centre of mass, kg m²; the name may be empty.
+type Named = (String, Matrix3<f64>);
+
+/// The inertia of the body that `text` names, as FILE or FILE:LINK; `None` where there is no such file. Messages begin with
+/// `flag`.
+///
+/// # Errors
+/// A file that cannot be read, that has no such body or several to choose from, or whose tensor no body has.
+pub fn inertia(flag: &str, text: &str) -> Result<Option<Inertia>, Error> {
+    let whole = Path::new(text);
+    let (path, link) = match text.rsplit_once(':') {
+        _ if whole.is_file() => (whole, None),
+        Some((file, link)) if Path::new(file).is_file() => (Path::new(file), Some(link)),
+        _ => return Ok(None),
+    };
+    let mut bodies = tensors(flag, path)?;
+    let chosen = match link {
+        Some(link) => bodies.iter().position(|(name, _)| name == link),
+        None if bodies.len() == 1 => Some(0),
+        None => None,
+    };
+    let Some(chosen) = chosen else {
+        let names: Vec<&str> =
+            bodies.iter().map(|(name, _)| name.as_str()).filter(|name| !name.is_empty()).collect();
+        return Err(match link {
+            _ if bodies.is_empty() => {
+                Error::input(flag, text, "no body in it states an inertia tensor", "name another file")
+            }
+            Some(_) if names.is_empty() => Error::input(
+                flag,
+                text,
+                "the bodies of this file have no names",
+                "leave out the colon and what follows",
+            ),
+            Some(link) => Error::unknown_name(&format!("{flag}: {}", path.display()), "link", link, names),
+            None => Error::input(
+                flag,
+                text,
+                &format!("has {} bodies: {}", bodies.len(), visible(&names.join(", "))),
+                "name one of them behind a colon, as FILE:NAME",
+            ),
+        });
+    };
+    let (name, tensor) = bodies.swap_remove(chosen);
+    let of = if name.is_empty() { name } else { format!(" of '{}'", visible(&name)) };
+    let inertia = Inertia::from_tensor(tensor);
+    inertia.map(Some).map_err(|error| Error::Input(format!("{flag}: {}{of}: {error}", path.display())))
+}
+
+/// Every body of a file, whose ending tells its kind.
+fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
+        Some("json") => json::tensors(flag, path),
+        Some("toml") => Ok(vec![(String::new(), parts(path)?.tensor())]),
+        Some(kind @ ("urdf" | "mjcf" | "sdf" | "xml")) => links(path, kind),
+        _ => Err(Error::input(
+            flag,
+            &path.display().to_string(),
+            "the ending names no kind of file with a body",
+            "name a file .json, .toml, .urdf, .mjcf, .sdf or .xml",
+        )),
+    }
+}
+
+/// The links of a robot model that state a tensor.
+fn links(path: &Path, kind: &str) -> Result<Vec<Named>, Error> {
+    let text = read(path, "name a URDF, MJCF or SDF file")?;
+    let language = Language::named(kind).unwrap_or(if text.contains("<robot") {
+        Language::Urdf
+    } else if text.contains("<sdf") {
+        Language::Sdf
+    } else {
+        Language::Mjcf
+    });
+    let tensor = |body: &Given| {
+        let turn = body.turn.to_rotation_matrix();
+        turn * body.tensor * turn.transpose()
+    };
+    let links = robots::read(language, path, &text, None)?;
+    // a frame without a body, and a link that states no tensor, have none to give
+    let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
+    Ok(bodies.map(|body| (body.name.clone(), tensor(body))).collect())
+}

@@ -1,0 +1,129 @@
+//! One step of a splitting: its maps in turn, and what is merged where steps meet.
+
+use super::processor::{Processor, Timed};
+use crate::body::{Point, Time};
+use crate::method::{Map, SideBySide};
+use crate::num::{Dd, Real};
+
+/// A prepared [`Splitting`](super::Splitting): B where it comes first, pairs of A and B, A where it comes last.
+#[derive(Clone, Debug)]
+pub struct SplittingMap<A, B> {
+    pub(super) h: Dd,
+    pub(super) processor: Processor<A, B>,
+    pub(super) opening: Option<Timed<B>>,
+    pub(super) pairs: Vec<(Timed<A>, Timed<B>)>,
+    pub(super) closing: Option<Timed<A>>,
+    pub(super) ends: Ends<A, B>,
+}
+
+/// What becomes of the last flow of a step and the first of the next, which are equal.
+#[derive(Clone, Debug)]
+pub(super) enum Ends<A, B> {
+    /// Without forces: what A itself merges, if the step is one A.
+    OfA,
+    /// Nothing: the two flows are of different parts, or not exact.
+    Apart,
+    /// Two flows of A as one, and the one that takes half of it back.
+    A { merged: Timed<A>, back: A },
+    /// Two flows of B likewise.
+    B { merged: Timed<B>, back: B },
+}
+
+impl<A, B> SplittingMap<A, B> {
+    /// One step without processor.
+    #[inline]
+    fn kernel<S: Real>(&mut self, at: Time, x: &mut Point<S>)
+    where
+        A: Map<S>,
+        B: Map<S>,
+    {
+        if let Some(b) = &mut self.opening {
+            b.apply(at, x);
+        }
+        for (a, b) in &mut self.pairs {
+            a.apply(at, x);
+            b.apply(at, x);
+        }
+        if let Some(a) = &mut self.closing {
+            a.apply(at, x);
+        }
+    }
+}
+
+impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
+    #[inline]
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.processor.apply(at, x);
+        self.kernel(at, x);
+        self.processor.take_back(at.later(self.h), x);
+    }
+
+    fn open(&mut self, at: Time, x: &mut Point<S>) {
+        self.processor.apply(at, x);
+        match (&self.ends, &mut self.pairs[..], &mut self.opening) {
+            (Ends::OfA, [(a, _)], _) => a.map.open(at, x),
+            (Ends::A { .. }, [(a, _), ..], _) => a.map.apply(at, x),
+            (Ends::B { .. }, _, Some(b)) => b.map.apply(at, x),
+            _ => {}
+        }
+    }
+
+    #[inline]
+    fn advance(&mut self, at: Time, x: &mut Point<S>) {
+        match (&mut self.ends, &mut self.pairs[..]) {
+            (Ends::OfA, [(a, _)]) => a.map.advance(at, x),
+            (Ends::A { merged, .. }, [(_, first), pairs @ ..]) => {
+                first.apply(at, x);
+                for (a, b) in pairs {
+                    a.apply(at, x);
+                    b.apply(at, x);
+                }
+                merged.apply(at, x);
+            }
+            (Ends::B { merged, .. }, [pairs @ .., (last, _)]) => {
+                for (a, b) in pairs {
+                    a.apply(at, x);
+                    b.apply(at, x);
+                }
+                last.apply(at, x);
+                merged.apply(at, x);
+            }
+            _ => self.kernel(at, x),
+        }
+    }
+
+    #[inline]
+    fn close(&mut self, at: Time, x: &mut Point<S>) {
+        match (&mut self.ends, &mut self.pairs[..]) {
+            (Ends::OfA, [(a, _)]) => a.map.close(at, x),
+            (Ends::A { back, .. }, _) => back.apply(at, x),
+            (Ends::B { back, .. }, _) => back.apply(at, x),
+            _ => {}
+        }
+        self.processor.take_back(at, x);
+    }
+
+    fn synchronize(&self, elapsed: Dd, x: &mut Point<S>) {
+        if let (Ends::OfA, [(a, _)]) = (&self.ends, &self.pairs[..]) {
+            a.map.synchronize(elapsed, x);
+        }
+    }
+
+    fn side_by_side(&self) -> Option<SideBySide<S>> {
+        match (&self.ends, &self.pairs[..]) {
+            (Ends::OfA, [(a, _)]) if self.processor.is_empty() => a.map.side_by_side(),
+            _ => None,
+        }
+    }
+
+    fn worst_residual(&self) -> f64 {
+        let pairs = self.pairs.iter().map(|(a, b)| a.map.worst_residual().max(b.map.worst_residual()));
+        let opening = self.opening.iter().map(|b| b.map.worst_residual());
+        let closing = self.closing.iter().map(|a| a.map.worst_residual());
+        let merged = match &self.ends {
+            Ends::A { merged, .. } => merged.map.worst_residual(),
+            _ => 0.0,
+        };
+        pairs.chain(opening).chain(closing).fold(merged.max(self.processor.worst_residual()), f64::max)
+    }
+}
