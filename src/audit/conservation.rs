@@ -89,14 +89,20 @@ pub(super) fn conservation(
         let series: Vec<f64> = looked.iter().map(of).collect();
         let noise = SPREAD * noise(&rows, &series);
         let resolution = noise.max(allowed_of(quantity));
-        let mut error = series.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        // a maximum that is not a number stays one: `f64::max` would pass over it
+        let larger = |most: f64, value: f64| if value.abs() <= most { most } else { value.abs() };
+        let mut error = series.iter().fold(0.0_f64, |most, value| larger(most, *value));
         if has_omega && count > rows.len() {
             // one row at a time: a record may be as large as the memory allows
             error =
-                (0..count).filter_map(|row| every.at(row)).fold(error, |most, row| most.max(of(&row).abs()));
+                (0..count).filter_map(|row| every.at(row)).fold(error, |most, row| larger(most, of(&row)));
         }
-        let drift = secular_drift(&times, &series);
-        let conserved = error <= resolution;
+        // numbers near the limits of a double overflow: such a change is infinite, and shows nothing
+        let unknown = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
+        let (error, resolution) = (unknown(error), unknown(resolution));
+        let drift = secular_drift(&times, &series)
+            .filter(|drift| drift.slope.is_finite() && drift.half_width.is_finite());
+        let conserved = error.is_finite() && error <= resolution;
         found.push(Conservation { quantity, error, drift, resolution, conserved });
     };
     look(Conserved::Energy, &energy_of);

@@ -57,7 +57,8 @@ pub(super) struct Deviation {
     pub(super) size: f64,
     /// Rows further from the motion than is allowed in any column: the first, and how many.
     pub(super) beyond: Option<(usize, usize)>,
-    /// Changes of sign of the momentum along the middle axis in the record and in the motion, at the same rows.
+    /// Changes of sign of the momentum along the middle axis in the record and in the motion, at the same rows; the same number
+    /// where what the rows may be off makes the difference.
     pub(super) flips: [u64; 2],
 }
 
@@ -220,8 +221,12 @@ fn every_row(
         last: None,
         flips: [0, 0],
     };
-    let threshold = sweep.size * (6.0 * noise.1).max(of_rates.largest(rows)).min(0.1);
-    let mut flips = [0, 1].map(|_| Flips::new(&sweep.start.body, threshold));
+    // a record that is off by at most `off` flips at least as often as the motion does beyond a threshold that is larger by it,
+    // and at most as often as beyond one that is smaller by it
+    let off = sweep.size * of_rates.largest(rows);
+    let threshold = sweep.size * (6.0 * noise.1).max(2.0 * of_rates.largest(rows)).min(0.1);
+    let mut flips = [threshold, threshold, threshold + off, (threshold - off).max(0.0)]
+        .map(|threshold| Flips::new(&sweep.start.body, threshold));
     sweep.every(&mut |seen| {
         let add = |tally: &mut Option<Tally>, deviation: Option<Vec3<f64>>| {
             // a column without a number at this row is no column that was found right
@@ -235,7 +240,7 @@ fn every_row(
         add(&mut found.momentum, seen.momentum);
         if let Some(omega) = seen.omega {
             flips[0].see(omega);
-            flips[1].see(seen.exact.1);
+            flips[1..].iter_mut().for_each(|flips| flips.see(seen.exact.1));
         }
         if let Some(turn) = seen.turn.filter(|_| seen.row + 1 == rows) {
             let omega = seen.exact.0.rotate(seen.exact.1);
@@ -243,7 +248,9 @@ fn every_row(
             found.last = Some((along, (turn.norm_squared() - along * along).max(0.0).sqrt()));
         }
     })?;
-    found.flips = flips.map(|flips| flips.count);
+    let [measured, exact, fewest, most] = flips.map(|flips| flips.count);
+    let within = (fewest..=most).contains(&measured);
+    found.flips = [measured, if within { measured } else { exact }];
     let seen = [&found.attitude, &found.rates].into_iter().flatten().all(|tally| tally.rows_seen() == rows);
     seen.then_some(found)
 }

@@ -1,11 +1,14 @@
 //! From a reading to a verdict.
 
-use super::columns::{Columns, Source};
+use super::columns::{Columns, Source, rotation_vector};
 use super::conservation::conservation;
 use super::detective::Finding;
 use super::deviation::{Allowances, deviation, trace};
+use super::exchanged::exchanged;
 use super::faults::{discontinuity, faults, no_rotation};
 use super::misplaced::misplaced;
+use super::other_body::other_body as other_body_of;
+use super::other_torque::other_torque as other_torque_of;
 use super::resolution::{Writings, triples};
 use super::signature::signature as signature_of;
 use super::states::{Quantities, states};
@@ -17,6 +20,12 @@ use super::{
 use crate::body::{Body, Problem};
 use crate::inertia::Symmetry;
 use crate::rotation::Vec3;
+
+/// An angular velocity between two attitudes, relative, is off by at most so many times what one of them is, over the turn.
+const DERIVED: f64 = 3.0;
+
+/// A change of L above so many times the noise is one.
+const SEEN_IN_NOISE: f64 = 3.0;
 
 /// Groups of three rows that the size of ω is read off.
 const LOOKS: usize = 128;
@@ -48,6 +57,9 @@ pub(super) fn judge(
     let rows = record.times.len();
     let of_rates = if record.rates.is_some() { allowances.rates } else { allowances.momentum };
     let off = [allowances.attitude.largest(rows), of_rates.largest(rows)];
+    // angular velocities that attitudes are divided into are off by what both ends of a window are, over its turn
+    let off =
+        if has_omega { off } else { [off[0], off[1].max(DERIVED * off[0] / window_turn(record, &reading))] };
     let (conservation, mut traces) = conservation(record, &reading, &body, off);
     let by_motion = deviation.as_ref().map_or(Judgement::Undecided, |found| found.judgement);
     // a record every row of which is that of the motion keeps what the motion keeps, flips as often, and does not jump
@@ -56,18 +68,25 @@ pub(super) fn judge(
     // noise of the entries of a matrix changes its lengths by half as much again as it turns it
     let no_rotation = no_rotation(record, 2.0 * allowances.attitude.largest(rows));
     let contradicted = contradicted || no_rotation.is_some();
-    let by_motion =
+    let mut by_motion =
         if by_motion == Judgement::Right && contradicted { Judgement::Undecided } else { by_motion };
     let mut faults = faults(record, &reading, &writings.coarsest(), tolerance);
     faults.extend(no_rotation);
     if by_motion != Judgement::Right {
         faults.extend(discontinuity(record, &reading, rounding));
         if let Some(found) = &deviation {
-            faults.extend(misplaced(record, &reading, found, &allowances));
+            match exchanged(record, &reading, &body, &allowances) {
+                Some(fault) => {
+                    // each row is another's, whatever noise would hide
+                    by_motion = Judgement::Wrong;
+                    faults.push(fault);
+                }
+                None => faults.extend(misplaced(record, &reading, found, &allowances)),
+            }
         }
     }
     let claim = broken_claim(&reading, &finding, question);
-    let mut signature = None;
+    let (mut signature, mut other_body, mut other_torque) = (None, None, None);
     let suspect = match (&finding.mistake, claim) {
         (Some(mistake), _) if by_motion != Judgement::Right => mistake.suspect.clone(),
         (_, Some(claim)) => claim,
@@ -77,7 +96,19 @@ pub(super) fn judge(
         }
         _ => {
             signature = signature_of(record, &reading, &body, noise);
-            signature.as_ref().map_or(Suspect::None, |found| Suspect::Integrator(found.method.clone()))
+            if signature.is_none() {
+                other_body = other_body_of(record, question, &allowances);
+            }
+            if signature.is_none() && other_body.is_none() {
+                let off = off[0] + off[1] + SEEN_IN_NOISE * noise;
+                other_torque = other_torque_of(record, &reading, &body, off);
+            }
+            match (&signature, &other_body, &other_torque) {
+                (Some(found), ..) => Suspect::Integrator(found.method.clone()),
+                (_, Some(_), _) => Suspect::OtherBody,
+                (.., Some(_)) => Suspect::OtherTorque,
+                _ => Suspect::None,
+            }
         }
     };
     let judgement = if suspect == Suspect::None { by_motion } else { Judgement::Wrong };
@@ -128,10 +159,24 @@ pub(super) fn judge(
         flips,
         flips_exact,
         signature,
+        other_body,
+        other_torque,
         faults,
         missing: missing.into_iter().filter(|(lacks, _)| *lacks).map(|(_, what)| what).collect(),
         traces,
     })
+}
+
+/// How far the body turns over a window of a record of attitudes alone, typically, rad.
+fn window_turn(record: &Trajectory, reading: &Reading) -> f64 {
+    let windows = Columns::new(record).windows();
+    let turn = |&start: &usize| {
+        let ends = reading.attitude(record, start).zip(reading.attitude(record, start + windows.stride));
+        ends.map_or(0.0, |(p, q)| rotation_vector(p.conjugate() * q).norm())
+    };
+    let mut turns: Vec<f64> = windows.starts.iter().map(turn).collect();
+    turns.sort_by(f64::total_cmp);
+    turns.get(turns.len() / 2).copied().unwrap_or(0.0).max(f64::MIN_POSITIVE)
 }
 
 /// What each column may be off.
@@ -148,10 +193,14 @@ fn allowances(
     let size = squares.sqrt();
     let relative = if size > 0.0 { question.noise.rates / size } else { 0.0 };
     let of = |rounding: f64, noise: f64| Allowance::of(question.tolerance, rounding, noise);
+    // what is in space is turned into the body by attitudes that are rounded as well
+    let turned = |frame: Option<Frame>, rounding: f64| {
+        if frame == Some(Frame::Space) { rounding + angle_rounding } else { rounding }
+    };
     Allowances {
         attitude: of(angle_rounding, question.noise.attitude),
-        rates: of(writings.rates.rounding(), relative),
-        momentum: of(writings.momentum.rounding(), relative),
+        rates: of(turned(reading.omega_frame, writings.rates.rounding()), relative),
+        momentum: of(turned(reading.momentum_frame, writings.momentum.rounding()), relative),
     }
 }
 

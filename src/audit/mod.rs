@@ -13,10 +13,14 @@ mod conservation;
 mod detective;
 mod deviation;
 mod error;
+mod exchanged;
+mod fault;
 mod faults;
 mod judge;
 mod misplaced;
 mod motion;
+mod other_body;
+mod other_torque;
 mod program;
 mod question;
 mod reading;
@@ -32,12 +36,13 @@ mod verdict;
 
 pub use crate::units::{AngleUnit, RateUnit};
 pub use error::AuditError;
+pub use fault::{Fault, Misplaced, Missing};
 pub use question::{Convention, Noise, Question};
 pub use reading::{Angles, Direction, Frame, Product, QuaternionOrder, Reading, Turns};
 pub use trajectory::{Attitudes, Digits, FEWEST_ROWS, Trajectory};
 pub use verdict::{
-    AttitudeError, Conservation, Fault, Judgement, Misplaced, Missing, Ranked, Resolution, Signature,
-    Suspect, Tie, TieReason, Traces, Verdict,
+    AttitudeError, Conservation, Judgement, OtherBody, OtherTorque, Ranked, Resolution, Signature, Suspect,
+    Tie, TieReason, Traces, Verdict,
 };
 
 /// The verdict on `record`.

@@ -43,12 +43,16 @@ impl Writings {
         let stays = |vectors: &Option<Vec<[f64; 3]>>| {
             vectors.as_ref().is_some_and(|vectors| vectors.windows(2).all(|pair| pair[0] == pair[1]))
         };
-        let finer = |a: Writing, b: Writing| if a.digits > b.digits { a } else { b };
+        let finest = |own: Writing, others: [(bool, Writing); 2]| {
+            let there = others.into_iter().filter(|(is_there, _)| *is_there);
+            there.fold(own, |a, (_, b)| if a.digits > b.digits { a } else { b })
+        };
+        let attitude = (record.attitude.is_some(), found.attitude);
         if stays(&record.rates) {
-            found.rates = finer(finer(found.rates, found.attitude), found.momentum);
+            found.rates = finest(found.rates, [attitude, (record.momentum.is_some(), found.momentum)]);
         }
         if stays(&record.momentum) {
-            found.momentum = finer(finer(found.momentum, found.attitude), found.rates);
+            found.momentum = finest(found.momentum, [attitude, (record.rates.is_some(), found.rates)]);
         }
         found
     }
@@ -76,7 +80,8 @@ impl Writing {
         let longest = counts.get(counts.len() * 98 / 100).copied().unwrap_or(ALL_DIGITS);
         let exact = values.iter().all(|&x| f64::from(x as f32) == x);
         let printed = || values.iter().all(|&x| (x as f32).to_string().parse() == Ok(x));
-        let single_precision = (exact && longest > 9) || ((7..=9).contains(&longest) && printed());
+        // the shortest forms of single precision have up to 9 digits; of 7 any number is one
+        let single_precision = (exact && longest > 9) || ((8..=9).contains(&longest) && printed());
         let seen = if longest >= 16 { ALL_DIGITS } else { longest.max(1) };
         let digits = known.unwrap_or(if single_precision { 7 } else { seen });
         Writing { digits, single_precision }

@@ -11,7 +11,7 @@ use crate::rotation::{Quat, Vec3};
 use crate::run::{Run, Watch};
 
 /// Methods outside the catalogue that programs in use are built on.
-const OTHERS: [&str; 2] = ["no-squish", "gauss:6"];
+const OTHERS: [&str; 3] = ["no-squish", "gauss:6", "linearly-implicit-euler"];
 
 /// Steps between rows that are tried first, and those after them.
 const STEPS: [&[u64]; 2] = [&[1, 2, 5, 10], &[3, 4, 8, 20, 50, 100]];

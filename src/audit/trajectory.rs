@@ -56,6 +56,17 @@ pub enum Attitudes {
 }
 
 impl Attitudes {
+    /// What they are written as: `quaternion`, `rotation matrix`, `Euler angles` or `modified Rodrigues parameters`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Attitudes::Quaternions(_) => "quaternion",
+            Attitudes::Matrices(_) => "rotation matrix",
+            Attitudes::Angles(_) => "Euler angles",
+            Attitudes::Rodrigues(_) => "modified Rodrigues parameters",
+        }
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{Noise, Reading};
+use super::{Fault, Frame, Missing, Noise, Reading};
 use crate::body::{Body, Conserved};
 use crate::observe::Drift;
 
@@ -41,6 +41,10 @@ pub enum Suspect {
     Integrator(String),
     /// The state jumps.
     Discontinuity,
+    /// The motion of a body with other moments.
+    OtherBody,
+    /// L changes as another torque would change it.
+    OtherTorque,
 }
 
 /// A reading with what speaks for it.
@@ -155,111 +159,27 @@ pub struct Signature {
     pub mismatch: f64,
 }
 
-/// What a row holds that is not where the motion is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Misplaced {
-    /// The numbers of the row before.
-    Repeated,
-    /// The state of a neighbour, which holds the state of this row.
-    Exchanged,
-    /// The state of the row before or behind it: time stamps that are off by one.
-    Shifted,
-    /// The mean of its neighbours.
-    Interpolated,
-    /// None of these.
-    Unknown,
-}
-
-/// Something about the sampling or the writing of a record.
+/// The body that moves as the record does, where it is not the given one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Fault {
-    /// The body turns by more than half a turn between rows.
-    TooCoarse {
-        /// The turn, rad.
-        angle: f64,
-    },
-    /// An interval is much longer than the others.
-    TimeJump {
-        /// The row behind it, from 0.
-        row: usize,
-        /// Its length, s.
-        interval: f64,
-        /// The usual length, s.
-        usual: f64,
-        /// How many there are.
-        count: usize,
-    },
-    /// Quaternions change sign between rows.
-    SignFlips {
-        /// The first row behind one.
-        row: usize,
-        /// How many there are.
-        count: usize,
-    },
-    /// Quaternions, or rows of matrices, whose norm is not 1.
-    NotNormalized {
-        /// Largest | |q| − 1 |.
-        error: f64,
-        /// The row, from 0.
-        row: usize,
-    },
-    /// Quaternions whose norm is not that of the others, or matrices that are no multiple of a rotation.
-    NoRotation {
-        /// The row that is furthest off, from 0.
-        row: usize,
-        /// By how much, relative.
-        error: f64,
-        /// How many rows.
-        count: usize,
-    },
-    /// A component of the angular velocity that stays the same over rows, as clamped or held rates do.
-    Plateau {
-        /// The first row.
-        row: usize,
-        /// How many rows.
-        rows: usize,
-    },
-    /// Numbers of single precision.
-    SinglePrecision,
-    /// Numbers of few digits.
-    FewDigits {
-        /// How many.
-        digits: u32,
-    },
-    /// Rows that are further from the motion than is allowed.
-    Misplaced {
-        /// What they hold.
-        what: Misplaced,
-        /// The first of them, from 0.
-        row: usize,
-        /// How many there are.
-        count: usize,
-        /// The largest distance from the motion, rad or relative.
-        largest: f64,
-    },
-    /// The state jumps between two rows.
-    Discontinuity {
-        /// The row behind the jump, from 0.
-        row: usize,
-        /// Its size, rad or relative.
-        size: f64,
-        /// How many there are.
-        count: usize,
-    },
+pub struct OtherBody {
+    /// Its moments about the axes of the given body, else its principal moments in ascending order; of the same trace as the
+    /// given ones, as free motion tells no scale.
+    pub moments: [f64; 3],
+    /// Whether they are principal moments, as its axes are turned from the given ones.
+    pub principal: bool,
 }
 
-/// What a record lacks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The torque that changes L beside those that act on the given body, in the unit of its moments times rad/s².
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Missing {
-    /// No attitude: kinematics, L in space and the attitude error are not checked.
-    Attitude,
-    /// No angular velocity: it is derived from the attitudes.
-    Rates,
-    /// No body: the moments are fitted up to their scale, so that only their ratios are checked.
-    Body,
+pub struct OtherTorque {
+    /// Root mean square over the record.
+    pub size: f64,
+    /// How many times the torques that are told act, where that explains it: −1 of a wrong sign, 0 of torques that do not act.
+    pub factor: Option<f64>,
+    /// Its components, where it is constant in the axes of space or of the body.
+    pub constant: Option<(Frame, [f64; 3])>,
 }
 
 /// Errors at rows of the record, for figures; at most some 2000 rows.
@@ -309,6 +229,10 @@ pub struct Verdict {
     pub flips_exact: Option<u64>,
     /// The integrator that leaves such errors.
     pub signature: Option<Signature>,
+    /// The body that moves so, where it is another than the given one.
+    pub other_body: Option<OtherBody>,
+    /// The torque that acts beside those that are told.
+    pub other_torque: Option<OtherTorque>,
     /// What is odd about sampling and writing.
     pub faults: Vec<Fault>,
     /// What the record lacks.
@@ -329,7 +253,7 @@ impl fmt::Display for Judgement {
 
 impl fmt::Display for Suspect {
     /// `none`, `kinematics-sign`, `omega-frame`, `transposed`, `moments-order`, `degrees`, `gyroscopic-term-missing`,
-    /// `gyroscopic-sign`, `integrator:NAME` or `discontinuity`.
+    /// `gyroscopic-sign`, `integrator:NAME`, `discontinuity`, `other-body` or `other-torque`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Suspect::None => "none",
@@ -342,18 +266,8 @@ impl fmt::Display for Suspect {
             Suspect::GyroscopicSign => "gyroscopic-sign",
             Suspect::Integrator(name) => return write!(f, "integrator:{name}"),
             Suspect::Discontinuity => "discontinuity",
-        })
-    }
-}
-
-impl fmt::Display for Misplaced {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Misplaced::Repeated => "repeats the row before",
-            Misplaced::Exchanged => "is exchanged with a neighbour",
-            Misplaced::Shifted => "holds the state of a neighbour, as time stamps that are off by one row do",
-            Misplaced::Interpolated => "is the mean of its neighbours, as interpolated frames are",
-            Misplaced::Unknown => "is not where the motion is",
+            Suspect::OtherBody => "other-body",
+            Suspect::OtherTorque => "other-torque",
         })
     }
 }
@@ -376,64 +290,37 @@ impl fmt::Display for TieReason {
     }
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for OtherBody {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Fault::TooCoarse { angle } => {
-                write!(
-                    f,
-                    "the body turns by {angle:.3} rad between rows; sample at least twice as often as it turns by half"
-                )
-            }
-            Fault::TimeJump { row, interval, usual, count } => {
-                write!(
-                    f,
-                    "row {row}: {interval} s after the row before, usually {usual} s ({count} such intervals)"
-                )
-            }
-            Fault::SignFlips { row, count } => {
-                write!(
-                    f,
-                    "row {row}: the quaternion changes sign, {count} times in all; q and -q are one attitude"
-                )
-            }
-            Fault::NotNormalized { error, row } => {
-                write!(
-                    f,
-                    "row {row}: the norm of the attitude is off by {error:.1e}; normalise after every step"
-                )
-            }
-            Fault::NoRotation { row, error, count } => write!(
-                f,
-                "row {row}: what is written is no rotation of the size that the others have, off by {error:.1e} ({count} such rows)"
-            ),
-            Fault::Plateau { row, rows } => write!(
-                f,
-                "row {row}: a component of the angular velocity stays the same over {rows} rows; are rates clamped or held?"
-            ),
-            Fault::SinglePrecision => f.write_str("every number is one of single precision; write doubles"),
-            Fault::FewDigits { digits } => {
-                write!(f, "the numbers have {digits} significant digits; write 17")
-            }
-            Fault::Misplaced { what, row, count, largest } => {
-                let rows = if *count == 1 { String::new() } else { format!(" ({count} such rows)") };
-                write!(f, "row {row}: {what}{rows}; up to {largest:.1e} rad or relative from the motion")
-            }
-            Fault::Discontinuity { row, size, count } => {
-                write!(f, "row {row}: the state jumps by {size:.1e} ({count} such rows)")
-            }
-        }
+        let [a, b, c] = self.moments;
+        let which = if self.principal { "principal moments" } else { "moments" };
+        write!(
+            f,
+            "The motion is that of another body: {which} {a:.6} : {b:.6} : {c:.6}, of the same trace as those given."
+        )
     }
 }
 
-impl fmt::Display for Missing {
+impl fmt::Display for OtherTorque {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Missing::Attitude => {
-                "no attitude: kinematics, the direction of L and the attitude error are not checked"
+        let size = self.size;
+        match (self.factor, self.constant) {
+            (Some(factor), _) if factor.abs() < 0.05 => write!(
+                f,
+                "The torque that is told does not act: L changes as if it were 0 (root mean square of what is missing {size:.1e})."
+            ),
+            (Some(factor), _) => {
+                let sign = if factor < 0.0 { ", with the wrong sign" } else { "" };
+                write!(f, "The torque that is told acts {factor:.2} times{sign}.")
             }
-            Missing::Rates => "no angular velocity: it is derived from the attitudes",
-            Missing::Body => "no body: the moments are fitted up to their scale",
-        })
+            (None, Some((frame, [x, y, z]))) => write!(
+                f,
+                "A torque of about {size:.1e} acts that is not told, constant in {frame} axes: {x:.2e}, {y:.2e}, {z:.2e}, in the unit of the moments times rad/s\u{b2}."
+            ),
+            (None, None) => write!(
+                f,
+                "A torque of about {size:.1e} acts that is not told (root mean square, in the unit of the moments times rad/s\u{b2})."
+            ),
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::disallowed_methods)]
 
+mod causes;
 mod conventions;
 mod every_row;
 mod mistakes;

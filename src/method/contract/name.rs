@@ -6,9 +6,9 @@ use crate::method::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use crate::method::{
     AdaptiveTaylor, AnyMethod, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, DormandPrince853,
     Embedded, ExactFlow, ExactStep, ExplicitEuler, FreePart, Gauss, ImplicitMidpoint, LieGroup, LieNewmark,
-    Method, MomentumEuler, MujocoRk4, Pair, PreprocessedDmv, ProjectedRk4, Richardson, Rk4, Rk8, SchemeError,
-    SemiImplicitEuler, Splitting, Symmetric, SymmetricProjection, Taylor, Tsitouras54, TwoAxes, TwoTurn,
-    VariationalCayley,
+    LinearlyImplicitEuler, Method, MomentumEuler, MujocoRk4, Pair, PreprocessedDmv, ProjectedRk4, Richardson,
+    Rk4, Rk8, SchemeError, SemiImplicitEuler, Splitting, Symmetric, SymmetricProjection, Taylor, Tsitouras54,
+    TwoAxes, TwoTurn, VariationalCayley,
 };
 use crate::num::Dd;
 
@@ -89,6 +89,7 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         "momentum-euler" => plain(MomentumEuler, asked.scheme_alone()?),
         "buss-2" => plain(Buss { augmented: false }, asked.scheme_alone()?),
         "buss-2-augmented" => plain(Buss { augmented: true }, asked.scheme_alone()?),
+        "linearly-implicit-euler" => plain(LinearlyImplicitEuler, asked.scheme_alone()?),
         "mujoco-rk4" => plain(MujocoRk4, asked.scheme_alone()?),
         "lie-newmark" => match asked.scheme_alone()? {
             None => Ok(Box::new(LieNewmark)),

@@ -4,6 +4,7 @@ use polhode::audit::{Reading, Verdict};
 use polhode::body::Conserved;
 use serde_json::{Map, Value, json};
 
+use super::advice;
 use super::outcome::{Outcome, named};
 
 /// An object for a file of one body, else an array.
@@ -34,12 +35,17 @@ pub(super) fn reading(reading: &Reading) -> Value {
     value.into()
 }
 
+fn with_form(mut reading: Value, form: Option<&str>) -> Value {
+    reading["form"] = json!(form);
+    reading
+}
+
 fn object(outcome: &Outcome) -> Value {
     let verdict = &outcome.verdict;
     let mut value = json!({
         "verdict": outcome.judgement(),
         "suspect": outcome.suspect(),
-        "reading": reading(&verdict.reading),
+        "reading": with_form(reading(&verdict.reading), outcome.form),
         "ties": verdict.tie.as_ref().map_or(Vec::new(), |tie| tie.readings.iter().map(reading).collect()),
         "ranking": ranking(verdict),
         "rows": outcome.rows,
@@ -62,6 +68,14 @@ fn object(outcome: &Outcome) -> Value {
             "measured_energy_change": found.measured_energy_change,
             "at": found.at, "mismatch": found.mismatch,
         })),
+        "other_body": verdict.other_body.map(|found| json!({
+            "moments": found.moments, "principal": found.principal,
+        })),
+        "other_torque": verdict.other_torque.map(|found| json!({
+            "size": found.size, "factor": found.factor,
+            "frame": found.constant.map(|(frame, _)| frame.to_string()), "torque": found.constant.map(|(_, torque)| torque),
+        })),
+        "advice": outcome.advice.as_ref().map(advice::object),
         "resolution": {
             "noise": verdict.noise.map(|noise| [noise.attitude, noise.rates]),
             "attitude": verdict.resolution.attitude, "rates": verdict.resolution.rates,

@@ -1,5 +1,6 @@
 //! `polhode audit`: a verdict on the trajectory of another program.
 
+mod advice;
 mod against;
 mod arguments;
 mod figure;
@@ -13,7 +14,7 @@ mod text;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use polhode::audit::{Noise, Question, Trajectory, audit};
+use polhode::audit::{Attitudes, Noise, Question, Trajectory, audit};
 use polhode::body::Body;
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{list, positive};
@@ -26,6 +27,7 @@ use polhode_pages::table::Format;
 use crate::flags::body::BodyArguments;
 use crate::flags::force::ForceArguments;
 use crate::memory;
+use advice::Adviser;
 use against::Golden;
 use arguments::ReadingArguments;
 use outcome::Outcome;
@@ -55,7 +57,8 @@ const RANKED: usize = 5;
 /// body, within what its own digits tell, or within the noise that --noise declares. A record that agrees within a noise that
 /// nobody declares is undecided. Where a name or an option states a direction, a frame, a unit or the order of the moments, and the
 /// rows contradict it, the record is wrong. suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, gyroscopic-term-missing,
-/// gyroscopic-sign, integrator:NAME, discontinuity or none. Exit code 0: right; 1: wrong or undecided.
+/// gyroscopic-sign, integrator:NAME, discontinuity, other-body, other-torque or none. Of a record that is wrong by its
+/// integrator, a method and a step that would do are named, if they are found within two seconds. Exit code 0: right; 1: wrong or undecided.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 #[command(mut_group("BodyArguments", |group| group.required(false)))]
@@ -181,6 +184,7 @@ impl Audit {
                 chosen
             }
         };
+        let adviser = Adviser::new();
         let mut outcomes = Vec::new();
         for (id, mut record) in bodies {
             let place = id.as_ref().map_or(name.to_string(), |id| format!("{name}, body {id}"));
@@ -202,7 +206,15 @@ impl Audit {
                     difference.rows, difference.of, difference.name
                 ));
             }
-            outcomes.push(Outcome { body: id, rows: record.times.len(), verdict, against, notes });
+            outcomes.push(Outcome {
+                body: id,
+                rows: record.times.len(),
+                form: record.attitude.as_ref().map(Attitudes::name),
+                advice: adviser.advice(&record, &verdict, self.tolerance),
+                verdict,
+                against,
+                notes,
+            });
         }
         Ok(outcomes)
     }

@@ -1,5 +1,6 @@
 //! The verdict on one body of a record, in the quantities that every form of the answer shows.
 
+use polhode::advise::Choice;
 use polhode::audit::{Fault, Judgement, Missing, Suspect, Verdict};
 use polhode::body::Conserved;
 
@@ -10,6 +11,10 @@ pub(super) struct Outcome {
     /// Name of the body, where the file has several.
     pub(super) body: Option<String>,
     pub(super) rows: usize,
+    /// What the attitude is written as.
+    pub(super) form: Option<&'static str>,
+    /// What to switch to.
+    pub(super) advice: Option<Choice>,
     pub(super) verdict: Verdict,
     /// Beside a golden trajectory, where one was given.
     pub(super) against: Option<Difference>,
@@ -49,6 +54,16 @@ impl Outcome {
         match &self.against {
             Some(difference) => Some(difference.largest),
             None => self.verdict.attitude_error.map(|error| error.largest),
+        }
+    }
+
+    /// The convention that the record is written in, in words.
+    pub(super) fn reading(&self) -> String {
+        let reading = self.verdict.reading;
+        // quaternions and Euler angles are named with their order
+        match self.form.filter(|_| reading.quaternion.is_none() && reading.angles.is_none()) {
+            Some(form) => format!("{form}; {reading}"),
+            None => reading.to_string(),
         }
     }
 

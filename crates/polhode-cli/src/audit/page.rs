@@ -6,7 +6,7 @@ use polhode_pages::document::{Block, Form};
 
 use super::figure::panels;
 use super::outcome::{Outcome, named, sentence};
-use super::text::{attitude, integrator};
+use super::text::{attitude, causes};
 
 /// The page of the record `name`.
 pub(super) fn page(name: &str, outcomes: &[Outcome], form: Form) -> Result<String, Error> {
@@ -30,16 +30,14 @@ fn one(outcome: &Outcome) -> Vec<Block> {
         if outcome.is_suspected() { format!(" Suspect: {}.", outcome.suspect()) } else { String::new() };
     let mut parts = vec![
         Block::Paragraph(format!("Verdict on {} rows: {}.{suspect}", outcome.rows, outcome.judgement())),
-        Block::Paragraph(format!("Reading: {}.", verdict.reading)),
+        Block::Paragraph(format!("Reading: {}.", outcome.reading())),
     ];
     if let Some(tie) = &verdict.tie {
         parts.push(Block::Paragraph(format!("{} readings fit alike: {}.", tie.readings.len(), tie.reason)));
         parts.push(Block::List(tie.readings.iter().map(ToString::to_string).collect()));
     }
     parts.extend(attitude(outcome).into_iter().map(Block::Paragraph));
-    if let Some(signature) = &verdict.signature {
-        parts.extend(integrator(signature).into_iter().map(Block::Paragraph));
-    }
+    parts.extend(causes(outcome).into_iter().map(Block::Paragraph));
     let number = |x: f64| format!("{x:.1e}").replace('-', "\u{2212}");
     let optional = |x: Option<f64>| x.map_or("–".into(), number);
     let head = ["quantity", "largest relative change", "slope (1/s)", "±", "resolution", "conserved"];

@@ -1,9 +1,10 @@
 //! Verdicts in words, for a terminal.
 
 use polhode::audit::{Signature, Verdict};
-use polhode_files::text::short;
+use polhode_files::text::rounded;
 use polhode_pages::table::{Cell, Column, Table, row};
 
+use super::advice;
 use super::outcome::{Outcome, named, sentence};
 
 const WIDTH: usize = 78;
@@ -20,7 +21,7 @@ fn one(name: &str, outcome: &Outcome) -> String {
     let suspect =
         if outcome.is_suspected() { format!("; suspect: {}", outcome.suspect()) } else { String::new() };
     push(&mut lines, &format!("{name}{of}: {}{suspect}", outcome.judgement()), "");
-    push(&mut lines, &format!("Reading: {}.", verdict.reading), "  ");
+    push(&mut lines, &format!("Reading: {}.", outcome.reading()), "  ");
     if let Some(tie) = &verdict.tie {
         push(&mut lines, &format!("{} readings fit alike: {}.", tie.readings.len(), tie.reason), "  ");
         for reading in &tie.readings {
@@ -33,10 +34,8 @@ fn one(name: &str, outcome: &Outcome) -> String {
     for line in attitude(outcome) {
         push(&mut lines, &line, "  ");
     }
-    if let Some(signature) = &verdict.signature {
-        for line in integrator(signature) {
-            push(&mut lines, &line, "  ");
-        }
+    for line in causes(outcome) {
+        push(&mut lines, &line, "  ");
     }
     let tie = usize::from(verdict.tie.is_some());
     let warnings = outcome.warnings();
@@ -81,7 +80,7 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
         let start = if error.fitted_start { "as fits the record best" } else { "at the first row" };
         lines.push(format!(
             "Attitude error: {} rad at t = {} s, from the motion that starts {start}; at the end {} rad along the motion (phase) and {} rad across (drift).",
-            size(error.largest), short(error.at), size(error.phase), size(error.drift)
+            size(error.largest), rounded(error.at), size(error.phase), size(error.drift)
         ));
     }
     if let Some(noise) = verdict.noise {
@@ -96,7 +95,7 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
             "Against {}: {} rad at t = {} s, of {} rows at the same times; {} rad are allowed.",
             difference.name,
             size(difference.largest),
-            short(difference.at),
+            rounded(difference.at),
             difference.rows,
             size(difference.tolerance)
         ));
@@ -112,15 +111,25 @@ fn size(x: f64) -> String {
     if x == 0.0 { "0".into() } else { format!("{x:.1e}") }
 }
 
+/// What makes the record wrong, and what to do about it, a sentence each.
+pub(super) fn causes(outcome: &Outcome) -> Vec<String> {
+    let verdict = &outcome.verdict;
+    let mut lines = verdict.signature.as_ref().map_or(Vec::new(), integrator);
+    lines.extend(verdict.other_body.as_ref().map(ToString::to_string));
+    lines.extend(verdict.other_torque.as_ref().map(ToString::to_string));
+    lines.extend(outcome.advice.as_ref().map(advice::sentence));
+    lines
+}
+
 /// The integrator with what it predicts beside what was measured.
-pub(super) fn integrator(found: &Signature) -> Vec<String> {
+fn integrator(found: &Signature) -> Vec<String> {
     let order = found.order.map_or(String::new(), |order| format!(" (order {order})"));
     let mut lines = vec![format!(
-        "Like {}{order} with h = {} s, {} steps a row: at t = {} s it predicts an attitude error of {:.1e} rad, measured are {:.1e} rad.",
+        "Like {}{order} with h = {} s, {} a row: at t = {} s it predicts an attitude error of {:.1e} rad, measured are {:.1e} rad.",
         found.method,
-        short(found.step),
-        found.steps_per_row,
-        short(found.at),
+        rounded(found.step),
+        if found.steps_per_row == 1 { "one step".into() } else { format!("{} steps", found.steps_per_row) },
+        rounded(found.at),
         found.predicted_attitude_error,
         found.measured_attitude_error
     )];

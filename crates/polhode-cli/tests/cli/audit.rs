@@ -301,3 +301,37 @@ fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
     );
     assert_eq!(fs::read_to_string(own).unwrap(), "# Mine\n");
 }
+
+#[test]
+fn rodrigues_parameters_are_named_in_the_reading() {
+    let scratch = Scratch::new("audit-rodrigues");
+    let sigma = rows("").into_iter().map(|r| {
+        let sign = if r[1] < 0.0 { -1.0 } else { 1.0 };
+        let s = |k: usize| sign * r[k] / (1.0 + sign * r[1]);
+        vec![r[0], s(2), s(3), s(4), r[5], r[6], r[7]]
+    });
+    let file = scratch.file("mrp.csv", table("time,sigma_1,sigma_2,sigma_3,wx,wy,wz", sigma));
+    let answer = run(&format!("audit {file} {BODY} --format table"));
+    assert!(
+        answer.out.contains("Reading: modified Rodrigues parameters; attitude body to space"),
+        "{}",
+        answer.out
+    );
+    let answer = run(&format!("audit {file} {BODY} --format json"));
+    assert_eq!(verdict(&answer)["reading"]["form"], "modified Rodrigues parameters");
+}
+
+#[test]
+fn another_body_and_another_torque_are_told_in_words() {
+    let scratch = Scratch::new("audit-causes");
+    let columns = "t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let free = scratch.file("free.csv", table(columns, rows("").iter().map(|r| r.to_vec())));
+    let answer = run(&format!("audit {free} --moments 1,2,2.9 --format table"));
+    for part in ["free.csv: wrong; suspect: other-body", "The motion is that of another body: moments"] {
+        assert!(answer.out.contains(part), "{part}: {}", answer.out);
+    }
+    let answer = run(&format!("audit {free} {BODY} --torque-body 0.01,0,0 --format table"));
+    for part in ["free.csv: wrong; suspect: other-torque", "The torque that is told does not act"] {
+        assert!(answer.out.contains(part), "{part}: {}", answer.out);
+    }
+}

@@ -95,10 +95,32 @@ fn the_names_of_drake_carry_the_model_and_the_body() {
 }
 
 #[test]
+fn the_integrators_of_mujoco_are_named_and_what_to_switch_to() {
+    let body = "--moments 1,2,2.5";
+    let cases = [
+        ("euler", "", "semi-implicit-euler"),
+        ("implicit", "", "linearly-implicit-euler"),
+        ("implicitfast", "", "linearly-implicit-euler"),
+        ("rk4", "--tolerance 1e-8", "mujoco-rk4"),
+    ];
+    for (log, tolerance, method) in cases {
+        let found = audit(&format!("mujoco-{log}.csv {body} {tolerance}"));
+        assert_eq!(found["suspect"], format!("integrator:{method}"), "{log}: {found:#}");
+        let step = found["integrator"]["step"].as_f64().unwrap();
+        assert!((step - 0.05).abs() < 1e-9, "{log}: {found:#}");
+        // without it where thought takes longer than two seconds
+        let advice = &found["advice"];
+        assert!(advice.is_null() || advice["step"].as_f64().unwrap() > 0.0, "{log}: {advice:#}");
+    }
+    // within the tolerance by default
+    assert_eq!(audit(&format!("mujoco-rk4.csv {body}"))["verdict"], "right");
+}
+
+#[test]
 fn the_logs_are_those_of_the_register() {
     let register = std::fs::read_to_string(folder().join("programs.toml")).unwrap();
     let register: toml::Table = register.parse().unwrap();
-    assert_eq!(register.len(), 9);
+    assert_eq!(register.len(), 13);
     for (file, entry) in register {
         let digest = Sha256::digest(std::fs::read(folder().join(&file)).unwrap());
         let digest: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();

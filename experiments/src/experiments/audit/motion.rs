@@ -90,7 +90,7 @@ impl Motion {
     }
 }
 
-fn exact(body: &Body, start: &State, interval: f64, count: u64) -> Result<Vec<Row>, Error> {
+pub(super) fn exact(body: &Body, start: &State, interval: f64, count: u64) -> Result<Vec<Row>, Error> {
     let motion = FreeMotion::from_state(body.inertia(), start).map_err(unexpected)?;
     let row = |k: u64| {
         let t = k as f64 * interval;
@@ -113,7 +113,7 @@ pub(super) fn distinct(random: &mut Random) -> [f64; 3] {
 }
 
 /// Two moments agree, and the third is apart.
-fn symmetric(random: &mut Random) -> [f64; 3] {
+pub(super) fn symmetric(random: &mut Random) -> [f64; 3] {
     let axis = random.below(3) as usize;
     let ratio = if random.below(2) == 0 { random.between(0.3, 0.9) } else { random.between(1.1, 1.9) };
     let mut moments = [1.0; 3];

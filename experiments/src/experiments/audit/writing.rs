@@ -41,10 +41,11 @@ impl Writing {
         (0.5 * libm::exp10(1.0 - self.digits as f64)).max(single).max(self.noise)
     }
 
-    fn number(self, random: &mut Random, x: f64, size: f64) -> f64 {
+    pub(super) fn number(self, random: &mut Random, x: f64, size: f64) -> f64 {
         let noisy = if self.noise > 0.0 { x + self.noise * size * random.normal() } else { x };
         let kept = if self.single { f64::from(noisy as f32) } else { noisy };
-        format!("{kept:.*e}", self.digits - 1).parse().unwrap_or(kept)
+        // seventeen digits are every double
+        if self.digits >= 17 { kept } else { format!("{kept:.*e}", self.digits - 1).parse().unwrap_or(kept) }
     }
 }
 

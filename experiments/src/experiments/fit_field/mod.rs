@@ -2,7 +2,7 @@
 
 mod bound;
 mod cases;
-mod tally;
+pub(super) mod tally;
 mod trial;
 mod units;
 

@@ -32,15 +32,15 @@ pub(super) struct Tally {
 
 /// A share with its 95 % interval.
 #[derive(Clone, Copy)]
-pub(super) struct Interval {
-    pub(super) share: f64,
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(in crate::experiments) struct Interval {
+    pub(in crate::experiments) share: f64,
+    pub(in crate::experiments) low: f64,
+    pub(in crate::experiments) high: f64,
 }
 
 impl Interval {
     /// Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209. `None` of nothing.
-    pub(super) fn new(count: u64, of: u64) -> Option<Self> {
+    pub(in crate::experiments) fn new(count: u64, of: u64) -> Option<Self> {
         Self::wide(count, of, ONE_IN_TWENTY)
     }
 

