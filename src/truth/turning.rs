@@ -184,10 +184,10 @@ impl Turning {
         self.growth * SMALL > GROWN
     }
 
-    /// What the rounding of runs in `f64` amounts to, rad, about: in steps of a tenth of a radian it walks at random, the attitude
-    /// goes on turning, and what is off grows as a change of the start does.
+    /// What the rounding of runs in `f64` amounts to, rad, about: in steps of a tenth of a radian it walks at random, and the
+    /// attitude goes on turning.
     pub(super) fn rounding(&self) -> f64 {
-        f64::EPSILON * libm::sqrt(0.1 * self.angle) * self.angle.max(self.growth)
+        f64::EPSILON * libm::sqrt(0.1 * self.angle) * self.angle
     }
 
     /// The largest rate up to the end, rad/s.
