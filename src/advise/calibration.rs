@@ -30,6 +30,9 @@ const RUNGS: usize = 14;
 /// Runs of a candidate over the whole time at most.
 const REFINEMENTS: usize = 6;
 
+/// By what a tolerance is made smaller at which a run was lost.
+const LOST_TOLERANCE: f64 = 0.01;
+
 /// What part of the demand is aimed at, and between which parts a setting is taken.
 const AIM: f64 = 0.4;
 const TAKEN: (f64, f64) = (0.12, 1.0 / SAME_RUN);
@@ -286,7 +289,8 @@ impl<'a> Calibration<'a> {
             }
             let span = self.reference.long(seconds / self.demand.until, AFFORDABLE).map_err(|_| nearest)?;
             let Some(run) = self.run(candidate, value, &span, Some((&stage, seconds))) else {
-                value *= 0.5;
+                // it was lost: nothing tells by how much
+                value *= if candidate.is_adaptive() { LOST_TOLERANCE } else { 0.5 };
                 seconds *= 2.0;
                 continue;
             };

@@ -24,9 +24,9 @@ const SEEN: (f64, f64) = (0.003, 30.0);
 /// The error over tolerance · Θ² of `dop853` and `tsit5`.
 const ADAPTIVE: f64 = 4e-3;
 
-/// Steps of `tsit5` a radian at a tolerance of 1e-12, and the most that it takes.
+/// Steps of `tsit5` a radian at a tolerance of 1e-12, and the most that it takes in all its runs: a second, about.
 const SMALL_STEPS: f64 = 40.0;
-const MOST_SMALL_STEPS: f64 = 1e6;
+pub(super) const MOST_SMALL_STEPS: f64 = 2e6;
 
 /// Θ counts as this at least.
 const LEAST_ANGLE: f64 = 30.0;
@@ -34,7 +34,7 @@ const LEAST_ANGLE: f64 = 30.0;
 /// What two runs showed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pair {
-    /// Points of the first at the times, as long as the two are within a radian.
+    /// Points of the first at the times, as long as the two are near each other.
     pub(super) looks: Vec<Point<f64>>,
     /// How far they are apart at each, rad.
     pub(super) apart: Vec<f64>,
@@ -68,23 +68,20 @@ pub(super) fn smooth(turning: &Turning, error: f64, finer: f64) -> [Leg; 2] {
     [(Box::new(Rk8), of(EXPLICIT)), (Box::new(Gauss::ORDER_8), of(IMPLICIT))]
 }
 
-/// The runs that choose their steps, for a torque that jumps; `None` where they would take too many.
-pub(super) fn jumping(turning: &Turning, error: f64) -> Option<[Leg; 2]> {
+/// The runs that choose their steps, for a torque that jumps, and how many steps the second takes, about.
+pub(super) fn jumping(turning: &Turning, error: f64) -> Option<([Leg; 2], f64)> {
     let angle = turning.angle.max(LEAST_ANGLE);
     let tolerance = (error / (ADAPTIVE * angle * angle)).clamp(1e-15, 1e-6);
     let steps = SMALL_STEPS * angle * libm::pow(1e-12 / tolerance, 0.2);
-    if steps > MOST_SMALL_STEPS {
-        return None;
-    }
     let (first, second) = (Dop853::of_tolerance(tolerance).ok()?, Tsit5::of_tolerance(tolerance).ok()?);
-    Some([(Box::new(first), f64::INFINITY), (Box::new(second), f64::INFINITY)])
+    Some(([(Box::new(first), f64::INFINITY), (Box::new(second), f64::INFINITY)], steps))
 }
 
-/// Runs `legs` from `start` through `times`.
+/// Runs `legs` from `start` through `times`, as long as they are at most `most` rad apart.
 pub(super) fn run(
     turning: &Turning,
     start: Point<f64>,
-    times: &[f64],
+    (times, most): (&[f64], f64),
     legs: &[Leg; 2],
     heed: &mut dyn FnMut(f64),
 ) -> Result<Pair, TruthError> {
@@ -102,7 +99,7 @@ pub(super) fn run(
     let each = |(time, one): (f64, Point<f64>), (_, other): (f64, Point<f64>)| {
         heed(time / last);
         let apart = attitude_error(one.attitude, other.to_dd().attitude);
-        if apart > super::LOST {
+        if apart > most {
             return false;
         }
         pair.looks.push(one);

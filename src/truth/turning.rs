@@ -184,7 +184,7 @@ impl Turning {
         self.growth * SMALL > GROWN
     }
 
-    /// What the rounding of runs in `f64` amounts to at most, rad, about: in steps of a tenth of a radian it walks at random, and the
+    /// What the rounding of runs in `f64` amounts to, rad, about: in steps of a tenth of a radian it walks at random, and the
     /// attitude goes on turning.
     pub(super) fn rounding(&self) -> f64 {
         f64::EPSILON * libm::sqrt(0.1 * self.angle) * self.angle

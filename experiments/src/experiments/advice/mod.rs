@@ -3,8 +3,9 @@
 //! # Definitions
 //! A demand is an attitude error E up to a time T. *Met*: a method was named, and the largest error of its run at 61 looks up to T
 //! is at most E and at most the predicted error times the stated factor. *Missed*: a method was named, and the error is larger than
-//! either. *Refused*: no method was named; the reason is that of the refusal. The thinking time is what passes until the answer, and
-//! its ratio is that over two seconds and ten times the run that was named; of a refusal, over two seconds.
+//! either. *Refused*: no method was named; the reason is that of the refusal. The thinking time is the processor time of all threads
+//! until the answer (where the system does not tell it, what passes), so that other programs on the machine do not count, and its
+//! ratio is that over two seconds and ten times the run that was named; of a refusal, over two seconds.
 //!
 //! The true motion is Taylor's method to the rounding of a double, which is neither of the two methods that advice follows a motion
 //! by, never what is compared with itself (`taylor` is excluded from the advice), and is begun anew at every look; where it says
@@ -36,6 +37,38 @@ const SEED: u64 = 1834;
 /// Reasons of refusals, in the order of the columns.
 const REASONS: [&str; 6] = ["conditioning", "chaotic", "jumps", "undecided", "unreached", "other"];
 
+/// The clocks at the beginning of a thought.
+struct Thinking {
+    passed: Instant,
+    processor: Option<f64>,
+}
+
+impl Thinking {
+    fn begun() -> Self {
+        Thinking { passed: Instant::now(), processor: processor_seconds() }
+    }
+
+    /// The processor time since then, s.
+    fn seconds(&self) -> f64 {
+        let used = processor_seconds().zip(self.processor).map(|(now, begun)| now - begun);
+        used.unwrap_or_else(|| self.passed.elapsed().as_secs_f64())
+    }
+}
+
+/// The processor time of this program so far, s, where the system tells it.
+#[cfg(target_os = "linux")]
+fn processor_seconds() -> Option<f64> {
+    use rustix::time::{ClockId, clock_gettime};
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
+}
+
+/// The processor time of this program so far, s, where the system tells it.
+#[cfg(not(target_os = "linux"))]
+fn processor_seconds() -> Option<f64> {
+    None
+}
+
 /// What became of a demand.
 enum Outcome {
     Met,
@@ -50,9 +83,10 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     // one after the other, as a user asks: the threads of others would count as thinking
     let mut asked = Vec::new();
     for problem in problems {
-        let begun = Instant::now();
+        let begun = Thinking::begun();
         let advice = advise(&problem.body, &problem.start, &problem.demand);
-        asked.push((problem, advice, begun.elapsed().as_secs_f64()));
+        let thought = begun.seconds();
+        asked.push((problem, advice, thought));
     }
     let judged = context.in_parallel(asked, |(problem, advice, thought)| {
         let seconds = advice.as_ref().map_or(0.0, |advice| advice.best.seconds.value);
@@ -62,7 +96,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let judged = judged.into_iter().collect::<Result<Vec<_>, Error>>()?;
     let mut report = Report { seed: Some(SEED), ..Report::default() };
     let mut table = Table::new("advice", caption(each, longest), columns());
-    let mut timing = Table::new("timing", "Time that passes until the answer.", timing_columns());
+    let mut timing = Table::new("timing", "Processor time until the answer.", timing_columns());
     let mut slow = 0;
     for (kind, name) in KINDS.iter().enumerate() {
         let of: Vec<_> = judged.iter().filter(|judged| judged.0 == kind).collect();
@@ -116,7 +150,7 @@ fn columns() -> Vec<Column> {
 fn timing_columns() -> Vec<Column> {
     vec![
         Column::new("force", "", "what acts"),
-        Column::new("median", "s", "time until the answer, the middle one").digits(2),
+        Column::new("median", "s", "processor time until the answer, the middle one").digits(2),
         Column::new("longest", "s", "the longest").digits(2),
         Column::new("ratio", "", "the largest over two seconds and ten times the run that was named")
             .digits(2),
