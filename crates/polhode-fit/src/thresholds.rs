@@ -162,7 +162,7 @@ thresholds! {
         UNEXPLAINED: f64 = 0.01,
             "share of the squared derivative of the rates from which torques at random are worth a warning", UNMEASURED;
         SENSOR: f64 = 30.0,
-            "gain of log-likelihood from which errors of the sensor are named: at most 15 in measured tosses, at least 50 where they are 0.02", "misaligned_and_unequal_axes_are_named_where_torque_noise_takes_their_place";
+            "gain of log-likelihood from which errors of the sensor are named: at most 15 in measured tosses, at least 62 in 40 records of a sensor misaligned by 0.02", "misaligned_and_unequal_axes_are_named_where_torque_noise_takes_their_place";
         FEW: usize = 20, "degrees of freedom below which chi squared is no check", UNMEASURED;
     }
     trend: "trends of what a free body keeps, and whiteness" {
