@@ -161,6 +161,8 @@ thresholds! {
         APART: f64 = 3.0, "standard deviations that two moments must be apart to have axes of their own", UNMEASURED;
         UNEXPLAINED: f64 = 0.01,
             "share of the squared derivative of the rates from which torques at random are worth a warning", UNMEASURED;
+        SENSOR: f64 = 30.0,
+            "gain of log-likelihood from which errors of the sensor are named: at most 15 in measured tosses, at least 62 in 40 records of a sensor misaligned by 0.02", "misaligned_and_unequal_axes_are_named_where_torque_noise_takes_their_place";
         FEW: usize = 20, "degrees of freedom below which chi squared is no check", UNMEASURED;
     }
     trend: "trends of what a free body keeps, and whiteness" {
@@ -182,6 +184,8 @@ thresholds! {
         OFFSET: f64 = 0.01, "offset of an axis, rad/s", UNMEASURED;
         SCALE: f64 = 0.01, "relative error of scale", UNMEASURED;
         ALIGNMENT: f64 = 0.01, "error of a right angle, rad", UNMEASURED;
+        LARGEST: f64 = 0.05,
+            "deviation of misalignments, rad, and of axis scales that are tried beside a fit", UNMEASURED;
         DELAY: f64 = 1e-3, "delay of an axis, s", UNMEASURED;
         WHEEL: f64 = 1e-3, "momentum of a wheel over that of the body", UNMEASURED;
         WALK: f64 = 1e-4, "random walk of the offsets, rad/s per root of a second", UNMEASURED;

@@ -8,7 +8,7 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
     Disturbances, FitError, Gyroscope, Prior, Record, Segment, SensorPriors, Settings, TorqueModel,
-    TorqueScope, fit, foreseen_bound, foreseen_bound_with, simulate_with,
+    TorqueScope, Warning, fit, foreseen_bound, foreseen_bound_with, simulate_with,
 };
 
 use measured::torques::{bound, motion};
@@ -240,4 +240,35 @@ fn torques_that_a_record_cannot_tell_are_named() {
         }
     }
     assert!(refused > 0);
+}
+
+/// At this noise torque noise takes the place of the sensor's errors, with no trend and no constant torque in some records.
+/// Sensors without errors are never suspected, under drag and torque noise neither.
+#[test]
+fn misaligned_and_unequal_axes_are_named_where_torque_noise_takes_their_place() {
+    let mut random = Random::new(160);
+    let times = sampled(100, 60);
+    for k in 0..6 {
+        let body = Inertia::from_tensor(turned(SHAPE, &random_rotation(&mut random))).unwrap();
+        let omega = random.normal_vector().normalize();
+        let errors = Vector3::new(0.02, -0.02, 0.02);
+        let right = Gyroscope::default().with_noise(1e-2);
+        let (sensor, acting, named) = match k % 3 {
+            0 => (right.with_misalignment(errors), Disturbances::default(), Some("misalignment")),
+            1 => (right.with_axis_scales(errors), Disturbances::default(), Some("scale")),
+            _ => (right, Disturbances::default().with_torque_noise(3e-3).with_relative_drag(1e-2), None),
+        };
+        let rates = simulate_with(&body, omega, &times, &acting, &sensor, &mut random).unwrap();
+        let found = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
+        let suspected = found.warnings.iter().find_map(|w| match w {
+            Warning::Sensor { what, size, gain, .. } => Some((what, size, gain)),
+            _ => None,
+        });
+        match (named, suspected) {
+            // each may stand for the other; a misalignment is the sum of how far two axes lean
+            (Some(_), Some((_, size, _))) => assert!(*size > 0.01 && *size < 0.15, "{k}: {size}"),
+            (Some(what), None) => panic!("{k}: {what} is not named: {:?}", found.warnings),
+            (None, suspected) => assert!(suspected.is_none(), "{k}: {suspected:?}"),
+        }
+    }
 }

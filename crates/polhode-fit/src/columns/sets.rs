@@ -44,12 +44,20 @@ pub(crate) fn sensor_columns(priors: &SensorPriors, rms: f64) -> Vec<Column> {
 
 /// The errors of a sensor that a report speaks of, in its order.
 pub(crate) fn reported_errors() -> Vec<Column> {
-    let scales = [0, 1, 2].map(|k| Column::new(AxisScale(k), None));
-    let angles = [2, 1, 0].map(|third| Column::new(Misalignment(third), None));
     let offsets = [0, 1, 2].map(|k| Column::new(Offset(k), None));
     let delays = [1, 2].map(|k| Column::new(Skew(k), None));
-    let all = [Column::new(Scale, None)].into_iter().chain(scales);
-    all.chain(angles).chain(offsets).chain(delays).collect()
+    let all = [Column::new(Scale, None)].into_iter().chain(axis_scales());
+    all.chain(misalignments()).chain(offsets).chain(delays).collect()
+}
+
+/// The errors of scale of each axis.
+pub(crate) fn axis_scales() -> Vec<Column> {
+    (0..3).map(|k| Column::new(AxisScale(k), None)).collect()
+}
+
+/// The errors of right angles, that of x and y first.
+pub(crate) fn misalignments() -> Vec<Column> {
+    (0..3).rev().map(|third| Column::new(Misalignment(third), None)).collect()
 }
 
 /// The columns of a random walk of the offsets, whose standard deviation after a unit of time is `walk`: in each stretch

@@ -24,6 +24,7 @@ use crate::report::mirror::mirrored;
 use crate::report::nuisance::{Agreement, Nuisance, Torque};
 use crate::report::nuisances::nuisances;
 use crate::report::segments::summaries;
+use crate::report::sensor::Suspect;
 use crate::report::systematic::systematic;
 use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
 use crate::report::warnings::{Grounds, warnings};
@@ -107,6 +108,7 @@ impl Facts<'_> {
         let residuals = self.residuals(&at);
         let (torques, sensor) = self.nuisances(&at, &held);
         let pull = nearest.pull;
+        let (lines, suspect) = systematic(weak, self.stretches, &v, &moments.into(), self.variance, self.rms);
         let mut estimate = Estimate {
             principal: [moments[0], moments[1], moments[2]],
             sigma_principal,
@@ -137,7 +139,7 @@ impl Facts<'_> {
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
             torque: torques,
             nuisances: sensor,
-            systematic: systematic(weak, self.stretches, &v, &moments.into(), self.variance, self.rms),
+            systematic: lines,
             prior: self.prior,
             per_segment: summaries(weak, self.record, self.variance, self.rms),
             unexplained: motion.and_then(|motion| motion.unexplained(&j)),
@@ -147,18 +149,19 @@ impl Facts<'_> {
             warnings: Vec::new(),
             shape,
         };
-        let grounds = self.grounds(open);
+        let grounds = self.grounds(open, suspect);
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
     }
 
     /// What warnings are drawn from.
-    fn grounds<'b>(&'b self, open: Option<&'b Others>) -> Grounds<'b> {
+    fn grounds<'b>(&'b self, open: Option<&'b Others>, suspect: Option<Suspect>) -> Grounds<'b> {
         Grounds {
             record: self.record,
             weak: &self.chosen.weak,
             misfit: self.misfit,
             open,
+            suspect,
             found: self.settings.torque == TorqueModel::Auto,
             noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
             driven: self.input.is_some(),

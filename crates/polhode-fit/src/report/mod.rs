@@ -10,6 +10,7 @@ pub(crate) mod nuisance;
 pub(crate) mod nuisances;
 pub(crate) mod scale;
 pub(crate) mod segments;
+pub(crate) mod sensor;
 pub(crate) mod systematic;
 pub(crate) mod torque_free;
 pub(crate) mod warning;

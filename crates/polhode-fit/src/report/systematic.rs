@@ -9,6 +9,7 @@ use crate::columns::rotor::Rotor;
 use crate::columns::sets::{reported_errors, walk_columns};
 use crate::physical::coordinates::{pair, tensor};
 use crate::report::nuisance::Systematic;
+use crate::report::sensor::{Suspect, suspect};
 use crate::signal::stretch::Stretch;
 use crate::solve::stacked::responses;
 use crate::solve::weak_estimate::WeakEstimate;
@@ -51,7 +52,7 @@ fn lines(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Line> {
     lines
 }
 
-/// The lines of the report; `axes` and `moments` are the principal ones, ascending, and `rms` is the unit rate, rad/s.
+/// The lines of the report, and the errors of the sensor that explain the record better than its torques; `axes` and `moments` are the principal ones, ascending, and `rms` is the unit rate, rad/s.
 ///
 /// With g the derivative of the equations with respect to an error, the estimate moves by what makes |G δ − g| least.
 pub(crate) fn systematic(
@@ -61,7 +62,7 @@ pub(crate) fn systematic(
     moments: &[f64; 3],
     variance: f64,
     rms: f64,
-) -> Vec<Systematic> {
+) -> (Vec<Systematic>, Option<Suspect>) {
     let lines = lines(weak, stretches, rms);
     let first = lines.iter().flat_map(|line| &line.columns).map(|(column, _)| *column);
     let columns: Vec<Column> = first.chain(weak.columns.iter().copied()).collect();
@@ -69,9 +70,12 @@ pub(crate) fn systematic(
     let mut at = weak.at.clone();
     at.c = vec![0.0; errors].into_iter().chain(at.c).collect();
     let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], &columns, &at));
-    let Some(whitened) = parts.collect::<Option<Vec<Vec<f64>>>>() else { return Vec::new() };
+    let Some(whitened) = parts.collect::<Option<Vec<Vec<f64>>>>() else { return (Vec::new(), None) };
+    let suspect = suspect(weak, &columns, errors, &whitened, variance);
     let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
-    let Some(steps) = responses(&rows, &columns, errors, variance.sqrt()) else { return Vec::new() };
+    let Some(steps) = responses(&rows, &columns, errors, variance.sqrt()) else {
+        return (Vec::new(), suspect);
+    };
     // of the principal moments and of the ratios, by a column of a given size
     let changes = |k: usize, size: f64| -> [f64; 5] {
         let step = steps[k] * size;
@@ -92,5 +96,5 @@ pub(crate) fn systematic(
         let (name, size, unit) = (line.name, line.size, line.unit);
         Systematic { name, size, unit, principal: [a, b, c], ratios: [d, e] }
     });
-    each.filter(|s| s.principal.iter().all(|v| v.is_finite())).collect()
+    (each.filter(|s| s.principal.iter().all(|v| v.is_finite())).collect(), suspect)
 }

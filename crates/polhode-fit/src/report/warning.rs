@@ -74,6 +74,17 @@ pub enum Warning {
     NoScale,
     /// A torque was found and reckoned with.
     Torque(Torque),
+    /// Errors of the sensor, which the fit takes to be zero, explain the record better than torques do.
+    Sensor {
+        /// What they are, in words.
+        what: &'static str,
+        /// The largest of them.
+        size: f64,
+        /// Its unit, empty for a ratio.
+        unit: &'static str,
+        /// Gain of log-likelihood with them, the torque noise as it was fitted without them.
+        gain: f64,
+    },
     /// The residuals of one segment exceed those of the median segment.
     NoisySegment {
         /// Which segment of the record, from 0.
@@ -166,6 +177,15 @@ impl fmt::Display for Warning {
                 "the wheel momenta and torques do not stand out of the noise: the size of the tensor is unknown",
             ),
             Self::Torque(torque) => reckoned(f, torque),
+            Self::Sensor { what, size, unit, gain } => {
+                let size = format!("{size:.1e} {unit}");
+                write!(
+                    f,
+                    "{what}, up to {}, would explain the record better than what was fitted (log-likelihood higher by {gain:.0}): \
+                     the tensor may be off by more than its deviations, unless they are fitted too, with a prior",
+                    size.trim_end()
+                )
+            }
             Self::NoisySegment { segment, start, times } => write!(
                 f,
                 "segment {} (from {start} s) has {times:.1} times the residuals of the median segment: check it",

@@ -6,6 +6,7 @@ use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, 
 use polhode::record::Record;
 
 use crate::report::estimate::Estimate;
+use crate::report::sensor::Suspect;
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
 use crate::solve::weak_estimate::WeakEstimate;
@@ -19,6 +20,8 @@ pub(super) struct Grounds<'a> {
     pub(super) misfit: f64,
     /// Units that explain the record as well.
     pub(super) open: Option<&'a Others>,
+    /// Errors of the sensor that explain the record better.
+    pub(super) suspect: Option<Suspect>,
     /// Whether the fit has found the torque by itself.
     pub(super) found: bool,
     /// The same of torque noise.
@@ -30,7 +33,7 @@ pub(super) struct Grounds<'a> {
 /// What of the record, the residuals and the answer limits the use of `e`.
 pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     let mut list = Vec::new();
-    let Grounds { record, weak, misfit, open, found, noise_found, driven } = *grounds;
+    let Grounds { record, weak, misfit, open, suspect, found, noise_found, driven } = *grounds;
     if let Some(others) = open {
         list.push(Warning::Units {
             products: others.products.clone(),
@@ -78,6 +81,9 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     let density = e.per_segment.iter().map(|s| s.torque_noise).fold(0.0, f64::max);
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
         list.push(Warning::TorqueNoise { density, unexplained: e.unexplained });
+    }
+    if let Some(Suspect { what, size, unit, gain }) = suspect {
+        list.push(Warning::Sensor { what, size, unit, gain });
     }
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);
