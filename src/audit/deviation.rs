@@ -65,6 +65,8 @@ pub(super) struct Deviation {
 /// What each column leaves open.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Allowances {
+    /// What is asked of every column, rad and relative.
+    pub(super) tolerance: f64,
     pub(super) attitude: Allowance,
     pub(super) rates: Allowance,
     pub(super) momentum: Allowance,
@@ -128,7 +130,9 @@ pub(super) fn deviation(
     };
     let of_rates = if record.rates.is_some() { allowed.rates } else { allowed.momentum };
     let is_near = |distance: &Distance| {
-        Distance::largest(&distance.turns).0 <= allowed.attitude.exact
+        // without rates the first ω is read off attitudes: what that leaves open grows behind the rows that are compared here
+        let part = if measured_rates { 1.0 } else { 0.5 };
+        Distance::largest(&distance.turns).0 <= part * allowed.attitude.exact
             && (!measured_rates || Distance::largest(&distance.rates).0 <= of_rates.exact)
     };
     let from_first = Distance::of(&first, &rows, size)?;
@@ -214,8 +218,11 @@ fn every_row(
     let rows = record.times.len();
     let tally = |is_there: bool, allowance: Allowance| is_there.then(|| Tally::new(rows, allowance));
     let has_rates = record.rates.is_some() || record.momentum.is_some();
+    let span = record.times.last().zip(record.times.first()).map_or(0.0, |(last, first)| last - first);
+    let change = sweep.size * span / rows.max(2) as f64;
     let mut found = Every {
-        attitude: tally(record.attitude.is_some(), allowed.attitude),
+        attitude: tally(record.attitude.is_some(), allowed.attitude)
+            .map(|tally| tally.moving(change, allowed.tolerance)),
         rates: tally(has_rates, *of_rates),
         momentum: tally(record.rates.is_some() && record.momentum.is_some(), allowed.momentum),
         last: None,

@@ -9,7 +9,7 @@ use super::faults::{discontinuity, faults, no_rotation};
 use super::misplaced::misplaced;
 use super::other_body::other_body as other_body_of;
 use super::other_torque::other_torque as other_torque_of;
-use super::resolution::{Writings, triples};
+use super::resolution::{Writings, rounding_turn, triples};
 use super::signature::signature as signature_of;
 use super::states::{Quantities, states};
 use super::sweep::Allowance;
@@ -40,10 +40,7 @@ pub(super) fn judge(
     let (mut reading, body) = (first.reading, first.body.clone());
     let writings = Writings::of(record);
     let rounding = writings.rates.rounding().max(writings.momentum.rounding());
-    let angle_rounding = record
-        .attitude
-        .as_ref()
-        .map_or(0.0, |attitude| attitude.rounding_angle(writings.attitude.rounding()));
+    let angle_rounding = rounding_turn(record, &reading, writings.attitude);
     let tolerance = question.tolerance;
     let fits = question.body.is_none();
     let allowances = allowances(record, &reading, &body, question, &writings, angle_rounding);
@@ -198,6 +195,7 @@ fn allowances(
         if frame == Some(Frame::Space) { rounding + angle_rounding } else { rounding }
     };
     Allowances {
+        tolerance: question.tolerance,
         attitude: of(angle_rounding, question.noise.attitude),
         rates: of(turned(reading.omega_frame, writings.rates.rounding()), relative),
         momentum: of(turned(reading.momentum_frame, writings.momentum.rounding()), relative),

@@ -1,6 +1,8 @@
 //! What the writing of a record leaves open: digits, single precision, noise.
 
-use super::{Attitudes, Trajectory};
+use super::columns::rotation_vector;
+use super::{Attitudes, Reading, Trajectory};
+use crate::rotation::Vec3;
 
 /// Most rows whose digits are counted.
 const MOST: usize = 2000;
@@ -13,6 +15,8 @@ const ALL_DIGITS: u32 = 17;
 pub(super) struct Writing {
     pub(super) digits: u32,
     pub(super) single_precision: bool,
+    /// Digits behind the point, where all numbers have as many.
+    pub(super) decimals: Option<i32>,
 }
 
 /// How the numbers of each column were written; a column that is not there has all digits.
@@ -72,7 +76,7 @@ impl Writing {
         // zeros are written in any number of digits
         let values: Vec<f64> = values.into_iter().filter(|x| *x != 0.0).collect();
         if values.is_empty() {
-            return Writing { digits: known.unwrap_or(ALL_DIGITS), single_precision: false };
+            return Writing { digits: known.unwrap_or(ALL_DIGITS), single_precision: false, decimals: None };
         }
         let mut counts: Vec<u32> = values.iter().map(|&x| significant_digits(x)).collect();
         counts.sort_unstable();
@@ -84,7 +88,20 @@ impl Writing {
         let single_precision = (exact && longest > 9) || ((8..=9).contains(&longest) && printed());
         let seen = if longest >= 16 { ALL_DIGITS } else { longest.max(1) };
         let digits = known.unwrap_or(if single_precision { 7 } else { seen });
-        Writing { digits, single_precision }
+        Writing { digits, single_precision, decimals: decimals(&values) }
+    }
+
+    /// Half a unit of the last place of `x`.
+    fn half_unit(&self, x: f64) -> f64 {
+        let least = 0.5 * f64::EPSILON * x.abs();
+        if self.single_precision {
+            return 0.5 * f64::from(f32::EPSILON) * x.abs();
+        }
+        if self.digits >= ALL_DIGITS {
+            return least;
+        }
+        let places = self.decimals.map_or_else(|| exponent(x) - self.digits as i32 + 1, |places| -places);
+        (0.5 * libm::exp10(f64::from(places))).max(least)
     }
 
     /// Half a unit of the last digit, relative to the largest number with that exponent.
@@ -94,6 +111,19 @@ impl Writing {
         }
         (0..self.digits.min(ALL_DIGITS) - 1).fold(0.5_f64, |unit, _| unit / 10.0).max(f64::EPSILON / 2.0)
     }
+}
+
+/// Digits behind the point, where most of `values` have as many and none has more.
+fn decimals(values: &[f64]) -> Option<i32> {
+    let each: Vec<i32> = values.iter().map(|&x| significant_digits(x) as i32 - 1 - exponent(x)).collect();
+    let most = *each.iter().max()?;
+    // one in ten ends with a zero
+    (5 * each.iter().filter(|places| **places == most).count() > 3 * each.len()).then_some(most)
+}
+
+/// The decade of `x`, 0 of zero.
+fn exponent(x: f64) -> i32 {
+    if x == 0.0 { 0 } else { libm::floor(libm::log10(x.abs())) as i32 }
 }
 
 /// Significant decimal digits of the shortest number that reads as `x`.
@@ -133,19 +163,53 @@ pub(super) fn noise(rows: &[usize], values: &[f64]) -> f64 {
     if kept.is_empty() { 0.0 } else { 1.267 * (kept.iter().sum::<f64>() / kept.len() as f64).sqrt() }
 }
 
+/// Rows at which the turn that digits leave open is looked for.
+const TURNED: usize = 300;
+
 impl Attitudes {
-    /// The turn that half a unit in the last place of its numbers makes at most, rad, if the unit is `rounding` relative.
-    pub(super) fn rounding_angle(&self, rounding: f64) -> f64 {
+    /// The attitude of row `k` alone.
+    fn alone(&self, k: usize) -> Self {
         match self {
-            // components up to 1, and twice their change is an angle
-            Attitudes::Quaternions(_) => 4.0 * rounding,
-            Attitudes::Matrices(_) => 3.0 * rounding,
-            Attitudes::Rodrigues(_) => 8.0 * rounding,
-            Attitudes::Angles(rows) => {
-                let largest = rows.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-                let unit = if largest > 10.0 { super::AngleUnit::Degrees.radians() } else { 1.0 };
-                3.0 * rounding * largest * unit
-            }
+            Attitudes::Quaternions(rows) => Attitudes::Quaternions(vec![rows[k]]),
+            Attitudes::Matrices(rows) => Attitudes::Matrices(vec![rows[k]]),
+            Attitudes::Angles(rows) => Attitudes::Angles(vec![rows[k]]),
+            Attitudes::Rodrigues(rows) => Attitudes::Rodrigues(vec![rows[k]]),
         }
     }
+
+    fn numbers(&mut self) -> &mut [f64] {
+        match self {
+            Attitudes::Quaternions(rows) => rows.as_flattened_mut(),
+            Attitudes::Matrices(rows) => rows.as_flattened_mut(),
+            Attitudes::Angles(rows) | Attitudes::Rodrigues(rows) => rows.as_flattened_mut(),
+        }
+    }
+}
+
+/// The largest turn, rad, that half a unit in the last place of every number of an attitude makes, over some rows.
+pub(super) fn rounding_turn(record: &Trajectory, reading: &Reading, writing: Writing) -> f64 {
+    let Some(attitudes) = &record.attitude else { return 0.0 };
+    let of_row = |k: usize| {
+        let mut one = Trajectory::new(vec![0.0]).with_attitude(attitudes.alone(k));
+        let own = reading.attitude(&one, 0)?;
+        let mut turns = Vec::new();
+        for (n, &x) in attitudes.row(k).iter().enumerate() {
+            // large enough to be seen beside the rounding of doubles; turns this small grow in proportion
+            let (half, step) = (writing.half_unit(x), 1e-7);
+            one.attitude.as_mut()?.numbers()[n] = x + step;
+            turns.push(rotation_vector(own.conjugate() * reading.attitude(&one, 0)?) * (half / step));
+            one.attitude.as_mut()?.numbers()[n] = x;
+        }
+        // each number may be off to either side
+        let signs = |pattern: usize| {
+            let sum = |sum: Vec3<f64>, (n, turn): (usize, &Vec3<f64>)| {
+                if pattern >> n & 1 == 1 { sum - *turn } else { sum + *turn }
+            };
+            turns.iter().enumerate().fold(Vec3::zero(), sum).norm()
+        };
+        Some((0..1 << turns.len().saturating_sub(1)).map(signs).fold(0.0, f64::max))
+    };
+    let rows = attitudes.len();
+    let turns = (0..rows).step_by(rows.div_ceil(TURNED).max(1)).filter_map(of_row);
+    turns.filter(|turn| turn.is_finite()).fold(0.0, f64::max)
 }

@@ -87,7 +87,7 @@ pub(super) struct Allowance {
 
 impl Allowance {
     pub(super) fn of(tolerance: f64, rounding: f64, noise: f64) -> Self {
-        Allowance { exact: tolerance.max(1.5 * rounding), rounding, noise }
+        Allowance { exact: tolerance.max(1.05 * rounding), rounding, noise }
     }
 
     /// Largest deviation of any of `rows` rows: that of normal deviates exceeds it once in some thousand records.
@@ -102,6 +102,9 @@ const BLOCKS: usize = 64;
 /// Fewest rows of a block.
 const FEWEST: usize = 16;
 
+/// Units of the last digit from row to row beyond which the rounding of neighbours is independent.
+const MOVING: f64 = 10.0;
+
 /// Deviations of one column over all rows.
 #[derive(Clone, Debug)]
 pub(super) struct Tally {
@@ -115,6 +118,8 @@ pub(super) struct Tally {
     pub(super) first_beyond: Option<usize>,
     pub(super) beyond: usize,
     blocks: Vec<(Vec3<f64>, usize)>,
+    /// The largest mean of a block that is rounding, where rounding changes from row to row.
+    lasting: Option<f64>,
 }
 
 impl Tally {
@@ -130,7 +135,19 @@ impl Tally {
             first_beyond: None,
             beyond: 0,
             blocks: vec![(Vec3::zero(), 0); blocks],
+            lasting: None,
         }
+    }
+
+    /// The same of a column that moves by `change` from row to row: where that is many units of its last digit, rounding is new in
+    /// every row, and what lasts over a block of rows is no rounding.
+    pub(super) fn moving(self, change: f64, tolerance: f64) -> Self {
+        let rounding = self.allowance.rounding;
+        let rows = (self.rows / self.blocks.len().max(1)).max(1) as f64;
+        // three standard deviations of the mean of what is uniform, and a quarter for the start that was fitted to rounded rows
+        let lasting = tolerance + rounding * (0.25 + 3.0 * 0.58 / rows.sqrt());
+        let is_new = rows >= FEWEST as f64 && change > MOVING * rounding && tolerance < rounding;
+        Self { lasting: is_new.then_some(lasting), ..self }
     }
 
     pub(super) fn add(&mut self, row: usize, deviation: Vec3<f64>) {
@@ -163,7 +180,9 @@ impl Tally {
 
     /// Whether every row is within what tolerance and digits allow.
     pub(super) fn is_exact(&self) -> bool {
-        self.largest <= self.allowance.exact
+        let mean = |(sum, count): &(Vec3<f64>, usize)| sum.norm() / (*count).max(1) as f64;
+        let lasts = |limit: f64| self.blocks.iter().any(|block| mean(block) > limit);
+        self.largest <= self.allowance.exact && !self.lasting.is_some_and(lasts)
     }
 
     /// Whether the deviations are within the noise that is declared: each of them, their spread, and the means of blocks, in

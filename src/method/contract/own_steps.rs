@@ -21,7 +21,8 @@ impl OwnSteps {
             return None;
         }
         let taken = self.taken as f64;
-        let needed = taken * (whole / done).abs().max(1.0);
+        let ratio = (whole / done).abs();
+        let needed = if ratio < 1.0 { taken } else { taken * ratio };
         // with NaN or nothing done it never ends
         (needed.is_nan() || needed > MOST || taken >= MOST).then_some(needed)
     }
