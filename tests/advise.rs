@@ -165,7 +165,7 @@ fn a_torque_that_jumps_is_called_that() {
         other => assert!(!matches!(other, Err(AdviseError::Chaotic { .. })), "{other:?}"),
     }
     let hammering = Force::torque_fn("hammer", |t: f64, _, _| {
-        Vector3::new(if (t * 20.0) as u64 % 2 == 0 { 0.3 } else { -0.3 }, 0.0, 0.0)
+        Vector3::new(if ((t * 20.0) as u64).is_multiple_of(2) { 0.3 } else { -0.3 }, 0.0, 0.0)
     });
     let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap()).with(hammering);
     match advise(&body, &start, &without_closed_form(100.0, 1e-6)) {

@@ -100,6 +100,10 @@ impl Writing {
         if self.digits >= ALL_DIGITS {
             return least;
         }
+        // a zero that is written with significant digits is one
+        if x == 0.0 && self.decimals.is_none() {
+            return 0.0;
+        }
         let places = self.decimals.map_or_else(|| exponent(x) - self.digits as i32 + 1, |places| -places);
         (0.5 * libm::exp10(f64::from(places))).max(least)
     }

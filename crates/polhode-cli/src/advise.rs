@@ -263,12 +263,10 @@ impl Patience {
             return;
         }
         match &self.bar {
-            Some(bar) => {
-                if self.seen.elapsed() > Duration::from_millis(100) {
-                    self.seen = Instant::now();
-                    bar.set_message(progress.stage.to_string());
-                    bar.set_position((100.0 * progress.done) as u64);
-                }
+            Some(bar) if self.seen.elapsed() > Duration::from_millis(100) => {
+                self.seen = Instant::now();
+                bar.set_message(progress.stage.to_string());
+                bar.set_position((100.0 * progress.done) as u64);
             }
             None if !self.told => {
                 self.told = true;
@@ -277,7 +275,7 @@ impl Patience {
                     &format!("{}; this may take up to ten times the run that is found", progress.stage),
                 );
             }
-            None => {}
+            _ => {}
         }
     }
 

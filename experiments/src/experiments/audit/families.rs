@@ -44,6 +44,9 @@ struct Counts {
     every: usize,
 }
 
+/// Whether a family belongs to a group.
+type Chosen = fn(&Family) -> bool;
+
 impl Counts {
     fn of(scale: Scale) -> Self {
         scale.pick(
@@ -147,7 +150,7 @@ impl Families {
         };
         let exact = self.of(is_exact);
         add("exact", &exact, "right", exact.right());
-        let groups: [(&str, fn(&Family) -> bool); 5] = [
+        let groups: [(&str, Chosen); 5] = [
             ("one fault", |family| matches!(family, Family::Fault(_))),
             ("one fault of a sphere", |family| matches!(family, Family::Sphere(_))),
             ("methods that keep L", |family| matches!(family, Family::Method(_))),

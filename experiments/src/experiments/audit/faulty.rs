@@ -165,8 +165,10 @@ pub(super) fn faulty(right: Specimen, (_, put): &Fault, random: &mut Random) -> 
     Ok(draft.done())
 }
 
+type Spoil = fn(&mut Draft, &mut Random) -> Result<(), Error>;
+
 /// Ways in which single rows of a long record are bad.
-const BAD: [fn(&mut Draft, &mut Random) -> Result<(), Error>; 5] = [
+const BAD: [Spoil; 5] = [
     |x, r| x.one(r, |row, r| row.turn(r, 1e-3)),
     |x, r| x.one(r, |row, r| row.push(r, 1e-3)),
     |x, r| x.one(r, |row, _| (row.attitude, row.omega) = (Quat::identity(), Vec3::zero())),
