@@ -50,7 +50,10 @@ pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError>
             Some((last, count, _)) if row[0] == last[0] => {
                 *count += 1.0;
                 for k in 1..4 {
-                    last[k] += (row[k] - last[k]) / *count;
+                    let change = row[k] - last[k];
+                    // the difference of two large numbers may overflow where their mean does not
+                    let finite = change.is_finite();
+                    last[k] += if finite { change / *count } else { row[k] / *count - last[k] / *count };
                 }
                 findings.push((row[0], Finding::Merged));
             }
