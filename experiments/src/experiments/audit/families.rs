@@ -3,7 +3,7 @@
 use polhode::method::{AnyMethod, Claimed as _, catalogue};
 use polhode::num::Random;
 use polhode_files::error::Error;
-use polhode_pages::table::{Column, Table, row};
+use polhode_pages::table::{self, Column, Table, row};
 
 use super::faulty::{FAULTS, bad_rows, faulty};
 use super::specimen::{Kind, Specimen, keeps_momentum};
@@ -175,16 +175,7 @@ impl Families {
             for written in ["12 to 17 digits", "6 to 11 digits", "float32", "declared noise"] {
                 let mut cell = self.of(is_exact);
                 cell.0.retain(|x| x.style.columns == columns && x.style.limit() == written);
-                table.push(row![
-                    columns.name(),
-                    written,
-                    cell.count(),
-                    cell.beyond(),
-                    cell.right(),
-                    cell.wrong(),
-                    cell.undecided(),
-                    cell.false_right(),
-                ]);
+                table.push(row![columns.name(), written].into_iter().chain(cell.verdicts()));
             }
         }
         table
@@ -196,16 +187,7 @@ impl Families {
             for (body, family) in [("distinct", Family::Fault(number)), ("sphere", Family::Sphere(number))] {
                 let cell = self.of(|found| *found == family);
                 if cell.count() > 0 {
-                    table.push(row![
-                        body,
-                        *name,
-                        cell.count(),
-                        cell.beyond(),
-                        cell.right(),
-                        cell.wrong(),
-                        cell.undecided(),
-                        cell.false_right(),
-                    ]);
+                    table.push(row![body, *name].into_iter().chain(cell.verdicts()));
                 }
             }
         }
@@ -218,15 +200,7 @@ impl Families {
             let family = Family::Method(method.name());
             let cell = self.of(|found| *found == family);
             if cell.count() > 0 {
-                table.push(row![
-                    method.name(),
-                    cell.count(),
-                    cell.beyond(),
-                    cell.right(),
-                    cell.wrong(),
-                    cell.undecided(),
-                    cell.false_right(),
-                ]);
+                table.push(row![method.name()].into_iter().chain(cell.verdicts()));
             }
         }
         table
@@ -242,16 +216,7 @@ impl Families {
             }
             seen.push(family);
             let cell = self.of(|found| found == family);
-            table.push(row![
-                *rows,
-                *bad as u64,
-                cell.count(),
-                cell.beyond(),
-                cell.right(),
-                cell.wrong(),
-                cell.undecided(),
-                cell.false_right(),
-            ]);
+            table.push(row![*rows, *bad as u64].into_iter().chain(cell.verdicts()));
         }
         table
     }
@@ -312,6 +277,11 @@ impl Cell<'_> {
 
     fn false_right(&self) -> u64 {
         self.number(Judged::is_false_right)
+    }
+
+    /// The columns behind the keys of `counted`.
+    fn verdicts(&self) -> [table::Cell; 6] {
+        row![self.count(), self.beyond(), self.right(), self.wrong(), self.undecided(), self.false_right(),]
     }
 }
 

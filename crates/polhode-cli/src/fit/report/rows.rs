@@ -52,5 +52,12 @@ pub(super) fn rows(e: &Estimate) -> Table {
     table.push(row!["momentum_drift", e.momentum_trend.rate, e.momentum_trend.sigma]);
     table.push(row!["energy_drift", e.energy_trend.rate, e.energy_trend.sigma]);
     table.push(row!["whiteness", e.whiteness.correlation, e.whiteness.sigma]);
+    table.push(row!["unexplained", e.unexplained, None::<f64>]);
+    if let Some(mirror) = &e.mirror {
+        // the moments if the axes are left-handed
+        for (k, moment) in mirror.principal_moments().into_iter().enumerate() {
+            table.push(row![format!("mirror_principal_{}", k + 1), moment, None::<f64>]);
+        }
+    }
     table
 }
