@@ -67,7 +67,7 @@ pub use report::averages::AverageAxis;
 pub use report::estimate::{Estimate, Residuals};
 pub use report::identifiability::{Identifiability, PrincipalAxis, Undetermined};
 pub use report::motion::FittedMotion;
-pub use report::nuisance::{Agreement, Nuisance, SegmentSummary, Systematic, Torque};
+pub use report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic};
 pub use report::torque_free::{InvariantTrend, Whiteness};
 pub use report::warning::Warning;
 pub use settings::Settings;

@@ -107,18 +107,8 @@ pub fn calibrate_wheel(
     let deviation = found.misfit.max(1.0).sqrt();
     let per_unit = trace / scale;
     let listed = (1..columns.len()).filter(|&k| columns[k].class() != Class::Step);
-    let nuisances = listed.map(|k| {
-        let label = columns[k].label();
-        let unit = label.factor(rms);
-        Nuisance {
-            name: label.name,
-            unit: label.unit,
-            value: found.values[k] * unit,
-            sigma: found.sigmas[k] * deviation * unit,
-            prior: columns[k].prior.map(|prior| prior * unit),
-            segment: None,
-        }
-    });
+    let nuisances =
+        listed.map(|k| Nuisance::new(&columns[k], found.values[k], found.sigmas[k] * deviation, rms));
     let used = |k: usize| rest.segments.get(k).map_or(0, |s: &Segment| s.times().len());
     Ok(WheelCalibration {
         inertia: found.values[0] * per_unit,

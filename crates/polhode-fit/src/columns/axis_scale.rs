@@ -1,12 +1,10 @@
 //! The relative error of scale of one axis of the sensor.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use crate::columns::effect::{Class, Effect, Label};
-use crate::columns::equation::Equation;
 use crate::physical::coordinates::symmetric;
 use crate::settings::sensor::SensorPriors;
-use crate::signal::terms::Terms;
 use crate::thresholds::errors::SCALE;
 
 /// The axis.
@@ -30,22 +28,7 @@ impl Effect for AxisScale {
         Some(SCALE)
     }
 
-    fn add_to(&self, terms: &mut Terms, value: f64) {
-        terms.sensor += self.by_value() * value;
-    }
-
-    fn derivative(&self, equation: &Equation<'_>) -> Vector3<f64> {
-        equation.by_distortion(&self.by_value())
-    }
-
     fn distortion(&self) -> Option<Matrix3<f64>> {
-        Some(self.by_value())
-    }
-}
-
-impl AxisScale {
-    /// The derivative of P.
-    fn by_value(&self) -> Matrix3<f64> {
-        symmetric(self.0)
+        Some(symmetric(self.0))
     }
 }

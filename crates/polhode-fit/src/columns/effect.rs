@@ -80,10 +80,16 @@ pub(crate) trait Effect {
     }
 
     /// What `value` of it makes of torque and sensor.
-    fn add_to(&self, _terms: &mut Terms, _value: f64) {}
+    fn add_to(&self, terms: &mut Terms, value: f64) {
+        if let Some(q) = self.distortion() {
+            terms.sensor += q * value;
+        }
+    }
 
     /// The derivative of the residual of one test function with respect to it.
-    fn derivative(&self, equation: &Equation<'_>) -> Vector3<f64>;
+    fn derivative(&self, equation: &Equation<'_>) -> Vector3<f64> {
+        self.distortion().map_or_else(Vector3::zeros, |q| equation.by_distortion(&q))
+    }
 
     /// Instead of that, where it acts on the samples one by one: the change of their rates with it.
     fn sample_change<'a>(&self, _terms: &'a Terms) -> Option<SampleChange<'a>> {

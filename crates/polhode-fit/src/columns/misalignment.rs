@@ -1,12 +1,10 @@
 //! The angle by which a pair of axes of the sensor is not a right one.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use crate::columns::effect::{Class, Effect, Label};
-use crate::columns::equation::Equation;
 use crate::physical::coordinates::symmetric;
 use crate::settings::sensor::SensorPriors;
-use crate::signal::terms::Terms;
 use crate::thresholds::errors::ALIGNMENT;
 
 /// The third axis.
@@ -30,23 +28,8 @@ impl Effect for Misalignment {
         Some(ALIGNMENT)
     }
 
-    fn add_to(&self, terms: &mut Terms, value: f64) {
-        terms.sensor += self.by_value() * value;
-    }
-
-    fn derivative(&self, equation: &Equation<'_>) -> Vector3<f64> {
-        equation.by_distortion(&self.by_value())
-    }
-
     fn distortion(&self) -> Option<Matrix3<f64>> {
-        Some(self.by_value())
-    }
-}
-
-impl Misalignment {
-    /// The derivative of P.
-    fn by_value(&self) -> Matrix3<f64> {
         // xy has z as its third axis, and so on
-        symmetric(5 - self.0) * 0.5
+        Some(symmetric(5 - self.0) * 0.5)
     }
 }

@@ -1,11 +1,9 @@
 //! The relative error of scale that all axes of the sensor share.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use crate::columns::effect::{Class, Effect, Label};
-use crate::columns::equation::Equation;
 use crate::settings::sensor::SensorPriors;
-use crate::signal::terms::Terms;
 use crate::thresholds::errors::SCALE;
 
 /// The error.
@@ -29,22 +27,7 @@ impl Effect for Scale {
         Some(SCALE)
     }
 
-    fn add_to(&self, terms: &mut Terms, value: f64) {
-        terms.sensor += self.by_value() * value;
-    }
-
-    fn derivative(&self, equation: &Equation<'_>) -> Vector3<f64> {
-        equation.by_distortion(&self.by_value())
-    }
-
     fn distortion(&self) -> Option<Matrix3<f64>> {
-        Some(self.by_value())
-    }
-}
-
-impl Scale {
-    /// The derivative of P.
-    fn by_value(&self) -> Matrix3<f64> {
-        Matrix3::identity()
+        Some(Matrix3::identity())
     }
 }

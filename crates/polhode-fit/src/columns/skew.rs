@@ -3,7 +3,6 @@
 use nalgebra::Vector3;
 
 use crate::columns::effect::{Class, Effect, Label, SampleChange};
-use crate::columns::equation::Equation;
 use crate::settings::sensor::SensorPriors;
 use crate::signal::moments::Group;
 use crate::signal::terms::Terms;
@@ -32,10 +31,6 @@ impl Effect for Skew {
 
     fn add_to(&self, terms: &mut Terms, value: f64) {
         terms.skew[self.0] += value;
-    }
-
-    fn derivative(&self, _equation: &Equation<'_>) -> Vector3<f64> {
-        Vector3::zeros()
     }
 
     fn sample_change<'a>(&self, terms: &'a Terms) -> Option<SampleChange<'a>> {

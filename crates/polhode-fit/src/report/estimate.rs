@@ -7,7 +7,7 @@ use polhode::record::Spike;
 use crate::physical::certificate::Certificate;
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::identifiability::Identifiability;
-use crate::report::nuisance::{Agreement, Nuisance, SegmentSummary, Systematic, Torque};
+use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warning::Warning;
 
@@ -107,7 +107,7 @@ pub struct Estimate {
     /// Correlation of neighbouring residuals.
     pub whiteness: Whiteness,
     /// The torque that the fit reckons with.
-    pub torque: Torque,
+    pub torque: FittedTorque,
     /// What was estimated of the sensor, each with its prior.
     pub nuisances: Vec<Nuisance>,
     /// What errors of the sensor that the fit takes to be zero would do to the moments.

@@ -6,7 +6,7 @@ use polhode::inertia::{Inertia, InertiaShape};
 use polhode::record::{Record, Spike};
 
 use crate::bound::motions::Motions;
-use crate::columns::column::{Column, Unknowns};
+use crate::columns::column::Unknowns;
 use crate::columns::effect::Class;
 use crate::error::FitError;
 use crate::physical::constraint::{ActiveConstraint, Constraint};
@@ -21,7 +21,7 @@ use crate::physical::truncated::spread;
 use crate::report::estimate::{Estimate, Residuals};
 use crate::report::identifiability::Identifiability;
 use crate::report::mirror::mirrored;
-use crate::report::nuisance::{Agreement, Nuisance, Torque};
+use crate::report::nuisance::{Agreement, FittedTorque, Nuisance};
 use crate::report::nuisances::nuisances;
 use crate::report::segments::summaries;
 use crate::report::sensor::Suspect;
@@ -266,25 +266,24 @@ impl Facts<'_> {
     }
 
     /// The coefficients of the torque, and what was estimated of the sensor.
-    fn nuisances(&self, at: &Unknowns, held: &[(usize, f64)]) -> (Torque, Vec<Nuisance>) {
+    fn nuisances(&self, at: &Unknowns, held: &[(usize, f64)]) -> (FittedTorque, Vec<Nuisance>) {
         let variance = self.variance * self.misfit.max(1.0);
         let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms, held);
-        let (torques, sensor): (Vec<_>, Vec<_>) = all
+        let (torques, sensor) = all
             .into_iter()
-            .filter(|(column, _)| column.class() != Class::Input)
-            .partition(|(column, _)| column.class().is_torque());
-        let values = |list: Vec<(Column, Nuisance)>| list.into_iter().map(|(_, n)| n).collect();
+            .filter(|n| n.column.class() != Class::Input)
+            .partition(|n| n.column.class().is_torque());
         let ratios_without = self.chosen.without.map(|x| {
             let (moments, _) = eigen(tensor(&x));
             [moments[0] / moments[2], moments[1] / moments[2]]
         });
-        let torque = Torque {
+        let torque = FittedTorque {
             model: self.chosen.model,
-            coefficients: values(torques),
+            coefficients: torques,
             gain: self.chosen.gain,
             ratios_without,
         };
-        (torque, values(sensor))
+        (torque, sensor)
     }
 
     fn residuals(&self, at: &Unknowns) -> Vec<Residuals> {

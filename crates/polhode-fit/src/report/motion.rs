@@ -6,6 +6,7 @@ use polhode::record::{Record, Segment};
 
 use crate::report::estimate::Estimate;
 use crate::report::nuisance::Nuisance;
+use crate::signal::terms::Terms;
 
 /// One segment of a record, measured and fitted.
 #[non_exhaustive]
@@ -57,7 +58,8 @@ impl Estimate {
     /// ```
     #[must_use]
     pub fn fitted(&self, record: &Record) -> Vec<FittedMotion> {
-        let sensor = Sensor::new(&self.nuisances);
+        let mut sensor = Terms::at(self.shape.tensor());
+        add(&self.nuisances, &mut sensor);
         let segments = record.segments.iter().enumerate();
         segments
             .filter(|(k, _)| self.residuals.iter().any(|r| r.segment == *k))
@@ -77,42 +79,10 @@ impl Estimate {
     }
 }
 
-fn value(of: &[Nuisance], name: &str) -> Option<f64> {
-    of.iter().find(|n| n.name == name).map(|n| n.value)
-}
-
-/// The symmetric matrix of coefficients called `stem`_xx and so on; those that are not there are 0.
-fn symmetric(of: &[Nuisance], stem: &str) -> Matrix3<f64> {
-    let entry = |pair: &str| value(of, &format!("{stem}_{pair}"));
-    let axis = |name: &str| entry(&format!("{name}{name}")).or(entry(name)).unwrap_or(0.0);
-    let [xy, xz, yz] = ["xy", "xz", "yz"].map(|pair| entry(pair).unwrap_or(0.0));
-    Matrix3::new(axis("x"), xy, xz, xy, axis("y"), yz, xz, yz, axis("z"))
-}
-
-fn vector(of: &[Nuisance], stem: &str) -> Vector3<f64> {
-    Vector3::from(["x", "y", "z"].map(|axis| value(of, &format!("{stem}_{axis}")).unwrap_or(0.0)))
-}
-
-/// Readings to rates, ω = P y − b.
-struct Sensor {
-    matrix: Matrix3<f64>,
-    offset: Vector3<f64>,
-}
-
-impl Sensor {
-    fn new(nuisances: &[Nuisance]) -> Self {
-        let common = Matrix3::identity() * value(nuisances, "scale").unwrap_or(0.0);
-        let own = Matrix3::from_diagonal(&vector(nuisances, "scale"));
-        let lean = symmetric(nuisances, "misalignment");
-        // an angle between two axes is shared by both
-        Sensor {
-            matrix: Matrix3::identity() + common + own + lean * 0.5,
-            offset: vector(nuisances, "offset"),
-        }
-    }
-
-    fn rate(&self, reading: &Vector3<f64>) -> Vector3<f64> {
-        self.matrix * reading - self.offset
+/// What these make of torque and sensor.
+fn add<'a>(of: impl IntoIterator<Item = &'a Nuisance>, terms: &mut Terms) {
+    for nuisance in of {
+        nuisance.column.effect().add_to(terms, nuisance.value);
     }
 }
 
@@ -151,15 +121,14 @@ impl Law {
     /// `None` where the tensor has no inverse.
     fn new(e: &Estimate, segment: usize) -> Option<Self> {
         let j = e.shape.tensor();
-        let acting = e.torque.coefficients.iter().filter(|c| c.segment.is_none_or(|own| own == segment));
-        let of = &acting.cloned().collect::<Vec<_>>();
-        let drag = value(of, "drag").unwrap_or(0.0);
+        let mut terms = Terms::at(j);
+        add(e.torque.coefficients.iter().filter(|c| c.segment.is_none_or(|own| own == segment)), &mut terms);
         Some(Law {
             j,
             inverse: j.try_inverse()?,
-            damping: j * drag + symmetric(of, "drag"),
-            quadratic: value(of, "quadratic_drag").unwrap_or(0.0),
-            torque: vector(of, "torque"),
+            damping: j * terms.drag + terms.viscous,
+            quadratic: terms.quadratic,
+            torque: terms.constant,
             trace: e.inertia.as_ref().map(|inertia| inertia.tensor().trace()),
         })
     }

@@ -1,5 +1,6 @@
 //! What was estimated beside the tensor, and what errors of the sensor would do to the moments.
 
+use crate::columns::column::Column;
 use crate::settings::torque::TorqueModel;
 
 /// A number that was estimated beside the tensor.
@@ -18,12 +19,30 @@ pub struct Nuisance {
     pub prior: Option<f64>,
     /// The segment that it is of, from 0, where each has its own.
     pub segment: Option<usize>,
+    pub(crate) column: Column,
+}
+
+impl Nuisance {
+    /// Of a column whose value and deviation are in units of the rate `rms`, rad/s.
+    pub(crate) fn new(column: &Column, value: f64, sigma: f64, rms: f64) -> Nuisance {
+        let label = column.label();
+        let unit = label.factor(rms);
+        Nuisance {
+            name: label.name,
+            unit: label.unit,
+            value: value * unit,
+            sigma: sigma * unit,
+            prior: column.prior.map(|prior| prior * unit),
+            segment: column.segment,
+            column: *column,
+        }
+    }
 }
 
 /// The torque that a fit reckons with.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
-pub struct Torque {
+pub struct FittedTorque {
     /// The model; never [`TorqueModel::Auto`].
     pub model: TorqueModel,
     /// Its coefficients.

@@ -1,6 +1,5 @@
 //! Names, units and values of what was estimated beside the tensor.
 
-use crate::columns::column::Column;
 use crate::columns::effect::Class;
 use crate::report::nuisance::Nuisance;
 use crate::solve::weak_estimate::WeakEstimate;
@@ -12,7 +11,7 @@ pub(crate) fn nuisances(
     variance: f64,
     rms: f64,
     held: &[(usize, f64)],
-) -> Vec<(Column, Nuisance)> {
+) -> Vec<Nuisance> {
     let Some(factor) = weak.stacked.as_ref().and_then(|stacked| stacked.joint_factor()) else {
         return Vec::new();
     };
@@ -23,19 +22,9 @@ pub(crate) fn nuisances(
         each.filter(|(_, (column, _))| column.segment.is_none_or(fitted) && column.class() != Class::Step);
     listed
         .map(|(k, (column, value))| {
-            let label = column.label();
-            let unit = label.factor(rms);
             let own = held.iter().find(|(place, _)| *place == k).map(|(_, sigma)| *sigma);
             let sigma = own.unwrap_or_else(|| factor.row(k).norm() * variance.sqrt());
-            let nuisance = Nuisance {
-                name: label.name,
-                unit: label.unit,
-                value: value * unit,
-                sigma: sigma * unit,
-                prior: column.prior.map(|prior| prior * unit),
-                segment: column.segment,
-            };
-            (*column, nuisance)
+            Nuisance::new(column, *value, sigma, rms)
         })
         .collect()
 }

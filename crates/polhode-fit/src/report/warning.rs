@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::error::per_cent;
 use crate::physical::constraint::ActiveConstraint;
-use crate::report::nuisance::Torque;
+use crate::report::nuisance::FittedTorque;
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::units::product::{UnitProduct, alternatives};
 
@@ -73,7 +73,7 @@ pub enum Warning {
     /// Wheel momenta and torques of the record are too small to give the tensor its size.
     NoScale,
     /// A torque was found and reckoned with.
-    Torque(Torque),
+    Torque(FittedTorque),
     /// Errors of the sensor, which the fit takes to be zero, explain the record better than torques do.
     Sensor {
         /// What they are, in words.
@@ -221,7 +221,7 @@ fn torque(f: &mut fmt::Formatter<'_>, name: &str, trend: &InvariantTrend) -> fmt
     write!(f, "not free of torques: the {name} changes by {change} per cent per second")
 }
 
-fn reckoned(f: &mut fmt::Formatter<'_>, torque: &Torque) -> fmt::Result {
+fn reckoned(f: &mut fmt::Formatter<'_>, torque: &FittedTorque) -> fmt::Result {
     let values = torque.coefficients.iter().filter(|c| c.segment.is_none());
     let values = values.map(|c| format!("{} {} {}", c.name, with_sigma(c.value, c.sigma), c.unit));
     let values: Vec<String> = values.collect();
