@@ -52,6 +52,10 @@ pub(crate) struct Experiment {
 /// What an experiment found.
 #[derive(Default)]
 pub(crate) struct Report {
+    /// What was found, in one line.
+    pub(crate) conclusion: String,
+    /// What a reader sees of it on a screen of 80 columns, where that is more than its tables.
+    pub(crate) screen: Option<String>,
     /// Deterministic rows, in full precision.
     pub(crate) tables: Vec<Table>,
     /// Rows that only programs read, the same at every scale: CSV alone.
@@ -68,6 +72,8 @@ pub(crate) struct Report {
     pub(crate) times: Vec<Table>,
     /// Of the random numbers, if there were any.
     pub(crate) seed: Option<u64>,
+    /// How many claims were checked.
+    pub(crate) checks: u64,
     /// Claims that did not hold: the results are written all the same, and the command fails.
     pub(crate) failures: Vec<String>,
     /// Wall time of the run.
@@ -82,13 +88,14 @@ pub(crate) struct Context {
 }
 
 impl Context {
-    fn new(name: &'static str, scale: Scale) -> Self {
+    fn new(title: String, scale: Scale) -> Self {
         let bar =
             if std::io::stderr().is_terminal() { ProgressBar::no_length() } else { ProgressBar::hidden() };
-        if let Ok(style) = ProgressStyle::with_template("{prefix:12} {bar:40} {pos}/{len} {elapsed}") {
+        if let Ok(style) = ProgressStyle::with_template("{prefix} {bar:24} {pos} of {len}, about {eta} left")
+        {
             bar.set_style(style);
         }
-        bar.set_prefix(name);
+        bar.set_prefix(title);
         Self { scale, bar }
     }
 
@@ -114,9 +121,9 @@ impl Context {
 }
 
 impl Experiment {
-    /// Does the work.
-    pub(crate) fn report(&self, scale: Scale) -> Result<Report, Error> {
-        let context = Context::new(self.name, scale);
+    /// Does the work, under a bar with this title.
+    pub(crate) fn report(&self, scale: Scale, title: String) -> Result<Report, Error> {
+        let context = Context::new(title, scale);
         let start = Instant::now();
         let mut report = (self.run)(&context)?;
         report.took = start.elapsed();

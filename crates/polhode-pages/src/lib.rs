@@ -4,4 +4,5 @@
 pub mod document;
 pub mod figure;
 pub mod output;
+pub mod screen;
 pub mod table;

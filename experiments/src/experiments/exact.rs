@@ -13,7 +13,7 @@ use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode::truth::LOST;
 use polhode_files::error::Error;
 use polhode_pages::figure::{Curve, Figure};
-use polhode_pages::table::{Column, Table, row};
+use polhode_pages::table::{Column, Table, row, to_digits};
 
 use crate::experiment::{Context, Report};
 
@@ -155,6 +155,12 @@ fn fixtures(report: &mut Report) -> Result<(), Error> {
     if !(all.attitude <= PROMISE && all.omega <= PROMISE) {
         report.failures.push(format!("errors {:e} rad and {:e} exceed {PROMISE:e}", all.attitude, all.omega));
     }
+    report.checks += all.cases;
+    report.conclusion = format!(
+        "the closed form is within {} rad of {} states of 36 digits, in every regime, up to 1e12 rad turned",
+        to_digits(all.attitude, 2),
+        all.cases
+    );
     report.tables.extend([regimes, times]);
     let mut figure = Figure::log_log(
         "times",
@@ -264,6 +270,7 @@ fn random(context: &Context, report: &mut Report) {
         }
         worst.0.include(found.0);
     }
+    report.checks += worst.0.cases;
     let mut table = Table::new(
         "random",
         format!(

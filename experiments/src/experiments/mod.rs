@@ -4,6 +4,7 @@ mod advice;
 mod audit;
 mod chaos;
 mod conservation;
+mod contestants;
 mod drift;
 mod exact;
 mod fit_efficiency;
@@ -18,14 +19,26 @@ mod order;
 mod phase;
 mod programs;
 mod round_off;
+mod scoreboard;
 mod separatrix;
 mod splitting_order;
 mod work_precision;
 
+pub(crate) use work_precision::Which;
+
 use crate::experiment::Experiment;
+
+/// What runs where none is named: what the project exists for, within a minute.
+pub(crate) const MAIN: [&str; 6] =
+    ["scoreboard", "order", "exact", "inertia", "fit-efficiency", "work-precision"];
 
 /// All of them, in the order in which `all` runs them.
 pub(crate) const ALL: &[Experiment] = &[
+    Experiment {
+        name: "scoreboard",
+        question: "how near the best method of each family comes to the exact motion, at equal cost on real bodies",
+        run: scoreboard::run,
+    },
     Experiment {
         name: "drift",
         question: "what each method conserves on real bodies, and its attitude error",

@@ -17,6 +17,9 @@ const SPAN: f64 = 2.0;
 /// Errors above this are those of the method, not of rounding in double-double.
 const FLOOR: f64 = 1e-24;
 
+/// Between an order as it is claimed and as it is measured.
+const CLOSE: f64 = 0.1;
+
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let finest = context.scale.pick(8, 12, 14);
     let failed = |error: &dyn std::fmt::Display| Error::Failed(error.to_string());
@@ -63,6 +66,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             Column::new("momentum_order", "", "measured on the momentum").heading("momentum").digits(5),
         ],
     );
+    let (mut as_claimed, mut failures) = (0, Vec::new());
     let mut figure = Figure::log_log(
         "order",
         format!(
@@ -95,6 +99,14 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             ]);
         }
         orders.push(row![method.name(), order(&method).map(u64::from), last.0, last.1]);
+        let measured = [last.0, last.1].into_iter().flatten();
+        let claim = order(&method).map_or(f64::NAN, f64::from);
+        let off = measured.map(|found| (found - claim).abs()).fold(0.0, f64::max);
+        if off <= CLOSE {
+            as_claimed += 1;
+        } else {
+            failures.push(format!("{} claims order {claim}, {off} from what is measured", method.name()));
+        }
         let claimed = order(&method).map_or(String::new(), |order| format!(" ({order})"));
         let points = halved.iter().map(|e| (e.h, e.attitude_error)).collect();
         figure.series.push(Curve::new(method.name() + &claimed, points));
@@ -104,6 +116,14 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     for (label, slope) in [("h²", 2.0), ("h⁸", 8.0)] {
         figure.guide(label, slope, (widest / 8.0, 1e-29), [widest / 8.0, widest]);
     }
-    let shown = vec![orders.clone()];
-    Ok(Report { tables: vec![orders, errors], views: shown, figures: vec![figure], ..Report::default() })
+    let checks = as_claimed + failures.len() as u64;
+    Ok(Report {
+        conclusion: format!("{as_claimed} of {checks} methods converge with the order that they claim"),
+        checks,
+        failures,
+        views: vec![orders.clone()],
+        tables: vec![orders, errors],
+        figures: vec![figure],
+        ..Report::default()
+    })
 }

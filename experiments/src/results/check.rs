@@ -65,7 +65,7 @@ pub(super) fn run(names: &[String], scale: Committed, root: &Path, accept: bool)
     check_root(root, scale)?;
     let mut differences = Vec::new();
     for experiment in chosen("experiment check", names)? {
-        let report = experiment.report(scale.scale())?;
+        let report = experiment.report(scale.scale(), experiment.name.to_owned())?;
         differences.extend(report.failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));
         if accept {
             write(root, scale, experiment, &report)?;
@@ -93,7 +93,7 @@ pub(super) fn resumed(names: &[String], scale: Committed, root: &Path, folder: &
                 finished.failures
             }
             None => {
-                let report = experiment.report(scale.scale())?;
+                let report = experiment.report(scale.scale(), experiment.name.to_owned())?;
                 write_run(experiment, scale.scale(), &report, &place)?;
                 differences.extend(compare(root, scale, experiment, &report)?);
                 report.failures

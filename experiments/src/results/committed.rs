@@ -10,7 +10,7 @@ use polhode_pages::output::MARK;
 use polhode_pages::table::{Selection, ShownColumn, Table};
 use serde::Deserialize;
 
-use super::which::Which;
+use crate::experiments::Which;
 
 /// What is made of the costs that the experiment `COSTED` measured.
 const COSTED: &str = "work-precision";

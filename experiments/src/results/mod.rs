@@ -3,11 +3,11 @@
 mod check;
 mod committed;
 mod methods;
+mod overview;
 mod page;
 mod provenance;
 mod publish;
 mod run;
-mod which;
 
 use std::path::PathBuf;
 
@@ -17,6 +17,7 @@ use polhode_pages::output::emit;
 use polhode_pages::table::{Column, Format, Table, row};
 
 use self::check::Committed;
+use self::run::Asked;
 use crate::experiment::{Experiment, Scale};
 use crate::experiments;
 
@@ -37,6 +38,7 @@ const PUBLISH_EXAMPLES: &str = "Examples:
   polhode experiment publish --from new/paper";
 
 const EXAMPLES: &str = "Examples:
+  polhode experiment run
   polhode experiment run order drift --scale smoke
   polhode experiment run order drift --scale smoke --report results.html";
 
@@ -52,10 +54,11 @@ pub enum ExperimentCommand {
         format: Option<Format>,
     },
     /// Run experiments and write their results to OUT/<scale>/<experiment>/
+    ///
+    /// Without a name: the main ones, in about a minute. They answer which methods stay near the exact motion, how much work an accuracy costs, and how close a fitted tensor comes to the Cramer-Rao bound. One screen says what was found, and OUT/<scale>/index.html shows everything. With names: the full tables of these experiments.
     #[command(after_help = EXAMPLES)]
     Run {
-        /// Names of experiments, or all
-        #[arg(required = true)]
+        /// Names of experiments, or all [default: the main ones]
         names: Vec<String>,
         /// Size of the runs
         #[arg(long, value_enum, default_value = "standard")]
@@ -63,9 +66,12 @@ pub enum ExperimentCommand {
         /// Folder for results
         #[arg(long, default_value = "results")]
         out: PathBuf,
-        /// Write all results as one page, which needs no network: a file that ends in .html
+        /// Write all results as one page, which needs no network: a file that ends in .html [default without names: OUT/<scale>/index.html]
         #[arg(long, value_name = "FILE")]
         report: Option<PathBuf>,
+        /// Print the full tables of the main experiments, or of all
+        #[arg(long)]
+        tables: bool,
         /// Leave out experiments that this program, from an unchanged commit, has finished there
         #[arg(long, conflicts_with = "report")]
         resume: bool,
@@ -116,8 +122,8 @@ impl ExperimentCommand {
     pub fn run(self) -> Result<(), Error> {
         match self {
             Self::List { format } => list(format),
-            Self::Run { names, scale, out, report, resume } => {
-                run::run(&names, scale, &out, report.as_deref(), resume)
+            Self::Run { names, scale, out, report, tables, resume } => {
+                Asked { names, scale, out, page: report, tables, resumes: resume }.run()
             }
             Self::Check { names, scale, root, accept, resume } => match resume {
                 Some(folder) => check::resumed(&names, scale, &root, &folder),
@@ -136,6 +142,12 @@ fn list(format: Option<Format>) -> Result<(), Error> {
         table.push(row![experiment.name, experiment.question]);
     }
     emit(&Format::of(format, None)?.write(&table), None)
+}
+
+/// The main experiments.
+fn main() -> Vec<&'static Experiment> {
+    let named = |name: &&str| experiments::ALL.iter().find(|experiment| experiment.name == *name);
+    experiments::MAIN.iter().filter_map(named).collect()
 }
 
 /// The experiments called `names` (or `all`), each once, however often it is named.

@@ -1,51 +1,88 @@
 //! `polhode experiment run`: experiments, and the folders their results go to.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use polhode_files::error::{Error, tell};
 use polhode_pages::output::{MARK, Staging, emit};
 
-use super::chosen;
+use super::overview::Overview;
 use super::page::{Page, is_page};
 use super::provenance::{self, Finished};
+use super::{chosen, main};
 use crate::experiment::{Experiment, Report, Scale};
 
-/// Runs the experiments called `names` (or `all`) and writes `out/<scale>/<experiment>/`, and the page `page` of all of them;
-/// where it `resumes`, without those that are finished there.
-pub(super) fn run(
-    names: &[String],
-    scale: Scale,
-    out: &Path,
-    page: Option<&Path>,
-    resumes: bool,
-) -> Result<(), Error> {
-    let with_folder =
-        |experiment: &'static Experiment| (experiment, out.join(scale.to_string()).join(experiment.name));
-    let chosen: Vec<_> = chosen("experiment run", names)?.into_iter().map(with_folder).collect();
-    // a place that cannot be written is found out before the work, not after it
-    let mut page = page.map(|path| opened(path, scale, out)).transpose()?;
-    for (_, folder) in &chosen {
-        drop(Staging::new(folder)?);
+/// What is run, and what is shown of it.
+pub(super) struct Asked {
+    /// Names of experiments, or all; where there are none, the main ones.
+    pub(super) names: Vec<String>,
+    pub(super) scale: Scale,
+    /// Results go to `out/<scale>/<experiment>/`.
+    pub(super) out: PathBuf,
+    /// All results on one page.
+    pub(super) page: Option<PathBuf>,
+    /// Whether experiments that are finished in `out` are left out.
+    pub(super) resumes: bool,
+    /// Whether all tables are shown.
+    pub(super) tables: bool,
+}
+
+impl Asked {
+    /// Whether the question is what was found in all rather than the tables of one experiment.
+    fn is_overview(&self) -> bool {
+        self.names.is_empty() || self.names.iter().any(|name| name == "all")
     }
-    let mut failures = Vec::new();
-    for (experiment, folder) in chosen {
-        if let Some(finished) = finished(experiment, scale, &folder).filter(|_| resumes) {
-            failures
-                .extend(finished.failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));
-            continue;
+
+    fn experiments(&self) -> Result<Vec<&'static Experiment>, Error> {
+        if self.names.is_empty() { Ok(main()) } else { chosen("experiment run", &self.names) }
+    }
+
+    /// Runs them and writes their results.
+    ///
+    /// # Errors
+    /// A name that is no experiment, a place that cannot be written, claims that failed.
+    pub(super) fn run(&self) -> Result<(), Error> {
+        let (scale, of_scale) = (self.scale, self.out.join(self.scale.to_string()));
+        let experiments = self.experiments()?;
+        let path = self
+            .page
+            .clone()
+            .or_else(|| (self.is_overview() && !self.resumes).then(|| of_scale.join("index.html")));
+        // a place that cannot be written is found out before the work, not after it
+        let mut page = path.as_deref().map(|path| opened(path, scale, &of_scale)).transpose()?;
+        for experiment in &experiments {
+            drop(Staging::new(&of_scale.join(experiment.name))?);
         }
-        let report = experiment.report(scale)?;
-        write(experiment, scale, &report, &folder)?;
-        show(experiment, &report, &folder)?;
-        if let Some(page) = &mut page {
-            page.add(experiment, &report)?;
+        let mut overview = Overview::default();
+        let mut failures = Vec::new();
+        for (k, experiment) in experiments.iter().enumerate() {
+            let name = experiment.name;
+            let folder = of_scale.join(name);
+            if let Some(finished) = finished(experiment, scale, &folder).filter(|_| self.resumes) {
+                failures.extend(finished.failures.iter().map(|failure| format!("{name}: {failure}")));
+                continue;
+            }
+            let place = format!("{} of {}", k + 1, experiments.len());
+            let report = experiment.report(scale, format!("{place} · {name}"))?;
+            write(experiment, scale, &report, &folder)?;
+            if self.is_overview() {
+                overview.add(name, &place, &report);
+            }
+            if self.tables || !self.is_overview() {
+                show(experiment, &report, &folder)?;
+            }
+            if let Some(page) = &mut page {
+                page.add(experiment, &report)?;
+            }
+            failures.extend(report.failures.iter().map(|failure| format!("{name}: {failure}")));
         }
-        failures.extend(report.failures.iter().map(|failure| format!("{}: {failure}", experiment.name)));
+        if let Some(page) = page {
+            page.finish()?;
+        }
+        if self.is_overview() {
+            emit(&overview.screen(&of_scale, path.as_deref(), failures.len()), None)?;
+        }
+        if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.join("\n"))) }
     }
-    if let Some(page) = page {
-        page.finish()?;
-    }
-    if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.join("\n"))) }
 }
 
 /// What this very program has finished in `folder`, said on standard error.
@@ -55,10 +92,10 @@ pub(super) fn finished(experiment: &Experiment, scale: Scale, folder: &Path) -> 
     Some(finished)
 }
 
-/// The page, which may stand in the folder of results.
+/// The page, which may stand in the folder `out` of results.
 fn opened(path: &Path, scale: Scale, out: &Path) -> Result<Page, Error> {
     is_page(path)?;
-    if path.parent() == Some(out) {
+    if path.starts_with(out) {
         std::fs::create_dir_all(out)
             .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", out.display())))?;
     }

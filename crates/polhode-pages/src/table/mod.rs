@@ -15,6 +15,7 @@ use polhode_files::text::{visible_json, visible_lines};
 use serde_json::Value;
 
 pub use layout::{Selection, ShownColumn};
+pub use rounded::to_digits;
 pub use row_writer::RowWriter;
 
 /// One value of a row.

@@ -1,42 +1,40 @@
 //! The rows for a terminal, as wide as it is.
 
-use std::io::IsTerminal;
-
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Width, presets};
 use polhode_files::text::visible;
 
 use super::markup::with_unit;
 use super::rounded::rounded;
 use super::{Cell, Column, Table};
+use crate::screen::width;
 
-/// Where nothing tells the width of a line.
-const WIDTH: usize = 80;
-/// A narrower terminal breaks lines itself.
-const LEAST_WIDTH: usize = 40;
 /// Texts are wrapped rather than let push numbers out of sight.
 const TEXT_WIDTH: usize = 36;
 /// Blanks around a cell.
 const PADDING: usize = 2;
 
 impl Table {
-    /// Rounded rows; a table too wide is cut into blocks that each repeat the first column. A column without a value in any row
-    /// is left out.
+    /// Rounded rows; a table too wide is cut into blocks that each repeat the columns that tell rows apart. A column without a
+    /// value in any row is left out.
     pub fn terminal(&self) -> String {
-        self.within(line_width())
+        self.within(width())
     }
 
     fn within(&self, most: usize) -> String {
         let is_empty =
             |k: usize| !self.rows().is_empty() && self.rows().iter().all(|row| row[k] == Cell::Empty);
         let shown: Vec<_> = self.shown().into_iter().filter(|(k, _)| !is_empty(*k)).collect();
-        let Some(first) = shown.first() else { return String::new() };
         let width = |(k, column): &(usize, &Column)| self.width(*k, column) + PADDING;
-        let mut blocks = vec![vec![*first]];
-        let mut used = width(first);
-        for column in &shown[1..] {
-            if used + width(column) > most {
-                blocks.push(vec![*first]);
-                used = width(first);
+        let of = |columns: &[(usize, &Column)]| columns.iter().map(width).sum::<usize>();
+        // half of a line at most, and one column at least
+        let fitting = (1..=shown.len()).rev().find(|count| 2 * of(&shown[..*count]) <= most).unwrap_or(1);
+        let (keys, others) = shown.split_at(self.keys(&shown).min(fitting).min(shown.len()));
+        let mut blocks = vec![keys.to_vec()];
+        let mut used = of(keys);
+        for column in others {
+            if used + width(column) > most && used > of(keys) {
+                blocks.push(keys.to_vec());
+                used = of(keys);
             }
             used += width(column);
             if let Some(block) = blocks.last_mut() {
@@ -44,6 +42,17 @@ impl Table {
             }
         }
         blocks.iter().map(|block| self.block(block, most) + "\n").collect::<Vec<_>>().join("\n")
+    }
+
+    /// How many of the first columns it takes to tell all rows apart.
+    fn keys(&self, shown: &[(usize, &Column)]) -> usize {
+        let tells = |count: &usize| {
+            let key =
+                |row: &Vec<Cell>| shown[..*count].iter().map(|(k, _)| row[*k].exact()).collect::<Vec<_>>();
+            let distinct: std::collections::HashSet<_> = self.rows().iter().map(key).collect();
+            distinct.len() == self.rows().len()
+        };
+        (1..shown.len()).find(tells).unwrap_or(1)
     }
 
     fn width(&self, k: usize, column: &Column) -> usize {
@@ -73,14 +82,6 @@ impl Table {
     }
 }
 
-/// That of the terminal where standard output is one.
-fn line_width() -> usize {
-    if !std::io::stdout().is_terminal() {
-        return WIDTH;
-    }
-    terminal_size::terminal_size().map_or(WIDTH, |(width, _)| usize::from(width.0).max(LEAST_WIDTH))
-}
-
 /// The unit stands below the name.
 fn headings(column: &Column) -> String {
     with_unit(column).replacen(" [", "\n[", 1)
@@ -101,6 +102,7 @@ fn length(text: &str) -> usize {
 mod tests {
     use super::super::{Column, Table, row, tests::example};
     use super::*;
+    use crate::screen::WIDTH;
 
     #[test]
     fn every_line_fits_and_no_number_is_broken() {
@@ -124,6 +126,18 @@ mod tests {
         assert_eq!((printed.lines().count(), printed.matches("-1.25e-100").count()), (2, 8), "{printed}");
         assert!(!printed.contains("delta"), "{printed}");
         assert!(table.within(40).lines().all(|line| length(line) <= 40));
+    }
+
+    #[test]
+    fn each_block_repeats_the_columns_that_tell_rows_apart() {
+        let names = ["method", "h", "alpha", "beta", "gamma"];
+        let columns = names.map(|name| Column::new(name, "", "").digits(6));
+        let mut table = Table::new("steps", "", columns.into());
+        for h in [0.5, 0.25] {
+            table.push(row!["rk4", h, -1.234_567_89e-100, -1.234_567_89e-100, -1.234_567_89e-100]);
+        }
+        let printed = table.within(40);
+        assert_eq!((printed.matches("rk4").count(), printed.matches("0.25").count()), (6, 3), "{printed}");
     }
 
     #[test]

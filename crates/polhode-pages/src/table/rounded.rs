@@ -7,6 +7,16 @@ pub(super) struct Rounded {
     pub(super) exponent: Option<i32>,
 }
 
+/// `x`, finite, to `digits` significant digits, as tables print it.
+///
+/// ```
+/// assert_eq!(polhode_pages::table::to_digits(1.0 / 3000.0, 2), "3.3e-4");
+/// ```
+#[must_use]
+pub fn to_digits(x: f64, digits: usize) -> String {
+    rounded(x, digits).plain()
+}
+
 /// `x`, finite, to `digits` significant digits; zeros at the end are dropped where no more than the rounding of a sum or product
 /// was cut off.
 pub(super) fn rounded(x: f64, digits: usize) -> Rounded {

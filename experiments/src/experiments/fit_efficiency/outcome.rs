@@ -1,6 +1,6 @@
 //! What the answers of one estimator to many records amount to.
 
-use polhode_pages::table::{Cell, row};
+use polhode_pages::table::{Cell, row, to_digits};
 
 /// The 95 % point of χ² with five degrees of freedom.
 const ELLIPSOID: f64 = 11.070_497_693_516_35;
@@ -50,6 +50,19 @@ impl Summary {
             over_likelihood: (other > 0.0).then(|| (own / other).sqrt()),
             coverage: (!stated.is_empty()).then(|| covered as f64 / stated.len() as f64),
         }
+    }
+
+    /// In one line.
+    pub(super) fn conclusion(&self) -> String {
+        let coverage = self.coverage.map_or(String::new(), |share| {
+            format!("; {:.0} % of its 95 % ellipsoids hold the truth", 100.0 * share)
+        });
+        format!(
+            "the fit's errors are {} times the Cramer-Rao bound ({} to {}){coverage}",
+            to_digits(self.over_bound, 3),
+            to_digits(self.interval.0, 2),
+            to_digits(self.interval.1, 2)
+        )
     }
 
     /// A row of the table of all.

@@ -6,41 +6,16 @@ use polhode::run::Watch;
 use polhode::truth::{Care, Ending, Judged, LOST, Truth};
 use polhode_files::error::{Error, unexpected};
 
+use super::super::contestants::{SCHEMES, weighed};
 use super::cases::Case;
 use super::contest::{Contestant, Quantiles, Run};
 use crate::timing::StepTime;
-
-/// Schemes beside the catalogue; those that a force does not admit are left out there.
-const SCHEMES: [&str; 19] = [
-    "dmv:4",
-    "dmv:6",
-    "rattle@suzuki-4",
-    "lie-poisson@suzuki-4",
-    "lie-poisson@kahan-li-6",
-    "two-turn@suzuki-4",
-    "two-turn@blanes-moan-s6",
-    "two-turn@blanes-moan-s10",
-    "two-turn@kahan-li-8",
-    "two-turn@sofroniou-spaletta-10",
-    "kick-drift@srkn-6b",
-    "kick-drift@srkn-11b",
-    "kick-drift@srkn-14a",
-    "kick-drift@bce-22",
-    "kick-drift@omelyan-mryglod-folk-4",
-    "kick-drift@aba-10-6-4",
-    "dmv:6@srkn-11b",
-    "dmv:10@srkn-11b",
-    "rk4-projected",
-];
 
 /// Tolerances of methods that choose their steps.
 const TOLERANCES: [f64; 7] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15];
 
 /// Steps are 100 units over 2^k, from this k on.
 const COARSEST: i32 = 5;
-
-/// An implicit solution counts as so many evaluations: the sweeps that it takes where a step turns the body by about 15°.
-const SOLUTION: u32 = 6;
 
 /// Beyond this horizon, in units, a run goes only from the first `FEW` starts, where it costs at most `AFFORDABLE` evaluations
 /// per unit and its median error up to here is at most `WORTH_WHILE` rad.
@@ -95,8 +70,7 @@ pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, E
                 }
             }
         } else {
-            let of_step = f64::from(claims.cost.evaluations());
-            let cost = of_step + f64::from((SOLUTION - 1) * claims.cost.solves);
+            let cost = weighed(claims.cost);
             for k in COARSEST.. {
                 let step = 100.0 * libm::exp2(-f64::from(k));
                 if cost / step > budget.evaluations && k > COARSEST {
@@ -186,9 +160,9 @@ impl Entry {
     /// Evaluations per unit of time.
     fn per_unit(&self, case: &Case, measured: &Judged) -> f64 {
         let cost = self.method.claims(case.body.problem()).map(|claims| claims.cost).unwrap_or_default();
-        let weighed = 1.0 + f64::from((SOLUTION - 1) * cost.solves) / f64::from(cost.evaluations());
+        let weight = weighed(cost) / f64::from(cost.evaluations());
         let last = measured.looks.last().map(|look| look.evaluations as f64 / (look.elapsed / case.unit));
-        last.map(|cost| cost * weighed).filter(|cost| *cost > 0.0).unwrap_or(f64::INFINITY)
+        last.map(|cost| cost * weight).filter(|cost| *cost > 0.0).unwrap_or(f64::INFINITY)
     }
 }
 

@@ -6,6 +6,7 @@ mod contest;
 mod entry;
 mod panel;
 mod tables;
+mod which;
 
 use polhode::truth::{AGREEMENT, Truth};
 use polhode_files::error::{Error, unexpected};
@@ -16,6 +17,8 @@ use self::contest::Currency;
 use self::entry::{Budget, contestant, families};
 use self::tables::{Contest, costs, error_row, is_free, winners};
 use crate::experiment::{Context, Report};
+
+pub(crate) use which::Which;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let cases = cases::all(context.scale)?;
@@ -68,8 +71,10 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             report.drawings.push(sheet(name, &title, 2, &panels)?);
         }
     }
+    let costs = costs(&contests);
+    report.conclusion = Which::of(&costs.csv()).map_err(Error::Failed)?.claim();
     report.timing = Some(winners("timing", &contests, Currency::Time));
-    report.times = vec![costs(&contests)];
+    report.times = vec![costs];
     report.tables = vec![errors, fewest];
     report.seed = Some(cases::SEED);
     Ok(report)

@@ -11,8 +11,8 @@ use polhode_pages::output::Output;
 use polhode_pages::table::Table;
 
 use super::provenance;
-use super::which::Which;
 use crate::experiment::{Experiment, Report, Scale};
+use crate::experiments::Which;
 use turning::{Turning, turning};
 
 const STYLE: &str = include_str!("style.css");

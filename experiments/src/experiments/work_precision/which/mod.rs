@@ -41,7 +41,7 @@ struct Contest<'a> {
 }
 
 /// The costs that `work-precision` measured.
-pub(super) struct Which {
+pub(crate) struct Which {
     rows: Vec<Row>,
 }
 
@@ -70,7 +70,7 @@ impl Which {
     ///
     /// # Errors
     /// Rows that are not such costs.
-    pub(super) fn of(csv: &str) -> Result<Self, String> {
+    pub(crate) fn of(csv: &str) -> Result<Self, String> {
         let rows =
             csv::Reader::from_reader(csv.as_bytes()).into_deserialize().collect::<Result<Vec<Row>, _>>();
         let rows = rows.map_err(|error| error.to_string())?;
@@ -119,7 +119,7 @@ impl Which {
     }
 
     /// The quickest by kind, horizon and accuracy, the next and the quickest general-purpose method with their costs over its.
-    pub(super) fn table(&self) -> Table {
+    pub(crate) fn table(&self) -> Table {
         let columns = vec![
             Column::new("kind", "", "what is asked").heading("problem"),
             Column::new("turned", "rad", "about how far the body turns").digits(1),
@@ -163,7 +163,7 @@ impl Which {
     }
 
     /// Whether some method is quicker than the general-purpose methods at every accuracy, in sentences.
-    pub(super) fn claim(&self) -> String {
+    pub(crate) fn claim(&self) -> String {
         let contests = self.contests();
         let mut problems: Vec<(&str, &str, f64)> = Vec::new();
         for contest in &contests {

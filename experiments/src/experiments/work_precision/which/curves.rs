@@ -15,7 +15,7 @@ const GEOMETRIC: &str = "geometric";
 impl Which {
     /// By kind and method the cost at each accuracy, with the distances to 10 % and 90 % of the starts: of the general-purpose
     /// methods, and of the one method that knows of rotation and is the quickest of those at most accuracies.
-    pub(in crate::results) fn curves(&self) -> Table {
+    pub(crate) fn curves(&self) -> Table {
         let columns = vec![
             Column::new("kind", "", "what is asked"),
             Column::new("case", "", "body and starts"),

@@ -1,0 +1,34 @@
+//! Who is compared beside the catalogue, and how the work of a step is counted.
+
+use polhode::method::Cost;
+
+/// Schemes beside the catalogue; those that a force does not admit are left out there.
+pub(super) const SCHEMES: [&str; 19] = [
+    "dmv:4",
+    "dmv:6",
+    "rattle@suzuki-4",
+    "lie-poisson@suzuki-4",
+    "lie-poisson@kahan-li-6",
+    "two-turn@suzuki-4",
+    "two-turn@blanes-moan-s6",
+    "two-turn@blanes-moan-s10",
+    "two-turn@kahan-li-8",
+    "two-turn@sofroniou-spaletta-10",
+    "kick-drift@srkn-6b",
+    "kick-drift@srkn-11b",
+    "kick-drift@srkn-14a",
+    "kick-drift@bce-22",
+    "kick-drift@omelyan-mryglod-folk-4",
+    "kick-drift@aba-10-6-4",
+    "dmv:6@srkn-11b",
+    "dmv:10@srkn-11b",
+    "rk4-projected",
+];
+
+/// An implicit solution counts as so many evaluations: the sweeps that it takes where a step turns the body by about 15°.
+const SOLUTION: u32 = 6;
+
+/// Evaluations of a step, of all kinds together.
+pub(super) fn weighed(cost: Cost) -> f64 {
+    f64::from(cost.evaluations()) + f64::from((SOLUTION - 1) * cost.solves)
+}
