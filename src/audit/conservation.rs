@@ -77,38 +77,41 @@ pub(super) fn conservation(
     };
     let every = States::new(record, reading, body);
     let has_omega = Columns::new(record).source != Source::Attitude;
-    let mut found = Vec::new();
-    let mut look = |quantity: Conserved, of: &dyn Fn(&Row) -> f64| {
-        if !kept.contains(&quantity) {
-            return;
+    let needs = |quantity: Conserved| matches!(quantity, Conserved::Momentum | Conserved::MomentumZ) || !free;
+    let all: [(Conserved, &dyn Fn(&Row) -> f64); 4] = [
+        (Conserved::Energy, &energy_of),
+        (Conserved::MomentumNorm, &norm_of),
+        (Conserved::Momentum, &vector_of),
+        (Conserved::MomentumZ, &z_of),
+    ];
+    let told = |quantity: Conserved| kept.contains(&quantity) && (has_attitude || !needs(quantity));
+    let seen: Vec<(Conserved, &dyn Fn(&Row) -> f64)> =
+        all.into_iter().filter(|(quantity, _)| told(*quantity)).collect();
+    // a maximum that is not a number stays one: `f64::max` would pass over it
+    let larger = |most: f64, value: f64| if value.abs() <= most { most } else { value.abs() };
+    let mut largest = [0.0_f64; 4];
+    let mut look = |row: &Row| {
+        for (most, (_, of)) in largest.iter_mut().zip(&seen) {
+            *most = larger(*most, of(row));
         }
-        let needs_attitude = matches!(quantity, Conserved::Momentum | Conserved::MomentumZ) || !free;
-        if needs_attitude && !has_attitude {
-            return;
-        }
+    };
+    looked.iter().for_each(&mut look);
+    if has_omega && count > rows.len() {
+        // one row at a time: a record may be as large as the memory allows
+        (0..count).filter_map(|row| every.at(row)).for_each(|row| look(&row));
+    }
+    let of_quantity = |((quantity, of), error): (&(Conserved, &dyn Fn(&Row) -> f64), f64)| {
         let series: Vec<f64> = looked.iter().map(of).collect();
-        let noise = SPREAD * noise(&rows, &series);
-        let resolution = noise.max(allowed_of(quantity));
-        // a maximum that is not a number stays one: `f64::max` would pass over it
-        let larger = |most: f64, value: f64| if value.abs() <= most { most } else { value.abs() };
-        let mut error = series.iter().fold(0.0_f64, |most, value| larger(most, *value));
-        if has_omega && count > rows.len() {
-            // one row at a time: a record may be as large as the memory allows
-            error =
-                (0..count).filter_map(|row| every.at(row)).fold(error, |most, row| larger(most, of(&row)));
-        }
+        let resolution = (SPREAD * noise(&rows, &series)).max(allowed_of(*quantity));
         // numbers near the limits of a double overflow: such a change is infinite, and shows nothing
         let unknown = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
         let (error, resolution) = (unknown(error), unknown(resolution));
         let drift = secular_drift(&times, &series)
             .filter(|drift| drift.slope.is_finite() && drift.half_width.is_finite());
         let conserved = error.is_finite() && error <= resolution;
-        found.push(Conservation { quantity, error, drift, resolution, conserved });
+        Conservation { quantity: *quantity, error, drift, resolution, conserved }
     };
-    look(Conserved::Energy, &energy_of);
-    look(Conserved::MomentumNorm, &norm_of);
-    look(Conserved::Momentum, &vector_of);
-    look(Conserved::MomentumZ, &z_of);
+    let found = seen.iter().zip(largest).map(of_quantity).collect();
     let step = looked.len().div_ceil(DRAWN);
     let drawn: Vec<_> = looked.iter().step_by(step).collect();
     let traces = Traces {

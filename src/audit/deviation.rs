@@ -55,8 +55,8 @@ pub(super) struct Deviation {
     pub(super) is_noisy: bool,
     /// Root mean square of ω at the rows that were looked at first, rad/s.
     pub(super) size: f64,
-    /// Rows further from the motion than is allowed in any column: the first, and how many.
-    pub(super) beyond: Option<(usize, usize)>,
+    /// Rows further from the motion than is allowed in any column, ascending.
+    pub(super) beyond: Vec<usize>,
     /// Changes of sign of the momentum along the middle axis in the record and in the motion, at the same rows; the same number
     /// where what the rows may be off makes the difference.
     pub(super) flips: [u64; 2],
@@ -181,14 +181,12 @@ pub(super) fn deviation(
         from_first_row: if fitted_start { Distance::largest(&from_first.turns).0 } else { tally.largest },
     });
     let tallies = [&found.attitude, &found.rates, &found.momentum];
-    let first_beyond = tallies.iter().filter_map(|tally| tally.as_ref()?.first_beyond).min();
-    let most_beyond = tallies.iter().filter_map(|tally| Some(tally.as_ref()?.beyond)).max().unwrap_or(0);
     Some(Deviation {
         judgement,
         error,
         attitude_noise: noise.0,
         rates_noise: noise.1,
-        beyond: first_beyond.map(|row| (row, most_beyond)),
+        beyond: found.beyond,
         is_noisy: tallies.iter().filter_map(|tally| tally.as_ref()).any(|tally| !tally.is_exact()),
         flips: found.flips,
         start: chosen.start,
@@ -205,6 +203,8 @@ struct Every {
     momentum: Option<Tally>,
     /// Of the last attitude: the error along the motion and across, rad.
     last: Option<(f64, f64)>,
+    /// Rows beyond what is allowed in any column.
+    beyond: Vec<usize>,
     flips: [u64; 2],
 }
 
@@ -226,6 +226,7 @@ fn every_row(
         rates: tally(has_rates, *of_rates),
         momentum: tally(record.rates.is_some() && record.momentum.is_some(), allowed.momentum),
         last: None,
+        beyond: Vec::new(),
         flips: [0, 0],
     };
     // a record that is off by at most `off` flips at least as often as the motion does beyond a threshold that is larger by it,
@@ -238,13 +239,16 @@ fn every_row(
         let add = |tally: &mut Option<Tally>, deviation: Option<Vec3<f64>>| {
             // a column without a number at this row is no column that was found right
             let nowhere = Vec3([f64::NAN; 3]);
-            if let Some(tally) = tally {
-                tally.add(seen.row, deviation.unwrap_or(nowhere));
-            }
+            tally.as_mut().is_some_and(|tally| tally.add(seen.row, deviation.unwrap_or(nowhere)))
         };
-        add(&mut found.attitude, seen.turn);
-        add(&mut found.rates, seen.rates);
-        add(&mut found.momentum, seen.momentum);
+        let beyond = [
+            add(&mut found.attitude, seen.turn),
+            add(&mut found.rates, seen.rates),
+            add(&mut found.momentum, seen.momentum),
+        ];
+        if beyond.contains(&true) {
+            found.beyond.push(seen.row);
+        }
         if let Some(omega) = seen.omega {
             flips[0].see(omega);
             flips[1..].iter_mut().for_each(|flips| flips.see(seen.exact.1));

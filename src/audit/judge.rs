@@ -24,9 +24,6 @@ use crate::rotation::Vec3;
 /// An angular velocity between two attitudes, relative, is off by at most so many times what one of them is, over the turn.
 const DERIVED: f64 = 3.0;
 
-/// A change of L above so many times the noise is one.
-const SEEN_IN_NOISE: f64 = 3.0;
-
 /// Groups of three rows that the size of ω is read off.
 const LOOKS: usize = 128;
 
@@ -97,8 +94,7 @@ pub(super) fn judge(
                 other_body = other_body_of(record, question, &allowances);
             }
             if signature.is_none() && other_body.is_none() {
-                let off = off[0] + off[1] + SEEN_IN_NOISE * noise;
-                other_torque = other_torque_of(record, &reading, &body, off);
+                other_torque = other_torque_of(record, &reading, &body, off[0] + off[1], noise);
             }
             match (&signature, &other_body, &other_torque) {
                 (Some(found), ..) => Suspect::Integrator(found.method.clone()),

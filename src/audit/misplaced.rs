@@ -4,6 +4,7 @@ use super::columns::rotation_vector;
 use super::deviation::{Allowances, Deviation};
 use super::sweep::{Seen, Sweep};
 use super::{Fault, Misplaced, Reading, Trajectory};
+use crate::body::Problem;
 use crate::rotation::{Quat, Vec3};
 
 /// More than this share of the rows, and it is the motion that is another, not rows that are misplaced.
@@ -20,10 +21,14 @@ pub(super) fn misplaced(
     allowed: &Allowances,
 ) -> Vec<Fault> {
     let rows = record.times.len();
-    let Some((_, beyond)) = found.beyond else { return Vec::new() };
-    let few = beyond as f64 <= MOST * rows as f64;
+    let beyond = &found.beyond;
+    if beyond.is_empty() {
+        return Vec::new();
+    }
+    let few = beyond.len() as f64 <= MOST * rows as f64;
     let sweep = Sweep { record, reading, start: &found.start, size: found.size };
-    let limits = [allowed.attitude, allowed.rates, allowed.momentum].map(|allowance| allowance.largest(rows));
+    let of_rates = if record.rates.is_some() { allowed.rates } else { allowed.momentum };
+    let limits = [allowed.attitude, of_rates, allowed.momentum].map(|allowance| allowance.largest(rows));
     let distance = |seen: &Seen| {
         let of = |vector: Option<Vec3<f64>>, limit: f64| {
             vector.map_or(0.0, |v| if v.norm() > limit { v.norm() } else { 0.0 })
@@ -35,19 +40,32 @@ pub(super) fn misplaced(
         Some(tally) => (tally.2, tally.3) = (tally.2 + 1, tally.3.max(size)),
         None => tallies.push((what, row, 1, size)),
     };
-    // three rows in a row: the one before, the one that is looked at, and the one behind
+    // three rows: the one before, the one that is looked at, and the one behind
     let mut window: [Option<Seen>; 3] = [None; 3];
     let mut look = |window: &[Option<Seen>; 3]| {
         let Some(now) = window[1] else { return };
+        let beside = |other: usize| window[other].as_ref().filter(|seen| seen.row.abs_diff(now.row) == 1);
         let size = distance(&now);
         if size > 0.0 {
-            note(kind(window[0].as_ref(), &now, window[2].as_ref(), size), now.row, size);
+            note(kind(beside(0), &now, beside(2), size), now.row, size);
         }
     };
-    let followed = sweep.every(&mut |seen| {
+    let mut show = |seen: &Seen| {
         window = [window[1], window[2], Some(*seen)];
         look(&window);
-    });
+    };
+    // the closed form needs no row between; steps would be others
+    let followed = if found.start.body.problem() == Problem::Free {
+        let mut next = 0;
+        let mut wanted = beyond.iter().flat_map(|&row| {
+            let from = next.max(row.saturating_sub(1));
+            next = (row + 2).min(rows);
+            from..next
+        });
+        sweep.over(&mut wanted, &mut show)
+    } else {
+        sweep.every(&mut show)
+    };
     if followed.is_none() {
         return Vec::new();
     }

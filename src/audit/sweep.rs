@@ -1,5 +1,7 @@
 //! Every row of a record beside the exact motion, one after the other.
 
+use core::cell::Cell;
+
 use super::columns::{Columns, Source, rotation_vector};
 use super::motion::follow;
 use super::program::Dynamics;
@@ -41,14 +43,24 @@ pub(super) struct Sweep<'a> {
 impl Sweep<'_> {
     /// Shows every row to `each`; `None` where the motion cannot be followed.
     pub(super) fn every(&self, each: &mut dyn FnMut(&Seen)) -> Option<()> {
+        self.over(&mut (0..self.record.times.len()), each)
+    }
+
+    /// Shows the rows `rows`, in ascending order, to `each`; `None` where the motion cannot be followed.
+    pub(super) fn over(
+        &self,
+        rows: &mut dyn Iterator<Item = usize>,
+        each: &mut dyn FnMut(&Seen),
+    ) -> Option<()> {
         let (record, reading) = (self.record, self.reading);
         let source = Columns::new(record).source;
         let dynamics = Dynamics::new(&self.start.body);
         let beside = record.rates.is_some() && record.momentum.is_some();
         let scale = self.start.body.scale();
         let size = dynamics.momentum(self.start.row.omega).norm() * scale;
-        let mut row = 0;
+        let row = Cell::new(0);
         let mut look = |q: Quat<f64>, omega: Vec3<f64>| {
+            let row = row.get();
             let attitude = reading.attitude(record, row);
             let measured = match source {
                 Source::Rates => reading.omega_body(record, row),
@@ -67,10 +79,14 @@ impl Sweep<'_> {
                 momentum: momentum.map(|m| (m - dynamics.momentum(omega) * scale) * (1.0 / size)),
             };
             each(&seen);
-            row += 1;
         };
         let precise = record.times.len() <= FEW;
-        follow(&self.start.body, &self.start.row, &mut record.times.iter().copied(), precise, &mut look)
+        // the motion asks for the next time when the row before has been looked at
+        let mut times = rows.map(|next| {
+            row.set(next);
+            record.times[next]
+        });
+        follow(&self.start.body, &self.start.row, &mut times, precise, &mut look)
     }
 }
 
@@ -114,9 +130,9 @@ pub(super) struct Tally {
     pub(super) at: usize,
     squares: f64,
     count: usize,
-    /// The first row beyond the allowance, and how many there are.
-    pub(super) first_beyond: Option<usize>,
-    pub(super) beyond: usize,
+    /// What a row may be off at most, and how many rows are off by more.
+    largest_allowed: f64,
+    beyond: usize,
     blocks: Vec<(Vec3<f64>, usize)>,
     /// The largest mean of a block that is rounding, where rounding changes from row to row.
     lasting: Option<f64>,
@@ -132,7 +148,7 @@ impl Tally {
             at: 0,
             squares: 0.0,
             count: 0,
-            first_beyond: None,
+            largest_allowed: allowance.largest(rows),
             beyond: 0,
             blocks: vec![(Vec3::zero(), 0); blocks],
             lasting: None,
@@ -150,22 +166,22 @@ impl Tally {
         Self { lasting: is_new.then_some(lasting), ..self }
     }
 
-    pub(super) fn add(&mut self, row: usize, deviation: Vec3<f64>) {
+    /// Whether the deviation at `row` is beyond the allowance, which counts too.
+    pub(super) fn add(&mut self, row: usize, deviation: Vec3<f64>) -> bool {
         let size = deviation.norm();
         self.count += 1;
         self.squares += size * size;
         if size > self.largest || size.is_nan() {
             (self.largest, self.at) = (if size.is_nan() { f64::INFINITY } else { size }, row);
         }
-        if size > self.allowance.largest(self.rows) || size.is_nan() {
-            self.first_beyond.get_or_insert(row);
-            self.beyond += 1;
-        }
+        let beyond = size > self.largest_allowed || size.is_nan();
+        self.beyond += usize::from(beyond);
         let blocks = self.blocks.len();
         if let Some((sum, count)) = self.blocks.get_mut(row * blocks / self.rows) {
             *sum = *sum + deviation;
             *count += 1;
         }
+        beyond
     }
 
     /// Root mean square of a component.
@@ -211,10 +227,11 @@ mod tests {
         for (rows, bad) in [(10, 9), (1000, 0), (100_000, 77_777)] {
             let mut tally = Tally::new(rows, Allowance::of(1e-6, 1e-16, 0.0));
             for row in 0..rows {
-                tally.add(row, if row == bad { Vec3([2e-6, 0.0, 0.0]) } else { Vec3([9e-7, 0.0, 0.0]) });
+                let deviation = if row == bad { 2e-6 } else { 9e-7 };
+                assert_eq!(tally.add(row, Vec3([deviation, 0.0, 0.0])), row == bad);
             }
             assert!(!tally.is_exact());
-            assert_eq!((tally.first_beyond, tally.beyond, tally.at), (Some(bad), 1, bad));
+            assert_eq!((tally.beyond, tally.at), (1, bad));
         }
     }
 
@@ -223,7 +240,9 @@ mod tests {
         // alternating signs of one size have the spread of noise, and a mean of zero
         let tally_of = |noise: f64, of: &dyn Fn(usize) -> f64| {
             let mut tally = Tally::new(4096, Allowance::of(1e-6, 1e-16, noise));
-            (0..4096).for_each(|row| tally.add(row, Vec3([1.0, 1.0, -1.0]) * of(row)));
+            (0..4096).for_each(|row| {
+                tally.add(row, Vec3([1.0, 1.0, -1.0]) * of(row));
+            });
             (tally.is_exact(), tally.is_declared_noise())
         };
         let swing = |row: usize| if row.is_multiple_of(2) { 1e-3 } else { -1e-3 };

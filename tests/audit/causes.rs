@@ -33,9 +33,14 @@ fn free_motion(moments: [f64; 3]) -> Trajectory {
 
 /// By rk8 in short steps.
 fn forced_motion(body: &Body) -> Trajectory {
+    motion_by("rk8", body)
+}
+
+/// In steps of 0.0125 s, every 0.05 s.
+fn motion_by(name: &str, body: &Body) -> Trajectory {
     let start =
         body.state(UnitQuaternion::from_euler_angles(0.3, -0.8, 1.9), Vector3::new(0.4, 1.0, -0.3)).unwrap();
-    let mut run = Run::new(&method("rk8").unwrap(), body, &start, 0.0125).unwrap();
+    let mut run = Run::new(&method(name).unwrap(), body, &start, 0.0125).unwrap();
     let rows: Vec<Written> = (0..400)
         .map(|k| {
             let sample = run.advance_to(4 * k).unwrap();
@@ -132,4 +137,36 @@ fn the_implicit_step_of_mujoco_is_named() {
     assert_eq!(verdict.suspect, Suspect::Integrator("linearly-implicit-euler".into()));
     let found = verdict.signature.unwrap();
     assert!((found.step - 0.01).abs() < 1e-12 && found.mismatch < 1e-6, "{found:?}");
+}
+
+#[test]
+fn no_integrator_is_named_from_attitudes_alone() {
+    let body = free([1.0, 2.0, 2.5]);
+    for name in ["richardson", "lie-poisson:321", "implicit-midpoint", "buss-2", "rk4"] {
+        let mut record = motion_by(name, &body);
+        let named = audit(&record, &Question::new(Some(body.clone()))).unwrap();
+        // an error of rk4 this small is within the tolerance
+        if named.judgement == Judgement::Wrong {
+            assert_eq!(named.suspect, Suspect::Integrator(name.into()));
+        } else {
+            assert_eq!(name, "rk4");
+        }
+        record.rates = None;
+        let verdict = audit(&record, &Question::new(Some(body.clone()))).unwrap();
+        assert!(verdict.signature.is_none(), "{name}: {:?}", verdict.signature);
+    }
+}
+
+/// Of a sphere a method errs as a clock does.
+#[test]
+fn a_clock_that_is_off_is_no_integrator() {
+    for moments in [[2.0, 2.0, 2.0], [1.0, 1.0, 2.0], [1.0, 2.0, 3.0]] {
+        for factor in [1.0 + 1e-5, 1.0 - 1e-4, 1.0 + 1.0 / 480.0] {
+            let mut record = free_motion(moments);
+            record.times.iter_mut().for_each(|t| *t *= factor);
+            let verdict = audit(&record, &Question::new(Some(free(moments)))).unwrap();
+            assert_eq!(verdict.judgement, Judgement::Wrong);
+            assert!(verdict.signature.is_none(), "{factor}: {:?}", verdict.signature);
+        }
+    }
 }

@@ -45,6 +45,10 @@ fn dumps_of_lammps_are_read_and_its_integrators_named() {
             );
             assert_eq!(reading["momentum_frame"], space);
         }
+        // attitudes alone tell that it is wrong, and not by which method
+        let (attitudes, _) = named.split_once(",lx=").unwrap();
+        let found = audit(&format!("lammps-triclinic.dump {body} {attitudes}"));
+        assert_eq!((&found["verdict"], &found["suspect"]), (&"wrong".into(), &"none".into()), "{found:#}");
         // six digits tell that it is wrong, and not by which method
         assert_eq!(audit(&format!("lammps-default.dump {body} {steps}"))["verdict"], "wrong");
         assert_eq!(

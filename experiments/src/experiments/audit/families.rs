@@ -53,11 +53,11 @@ impl Counts {
             Counts { exact: 8, fault: 1, sphere: 1, method: 1, long: &[(3_000, 1)], every: 6 },
             Counts { exact: 200, fault: 5, sphere: 1, method: 4, long: &[(100_000, 1)], every: 1 },
             Counts {
-                exact: 2000,
+                exact: 1000,
                 fault: 100,
-                sphere: 20,
+                sphere: 5,
                 method: 50,
-                long: &[(100_000, 40), (1_000_000, 10)],
+                long: &[(100_000, 20), (1_000_000, 3)],
                 every: 1,
             },
         )
@@ -112,11 +112,28 @@ impl Families {
                 all.count()
             ));
         }
+        let named = self.of(|family| !is_method(family)).named();
+        let otherwise = self.otherwise(is_method);
+        if named + otherwise > 0 {
+            failures.push(format!(
+                "an integrator is named of {named} records that none made, and another of {otherwise}"
+            ));
+        }
         let exact = self.of(is_exact);
         if (exact.right() as f64) < 0.99 * exact.count() as f64 {
             failures.push(format!("{} of {} exact records are called right", exact.right(), exact.count()));
         }
         failures
+    }
+
+    /// Records of methods in `family` of which another integrator is named.
+    fn otherwise(&self, which: impl Fn(&Family) -> bool) -> u64 {
+        let is_other = |(family, judged): &&(Family, Judged)| {
+            let named = judged.integrator.as_ref();
+            which(family)
+                && matches!(family, Family::Method(name) if named.is_some_and(|named| named != name))
+        };
+        self.all.iter().filter(is_other).count() as u64
     }
 
     fn summary(&self) -> Table {
@@ -150,10 +167,15 @@ impl Families {
         };
         let exact = self.of(is_exact);
         add("exact", &exact, "right", exact.right());
+        let methods = self.of(is_method);
+        add("of methods", &methods, "integrator named", methods.named() - self.otherwise(is_method));
+        add("of methods", &methods, "another integrator named", self.otherwise(is_method));
+        let others = self.of(|family| !is_method(family));
+        add("of no method", &others, "integrator named", others.named());
         let groups: [(&str, Chosen); 5] = [
             ("one fault", |family| matches!(family, Family::Fault(_))),
             ("one fault of a sphere", |family| matches!(family, Family::Sphere(_))),
-            ("methods that keep L", |family| matches!(family, Family::Method(_))),
+            ("methods that keep L", is_method),
             ("long with bad rows", |family| matches!(family, Family::Long { bad: 1.., .. })),
             ("all that are not exact", |family| !is_exact(family)),
         ];
@@ -196,11 +218,16 @@ impl Families {
 
     fn methods(&self) -> Table {
         let mut table = counted("keepers", "Motions by methods that keep L in space.", &["method"]);
+        table.columns.push(
+            Column::new("otherwise", "", "of which another integrator is named").heading("named otherwise"),
+        );
         for method in keepers() {
             let family = Family::Method(method.name());
             let cell = self.of(|found| *found == family);
             if cell.count() > 0 {
-                table.push(row![method.name()].into_iter().chain(cell.verdicts()));
+                let otherwise = self.otherwise(|found| *found == family);
+                let cells = row![method.name()].into_iter().chain(cell.verdicts());
+                table.push(cells.chain(row![otherwise]));
             }
         }
         table
@@ -243,6 +270,9 @@ fn counted(name: &'static str, caption: &str, keys: &[&'static str]) -> Table {
         count("undecided", "not decided"),
         count("false_right", "judged right although a row is further off than is allowed")
             .heading("false right"),
+        count("most", "upper end of the 95 % interval (Wilson) of its share of those beyond")
+            .heading("at most"),
+        count("named", "of which an integrator is named"),
     ];
     Table::new(name, caption, keys.chain(counts).collect())
 }
@@ -280,9 +310,27 @@ impl Cell<'_> {
     }
 
     /// The columns behind the keys of `counted`.
-    fn verdicts(&self) -> [table::Cell; 6] {
-        row![self.count(), self.beyond(), self.right(), self.wrong(), self.undecided(), self.false_right(),]
+    fn verdicts(&self) -> [table::Cell; 8] {
+        row![
+            self.count(),
+            self.beyond(),
+            self.right(),
+            self.wrong(),
+            self.undecided(),
+            self.false_right(),
+            Interval::new(self.false_right(), self.beyond()).map(|x| x.high),
+            self.named(),
+        ]
     }
+
+    /// Of how many an integrator is named.
+    fn named(&self) -> u64 {
+        self.number(|judged| judged.integrator.is_some())
+    }
+}
+
+fn is_method(family: &Family) -> bool {
+    matches!(family, Family::Method(_))
 }
 
 fn is_exact(family: &Family) -> bool {

@@ -31,13 +31,14 @@ use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
+use crate::experiments::fit_field::tally::Interval;
 use alike::{ORDERS, alike};
 use families::Families;
 use mistakes::{Mistake, claims, wrong};
 use motion::Motion;
 use writing::{Form, Writing, convention, one_of, written};
 
-const SEED: u64 = 190_190;
+const SEED: u64 = 600_613;
 
 /// Errors between the tolerance over this and the tolerance times it are neither clearly right nor clearly wrong.
 const MARGIN: f64 = 10.0;
@@ -150,6 +151,8 @@ fn readings(found: &[Found]) -> Table {
             Column::new("written", "", "what limits the numbers: noise of 1e-9 to 1e-3, float32, or digits"),
             count("trials", "trajectories"),
             count("first", "with the true reading first, or in the set that nobody can tell apart"),
+            count("low", "lower end of the 95 % interval (Wilson) of their share").heading("from"),
+            count("high", "upper end of it").heading("to"),
             count("tied", "with a tie"),
             count("other_ties", "with other readings in the tie, or none, than nobody can tell apart")
                 .heading("other ties"),
@@ -170,11 +173,14 @@ fn readings(found: &[Found]) -> Table {
                 .collect();
             let number =
                 |which: &dyn Fn(&Found) -> bool| cell.iter().filter(|found| which(found)).count() as u64;
+            let first = Interval::new(number(&|found| found.first), cell.len() as u64);
             table.push(row![
                 if exact { "exact" } else { "methods" },
                 written,
                 cell.len() as u64,
                 number(&|found| found.first),
+                first.map(|x| x.low),
+                first.map(|x| x.high),
                 number(&|found| found.tied),
                 number(&|found| !found.tie_exact),
                 number(&|found| found.judgement == Judgement::Right),
@@ -270,15 +276,21 @@ fn mistakes_table(named: &[Named], each: usize) -> Table {
             Column::new("program", "", "what the program does"),
             Column::new("trials", "", "trajectories"),
             Column::new("named", "", "with this suspect"),
+            Column::new("low", "", "lower end of the 95 % interval (Wilson) of their share").heading("from"),
+            Column::new("high", "", "upper end of it").heading("to"),
             Column::new("right", "", "judged right"),
         ],
     );
     for (mistake, cell) in Mistake::ALL.into_iter().zip(named.chunks(each)) {
+        let named = cell.iter().filter(|trial| trial.named).count() as u64;
+        let interval = Interval::new(named, cell.len() as u64);
         table.push(row![
             mistake.name(),
             mistake.meaning(),
             cell.len() as u64,
-            cell.iter().filter(|trial| trial.named).count() as u64,
+            named,
+            interval.map(|x| x.low),
+            interval.map(|x| x.high),
             cell.iter().filter(|trial| trial.right).count() as u64,
         ]);
     }

@@ -79,6 +79,8 @@ pub(super) struct Judged {
     pub(super) style: Style,
     /// The largest distance of a row from the motion over what is allowed there; above 1 the record is not right.
     pub(super) excess: f64,
+    /// The integrator that is named.
+    pub(super) integrator: Option<String>,
 }
 
 impl Judged {
@@ -116,7 +118,8 @@ pub(super) fn judged(specimen: &Specimen, style: Style, random: &mut Random) -> 
         // what another start explains is no deviation
         excess = excess.min(least_excess(specimen, style.columns, limits).unwrap_or(excess));
     }
-    Ok(Judged { judgement: verdict.judgement, style, excess })
+    let integrator = verdict.signature.map(|found| found.method);
+    Ok(Judged { judgement: verdict.judgement, style, excess, integrator })
 }
 
 /// The largest distance of the columns that are written, over what is allowed.
