@@ -1,8 +1,9 @@
-//! From rows to segments: rows of one time are merged, flat tops left out, and gaps split.
+//! From rows to segments: rows of one time are merged, repeated readings and flat tops left out, and gaps split.
 
 use nalgebra::Vector3;
 
 use super::error::RecordError;
+use super::held::repeats;
 use super::rows::RawRows;
 use super::segment::Segment;
 
@@ -10,6 +11,10 @@ use super::segment::Segment;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Finding {
     Merged,
+    /// The reading before, again; new ones come every `interval` s in the mean.
+    Repeated {
+        interval: f64,
+    },
     Saturated,
     Gap,
 }
@@ -63,12 +68,18 @@ pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError>
     if merged.is_empty() {
         return Err(RecordError::Empty { file: file.into(), window: None, span: (0.0, 0.0) });
     }
-    let lines: Vec<usize> = merged.iter().map(|(_, _, line)| *line).collect();
-    let samples: Vec<[f64; 4]> = merged.into_iter().map(|(row, ..)| row).collect();
+    let all: Vec<[f64; 4]> = merged.iter().map(|(row, ..)| *row).collect();
+    let repeated = repeats(&all);
+    let new = |i: &usize| !repeated[*i];
+    let lines: Vec<usize> = (0..all.len()).filter(new).map(|i| merged[i].2).collect();
+    let samples: Vec<[f64; 4]> = (0..all.len()).filter(new).map(|i| all[i]).collect();
     let flat = flat_tops(&samples);
     let mut intervals: Vec<f64> = samples.windows(2).map(|w| w[1][0] - w[0][0]).collect();
     intervals.sort_by(f64::total_cmp);
     let median = intervals.get(intervals.len() / 2).copied().unwrap_or(0.0);
+    let repeated = all.iter().zip(&repeated).filter(|(_, repeated)| **repeated);
+    let interval = mean(intervals.iter().copied().take_while(|interval| *interval <= GAP * median));
+    findings.extend(repeated.map(|(row, _)| (row[0], Finding::Repeated { interval })));
     let mut last: Option<f64> = None;
     for ((row, flat), line) in samples.iter().zip(flat).zip(lines) {
         if flat {
@@ -98,6 +109,11 @@ pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError>
         last = Some(row[0]);
     }
     Ok(Cleaned { segments, findings })
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
 }
 
 /// Samples where a component stays at its largest or smallest value, and longer than a rounded peak would.

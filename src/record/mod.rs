@@ -2,6 +2,7 @@
 
 mod clean;
 mod error;
+mod held;
 mod quantum;
 mod rows;
 mod segment;
@@ -142,21 +143,47 @@ impl Record {
 
     /// Number of samples that were merged into one of the same time.
     pub fn merged(&self) -> usize {
-        self.count(Finding::Merged)
+        self.count(|finding| *finding == Finding::Merged)
+    }
+
+    /// Number of samples left out because they repeat the reading before: a log that is written faster than its sensor reads.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::record::Record;
+    /// // 400 rows a second of a sensor that reads 100 times
+    /// let times: Vec<f64> = (0..400).map(|i| f64::from(i) / 400.0).collect();
+    /// let rates: Vec<_> = (0..400).map(|i| Vector3::new(f64::from((i / 4) * (i / 4)), 1.0, 0.0)).collect();
+    /// let record = Record::from_samples(&times, &rates)?;
+    /// assert_eq!((record.samples(), record.repeated()), (100, 300));
+    /// assert!((record.new_readings_rate().unwrap() - 100.0).abs() < 1e-9);
+    /// # Ok::<(), polhode::record::RecordError>(())
+    /// ```
+    pub fn repeated(&self) -> usize {
+        self.count(|finding| matches!(finding, Finding::Repeated { .. }))
+    }
+
+    /// The rate at which new readings come, 1/s, where samples were left out that repeat the one before; of several files the lowest.
+    pub fn new_readings_rate(&self) -> Option<f64> {
+        let intervals = self.findings.iter().filter_map(|(_, finding)| match finding {
+            Finding::Repeated { interval } => Some(*interval),
+            _ => None,
+        });
+        intervals.max_by(f64::total_cmp).map(|interval| 1.0 / interval)
     }
 
     /// Number of samples left out because a component stood at the end of the sensor's range.
     pub fn saturated(&self) -> usize {
-        self.count(Finding::Saturated)
+        self.count(|finding| *finding == Finding::Saturated)
     }
 
     /// Number of places where the record was split because of a gap.
     pub fn gaps(&self) -> usize {
-        self.count(Finding::Gap)
+        self.count(|finding| *finding == Finding::Gap)
     }
 
-    fn count(&self, what: Finding) -> usize {
-        self.findings.iter().filter(|(_, finding)| *finding == what).count()
+    fn count(&self, what: impl Fn(&Finding) -> bool) -> usize {
+        self.findings.iter().filter(|(_, finding)| what(finding)).count()
     }
 
     /// The parts that lie in the windows (start, end), s, both ends included. Windows that overlap count as one, so that no

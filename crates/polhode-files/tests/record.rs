@@ -88,6 +88,38 @@ fn flat_tops_are_left_out_and_quiet_axes_are_not() {
 }
 
 #[test]
+fn repeated_readings_are_left_out_and_rounded_or_resting_ones_are_not() {
+    let wave = |t: f64| Vector3::new(libm::sin(0.7 * t), libm::cos(t), libm::sin(1.3 * t));
+    let record = |rate: u32, reading: &dyn Fn(u32) -> Vector3<f64>| {
+        let times: Vec<f64> = (0..20 * rate).map(|i| f64::from(i) / f64::from(rate)).collect();
+        let rates: Vec<_> = (0..20 * rate).map(reading).collect();
+        Record::from_samples(&times, &rates).unwrap()
+    };
+    let rounded = |w: Vector3<f64>, step: f64| w.map(|c| libm::round(c / step) * step);
+    for log in [130, 150, 200, 400, 1000] {
+        for step in [1e-3, f64::EPSILON] {
+            // a sensor of 100 Hz in a log of another rate; a clipped one stays clipped
+            let read = |k: u32| rounded(wave(f64::from(k) / 100.0), step);
+            let held = |i: u32| read(i * 100 / log);
+            // at their peaks rounded readings may agree
+            let new = 1 + (1..2000).filter(|k| read(*k) != read(k - 1)).count();
+            let found = record(log, &held);
+            assert_eq!((found.samples(), found.saturated()), (new, 0), "{log} Hz, step {step}");
+            assert_eq!(found.repeated(), (20 * log) as usize - new, "{log} Hz, step {step}");
+            let clipped = record(log, &|i| held(i).map(|c| c.clamp(-0.8, 0.8)));
+            assert!(clipped.saturated() > 500, "{log} Hz, step {step}");
+        }
+    }
+    // slow rates, rounded: equal for a while, then another step
+    let slow = record(100, &|i| rounded(wave(f64::from(i) / 100.0), 0.1));
+    assert_eq!((slow.repeated(), slow.samples() + slow.saturated()), (0, 2000));
+    assert_eq!(slow.new_readings_rate(), None);
+    // at rest for half of the time
+    let resting = record(100, &|i| wave(f64::from(i.max(1000)) / 100.0));
+    assert_eq!(resting.repeated(), 0);
+}
+
+#[test]
 fn decimal_commas_are_read_between_semicolons() {
     let record = read("t;wx;wy;wz\n0,5;0,1;-1e-1;3\n0,75;1;2,25;-3,5\n").unwrap();
     assert_eq!(record.segments[0].times(), [0.5, 0.75]);

@@ -196,6 +196,31 @@ fn flat_tops_are_left_out_with_a_warning() {
     assert!(distance(&e, &estimate.free_covariance) < 40.0, "{}", distance(&e, &estimate.free_covariance));
 }
 
+/// A log of 400 rows a second of a sensor that reads 150 times: most readings stand in it three times, some twice.
+#[test]
+fn a_log_faster_than_its_sensor_is_named_and_not_taken_for_clipping() {
+    let mut random = Random::new(45);
+    let j = turned([0.2, 0.35, 0.45], &random_rotation(&mut random));
+    let read: Vec<f64> = (0..4500).map(|i| f64::from(i) / 150.0).collect();
+    let body = Inertia::from_tensor(j).unwrap();
+    let rates = simulate(&body, Vector3::new(2.0, 4.0, -1.0), &read, 2e-3, &mut random).unwrap();
+    let logged = 12_000_u32;
+    let times: Vec<f64> = (0..logged).map(|i| f64::from(i) / 400.0).collect();
+    let held: Vec<_> = (0..logged).map(|i| rates[(i * 3 / 8) as usize]).collect();
+    let record = Record::from_samples(&times, &held).unwrap();
+    assert_eq!((record.samples(), record.repeated(), record.saturated()), (4500, 7500, 0));
+    let estimate = fit(&record, &Settings::default()).unwrap();
+    let said: Vec<String> = estimate.warnings.iter().map(ToString::to_string).collect();
+    assert!(said[0].starts_with("7500 samples were left out as repeated readings"), "{said:?}");
+    // over thirty seconds in rows of 2.5 ms
+    let rate = record.new_readings_rate().unwrap();
+    assert!((rate / 150.0 - 1.0).abs() < 1e-4, "{rate}");
+    assert!(said[0].ends_with("at 150 Hz"), "{said:?}");
+    assert!(!said.iter().any(|warning| warning.contains("flat tops")), "{said:?}");
+    let error = (estimate.shape.tensor() - j).norm();
+    assert!(error < 2e-3, "{error}");
+}
+
 #[test]
 fn contradictory_limits_are_named() {
     let (_, times, rates) = example(1e-2);

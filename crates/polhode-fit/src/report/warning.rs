@@ -7,6 +7,7 @@ use crate::physical::constraint::ActiveConstraint;
 use crate::report::nuisance::FittedTorque;
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::units::product::{UnitProduct, alternatives};
+use polhode::num::Shown;
 
 /// What limits the use of an estimate. Its `Display` is a sentence.
 #[non_exhaustive]
@@ -16,6 +17,13 @@ pub enum Warning {
     Merged {
         /// Samples that were merged into another.
         samples: usize,
+    },
+    /// Samples that repeat the reading before were left out: the log is written faster than the sensor reads.
+    Repeated {
+        /// Samples that were left out.
+        samples: usize,
+        /// The rate at which new readings come, 1/s.
+        rate: f64,
     },
     /// Samples at the end of the sensor's range were left out.
     Saturated {
@@ -126,6 +134,12 @@ impl fmt::Display for Warning {
             Self::Merged { samples } => {
                 write!(f, "{} merged with the sample of the same time", counted(*samples, "was", "were"))
             }
+            Self::Repeated { samples, rate } => write!(
+                f,
+                "{} left out as repeated readings: the log is written faster than its sensor reads, new readings come at {} Hz",
+                counted(*samples, "was", "were"),
+                four_digits(*rate)
+            ),
             Self::Saturated { samples } => {
                 let (subject, verb) = if *samples == 1 { ("sample", "was") } else { ("samples", "were") };
                 write!(f, "{samples} {subject} at the end of the sensor's range (flat tops) {verb} left out")
@@ -238,6 +252,11 @@ fn with_sigma(value: f64, sigma: f64) -> String {
     let digits = if sigma > 0.0 { 1.0 - libm::floor(libm::log10(sigma)) } else { 2.0 };
     let digits = digits.clamp(0.0, 15.0) as usize;
     format!("{value:.digits$} +- {sigma:.digits$}")
+}
+
+/// `x` to four digits.
+fn four_digits(x: f64) -> Shown {
+    Shown(format!("{x:.3e}").parse().unwrap_or(x))
 }
 
 /// "1 sample was", "2 samples were".

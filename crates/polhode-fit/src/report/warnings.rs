@@ -44,6 +44,9 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if record.merged() > 0 {
         list.push(Warning::Merged { samples: record.merged() });
     }
+    if let Some(rate) = record.new_readings_rate() {
+        list.push(Warning::Repeated { samples: record.repeated(), rate });
+    }
     if record.saturated() > 0 {
         list.push(Warning::Saturated { samples: record.saturated() });
     }

@@ -101,7 +101,7 @@ fn columns() -> Vec<Column> {
         Column::new("coverage_low", "", "lower end of its 95 % interval (Wilson)").heading("from"),
         Column::new("coverage_high", "", "upper end of its 95 % interval (Wilson)").heading("to"),
         Column::new("refused", "", "records refused for another reason than units"),
-        Column::new("units", "", "records refused because the units look mistaken"),
+        Column::new("units", "", "records refused because the units or the sampling look mistaken"),
         Column::new("warned", "", "answers with a warning"),
         Column::new("outside", "", "answers whose own 99.9 % ellipsoid does not hold the truth"),
         Column::new("by_lines", "", "of these, without a warning, those that the report's lines of systematic errors cover at the size that the sensor's error has")
@@ -164,6 +164,10 @@ fn totals(pooled: &Tally, cells: &[(usize, f64)], results: &[Trial], trials: usi
     );
     push("silently wrong, all records", right_units.silent, right_units.answered());
     push("right units taken for mistaken", right_units.units, right_units.records());
-    push("mistaken units caught", wrong_units.units, wrong_units.records());
+    let (mistaken, answered) = (wrong_units.records(), wrong_units.answered());
+    push("mistaken units caught", wrong_units.units, mistaken);
+    push("mistaken units refused for another reason", wrong_units.refused, mistaken);
+    push("mistaken units of a record that is said not to tell its units", wrong_units.open, mistaken);
+    push("mistaken units answered without a word on them", answered - wrong_units.open, mistaken);
     table
 }

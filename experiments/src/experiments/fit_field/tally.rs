@@ -27,6 +27,8 @@ pub(super) struct Tally {
     pub(super) silent: u64,
     pub(super) units: u64,
     pub(super) refused: u64,
+    /// Answers that say that the record cannot tell its units.
+    pub(super) open: u64,
     seconds: Vec<f64>,
 }
 
@@ -82,6 +84,7 @@ impl Tally {
                     t.answered += 1;
                     t.squares.extend(answer.over_bound);
                     t.warned += u64::from(answer.warned);
+                    t.open += u64::from(answer.open);
                     t.stated += u64::from(answer.own.is_some());
                     t.covered += u64::from(answer.own.is_some_and(|square| square < inside));
                     let wrong = answer.own.is_none_or(|square| square > outside);
@@ -106,6 +109,7 @@ impl Tally {
         self.silent += other.silent;
         self.units += other.units;
         self.refused += other.refused;
+        self.open += other.open;
     }
 
     pub(super) fn answered(&self) -> u64 {
@@ -150,6 +154,9 @@ impl Tally {
         if case.model == Model::WrongUnit {
             if records >= MANY && surely(self.units, records).is_some_and(|i| i.high < 0.95) {
                 say(format!("{} of {records} mistaken units caught", self.units));
+            }
+            if self.answered > self.open {
+                say(format!("{} of {records} mistaken units answered silently", self.answered - self.open));
             }
             return failed;
         }
@@ -209,7 +216,8 @@ mod tests {
     #[test]
     fn a_tally_counts_each_verdict_once() {
         let answer = |own, warned, lines_cover| {
-            Verdict::Answered(Answer { over_bound: Some(own), own: Some(own), warned, lines_cover })
+            let open = warned;
+            Verdict::Answered(Answer { over_bound: Some(own), own: Some(own), warned, open, lines_cover })
         };
         let verdicts = [
             answer(5.0, false, true),
@@ -222,7 +230,7 @@ mod tests {
         let trials = verdicts.map(|verdict| Trial { verdict, seconds: 0.1 });
         let t = Tally::new(&trials, 5);
         assert_eq!((t.answered(), t.covered(), t.warned, t.silent), (4, 1, 1, 1));
-        assert_eq!((t.outside, t.by_lines), (3, 1));
+        assert_eq!((t.outside, t.by_lines, t.open), (3, 1, 1));
         assert_eq!((t.units, t.refused, t.records()), (1, 1, 6));
         assert_eq!(t.over_bound(), Some((95.0_f64 / 20.0).sqrt()));
     }

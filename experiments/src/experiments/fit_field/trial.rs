@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_files::error::{Error, unexpected};
-use polhode_fit::{Estimate, FitError, Record, Segment, fit, simulate_with};
+use polhode_fit::{Estimate, FitError, Record, Segment, Warning, fit, simulate_with};
 
 use super::bound::Problem;
 use super::cases::{Case, Drawn};
@@ -20,7 +20,7 @@ pub(super) struct Trial {
 
 pub(super) enum Verdict {
     Answered(Answer),
-    /// The units look mistaken.
+    /// The units look mistaken, or the sampling does.
     Units,
     Refused,
 }
@@ -31,6 +31,8 @@ pub(super) struct Answer {
     /// The same with the covariance that the fit states.
     pub(super) own: Option<f64>,
     pub(super) warned: bool,
+    /// Whether a warning says that the record cannot tell its units.
+    pub(super) open: bool,
     /// Whether the statistical and systematic lines of the report cover the errors of the principal moments.
     pub(super) lines_cover: bool,
 }
@@ -81,7 +83,7 @@ pub(super) fn trial(case: &Case, noise: f64, times: &[f64], seed: u64, stream: u
             let bound = problem.bound(times).ok_or_else(|| unexpected("a motion without a bound"))?;
             Verdict::Answered(answer(case, &estimate, &j, &bound, &drawn))
         }
-        Err(FitError::Units { .. }) => Verdict::Units,
+        Err(FitError::Units { .. } | FitError::Undersampled { .. }) => Verdict::Units,
         Err(_) => Verdict::Refused,
     };
     Ok(Trial { verdict, seconds })
@@ -109,6 +111,7 @@ fn answer(
     drawn: &Drawn,
 ) -> Answer {
     let warned = !estimate.warnings.is_empty();
+    let open = estimate.warnings.iter().any(|warning| matches!(warning, Warning::Units { .. }));
     let absolute = estimate.inertia.as_ref().zip(estimate.inertia_covariance.as_ref());
     let (over_bound, own) = match absolute.filter(|_| case.wheel_known) {
         Some((inertia, covariance)) => {
@@ -122,7 +125,7 @@ fn answer(
             (square(&e, bound, true), square(&e, &estimate.free_covariance, true))
         }
     };
-    Answer { over_bound, own, warned, lines_cover: lines_cover(estimate, truth, drawn) }
+    Answer { over_bound, own, warned, open, lines_cover: lines_cover(estimate, truth, drawn) }
 }
 
 /// The normal deviate that only one in a thousand exceeds, either sign.
