@@ -28,6 +28,9 @@ const ADAPTIVE: f64 = 4e-3;
 const SMALL_STEPS: f64 = 40.0;
 pub(super) const MOST_SMALL_STEPS: f64 = 2e6;
 
+/// Steps of two runs that take about half a second.
+const MANY_STEPS: f64 = 5e5;
+
 /// Θ counts as this at least.
 const LEAST_ANGLE: f64 = 30.0;
 
@@ -66,6 +69,12 @@ pub(super) fn smooth(turning: &Turning, error: f64, finer: f64) -> [Leg; 2] {
         finer * libm::pow(error / (seen * c * angle * angle), 0.125).clamp(least, most)
     };
     [(Box::new(Rk8), of(EXPLICIT)), (Box::new(Gauss::ORDER_8), of(IMPLICIT))]
+}
+
+/// Whether `legs` take so many steps that to look for a jump of the torque first costs less.
+pub(super) fn are_long(turning: &Turning, [(_, explicit), (_, implicit)]: &[Leg; 2]) -> bool {
+    // one that is solved for costs as much as two others
+    turning.angle / explicit + 2.0 * turning.angle / implicit > MANY_STEPS
 }
 
 /// The runs that choose their steps, for a torque that jumps, and how many steps the second takes, about.

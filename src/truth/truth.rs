@@ -159,7 +159,13 @@ impl Truth {
         } else {
             (AIM * wanted.accuracy, LOST)
         };
-        for attempt in 0..ATTEMPTS {
+        // a closure may jump: to look costs less than two long runs whose steps do not help
+        let closure = body.forces().iter().any(|force| force.series.is_none());
+        if closure && pair::are_long(&turning, &pair::smooth(&turning, error, 1.0)) {
+            jump = turning.jumps(start, until);
+        }
+        let attempts = if jump.is_some() { 0 } else { ATTEMPTS };
+        for attempt in 0..attempts {
             let legs = pair::smooth(&turning, error, libm::pow(FINER, f64::from(attempt)));
             let pair = pair::run(&turning, start, (times, most), &legs, heed)?;
             let (worst, before) = (pair.worst(times), nearest);
@@ -171,7 +177,7 @@ impl Truth {
                 break;
             }
             // a closure may do what no law on series does
-            if attempt == 0 && body.forces().iter().any(|force| force.series.is_none()) {
+            if attempt == 0 && closure {
                 let parted = times.get(best.agreed(wanted.accuracy)).copied().unwrap_or(until);
                 jump = turning.jumps(start, parted);
                 if jump.is_some() {
