@@ -26,6 +26,9 @@ const EVALUATIONS: f64 = 40.0;
 /// Shown whether or not they are the best of their families.
 const NAMED: [&str; 3] = ["rk4", "rattle", "lie-poisson"];
 
+/// So many are in the shortest table.
+const FRONT: usize = 8;
+
 /// It knows the solution: the others are compared among themselves.
 const CLOSED_FORM: &str = "closed form";
 
@@ -41,7 +44,7 @@ const LOOKS: u32 = 64;
 const DIGITS: f64 = 16.0;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let turned = context.scale.pick(300.0, 1e4, 1e6);
+    let turned = context.scale.pick(300.0, 1e4, 1e5);
     let starts = context.scale.pick(1, 5, 25);
     let fields = BODIES.iter().map(|name| field(name, turned, starts)).collect::<Result<Vec<_>, _>>()?;
     let mut names: Vec<String> = without_projections().iter().map(|method| method.name()).collect();
@@ -64,9 +67,11 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
          An implicit solution counts as six evaluations.",
         BODIES.join(", ")
     );
+    let others = shown.iter().filter(|score| !score.is_named()).take(FRONT - NAMED.len());
+    let front: Vec<&str> = others.map(|score| score.name.as_str()).chain(NAMED).collect();
     let table = |name, caption: String, scores: &mut dyn Iterator<Item = &Score>| {
         let mut table = Table::new(name, caption, columns());
-        scores.for_each(|score| table.push(score.row()));
+        scores.for_each(|score| table.push(score.row(&front)));
         table
     };
     let best = table("scoreboard", caption.clone(), &mut shown.iter().copied());
@@ -74,8 +79,11 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     Ok(Report {
         conclusion: conclusion(&shown, turned),
         screen: Some(screen(&shown, turned, count)),
-        tables: vec![best.clone(), every],
-        views: vec![best],
+        views: vec![
+            best.clone(),
+            best.view("front", best.caption.clone(), &["family", "front"], ("front", "yes")),
+        ],
+        tables: vec![best, every],
         seed: Some(SEED),
         ..Report::default()
     })
@@ -238,14 +246,17 @@ impl Score {
 
     /// Whether it is the best of its family, or one of those that are always shown.
     fn is_shown(&self, all: &[Score]) -> bool {
-        let is_named = |score: &Score| NAMED.contains(&score.name.as_str());
-        let rivals = all.iter().filter(|other| other.family == self.family && !is_named(other));
+        let rivals = all.iter().filter(|other| other.family == self.family && !other.is_named());
         // of two that are equal the first
         let best = rivals.reduce(|best, other| if other.is_better_than(best) { other } else { best });
-        is_named(self) || best.is_some_and(|best| std::ptr::eq(best, self))
+        self.is_named() || best.is_some_and(|best| std::ptr::eq(best, self))
     }
 
-    fn row(&self) -> Vec<table::Cell> {
+    fn is_named(&self) -> bool {
+        NAMED.contains(&self.name.as_str())
+    }
+
+    fn row(&self, front: &[&str]) -> Vec<table::Cell> {
         row![
             self.name.as_str(),
             self.family,
@@ -256,6 +267,7 @@ impl Score {
             Some(self.attitude).filter(|error| error.is_finite()),
             self.held,
             format!("{} of {}", self.kept.0, self.kept.1),
+            if front.contains(&self.name.as_str()) { "yes" } else { "no" },
         ]
         .to_vec()
     }
@@ -292,6 +304,12 @@ fn columns() -> Vec<Column> {
         .heading("held until")
         .digits(2),
         Column::new("held", "", "runs that hold the attitude to the end"),
+        Column::new(
+            "front",
+            "",
+            "whether it is in the shortest table: those always shown, and the best of the others",
+        )
+        .hidden(),
     ]
 }
 

@@ -100,7 +100,7 @@ pub enum ExperimentCommand {
         resume: Option<PathBuf>,
     },
     /// Write tables of the committed results of paper scale into README.md,
-    /// docs/methods.md and paper/generated
+    /// the pages of docs and paper/generated
     ///
     /// Works on files of the repository, in whose root it runs: the results are in experiments/results.
     #[command(after_help = PUBLISH_EXAMPLES)]

@@ -1,6 +1,6 @@
 //! `polhode experiment publish`: numbers reach documents only from result files.
 //!
-//! The committed results are CSVs with a `run.toml` beside them. A block in README.md between
+//! The committed results are CSVs with a `run.toml` beside them. A block in README.md or a page of `docs` between
 //! `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced by that table in Markdown, and
 //! every `generated/experiment-table` that the article names is made: a LaTeX table, a CSV, or the experiment, commit and
 //! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both, in the article without sources;
@@ -27,43 +27,59 @@ const GENERATED: &str = "generated/";
 const METHODS: &str = "methods";
 const ORIGIN: &str = "origin";
 const STYLE: &str = "style";
+const BEGIN: &str = "<!-- begin generated: ";
 
-/// Fills README.md, docs/methods.md where it stands, and paper/generated below `root`, after taking over the results of the folder `from`, if given.
+/// Fills README.md, the pages of docs and paper/generated below `root`, after taking over the results of the folder `from`, if given.
 pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
     if let Some(from) = from {
         take_over(root, from)?;
     }
     let results = within(root, root.join(RESULTS))?;
-    let readme_path = within(root, root.join("README.md"))?;
-    let readme = read_own(&readme_path, "run this in the project's root")?;
     let results = folders(&results)?.into_iter().map(|folder| Results::open(within(root, folder)?));
     let results = results.collect::<Result<Vec<_>, _>>()?;
-    let readme = with_blocks_filled(&readme, &results)?;
     let generated = within(root, root.join("paper").join(GENERATED))?;
     let mut files = BTreeMap::new();
-    let docs = root.join(PAGE);
-    if docs.is_file() {
-        files.insert(within(root, docs)?, page(&results)?);
+    for (path, text) in documents(root)? {
+        let name = path.strip_prefix(root).unwrap_or(&path).display().to_string();
+        files.insert(within(root, path)?, with_blocks_filled(&name, &text, &results)?);
+    }
+    let methods = root.join(PAGE);
+    if methods.is_file() {
+        files.insert(within(root, methods)?, page(&results)?);
     }
     for name in named_by_article(root)? {
         let (file, text) = for_article(&name, &results)?;
         files.insert(within(root, generated.join(file))?, text);
     }
     // all is known before the first file is touched
-    if !files.is_empty() {
+    if files.keys().any(|path| path.starts_with(&generated)) {
         std::fs::create_dir_all(&generated)
             .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", generated.display())))?;
     }
-    for (path, text) in &files {
-        emit(text, Some(path))?;
-    }
-    emit(&readme, Some(&readme_path))
+    files.iter().try_for_each(|(path, text)| emit(text, Some(path)))
 }
 
-/// Copies CSVs, `run.toml` and the figures that README.md shows of every experiment in `from`; the rest of what a run writes
+/// README.md and the pages of docs that have generated blocks.
+fn documents(root: &Path) -> Result<Vec<(PathBuf, String)>, Error> {
+    let readme = within(root, root.join("README.md"))?;
+    let text = read_own(&readme, "run this in the project's root")?;
+    let mut documents = vec![(readme, text)];
+    let docs = root.join("docs");
+    let pages = if docs.is_dir() { sorted_entries(&within(root, docs)?)? } else { Vec::new() };
+    for path in pages.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "md")) {
+        let path = within(root, path)?;
+        let text = read_own(&path, "name a text file")?;
+        if text.contains(BEGIN) {
+            documents.push((path, text));
+        }
+    }
+    Ok(documents)
+}
+
+/// Copies CSVs, `run.toml` and the figures that documents show of every experiment in `from`; the rest of what a run writes
 /// follows from them.
 fn take_over(root: &Path, from: &Path) -> Result<(), Error> {
-    let readme = read_own(&within(root, root.join("README.md"))?, "run this in the project's root")?;
+    let documents = documents(root)?;
     for folder in folders(from)? {
         let found = Results::open(folder)?;
         if found.origin.scale != "paper" {
@@ -73,7 +89,8 @@ fn take_over(root: &Path, from: &Path) -> Result<(), Error> {
         let staging = Staging::new(&within(root, root.join(RESULTS).join(&found.origin.experiment))?)?;
         for path in sorted_entries(&found.folder)? {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let figure = || readme.contains(&format!("({RESULTS}/{}/{name})", found.origin.experiment));
+            let place = format!("{RESULTS}/{}/{name})", found.origin.experiment);
+            let figure = || documents.iter().any(|(_, text)| text.contains(&place));
             if name == MARK || name.ends_with(".csv") || (name.ends_with(".svg") && figure()) {
                 staging.write(&name, read_own(&path, REMEDY)?.as_bytes())?;
             }
@@ -162,19 +179,19 @@ fn sorted_entries(folder: &Path) -> Result<Vec<PathBuf>, Error> {
 }
 
 /// The text with each generated block replaced.
-fn with_blocks_filled(text: &str, results: &[Results]) -> Result<String, Error> {
-    const BEGIN: &str = "<!-- begin generated: ";
+fn with_blocks_filled(document: &str, text: &str, results: &[Results]) -> Result<String, Error> {
     const END: &str = "<!-- end generated -->";
     let mut out = String::new();
     let mut rest = text;
     while let Some(at) = rest.find(BEGIN) {
         let (before, block) = rest.split_at(at);
         let unclosed =
-            || Error::Input(format!("README.md: a block that begins with '{BEGIN}' has no '{END}'"));
+            || Error::Input(format!("{document}: a block that begins with '{BEGIN}' has no '{END}'"));
         let (marker, _) = block.split_once('\n').ok_or_else(unclosed)?;
         let name = marker.trim_start_matches(BEGIN).trim_end_matches("-->").trim();
         let end = block.find(END).ok_or_else(unclosed)?;
-        let refused = |rule, remedy| Error::input("README.md: begin generated", name, rule, remedy);
+        let refused =
+            |rule, remedy| Error::input(&format!("{document}: begin generated"), name, rule, remedy);
         let text = match name.split_once('/') {
             None if name == METHODS => methods::table().markdown(),
             Some((experiment, table)) if is_name(experiment) && is_name(table) => {
@@ -217,12 +234,13 @@ mod tests {
         let folder = scratch.path().join("drift");
         write_results(&folder, "drift");
         let results = [Results::open(folder).unwrap()];
-        let catalogue = with_blocks_filled("<!-- begin generated: methods -->\n<!-- end generated -->", &[]);
+        let catalogue =
+            with_blocks_filled("README.md", "<!-- begin generated: methods -->\n<!-- end generated -->", &[]);
         assert!(catalogue.unwrap().contains("| rattle |"));
         let text = "a\n<!-- begin generated: drift/best -->\n| old |\n<!-- end generated -->\nb\n";
-        let filled = with_blocks_filled(text, &results).unwrap();
+        let filled = with_blocks_filled("README.md", text, &results).unwrap();
         assert_eq!(filled, text.replace("| old |", "| error [rad] |\n| ---: |\n| 1e-9 |"));
-        assert_eq!(with_blocks_filled(&filled, &results).unwrap(), filled);
+        assert_eq!(with_blocks_filled("README.md", &filled, &results).unwrap(), filled);
     }
 
     #[test]
@@ -328,7 +346,9 @@ mod tests {
     #[test]
     fn a_missing_result_and_an_open_block_are_refused() {
         let missing = "<!-- begin generated: x/y -->\n<!-- end generated -->";
-        assert!(with_blocks_filled(missing, &[]).unwrap_err().to_string().contains("--scale paper"));
-        assert!(with_blocks_filled("<!-- begin generated: x/y -->\n", &[]).is_err());
+        assert!(
+            with_blocks_filled("docs/x.md", missing, &[]).unwrap_err().to_string().contains("--scale paper")
+        );
+        assert!(with_blocks_filled("README.md", "<!-- begin generated: x/y -->\n", &[]).is_err());
     }
 }

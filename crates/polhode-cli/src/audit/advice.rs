@@ -9,6 +9,7 @@ use polhode::advise::{Choice, Demand, Setting, advise};
 use polhode::audit::{Judgement, Suspect, Trajectory, Verdict};
 use polhode::body::Problem;
 use polhode_files::text::short;
+use polhode_pages::table::to_digits;
 use serde_json::{Value, json};
 
 /// Longest thought about all bodies of a file.
@@ -58,7 +59,7 @@ impl Adviser {
 /// The advice in a sentence.
 pub(super) fn sentence(choice: &Choice) -> String {
     let setting = match choice.setting {
-        Setting::Step(step) => format!(", step {} s", short(step)),
+        Setting::Step(step) => format!(", step {} s", to_digits(step, 6)),
         Setting::Tolerance { tolerance, .. } => format!(", tolerance {}", short(tolerance)),
         _ => String::new(),
     };

@@ -1,8 +1,7 @@
 //! Verdicts in words, for a terminal.
 
 use polhode::audit::{Signature, Verdict};
-use polhode_files::text::rounded;
-use polhode_pages::table::{Cell, Column, Table, row};
+use polhode_pages::table::{Cell, Column, Table, row, to_digits};
 
 use super::advice;
 use super::outcome::{Outcome, named, sentence};
@@ -80,7 +79,7 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
         let start = if error.fitted_start { "as fits the record best" } else { "at the first row" };
         lines.push(format!(
             "Attitude error: {} rad at t = {} s, from the motion that starts {start}; at the end {} rad along the motion (phase) and {} rad across (drift).",
-            size(error.largest), rounded(error.at), size(error.phase), size(error.drift)
+            size(error.largest), to_digits(error.at, 6), size(error.phase), size(error.drift)
         ));
     }
     if let Some(noise) = verdict.noise {
@@ -95,7 +94,7 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
             "Against {}: {} rad at t = {} s, of {} rows at the same times; {} rad are allowed.",
             difference.name,
             size(difference.largest),
-            rounded(difference.at),
+            to_digits(difference.at, 6),
             difference.rows,
             size(difference.tolerance)
         ));
@@ -127,9 +126,9 @@ fn integrator(found: &Signature) -> Vec<String> {
     let mut lines = vec![format!(
         "Like {}{order} with h = {} s, {} a row: at t = {} s it predicts an attitude error of {:.1e} rad, measured are {:.1e} rad.",
         found.method,
-        rounded(found.step),
+        to_digits(found.step, 6),
         if found.steps_per_row == 1 { "one step".into() } else { format!("{} steps", found.steps_per_row) },
-        rounded(found.at),
+        to_digits(found.at, 6),
         found.predicted_attitude_error,
         found.measured_attitude_error
     )];
