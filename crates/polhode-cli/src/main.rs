@@ -14,11 +14,12 @@ mod methods;
 mod motion;
 mod plot;
 mod propagate;
+mod short_help;
 mod simulate;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use polhode_experiments::results;
 use polhode_files::error::{self, Error};
 
@@ -62,7 +63,9 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    match run(CommandLine::parse().command) {
+    let matches = short_help::shortened(CommandLine::command()).get_matches();
+    let line = CommandLine::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    match run(line.command) {
         Ok(()) | Err(Error::Unread) => ExitCode::SUCCESS,
         Err(error) => {
             error::tell("error", &error.to_string());

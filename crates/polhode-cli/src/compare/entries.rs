@@ -26,7 +26,7 @@ pub(super) fn positives(text: &str) -> Result<Positives, String> {
 /// A method with the step or the tolerance that it is run with.
 pub(super) struct Entry {
     pub(super) method: Box<dyn AnyMethod>,
-    /// Stem of its name, the same at every step and tolerance.
+    /// Its name as it was typed, the same at every step and tolerance.
     pub(super) family: String,
     pub(super) step: Option<f64>,
     pub(super) tolerance: Option<f64>,
@@ -50,7 +50,7 @@ impl Compare {
                 };
                 for &step in steps {
                     self.check_step(step, span)?;
-                    let (method, family) = (named("--methods", name)?, method.name());
+                    let (method, family) = (named("--methods", name)?, name.to_owned());
                     entries.push(Entry { method, family, step: Some(step), tolerance: None });
                 }
                 continue;

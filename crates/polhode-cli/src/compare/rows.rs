@@ -30,7 +30,7 @@ impl Compare {
         let worst = last.worst;
         let attitude = judged.attitude_error();
         row![
-            entry.method.name(),
+            if entry.step.is_some() { entry.family.clone() } else { entry.method.name() },
             entry.step,
             entry.tolerance,
             attitude,

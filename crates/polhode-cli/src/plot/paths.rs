@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use polhode::flow::Stability;
-use polhode_files::error::Error;
+use polhode_files::error::{Error, warn};
 use polhode_pages::figure::sphere::{View, circle};
 use polhode_pages::figure::style::{BLACK, BLUE, Colour, GREY, ORANGE};
 use polhode_pages::figure::{Canvas, Curve, Figure, Fill, Scale};
@@ -200,6 +200,9 @@ fn context(moments: [f64; 3]) -> Vec<Neighbour> {
     found
 }
 
+/// An axis that moves by less, rad, stands still.
+const STILL: f64 = 1e-9;
+
 /// Path of an axis of the body in space.
 pub(super) fn trace(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
     let weight = looks.top().and(looks.weight());
@@ -211,6 +214,9 @@ pub(super) fn trace(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
         (None, None) => (V::z(), "z axis"),
     };
     let path: Vec<V> = looks.states.iter().map(|state| state.rotation() * axis).collect();
+    if path.iter().all(|point| (point - path[0]).norm() < STILL) {
+        warn(&format!("nothing moves in this picture: the {name} stands still in space"));
+    }
     let mut title = plot.title(&format!("Trace of the body's {name} in space"), looks) + &looks.remark();
     let circles = looks.top().filter(|_| plot.axis.is_none()).map(|top| top.turning_points());
     if circles.is_some() {
