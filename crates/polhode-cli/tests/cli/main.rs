@@ -10,6 +10,7 @@ mod audit;
 mod compare;
 mod compose;
 mod costs;
+mod documents;
 mod ensemble;
 mod experiment;
 mod fit;

@@ -1,5 +1,4 @@
 //! Records as phones and loggers write them: read, cleaned, split, or refused by line and column.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use nalgebra::Vector3;
 use polhode::record::{Record, RecordError, Segment};

@@ -1,6 +1,5 @@
 //! Small samples of the logs that phones, flight controllers and sensors write, as their formats are documented: two rows
 //! each, by hand, with the rates 0.5, -1 and 2 rad/s or deg/s and then 0.25, 1, -2.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use polhode::units::{RateUnit, TimeUnit};
 use polhode_files::ColumnNames;

@@ -1,7 +1,4 @@
 //! The inertia of a wheel from a body that is known; segments whose sensors differ.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-mod measured;
 
 use nalgebra::Vector3;
 use polhode::inertia::Inertia;
@@ -12,7 +9,7 @@ use polhode_fit::{
     fit, simulate_with,
 };
 
-use measured::{random_rotation, sampled, turned};
+use crate::measured::{random_rotation, sampled, turned};
 
 /// A wheel of 0.012 kg m² that runs up along an axis that is none of the body's.
 const WHEEL: f64 = 0.012;

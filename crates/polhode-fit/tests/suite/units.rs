@@ -1,5 +1,4 @@
 //! Units of rate and time: what a record tells of their product, and what it cannot tell.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::f64::consts::PI;
 

@@ -1,7 +1,4 @@
 //! Inertia from noisy rates: efficient, covariant, physical, and known as well as it says.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-mod measured;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
@@ -11,7 +8,7 @@ use polhode_fit::{
     Constraint, Estimate, FitError, Known, Record, Settings, TorqueModel, fit, foreseen_bound, simulate,
 };
 
-use measured::{ENTRIES, distance, entries, example, random_rotation, record, sampled, times, turned};
+use crate::measured::{ENTRIES, distance, entries, example, random_rotation, record, sampled, times, turned};
 
 fn is_physical(estimate: &Estimate) -> bool {
     Inertia::from_tensor(estimate.shape.tensor()).is_ok() && estimate.principal[2] <= 0.5
@@ -246,7 +243,7 @@ fn irregular_times_and_several_segments_share_one_tensor() {
 /// 25 Hz for 20 s with noise of 1e-3, from elliptic functions at 40 digits in mpmath 1.3: see generate.py beside it.
 #[test]
 fn a_record_made_elsewhere_gives_the_tensor_it_was_made_of() {
-    let text = include_str!("data/fit/asymmetric.csv");
+    let text = include_str!("../data/fit/asymmetric.csv");
     let record = record::read(text, "asymmetric.csv", &ReadOptions::default()).unwrap().record;
     let estimate = fit(&record, &Settings::default()).unwrap();
     let j = Matrix3::new(0.25, -0.03, 0.02, -0.03, 0.35, 0.05, 0.02, 0.05, 0.4);

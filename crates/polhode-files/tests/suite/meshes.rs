@@ -1,7 +1,5 @@
 //! Meshes from STL, OBJ and PLY files, and what is refused.
 
-#![allow(clippy::unwrap_used)]
-
 use std::fmt::Write;
 use std::io::{BufRead, Read};
 

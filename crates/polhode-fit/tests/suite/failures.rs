@@ -1,7 +1,4 @@
 //! The table of records and settings that a fit must refuse by name, or answer with a warning.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-mod measured;
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;
@@ -9,7 +6,7 @@ use polhode::num::Random;
 use polhode_files::record::{self, ReadOptions};
 use polhode_fit::{Constraint, FitError, Limit, Record, Settings, Undetermined, fit, simulate};
 
-use measured::{distance, entries, example, random_rotation, record, sampled, times, turned};
+use crate::measured::{distance, entries, example, random_rotation, record, sampled, times, turned};
 
 fn refusal(record: &Record) -> FitError {
     fit(record, &Settings::default()).expect_err("this record must be refused")

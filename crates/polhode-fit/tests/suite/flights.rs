@@ -1,5 +1,4 @@
 //! Free rotation found in whole recordings: held, thrown and caught, with drag, noise and spikes.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use nalgebra::Vector3;
 use polhode::inertia::Inertia;

@@ -1,5 +1,4 @@
 //! Trajectories as simulators write them: read with their claims, or refused by line and column.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use polhode::audit::{Attitudes, Direction, Frame, QuaternionOrder};
 use polhode_files::trajectory::{FoundTrajectory, read};

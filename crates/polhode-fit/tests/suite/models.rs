@@ -1,7 +1,4 @@
 //! Models of torque and of noise: quadratic drag, torques of single segments, steps of the readings, offsets that walk.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-mod measured;
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;
@@ -11,8 +8,8 @@ use polhode_fit::{
     TorqueScope, Warning, fit, foreseen_bound, foreseen_bound_with, simulate_with,
 };
 
-use measured::torques::{bound, motion};
-use measured::{distance, entries, random_rotation, sampled, turned};
+use crate::measured::torques::{bound, motion};
+use crate::measured::{distance, entries, random_rotation, sampled, turned};
 
 const SHAPE: [f64; 3] = [1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6];
 

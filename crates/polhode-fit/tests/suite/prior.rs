@@ -1,14 +1,11 @@
 //! Fits with a tensor that is known beforehand.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-mod measured;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{FitError, Known, Limit, Prior, Record, Segment, Settings, fit, simulate};
 
-use measured::{distance, entries, random_rotation, sampled, turned};
+use crate::measured::{distance, entries, random_rotation, sampled, turned};
 
 const MOMENTS: [f64; 3] = [1.0, 2.0, 2.6];
 
@@ -150,7 +147,8 @@ fn a_wheel_and_a_prior_share_the_size() {
     let j = turned(MOMENTS, &random_rotation(&mut random));
     let times = sampled(50, 20);
     let wheel = Vector3::new(0.1, 0.3, 0.25);
-    let rates = measured::torques::motion(&j, Vector3::new(0.3, 1.0, 0.4), &times, &|_, w| -w.cross(&wheel));
+    let rates =
+        crate::measured::torques::motion(&j, Vector3::new(0.3, 1.0, 0.4), &times, &|_, w| -w.cross(&wheel));
     let noisy: Vec<_> = rates.iter().map(|w| w + random.normal_vector() * 1e-2).collect();
     let segment = Segment::new("wheel", times.clone(), noisy).unwrap();
     let mut record = Record::default();

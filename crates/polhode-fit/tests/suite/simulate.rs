@@ -1,5 +1,4 @@
 //! Simulated records against closed forms of the motion and against the stated errors of the sensor.
-#![allow(clippy::unwrap_used)]
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;

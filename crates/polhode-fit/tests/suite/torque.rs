@@ -1,7 +1,4 @@
 //! Fits of bodies on which torques act, against the Cramér–Rao bound with the torque among the unknowns.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-mod measured;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
@@ -11,8 +8,8 @@ use polhode_fit::{
     fit, simulate_with,
 };
 
-use measured::torques::{bound, motion};
-use measured::{distance, entries, random_rotation, sampled, turned};
+use crate::measured::torques::{bound, motion};
+use crate::measured::{distance, entries, random_rotation, sampled, turned};
 
 /// The 95 % point of χ² with 5 degrees of freedom.
 const REGION: f64 = 11.070_497_693_516_35;

@@ -1,0 +1,14 @@
+//! The fit as its users call it: one program, so that the solvers are linked once.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // what clippy.toml allows inside #[test], for the helpers too
+
+mod failures;
+mod fit;
+mod flights;
+mod measured;
+mod models;
+mod prior;
+mod simulate;
+mod torque;
+mod units;
+mod wheel;
