@@ -15,6 +15,7 @@ mod motion;
 mod plot;
 mod propagate;
 mod short_help;
+mod show;
 mod simulate;
 
 use std::process::ExitCode;
@@ -51,6 +52,7 @@ enum Command {
     Motion(Box<motion::Motion>),
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
+    Show(Box<show::Show>),
     Plot(Box<plot::Plot>),
     Audit(Box<audit::Audit>),
     Ensemble(Box<ensemble::Ensemble>),
@@ -81,6 +83,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Motion(motion) => motion.run().inspect(|()| motion.start.note(&motion.body)),
         Command::Advise(advise) => advise.run().inspect(|()| advise.motion.note()),
         Command::Compare(compare) => compare.run().inspect(|()| compare.motion.note()),
+        Command::Show(show) => show.run().inspect(|()| show.motion.note()),
         Command::Plot(plot) => plot.run().inspect(|()| plot.motion.note()),
         Command::Audit(audit) => audit.run(),
         Command::Ensemble(ensemble) => ensemble.run(),
