@@ -129,7 +129,7 @@ function paint() {
   let radius = shown("omega") || shown("momentum") || rolls || stands ? 1.25 : 1.05;
   if (plane) radius = Math.max(radius, Math.hypot(1.4 * ellipsoid.plane, ellipsoid.distance) * scale);
   const breadth = radius + (apart ? 1.1 * (count - 1) : 0);
-  const { right } = draw.begin(azimuth, elevation, radius / zoom, breadth / zoom);
+  const { right } = draw.begin(azimuth, elevation, radius / zoom, breadth / zoom, running ? quality : 1);
   const aside = k => apart ? times(right, 2.2 * (k - (count - 1) / 2)) : [0, 0, 0];
   const offset = aside(0);
   if (shape) draw.drawSolid(shape, { q, offset, colours: [ink.body, ink.mark, ink.part] });
@@ -263,8 +263,19 @@ canvas.onkeydown = event => {
   if (action) { action(); event.preventDefault(); }
 };
 
+// What draws slowly draws fewer pixels while it moves, down to half of them in a row; a picture that stands still has all.
+const SLOW = 40;
+let quality = 1, interval = 16;
+function keepUp(elapsed) {
+  interval += (Math.min(elapsed, 200) - interval) / 8;
+  if (interval < SLOW || quality <= 0.5) return;
+  quality = Math.max(0.5, 0.8 * quality);
+  interval = 16;
+}
+
 function tick(stamp) {
   if (running && before !== null) {
+    keepUp(stamp - before);
     // a page that was hidden goes on where it was
     time += Math.min(0.1, (stamp - before) / 1000) * pace / span;
     if (time > 1) time %= 1;
@@ -294,6 +305,7 @@ function begin() {
   if (!draw) {
     by("failure").textContent = "This browser draws no WebGL; the page needs it to show the body.";
     by("failure").hidden = false;
+    canvas.hidden = true;
     tell(first);
     return;
   }

@@ -21,24 +21,23 @@ const TURN = `
   uniform vec4 turn; uniform vec3 stretch, offset; uniform mat4 view;
   vec3 turned(vec3 v) { return v + 2.0 * cross(turn.yzw, cross(turn.yzw, v) + turn.x * v); }
   vec3 placed(vec3 v) { return turned(v * stretch) + offset; }`;
+// Eye and light are so far away that a flat triangle has one shade: it is found at the corners, not at each pixel.
 const SOLID = [`
   attribute vec3 position, normal; attribute float tint;
-  varying vec3 across; varying float which;` + TURN + `
+  uniform vec3 colours[3]; uniform vec3 eye, light;
+  varying vec3 shade;` + TURN + `
   void main() {
     gl_Position = view * vec4(placed(position), 1.0);
-    across = turned(normal / stretch);
-    which = tint;
+    vec3 n = normalize(turned(normal / stretch));
+    if (dot(n, eye) < 0.0) n = -n;
+    vec3 colour = tint < 0.5 ? colours[0] : tint < 1.5 ? colours[1] : colours[2];
+    float shine = pow(max(dot(n, normalize(light + eye)), 0.0), 24.0);
+    shade = colour * (0.42 + 0.58 * max(dot(n, light), 0.0)) + 0.12 * shine;
   }`, `
   precision mediump float;
-  uniform vec3 colours[3]; uniform float opacity; uniform vec3 eye, light;
-  varying vec3 across; varying float which;
-  void main() {
-    vec3 n = normalize(across);
-    if (dot(n, eye) < 0.0) n = -n;
-    vec3 colour = which < 0.5 ? colours[0] : which < 1.5 ? colours[1] : colours[2];
-    float shine = pow(max(dot(n, normalize(light + eye)), 0.0), 24.0);
-    gl_FragColor = vec4(colour * (0.42 + 0.58 * max(dot(n, light), 0.0)) + 0.12 * shine, opacity);
-  }`];
+  uniform float opacity;
+  varying vec3 shade;
+  void main() { gl_FragColor = vec4(shade, opacity); }`];
 const LINE = [`
   attribute vec3 here, there; attribute float side;
   uniform vec2 size; uniform float width;` + TURN + `
@@ -54,7 +53,9 @@ const LINE = [`
 
 // The renderer of a canvas; null where the browser has no WebGL.
 function rendererOf(canvas) {
-  const gl = canvas.getContext("webgl", { antialias: true, alpha: true });
+  // without a graphics card smooth edges cost more than all the rest
+  const gl = canvas.getContext("webgl", { antialias: true, failIfMajorPerformanceCaveat: true })
+    || canvas.getContext("webgl", { antialias: false });
   if (!gl) return null;
 
   function program([vertex, fragment]) {
@@ -114,20 +115,21 @@ function rendererOf(canvas) {
       }
       return kept(data, [["position", 3], ["normal", 3], ["tint", 1]], solid);
     },
-    // A line through points, six corners for each piece.
+    // A line through points, six corners for each piece; seen from its other end the sides of a piece change.
     line(points) {
       const data = new Float32Array(Math.max(0, points.length - 1) * 42);
       for (let k = 0; k + 1 < points.length; k++) {
         const a = points[k], b = points[k + 1];
-        [[a, b, 1], [a, b, -1], [b, a, 1], [a, b, -1], [b, a, -1], [b, a, 1]]
+        [[a, b, 1], [a, b, -1], [b, a, 1], [a, b, 1], [b, a, 1], [b, a, -1]]
           .forEach(([here, there, side], j) => data.set([...here, ...there, side], 42 * k + 7 * j));
       }
       return kept(data, [["here", 3], ["there", 3], ["side", 1]], line);
     },
     drop(kept) { gl.deleteBuffer(kept.buffer); },
-    // Clears, and looks from an azimuth and an elevation so that a ball of `radius` is seen whole, and `breadth` to both sides.
-    begin(azimuth, elevation, radius, breadth) {
-      const ratio = window.devicePixelRatio || 1;
+    // Clears, and looks from an azimuth and an elevation so that a ball of `radius` is seen whole, and `breadth` to both sides; with
+    // a share `quality` of the pixels that there are in a row.
+    begin(azimuth, elevation, radius, breadth, quality) {
+      const ratio = (window.devicePixelRatio || 1) * quality;
       const wide = Math.round(canvas.clientWidth * ratio), high = Math.round(canvas.clientHeight * ratio);
       if (canvas.width !== wide || canvas.height !== high) { canvas.width = wide; canvas.height = high; }
       gl.viewport(0, 0, wide, high);
