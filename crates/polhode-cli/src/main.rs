@@ -49,10 +49,10 @@ enum Command {
     #[command(subcommand, after_help = EXPERIMENT_EXAMPLES)]
     Experiment(results::ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
+    Show(Box<show::Show>),
     Motion(Box<motion::Motion>),
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
-    Show(Box<show::Show>),
     Plot(Box<plot::Plot>),
     Audit(Box<audit::Audit>),
     Ensemble(Box<ensemble::Ensemble>),
@@ -80,10 +80,10 @@ fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::Experiment(command) => command.run(),
         Command::Propagate(propagate) => propagate.run().inspect(|()| propagate.motion.note()),
+        Command::Show(show) => show.run().inspect(|()| show.motion.note()),
         Command::Motion(motion) => motion.run().inspect(|()| motion.start.note(&motion.body)),
         Command::Advise(advise) => advise.run().inspect(|()| advise.motion.note()),
         Command::Compare(compare) => compare.run().inspect(|()| compare.motion.note()),
-        Command::Show(show) => show.run().inspect(|()| show.motion.note()),
         Command::Plot(plot) => plot.run().inspect(|()| plot.motion.note()),
         Command::Audit(audit) => audit.run(),
         Command::Ensemble(ensemble) => ensemble.run(),

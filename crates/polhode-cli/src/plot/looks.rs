@@ -40,11 +40,11 @@ pub(crate) struct Course<'a> {
     /// How many looks, at least and at most, where the method has no steps of its own.
     pub(crate) fewest: u64,
     pub(crate) most: u64,
-    /// The flags that name method and step, and the end.
+    /// What messages call the flags of method and step.
     pub(crate) flags: Flags,
 }
 
-/// What messages call the flags of a course.
+/// Names of the flags of a course.
 #[derive(Clone, Copy)]
 pub(crate) struct Flags {
     pub(crate) method: &'static str,

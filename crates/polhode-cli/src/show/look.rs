@@ -4,7 +4,7 @@ use std::path::Path;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Problem};
-use polhode::inertia::{FLOAT_WELD, Inertia, Solid, Surface};
+use polhode::inertia::{Amount, FLOAT_WELD, Inertia, Solid, Surface};
 use polhode_files::bodies::{self, Form, Look, Piece};
 use polhode_files::error::{Error, unexpected};
 use polhode_files::mesh::surface;
@@ -43,7 +43,7 @@ pub(super) fn of(flags: &BodyArguments, body: &Body, mesh: Option<&Path>) -> Res
     if form.pieces.is_empty() {
         return Ok(of_inertia(body, &form.remark.map_or(String::new(), |remark| format!("{remark}; "))));
     }
-    let shape = assembled(&form)?;
+    let shape = assembled(&form, name)?;
     let words = format!("Drawn: {}", flags.label());
     fewer(shape, words)
 }
@@ -59,14 +59,14 @@ fn fewer(shape: Shape, words: String) -> Result<Drawn, Error> {
 }
 
 /// The parts of a file about the centre of mass of all.
-fn assembled(form: &Form) -> Result<Shape, Error> {
+fn assembled(form: &Form, name: &str) -> Result<Shape, Error> {
     let placed = |shape: Shape, piece: &Piece| shape.turned(piece.turn).moved(piece.at - form.center_of_mass);
     let mut shape = Shape::default();
     for piece in &form.pieces {
         let part = match &piece.look {
             Look::Solid(solid) => Shape::of_solid(solid),
             Look::Surface(surface) => {
-                check_size(Path::new("mesh"), surface)?;
+                check_size(Path::new(name), surface)?;
                 Shape::of_surface(surface)
             }
             Look::Tensor(mass, tensor) => {
@@ -123,7 +123,6 @@ fn check_size(path: &Path, surface: &Surface) -> Result<(), Error> {
 
 /// The centre of what a mesh encloses, or of the box around it where it is open.
 fn middle(surface: &Surface) -> Vector3<f64> {
-    use polhode::inertia::Amount;
     let enclosed = surface.mended(FLOAT_WELD).ok().and_then(|(mesh, _)| mesh.with(Amount::Density(1.0)).ok());
     if let Some(body) = enclosed {
         return body.center_of_mass();

@@ -62,7 +62,8 @@ const MOST_RIVALS: usize = 3;
 /// the two, how often each has turned over, and how the energy of the second has changed.
 ///
 /// In the page: drag or arrow keys turn the view, + and - zoom, space plays and pauses, comma and full stop go back and forth. An
-/// address that ends in #t=3.5 opens it at that time, #t=3.5&omega&polhode with what the checkboxes are called.
+/// address that ends in #t=3.5 opens it at that time, #t=3.5&omega&polhode
+/// with what the checkboxes are called, and #view=35,20 seen from an azimuth and an elevation in degrees.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = FIRST_EXAMPLES, after_long_help = EXAMPLES)]
 #[command(mut_args(only_in_long_help))]
@@ -209,13 +210,14 @@ impl Show {
         let upright = construction.as_ref().map_or_else(UnitQuaternion::identity, |found| found.upright);
         let first = track(course, looks, upright);
         let mut scene = Scene::new(title("Rotation", course, looks) + &looks.remark(), first);
-        if turns(&scene.body) {
-            scene.notes.push(format!("{}.", look.words));
-        } else {
+        if keeps_energy(&looks.body) {
+            scene.body.energy_changes = looks.energy_changes.clone();
+        }
+        if !turns(&scene.body) {
             scene.notes.push("The body is at rest: nothing moves.".into());
             tell("note", "the body is at rest: nothing moves on the page");
-            scene.notes.push(format!("{}.", look.words));
         }
+        scene.notes.push(format!("{}.", look.words));
         scene.shape = look.shape;
         scene.ellipsoid = construction.map(|found| found.ellipsoid(looks));
         for against in against {
@@ -228,12 +230,14 @@ impl Show {
                 .notes
                 .push("L points down, as in Poinsot's construction: the invariable plane lies below.".into());
         }
-        scene.notes.push(format!(
-            "{} attitudes of the body, {}; between two of them the page turns it evenly, at most about {} rad off the motion.",
-            scene.body.times.len(),
-            course.method,
-            rounded(two_digits(scene.body.interpolation_error()))
-        ));
+        if scene.body.times.len() > 2 {
+            scene.notes.push(format!(
+                "{} attitudes of the body, {}; between two of them the page turns it evenly, at most about {} rad off the motion.",
+                scene.body.times.len(),
+                course.method,
+                rounded(two_digits(scene.body.interpolation_error()))
+            ));
+        }
         Ok(scene)
     }
 }

@@ -192,7 +192,8 @@ fn shapes_come_from_meshes_parts_links_and_else_from_the_inertia() {
         assert!((0..3).all(|k| (found[k] - expected[k]).abs() < 1e-3), "{what}: {found:?}");
     };
     // about its centre, wherever the mesh lies, with the moments of a box of 4 x 2 x 1
-    let page = silently(&scratch, &format!("--body box.obj {spin}"));
+    let (page, answer) = shown(&scratch, &format!("--body box.obj {spin}"));
+    assert_eq!(answer.err, "note: box.obj: density 1 kg/m^3 is taken, as a mesh file tells no mass\n");
     near(extents(&page), [1.0, 0.5, 0.25], "mesh");
     assert!(page.notes().contains("Drawn: box.obj"));
     let semi: Vec<f64> = page.scene["ellipsoid"]["semi_axes"]
@@ -215,6 +216,13 @@ fn shapes_come_from_meshes_parts_links_and_else_from_the_inertia() {
         "[[part]]\nshape = \"box\"\nsize = [4, 2, 1]\nmass = 1\nat = [7, 0, 0]\n[[part]]\nshape = \"point\"\nmass = 1e-9\nat = [7, 0, 0]\n",
     );
     near(extents(&silently(&scratch, &format!("--body parts.toml {spin}"))), [1.0, 0.5, 0.25], "parts");
+
+    scratch.file(
+        "tensor.toml",
+        "[[part]]\nshape = \"tensor\"\nmass = 1\ninertia = [20, 5, 17, 0, 0, 0]\n\
+         [[part]]\nshape = \"sphere\"\nsize = [1e-9]\nmass = 1e-9\n",
+    );
+    near(extents(&silently(&scratch, &format!("--body tensor.toml {spin}"))), [0.25, 1.0, 0.5], "tensor");
 
     let link = |name: &str, visual: &str| {
         format!(

@@ -36,6 +36,8 @@ function placeOf({ times }, t) {
   while (high - low > 1) { const middle = (low + high) >> 1; if (listed[middle] <= t) low = middle; else high = middle; }
   return [low, (t - listed[low]) / (listed[high] - listed[low])];
 }
+// Whether a track has a state at a time.
+const isThere = (track, t) => t >= track.times.first - 1e-9 * span && !(track.ending && t > track.ending[0]);
 const row = (list, k, size) => Array.from(list.subarray(size * k, size * k + size));
 function mixed(list, [k, s], size) {
   const a = row(list, k, size), b = s > 0 ? row(list, k + 1, size) : a;
@@ -149,7 +151,7 @@ function paint() {
     if (shown("polhode")) draw.drawLine(polhode, { q, offset, colour: ink.polhode, width: 2.5 });
   }
   rivals.forEach((rival, k) => {
-    if (rival.ending && t > rival.ending[0] || !shape) return;
+    if (!shape || !isThere(rival, t)) return;
     const turn = attitude(rival, placeOf(rival, t));
     // a little larger, so that equal surfaces do not flicker
     const larger = apart ? 1 : 1.004 + 0.002 * k, colour = ink["rival" + k % 3];
@@ -183,12 +185,13 @@ function tell(t) {
   by("time").setAttribute("aria-valuetext", "t = " + timeText(t));
   const rows = by("readings").querySelectorAll("tbody tr");
   [body, ...rivals].forEach((track, k) => {
-    const cells = rows[k].children, place = placeOf(track, t), ended = track.ending && t > track.ending[0];
-    const value = list => list.length ? mixed(list, place, 1)[0] : null;
+    const cells = rows[k].children, place = placeOf(track, t), there = isThere(track, t);
+    const value = list => there && list.length ? mixed(list, place, 1)[0] : null;
+    const ended = track.ending && t > track.ending[0];
     const angle = value(track.angles), change = value(track.energy_changes);
     cells[1].textContent = flipsText(track.flips, t);
     cells[2].textContent = ended ? `${track.ending[1]} at ${timeText(track.ending[0])}` : angle === null ? "–" : short(angle * 180 / Math.PI) + "°";
-    cells[3].textContent = ended || change === null ? "–" : (change > 0 ? "+" : "") + short(change * 100) + " %";
+    cells[3].textContent = change === null ? "–" : (change > 0 ? "+" : "") + short(change * 100) + " %";
   });
 }
 function lay() {

@@ -101,10 +101,15 @@ impl Shape {
 
     /// As the page reads it, with a radius of 1.
     pub(super) fn written(&self) -> Written {
-        let radius = self.radius();
+        // squares of lengths may leave the range of a double
+        let size = self.vertices.iter().map(Vector3::amax).fold(0.0, f64::max);
+        let scaled = |at: &Vector3<f64>| if size > 0.0 { at / size } else { *at };
+        let radius = self.vertices.iter().map(|at| scaled(at).norm()).fold(0.0, f64::max);
         let scale = if radius > 0.0 { radius } else { 1.0 };
         Written {
-            vertices: packed::shares(self.vertices.iter().flat_map(|at| <[f64; 3]>::from(at / scale))),
+            vertices: packed::shares(
+                self.vertices.iter().flat_map(|at| <[f64; 3]>::from(scaled(at) / scale)),
+            ),
             triangles: packed::indices(self.triangles.iter().flatten().copied()),
             tints: packed::bytes(&self.tints),
         }
