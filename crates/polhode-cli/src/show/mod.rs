@@ -7,7 +7,7 @@ mod span;
 
 use std::path::PathBuf;
 
-use clap::{Arg, Args};
+use clap::Args;
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Problem};
 use polhode::flow::ExactMotion;
@@ -30,10 +30,6 @@ const USAGE: &str = "polhode show <BODY> [START] --out <FILE.html> [OPTIONS]
   BODY:  --body <NAME|FILE> | --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz>
   START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ...
          and --attitude <w,x,y,z> | --angles <phi,theta,psi> | ...";
-
-const FIRST_EXAMPLES: &str = "Examples:
-  polhode show --body t-handle --out flips.html
-  polhode show --body racket --against rk4:0.02 --out racket.html";
 
 const EXAMPLES: &str = "Examples:
   polhode show --body t-handle --out flips.html
@@ -65,8 +61,7 @@ const MOST_RIVALS: usize = 3;
 /// address that ends in #t=3.5 opens it at that time, #t=3.5&omega&polhode
 /// with what the checkboxes are called, and #view=35,20 seen from an azimuth and an elevation in degrees.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = USAGE, after_help = FIRST_EXAMPLES, after_long_help = EXAMPLES)]
-#[command(mut_args(only_in_long_help))]
+#[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Show {
     #[command(flatten)]
     pub(crate) motion: MotionArguments,
@@ -99,28 +94,6 @@ pub(crate) struct Show {
     /// The page
     #[arg(long, alias = "output", value_name = "FILE.html", help_heading = "Picture")]
     out: PathBuf,
-}
-
-/// What most pages do without is told by --help alone.
-fn only_in_long_help(arg: Arg) -> Arg {
-    let rare = ["Forces", "Start of a tumbling body", "Reading"];
-    let is_rare = arg.get_help_heading().is_some_and(|heading| rare.contains(&heading));
-    let other = [
-        "inertia",
-        "rate_unit",
-        "momentum_body",
-        "momentum_space",
-        "angles",
-        "rotation",
-        "euler",
-        "angle_unit",
-        "start_time",
-        "method",
-        "step",
-        "tolerance",
-    ];
-    let is_hidden = is_rare || other.contains(&arg.get_id().as_str());
-    arg.hide_short_help(is_hidden)
 }
 
 impl Show {
