@@ -33,18 +33,18 @@ pub(super) fn of(flags: &BodyArguments, body: &Body, mesh: Option<&Path>) -> Res
         let center = if is_heavy(body) { Vector3::zeros() } else { middle(&surface) };
         let shape = Shape::of_surface(&surface).moved(-center);
         let name = visible(&path.display().to_string()).into_owned();
-        return fewer(shape, format!("Drawn: the mesh {name}; the inertia is that of the body"));
+        return fewer(shape, format!("drawn: the mesh {name}; the inertia is that of the body"));
     }
     let Some(name) = flags.named() else { return Ok(of_inertia(body, "")) };
     if let Some((shape, words)) = catalogue::look(name) {
-        return Ok(Drawn { shape, words: format!("Drawn: {words}") });
+        return Ok(Drawn { shape, words: format!("drawn: {words}") });
     }
     let Some(form) = bodies::form("--body", name)? else { return Ok(of_inertia(body, "")) };
     if form.pieces.is_empty() {
         return Ok(of_inertia(body, &form.remark.map_or(String::new(), |remark| format!("{remark}; "))));
     }
     let shape = assembled(&form, name)?;
-    let words = format!("Drawn: {}", flags.label());
+    let words = format!("drawn: {}", flags.label());
     fewer(shape, words)
 }
 

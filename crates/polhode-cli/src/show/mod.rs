@@ -190,7 +190,7 @@ impl Show {
             scene.notes.push("The body is at rest: nothing moves.".into());
             tell("note", "the body is at rest: nothing moves on the page");
         }
-        scene.notes.push(format!("{}.", look.words));
+        scene.notes.push(sentence(&look.words));
         scene.shape = look.shape;
         scene.ellipsoid = construction.map(|found| found.ellipsoid(looks));
         for against in against {
@@ -222,6 +222,12 @@ fn moves(momentum: &Vector3<f64>) -> bool {
 /// Whether any attitude differs from the first.
 fn turns(track: &Track) -> bool {
     track.attitudes.iter().any(|q| Some(q) != track.attitudes.first())
+}
+
+/// With a capital and a full stop.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
 fn two_digits(x: f64) -> f64 {

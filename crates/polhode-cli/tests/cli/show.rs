@@ -253,7 +253,7 @@ fn shapes_come_from_meshes_parts_links_and_else_from_the_inertia() {
     near(extents(&of("boxed")), [1.0, 0.5, 0.25], "box of a link");
     // turned by a right angle about z
     near(extents(&of("meshed")), [0.5, 1.0, 0.25], "mesh of a link");
-    for (name, why) in [("lost", "absent.obj' is not there"), ("bare", "the link states no shape")] {
+    for (name, why) in [("lost", "absent.obj' is not there"), ("bare", "he link states no shape")] {
         let page = of(name);
         near(extents(&page), [1.0, 0.5, 0.25], name);
         assert!(page.notes().contains(why) && page.notes().contains("the same inertia"), "{}", page.notes());
