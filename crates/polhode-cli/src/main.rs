@@ -15,6 +15,7 @@ mod motion;
 mod plot;
 mod propagate;
 mod short_help;
+mod show;
 mod simulate;
 
 use std::process::ExitCode;
@@ -48,6 +49,7 @@ enum Command {
     #[command(subcommand, after_help = EXPERIMENT_EXAMPLES)]
     Experiment(results::ExperimentCommand),
     Propagate(Box<propagate::Propagate>),
+    Show(Box<show::Show>),
     Motion(Box<motion::Motion>),
     Advise(Box<advise::Advise>),
     Compare(Box<compare::Compare>),
@@ -78,6 +80,7 @@ fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::Experiment(command) => command.run(),
         Command::Propagate(propagate) => propagate.run().inspect(|()| propagate.motion.note()),
+        Command::Show(show) => show.run().inspect(|()| show.motion.note()),
         Command::Motion(motion) => motion.run().inspect(|()| motion.start.note(&motion.body)),
         Command::Advise(advise) => advise.run().inspect(|()| advise.motion.note()),
         Command::Compare(compare) => compare.run().inspect(|()| compare.motion.note()),

@@ -1,8 +1,9 @@
-//! Tables, figures and documents, written whole or not at all.
+//! Tables, figures, documents and scenes, written whole or not at all.
 #![doc = include_str!("../README.md")]
 
 pub mod document;
 pub mod figure;
 pub mod output;
+pub mod scene;
 pub mod screen;
 pub mod table;

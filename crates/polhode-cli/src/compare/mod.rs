@@ -2,7 +2,7 @@
 
 mod entries;
 mod rows;
-mod trajectory;
+pub(crate) mod trajectory;
 
 use std::path::PathBuf;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use polhode::audit::{
-    Attitudes, Convention, Direction, Frame, Judgement, QuaternionOrder, Question, Reading,
+    Attitudes, Convention, Direction, Frame, Judgement, QuaternionOrder, Question, Reading, Suspect,
     Trajectory as Columns, audit,
 };
 use polhode::body::{Body, Clock, State};
@@ -17,16 +17,20 @@ use polhode_files::text::{short, visible};
 use polhode_files::{ReadOptions, trajectory};
 
 /// Rows of a file.
-pub(super) struct Trajectory {
-    pub(super) name: String,
-    rows: Vec<Row>,
+pub(crate) struct Trajectory {
+    pub(crate) name: String,
+    pub(crate) rows: Vec<Row>,
+    /// Whether its rows are those of a body with other moments, or with its moments about other axes.
+    pub(crate) is_of_another_body: bool,
 }
 
 /// One row of a file.
-struct Row {
-    t: f64,
-    attitude: [f64; 4],
-    omega_body: Option<[f64; 3]>,
+pub(crate) struct Row {
+    pub(crate) t: f64,
+    /// Body to space, scalar first, of any norm.
+    pub(crate) attitude: [f64; 4],
+    /// rad/s.
+    pub(crate) omega_body: Option<[f64; 3]>,
 }
 
 /// How far a trajectory is off.
@@ -43,7 +47,7 @@ pub(super) struct Off {
 
 impl Trajectory {
     /// Of the file at `path`, whose times lie from the start to the end; `order`: the place of the scalar, where a flag says it.
-    pub(super) fn read(
+    pub(crate) fn read(
         path: &Path,
         table: &ReadOptions,
         order: Option<QuaternionOrder>,
@@ -71,7 +75,7 @@ impl Trajectory {
         }
         let mut claims = found.claims;
         claims.quaternion = order.or(claims.quaternion);
-        let Some(reading) = reading(&columns, claims, body) else {
+        let Some((reading, is_of_another_body)) = reading(&columns, claims, body) else {
             return match &columns.attitude {
                 Some(Attitudes::Quaternions(_)) => refused(
                     "its rows leave open whether the scalar of the quaternion stands first or last",
@@ -96,7 +100,7 @@ impl Trajectory {
             }
             rows.extend(row(&columns, &reading, k));
         }
-        Ok(Trajectory { name, rows })
+        Ok(Trajectory { name, rows, is_of_another_body })
     }
 
     /// How far it is from the true motion, whose clock starts at `start_time`.
@@ -158,8 +162,8 @@ fn row(columns: &Columns, reading: &Reading, k: usize) -> Option<Row> {
 }
 
 /// How the columns are read: as their names and flags claim and else as this program writes them, unless the rows are a motion
-/// of the body in another convention, which is what `polhode audit` would say of them.
-fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<Reading> {
+/// of the body in another convention, which is what `polhode audit` would say of them; and whether it would name another body.
+fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<(Reading, bool)> {
     let mut own = Reading::default();
     own.quaternion = claims.quaternion;
     own.attitude = claims.attitude.or(Some(Direction::BodyToSpace));
@@ -174,8 +178,10 @@ fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<Reading
     };
     let mut question = Question::new(Some(body.clone()));
     question.claims = claims;
-    let Ok(verdict) = audit(columns, &question) else { return (!is_open).then_some(own) };
+    let Ok(verdict) = audit(columns, &question) else { return (!is_open).then_some((own, false)) };
     let best = verdict.reading;
+    let is_other = verdict.judgement == Judgement::Wrong
+        && matches!(verdict.suspect, Suspect::OtherBody | Suspect::MomentsOrder);
     let ties = verdict.tie.map_or(Vec::new(), |tie| tie.readings);
     let differs = |other: &Reading| {
         (is_quaternion && other.quaternion != best.quaternion)
@@ -185,10 +191,10 @@ fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<Reading
         return None;
     }
     if verdict.judgement == Judgement::Right && !ties.contains(&own) {
-        return Some(best);
+        return Some((best, false));
     }
     if is_open {
         (own.quaternion, own.angles) = (best.quaternion, best.angles);
     }
-    Some(own)
+    Some((own, is_other))
 }

@@ -21,7 +21,7 @@ pub(crate) struct BodyArguments {
     /// Tensor entries in body axes, I_xy = -sum m x y; or all nine, by rows
     #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = tensor, allow_hyphen_values = true)]
     inertia: Option<Matrix3<f64>>,
-    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF or MJCF, with :LINK where it has several
+    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF or MJCF, with :LINK where it has several; a mesh, STL, OBJ or PLY, of density 1 kg/m^3
     #[arg(long, value_name = "NAME|FILE[:LINK]")]
     body: Option<String>,
 }
@@ -92,6 +92,16 @@ impl BodyArguments {
             ));
         }
         Ok(Body::free(inertia))
+    }
+
+    /// The catalogue's name or the file that `--body` names.
+    pub(crate) fn named(&self) -> Option<&str> {
+        self.body.as_deref()
+    }
+
+    /// The mesh file that `--body` names, if it does.
+    pub(crate) fn mesh(&self) -> Option<&str> {
+        self.named().filter(|text| bodies::is_mesh(text))
     }
 
     /// What a title calls the body.

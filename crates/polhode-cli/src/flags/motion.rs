@@ -22,6 +22,11 @@ pub(crate) struct MotionArguments {
 impl MotionArguments {
     /// The body with all that acts on it.
     pub(crate) fn body(&self) -> Result<Body, Error> {
+        if let (Some(file), true) = (self.body.mesh(), self.forces.is_any()) {
+            let rule = "a mesh file tells no mass, and a force acts on one";
+            let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
+            return Err(Error::input("--body", file, rule, remedy));
+        }
         self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)
     }
 

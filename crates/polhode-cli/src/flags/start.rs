@@ -8,6 +8,7 @@ use polhode::rotation::{EulerSequence, Quat, Vec3};
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::moment::seconds_in;
 use polhode_files::numbers::{numbers, quaternion, turn};
+use polhode_files::text::visible;
 
 use crate::flags::body::{BodyArguments, PublishedStart};
 use crate::flags::tumbling::TumblingArguments;
@@ -121,8 +122,14 @@ impl StartArguments {
             || self.tumbling.is_given()
     }
 
-    /// Says what the attitude refers to where it is that of the catalogue.
+    /// Says what the attitude refers to where it is that of the catalogue, and which density a mesh has.
     pub(crate) fn note(&self, body: &BodyArguments) {
+        if let Some(file) = body.mesh() {
+            tell(
+                "note",
+                &format!("{}: density 1 kg/m^3 is taken, as a mesh file tells no mass", visible(file)),
+            );
+        }
         if let Some(published) = body.published_start().filter(|_| !self.has_attitude()) {
             tell("note", &published.known);
         }

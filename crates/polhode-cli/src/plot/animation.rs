@@ -1,62 +1,56 @@
 //! Poinsot's construction as a page that moves, without network.
 
-use polhode_files::error::{Error, unexpected};
-use serde::Serialize;
+use nalgebra::UnitQuaternion;
+use polhode_files::error::Error;
+use polhode_pages::scene::{Ellipsoid, Flips, Scene, Shown, Track};
 
 use super::Plot;
-use super::looks::Looks;
+use super::looks::{Course, Looks};
 use super::poinsot::Construction;
-
-const PAGE: &str = include_str!("animation.html");
-/// What the page draws; lengths in rad/s, quaternions w, x, y, z.
-#[derive(Serialize)]
-struct Scene {
-    times: Vec<f64>,
-    /// Body to page.
-    attitudes: Vec<[f64; 4]>,
-    /// Body axes.
-    omegas: Vec<[f64; 3]>,
-    semi_axes: [f64; 3],
-    /// Frames of the first round of the polhode.
-    round: usize,
-    /// Rows of the matrix from principal to body axes.
-    frame: [[f64; 3]; 3],
-    distance: f64,
-    plane: f64,
-}
 
 /// The page.
 pub(super) fn page(plot: &Plot, looks: &Looks) -> Result<String, Error> {
     let found = Construction::of(looks)?;
-    let kept = || 0..looks.times.len();
-    let period = looks.free().and_then(|motion| motion.character().ok()?.polhode_period);
-    let round = |period: f64| looks.times.partition_point(|t| *t <= looks.times[0] + 1.02 * period);
-    let attitude = |k: usize| {
-        let q = found.upright * looks.states[k].rotation();
-        [q.w, q.i, q.j, q.k].map(|x| rounded(x, 1.0))
-    };
-    let largest = found.semi_axes[0];
-    let frame = found.frame.matrix();
-    let scene = Scene {
-        times: kept().map(|k| looks.times[k]).collect(),
-        attitudes: kept().map(attitude).collect(),
-        omegas: kept().map(|k| <[f64; 3]>::from(looks.omegas[k]).map(|w| rounded(w, largest))).collect(),
-        semi_axes: found.semi_axes,
-        round: period.map_or(looks.times.len(), round),
-        frame: [0, 1, 2].map(|row| [0, 1, 2].map(|column| frame[(row, column)])),
-        distance: found.distance,
-        plane: found.plane(),
-    };
-    let title = plot.title("Poinsot's construction", looks) + &looks.remark();
-    let title = title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    // a name may hold the end of a script
-    let data = serde_json::to_string(&scene).map_err(unexpected)?.replace('<', "\\u003c");
-    Ok(PAGE.replace("{{title}}", &title).replace("{{scene}}", &data))
+    let mut scene = Scene::new(
+        plot.title("Poinsot's construction", looks) + &looks.remark(),
+        track(&plot.course(), looks, found.upright),
+    );
+    scene.ellipsoid = Some(found.ellipsoid(looks));
+    scene.shown = Shown { omega: true, momentum: true, polhode: true, herpolhode: true };
+    scene.notes.push(
+        "The ellipsoid ω·Iω = 2T rolls without slipping on the plane across L; ω reaches from its centre to the point of contact. The \
+         contact draws the polhode on the ellipsoid and the herpolhode on the plane."
+            .into(),
+    );
+    scene.page()
 }
 
-/// To a millionth of `scale`: a page shows no more.
-fn rounded(x: f64, scale: f64) -> f64 {
-    let digits = 7 - libm::ceil(libm::log10(scale)) as i32;
-    let unit = libm::exp10(f64::from(digits));
-    if unit.is_finite() && unit > 0.0 { libm::round(x * unit) / unit } else { x }
+/// The motion as a page shows it, `upright` turning the axes of space to those of the page.
+pub(crate) fn track(course: &Course, looks: &Looks, upright: UnitQuaternion<f64>) -> Track {
+    Track {
+        name: course.method.to_owned(),
+        times: looks.times.clone(),
+        attitudes: looks.states.iter().map(|state| upright * state.rotation()).collect(),
+        omegas: looks.omegas.clone(),
+        momenta: looks.states.iter().map(|state| upright * state.momentum_space()).collect(),
+        flips: looks.flips.as_ref().map(|flips| Flips { count: flips.count, times: flips.times.clone() }),
+        ..Track::default()
+    }
+}
+
+impl Construction {
+    /// As a page draws it.
+    pub(crate) fn ellipsoid(&self, looks: &Looks) -> Ellipsoid {
+        let first = looks.times.first().copied().unwrap_or(0.0);
+        let last = looks.times.last().copied().unwrap_or(first);
+        let period = looks.free().and_then(|motion| motion.character().ok()?.polhode_period);
+        let frame = UnitQuaternion::from_rotation_matrix(&self.frame);
+        Ellipsoid {
+            semi_axes: self.semi_axes,
+            frame: [frame.w, frame.i, frame.j, frame.k],
+            distance: self.distance,
+            plane: self.plane(),
+            round: period.map_or(last, |period| last.min(first + 1.02 * period)),
+        }
+    }
 }

@@ -11,57 +11,89 @@ use polhode::run::{Run, RunError, Schedule, ScheduleError};
 use polhode_files::error::{Error, warn};
 use polhode_files::text::short;
 
-use super::{Kind, Plot};
 use crate::cost;
+use crate::flags::motion::MotionArguments;
 use crate::methods::{Unusable, adaptive, at_tolerance, named, not_taken, unknown};
 
 /// Points of a curve: at least so many, and at most.
-const FEWEST: u64 = 600;
-const MOST: u64 = 20_000;
-/// Points for each radian that the body turns.
+pub(crate) const FEWEST: u64 = 600;
+pub(crate) const MOST: u64 = 20_000;
+/// Points for each radian that the body turns at the rate of the start.
 const PER_RADIAN: f64 = 12.0;
 /// Marks of flips that can be told apart.
 const MOST_FLIPS: u64 = 400;
 /// Beyond this turn between two points, rad, they are not joined.
 const RESOLVED: f64 = 0.8;
 
+/// What is followed: a motion, by which method, for how long.
+#[derive(Clone, Copy)]
+pub(crate) struct Course<'a> {
+    pub(crate) motion: &'a MotionArguments,
+    pub(crate) method: &'a str,
+    pub(crate) step: Option<f64>,
+    pub(crate) tolerance: Option<f64>,
+    pub(crate) start_time: f64,
+    /// s after the start.
+    pub(crate) until: f64,
+    /// Whether one round of a closed polhode is enough.
+    pub(crate) one_round: bool,
+    /// How many looks, at least and at most, where the method has no steps of its own.
+    pub(crate) fewest: u64,
+    pub(crate) most: u64,
+    /// What messages call the flags of method and step.
+    pub(crate) flags: Flags,
+}
+
+/// Names of the flags of a course.
+#[derive(Clone, Copy)]
+pub(crate) struct Flags {
+    pub(crate) method: &'static str,
+    pub(crate) step: &'static str,
+}
+
+impl Flags {
+    pub(crate) const OWN: Flags = Flags { method: "--method", step: "--step" };
+}
+
 /// States at ascending times.
-pub(super) struct Looks {
-    pub(super) body: Body,
+pub(crate) struct Looks {
+    pub(crate) body: Body,
     /// The closed form, where there is one.
-    pub(super) exact: Option<ExactMotion>,
+    pub(crate) exact: Option<ExactMotion>,
     /// s.
-    pub(super) times: Vec<f64>,
-    pub(super) states: Vec<State>,
+    pub(crate) times: Vec<f64>,
+    pub(crate) states: Vec<State>,
     /// Body axes, rad/s.
-    pub(super) omegas: Vec<Vector3<f64>>,
-    pub(super) errors: Vec<Errors>,
+    pub(crate) omegas: Vec<Vector3<f64>>,
+    pub(crate) errors: Vec<Errors>,
+    /// (E − E₀) / E₀ with its sign, of a method; empty of the closed form.
+    pub(crate) energy_changes: Vec<f64>,
     /// Sign changes of the momentum along the axis of the middle moment; `None` where they are not counted or the body does not
     /// turn over.
-    pub(super) flips: Option<Flips>,
+    pub(crate) flips: Option<Flips>,
     /// Why the run ended early, where it did.
-    pub(super) ended: Option<RunError>,
+    pub(crate) ended: Option<RunError>,
 }
 
 /// Flips of a motion.
 #[derive(Default)]
-pub(super) struct Flips {
-    pub(super) count: u64,
+pub(crate) struct Flips {
+    pub(crate) count: u64,
     /// s; not of all where there are more than marks can tell apart.
-    pub(super) times: Vec<f64>,
+    pub(crate) times: Vec<f64>,
 }
 
 impl Flips {
     /// Whether each has its mark.
-    pub(super) fn can_be_told_apart(&self) -> bool {
+    pub(crate) fn can_be_told_apart(&self) -> bool {
         self.count <= MOST_FLIPS
     }
 }
 
 impl Looks {
-    pub(super) fn of(plot: &Plot) -> Result<Self, Error> {
-        let body = plot.motion.body()?;
-        let start = plot.motion.start(&body)?;
+    pub(crate) fn of(course: &Course) -> Result<Self, Error> {
+        let body = course.motion.body()?;
+        let start = course.motion.start(&body)?;
         let exact = ExactMotion::from_point(&body, start);
         let mut looks = Looks {
             body,
@@ -70,32 +102,33 @@ impl Looks {
             states: Vec::new(),
             omegas: Vec::new(),
             errors: Vec::new(),
+            energy_changes: Vec::new(),
             flips: None,
             ended: None,
         };
-        if plot.method == "exact" {
+        if course.method == "exact" {
             let exact = exact.map_err(|error| {
                 let method =
                     if looks.body.problem() == Problem::Torque { "rk4" } else { "kick-drift@srkn-6b" };
                 Error::Input(format!("--method exact: {error}; use --method {method} with a --step"))
             })?;
             looks.exact = Some(exact.clone());
-            looks.follow_exact(plot, &exact, start)?;
+            looks.follow_exact(course, &exact, start)?;
         } else {
             looks.exact = exact.ok();
-            looks.follow_method(plot, start)?;
+            looks.follow_method(course, start)?;
         }
         Ok(looks)
     }
 
-    pub(super) fn free(&self) -> Option<&FreeMotion> {
+    pub(crate) fn free(&self) -> Option<&FreeMotion> {
         match &self.exact {
             Some(ExactMotion::Free(motion)) => Some(motion),
             _ => None,
         }
     }
 
-    pub(super) fn top(&self) -> Option<&LagrangeTop> {
+    pub(crate) fn top(&self) -> Option<&LagrangeTop> {
         match &self.exact {
             Some(ExactMotion::Lagrange(top)) => Some(top),
             _ => None,
@@ -103,7 +136,7 @@ impl Looks {
     }
 
     /// The direction of the weight moment in body axes; `None` without gravity.
-    pub(super) fn weight(&self) -> Option<Vector3<f64>> {
+    pub(crate) fn weight(&self) -> Option<Vector3<f64>> {
         let weight = self.body.linear_potential::<f64>()?.moment;
         // a momentum goes the same way out of the solver frame
         let moment = self.body.leave(&Point::new(Quat::identity(), weight)).momentum();
@@ -111,13 +144,13 @@ impl Looks {
     }
 
     /// The largest turn between two looks, rad.
-    pub(super) fn turn(&self) -> f64 {
+    pub(crate) fn turn(&self) -> f64 {
         let intervals = self.times.windows(2).zip(&self.omegas);
         intervals.map(|(times, omega)| (times[1] - times[0]) * omega.norm()).fold(0.0, f64::max)
     }
 
     /// Whether lines between the looks follow the motion.
-    pub(super) fn is_resolved(&self) -> bool {
+    pub(crate) fn is_resolved(&self) -> bool {
         self.turn() <= RESOLVED
     }
 
@@ -128,8 +161,8 @@ impl Looks {
         self.errors.push(errors);
     }
 
-    fn follow_exact(&mut self, plot: &Plot, exact: &ExactMotion, start: Point<Dd>) -> Result<(), Error> {
-        if let Some(step) = plot.step {
+    fn follow_exact(&mut self, course: &Course, exact: &ExactMotion, start: Point<Dd>) -> Result<(), Error> {
+        if let Some(step) = course.step {
             let rule = "--method exact takes no step";
             return Err(Error::input(
                 "--step",
@@ -138,19 +171,19 @@ impl Looks {
                 "leave it out, or name a stepping method",
             ));
         }
-        if let Some(tolerance) = plot.tolerance {
-            return Err(without_tolerance(plot, tolerance));
+        if let Some(tolerance) = course.tolerance {
+            return Err(without_tolerance(course, tolerance));
         }
-        let refused = |error| Error::Input(format!("--until: '{}': {error}", short(plot.until)));
-        exact.check_time(plot.until).map_err(refused)?;
+        let refused = |error| Error::Input(format!("--until: '{}': {error}", short(course.until)));
+        exact.check_time(course.until).map_err(refused)?;
         // a polhode is closed, and one round of it is all there is to see
-        let mut span = plot.until;
-        if let (Kind::Polhode, ExactMotion::Free(motion)) = (plot.kind, exact) {
+        let mut span = course.until;
+        if let (true, ExactMotion::Free(motion)) = (course.one_round, exact) {
             let period = motion.character().ok().and_then(|character| character.polhode_period);
             span = period.map_or(span, |period| span.min(period));
         }
         let turned = self.body.omega_of(&start).norm() * span;
-        let intervals = (PER_RADIAN * turned).clamp(FEWEST as f64, MOST as f64) as u64;
+        let intervals = (PER_RADIAN * turned).clamp(course.fewest as f64, course.most as f64) as u64;
         let monitor = Monitor::new(&self.body, Clock::new(1.0), &start.to_f64());
         for n in 0..=intervals {
             let t = Dd::from(span) * (n as f64 / intervals as f64);
@@ -162,58 +195,61 @@ impl Looks {
                 )));
             }
             let (state, omega) = (self.body.leave(&x), self.body.omega_of(&x));
-            self.push(plot.start_time + t.hi(), state, omega, monitor.errors(&x));
+            self.push(course.start_time + t.hi(), state, omega, monitor.errors(&x));
         }
         if let (ExactMotion::Free(motion), Some(_)) = (exact, middle_axis(&self.body)) {
-            self.flips = Some(flips_of(motion, plot, &self.times)).filter(|_| self.turns_over());
+            self.flips = Some(flips_of(motion, course, &self.times)).filter(|_| self.turns_over());
         }
         Ok(())
     }
 
-    fn follow_method(&mut self, plot: &Plot, start: Point<Dd>) -> Result<(), Error> {
-        let method = match plot.tolerance {
-            None => named("--method", &plot.method)?,
-            Some(tolerance) => at_tolerance(&plot.method, tolerance).map_err(|why| match why {
-                Unusable::Unknown(error) => unknown("--method", error),
-                Unusable::FixedSteps | Unusable::Twice => without_tolerance(plot, tolerance),
-                Unusable::OutOfRange(allowed) => not_taken("--tolerance", tolerance, &plot.method, &allowed),
+    fn follow_method(&mut self, course: &Course, start: Point<Dd>) -> Result<(), Error> {
+        let method = match course.tolerance {
+            None => named(course.flags.method, course.method)?,
+            Some(tolerance) => at_tolerance(course.method, tolerance).map_err(|why| match why {
+                Unusable::Unknown(error) => unknown(course.flags.method, error),
+                Unusable::FixedSteps | Unusable::Twice => without_tolerance(course, tolerance),
+                Unusable::OutOfRange(allowed) => not_taken("--tolerance", tolerance, course.method, &allowed),
             })?,
         };
         let adaptive = method.tolerance().is_some();
         let speed = self.body.omega_of(&start).norm();
-        let regular = (PER_RADIAN * speed * plot.until).clamp(FEWEST as f64, MOST as f64);
-        let interval = adaptive.then(|| plot.until / libm::ceil(regular));
-        let Some(step) = plot.step.or(interval) else {
-            let rule = format!("missing: {} needs a step in seconds", plot.method);
-            return Err(Error::input("--step", "", &rule, "give --step h"));
+        let regular = (PER_RADIAN * speed * course.until).clamp(course.fewest as f64, course.most as f64);
+        let interval = adaptive.then(|| course.until / libm::ceil(regular));
+        let Some(step) = course.step.or(interval) else {
+            let rule = format!("missing: {} needs a step in seconds", course.method);
+            return Err(Error::input(course.flags.step, "", &rule, "give --step h"));
         };
-        let clock = Clock { start: plot.start_time, step };
-        let steps = if plot.step.is_some() { whole_steps(plot, clock)? } else { libm::ceil(regular) as u64 };
+        let clock = Clock { start: course.start_time, step };
+        let steps =
+            if course.step.is_some() { whole_steps(course, clock)? } else { libm::ceil(regular) as u64 };
         if step * speed > 1.0 && !adaptive {
             warn(&format!(
-                "--step: '{}': turns the body by {:.1} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
+                "{}: '{}': turns the body by {:.1} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
+                course.flags.step,
                 short(step),
                 step * speed
             ));
         }
         let mut run =
             Run::from_point(method.as_ref(), &self.body, start.to_f64(), clock).map_err(|error| {
-                let flag = if matches!(error, RunError::Step(_)) { "--method" } else { "--step" };
+                let flag =
+                    if matches!(error, RunError::Step(_)) { course.flags.method } else { course.flags.step };
                 Error::Input(format!("{flag}: {error}"))
             })?;
-        let turn = speed * plot.until;
+        let turn = speed * course.until;
         let trial = if adaptive && speed > 0.0 {
-            cost::check_turn("--until", plot.until, turn)?;
+            cost::check_turn("--until", course.until, turn)?;
             (Clock { step: step.min(1.0 / speed), ..clock }, libm::ceil(turn) as u64)
         } else {
-            cost::check("--step", step, steps as f64, "take a larger step or an earlier end")?;
+            cost::check(course.flags.step, step, steps as f64, "take a larger step or an earlier end")?;
             (clock, steps)
         };
         cost::announce(method.as_ref(), &self.body, start.to_f64(), trial.0, trial.1);
         let middle = middle_axis(&self.body);
         let mut flips = middle.map(|_| Flips::default());
         let mut before: Option<(f64, f64, u64)> = None;
-        for sample in run.samples(Schedule::every(steps.div_ceil(MOST).max(1), steps)) {
+        for sample in run.samples(Schedule::every(steps.div_ceil(course.most).max(1), steps)) {
             let sample = match sample {
                 Ok(sample) => sample,
                 Err(error) => {
@@ -233,6 +269,7 @@ impl Looks {
                 before = Some((t, along, count));
             }
             self.push(t, sample.state, sample.omega_body, sample.errors);
+            self.energy_changes.push(sample.energy_change);
         }
         self.flips = flips.filter(|_| self.turns_over());
         Ok(())
@@ -247,35 +284,35 @@ impl Looks {
     }
 
     /// What acts on the body, as part of a title.
-    pub(super) fn forces(&self) -> String {
+    pub(crate) fn forces(&self) -> String {
         let names = self.body.forces().iter().map(|force| force.name()).collect::<Vec<_>>();
         if names.is_empty() { String::new() } else { format!(" under {}", names.join(", ")) }
     }
 }
 
 /// The number of steps to the end.
-fn whole_steps(plot: &Plot, clock: Clock) -> Result<u64, Error> {
-    let end = plot.start_time + plot.until;
+fn whole_steps(course: &Course, clock: Clock) -> Result<u64, Error> {
+    let end = course.start_time + course.until;
     let step = short(clock.step);
     match Schedule::at_times(clock, &[end]) {
         Ok(schedule) => Ok(schedule.into_iter().last().unwrap_or(0)),
         Err(ScheduleError::NotReached { nearest, .. }) => {
             let rule = format!("no whole number of steps leads to the end {}", short(end));
-            let remedy = format!("take --until {}", short(nearest - plot.start_time));
-            Err(Error::input("--step", &step, &rule, &remedy))
+            let remedy = format!("take --until {}", short(nearest - course.start_time));
+            Err(Error::input(course.flags.step, &step, &rule, &remedy))
         }
-        Err(error) => Err(Error::Input(format!("--step: '{step}': {error}"))),
+        Err(error) => Err(Error::Input(format!("{}: '{step}': {error}", course.flags.step))),
     }
 }
 
-fn without_tolerance(plot: &Plot, tolerance: f64) -> Error {
-    let rule = format!("--method {} takes no --tolerance", plot.method);
+fn without_tolerance(course: &Course, tolerance: f64) -> Error {
+    let rule = format!("--method {} takes no --tolerance", course.method);
     let remedy = format!("leave it out, or take one of {}", adaptive());
     Error::input("--tolerance", &format!("{tolerance:e}"), &rule, &remedy)
 }
 
 /// Unit vector along the axis of the middle moment in body axes; `None` where two moments agree, as there is none.
-fn middle_axis(body: &Body) -> Option<Vector3<f64>> {
+pub(crate) fn middle_axis(body: &Body) -> Option<Vector3<f64>> {
     let [least, middle, most] = body.inertia().principal_moments();
     (least < middle && middle < most).then(|| body.inertia().principal_axes() * Vector3::y())
 }
@@ -291,8 +328,8 @@ fn crossings((t0, from): (f64, f64), (t1, to): (f64, f64), count: u64) -> Vec<f6
 }
 
 /// Flips of a free motion up to the last look, their times by halving the interval in which they are counted.
-fn flips_of(motion: &FreeMotion, plot: &Plot, times: &[f64]) -> Flips {
-    let counted = |t: f64| motion.flips(Dd::from(t) - Dd::from(plot.start_time));
+fn flips_of(motion: &FreeMotion, course: &Course, times: &[f64]) -> Flips {
+    let counted = |t: f64| motion.flips(Dd::from(t) - Dd::from(course.start_time));
     let mut flips = Flips { count: times.last().map_or(0, |&end| counted(end)), times: Vec::new() };
     if !flips.can_be_told_apart() {
         return flips;

@@ -1,10 +1,10 @@
 //! `polhode plot`: pictures of one body's motion.
 
-mod animation;
-mod looks;
+pub(crate) mod animation;
+pub(crate) mod looks;
 mod over_time;
 mod paths;
-mod poinsot;
+pub(crate) mod poinsot;
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use polhode_pages::figure::Canvas;
 use polhode_pages::output::Output;
 
 use crate::flags::motion::MotionArguments;
-use looks::Looks;
+use looks::{Course, Flags, Looks};
 
 const USAGE: &str = "polhode plot <KIND> <BODY> [START] --until <T> --out <FILE> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
@@ -195,7 +195,7 @@ impl Plot {
             ));
         }
         let file = Output::to_file("--out", &self.out)?;
-        let looks = Looks::of(self)?;
+        let looks = Looks::of(&self.course())?;
         if !looks.is_resolved() {
             let words = format!(
                 "--until: '{}': the body turns by {} rad from one of {} points to the next",
@@ -237,6 +237,21 @@ impl Plot {
         })
     }
 
+    fn course(&self) -> Course<'_> {
+        Course {
+            motion: &self.motion,
+            method: &self.method,
+            step: self.step,
+            tolerance: self.tolerance,
+            start_time: self.start_time,
+            until: self.until,
+            one_round: self.kind == Kind::Polhode,
+            fewest: looks::FEWEST,
+            most: looks::MOST,
+            flags: Flags::OWN,
+        }
+    }
+
     /// Width and height, pixels.
     fn size(&self) -> [f64; 2] {
         self.size.0.unwrap_or(SIZES[0].1)
@@ -244,22 +259,23 @@ impl Plot {
 
     /// What is seen, of which body, from which start on, by which method.
     fn title(&self, what: &str, looks: &Looks) -> String {
-        let method = match (self.step.filter(|_| self.method != "exact"), self.tolerance) {
-            (Some(h), _) => format!("{}, h = {} s", self.method, polhode_files::text::short(h)),
-            (None, Some(tolerance)) => format!("{}, tolerance {tolerance:e}", self.method),
-            (None, None) => self.method.clone(),
-        };
-        let omega = looks.omegas.first().copied().unwrap_or_default();
-        // what is rounding beside the others was a zero
-        let rounded = |w: &f64| if w.abs() < 1e-15 * omega.norm() { 0.0 } else { *w };
-        let omega: Vec<String> = omega.iter().map(|w| short(rounded(w))).collect();
-        format!(
-            "{what}: {}{}, ω = ({}) rad/s at the start, {method}",
-            self.motion.body.label(),
-            looks.forces(),
-            omega.join(", ")
-        )
+        title(what, &self.course(), looks)
     }
+}
+
+/// What is seen, of which body, from which start on, by which method.
+pub(crate) fn title(what: &str, course: &Course, looks: &Looks) -> String {
+    let method = match (course.step.filter(|_| course.method != "exact"), course.tolerance) {
+        (Some(h), _) => format!("{}, h = {} s", course.method, polhode_files::text::short(h)),
+        (None, Some(tolerance)) => format!("{}, tolerance {tolerance:e}", course.method),
+        (None, None) => course.method.to_owned(),
+    };
+    let omega = looks.omegas.first().copied().unwrap_or_default();
+    // what is rounding beside the others was a zero
+    let rounded = |w: &f64| if w.abs() < 1e-15 * omega.norm() { 0.0 } else { *w };
+    let omega: Vec<String> = omega.iter().map(|w| short(rounded(w))).collect();
+    let (body, forces, omega) = (course.motion.body.label(), looks.forces(), omega.join(", "));
+    format!("{what}: {body}{forces}, ω = ({omega}) rad/s at the start, {method}")
 }
 
 /// To four digits, with a true minus.

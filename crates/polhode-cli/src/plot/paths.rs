@@ -21,7 +21,7 @@ const POINT: f64 = 1e-9;
 
 impl Looks {
     /// What a degenerate motion is, as the end of a title.
-    pub(super) fn remark(&self) -> String {
+    pub(crate) fn remark(&self) -> String {
         let Some(motion) = self.free() else { return String::new() };
         if motion.character().is_err() {
             return "; at rest".into();

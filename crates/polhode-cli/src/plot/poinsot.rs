@@ -13,9 +13,9 @@ use super::looks::Looks;
 type V = Vector3<f64>;
 
 /// The ellipsoid ω·Iω = 2T with its plane, L downwards.
-pub(super) struct Construction {
+pub(crate) struct Construction {
     /// Turns axes of space to those of the page: L becomes −Z.
-    pub(super) upright: UnitQuaternion<f64>,
+    pub(crate) upright: UnitQuaternion<f64>,
     /// Semi-axes along the principal axes, rad/s.
     pub(super) semi_axes: [f64; 3],
     /// Columns are the principal axes in body axes.
@@ -29,7 +29,7 @@ pub(super) struct Construction {
 impl Construction {
     /// # Errors
     /// A body at rest, or one that is not free.
-    pub(super) fn of(looks: &Looks) -> Result<Self, Error> {
+    pub(crate) fn of(looks: &Looks) -> Result<Self, Error> {
         if looks.body.problem() != polhode::body::Problem::Free {
             return Err(Error::Input(
                 "poinsot: the construction is one of free bodies, and a torque acts on this one; leave the torque out, or plot trace".into(),

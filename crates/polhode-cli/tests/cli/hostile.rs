@@ -44,6 +44,7 @@ const LINES: &[&str] = &[
     "ensemble spec.toml --out ensemble",
     "plot polhode --moments 1,2,3 --omega 0.4,1,-0.3 --out picture.svg",
     "plot omega --body t-handle --until 5 --out picture.png",
+    "show --moments 1,2,3 --omega 0.4,1,-0.3 --until 5 --against rk4:0.1 --against run.csv --out page.html",
     "advise --moments 1,2,3 --omega 0.4,1,-0.3 --until 10 --attitude-error 1e-3",
     "methods --schemes",
     "bodies toutatis",

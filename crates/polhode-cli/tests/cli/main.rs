@@ -27,6 +27,7 @@ mod inputs;
 mod interrupted;
 mod logs;
 mod motion;
+mod pages;
 mod plot;
 mod programs;
 mod propagate;
@@ -34,5 +35,6 @@ mod report;
 mod robots;
 #[cfg(unix)]
 mod scarce;
+mod show;
 mod tables;
 mod times;

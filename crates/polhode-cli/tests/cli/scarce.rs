@@ -34,6 +34,7 @@ fn every_command_does_without_threads() {
         format!("compare {heavy} --until 10 --methods rk4,rattle --steps 0.1,0.05"),
         format!("plot omega {free} --until 10 --out omega.svg"),
         format!("plot poinsot {free} --until 10 --out poinsot.html"),
+        format!("show {free} --until 10 --against rk4:0.1 --out show.html"),
         "audit run.csv --moments 1,2,2.5".to_string(),
         "ensemble exact.toml --out exact --threads 4".into(),
         "ensemble stepped.toml --out stepped".into(),

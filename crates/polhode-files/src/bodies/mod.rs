@@ -1,5 +1,6 @@
 //! Bodies from files of every kind: JSON of `inertia` and `fit`, TOML lists of parts, robot models.
 
+mod form;
 mod json;
 mod parts;
 
@@ -13,17 +14,38 @@ use crate::given::Given;
 use crate::read;
 use crate::robots::{self, Language};
 use crate::text::visible;
+pub use form::{Form, Look, Piece, form};
 pub use parts::parts;
 
 /// Name and tensor of a body in the axes of its frame, about its centre of mass, kg m²; the name may be empty.
 type Named = (String, Matrix3<f64>);
 
+/// The body that a text names.
+struct Chosen<'t> {
+    path: &'t Path,
+    name: String,
+    tensor: Matrix3<f64>,
+}
+
 /// The inertia of the body that `text` names, as FILE or FILE:LINK; `None` where there is no such file. Messages begin with
-/// `flag`.
+/// `flag`. A mesh has a density of 1 kg/m³.
 ///
 /// # Errors
 /// A file that cannot be read, that has no such body or several to choose from, or whose tensor no body has.
 pub fn inertia(flag: &str, text: &str) -> Result<Option<Inertia>, Error> {
+    let Some(Chosen { path, name, tensor }) = chosen(flag, text)? else { return Ok(None) };
+    let of = if name.is_empty() { name } else { format!(" of '{}'", visible(&name)) };
+    let inertia = Inertia::from_tensor(tensor);
+    inertia.map(Some).map_err(|error| Error::Input(format!("{flag}: {}{of}: {error}", path.display())))
+}
+
+/// Whether a text names a mesh, which has no mass.
+#[must_use]
+pub fn is_mesh(text: &str) -> bool {
+    matches!(ending(Path::new(text)).as_str(), "stl" | "obj" | "ply") && Path::new(text).is_file()
+}
+
+fn chosen<'t>(flag: &str, text: &'t str) -> Result<Option<Chosen<'t>>, Error> {
     let whole = Path::new(text);
     let (path, link) = match text.rsplit_once(':') {
         _ if whole.is_file() => (whole, None),
@@ -59,37 +81,34 @@ pub fn inertia(flag: &str, text: &str) -> Result<Option<Inertia>, Error> {
         });
     };
     let (name, tensor) = bodies.swap_remove(chosen);
-    let of = if name.is_empty() { name } else { format!(" of '{}'", visible(&name)) };
-    let inertia = Inertia::from_tensor(tensor);
-    inertia.map(Some).map_err(|error| Error::Input(format!("{flag}: {}{of}: {error}", path.display())))
+    Ok(Some(Chosen { path, name, tensor }))
+}
+
+/// The ending of a file in small letters.
+fn ending(path: &Path) -> String {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
 /// Every body of a file, whose ending tells its kind.
 fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
-        Some("json") => json::tensors(flag, path),
-        Some("toml") => Ok(vec![(String::new(), parts(path)?.tensor())]),
-        Some(kind @ ("urdf" | "mjcf" | "sdf" | "xml")) => links(path, kind),
+    match ending(path).as_str() {
+        "json" => json::tensors(flag, path),
+        "toml" => Ok(vec![(String::new(), parts(path)?.tensor())]),
+        "stl" | "obj" | "ply" => Ok(vec![(String::new(), form::of_mesh(path)?.tensor())]),
+        kind @ ("urdf" | "mjcf" | "sdf" | "xml") => links(path, kind),
         _ => Err(Error::input(
             flag,
             &path.display().to_string(),
             "the ending names no kind of file with a body",
-            "name a file .json, .toml, .urdf, .mjcf, .sdf or .xml",
+            "name a file .json, .toml, .stl, .obj, .ply, .urdf, .mjcf, .sdf or .xml",
         )),
     }
 }
 
 /// The links of a robot model that state a tensor.
 fn links(path: &Path, kind: &str) -> Result<Vec<Named>, Error> {
-    let text = read(path, "name a URDF, MJCF or SDF file")?;
-    let language = Language::named(kind).unwrap_or(if text.contains("<robot") {
-        Language::Urdf
-    } else if text.contains("<sdf") {
-        Language::Sdf
-    } else {
-        Language::Mjcf
-    });
+    let text = model(path)?;
+    let language = language(kind, &text);
     let tensor = |body: &Given| {
         let turn = body.turn.to_rotation_matrix();
         turn * body.tensor * turn.transpose()
@@ -98,4 +117,19 @@ fn links(path: &Path, kind: &str) -> Result<Vec<Named>, Error> {
     // a frame without a body, and a link that states no tensor, have none to give
     let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
     Ok(bodies.map(|body| (body.name.clone(), tensor(body))).collect())
+}
+
+fn model(path: &Path) -> Result<String, Error> {
+    read(path, "name a URDF, MJCF or SDF file")
+}
+
+/// The language of a model by the ending of its file, or else by its text.
+fn language(kind: &str, text: &str) -> Language {
+    Language::named(kind).unwrap_or(if text.contains("<robot") {
+        Language::Urdf
+    } else if text.contains("<sdf") {
+        Language::Sdf
+    } else {
+        Language::Mjcf
+    })
 }

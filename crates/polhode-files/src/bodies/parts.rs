@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::{Amount, MassError, MassProperties, Solid};
 use toml::Spanned;
 use toml::de::DeValue;
 
+use super::form::{Look, Piece};
 use crate::error::Error;
-use crate::mesh::{MeshOptions, length_unit};
+use crate::mesh::{MeshOptions, length_unit, surface};
 use crate::numbers::turn;
 use crate::read;
 use crate::toml_file::{Section, TomlFile};
@@ -21,10 +22,15 @@ const KEYS: [&str; 10] =
 /// # Errors
 /// A file that cannot be read; a key that is unknown, missing, or has a value that cannot be used, with its line.
 pub fn parts(path: &Path) -> Result<MassProperties, Error> {
+    with_looks(path).map(|(body, _)| body)
+}
+
+/// The same with what the parts look like.
+pub(super) fn with_looks(path: &Path) -> Result<(MassProperties, Vec<Piece>), Error> {
     let text = read(path, "name a TOML file with [[part]] tables")?;
     let file = TomlFile { path, text: &text };
     let document = file.parse()?;
-    let mut bodies = Vec::new();
+    let (mut bodies, mut pieces) = (Vec::new(), Vec::new());
     for (key, value) in document.get_ref() {
         match (key.get_ref().as_ref(), value.get_ref()) {
             ("part", DeValue::Array(parts)) => {
@@ -33,7 +39,9 @@ pub fn parts(path: &Path) -> Result<MassProperties, Error> {
                         return Err(file.error(part.span().start, "key 'part': needed is a table [[part]]"));
                     };
                     let section = Section { file: &file, place: part.span().start, keys };
-                    bodies.push(Part(section).body()?);
+                    let (body, piece) = Part(section).body()?;
+                    bodies.push(body);
+                    pieces.push(piece);
                 }
             }
             ("name", DeValue::String(_)) => {}
@@ -43,13 +51,15 @@ pub fn parts(path: &Path) -> Result<MassProperties, Error> {
             }
         }
     }
-    MassProperties::sum(bodies).map_err(|error| file.error(0, &format!("{error}; write [[part]] tables")))
+    let sum = MassProperties::sum(bodies);
+    let sum = sum.map_err(|error| file.error(0, &format!("{error}; write [[part]] tables")))?;
+    Ok((sum, pieces))
 }
 
 struct Part<'t>(Section<'t>);
 
 impl Part<'_> {
-    fn body(&self) -> Result<MassProperties, Error> {
+    fn body(&self) -> Result<(MassProperties, Piece), Error> {
         if let Some(unknown) = self.0.keys.keys().find(|key| !KEYS.contains(&key.get_ref().as_ref())) {
             let message =
                 format!("key '{}': unknown in a part; known: {}", unknown.get_ref(), KEYS.join(", "));
@@ -59,16 +69,20 @@ impl Part<'_> {
             .0
             .text("shape")?
             .ok_or_else(|| self.missing("shape", "name a shape, mesh, tensor or point"))?;
-        let body = match shape {
+        let (body, look) = match shape {
             "mesh" => {
                 self.only(&["mass", "density", "file", "length_unit"], shape)?;
                 let file =
                     self.0.text("file")?.ok_or_else(|| self.missing("file", "name an STL or OBJ file"))?;
                 let folder = self.0.file.path.parent().unwrap_or(Path::new("."));
                 let options = MeshOptions::default().with_length_unit(self.length_unit()?);
-                options
-                    .body(&folder.join(file), self.amount()?)
-                    .map_err(|error| self.0.at("file", &error.to_string()))?
+                let path = folder.join(file);
+                let refused = |error: Error| self.0.at("file", &error.to_string());
+                let body = options.body(&path, self.amount()?).map_err(refused)?;
+                let surface = surface(&path).map_err(refused)?;
+                let scaled = surface.scaled(options.length_unit.unwrap_or(1.0));
+                let scaled = scaled.map_err(|error| self.0.at("file", &error.to_string()))?;
+                (body, Look::Surface(scaled))
             }
             "tensor" => {
                 self.only(&["mass", "inertia"], shape)?;
@@ -78,12 +92,13 @@ impl Part<'_> {
                     .numbers::<6>("inertia")?
                     .ok_or_else(|| self.missing("inertia", "give [Ixx, Iyy, Izz, Ixy, Ixz, Iyz]"))?;
                 let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-                self.check(MassProperties::new(mass, Vector3::zeros(), tensor), "inertia")?
+                let body = self.check(MassProperties::new(mass, Vector3::zeros(), tensor), "inertia")?;
+                (body, Look::Tensor(mass, tensor))
             }
             "point" => {
                 self.only(&["mass"], shape)?;
                 let mass = self.0.positive("mass")?.ok_or_else(|| self.missing("mass", "give it in kg"))?;
-                self.check(MassProperties::point(mass, Vector3::zeros()), "mass")?
+                (self.check(MassProperties::point(mass, Vector3::zeros()), "mass")?, Look::Point)
             }
             name => {
                 let size = self.0.list("size")?.unwrap_or_default();
@@ -95,17 +110,19 @@ impl Part<'_> {
                     other => self.check(other, "size")?,
                 };
                 self.only(&["mass", "density", "size"], name)?;
-                self.check(solid.with(self.amount()?), "size")?
+                (self.check(solid.with(self.amount()?), "size")?, Look::Solid(solid))
             }
         };
-        let turned = match self.0.numbers::<4>("turn")? {
-            Some(q) => body.turned(turn(q).ok_or_else(|| {
+        let turn = match self.0.numbers::<4>("turn")? {
+            Some(q) => Some(turn(q).ok_or_else(|| {
                 self.0.at("turn", "the zero quaternion is no turn; [1, 0, 0, 0] leaves a part as it is")
             })?),
-            None => body,
+            None => None,
         };
-        let by = Vector3::from(self.0.numbers::<3>("at")?.unwrap_or_default());
-        self.check(turned.moved(by), "at")
+        let turned = turn.map_or(body, |turn| body.turned(turn));
+        let at = Vector3::from(self.0.numbers::<3>("at")?.unwrap_or_default());
+        let moved = self.check(turned.moved(at), "at")?;
+        Ok((moved, Piece { look, turn: turn.unwrap_or_else(UnitQuaternion::identity), at }))
     }
 
     /// Metres of the unit of a mesh, by name or as a number.

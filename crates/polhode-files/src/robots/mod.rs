@@ -6,6 +6,7 @@ mod mjcf;
 mod pose;
 mod sdf;
 mod urdf;
+mod visuals;
 
 use std::path::Path;
 use std::rc::Rc;
@@ -14,6 +15,7 @@ use crate::error::Error;
 use crate::given::{Given, Writing};
 use element::Element;
 pub use element::Value;
+pub(crate) use visuals::visuals;
 
 /// A language of models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
