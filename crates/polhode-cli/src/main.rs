@@ -25,13 +25,13 @@ use polhode_experiments::results;
 use polhode_files::error::{self, Error};
 
 const EXAMPLES: &str = "Examples:
+  polhode show --body t-handle --out flips.html
   polhode propagate --body t-handle --until 60 --every 10
-  polhode inertia box 0.3,0.2,0.1 --mass 2 --out box.json
-  polhode motion --body box.json --omega 0.3,5,0.2";
+  polhode audit run.csv --moments 1,2,3";
 
 const EXPERIMENT_EXAMPLES: &str = "Examples:
-  polhode experiment list
-  polhode experiment run order --scale smoke";
+  polhode experiment run
+  polhode experiment list";
 
 /// Accurate long-time rotation of rigid bodies
 ///
@@ -45,23 +45,23 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum Command {
-    /// List, run, check and publish the experiments
-    #[command(subcommand, after_help = EXPERIMENT_EXAMPLES)]
-    Experiment(results::ExperimentCommand),
-    Propagate(Box<propagate::Propagate>),
     Show(Box<show::Show>),
+    Propagate(Box<propagate::Propagate>),
     Motion(Box<motion::Motion>),
-    Advise(Box<advise::Advise>),
-    Compare(Box<compare::Compare>),
-    Plot(Box<plot::Plot>),
     Audit(Box<audit::Audit>),
-    Ensemble(Box<ensemble::Ensemble>),
-    Gather(Box<ensemble::Gather>),
+    Compare(Box<compare::Compare>),
+    Advise(Box<advise::Advise>),
+    Inertia(Box<inertia::Inertia>),
     Fit(Box<fit::Fit>),
     Simulate(Box<simulate::Simulate>),
-    Methods(methods::Methods),
+    Ensemble(Box<ensemble::Ensemble>),
+    Gather(Box<ensemble::Gather>),
+    Plot(Box<plot::Plot>),
     Bodies(bodies::Bodies),
-    Inertia(Box<inertia::Inertia>),
+    Methods(methods::Methods),
+    /// Run the experiments that compare methods, or list them
+    #[command(subcommand, after_help = EXPERIMENT_EXAMPLES)]
+    Experiment(results::ExperimentCommand),
 }
 
 fn main() -> ExitCode {

@@ -43,8 +43,46 @@ impl Form {
     }
 }
 
+/// How a verdict is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// It holds.
+    Good,
+    /// It is open, or holds with doubts.
+    Doubtful,
+    /// It does not hold.
+    Bad,
+}
+
+impl Tone {
+    /// Its class and its sign: each has a shape of its own beside its colour.
+    fn looks(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Good => ("good", "\u{2714}"),
+            Self::Doubtful => ("doubtful", "\u{25b2}"),
+            Self::Bad => ("bad", "\u{2716}"),
+        }
+    }
+
+    /// `words`, plain text, large, as HTML for a page with [`VERDICT_STYLE`].
+    #[must_use]
+    pub fn html(self, words: &str) -> String {
+        let (class, sign) = self.looks();
+        format!(
+            "<p class=\"verdict {class}\"><span aria-hidden=\"true\">{sign}</span> {}</p>\n",
+            escaped(words)
+        )
+    }
+}
+
+/// What [`Tone::html`] needs.
+pub const VERDICT_STYLE: &str = ".verdict{font-size:1.5rem;font-weight:600;line-height:1.3;margin:1rem 0;padding:.6rem .9rem;border:2px solid;border-radius:6px;overflow-wrap:anywhere}\
+.verdict.good{color:#00573f;background:#e3f5ee}.verdict.doubtful{color:#6b4500;background:#fdf3da;border-style:dashed}.verdict.bad{color:#8c1d00;background:#fdeae4;border-style:double;border-width:5px}";
+
 /// A part.
 pub enum Block {
+    /// What a page is about, large.
+    Verdict(Tone, String),
     /// Of a chapter.
     Heading(String),
     /// Plain text.
@@ -69,10 +107,11 @@ fn html(title: &str, parts: &[Block]) -> String {
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+         <title>{title}</title>\n<style>{STYLE}{VERDICT_STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
     );
     for part in parts {
         let _ = match part {
+            Block::Verdict(tone, words) => write!(text, "{}", tone.html(words)),
             Block::Heading(heading) => writeln!(text, "<h2>{}</h2>", escaped(heading)),
             Block::Paragraph(words) => writeln!(text, "<p>{}</p>", escaped(words)),
             Block::List(items) => {
@@ -107,6 +146,7 @@ fn markdown(title: &str, parts: &[Block]) -> String {
     let mut text = format!("# {title}\n");
     for part in parts {
         let _ = match part {
+            Block::Verdict(tone, words) => writeln!(text, "\n**{} {words}**", tone.looks().1),
             Block::Heading(heading) => writeln!(text, "\n## {heading}"),
             Block::Paragraph(words) => writeln!(text, "\n{words}"),
             Block::List(items) => {
@@ -139,6 +179,7 @@ mod tests {
     #[test]
     fn both_forms_hold_every_part_and_no_text_is_markup() {
         let parts = [
+            Block::Verdict(Tone::Bad, "wrong & late".into()),
             Block::Heading("a < b".into()),
             Block::Paragraph("c & d".into()),
             Block::List(vec!["\"e\"".into()]),
@@ -146,11 +187,25 @@ mod tests {
             Block::Figure("<svg>\n\n</svg>".into(), "g".into()),
         ];
         let page = html("t", &parts);
-        for piece in ["<h2>a &lt; b</h2>", "c &amp; d", "&quot;e&quot;", "<td>f</td><td>1</td>", "<svg>"] {
+        for piece in [
+            "verdict bad",
+            "wrong &amp; late",
+            "<h2>a &lt; b</h2>",
+            "c &amp; d",
+            "&quot;e&quot;",
+            "<td>f</td><td>1</td>",
+            "<svg>",
+        ] {
             assert!(page.contains(piece), "{piece}: {page}");
         }
         let page = markdown("t", &parts);
-        for piece in ["## a < b", "- \"e\"", "| name | x\\|y |\n| :--- | ---: |\n| f | 1 |", "<svg></svg>"] {
+        for piece in [
+            "wrong & late**",
+            "## a < b",
+            "- \"e\"",
+            "| name | x\\|y |\n| :--- | ---: |\n| f | 1 |",
+            "<svg></svg>",
+        ] {
             assert!(page.contains(piece), "{piece}: {page}");
         }
     }

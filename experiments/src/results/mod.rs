@@ -81,7 +81,7 @@ pub enum ExperimentCommand {
     /// Compares with files of the repository, in whose root it runs. The numbers of smoke scale are in experiments/tests/golden/smoke, those of paper scale in experiments/results. Times are
     /// not compared. Exit code 1 if a cell differs or a claim fails; the first differences are listed with file, row, column and
     /// both values.
-    #[command(after_help = CHECK_EXAMPLES)]
+    #[command(hide = true, after_help = CHECK_EXAMPLES)]
     Check {
         /// Names of experiments, or all
         #[arg(default_value = "all")]
@@ -103,7 +103,7 @@ pub enum ExperimentCommand {
     /// the pages of docs and paper/generated
     ///
     /// Works on files of the repository, in whose root it runs: the results are in experiments/results.
-    #[command(after_help = PUBLISH_EXAMPLES)]
+    #[command(hide = true, after_help = PUBLISH_EXAMPLES)]
     Publish {
         /// Root of the repository, where the command runs elsewhere
         #[arg(long, default_value = ".")]

@@ -48,7 +48,7 @@ impl Asked {
             .clone()
             .or_else(|| (self.is_overview() && !self.resumes).then(|| of_scale.join("index.html")));
         // a place that cannot be written is found out before the work, not after it
-        let mut page = path.as_deref().map(|path| opened(path, scale, &of_scale)).transpose()?;
+        let mut page = path.as_deref().map(|path| opened(path, scale, &self.out)).transpose()?;
         for experiment in &experiments {
             drop(Staging::new(&of_scale.join(experiment.name))?);
         }
@@ -95,9 +95,9 @@ pub(super) fn finished(experiment: &Experiment, scale: Scale, folder: &Path) -> 
 /// The page, which may stand in the folder `out` of results.
 fn opened(path: &Path, scale: Scale, out: &Path) -> Result<Page, Error> {
     is_page(path)?;
-    if path.starts_with(out) {
-        std::fs::create_dir_all(out)
-            .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", out.display())))?;
+    if let Some(folder) = path.parent().filter(|folder| folder.starts_with(out)) {
+        std::fs::create_dir_all(folder)
+            .map_err(|reason| Error::Input(format!("{}: cannot be made: {reason}", folder.display())))?;
     }
     Page::new(path, scale)
 }

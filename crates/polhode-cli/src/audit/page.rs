@@ -1,8 +1,9 @@
 //! Verdicts as one page that needs no other file.
 
+use polhode::audit::Judgement;
 use polhode_files::error::Error;
 use polhode_files::text::short;
-use polhode_pages::document::{Block, Form};
+use polhode_pages::document::{Block, Form, Tone};
 
 use super::figure::panels;
 use super::outcome::{Outcome, named, sentence};
@@ -28,8 +29,13 @@ fn one(outcome: &Outcome) -> Vec<Block> {
     let verdict = &outcome.verdict;
     let suspect =
         if outcome.is_suspected() { format!(" Suspect: {}.", outcome.suspect()) } else { String::new() };
+    let tone = match verdict.judgement {
+        Judgement::Right => Tone::Good,
+        Judgement::Wrong => Tone::Bad,
+        Judgement::Undecided => Tone::Doubtful,
+    };
     let mut parts = vec![
-        Block::Paragraph(format!("Verdict on {} rows: {}.{suspect}", outcome.rows, outcome.judgement())),
+        Block::Verdict(tone, format!("Verdict on {} rows: {}.{suspect}", outcome.rows, outcome.judgement())),
         Block::Paragraph(format!("Reading: {}.", outcome.reading())),
     ];
     if let Some(tie) = &verdict.tie {

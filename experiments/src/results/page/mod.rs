@@ -7,6 +7,7 @@ use std::path::Path;
 
 use polhode_files::error::Error;
 use polhode_files::text::escaped_html as escaped;
+use polhode_pages::document::{Tone, VERDICT_STYLE};
 use polhode_pages::output::Output;
 use polhode_pages::table::Table;
 
@@ -29,6 +30,8 @@ pub(super) struct Page {
     verdict: Option<String>,
     contents: Vec<&'static str>,
     sections: String,
+    conclusions: Vec<String>,
+    checks: u64,
     failures: Vec<String>,
     runs: String,
 }
@@ -43,6 +46,8 @@ impl Page {
             verdict: None,
             contents: Vec::new(),
             sections: String::new(),
+            conclusions: Vec::new(),
+            checks: 0,
             failures: Vec::new(),
             runs: String::new(),
         })
@@ -54,6 +59,15 @@ impl Page {
         let question = escaped(experiment.question);
         let _ =
             writeln!(self.sections, "<section id=\"{name}\">\n<h2>{name}</h2>\n<p>It asks {question}.</p>");
+        self.checks += report.checks;
+        if !report.conclusion.is_empty() {
+            let _ = writeln!(
+                self.sections,
+                "<p>It finds: {}.</p>",
+                escaped(report.conclusion.trim_end_matches(['.', '\n']))
+            );
+            self.conclusions.push(format!("<a href=\"#{name}\">{name}</a>: {}", escaped(&report.conclusion)));
+        }
         for failure in &report.failures {
             let failure = escaped(failure);
             let _ = writeln!(self.sections, "<p class=\"failed\">Failed: {failure}</p>");
@@ -101,18 +115,24 @@ impl Page {
         let verdict = self.verdict.unwrap_or_else(|| {
             format!("<p>Which method is the quickest is asked by the experiment {VERDICT}, which was not run.</p>\n")
         });
-        let failures = match self.failures.as_slice() {
-            [] => "<p>Every claim that these experiments check held.</p>\n".to_string(),
-            failures => format!("<ul class=\"failed\"><li>{}</li></ul>\n", failures.join("</li><li>")),
+        let (tone, words) = match (self.failures.len(), self.checks) {
+            (0, 0) => (Tone::Good, "No claim failed.".into()),
+            (0, checks) => (Tone::Good, format!("Every claim that was checked holds: {checks} of {checks}.")),
+            (failed, _) => (Tone::Bad, format!("{failed} claims do not hold.")),
         };
+        let list = |class: &str, items: &[String]| match items {
+            [] => String::new(),
+            items => format!("<ul class=\"{class}\"><li>{}</li></ul>\n", items.join("</li><li>")),
+        };
+        let found = tone.html(&words) + &list("failed", &self.failures) + &list("found", &self.conclusions);
         let turning = turned(&turning()?);
         let page = format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <title>polhode: results</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+             <title>polhode: results</title>\n<style>\n{STYLE}{VERDICT_STYLE}</style>\n</head>\n<body>\n\
              <h1>Integrators of rigid-body rotation: results</h1>\n\
-             <p class=\"quiet\">polhode {}, {} scale</p>\n<nav>\n{links}</nav>\n\
-             <section id=\"verdict\">\n<h2>Which method is the quickest</h2>\n{verdict}{failures}</section>\n{turning}{}\
+             <p class=\"quiet\">polhode {}, {} scale</p>\n{found}<nav>\n{links}</nav>\n\
+             <section id=\"verdict\">\n<h2>Which method is the quickest</h2>\n{verdict}</section>\n{turning}{}\
              <section id=\"provenance\">\n<h2>Provenance</h2>\n{}</section>\n\
              <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
             env!("CARGO_PKG_VERSION"),

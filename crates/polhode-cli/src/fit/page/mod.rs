@@ -5,7 +5,7 @@ mod noise;
 
 use polhode_files::error::Error;
 use polhode_fit::{Estimate, FittedMotion, Nuisance, Record};
-use polhode_pages::document::{Block, Form};
+use polhode_pages::document::{Block, Form, Tone};
 
 use super::flights::Spans;
 use super::report::{
@@ -52,7 +52,7 @@ pub(super) fn refused(
     names: &str,
     form: Form,
 ) -> Result<String, Error> {
-    let mut parts = vec![Block::Paragraph(format!("No inertia tensor: {reason}."))];
+    let mut parts = vec![Block::Verdict(Tone::Bad, format!("No inertia tensor: {reason}."))];
     if let Some(facts) = facts {
         parts.push(Block::Heading("Known".into()));
         let known = if facts.known.is_empty() { vec!["nothing".into()] } else { facts.known.clone() };
@@ -84,8 +84,13 @@ fn answer(e: &Estimate) -> Vec<Block> {
         let off = off.map(|_| squares.sum::<f64>().sqrt());
         rows.push(row(name.into(), e.ratios[k], e.sigma_ratios[k], off));
     }
+    let (tone, against) = match e.warnings.len() {
+        0 => (Tone::Good, String::new()),
+        1 => (Tone::Doubtful, "; a warning speaks against it".into()),
+        count => (Tone::Doubtful, format!("; {count} warnings speak against it")),
+    };
     let mut parts = vec![
-        Block::Paragraph(format!("I1 : I2 : I3 = {a} : {b} : {c}, as shares of the trace.")),
+        Block::Verdict(tone, format!("I1 : I2 : I3 = {a} : {b} : {c}, as shares of the trace{against}.")),
         Block::Table(head, rows),
     ];
     if off.is_some() {
