@@ -10,7 +10,7 @@ use crate::body::Body;
 use crate::rotation::Vec3;
 
 /// Groups of three rows that are compared.
-const GROUPS: usize = 128;
+pub(super) const GROUPS: usize = 128;
 
 /// Residuals whose root mean square is at most this many times the noise between neighbours are noise.
 const IS_NOISE: f64 = 1.25;

@@ -1,5 +1,6 @@
 //! From a reading to a verdict.
 
+use super::as_written::off_in_space;
 use super::columns::{Columns, Source, rotation_vector};
 use super::conservation::conservation;
 use super::detective::Finding;
@@ -61,7 +62,11 @@ pub(super) fn judge(
         || deviation.as_ref().is_some_and(|found| has_omega && found.flips[0] != found.flips[1]);
     // noise of the entries of a matrix changes its lengths by half as much again as it turns it
     let no_rotation = no_rotation(record, 2.0 * allowances.attitude.largest(rows));
-    let contradicted = contradicted || no_rotation.is_some();
+    let off_as_written = || {
+        let found = deviation.as_ref().filter(|_| by_motion == Judgement::Right);
+        found.is_some_and(|found| off_in_space(record, &reading, found, &writings, &allowances))
+    };
+    let contradicted = contradicted || no_rotation.is_some() || off_as_written();
     let mut by_motion =
         if by_motion == Judgement::Right && contradicted { Judgement::Undecided } else { by_motion };
     let mut faults = faults(record, &reading, &writings.coarsest(), tolerance);

@@ -5,6 +5,7 @@
 //! program that wrote it: which quantities it keeps, how far its attitudes are from the exact motion, and which integrator or
 //! which mistake leaves such errors.
 
+mod as_written;
 mod bodies;
 mod candidates;
 mod canonical;

@@ -92,7 +92,7 @@ impl Writing {
     }
 
     /// Half a unit of the last place of `x`.
-    fn half_unit(&self, x: f64) -> f64 {
+    pub(super) fn half_unit(&self, x: f64) -> f64 {
         let least = 0.5 * f64::EPSILON * x.abs();
         if self.single_precision {
             return 0.5 * f64::from(f32::EPSILON) * x.abs();

@@ -5,8 +5,11 @@ use super::columns::rotation_vector;
 use super::motion::motion;
 use super::states::{Quantities, Row, states};
 use super::{Reading, Trajectory};
-use crate::body::{Body, Clock, Conserved};
-use crate::method::{AnyMethod, method, without_projections};
+use crate::body::{Body, Clock, Conserved, Problem};
+use crate::inertia::Symmetry;
+use crate::method::{
+    AnyMethod, AxisOrder, AxisSplit, Claimed as _, Kicks, LiePoisson, method, without_projections,
+};
 use crate::rotation::{Quat, Vec3};
 use crate::run::{Run, Watch};
 
@@ -95,16 +98,21 @@ pub(super) fn signature(
         off.sum::<f64>().sqrt() / size
     };
     let rates_whole = rates_off(&|_, row| exact[row].1);
-    let named = OTHERS.iter().filter_map(|name| method(name).ok());
-    let methods: Vec<Box<dyn AnyMethod>> = without_projections().into_iter().chain(named).collect();
+    let named = |method: Box<dyn AnyMethod>| (method.name(), method);
+    let others = OTHERS.iter().filter_map(|name| method(name).ok());
+    let mirrored =
+        mirrored(body, &first).map(|(chosen, other)| (chosen, Box::new(other) as Box<dyn AnyMethod>));
+    let catalogue = without_projections().into_iter().map(named);
+    let methods: Vec<(String, Box<dyn AnyMethod>)> =
+        catalogue.chain(mirrored).chain(others.map(named)).collect();
     let mut tried: Vec<Tried<'_>> = Vec::new();
     for steps in STEPS {
-        for method in &methods {
+        for (name, method) in &methods {
             for &steps in steps {
                 let Some(found) = hypothesis(body, method, &first, interval, steps, &looks) else { continue };
                 let mismatch = mismatch_of(&found);
                 if mismatch < BY_RATES[0] * BY_RATES[1] {
-                    tried.push(Tried { method, steps, found, mismatch });
+                    tried.push(Tried { name, method, steps, found, mismatch });
                 }
             }
         }
@@ -135,7 +143,7 @@ pub(super) fn signature(
     let row = &rows[last];
     let predicted = Row { attitude: row.attitude.map(|_| q), omega, ..*row };
     Some(Signature {
-        method: best.method.name(),
+        method: best.name.to_owned(),
         step: interval / best.steps as f64,
         steps_per_row: best.steps,
         order: best.method.claims(body.problem()).and_then(|claims| claims.order),
@@ -153,6 +161,7 @@ type State = (Quat<f64>, Vec3<f64>);
 
 /// A method that was run with some steps between rows, and its distance from the record over that of the exact motion.
 struct Tried<'a> {
+    name: &'a str,
     method: &'a dyn AnyMethod,
     steps: u64,
     found: Vec<State>,
@@ -168,6 +177,32 @@ impl Tried<'_> {
         };
         self.found.iter().zip(&other.found).map(square).sum::<f64>().sqrt()
     }
+}
+
+/// The splitting that chooses its axes by the start, by its name, with those that it may have chosen as well: of a body two of
+/// whose moments agree, an order is as good as the one in which their axes change places, and the last digit of the start decides.
+fn mirrored(body: &Body, first: &Row) -> Option<(String, LiePoisson)> {
+    let has_pair = matches!(body.inertia().symmetry(), Symmetry::Prolate | Symmetry::Oblate);
+    if body.problem() != Problem::Free || !has_pair {
+        return None;
+    }
+    let start = body.enter_omega(first.attitude.unwrap_or(Quat::identity()), first.omega).ok()?.to_f64();
+    let moments: Vec3<f64> = body.rotor().moments();
+    let apart = |pair: &[usize; 2]| (moments[pair[0]] - moments[pair[1]]).abs();
+    let [i, j] = [[0, 1], [0, 2], [1, 2]].into_iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+    let chosen = AxisOrder::best_for_orbit(start.momentum_body, moments).axes();
+    let other = chosen.map(|axis| {
+        if axis == i {
+            j
+        } else if axis == j {
+            i
+        } else {
+            axis
+        }
+    });
+    let axes = AxisOrder::ALL.into_iter().find(|order| order.axes() == other);
+    let by_itself = LiePoisson::strang(AxisSplit { axes: None }, Kicks);
+    Some((by_itself.name(), LiePoisson::strang(AxisSplit { axes }, Kicks)))
 }
 
 /// The part of the errors of rows beside the exact motion that a clock leaves which is too fast or too slow.

@@ -13,11 +13,12 @@ use crate::rotation::Vec3;
 /// Three turns of the start, three components of its angular velocity, six entries of the tensor.
 const UNKNOWNS: usize = 12;
 
-/// Iterations on one horizon.
-const ITERATIONS: usize = 6;
+/// Most iterations on one horizon: next to the separatrix the first are far from where the problem is linear.
+const ITERATIONS: usize = 12;
 
-/// Relative change by which derivatives are taken.
-const CHANGE: f64 = 1e-6;
+/// Relative change by which derivatives are taken, about the square root of the rounding of a double: over a long record next to
+/// the separatrix it grows a million times, and must stay small.
+const CHANGE: f64 = 1e-8;
 
 /// Directions that the record bounds less than this, beside the best bounded, are left alone.
 const UNBOUNDED: f64 = 1e-13;

@@ -6,7 +6,7 @@ use polhode::audit::{
 };
 use polhode::body::{Body, Force};
 use polhode::inertia::Inertia;
-use polhode::method;
+use polhode::method::{AxisOrder, method};
 use polhode::rotation::Vec3;
 use polhode::run::Run;
 use polhode::units::RateUnit;
@@ -119,6 +119,24 @@ fn rows_that_are_all_exchanged_with_a_neighbour_are_named() {
                 if *row == first && *count >= 398)
         };
         assert!(verdict.faults.iter().any(named), "{:?}", verdict.faults);
+    }
+}
+
+/// Of a body two of whose moments agree, two orders of the turns are as good, and the last digit of the start chooses.
+#[test]
+fn a_splitting_that_chooses_its_axes_is_named_whichever_of_two_orders_it_took() {
+    let moments = [1.4, 1.0, 1.0];
+    let order = AxisOrder::best_for_orbit(Vec3([1.4 * 0.4, 1.0, -0.3]), Vec3(moments)).to_string();
+    let swap = |c: char| match c {
+        '2' => '3',
+        '3' => '2',
+        other => other,
+    };
+    let other: String = order.chars().map(swap).collect();
+    for axes in [order, other] {
+        let record = motion_by(&format!("lie-poisson:{axes}"), &free(moments));
+        let verdict = audit(&record, &Question::new(Some(free(moments)))).unwrap();
+        assert_eq!(verdict.suspect, Suspect::Integrator("lie-poisson".into()), "{axes}");
     }
 }
 

@@ -2,7 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::audit::{
-    Attitudes, Digits, Fault, Judgement, Misplaced, Noise, Question, RateUnit, Reading, Trajectory, audit,
+    Attitudes, Digits, Fault, Frame, Judgement, Misplaced, Noise, Question, RateUnit, Reading, Trajectory,
+    audit,
 };
 use polhode::body::Body;
 use polhode::inertia::Inertia;
@@ -229,4 +230,25 @@ fn digits_are_those_of_each_column() {
     coarse.rates = None;
     coarse.digits = Digits { attitude: Some(1), ..Digits::default() };
     assert_ne!(judged(&coarse), Judgement::Right);
+}
+
+/// Of few digits, attitudes leave open what they turn into the body, and not what was written in space.
+#[test]
+fn attitudes_of_few_digits_hide_no_fault_of_an_angular_velocity_in_space() {
+    let rows = motion(400);
+    let mut convention = Reading::default();
+    convention.rate_unit = Some(RateUnit::RadiansPerSecond);
+    convention.omega_frame = Some(Frame::Space);
+    let of = |digits| {
+        let writing = Writing { digits, ..Writing::EXACT };
+        record(&mut Seeded(3), &rows, &convention, Form::Quaternion, writing)
+    };
+    let mut written = of(5);
+    written.rates = of(17).rates;
+    assert_eq!(judged(&written), Judgement::Right);
+    for row in [1, 200, 399] {
+        let mut bad = written.clone();
+        bad.rates.as_mut().unwrap()[row][1] += 1.2e-5;
+        assert_ne!(judged(&bad), Judgement::Right, "row {row}");
+    }
 }
