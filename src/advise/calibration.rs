@@ -30,6 +30,10 @@ const RUNGS: usize = 14;
 /// Runs of a candidate over the whole time at most.
 const REFINEMENTS: usize = 6;
 
+/// Shorter steps may make the run of a candidate so many times as long, at least this many seconds, as long as no other is known
+/// to be fit.
+const LENGTHENED: (f64, f64) = (4.0, 0.05);
+
 /// By what a tolerance is made smaller at which a run was lost.
 const LOST_TOLERANCE: f64 = 0.01;
 
@@ -95,7 +99,13 @@ impl<'a> Calibration<'a> {
                 Err(nearest) => unfit.push((candidate.name.clone(), nearest)),
             }
         }
-        found.sort_by(|a, b| a.1.choice.seconds.value.total_cmp(&b.1.choice.seconds.value));
+        let jump = self.reference.truth().jump();
+        found.sort_by(|(a, first), (b, second)| {
+            // what has no order across a jump comes after what chooses its steps
+            let late = |candidate: &Candidate| jump.is_some() && !candidate.is_adaptive();
+            let seconds = first.choice.seconds.value.total_cmp(&second.choice.seconds.value);
+            late(a).cmp(&late(b)).then(seconds)
+        });
         let quickest = found.first().map_or(0.0, |first| first.1.choice.seconds.value);
         let (most, multiple) = FINALISTS;
         let mut rest = Vec::new();
@@ -113,7 +123,8 @@ impl<'a> Calibration<'a> {
                 }
                 continue;
             }
-            match self.refined(candidate, first) {
+            let best = fit.iter().map(|choice| choice.seconds.value).reduce(f64::min);
+            match self.refined(candidate, first, best) {
                 Ok(choice) => fit.push(choice),
                 Err(nearest) => unfit.push((candidate.name.clone(), nearest)),
             }
@@ -123,7 +134,6 @@ impl<'a> Calibration<'a> {
             return Err(self.unreached(&unfit));
         }
         let best = fit.remove(0);
-        let jump = self.reference.truth().jump();
         if let Some(budget) = self.demand.budget.filter(|budget| best.seconds.value > *budget) {
             return Err(AdviseError::Budget { budget, method: best.method, seconds: best.seconds.value });
         }
@@ -273,8 +283,14 @@ impl<'a> Calibration<'a> {
         plausible.ok_or(nearest)
     }
 
-    /// The setting from runs over as much of the time as is affordable, or the smallest attitude error that was seen.
-    fn refined(&mut self, candidate: &Candidate, first: Found) -> Result<Choice, Option<f64>> {
+    /// The setting from runs over as much of the time as is affordable, or the smallest attitude error that was seen. `best` is the
+    /// time of the quickest that is known to be fit, s.
+    fn refined(
+        &mut self,
+        candidate: &Candidate,
+        first: Found,
+        best: Option<f64>,
+    ) -> Result<Choice, Option<f64>> {
         if candidate.is_exact() {
             return Ok(first.choice);
         }
@@ -283,8 +299,12 @@ impl<'a> Calibration<'a> {
         let mut seconds = first.choice.seconds.value;
         let (stage, doubt) = (Stage::Run(candidate.name.clone()), self.doubt());
         let (aim, most) = ((AIM - doubt).max(0.1), TAKEN.1.min(1.0 - doubt));
+        // across a jump ever shorter steps gain little: that ends where the run could no longer be the one to name
+        let (times, least) = LENGTHENED;
+        let longest = best.map_or(times * seconds.max(least), |best| (FINALISTS.1 * best).max(least));
+        let longest = if candidate.is_adaptive() { f64::INFINITY } else { longest };
         for _ in 0..REFINEMENTS {
-            if taken.is_some() && self.late(seconds) {
+            if seconds > longest || (taken.is_some() && self.late(seconds)) {
                 break;
             }
             let span = self.reference.long(seconds / self.demand.until, AFFORDABLE).map_err(|_| nearest)?;
@@ -307,11 +327,15 @@ impl<'a> Calibration<'a> {
             let change = libm::pow(aim / excess, 1.0 / candidate.power()).clamp(0.1, 4.0);
             let larger = value * change;
             // a step of more than a radian is not asked of any method
+            let before = value;
             value = if candidate.is_adaptive() {
                 larger
             } else {
                 larger.min(candidate.coarse(self.reference.rate))
             };
+            if !candidate.is_adaptive() {
+                seconds *= before / value;
+            }
             if value >= larger.max(candidate.coarse(self.reference.rate)) && taken.is_some() {
                 break;
             }

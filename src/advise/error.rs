@@ -110,6 +110,23 @@ pub enum AdviseError {
         /// When it first jumps, s since the start.
         time: f64,
     },
+    /// The torque jumps, and runs that choose their steps would take too long.
+    #[error(
+        "the torque jumps at t = {} s: no method has its order across a jump, and a run that chooses its steps, to be judged by at \
+         {demand:.1e} rad, takes about {steps:.1e} of them, where at most {most:.1e} are taken; end the run there and begin another, \
+         ask for a larger error or a shorter time, or write the torque without jumps",
+        Shown(*time)
+    )]
+    LongAcrossJump {
+        /// What was asked for, rad.
+        demand: f64,
+        /// When it first jumps, s since the start.
+        time: f64,
+        /// Steps of a run.
+        steps: f64,
+        /// The most that are taken in all.
+        most: f64,
+    },
     /// Two runs by different methods part, and neither chaos nor a jump of the torque is why.
     #[error(
         "two runs by different methods agree to {demand:.1e} rad up to t = {} s only: their rounding does not allow more, or a force \
@@ -146,6 +163,9 @@ impl AdviseError {
     pub(super) fn of(error: TruthError, demand: f64) -> Self {
         match error {
             TruthError::Jumps { time } => AdviseError::Jumps { demand, time },
+            TruthError::LongAcrossJump { time, steps, most } => {
+                AdviseError::LongAcrossJump { demand, time, steps, most }
+            }
             error => error.into(),
         }
     }

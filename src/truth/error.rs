@@ -62,6 +62,20 @@ pub enum TruthError {
         /// When first, s since the start.
         time: f64,
     },
+    /// The torque jumps, and runs that choose their steps would take too long.
+    #[error(
+        "the torque jumps at t = {} s after the start, and a run that follows it from there as closely as is asked for takes about \
+         {steps:.1e} steps, of which at most {most:.1e} are taken; end the run at the jump and begin another, ask for a larger error \
+         or a shorter time, or write the torque without jumps", Shown(*.time)
+    )]
+    LongAcrossJump {
+        /// When first, s since the start.
+        time: f64,
+        /// Steps of a run.
+        steps: f64,
+        /// The most that are taken in all.
+        most: f64,
+    },
     /// The motion is not known there.
     #[error("the motion is known from 0 s to {} s after its start, not at {} s", Shown(*.known_until), Shown(*.time))]
     Unknown {

@@ -4,10 +4,9 @@
 //! At a turn of `a` rad a step the error of both is about `c a⁸ Θ²` rad after Θ rad, as measured on asymmetric bodies under
 //! drag, constant torques and gravity gradients.
 
-use super::TruthError;
-use super::attitude_error;
 use super::together::together;
-use super::turning::Turning;
+use super::turning::{self, Turning};
+use super::{LOST, TruthError, attitude_error};
 use crate::body::Point;
 use crate::method::{AnyMethod, Dop853, Gauss, Rk8, Tsit5};
 
@@ -26,10 +25,13 @@ const ADAPTIVE: f64 = 4e-3;
 
 /// Steps of `tsit5` a radian at a tolerance of 1e-12, and the most that it takes in all its runs: a second, about.
 const SMALL_STEPS: f64 = 40.0;
-pub(super) const MOST_SMALL_STEPS: f64 = 2e6;
+const MOST_SMALL_STEPS: f64 = 2e6;
 
 /// Steps of two runs that take about half a second.
 const MANY_STEPS: f64 = 5e5;
+
+/// Parts of an accuracy, one after the other, for runs across a jump of the torque, whose error is not that of smooth ones.
+const JUMPING: [f64; 3] = [0.1, 1e-3, 1e-5];
 
 /// Θ counts as this at least.
 const LEAST_ANGLE: f64 = 30.0;
@@ -77,8 +79,47 @@ pub(super) fn are_long(turning: &Turning, [(_, explicit), (_, implicit)]: &[Leg;
     turning.angle / explicit + 2.0 * turning.angle / implicit > MANY_STEPS
 }
 
+/// Runs that choose their steps through `times`, for a torque that jumps `count` times, first at `time` s since the start: those of
+/// several tolerances that agree best, to `accuracy` rad if they can.
+///
+/// # Errors
+/// Runs of too many steps, and as [`run`].
+pub(super) fn across(
+    turning: &Turning,
+    start: Point<f64>,
+    (times, accuracy): (&[f64], f64),
+    (time, count): (f64, usize),
+    heed: &mut dyn FnMut(f64),
+) -> Result<Pair, TruthError> {
+    let (mut best, mut nearest) = (Pair::default(), f64::INFINITY);
+    let (mut taken, mut before) = (0.0, 0.0);
+    for part in JUMPING {
+        let Some((legs, steps)) = jumping(turning, part * accuracy) else { break };
+        // the least tolerance may have been the one before
+        if steps <= before || count >= turning::MANY {
+            break;
+        }
+        if taken + steps > MOST_SMALL_STEPS {
+            if taken == 0.0 {
+                return Err(TruthError::LongAcrossJump { time, steps, most: MOST_SMALL_STEPS });
+            }
+            break;
+        }
+        (taken, before) = (taken + steps, steps);
+        let pair = run(turning, start, (times, LOST), &legs, heed)?;
+        let worst = pair.worst(times);
+        if worst < nearest {
+            (best, nearest) = (pair, worst);
+        }
+        if nearest <= accuracy {
+            break;
+        }
+    }
+    Ok(best)
+}
+
 /// The runs that choose their steps, for a torque that jumps, and how many steps the second takes, about.
-pub(super) fn jumping(turning: &Turning, error: f64) -> Option<([Leg; 2], f64)> {
+fn jumping(turning: &Turning, error: f64) -> Option<([Leg; 2], f64)> {
     let angle = turning.angle.max(LEAST_ANGLE);
     let tolerance = (error / (ADAPTIVE * angle * angle)).clamp(1e-15, 1e-6);
     let steps = SMALL_STEPS * angle * libm::pow(1e-12 / tolerance, 0.2);

@@ -1,7 +1,7 @@
 //! The true motion from one start, known at its looks and near them.
 
 use super::follow::Follower;
-use super::turning::{self, Turning};
+use super::turning::Turning;
 use super::{AGREEMENT, LOST, TruthError, attitude_error, pair};
 use crate::body::{Body, Point, Problem, State};
 use crate::flow::ExactMotion;
@@ -49,15 +49,16 @@ const FINER: f64 = 0.6;
 const SHRINKS: f64 = 0.3;
 const ATTEMPTS: i32 = 4;
 
+/// Two runs of a chaotic motion that part before this part of the time do so in shorter steps too: as many digits again are lost in
+/// the rest.
+const EARLY: f64 = 0.5;
+
 /// The part of an accuracy that runs are made for.
 const AIM: f64 = 0.2;
 
 /// Of what rounding amounts to, the part by which two runs that agree may be off Taylor's method in double-double: of spin-ups 0.85 was
 /// seen, and twice this part is counted.
 const ROUNDED: f64 = 0.5;
-
-/// Parts of an accuracy, one after the other, for runs across a jump of the torque, whose error is not that of smooth ones.
-const JUMPING: [f64; 3] = [0.1, 1e-3, 1e-5];
 
 /// The motion at a look.
 #[derive(Clone, Copy, Debug)]
@@ -184,32 +185,19 @@ impl Truth {
                     break;
                 }
             }
+            // shorter steps add fewer digits than the rest of a chaotic motion takes
+            let early = times.get(best.looks.len()).is_some_and(|lost| *lost < EARLY * until);
+            let hopeless = turning.is_chaotic() && early;
             // shorter steps do not help: chaos, or a torque that jumps
-            if attempt > 0 && (worst.is_infinite() || worst > SHRINKS * before) {
+            if hopeless || (attempt > 0 && (worst.is_infinite() || worst > SHRINKS * before)) {
                 let parted = times.get(best.agreed(wanted.accuracy)).copied().unwrap_or(until);
                 jump = turning.jumps(start, parted);
                 break;
             }
         }
         if let Some((time, count)) = jump {
-            nearest = f64::INFINITY;
-            let mut steps = 0.0;
-            for error in JUMPING {
-                let legs = pair::jumping(&turning, error * wanted.accuracy);
-                let Some((legs, more)) = legs else { break };
-                steps += more;
-                if steps > pair::MOST_SMALL_STEPS || count >= turning::MANY {
-                    break;
-                }
-                let pair = pair::run(&turning, start, (times, LOST), &legs, heed)?;
-                let worst = pair.worst(times);
-                if worst < nearest {
-                    (best, nearest) = (pair, worst);
-                }
-                if nearest <= wanted.accuracy {
-                    break;
-                }
-            }
+            best = pair::across(&turning, start, (times, wanted.accuracy), (time, count), heed)?;
+            nearest = best.worst(times);
             if nearest > wanted.bearable {
                 return Err(TruthError::Jumps { time });
             }

@@ -292,6 +292,7 @@ fn told(error: AdviseError) -> Error {
         AdviseError::NotPositive { .. }
         | AdviseError::Chaotic { .. }
         | AdviseError::Jumps { .. }
+        | AdviseError::LongAcrossJump { .. }
         | AdviseError::Undecided { .. }
         | AdviseError::TooLong { .. } => "--until",
         AdviseError::Lost { .. } | AdviseError::Conditioning { .. } | AdviseError::Unreached { .. } => {

@@ -212,7 +212,7 @@ fn reason(error: &AdviseError) -> Reason {
     match error {
         AdviseError::Conditioning { .. } => Reason::Lasting(0),
         AdviseError::Chaotic { .. } => Reason::Lasting(1),
-        AdviseError::Jumps { .. } => Reason::Lasting(2),
+        AdviseError::Jumps { .. } | AdviseError::LongAcrossJump { .. } => Reason::Lasting(2),
         AdviseError::Undecided { .. } => Reason::Passing(0),
         AdviseError::Unreached { .. } => Reason::Passing(1),
         _ => Reason::Lasting(3),
