@@ -28,6 +28,11 @@ pub(super) const SCHEMES: [&str; 19] = [
 /// An implicit solution counts as so many evaluations: the sweeps that it takes where a step turns the body by about 15°.
 const SOLUTION: u32 = 6;
 
+/// What an evaluation counts as, on average, where solutions weigh more.
+pub(super) fn weight(cost: Cost) -> f64 {
+    1.0 + f64::from((SOLUTION - 1) * cost.solves) / f64::from(cost.evaluations())
+}
+
 /// Evaluations of a step, of all kinds together.
 pub(super) fn weighed(cost: Cost) -> f64 {
     f64::from(cost.evaluations()) + f64::from((SOLUTION - 1) * cost.solves)

@@ -13,7 +13,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_pages::screen::{WIDTH, bar, wrapped};
 use polhode_pages::table::{self, Column, Table, row, to_digits};
 
-use super::contestants::{SCHEMES, weighed};
+use super::contestants::{SCHEMES, weighed, weight};
 use crate::experiment::{Context, Report};
 
 const SEED: u64 = 1852;
@@ -45,7 +45,7 @@ const DIGITS: f64 = 16.0;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let turned = context.scale.pick(300.0, 1e4, 1e5);
-    let starts = context.scale.pick(1, 5, 25);
+    let starts = context.scale.pick(1, 5, 10);
     let fields = BODIES.iter().map(|name| field(name, turned, starts)).collect::<Result<Vec<_>, _>>()?;
     let mut names: Vec<String> = without_projections().iter().map(|method| method.name()).collect();
     names.extend(SCHEMES.map(String::from));
@@ -60,7 +60,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         .filter_map(|(name, of_bodies)| Score::of(name, &of_bodies.concat()))
         .collect();
     let mut shown: Vec<&Score> = all.iter().filter(|score| score.is_shown(&all)).collect();
-    shown.sort_by(|a, b| a.attitude.total_cmp(&b.attitude));
+    shown.sort_by(|a, b| a.attitude.total_cmp(&b.attitude).then(b.held.total_cmp(&a.held)));
     let count = BODIES.len() * starts as usize;
     let caption = format!(
         "Largest errors over {turned} rad at {EVALUATIONS} evaluations a radian: medians of {count} runs ({}, {starts} starts each). \
@@ -166,9 +166,7 @@ impl Field {
 
     /// Evaluations for each radian, an implicit solution weighed.
     fn cost(&self, method: &dyn AnyMethod, run: &Judged) -> f64 {
-        let of_step = self.cost_of_step(method);
-        let weight = weighed(of_step) / f64::from(of_step.evaluations().max(1));
-        run.evaluations as f64 * weight / (run.last.elapsed.hi() * self.speed)
+        run.evaluations as f64 * weight(self.cost_of_step(method)) / (run.last.elapsed.hi() * self.speed)
     }
 
     fn cost_of_step(&self, method: &dyn AnyMethod) -> Cost {

@@ -6,7 +6,7 @@ use polhode::run::Watch;
 use polhode::truth::{Care, Ending, Judged, LOST, Truth};
 use polhode_files::error::{Error, unexpected};
 
-use super::super::contestants::{SCHEMES, weighed};
+use super::super::contestants::{SCHEMES, weighed, weight};
 use super::cases::Case;
 use super::contest::{Contestant, Quantiles, Run};
 use crate::timing::StepTime;
@@ -160,9 +160,8 @@ impl Entry {
     /// Evaluations per unit of time.
     fn per_unit(&self, case: &Case, measured: &Judged) -> f64 {
         let cost = self.method.claims(case.body.problem()).map(|claims| claims.cost).unwrap_or_default();
-        let weight = weighed(cost) / f64::from(cost.evaluations());
         let last = measured.looks.last().map(|look| look.evaluations as f64 / (look.elapsed / case.unit));
-        last.map(|cost| cost * weight).filter(|cost| *cost > 0.0).unwrap_or(f64::INFINITY)
+        last.map(|found| found * weight(cost)).filter(|cost| *cost > 0.0).unwrap_or(f64::INFINITY)
     }
 }
 
