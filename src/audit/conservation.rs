@@ -8,6 +8,9 @@ use crate::body::{Body, Conserved, Problem};
 use crate::observe::secular_drift;
 use crate::rotation::Vec3;
 
+/// A quantity, and its value in a row.
+type Followed<'a> = (Conserved, &'a dyn Fn(&Row) -> f64);
+
 /// Most groups of three rows that drifts and noise are read off.
 const GROUPS: usize = 1365;
 
@@ -78,15 +81,14 @@ pub(super) fn conservation(
     let every = States::new(record, reading, body);
     let has_omega = Columns::new(record).source != Source::Attitude;
     let needs = |quantity: Conserved| matches!(quantity, Conserved::Momentum | Conserved::MomentumZ) || !free;
-    let all: [(Conserved, &dyn Fn(&Row) -> f64); 4] = [
+    let all: [Followed; 4] = [
         (Conserved::Energy, &energy_of),
         (Conserved::MomentumNorm, &norm_of),
         (Conserved::Momentum, &vector_of),
         (Conserved::MomentumZ, &z_of),
     ];
     let told = |quantity: Conserved| kept.contains(&quantity) && (has_attitude || !needs(quantity));
-    let seen: Vec<(Conserved, &dyn Fn(&Row) -> f64)> =
-        all.into_iter().filter(|(quantity, _)| told(*quantity)).collect();
+    let seen: Vec<Followed> = all.into_iter().filter(|(quantity, _)| told(*quantity)).collect();
     // a maximum that is not a number stays one: `f64::max` would pass over it
     let larger = |most: f64, value: f64| if value.abs() <= most { most } else { value.abs() };
     let mut largest = [0.0_f64; 4];
@@ -100,7 +102,7 @@ pub(super) fn conservation(
         // one row at a time: a record may be as large as the memory allows
         (0..count).filter_map(|row| every.at(row)).for_each(|row| look(&row));
     }
-    let of_quantity = |((quantity, of), error): (&(Conserved, &dyn Fn(&Row) -> f64), f64)| {
+    let of_quantity = |((quantity, of), error): (&Followed, f64)| {
         let series: Vec<f64> = looked.iter().map(of).collect();
         let resolution = (SPREAD * noise(&rows, &series)).max(allowed_of(*quantity));
         // numbers near the limits of a double overflow: such a change is infinite, and shows nothing
