@@ -105,7 +105,8 @@ impl Context {
         parts: Vec<T>,
         work: impl Fn(T) -> R + Sync,
     ) -> Vec<R> {
-        self.bar.set_length(parts.len() as u64);
+        // what was done before is done
+        self.bar.set_length(self.bar.position() + parts.len() as u64);
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         parallel::map(parts, cores, |part| {
             let result = work(part);
