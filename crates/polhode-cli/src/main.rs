@@ -27,10 +27,10 @@ use polhode_files::error::{self, Error};
 const EXAMPLES: &str = "Examples:
   polhode show --body t-handle --out flips.html
   polhode propagate --body t-handle --until 60 --every 10
-  polhode audit run.csv --moments 1,2,3";
+  polhode motion --body toutatis";
 
 const EXPERIMENT_EXAMPLES: &str = "Examples:
-  polhode experiment run
+  polhode experiment run --scale smoke
   polhode experiment list";
 
 /// Accurate long-time rotation of rigid bodies

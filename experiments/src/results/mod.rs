@@ -38,7 +38,7 @@ const PUBLISH_EXAMPLES: &str = "Examples:
   polhode experiment publish --from new/paper";
 
 const EXAMPLES: &str = "Examples:
-  polhode experiment run
+  polhode experiment run --scale smoke
   polhode experiment run order drift --scale smoke
   polhode experiment run order drift --scale smoke --report results.html";
 

@@ -1,8 +1,9 @@
 //! What was found by all experiments: a line for each as it ends, and one screen at the end.
 
-use std::io::{IsTerminal, Write as _};
 use std::path::Path;
 
+use polhode_files::error::Error;
+use polhode_pages::output::emit;
 use polhode_pages::screen::{width, wrapped};
 
 use crate::experiment::Report;
@@ -20,7 +21,10 @@ pub(super) struct Overview {
 
 impl Overview {
     /// Takes the report of the experiment called `name`, and says in a line what it found; `place` is its number among all.
-    pub(super) fn add(&mut self, name: &str, place: &str, report: &Report) {
+    ///
+    /// # Errors
+    /// An output that cannot be written.
+    pub(super) fn add(&mut self, name: &str, place: &str, report: &Report) -> Result<(), Error> {
         let rows: usize = report.tables.iter().map(|table| table.rows().len()).sum();
         let found = match (report.failures.len(), report.conclusion.as_str()) {
             (0, "") => format!("{rows} rows"),
@@ -29,14 +33,14 @@ impl Overview {
         };
         let first = found.split(". ").next().unwrap_or(&found).trim_end_matches(['.', '\n']);
         let line = format!("{place} · {name}: {first} · {:.0} s", report.took.as_secs_f64());
-        let width = if std::io::stderr().is_terminal() { width() } else { polhode_pages::screen::WIDTH };
-        let _ = writeln!(std::io::stderr(), "{}", wrapped(&line, width, INDENT));
+        emit(&format!("{}\n", wrapped(&line, width(), INDENT)), None)?;
         self.screens.extend(report.screen.clone());
         // one that has a screen of its own says it there
         if report.screen.is_none() && !report.conclusion.is_empty() {
             self.conclusions.push(format!("{name}: {}", report.conclusion));
         }
         self.checks += report.checks;
+        Ok(())
     }
 
     /// All of it; results stand in `folder`, the page at `page`, and `failures` of the claims do not hold.

@@ -34,12 +34,13 @@ pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
     if let Some(from) = from {
         take_over(root, from)?;
     }
+    let documents = documents(root)?;
     let results = within(root, root.join(RESULTS))?;
     let results = folders(&results)?.into_iter().map(|folder| Results::open(within(root, folder)?));
     let results = results.collect::<Result<Vec<_>, _>>()?;
     let generated = within(root, root.join("paper").join(GENERATED))?;
     let mut files = BTreeMap::new();
-    for (path, text) in documents(root)? {
+    for (path, text) in documents {
         let name = path.strip_prefix(root).unwrap_or(&path).display().to_string();
         files.insert(within(root, path)?, with_blocks_filled(&name, &text, &results)?);
     }

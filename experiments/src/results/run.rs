@@ -65,7 +65,7 @@ impl Asked {
             let report = experiment.report(scale, format!("{place} · {name}"))?;
             write(experiment, scale, &report, &folder)?;
             if self.is_overview() {
-                overview.add(name, &place, &report);
+                overview.add(name, &place, &report)?;
             }
             if self.tables || !self.is_overview() {
                 show(experiment, &report, &folder)?;

@@ -80,7 +80,7 @@ fn files_without_a_body_are_refused() {
     refused(&of("a.json", "{\"mass\": 1}"), &["a.json", "no \"inertia\"", "polhode inertia"]);
     refused(&of("b.json", "{"), &["b.json", "line 1"]);
     refused(&of("c.json", "{\"inertia\": [[1,0,0],[0,1,0],[0,0,3]]}"), &["c.json", "I1 + I2 >= I3"]);
-    refused(&of("d.txt", "1,2,3"), &["d.txt", ".json, .toml, .urdf, .mjcf, .sdf or .xml"]);
+    refused(&of("d.txt", "1,2,3"), &["d.txt", ".json, .toml, .stl, .obj, .ply, .urdf, .mjcf, .sdf or .xml"]);
     refused(&of("e.toml", "[[part]]\nshape = \"cube\"\n"), &["e.toml:2", "no such shape 'cube'"]);
     refused(
         &format!("propagate --body absent.json {start}"),

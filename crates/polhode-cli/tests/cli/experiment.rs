@@ -40,7 +40,7 @@ fn a_folder_of_something_else_is_not_replaced_by_results() {
 fn experiments_repeat_bit_for_bit_and_can_be_published() {
     let scratch = Scratch::new("experiments");
     let text = output(&format!("experiment run all --scale smoke --out {}", scratch.0.display()));
-    assert!(text.contains("Written to"), "{text}");
+    assert!(text.contains("claims that were checked hold.") && text.contains("Tables: "), "{text}");
     let files = tree(&scratch.0.join("smoke"));
     for experiment in ["drift", "order", "long-run"] {
         for ending in [".csv", ".md", ".tex", ".svg", "run.toml"] {

@@ -155,8 +155,10 @@ fn a_report_is_one_page_also_of_a_refusal() {
     // 1203 samples of noise 0.01, of which 14 numbers are fitted
     assert!(count == 3609.0 && ((sum / count).sqrt() / 1e-2 - 1.0).abs() < 0.05, "{sum} {count}");
     output(&format!("fit {record} --report {markdown}"));
+    let text = fs::read_to_string(&markdown).unwrap();
     assert!(
-        fs::read_to_string(&markdown).unwrap().starts_with(&format!("# Inertia from {record}\n\nI1 : I2"))
+        text.starts_with(&format!("# Inertia from {record}\n\n**")) && text.contains("I1 : I2"),
+        "{text}"
     );
 
     output(&format!(

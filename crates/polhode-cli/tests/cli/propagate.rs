@@ -249,7 +249,6 @@ fn flags_that_exclude_or_need_each_other_say_so() {
     refused(&with("--every 2"), &["--every: '2.0'", "give --until T too"]);
     refused(DYADIC, &["--times: missing", "--until T --every DT"]);
     refused(&with("--times 1 --times 2"), &["--times", "multiple times"]);
-    refused("experiment run", &["<NAMES>", "not provided"]);
 }
 
 #[test]

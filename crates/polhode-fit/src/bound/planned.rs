@@ -13,8 +13,8 @@ use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative, slope};
 
 /// The bound of [`foreseen_bound`](crate::foreseen_bound) for a fit with `settings`: their torque, with `coefficients` in
-/// the order of [`Torque::coefficients`](crate::Torque::coefficients) as it acts, their errors of the sensor, and
-/// their prior tensor. `Auto` stands for no torque; torque noise is not reckoned with.
+/// the order of [`FittedTorque::coefficients`](crate::FittedTorque::coefficients) as it acts, their errors of the
+/// sensor, and their prior tensor. `Auto` stands for no torque; torque noise is not reckoned with.
 ///
 /// ```
 /// use nalgebra::Vector3;
