@@ -29,6 +29,7 @@
 //! | [`inertia`] | inertia tensors from moments, solids, meshes and mass distributions; what is wrong with a tensor |
 //! | [`body`] | inertia with forces, states, the solver frame of kernels |
 //! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the top |
+//! | [`events`] | when something happens: roots of functions of time and state |
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
@@ -78,6 +79,7 @@ pub mod audit;
 pub mod body;
 pub mod catalogue;
 mod error;
+pub mod events;
 pub mod flow;
 pub mod inertia;
 pub mod method;
