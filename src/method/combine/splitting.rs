@@ -4,7 +4,7 @@ use super::SchemeError;
 use super::kicks::KickMap;
 use super::lengths::lengths;
 use super::processor::{Processor, Timed};
-use super::schemes::{Part, STRANG, Scheme, Stages};
+use super::schemes::{Part, STRANG, Scheme};
 use super::splitting_map::{Ends, SplittingMap};
 use crate::body::{Field, Problem, Rotor};
 use crate::method::{Claimed, Claims, Cost, Energy, Kept, Kicks, Method, Symmetric};
@@ -81,14 +81,6 @@ impl<A: FreePart> Splitting<A, Kicks> {
     /// # Ok::<(), polhode::method::SchemeError>(())
     /// ```
     pub fn kicked(free: A, scheme: Scheme) -> Result<Self, SchemeError> {
-        if let Stages::Alternating { first, a, b, .. } | Stages::ForceGradient { first, a, b, .. } =
-            scheme.stages
-        {
-            let (outer, inner) = if first == Part::A { (a.len(), b.len()) } else { (b.len(), a.len()) };
-            if outer != inner && outer != inner + 1 {
-                return Err(SchemeError::Lengths { scheme: scheme.name, outer, inner });
-            }
-        }
         match (free.order(), scheme.lengths()) {
             (Some(order), None) if order < scheme.order && free.free_cost(&scheme).is_none() => {
                 Err(SchemeError::Inexact { scheme: scheme.name, base: free.name(), order })
