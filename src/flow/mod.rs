@@ -8,7 +8,8 @@
 //! | [`FreeFlow`], [`FreeBody`] | ½ Σ m_k²/I_k | a rotor |
 //! | [`Kick`] | U(q) | a [`Field`](crate::body::Field) |
 //!
-//! Each moves a [`Point`]: principal axes, momenta divided by the scale of the rotor.
+//! Each moves a [`Point`]: principal axes, momenta divided by the scale of the rotor. [`KineticSplit`](crate::method::KineticSplit) makes a
+//! method of one's own of them.
 
 mod casimir;
 mod exact_motion;
