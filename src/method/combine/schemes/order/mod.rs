@@ -31,23 +31,30 @@ struct Defect {
     terms: f64,
 }
 
+impl Defect {
+    /// The difference over the sum; infinite where the sum is beyond the range of a double.
+    fn relative(&self) -> f64 {
+        let quotient = self.size / self.terms;
+        if quotient.is_nan() || self.terms.is_infinite() { f64::INFINITY } else { quotient }
+    }
+}
+
 /// Whether `scheme` has the order that it claims.
 pub(super) fn check(scheme: &Scheme) -> Result<(), SchemeError> {
     let claimed = |of_b: Option<usize>| claimed(scheme, of_b.unwrap_or(1));
     for degree in 1..=claimed(None) {
         let found = defects(scheme, degree, |of_b| degree <= claimed(Some(of_b)));
         // also of coefficients so large that nothing can be told
-        let worst = found
-            .into_iter()
-            .find(|defect| !(defect.size <= ALLOWED * defect.terms && defect.terms.is_finite()));
-        if let Some(Defect { of_b, size, terms }) = worst {
+        let fails = |defect: &Defect| defect.relative() > ALLOWED;
+        let worst = found.into_iter().filter(fails).max_by(|a, b| a.relative().total_cmp(&b.relative()));
+        if let Some(worst) = worst {
             let near_integrable = pairs(scheme).is_some_and(|pairs| powers(pairs).is_some());
             return Err(SchemeError::Order {
                 scheme: scheme.name,
-                order: claimed(of_b) as u32,
+                order: claimed(worst.of_b) as u32,
                 degree: degree as u32,
-                of_b: of_b.filter(|_| near_integrable).map(|of_b| of_b as u32),
-                defect: size / terms,
+                of_b: worst.of_b.filter(|_| near_integrable).map(|of_b| of_b as u32),
+                defect: worst.relative(),
                 allowed: ALLOWED,
             });
         }
