@@ -341,28 +341,28 @@ fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
         assert_scheme_order(case, &exact, scheme);
         let two = Splitting::kicked(TwoTurn { axes: None }, *scheme);
         let for_two_turns = matches!(
-            scheme.stages,
+            scheme.stages(),
             Stages::Composition(_)
                 | Stages::Processed { .. }
                 | Stages::Alternating { pairs: Pairs::Any | Pairs::NearIntegrable(_), .. }
         );
-        assert_eq!(two.is_ok(), for_two_turns, "{} over two turns", scheme.name);
+        assert_eq!(two.is_ok(), for_two_turns, "{} over two turns", scheme.name());
         if let Ok(two) = two {
             // the most exact of the free splittings
-            match scheme.order {
+            match scheme.order() {
                 10 => assert_order(&free, &two, 10, 3..6),
                 _ => assert_scheme_order(&free, &two, scheme),
             }
         }
         let split = Splitting::kicked(AxisSplit { axes: None }, *scheme);
-        match scheme.stages {
+        match scheme.stages() {
             Stages::Composition(_) | Stages::Processed { .. } => {
                 assert_scheme_order(&free, &split.unwrap(), scheme)
             }
             Stages::Alternating { .. }
             | Stages::ForceGradient { .. }
             | Stages::ProcessedAlternating { .. } => {
-                assert_eq!(split.is_err(), scheme.order > 2, "{} over a free map of order 2", scheme.name)
+                assert_eq!(split.is_err(), scheme.order() > 2, "{} over a free map of order 2", scheme.name())
             }
         }
     }
@@ -370,13 +370,13 @@ fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
 
 /// The order of `scheme` over `method`, in steps whose errors are small, and above the floor that the digits of the scheme set.
 fn assert_scheme_order(case: &Case, method: &dyn AnyMethod, scheme: &Scheme) {
-    let exponents = match scheme.order {
+    let exponents = match scheme.order() {
         ..=4 => 6..10,
         6 => 6..9,
         8 => 5..8,
         _ => 4..7,
     };
-    assert_order(case, method, scheme.order, exponents);
+    assert_order(case, method, scheme.order(), exponents);
 }
 
 /// A step at which what a method loses shows: `usual`, more for one of high order, and for one that takes steps of its own.
@@ -1057,9 +1057,8 @@ fn an_unsolved_step_is_told_again_and_again() {
 fn a_scheme_whose_lists_do_not_alternate_is_refused() {
     const TWO: &[Dd] = &[Dd::sum(0.125, 0.0), Dd::sum(0.25, 0.0)];
     let stages = Stages::Alternating { first: schemes::Part::B, a: &[], b: TWO, pairs: Pairs::Any };
-    let scheme = Scheme { name: "mine", order: 2, source: "", stages };
     assert_eq!(
-        Splitting::kicked(ExactFlow, scheme).unwrap_err().to_string(),
+        Scheme::new("mine", 2, stages, "").unwrap_err().to_string(),
         "scheme \"mine\" lists 2 shares of the flow that is first and 0 of the other; of the first there are as many or one more"
     );
 }
