@@ -1118,6 +1118,7 @@ fn invariants_of_a_point_are_those_of_its_formula() {
 
 #[test]
 fn a_method_refuses_by_name_what_it_cannot_do() {
+    #[derive(Clone)]
     struct FreeOnly;
     impl Claimed for FreeOnly {
         fn name(&self) -> String {
