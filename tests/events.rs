@@ -360,7 +360,7 @@ fn a_top_is_searched_like_a_free_body() {
     let begin = top.state(tilted, Vector3::new(0.0, 0.0, 20.0)).unwrap();
     let motion = ExactMotion::new(&top, &begin).unwrap();
     let event = Event::enters_cone(Vector3::z(), Vector3::z(), 0.6).unwrap();
-    let exact = motion.events(&[event.clone()], 0.0, 100.0, 0.05).unwrap();
+    let exact = motion.events(std::slice::from_ref(&event), 0.0, 100.0, 0.05).unwrap();
     let mut run = Run::new(&method("taylor").unwrap(), &top, &begin, 1.0).unwrap();
     let found = run.events(&[event], 100.0, 0.05).unwrap();
     assert!(exact.may_miss.is_empty() && found.may_miss == [0]);
