@@ -282,12 +282,7 @@ fn of_column(tally: &Tally, allowance: &Allowance, noise: f64, size: f64, record
 
 /// The worse of two judgements.
 fn worse(a: Judgement, b: Judgement) -> Judgement {
-    let rank = |judgement| match judgement {
-        Judgement::Right => 0,
-        Judgement::Undecided => 1,
-        Judgement::Wrong => 2,
-    };
-    if rank(a) >= rank(b) { a } else { b }
+    if b.is_better_than(a) { a } else { b }
 }
 
 /// The attitude errors at `times` of a record, signed by their part along the motion.

@@ -29,11 +29,34 @@ const DERIVED: f64 = 3.0;
 const LOOKS: usize = 128;
 
 /// The verdict on `record`, of which `finding` is known.
+///
+/// Of readings that cannot be told apart the one counts whose motion stays nearest: of a pure spin the moments can be read in any
+/// order, and in some of them it is unstable, so that the noise of the start grows.
 pub(super) fn judge(
     record: &Trajectory,
     question: &Question,
-    finding: Finding,
+    mut finding: Finding,
 ) -> Result<Verdict, AuditError> {
+    let mut best = judge_first(record, question, &finding)?;
+    let mut tried = vec![finding.right[0].reading.moments];
+    for k in 1..finding.tied {
+        let moments = finding.right[k].reading.moments;
+        if best.judgement == Judgement::Right || tried.contains(&moments) {
+            continue;
+        }
+        tried.push(moments);
+        finding.right.swap(0, k);
+        let other = judge_first(record, question, &finding)?;
+        finding.right.swap(0, k);
+        if other.judgement.is_better_than(best.judgement) {
+            best = other;
+        }
+    }
+    Ok(best)
+}
+
+/// The verdict by the first reading.
+fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> Result<Verdict, AuditError> {
     let first = finding.right.first().ok_or(AuditError::NoReading)?;
     let (mut reading, body) = (first.reading, first.body.clone());
     let writings = Writings::of(record);
@@ -84,10 +107,11 @@ pub(super) fn judge(
             }
         }
     }
-    let claim = broken_claim(&reading, &finding, question);
+    let claim = broken_claim(&reading, finding, question);
     let (mut signature, mut other_body, mut other_torque) = (None, None, None);
     let suspect = match (&finding.mistake, claim) {
-        (Some(mistake), _) if by_motion != Judgement::Right => mistake.suspect.clone(),
+        // what noise explains needs no mistake
+        (Some(mistake), _) if by_motion == Judgement::Wrong => mistake.suspect.clone(),
         (_, Some(claim)) => claim,
         _ if by_motion != Judgement::Wrong => Suspect::None,
         _ if faults.iter().any(|fault| matches!(fault, Fault::Discontinuity { .. })) => {
@@ -118,7 +142,7 @@ pub(super) fn judge(
     }
     let tie = (finding.tied > 1).then(|| Tie {
         readings: finding.right[..finding.tied].iter().map(|found| found.reading).collect(),
-        reason: tie_reason(record, &finding, &body),
+        reason: tie_reason(record, finding, &body),
     });
     let resolution = Resolution {
         attitude: record.attitude.as_ref().map(|_| {
@@ -147,7 +171,7 @@ pub(super) fn judge(
         judgement,
         suspect,
         reading,
-        ranking: finding.ranking,
+        ranking: finding.ranking.clone(),
         tie,
         body,
         resolution,

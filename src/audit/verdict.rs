@@ -17,6 +17,18 @@ pub enum Judgement {
     Undecided,
 }
 
+impl Judgement {
+    /// Right before undecided, undecided before wrong.
+    pub(super) fn is_better_than(self, other: Judgement) -> bool {
+        let rank = |judgement| match judgement {
+            Judgement::Right => 0,
+            Judgement::Undecided => 1,
+            Judgement::Wrong => 2,
+        };
+        rank(self) < rank(other)
+    }
+}
+
 /// What is wrong with a record.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

@@ -279,3 +279,29 @@ fn numbers_of_any_size_are_survived() {
         }
     }
 }
+
+/// The moments of a pure spin can be read in any order. Where the middle one is put on its axis, the noise of the first row grows.
+#[test]
+fn an_unstable_reading_of_a_stable_spin_does_not_make_it_wrong() {
+    for (moments, noise) in [([0.886, 0.668, 1.028], 3e-7), ([0.6, 0.9, 1.1], 1e-6), ([1.1, 0.9, 0.6], 1e-5)]
+    {
+        let body = Body::free(Inertia::from_moments(moments).unwrap());
+        let start = body.state(tilted(), Vector3::new(0.0, 0.0, 0.9)).unwrap();
+        let mut random = Seeded(11);
+        let mut convention = reading(&mut random, Form::Quaternion);
+        convention.omega_frame = Some(Frame::Body);
+        convention.moments = [0, 1, 2];
+        let writing = Writing { noise, ..Writing::EXACT };
+        let file =
+            record(&mut random, &states(&body, &start, 0.2, 300), &convention, Form::Quaternion, writing);
+        // the same moments in an order in which the spin is about the middle one
+        let mut question = Question::new(Some(Body::free(
+            Inertia::from_moments([moments[0], moments[2], moments[1]]).unwrap(),
+        )));
+        question.claims.moments = None;
+        let verdict = audit(&file, &question).unwrap();
+        assert_eq!(verdict.judgement, Judgement::Undecided, "{moments:?}");
+        question.noise = Noise { attitude: 2.0 * noise, rates: 2.0 * noise };
+        assert_eq!(audit(&file, &question).unwrap().judgement, Judgement::Right, "{moments:?}");
+    }
+}
