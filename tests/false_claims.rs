@@ -58,7 +58,7 @@ fn found(report: &Report) -> Vec<(Law, Quantity)> {
 /// All laws of one kind of motion.
 fn checked_in(problem: Problem, method: &dyn AnyMethod) -> Report {
     let report = check_only(method, &[problem], Law::ALL).unwrap();
-    println!("{report}");
+    assert!(report.to_string().lines().all(|line| line.chars().count() <= 80), "{report}");
     report
 }
 
@@ -332,7 +332,7 @@ fn closures_are_measured_to_the_digits_of_a_double() {
 fn a_report_is_text_and_back() {
     let report = check_only(&RK4, &[Problem::Linear], &[Law::Conserved, Law::Cost, Law::Drift]).unwrap();
     assert_eq!(report.text().parse(), Ok(report.clone()));
-    let broken = report.text().replace("undecided", "unsure");
+    let broken = report.text().replace("holds", "unsure");
     let error = broken.parse::<Report>().unwrap_err();
     assert!(error.to_string().contains("it should hold motion, law"), "{error}");
     assert_eq!("".parse::<Report>().unwrap_err().line, 1);

@@ -13,6 +13,7 @@ use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::laws::{
     Case, Counted, Law, Verdict, cases, check_cost, check_force, check_only, check_order, check_scheme,
+    exponents_of,
 };
 use polhode::method::schemes::{self, Pairs, Scheme, Stages};
 use polhode::method::{
@@ -214,12 +215,14 @@ fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
             // the most exact of the free splittings
             match scheme.order {
                 10 => assert_order(&two, scheme, 3..6),
-                _ => assert_scheme_order(&two, scheme),
+                order => assert_order(&two, scheme, exponents_of(order)),
             }
         }
         let split = Splitting::kicked(AxisSplit { axes: None }, *scheme);
         match scheme.stages {
-            Stages::Composition(_) | Stages::Processed { .. } => assert_scheme_order(&split.unwrap(), scheme),
+            Stages::Composition(_) | Stages::Processed { .. } => {
+                assert_order(&split.unwrap(), scheme, exponents_of(scheme.order))
+            }
             Stages::Alternating { .. }
             | Stages::ForceGradient { .. }
             | Stages::ProcessedAlternating { .. } => {
@@ -227,17 +230,6 @@ fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
             }
         }
     }
-}
-
-/// The order of `scheme` over a free method, in steps whose errors are small, and above the floor that the digits of the scheme set.
-fn assert_scheme_order(method: &dyn AnyMethod, scheme: &Scheme) {
-    let exponents = match scheme.order {
-        ..=4 => 6..10,
-        6 => 6..9,
-        8 => 5..8,
-        _ => 4..7,
-    };
-    assert_order(method, scheme, exponents);
 }
 
 fn assert_order(method: &dyn AnyMethod, scheme: &Scheme, exponents: core::ops::Range<u32>) {

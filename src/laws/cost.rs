@@ -37,8 +37,10 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> 
         }
     }
     let torques = finding(Quantity::Torques, claimed);
+    let in_potential = problem != Problem::Linear || subject.method.claims(Problem::Potential).is_some();
     let undecided = match problem {
-        Problem::Free | Problem::Linear => (claimed > 0).then_some(unseen),
+        Problem::Free if claimed == 0 => return Ok(findings),
+        _ if problem == Problem::Free || !in_potential => Some(unseen),
         _ if subject.method.needs_series() => {
             Some("torques of a series are evaluated once for all its terms")
         }
@@ -46,11 +48,10 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> 
         _ if cost.solves > 0 && claimed == 0 => Some("an iteration asks for the torque as often as it needs"),
         _ => None,
     };
-    match undecided {
-        Some(why) => findings.push(torques.because(why)),
-        None if matches!(problem, Problem::Free | Problem::Linear) => {}
-        None => findings.push(torques.counted(claimed, torques_of(subject)?)),
-    }
+    findings.push(match undecided {
+        Some(why) => torques.because(why),
+        None => torques.counted(claimed, torques_of(subject)?),
+    });
     Ok(findings)
 }
 
@@ -59,7 +60,7 @@ fn torques_claimed(cost: Cost) -> u32 {
     if cost.kicks > 0 { cost.kicks } else { cost.right_sides }
 }
 
-/// Evaluations of the torque in one step of the run.
+/// Evaluations of the torque in one step of the run; gravity acts as any potential does, whose torques can be counted.
 fn torques_of(subject: &Subject<'_>) -> Result<u64, LawsError> {
     let torques = Arc::new(AtomicU64::new(0));
     let counting = torques.clone();

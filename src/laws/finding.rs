@@ -20,7 +20,7 @@ pub struct Finding {
     pub claim: String,
     /// The measured number: an order, a relative error or defect, a secular slope of a relative error in 1/s, a count, a time in s.
     pub measured: Option<f64>,
-    /// Half of the interval of that number, where it is a mean or a slope.
+    /// Half of the interval of that number, where it is a mean or a slope; of an order how far the halvings are apart.
     pub half_width: Option<f64>,
     /// What the number was compared with: the largest difference from the claimed one, or the largest error of a law that holds.
     pub limit: Option<f64>,

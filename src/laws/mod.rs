@@ -92,7 +92,7 @@ pub use error::LawsError;
 pub use finding::Finding;
 pub use force::check_force;
 pub use report::Report;
-pub use scheme::check_scheme;
+pub use scheme::{check_scheme, exponents_of};
 pub use suite::{check, check_only, check_order};
 pub use text::ReportError;
 pub use words::{Law, Quantity, UnknownWord, Verdict};

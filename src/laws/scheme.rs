@@ -1,5 +1,7 @@
 //! The order of a scheme.
 
+use core::ops::Range;
+
 use super::case::{Case, cases};
 use super::order::against;
 use super::subject::Subject;
@@ -27,14 +29,20 @@ pub fn check_scheme(scheme: &Scheme) -> Result<Report, LawsError> {
     let case: &Case = if scheme.gradients().is_empty() { potential } else { heavy };
     let mut report = Report::new(scheme.name);
     if let Some(claims) = method.claims(case.problem()) {
-        // errors are small there, and above the floor that the digits of the scheme set
-        let exponents = match scheme.order {
-            ..=4 => 6..10,
-            6 => 6..9,
-            8 => 5..8,
-            _ => 4..7,
-        };
-        report.findings = against(&Subject { method: &method, claims, case }, scheme.order, exponents)?;
+        let subject = Subject { method: &method, claims, case };
+        report.findings = against(&subject, scheme.order, exponents_of(scheme.order))?;
     }
     Ok(report)
+}
+
+/// For [`check_order`](super::check_order): how often the span is halved until the errors of a scheme of the order `order` are small, and
+/// still above the floor that the digits of its coefficients set.
+#[must_use]
+pub fn exponents_of(order: u32) -> Range<u32> {
+    match order {
+        ..=4 => 6..10,
+        6 => 6..9,
+        8 => 5..8,
+        _ => 4..7,
+    }
 }

@@ -4,20 +4,21 @@ use core::ops::Range;
 
 use super::case::cases;
 use super::subject::Subject;
-use super::words::{Law, PROBLEMS, Verdict};
+use super::words::{Law, PROBLEMS, Quantity, Verdict};
 use super::{
     Finding, LawsError, Report, conserved, cost, drift, order, poisson, reversibility, rounding, symmetry,
     symplectic, takes, time,
 };
 use crate::body::Problem;
 use crate::method::AnyMethod;
+use crate::run::HalvingError;
 
 /// Every law of `method` but its processor time, in each kind of motion that it takes.
 ///
 /// Some seconds of one core; [`check_only`] measures some of the laws.
 ///
 /// # Errors
-/// A method that takes a body with one step and refuses it with another.
+/// None of a method: what it refuses is a finding.
 ///
 /// ```no_run
 /// use polhode::{laws::check, method};
@@ -54,10 +55,21 @@ pub fn check_only(method: &dyn AnyMethod, problems: &[Problem], laws: &[Law]) ->
         let Some(claims) = method.claims(case.problem()).filter(|_| is_taken) else { continue };
         let subject = Subject { method, claims, case };
         for law in Law::ALL.iter().filter(|law| laws.contains(law)) {
-            report.findings.extend(measure(&subject, *law)?);
+            report.findings.extend(answered(&subject, *law)?);
         }
     }
     Ok(report)
+}
+
+/// What was found of `law`; of a method that refuses a step of the measurement, that nothing is decided, and why.
+fn answered(subject: &Subject<'_>, law: Law) -> Result<Vec<Finding>, LawsError> {
+    match measure(subject, law) {
+        Err(LawsError::Step(error) | LawsError::Halving(HalvingError::Step(error))) => {
+            let finding = Finding::new(subject.problem(), law, Quantity::Method, "-");
+            Ok(vec![finding.because(error.to_string())])
+        }
+        found => found,
+    }
 }
 
 fn measure(subject: &Subject<'_>, law: Law) -> Result<Vec<Finding>, LawsError> {
