@@ -44,7 +44,8 @@ impl Case {
         self.body.problem()
     }
 
-    /// Where the motion is after the [span](Self::span), to the digits of double-double: by the closed form, or by Taylor series of order 40.
+    /// Where the motion is after the [span](Self::span), to the digits of double-double: by the closed form, or by Taylor
+    /// series of order 40.
     ///
     /// # Errors
     /// None of the library's cases.

@@ -1,13 +1,14 @@
 //! Evaluations of one step, against the cost that is claimed.
 //!
-//! Torques are counted of any method. Turns, flows and solutions are counted by the sines and roots that they take, on a scalar that
-//! counts: of a method whose type is known.
+//! Torques are counted of any method. Turns, flows and solutions are counted by the sines and roots that they take, on a scalar
+//! that counts: of a method whose type is known.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Arc;
 
 use super::case::{inertia, of_the_vertical, pushed};
-use super::counted::{Counted, CountedGravity, CountedLaw, counts};
+use super::counted::{Counted, counts};
+use super::counted_forces::{CountedGravity, CountedLaw};
 use super::finding::Finding;
 use super::subject::Subject;
 use super::words::{Law, Quantity};
@@ -79,8 +80,8 @@ fn torques_of(subject: &Subject<'_>) -> Result<u64, LawsError> {
 
 /// The evaluations of one step against the claimed ones, by kind, of a method whose type is known: free and under gravity.
 ///
-/// A turn takes one sine, a solution of three equations one square root, for its Cayley map, a free flow of a symmetric body two sines,
-/// an addition two square roots; a kick takes one torque, and so does a right-hand side of a method without kicks.
+/// A turn takes one sine, a solution of three equations one square root, for its Cayley map, a free flow of a symmetric body
+/// two sines, an addition two square roots; a kick takes one torque, and so does a right-hand side of a method without kicks.
 ///
 /// # Errors
 /// None: the bodies are constants.

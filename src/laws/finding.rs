@@ -18,7 +18,8 @@ pub struct Finding {
     pub quantity: Quantity,
     /// The claim in words: `2` of an order, `kept`, `no`.
     pub claim: String,
-    /// The measured number: an order, a relative error or defect, a secular slope of a relative error in 1/s, a count, a time in s.
+    /// The measured number: an order, a relative error or defect, a secular slope of a relative error in 1/s, a count, a time
+    /// in s.
     pub measured: Option<f64>,
     /// Half of the interval of that number, where it is a mean or a slope; of an order how far the halvings are apart.
     pub half_width: Option<f64>,

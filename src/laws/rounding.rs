@@ -1,5 +1,5 @@
-//! The law of round-off: in double precision what is kept walks, some hundredths of a unit in the last place in a step, and does not
-//! move always in one direction.
+//! The law of round-off: in double precision what is kept walks, some hundredths of a unit in the last place in a step, and
+//! does not move always in one direction.
 
 use super::case::EXACT;
 use super::finding::{Finding, number};
@@ -74,8 +74,8 @@ const MEMBERS: u32 = 64;
 /// Their mean is that of a walk up to this part of their root mean square: 3.2 standard deviations of such a mean.
 const MEAN: f64 = 0.4;
 
-/// What rounding makes of |m| over an ensemble of bodies, of methods whose energy moves: some walk by whole roundings a step, which in
-/// one run looks like a bias.
+/// What rounding makes of |m| over an ensemble of bodies, of methods whose energy moves: some walk by whole roundings a step,
+/// which in one run looks like a bias.
 fn ensemble(method: &dyn AnyMethod, finding: Finding) -> Result<Finding, LawsError> {
     let errors: Vec<f64> = (0..MEMBERS).map(|member| of_member(method, member)).collect::<Result<_, _>>()?;
     let average = |f: fn(f64) -> f64| errors.iter().map(|e| f(*e)).sum::<f64>() / f64::from(MEMBERS);

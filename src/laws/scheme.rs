@@ -35,8 +35,8 @@ pub fn check_scheme(scheme: &Scheme) -> Result<Report, LawsError> {
     Ok(report)
 }
 
-/// For [`check_order`](super::check_order): how often the span is halved until the errors of a scheme of the order `order` are small, and
-/// still above the floor that the digits of its coefficients set.
+/// For [`check_order`](super::check_order): how often the span is halved until the errors of a scheme of the order `order` are
+/// small, and still above the floor that the digits of its coefficients set.
 #[must_use]
 pub fn exponents_of(order: u32) -> Range<u32> {
     match order {

@@ -31,7 +31,8 @@ pub fn check(method: &dyn AnyMethod) -> Result<Report, LawsError> {
     check_only(method, &PROBLEMS, &all)
 }
 
-/// Some laws of `method`, in some kinds of motion. A motion that the method claims to take and does not is named, whatever the laws.
+/// Some laws of `method`, in some kinds of motion. A motion that the method claims to take and does not is named, whatever the
+/// laws.
 ///
 /// # Errors
 /// As [`check`].
@@ -89,8 +90,8 @@ fn measure(subject: &Subject<'_>, law: Law) -> Result<Vec<Finding>, LawsError> {
     }
 }
 
-/// The order of `method` in one kind of motion, in steps of 2^−k of the [span](super::Case::span), k in `exponents`: for methods whose
-/// order shows in other steps than those of [`check`]. Nothing where the method claims no order.
+/// The order of `method` in one kind of motion, in steps of 2^−k of the [span](super::Case::span), k in `exponents`: for
+/// methods whose order shows in other steps than those of [`check`]. Nothing where the method claims no order.
 ///
 /// # Errors
 /// A method that does not take the motion, or more than 53 halvings.

@@ -64,7 +64,8 @@ words! {
         Order = "order",
         /// Φ_{−h} ∘ Φ_h = 1.
         Symmetry = "symmetry",
-        /// ρ ∘ Φ_h ∘ ρ ∘ Φ_h = 1, ρ the reversal of the momentum; of motions that are reversible. It is claimed with the symmetry.
+        /// ρ ∘ Φ_h ∘ ρ ∘ Φ_h = 1, ρ the reversal of the momentum; of motions that are reversible. It is claimed with the
+        /// symmetry.
         Reversibility = "reversibility",
         /// The map of momenta keeps the Lie–Poisson bracket.
         Poisson = "Poisson",
