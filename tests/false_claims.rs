@@ -204,7 +204,43 @@ fn a_method_that_refuses_what_it_claims_to_take_is_named() {
     assert_eq!(report.text().parse(), Ok(report));
 }
 
-/// What `method` says of one that takes free motion only.
+/// Refuses to go backwards.
+struct OneWay(Box<dyn AnyMethod>);
+
+impl Claimed for OneWay {
+    fn name(&self) -> String {
+        "one-way".into()
+    }
+    fn claims(&self, problem: Problem) -> Option<Claims> {
+        self.0.claims(problem)
+    }
+}
+
+impl AnyMethod for OneWay {
+    fn prepare_f64(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<f64>>, StepError> {
+        if clock.step < 0.0 {
+            Err(StepError::NotAStep { h: clock.step })
+        } else {
+            self.0.prepare_f64(clock, body)
+        }
+    }
+    fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError> {
+        if clock.step < 0.0 {
+            Err(StepError::NotAStep { h: clock.step })
+        } else {
+            self.0.prepare_dd(clock, body)
+        }
+    }
+}
+
+#[test]
+fn a_law_that_a_refused_step_leaves_open_is_undecided() {
+    let report = checked(&OneWay(method("rattle").unwrap()));
+    assert_eq!(report.false_claims().count(), 0, "{report}");
+    let open = report.undecided().find(|finding| finding.law == Law::Symmetry).unwrap();
+    assert!(open.why.contains("step -0.125 is not usable"), "{report}");
+}
+
 #[test]
 fn a_method_that_refuses_a_motion_claims_nothing_of_it() {
     let report = check_only(&method("exact-step").unwrap(), &[Problem::Torque], Law::ALL).unwrap();
@@ -307,6 +343,25 @@ fn what_a_force_does_not_keep_is_named() {
     assert_eq!(found(&wrong), [(Law::Conserved, Quantity::MomentumZ)]);
     let modest = of(0.5, &[]);
     assert_eq!(modest.unclaimed().map(|finding| finding.quantity).collect::<Vec<_>>(), [Quantity::Energy]);
+}
+
+/// Of a molecule as of an asteroid, a spring that turns it slowly or fast.
+#[test]
+fn no_size_of_a_body_is_special() {
+    for (size, stiffness) in [(1e-47, 1e-20), (1e-47, 1e-60), (1e33, 1e10), (1e33, 1e40)] {
+        let inertia = Inertia::from_moments([1.0, 2.0, 2.5].map(|i| i * size)).unwrap();
+        let force = |torque: f64| {
+            Force::potential_fn(
+                "spring",
+                move |q| stiffness * (1.0 - (q * Vector3::z()).x),
+                move |q| torque * Vector3::z().cross(&(q.inverse() * Vector3::x())),
+            )
+        };
+        let right = check_force(&force(stiffness), &inertia).unwrap();
+        assert!(right.findings.iter().all(|finding| finding.verdict == Verdict::Holds), "{right}");
+        let wrong = check_force(&force(1.01 * stiffness), &inertia).unwrap();
+        assert!(found(&wrong).contains(&(Law::Gradient, Quantity::Torque)), "{wrong}");
+    }
 }
 
 #[test]

@@ -15,7 +15,7 @@ use crate::run::HalvingError;
 
 /// Every law of `method` but its processor time, in each kind of motion that it takes.
 ///
-/// Some seconds of one core; [`check_only`] measures some of the laws.
+/// A second or two of one core; [`check_only`] measures some of the laws.
 ///
 /// # Errors
 /// None of a method: what it refuses is a finding.
