@@ -33,6 +33,7 @@
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
+//! | [`laws`] | what a method, a force or a scheme claims, measured |
 //! | [`truth`] | the true motion of a body, how far a run departs from it, and what became of the run |
 //! | [`advise`] | which method with which step, from short runs on the body itself |
 //! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how large its error is |
@@ -82,6 +83,7 @@ mod error;
 pub mod events;
 pub mod flow;
 pub mod inertia;
+pub mod laws;
 pub mod method;
 pub mod num;
 pub mod observe;

@@ -42,7 +42,8 @@ fn angle(motion: &FreeMotion, t: Dd, of_body: [f64; 3], in_space: [f64; 3]) -> D
 fn crossings_of_a_cone_are_found_to_rounding_and_none_is_missed() {
     let (of_body, in_space) = ([0.6, 0.0, 0.8], [0.0, 0.0, 1.0]);
     let (mut count, mut worst) = (0, 0.0_f64);
-    let motions: usize = std::env::var("POLHODE_EVENTS").ok().and_then(|count| count.parse().ok()).unwrap_or(20);
+    let motions: usize =
+        std::env::var("POLHODE_EVENTS").ok().and_then(|count| count.parse().ok()).unwrap_or(20);
     for k in 0..motions {
         let motion = free([0.4 + spread(k), 1.0 - 2.0 * spread(3 * k + 1), 0.9 * spread(7 * k + 2) - 0.4]);
         let half = 0.6 + 1.2 * spread(5 * k + 4);

@@ -1,4 +1,4 @@
-//! Methods: one step of size h is a map Φ_h that moves a point; its claims are data, and the laws in `tests/laws.rs`
+//! Methods: one step of size h is a map Φ_h that moves a point; its claims are data, and the [laws](crate::laws)
 //! execute every one of them, also those that say no.
 //!
 #![doc = include_str!("../../docs/methods.md")]

@@ -54,6 +54,12 @@ impl fmt::Debug for dyn AnyMethod {
     }
 }
 
+impl Clone for Box<dyn AnyMethod> {
+    fn clone(&self) -> Self {
+        (**self).boxed()
+    }
+}
+
 impl Claimed for Box<dyn AnyMethod> {
     fn name(&self) -> String {
         (**self).name()

@@ -166,7 +166,8 @@ impl Propagate {
         let speed = body.omega_of(&start).norm();
         // the errors of a method that chooses its steps are watched at each output, or at each radian of the turn
         let regular = self.times.every().filter(|every| *every > 0.0);
-        let watched = regular.unwrap_or(if speed > 0.0 { libm::exp2(-libm::ceil(libm::log2(speed))) } else { 1.0 });
+        let watched =
+            regular.unwrap_or(if speed > 0.0 { libm::exp2(-libm::ceil(libm::log2(speed))) } else { 1.0 });
         let Some(h) = self.step.or(adaptive.then_some(watched)) else {
             return Err(Error::Input(format!(
                 "--step: missing; --method {} needs a step in seconds",
@@ -243,7 +244,8 @@ impl Propagate {
         if t < *before {
             return Err(Error::Input(format!(
                 "{}: {t:?} comes after {:?}; a stepping method needs ascending times, none before --start-time; sort them, or use --method exact",
-                self.times.flag(), *before
+                self.times.flag(),
+                *before
             )));
         }
         *before = t;
