@@ -3,7 +3,7 @@
 use polhode::body::{Body, Conserved, Force, Potential, Time};
 use polhode::inertia::Inertia;
 use polhode::method::schemes::{Pairs, Part, Scheme, Stages};
-use polhode::method::{ExactFlow, Splitting};
+use polhode::method::{ExactFlow, SchemeError, Splitting};
 use polhode::num::{Dd, Real};
 use polhode::rotation::{Quat, Vec3};
 use polhode::run::Run;
@@ -24,13 +24,17 @@ impl<S: Real> Potential<S> for Spring {
 const B: &[Dd] = &[Dd::sum(0.675_603_595_979_828_8, 4.213_708_877_725_88e-17)];
 const A: &[Dd] = &[Dd::sum(1.351_207_191_959_657_5, 8.427_417_755_451_76e-17)];
 const STAGES: Stages = Stages::Alternating { first: Part::B, a: A, b: B, pairs: Pairs::Any };
-const RUTH_4: Scheme = Scheme { name: "ruth-4", order: 4, source: "Forest and Ruth 1990", stages: STAGES };
+
+/// The order is checked here.
+fn ruth_4() -> Result<Scheme, SchemeError> {
+    Scheme::new("ruth-4", 4, STAGES, "Forest and Ruth 1990")
+}
 
 fn main() -> Result<(), polhode::Error> {
     let body =
         Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("spring", Spring(0.5)));
     let start = body.state(Default::default(), [0.1, 0.7, 0.3].into())?;
-    let mut run = Run::new(&Splitting::kicked(ExactFlow, RUTH_4)?, &body, &start, 0.05)?;
+    let mut run = Run::new(&Splitting::kicked(ExactFlow, ruth_4()?)?, &body, &start, 0.05)?;
     let end = run.advance_to(100_000)?;
     println!("{:?} after {} s", end.worst.of(Conserved::Energy), end.elapsed.hi());
     Ok(())
@@ -42,7 +46,7 @@ fn the_scheme_has_its_order_in_the_field_of_the_force() -> Result<(), polhode::E
         Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("spring", Spring(0.5)));
     let start = body.state(Default::default(), [0.1, 0.7, 0.3].into())?;
     let worst = |h: f64| -> Result<f64, polhode::Error> {
-        let mut run = Run::new(&Splitting::kicked(ExactFlow, RUTH_4)?, &body, &start, h)?;
+        let mut run = Run::new(&Splitting::kicked(ExactFlow, ruth_4()?)?, &body, &start, h)?;
         Ok(run.advance_to((50.0 / h) as u64)?.worst.of(Conserved::Energy).unwrap_or(f64::NAN))
     };
     let ratio = worst(0.0625)? / worst(0.03125)?;

@@ -29,9 +29,11 @@
 //! | [`inertia`] | inertia tensors from moments, solids, meshes and mass distributions; what is wrong with a tensor |
 //! | [`body`] | inertia with forces, states, the solver frame of kernels |
 //! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the top |
+//! | [`events`] | when something happens: roots of functions of time and state |
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
+//! | [`laws`] | what a method, a force or a scheme claims, measured |
 //! | [`truth`] | the true motion of a body, how far a run departs from it, and what became of the run |
 //! | [`advise`] | which method with which step, from short runs on the body itself |
 //! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how large its error is |
@@ -78,8 +80,10 @@ pub mod audit;
 pub mod body;
 pub mod catalogue;
 mod error;
+pub mod events;
 pub mod flow;
 pub mod inertia;
+pub mod laws;
 pub mod method;
 pub mod num;
 pub mod observe;

@@ -9,15 +9,17 @@ use std::time::{Duration, Instant};
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::audit::{Attitudes, Noise, Question, Trajectory, audit};
-use polhode::body::{Body, Clock, Force, Problem, State};
-use polhode::flow::{FreeMotion, LagrangeTop};
+use polhode::body::{Body, Clock, Force, Point, Problem, Rotor, State, Time};
+use polhode::flow::{Casimir, Flow, FreeFlow, FreeMotion, LagrangeTop, Turn};
 use polhode::inertia::{
     Amount, Closing, Evidence, FLOAT_WELD, Inertia, InertiaShape, MassProperties, Mesh, Region, Solid,
     Surface, Twin, diagnose,
 };
+use polhode::method::schemes::{Pairs, Part, Scheme, Stages};
 use polhode::method::{Claimed, method};
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
 use polhode::num::{Dd, Expansion, Precise, Random, Real, trig};
+use polhode::rotation::{Quat, Vec3};
 use polhode::run::{Checkpoint, Run, Watch};
 
 struct Draw(Random);
@@ -443,6 +445,57 @@ fn flow() {
             all(readings.into_iter().all(f64::is_finite), "character", &(&inertia, omega, found))?;
         }
         Ok(())
+    });
+}
+
+#[test]
+fn rotors_and_their_flows() {
+    hostile(11, 1.0, |draw| {
+        let rotor = match Rotor::new(draw.list::<3>()) {
+            Ok(rotor) => rotor,
+            Err(error) => return refused(&error),
+        };
+        let m = Vec3(draw.list::<3>().map(|m| m.clamp(-1e6, 1e6)));
+        let [turn, ..] = Turn::of(&rotor);
+        let [ball, ..] = Casimir::of(&rotor);
+        let flows: [&dyn Flow<f64>; 3] = [&turn, &ball, &FreeFlow::new(&rotor)];
+        for flow in flows {
+            let mut x = Point::new(Quat::identity(), m);
+            let now = Time::from_seconds(0.0);
+            flow.flow(now, draw.share(), &mut x);
+            all(x.is_finite() || !finite(&m.0), "point", &(rotor, x))?;
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn schemes() {
+    hostile(12, 0.2, |draw| {
+        let mut list = |most: u64| -> &'static [Dd] {
+            let count = draw.below(most);
+            (0..count).map(|_| Dd::of(draw.near(0.3, 1.0))).collect::<Vec<_>>().leak()
+        };
+        let (a, b, c, d) = (list(4), list(4), list(3), list(3));
+        let pairs = match draw.below(4) {
+            0 => Pairs::Any,
+            1 => Pairs::Nystrom,
+            2 => Pairs::NearIntegrable(&[4, 2]),
+            _ => Pairs::NearIntegrableNystrom(&[6, 2]),
+        };
+        let first = if draw.one_in(2) { Part::A } else { Part::B };
+        let stages = match draw.below(5) {
+            0 => Stages::Composition(a),
+            1 => Stages::Processed { kernel: a, processor: b },
+            2 => Stages::ForceGradient { first, a, b, c },
+            3 => Stages::ProcessedAlternating { a, b, processor_a: c, processor_b: d, pairs },
+            _ => Stages::Alternating { first, a, b, pairs },
+        };
+        let order = [2, 4, 6, 32, 0, u32::MAX][draw.below(6) as usize];
+        match Scheme::new("hostile", order, stages, "") {
+            Ok(scheme) => all(order == 2 && scheme.stages() == stages, "order", &scheme),
+            Err(error) => refused(&error),
+        }
     });
 }
 

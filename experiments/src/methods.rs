@@ -81,7 +81,7 @@ pub fn schemes() -> Table {
     for scheme in schemes::ALL {
         let flows = scheme.flows();
         let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u64;
-        let kind = match scheme.stages {
+        let kind = match scheme.stages() {
             Stages::Composition(_) => "composition".to_owned(),
             Stages::Alternating { pairs: Pairs::Any, .. } => "any two flows".to_owned(),
             Stages::Alternating { pairs: Pairs::Nystrom, .. } => "kinetic and potential".to_owned(),
@@ -101,12 +101,12 @@ pub fn schemes() -> Table {
             Stages::ProcessedAlternating { .. } => "two flows, processed".to_owned(),
         };
         table.push(row![
-            scheme.name,
-            u64::from(scheme.order),
+            scheme.name(),
+            u64::from(scheme.order()),
             kind,
             count(Part::A),
             count(Part::B),
-            scheme.source,
+            scheme.source(),
         ]);
     }
     table

@@ -1,10 +1,19 @@
 //! The constants of a body that every kernel reads.
 
+use crate::inertia::{Inertia, InertiaError};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
-/// Principal moments in the solver frame, divided by [`Body::scale`](super::Body::scale), in double-double; what a
-/// kernel needs of them is worked out from here, each constant rounded once.
+/// Moments of a rotor lie within this factor of 1.
+const FAR: f64 = (1_u64 << 40) as f64;
+
+/// Principal moments in the solver frame, in double-double; what a kernel needs of them is worked out from here, each
+/// constant rounded once.
+///
+/// The solver frame has the principal axes of the body, in the order of the moments here. Its moments, momenta and energies are those in
+/// kg m² and so on divided by a power of two, [`Body::scale`](super::Body::scale): that of [`Body::rotor`](super::Body::rotor)
+/// brings the largest moment to between 1 and 2, that of [`new`](Self::new) is 1. A [`Point`](super::Point) that a flow moves
+/// has to be in the same units, as [`Body::enter`](super::Body::enter) makes it for the rotor of the same body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Rotor {
@@ -14,6 +23,33 @@ pub struct Rotor {
 impl Rotor {
     pub(crate) fn of_moments(moments: Vec3<Dd>) -> Self {
         Rotor { moments }
+    }
+
+    /// A body with these principal moments, taken as they are: the momenta of its points are then I ω, of any unit, along the
+    /// principal axes.
+    ///
+    /// # Errors
+    /// Moments that are no body's, as [`Inertia::from_moments`] says it, and a largest moment that is not within 2⁴⁰ of 1: powers of
+    /// such moments leave the range of a double. A [`Body`](super::Body) takes moments of any size.
+    ///
+    /// ```
+    /// use polhode::body::{Point, Rotor, Time};
+    /// use polhode::flow::{Flow, FreeFlow};
+    /// use polhode::rotation::{Quat, Vec3};
+    /// let rotor = Rotor::new([1.0, 2.0, 3.0])?;
+    /// let mut x = Point::new(Quat::identity(), Vec3([0.4, 2.0, -0.9]));
+    /// FreeFlow::new(&rotor).flow(Time::from_seconds(0.0), 0.1, &mut x);
+    /// assert!((x.momentum_space() - Vec3([0.4, 2.0, -0.9])).magnitude() < 1e-15);
+    /// assert!(Rotor::new([1.0, 2.0, 4.0]).is_err());
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    pub fn new(moments: [f64; 3]) -> Result<Self, InertiaError> {
+        let scale = Inertia::from_moments(moments)?.scale();
+        if (1.0 / FAR..=FAR).contains(&scale) {
+            Ok(Rotor { moments: Vec3(moments.map(Dd::of)) })
+        } else {
+            Err(InertiaError::FarFromOne { moments })
+        }
     }
 
     /// Principal moments.

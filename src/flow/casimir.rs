@@ -1,20 +1,42 @@
 //! The turn about the momentum: the exact flow of |m|².
 
 use super::Flow;
-use crate::body::{Point, Time};
+use crate::body::{Point, Rotor, Time};
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 
 /// The exact flow of the energy of a ball, `H = |m|²/(2 I)`.
 ///
 /// Φ_t: the body turns about m by the angle |m| t/I; m stays, in the body and in space. It commutes with every flow
-/// of a function of m.
+/// of a function of m. t in seconds, I and m in the units of the [solver frame](crate::body::Rotor).
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Time};
+/// use polhode::flow::{Casimir, Flow};
+/// use polhode::inertia::Inertia;
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.0, 0.0, 2.0))?; // |m| = 6
+/// let mut x = body.enter(&start)?.to_f64();
+/// let [_, ball, _] = Casimir::of(&body.rotor()); // I = 2
+/// ball.flow(Time::from_seconds(0.0), 0.5, &mut x);
+/// let end = body.leave(&x);
+/// assert_eq!(end.momentum(), start.momentum());
+/// assert!((end.rotation().angle_to(&start.rotation()) - 1.5).abs() < 1e-15);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Casimir<S> {
     inverse_moment: S,
 }
 
 impl<S: Real> Casimir<S> {
+    /// The turns of the balls that have one of the three moments of the body each.
+    #[must_use]
+    pub fn of(rotor: &Rotor) -> [Self; 3] {
+        rotor.inverse_moments().0.map(Casimir::new)
+    }
+
     /// The turn with the reciprocal moment of inertia `inverse_moment`, in the scale of the solver frame.
     pub fn new(inverse_moment: S) -> Self {
         Casimir { inverse_moment }

@@ -1,4 +1,15 @@
 //! Exact flows: the atoms that splitting methods are composed of, and the references they are judged by.
+//!
+//! | flow | of the energy | made from |
+//! |---|---|---|
+//! | [`Turn`] | ½ κ m_k² | a [`Rotor`](crate::body::Rotor), or κ |
+//! | [`Casimir`] | \|m\|²/(2I) | a rotor, or 1/I |
+//! | [`SymmetricTop`] | \|m\|²/(2A) + ½ (1/C − 1/A) m_k² | a rotor, or C and A |
+//! | [`FreeFlow`], [`FreeBody`] | ½ Σ m_k²/I_k | a rotor |
+//! | [`Kick`] | U(q) | a [`Field`](crate::body::Field) |
+//!
+//! Each moves a [`Point`]: principal axes, momenta divided by the scale of the rotor. [`KineticSplit`](crate::method::KineticSplit) makes a
+//! method of one's own of them.
 
 mod casimir;
 mod exact_motion;
@@ -18,6 +29,7 @@ pub use free::{
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop};
 pub use reach::TimeError;
+pub use turn::Turn;
 pub(crate) use turn::{turn_a_little_about, turn_about, turn_about_axis, turn_by};
 
 use crate::body::{Point, Time};

@@ -55,6 +55,18 @@ pub enum InertiaError {
         /// The principal moments.
         moments: [f64; 3],
     },
+    /// The moments of a rotor are in units in which a kernel cannot take powers of them.
+    #[error(
+        "principal moments {}, {}, {}: the largest of a rotor must be within 2^40 (1e12) of 1; divide moments and momenta by a power \
+         of two, or take the rotor of a body",
+        Computed(moments[0]),
+        Computed(moments[1]),
+        Computed(moments[2])
+    )]
+    FarFromOne {
+        /// The principal moments.
+        moments: [f64; 3],
+    },
     /// A moment is outside the range of a double, or so small that it has lost digits.
     #[error("inertia of the size {} puts a moment outside the range of a double; change the units", Shown(*value))]
     OutOfRange {

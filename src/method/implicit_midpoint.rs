@@ -58,15 +58,8 @@ impl Claimed for ImplicitMidpoint {
             Problem::Linear => Kept { energy: Energy::Exact, momentum_z: true, norm: true, ..Kept::NOTHING },
             Problem::Potential | Problem::Torque => Kept { norm: true, ..Kept::NOTHING },
         };
-        Some(Claims {
-            order: Some(2),
-            symmetric: true,
-            poisson: false,
-            symplectic: false,
-            kept,
-            cost: Cost::solves(1),
-            source: "Austin, Krishnaprasad and Wang, J. Comput. Phys. 107 (1993) 105; Lewis and Simo, J. Nonlinear Sci. 4 (1994) 253",
-        })
+        let source = "Austin, Krishnaprasad and Wang, J. Comput. Phys. 107 (1993) 105; Lewis and Simo, J. Nonlinear Sci. 4 (1994) 253";
+        Some(Claims { symmetric: true, ..Claims::new(Some(2), kept, Cost::solves(1), source) })
     }
 }
 

@@ -53,7 +53,7 @@ impl<A: FreePart> Claimed for SymmetricProjection<A> {
         let kept = Kept { energy: Energy::Exact, momentum_norm: true, norm: true, ..Kept::NOTHING };
         let cost = Cost::solves(1) + self.base.cost();
         let claims = Claims::new(self.base.order(), kept, cost, "Hairer, BIT 40 (2000) 726");
-        (problem == Problem::Free).then_some(Claims { symmetric: true, ..claims })
+        (problem == Problem::Free).then_some(Claims { symmetric: true, to_residual: true, ..claims })
     }
 }
 

@@ -1,4 +1,4 @@
-//! Methods: one step of size h is a map Φ_h that moves a point; its claims are data, and the laws in `tests/laws.rs`
+//! Methods: one step of size h is a map Φ_h that moves a point; its claims are data, and the [laws](crate::laws)
 //! execute every one of them, also those that say no.
 //!
 #![doc = include_str!("../../docs/methods.md")]
@@ -37,7 +37,9 @@ mod two_turn;
 mod variational_cayley;
 
 pub use buss_2::Buss;
-pub use combine::{Composed, FreePart, Kicks, SchemeError, Splitting, Symmetric, schemes};
+pub use combine::{
+    Composed, FreePart, InTurn, Kicks, KineticSplit, Palindrome, SchemeError, Splitting, Symmetric, schemes,
+};
 pub(crate) use contract::lanes::Block;
 pub use contract::{
     AnyMethod, Claimed, Claims, Cost, Energy, Kept, Listing, Map, Method, SideBySide, Step, StepError, Stuck,

@@ -45,7 +45,8 @@ impl Claimed for ProjectedRk4 {
     fn claims(&self, problem: Problem) -> Option<Claims> {
         let kept = Kept { energy: Energy::Exact, momentum_norm: true, norm: true, ..Kept::NOTHING };
         let source = "Hairer, Lubich and Wanner, Geometric Numerical Integration, algorithm IV.4.2";
-        (problem == Problem::Free).then(|| Claims::new(Some(4), kept, Cost::right_sides(4), source))
+        let claims = Claims::new(Some(4), kept, Cost::right_sides(4), source);
+        (problem == Problem::Free).then_some(Claims { to_residual: true, ..claims })
     }
 }
 

@@ -4,7 +4,7 @@ use super::flips::Flips;
 use super::forced::Forced;
 use super::lanes::{Lane, Reference};
 use super::{Errors, Invariants};
-use crate::body::{Body, Clock, Forces, Point, kinetic_energy};
+use crate::body::{Body, Clock, Forces, Point, Time, kinetic_energy};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
@@ -112,6 +112,11 @@ impl Monitor {
 
     /// Errors of the point `x` itself, in double-double.
     pub fn errors(&self, x: &Point<f64>) -> Errors {
+        self.errors_at(self.clock.at(x.steps()), x)
+    }
+
+    /// The same of a point that is of the time `at`.
+    pub(crate) fn errors_at(&self, at: Time, x: &Point<f64>) -> Errors {
         let Some(forced) = &self.forced else {
             let x = x.to_dd();
             return self.errors_of([
@@ -120,7 +125,7 @@ impl Monitor {
                 (x.momentum_space() - self.start.momentum_space).norm().magnitude(),
             ]);
         };
-        let (at, point) = (self.clock.at(x.steps()), x.to_dd());
+        let point = x.to_dd();
         // a start at rest where potential and torque are zero has no scale of its own: that of the point then serves
         let relative = |error: f64, scale: f64, of_point: &dyn Fn() -> f64| match (error, scale) {
             (0.0, _) => 0.0,
@@ -153,11 +158,16 @@ impl Monitor {
     /// (E − E₀) / E₀ of the point `x`, with its sign; 0 at rest. With forces relative to the scale of [`Errors`].
     #[must_use]
     pub fn energy_change(&self, x: &Point<f64>) -> f64 {
+        self.energy_change_at(self.clock.at(x.steps()), x)
+    }
+
+    /// The same of a point that is of the time `at`.
+    pub(crate) fn energy_change_at(&self, at: Time, x: &Point<f64>) -> f64 {
         let scale = self.forced.map_or(self.start.energy, |forced| Dd::of(forced.energy_scale));
         if scale.hi() == 0.0 {
             return 0.0;
         }
-        let (at, x) = (self.clock.at(x.steps()), x.to_dd());
+        let x = x.to_dd();
         let energy = match self.forced {
             Some(_) => self.kinetic(&x) + self.field.energy(at, x.attitude),
             None => self.kinetic(&x),

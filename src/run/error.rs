@@ -2,8 +2,9 @@
 
 use thiserror::Error;
 
-use super::{CheckpointError, Sample};
+use super::{CheckpointError, Sample, ScheduleError};
 use crate::body::StateError;
+use crate::events::EventError;
 use crate::method::{StepError, Stuck};
 use crate::num::{Precise, Shown};
 
@@ -32,6 +33,22 @@ pub enum RunError {
         /// Steps taken.
         taken: u64,
     },
+    /// The time is none of the run.
+    #[error(transparent)]
+    Time(#[from] ScheduleError),
+    /// The run is past that time already.
+    #[error(
+        "the state at t = {} s was asked for, and the run has come to t = {} s; it goes forwards only", Shown(*asked), Shown(*reached)
+    )]
+    Past {
+        /// The time asked for, s.
+        asked: f64,
+        /// The time of the run, s.
+        reached: f64,
+    },
+    /// Events could not be looked for.
+    #[error(transparent)]
+    Event(#[from] EventError),
     /// The next step leaves the range of numbers.
     #[error("diverged after {} steps, t = {} s: the next state is not finite; take a smaller step or another method",
         .last.steps, Shown(.last.time.to_f64()))]

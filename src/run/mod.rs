@@ -1,10 +1,12 @@
-//! Long propagation: steps counted in `u64`, samples at scheduled steps or times, checkpoints, and typed errors for runs
+//! Long propagation: steps counted in `u64`, samples at scheduled steps or at any time, events, checkpoints, and typed errors for runs
 //! that diverge; ensembles of many bodies.
 
+mod between;
 mod checkpoint;
 mod convergence;
 mod ensemble;
 mod error;
+mod events;
 #[allow(clippy::module_inception)]
 mod run;
 mod sample;

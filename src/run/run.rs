@@ -6,6 +6,7 @@ use super::error::SOLVED;
 use super::{Checkpoint, CheckpointError, RunError, Sample, Schedule, Watch, checkpoint};
 use crate::body::{Body, Clock, Point, State, StateError, Witness};
 use crate::method::{AnyMethod, Step, Work};
+use crate::num::Dd;
 use crate::observe::{BLOCK, Errors, Invariants, Monitor};
 
 /// Steps between checks of the residual of implicit methods.
@@ -32,21 +33,30 @@ const CHUNK: u64 = 4096;
 /// ```
 #[must_use]
 pub struct Run {
-    body: Body,
-    method: String,
-    step: Box<dyn Step<f64>>,
+    pub(super) body: Body,
+    pub(super) method: Box<dyn AnyMethod>,
+    pub(super) step: Box<dyn Step<f64>>,
     /// The same step with forces that report a value that is not finite, and that report; with forces only.
     probe: Option<(Box<dyn Step<f64>>, Witness)>,
-    clock: Clock,
+    pub(super) clock: Clock,
     watch: Watch,
     start: Point<f64>,
     /// In the form in which the step moves it.
-    point: Point<f64>,
+    pub(super) point: Point<f64>,
     /// The state behind that form.
-    reading: Point<f64>,
+    pub(super) reading: Point<f64>,
     monitor: Monitor,
     residual: f64,
     /// Whether steps have been taken that were not watched.
+    missed: bool,
+}
+
+/// A step of a run and what was watched up to it.
+pub(super) struct Mark {
+    point: Point<f64>,
+    reading: Point<f64>,
+    memory: Vec<f64>,
+    monitor: Monitor,
     missed: bool,
 }
 
@@ -102,7 +112,7 @@ impl Run {
         step.open(&mut point);
         Ok(Run {
             step,
-            method: method.name(),
+            method: method.boxed(),
             probe,
             monitor: Monitor::new(body, clock, &start),
             body: body.clone(),
@@ -142,7 +152,7 @@ impl Run {
     /// ```
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
-            method: self.method.escape_debug().to_string(),
+            method: self.method.name().escape_debug().to_string(),
             body: checkpoint::identity(&self.body, self.clock, &self.start),
             clock: self.clock,
             watch: self.watch,
@@ -188,6 +198,12 @@ impl Run {
     /// [`RunError::Unsolved`] with the sample at which it was noticed, up to 4096 steps after the step that failed;
     /// [`RunError::OutOfRange`]; [`RunError::Behind`] where the run is further on already.
     pub fn advance_to(&mut self, steps: u64) -> Result<Sample, RunError> {
+        self.go_to(steps)?;
+        self.finite_sample().map(|sample| *sample)
+    }
+
+    /// The same without the sample.
+    pub(super) fn go_to(&mut self, steps: u64) -> Result<(), RunError> {
         let taken = self.point.steps();
         if steps < taken {
             return Err(RunError::Behind { asked: steps, taken });
@@ -195,10 +211,7 @@ impl Run {
         loop {
             let residual = self.worst_residual();
             if residual > SOLVED {
-                return Err(match self.finite_sample() {
-                    Ok(last) => RunError::Unsolved { last, residual },
-                    Err(error) => error,
-                });
+                return Err(self.unsolved(residual));
             }
             if self.point.steps() >= steps {
                 break;
@@ -216,7 +229,31 @@ impl Run {
         if self.watch == Watch::AtSamples && self.monitor.observe(&[self.reading]) == 0 {
             return Err(self.broken());
         }
-        self.finite_sample().map(|sample| *sample)
+        Ok(())
+    }
+
+    /// Where the run is now, to [go back](Self::go_back) to.
+    pub(super) fn marked(&self) -> Mark {
+        Mark {
+            point: self.point,
+            reading: self.reading,
+            memory: self.step.memory(),
+            monitor: self.monitor.clone(),
+            missed: self.missed,
+        }
+    }
+
+    pub(super) fn go_back(&mut self, mark: Mark) {
+        (self.point, self.reading) = (mark.point, mark.reading);
+        self.step.remember(&mark.memory);
+        (self.monitor, self.missed) = (mark.monitor, mark.missed);
+    }
+
+    pub(super) fn unsolved(&mut self, residual: f64) -> RunError {
+        match self.finite_sample() {
+            Ok(last) => RunError::Unsolved { last, residual },
+            Err(error) => error,
+        }
     }
 
     fn read(&mut self) {
@@ -224,7 +261,7 @@ impl Run {
     }
 
     /// The sample at the current step, if it is finite in the units of the body.
-    fn finite_sample(&mut self) -> Result<Box<Sample>, RunError> {
+    pub(super) fn finite_sample(&mut self) -> Result<Box<Sample>, RunError> {
         self.read();
         let sample = self.sample();
         if sample.is_finite() {
@@ -276,7 +313,7 @@ impl Run {
     }
 
     /// Why the next step is not finite.
-    fn broken(&mut self) -> RunError {
+    pub(super) fn broken(&mut self) -> RunError {
         let last = match self.finite_sample() {
             Ok(last) => last,
             Err(error) => return error,
@@ -334,22 +371,26 @@ impl Run {
     /// The sample at the current step.
     #[must_use]
     pub fn sample(&self) -> Sample {
-        let point = self.reading;
-        let at = self.clock.at(point.steps());
+        self.sample_of(self.reading, Dd::ZERO)
+    }
+
+    /// The sample of `point`, of the time `later` (s) behind its step.
+    pub(super) fn sample_of(&self, point: Point<f64>, later: Dd) -> Sample {
+        let at = self.clock.at(point.steps()).later(later);
         let invariants = Invariants::of(&self.body, at, &point);
         let scale = self.body.scale();
         let watched = self.watch == Watch::EveryStep && !self.missed;
         Sample {
             steps: point.steps(),
-            elapsed: self.clock.elapsed(point.steps()),
+            elapsed: self.clock.elapsed(point.steps()) + later,
             time: at.dd(),
             state: self.body.leave(&point),
             point,
             omega_body: self.body.omega_of(&point),
             energy: invariants.energy.hi() * scale,
             momentum_norm: invariants.momentum_norm().hi() * scale,
-            energy_change: self.monitor.energy_change(&point),
-            errors: self.monitor.errors(&point),
+            energy_change: self.monitor.energy_change_at(at, &point),
+            errors: self.monitor.errors_at(at, &point),
             worst: if self.watch == Watch::Never { Errors::NONE } else { self.monitor.worst() },
             watch: self.watch,
             flips: watched.then(|| self.monitor.flips()),

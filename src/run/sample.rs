@@ -52,7 +52,7 @@ impl fmt::Display for Watch {
 pub struct Sample {
     /// Steps taken.
     pub steps: u64,
-    /// Time since the start, steps · h, s: exact.
+    /// Time since the start, s: exact. Steps · h, or more [between steps](super::Run::at).
     pub elapsed: Dd,
     /// Time, s: that of the start and what has elapsed since.
     pub time: Dd,
@@ -74,7 +74,8 @@ pub struct Sample {
     pub worst: Errors,
     /// How often the errors were evaluated.
     pub watch: Watch,
-    /// How often the momentum along the axis of the middle moment has changed sign so far, where every step was watched.
+    /// How often the momentum along the axis of the middle moment has changed sign up to the last step, where every step was
+    /// watched.
     pub flips: Option<u64>,
 }
 

@@ -18,6 +18,45 @@ pub struct Schedule {
     rest: Vec<u64>,
 }
 
+/// Where a time lies among the steps of a clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Place {
+    /// After so many whole steps, to within four units in the last place of the largest of |t|, |start| and the step.
+    At(u64),
+    /// By `later` s behind so many steps; the nearest time that steps reach is `nearest`.
+    Behind { steps: u64, later: Dd, nearest: f64 },
+}
+
+impl Place {
+    /// Of the time `t`, s, from the start of `clock` on, in the direction of its steps.
+    pub(super) fn of(clock: Clock, t: f64) -> Result<Self, ScheduleError> {
+        let Clock { start, step } = clock;
+        let steps = ((t - start) / step).round();
+        if !t.is_finite() {
+            return Err(ScheduleError::NotFinite { t });
+        }
+        if steps.is_nan() || steps >= 9_007_199_254_740_992.0 {
+            return Err(ScheduleError::TooMany { t, step: step.abs(), steps });
+        }
+        if steps < 0.0 {
+            return Err(ScheduleError::NotAscending { t, before: start });
+        }
+        let nearest = (Dd::from(start) + Dd::product(steps, step)).to_f64();
+        let largest = t.abs().max(start.abs()).max(step.abs());
+        if (nearest - t).abs() <= 4.0 * (largest.next_up() - largest) {
+            return Ok(Place::At(steps as u64));
+        }
+        let elapsed = Dd::from(t) - Dd::from(start);
+        let behind = |steps: u64| elapsed - clock.elapsed(steps);
+        let rounded = steps as u64;
+        let before = if behind(rounded).hi() * step < 0.0 { rounded.checked_sub(1) } else { Some(rounded) };
+        match before {
+            Some(steps) => Ok(Place::Behind { steps, later: behind(steps), nearest }),
+            None => Err(ScheduleError::NotAscending { t, before: start }),
+        }
+    }
+}
+
 /// Why times cannot be reached by steps.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -140,16 +179,10 @@ impl Schedule {
                 return Err(ScheduleError::NotAscending { t, before });
             }
             before = t;
-            let steps = ((t - start) / step).round();
-            if steps.is_nan() || steps >= 9_007_199_254_740_992.0 {
-                return Err(ScheduleError::TooMany { t, step, steps });
+            match Place::of(clock, t)? {
+                Place::At(steps) => counts.push(steps),
+                Place::Behind { nearest, .. } => return Err(ScheduleError::NotReached { t, step, nearest }),
             }
-            let nearest = (Dd::from(start) + Dd::product(steps, step)).to_f64();
-            let largest = t.abs().max(start.abs()).max(step);
-            if (nearest - t).abs() > 4.0 * (largest.next_up() - largest) {
-                return Err(ScheduleError::NotReached { t, step, nearest });
-            }
-            counts.push(steps as u64);
         }
         Ok(Schedule::at(counts))
     }

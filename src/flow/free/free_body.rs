@@ -13,6 +13,21 @@ use crate::rotation::Vec3;
 /// Only products and differences of `S` go into it: in `f64` a turn of
 /// one radian is good to 4e-14 rad; next to the unstable axis, where the phase is as long as the logarithm of the distance,
 /// to 2e-13 rad.
+/// t in seconds, moments and m in the units of the [solver frame](crate::body::Rotor).
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Time};
+/// use polhode::flow::{Flow, FreeBody, FreeMotion};
+/// use polhode::inertia::Inertia;
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let mut x = body.enter(&start)?.to_f64();
+/// FreeBody::new(&body.rotor()).flow(Time::from_seconds(0.0), 0.5, &mut x);
+/// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(0.5)?;
+/// assert!(body.leave(&x).rotation().angle_to(&exact.rotation()) < 1e-13);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct FreeBody<S> {
     moments: Vec3<S>,

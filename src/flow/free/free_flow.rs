@@ -13,6 +13,21 @@ use crate::rotation::{Quat, Vec3};
 /// Over a short time the motion is an increment whose rounding is carried. What rounding takes from the energy and from L
 /// in a flow by elliptic functions is measured in double-double and given back: else both would move away slowly, by
 /// a few hundredths of a rounding error each time.
+/// t in seconds, moments and m in the units of the [solver frame](crate::body::Rotor).
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Time};
+/// use polhode::flow::{Flow, FreeFlow, FreeMotion};
+/// use polhode::inertia::Inertia;
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let mut x = body.enter(&start)?.to_f64();
+/// FreeFlow::new(&body.rotor()).flow(Time::from_seconds(0.0), 0.5, &mut x);
+/// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(0.5)?;
+/// assert!(body.leave(&x).rotation().angle_to(&exact.rotation()) < 1e-13);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct FreeFlow<S>(Kind<S>);
 

@@ -86,6 +86,11 @@ impl FreeMotion {
         self.reach
     }
 
+    /// Whether there is a state at the time `t`, s.
+    pub(crate) fn check_time(&self, t: f64) -> Result<(), TimeError> {
+        TimeError::check(t, self.reach)
+    }
+
     /// The states at many `times`, body axes: the bits of [`at`](Self::at), several times as fast.
     ///
     /// ```

@@ -8,7 +8,22 @@ use crate::rotation::{Quat, Vec3};
 /// The exact flow of the free symmetric body, `T = |m|²/(2A) + ½ (1/C − 1/A) m_k²`.
 ///
 /// Φ_t: a turn about the symmetry axis k at the rate `(1/C − 1/A) m_k`, which moves m on its cone in the body, then
-/// one about m at the rate |m|/A, the precession in space. The two commute.
+/// one about m at the rate |m|/A, the precession in space. The two commute. t in seconds, moments and m in the units of the
+/// [solver frame](crate::body::Rotor).
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::{Body, Time};
+/// use polhode::flow::{Flow, SymmetricTop};
+/// use polhode::inertia::Inertia;
+/// let plate = Body::free(Inertia::from_moments([1.0, 1.0, 2.0])?);
+/// let start = plate.state(UnitQuaternion::identity(), Vector3::new(0.5, 0.0, 1.0))?;
+/// let mut x = plate.enter(&start)?.to_f64();
+/// let top = SymmetricTop::new(&plate.rotor()).ok_or("no two moments are equal")?;
+/// top.flow(Time::from_seconds(0.0), core::f64::consts::TAU, &mut x); // (1/C - 1/A) m_z = -1 rad/s
+/// assert!((plate.leave(&x).momentum() - start.momentum()).norm() < 1e-15);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct SymmetricTop<S> {
     axis: usize,
@@ -31,9 +46,24 @@ impl<S: Real> SymmetricTop<S> {
     pub fn new(rotor: &Rotor) -> Option<Self> {
         let moments = rotor.moments::<Dd>();
         let axis = (0..3).find(|axis| moments[(axis + 1) % 3] == moments[(axis + 2) % 3])?;
-        let (along, across) = (Dd::ONE / moments[axis], Dd::ONE / moments[(axis + 1) % 3]);
+        Some(Self::with_moments(axis, moments[axis], moments[(axis + 1) % 3]))
+    }
+
+    /// The flow with the symmetry axis `AXIS` (0, 1 or 2), the moment `along` about it and `across` about all axes across,
+    /// whether a body has these two or not.
+    ///
+    /// So it is a part of a body whose moments differ: with A one of the two across, a [turn](crate::flow::Turn) about the
+    /// axis of the other is left, `T = T_top + ½ (1/B − 1/A) m_B²`.
+    #[must_use]
+    pub fn about<const AXIS: usize>(along: Dd, across: Dd) -> Self {
+        const { assert!(AXIS < 3, "the axes are 0, 1 and 2") }
+        Self::with_moments(AXIS, along, across)
+    }
+
+    fn with_moments(axis: usize, along: Dd, across: Dd) -> Self {
+        let (along, across) = (Dd::ONE / along, Dd::ONE / across);
         let half_spin = S::from_dd((along - across) * 0.5);
-        Some(SymmetricTop { axis, half_spin, precession: Casimir::new(S::from_dd(across)) })
+        SymmetricTop { axis, half_spin, precession: Casimir::new(S::from_dd(across)) }
     }
 }
 

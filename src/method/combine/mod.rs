@@ -2,6 +2,7 @@
 
 mod composed;
 mod kicks;
+mod kinetic_split;
 mod lengths;
 mod processor;
 mod scheme_error;
@@ -11,6 +12,7 @@ mod splitting_map;
 
 pub use composed::{Composed, Symmetric};
 pub use kicks::Kicks;
+pub use kinetic_split::{InTurn, KineticSplit, Palindrome};
 pub(super) use lengths::lengths;
 pub use scheme_error::SchemeError;
 pub use splitting::{FreePart, Splitting};

@@ -4,7 +4,7 @@ use super::SchemeError;
 use super::kicks::KickMap;
 use super::lengths::lengths;
 use super::processor::{Processor, Timed};
-use super::schemes::{Part, STRANG, Scheme, Stages};
+use super::schemes::{Part, STRANG, Scheme};
 use super::splitting_map::{Ends, SplittingMap};
 use crate::body::{Field, Problem, Rotor};
 use crate::method::{Claimed, Claims, Cost, Energy, Kept, Kicks, Method, Symmetric};
@@ -23,6 +23,9 @@ pub struct Splitting<A, B> {
 }
 
 /// The part A of a splitting of kinetic and potential energy: a map of the free body, exact or not.
+///
+/// What it says of itself is what the [claims](Claimed::claims) of the splitting are made of. One that is made of exact flows
+/// needs no more than [`KineticSplit`](super::KineticSplit).
 pub trait FreePart: Symmetric {
     /// Name of the method that alternates it with kicks by Strang's scheme.
     fn name(&self) -> String;
@@ -30,6 +33,21 @@ pub trait FreePart: Symmetric {
     fn order(&self) -> Option<u32>;
     /// The energy of free motion.
     fn energy(&self) -> Energy;
+    /// What free motion by the map keeps: the energy as [`energy`](Self::energy) says, |m|, L and |q|, unless said otherwise. Under
+    /// a potential L_z is kept only if it is here, and the energy stays within bounds only if it does here.
+    ///
+    /// ```
+    /// use polhode::method::{ExactFlow, FreePart};
+    /// let kept = ExactFlow.kept();
+    /// assert!(kept.momentum_norm && kept.momentum_space && kept.momentum_z && kept.norm);
+    /// ```
+    fn kept(&self) -> Kept {
+        Kept::all_of_free_motion(self.energy())
+    }
+    /// Whether the map of momenta keeps the Lie–Poisson bracket.
+    fn poisson(&self) -> bool {
+        true
+    }
     /// Whether the map is symplectic: the turn of the body included, of which the bracket of the momenta knows nothing.
     fn symplectic(&self) -> bool {
         true
@@ -81,14 +99,6 @@ impl<A: FreePart> Splitting<A, Kicks> {
     /// # Ok::<(), polhode::method::SchemeError>(())
     /// ```
     pub fn kicked(free: A, scheme: Scheme) -> Result<Self, SchemeError> {
-        if let Stages::Alternating { first, a, b, .. } | Stages::ForceGradient { first, a, b, .. } =
-            scheme.stages
-        {
-            let (outer, inner) = if first == Part::A { (a.len(), b.len()) } else { (b.len(), a.len()) };
-            if outer != inner && outer != inner + 1 {
-                return Err(SchemeError::Lengths { scheme: scheme.name, outer, inner });
-            }
-        }
         match (free.order(), scheme.lengths()) {
             (Some(order), None) if order < scheme.order && free.free_cost(&scheme).is_none() => {
                 Err(SchemeError::Inexact { scheme: scheme.name, base: free.name(), order })
@@ -126,7 +136,7 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
             let exact = problem == Problem::Free && self.a.order().is_none();
             Claims {
                 symmetric: exact || !self.scheme.is_processed(),
-                poisson: true,
+                poisson: self.a.poisson(),
                 symplectic: self.a.symplectic(),
                 ..Claims::new(order, kept, cost, source)
             }
@@ -135,13 +145,15 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
             Problem::Free => {
                 // a composition keeps the order of its base where that is higher
                 let order = self.a.order().map(|order| order.max(self.scheme.order));
-                Some(claims(order, Kept::all_of_free_motion(self.a.energy()), free))
+                Some(claims(order, self.a.kept(), free))
             }
             // the kicks would alternate with free motion of a lower order
             Problem::Linear | Problem::Potential if self.is_for_free_motion() => None,
             Problem::Potential if !self.scheme.gradients().is_empty() => None,
             Problem::Linear | Problem::Potential => {
-                let kept = Kept { energy: Energy::Bounded, momentum_z: true, norm: true, ..Kept::NOTHING };
+                let Kept { energy, momentum_space, momentum_z, norm, .. } = self.a.kept();
+                let energy = if energy == Energy::Drifts { energy } else { Energy::Bounded };
+                let kept = Kept { energy, momentum_z: momentum_z || momentum_space, norm, ..Kept::NOTHING };
                 Some(claims(Some(self.scheme.order), kept, free + Cost::kicks(count(Part::B))))
             }
             Problem::Torque => None,

@@ -22,20 +22,41 @@ pub trait AnyMethod: Claimed + Send + Sync {
     /// # Errors
     /// As [`prepare_f64`](Self::prepare_f64).
     fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError>;
+
+    /// Maps of the length `h` (s) at times of `clock`, in `f64`: parts of its steps.
+    ///
+    /// # Errors
+    /// As [`prepare_f64`](Self::prepare_f64).
+    fn prepare_part(&self, clock: Clock, h: Dd, body: &Body) -> Result<Box<dyn Step<f64>>, StepError>;
+
+    /// The same method, to be kept.
+    fn boxed(&self) -> Box<dyn AnyMethod>;
 }
 
-impl<M: Method<f64> + Method<Dd> + Claimed + Send + Sync> AnyMethod for M {
+impl<M: Method<f64> + Method<Dd> + Claimed + Clone + Send + Sync + 'static> AnyMethod for M {
     fn prepare_f64(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<f64>>, StepError> {
-        prepare(self, clock, body)
+        prepare(self, clock, Dd::from(clock.step), body)
     }
     fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError> {
-        prepare(self, clock, body)
+        prepare(self, clock, Dd::from(clock.step), body)
+    }
+    fn prepare_part(&self, clock: Clock, h: Dd, body: &Body) -> Result<Box<dyn Step<f64>>, StepError> {
+        prepare(self, clock, h, body)
+    }
+    fn boxed(&self) -> Box<dyn AnyMethod> {
+        Box::new(self.clone())
     }
 }
 
 impl fmt::Debug for dyn AnyMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.name())
+    }
+}
+
+impl Clone for Box<dyn AnyMethod> {
+    fn clone(&self) -> Self {
+        (**self).boxed()
     }
 }
 
@@ -64,10 +85,16 @@ impl AnyMethod for Box<dyn AnyMethod> {
     fn prepare_dd(&self, clock: Clock, body: &Body) -> Result<Box<dyn Step<Dd>>, StepError> {
         (**self).prepare_dd(clock, body)
     }
+    fn prepare_part(&self, clock: Clock, h: Dd, body: &Body) -> Result<Box<dyn Step<f64>>, StepError> {
+        (**self).prepare_part(clock, h, body)
+    }
+    fn boxed(&self) -> Box<dyn AnyMethod> {
+        (**self).boxed()
+    }
 }
 
-/// Steps of `method`, compiled for what acts on `body`.
-fn prepare<S, M>(method: &M, clock: Clock, body: &Body) -> Result<Box<dyn Step<S>>, StepError>
+/// Maps of `method` of the length `h`, compiled for what acts on `body`.
+fn prepare<S, M>(method: &M, clock: Clock, h: Dd, body: &Body) -> Result<Box<dyn Step<S>>, StepError>
 where
     S: Evaluated,
     M: Method<S> + Claimed,
@@ -92,7 +119,7 @@ where
     {
         return Err(StepError::Closure { method: method.name(), force: force.name().into() });
     }
-    let (h, rotor) = (Dd::from(clock.step), body.rotor());
+    let rotor = body.rotor();
     Ok(match (problem, body.linear_potential::<S>()) {
         (Problem::Free, _) => Box::new(Stepper::new(method.map(h, &rotor, &Free), clock)),
         (Problem::Linear, Some(linear)) => Box::new(Stepper::new(method.map(h, &rotor, &linear), clock)),

@@ -60,6 +60,8 @@ pub struct Claims {
     pub symplectic: bool,
     /// What is constant along the numerical solution.
     pub kept: Kept,
+    /// What is kept is kept by an iteration at the end of each step, to a residual that adds up over the steps.
+    pub to_residual: bool,
     /// Work per step.
     pub cost: Cost,
     /// Where it comes from.
@@ -67,10 +69,10 @@ pub struct Claims {
 }
 
 impl Claims {
-    /// Of a method that is neither symmetric nor Poisson nor symplectic; where it is, set the field.
+    /// Of a method that is neither symmetric nor Poisson nor symplectic and projects nothing; where it is or does, set the field.
     pub const fn new(order: Option<u32>, kept: Kept, cost: Cost, source: &'static str) -> Claims {
-        let [symmetric, poisson, symplectic] = [false; 3];
-        Claims { order, symmetric, poisson, symplectic, kept, cost, source }
+        let [symmetric, poisson, symplectic, to_residual] = [false; 4];
+        Claims { order, symmetric, poisson, symplectic, kept, to_residual, cost, source }
     }
 }
 

@@ -19,6 +19,7 @@ use crate::num::{Dd, Real};
 /// use polhode::run::Run;
 ///
 /// /// A kick, then the free flow, Φ_h = A(h) B(h): of order 1, and not symmetric.
+/// #[derive(Clone)]
 /// struct KickFirst;
 /// struct KickFirstMap<S, F> {
 ///     h: S,
@@ -122,6 +123,17 @@ pub trait Map<S: Real>: Send + 'static {
     /// Takes the map back, or on, to where its [`memory`](Self::memory) was `memory`; the point has to be the one of then.
     fn remember(&mut self, _memory: &[f64]) {}
 
+    /// The time since the start (s) that the point is of between outputs, of a map that chooses its steps; `None` of all others.
+    fn base(&self) -> Option<Dd> {
+        None
+    }
+
+    /// Takes the steps of a map that chooses them up to the last that ends by `until`, which is not before the
+    /// [base](Self::base), and gives the state at `until`, by the dense output of the next one.
+    fn dense(&mut self, _until: Time, x: &mut Point<S>) -> Point<S> {
+        *x
+    }
+
     /// How many bodies take the steps of [`advance`](Self::advance) side by side, of a map that has been opened; `None` where
     /// each takes them alone.
     fn side_by_side(&self) -> Option<SideBySide<S>> {
@@ -194,6 +206,15 @@ pub trait Step<S: Real>: Send {
     /// As [`Map::remember`].
     fn remember(&mut self, memory: &[f64]);
 
+    /// As [`Map::apply`]: from a state to a state, without counting a step.
+    fn apply(&mut self, at: Time, x: &mut Point<S>);
+
+    /// As [`Map::base`].
+    fn base(&self) -> Option<Dd>;
+
+    /// As [`Map::dense`].
+    fn dense(&mut self, until: Time, x: &mut Point<S>) -> Point<S>;
+
     /// As [`Map::side_by_side`].
     fn side_by_side(&self) -> Option<SideBySide<S>>;
 
@@ -264,6 +285,18 @@ impl<S: Real, M: Map<S>> Step<S> for Stepper<M> {
 
     fn remember(&mut self, memory: &[f64]) {
         self.map.remember(memory);
+    }
+
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.map.apply(at, x);
+    }
+
+    fn base(&self) -> Option<Dd> {
+        self.map.base()
+    }
+
+    fn dense(&mut self, until: Time, x: &mut Point<S>) -> Point<S> {
+        self.map.dense(until, x)
     }
 
     fn side_by_side(&self) -> Option<SideBySide<S>> {

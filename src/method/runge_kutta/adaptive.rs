@@ -166,6 +166,34 @@ impl<S: Real, F: Field<S>, P: Pair> EmbeddedMap<S, F, P> {
         }
     }
 
+    /// Takes the steps that end by `end`, s since the start.
+    fn advance_to(&mut self, at: Time, end: Dd, x: &mut Point<S>) {
+        let begun = self.base;
+        let mut own = OwnSteps::default();
+        loop {
+            let Some(Current { h, change, next, .. }) = self.accepted(at, x) else {
+                x.add_momentum(Vec3([S::of(f64::NAN); 3]));
+                return;
+            };
+            let behind = self.base + h;
+            if (end - behind).hi() * h.signum() < 0.0 {
+                return;
+            }
+            x.add_momentum(change.momentum_body);
+            x.add_attitude(change.attitude);
+            if let Some(needed) = own.needed((behind - begun).hi(), (end - begun).hi()) {
+                let time = at.at_elapsed(behind, 1.0).seconds();
+                self.stuck = Some(Stuck { time, step: h.abs(), estimate: None, needed: Some(needed) });
+                self.current = None;
+                x.add_momentum(Vec3([S::of(f64::NAN); 3]));
+                return;
+            }
+            let rate = self.rates[P::END];
+            self.restart(behind, next);
+            (self.rates[0], self.begun) = (rate, true);
+        }
+    }
+
     /// Moves `x` on to the time `elapsed` after its own, within the current step.
     fn move_within(&mut self, at: Time, elapsed: Dd, x: &mut Point<S>) {
         let Some(mut current) = self.accepted(at, x) else {
@@ -199,30 +227,7 @@ impl<S: Real, F: Field<S>, P: Pair> Map<S> for EmbeddedMap<S, F, P> {
     }
 
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
-        let (begun, end) = (self.base, at.elapsed() + self.h);
-        let mut own = OwnSteps::default();
-        loop {
-            let Some(Current { h, change, next, .. }) = self.accepted(at, x) else {
-                x.add_momentum(Vec3([S::of(f64::NAN); 3]));
-                return;
-            };
-            let behind = self.base + h;
-            if (end - behind).hi() * h.signum() < 0.0 {
-                return;
-            }
-            x.add_momentum(change.momentum_body);
-            x.add_attitude(change.attitude);
-            if let Some(needed) = own.needed((behind - begun).hi(), (end - begun).hi()) {
-                let time = at.at_elapsed(behind, 1.0).seconds();
-                self.stuck = Some(Stuck { time, step: h.abs(), estimate: None, needed: Some(needed) });
-                self.current = None;
-                x.add_momentum(Vec3([S::of(f64::NAN); 3]));
-                return;
-            }
-            let rate = self.rates[P::END];
-            self.restart(behind, next);
-            (self.rates[0], self.begun) = (rate, true);
-        }
+        self.advance_to(at, at.elapsed() + self.h, x);
     }
 
     fn close(&mut self, at: Time, x: &mut Point<S>) {
@@ -230,6 +235,17 @@ impl<S: Real, F: Field<S>, P: Pair> Map<S> for EmbeddedMap<S, F, P> {
         if elapsed != Dd::ZERO {
             self.move_within(at, elapsed, x);
         }
+    }
+
+    fn base(&self) -> Option<Dd> {
+        Some(self.base)
+    }
+
+    fn dense(&mut self, until: Time, x: &mut Point<S>) -> Point<S> {
+        self.advance_to(until, until.elapsed(), x);
+        let mut there = *x;
+        self.close(until, &mut there);
+        there
     }
 
     fn memory(&self) -> Vec<f64> {

@@ -147,21 +147,10 @@ impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
         self.work.evaluations += self.series.order() as u64;
         current
     }
-}
 
-impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
-    fn apply(&mut self, at: Time, x: &mut Point<S>) {
-        self.open(at, x);
-        self.advance(at, x);
-        self.close(at.later(self.h), x);
-    }
-
-    fn open(&mut self, at: Time, _: &mut Point<S>) {
-        self.restart(at.elapsed());
-    }
-
-    fn advance(&mut self, at: Time, x: &mut Point<S>) {
-        let (begun, end) = (self.base, at.elapsed() + self.h);
+    /// Takes the steps that end by `end`, s since the start.
+    fn advance_to(&mut self, at: Time, end: Dd, x: &mut Point<S>) {
+        let begun = self.base;
         let mut own = OwnSteps::default();
         while self.stuck.is_none() {
             let Current { unit, reach } = self.expanded(at, x);
@@ -186,6 +175,22 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
         }
         x.add_momentum(Vec3([S::of(f64::NAN); 3]));
     }
+}
+
+impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.open(at, x);
+        self.advance(at, x);
+        self.close(at.later(self.h), x);
+    }
+
+    fn open(&mut self, at: Time, _: &mut Point<S>) {
+        self.restart(at.elapsed());
+    }
+
+    fn advance(&mut self, at: Time, x: &mut Point<S>) {
+        self.advance_to(at, at.elapsed() + self.h, x);
+    }
 
     fn close(&mut self, at: Time, x: &mut Point<S>) {
         let elapsed = at.elapsed() - self.base;
@@ -193,6 +198,17 @@ impl<S: Real, F: Field<S>> Map<S> for AdaptiveTaylorMap<S, F> {
             let unit = self.expanded(at, x).unit;
             add_change(&self.series, S::from_dd(elapsed * (1.0 / unit)), x);
         }
+    }
+
+    fn base(&self) -> Option<Dd> {
+        Some(self.base)
+    }
+
+    fn dense(&mut self, until: Time, x: &mut Point<S>) -> Point<S> {
+        self.advance_to(until, until.elapsed(), x);
+        let mut there = *x;
+        self.close(until, &mut there);
+        there
     }
 
     /// A series of the order K counts as K evaluations; no step is rejected.

@@ -11,7 +11,7 @@ use polhode::method::{AnyMethod, Claimed, StepError};
 use polhode::num::Dd;
 use polhode::observe::Monitor;
 use polhode::rotation::rotation_angle;
-use polhode::run::{Run, RunError, Sample, Schedule, ScheduleError, Watch};
+use polhode::run::{Run, RunError, Sample, Watch};
 use polhode_files::error::{Error, warn};
 use polhode_files::moment::positive_duration;
 use polhode_files::numbers::positive;
@@ -51,7 +51,7 @@ pub(crate) struct Propagate {
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Method")]
     method: String,
-    /// Step of a method with fixed steps, s, a whole number of which leads to every time; exact, taylor, dop853 and tsit5 need none
+    /// Step of a method with fixed steps, s; exact, taylor, dop853 and tsit5 need none
     #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Method")]
     step: Option<f64>,
     /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
@@ -163,21 +163,22 @@ impl Propagate {
     ) -> Result<(), Error> {
         let method = self.stepping_method()?;
         let adaptive = method.tolerance().is_some();
-        let regular = if adaptive { self.times.every().filter(|every| *every > 0.0) } else { None };
-        let Some(h) = self.step.or(regular) else {
+        let speed = body.omega_of(&start).norm();
+        // the errors of a method that chooses its steps are watched at each output, or at each radian of the turn
+        let regular = self.times.every().filter(|every| *every > 0.0);
+        let watched =
+            regular.unwrap_or(if speed > 0.0 { libm::exp2(-libm::ceil(libm::log2(speed))) } else { 1.0 });
+        let Some(h) = self.step.or(adaptive.then_some(watched)) else {
             return Err(Error::Input(format!(
                 "--step: missing; --method {} needs a step in seconds",
                 self.method
             )));
         };
         let clock = Clock { start: self.times.start()?, step: h };
-        let speed = body.omega_of(&start).norm();
         let chosen = adaptive.then_some(speed);
-        let (mut before, mut last) = (clock.start, 0);
-        let count = times.check(|t| {
-            last = self.steps_to(clock, chosen, &mut before, t)?;
-            Ok(())
-        })?;
+        let mut before = clock.start;
+        let count = times.check(|t| self.check_time(clock, chosen, &mut before, t))?;
+        let last = ((before - clock.start) / h) as u64;
         let mut run = Run::from_point(&method, body, start.to_f64(), clock).map_err(|error| match error {
             RunError::Step(error @ StepError::Refused { .. }) => Error::Input(format!("--method: {error}")),
             error => Error::Input(format!("--step: {error}")),
@@ -205,7 +206,8 @@ impl Propagate {
             let mut before = clock.start;
             for t in times.iter()? {
                 let t = t?;
-                let sample = self.sample(&mut run, self.steps_to(clock, chosen, &mut before, t)?)?;
+                self.check_time(clock, chosen, &mut before, t)?;
+                let sample = self.sample(&mut run, t)?;
                 let error = exact.as_ref().map(|exact| {
                     let there = exact.point_at_dd(sample.elapsed);
                     rotation_angle(sample.point.to_dd().attitude, there.attitude).hi()
@@ -225,8 +227,8 @@ impl Propagate {
         })
     }
 
-    fn sample(&self, run: &mut Run, steps: u64) -> Result<Sample, Error> {
-        run.advance_to(steps).map_err(|error| match error {
+    fn sample(&self, run: &mut Run, t: f64) -> Result<Sample, Error> {
+        run.at(t).map_err(|error| match error {
             RunError::Diverged { .. }
             | RunError::Unsolved { .. }
             | RunError::Stuck { .. }
@@ -236,20 +238,23 @@ impl Propagate {
         })
     }
 
-    /// The number of steps that leads to the time `t`, which must not come before `before`; of a method that chooses
-    /// its steps `speed` is |ω| at the start.
-    fn steps_to(&self, clock: Clock, speed: Option<f64>, before: &mut f64, t: f64) -> Result<u64, Error> {
+    /// Refuses a time `t` that comes before `before`, or that takes too many steps; of a method that chooses its steps `speed` is
+    /// |ω| at the start.
+    fn check_time(&self, clock: Clock, speed: Option<f64>, before: &mut f64, t: f64) -> Result<(), Error> {
         if t < *before {
-            return Err(self.unreachable(&ScheduleError::NotAscending { t, before: *before }));
+            return Err(Error::Input(format!(
+                "{}: {t:?} comes after {:?}; a stepping method needs ascending times, none before --start-time; sort them, or use --method exact",
+                self.times.flag(),
+                *before
+            )));
         }
-        let steps = Schedule::at_times(clock, &[t]).map_err(|error| self.unreachable(&error))?;
         *before = t;
-        let steps = steps.into_iter().last().unwrap_or(0);
-        cost::check("--step", clock.step, steps as f64, "take a larger step or an earlier time")?;
+        let steps = (t - clock.start) / clock.step;
+        cost::check("--step", clock.step, steps, "take a larger step or an earlier time")?;
         if let Some(speed) = speed {
             cost::check_turn(self.times.flag(), t, speed * (t - clock.start))?;
         }
-        Ok(steps)
+        Ok(())
     }
 
     /// Refuses to go on where the numbers no longer are those of a rotation.
@@ -292,24 +297,6 @@ impl Propagate {
                 "give one of the two",
             ),
             Unusable::OutOfRange(allowed) => not_taken("--tolerance", tolerance, &self.method, &allowed),
-        })
-    }
-
-    /// Why no steps lead to the times that were asked for.
-    fn unreachable(&self, error: &ScheduleError) -> Error {
-        let step = self.step.unwrap_or_default();
-        Error::Input(match *error {
-            ScheduleError::NotAscending { t, before } => format!(
-                "{}: {t:?} comes after {before:?}; a stepping method needs ascending times, none before --start-time; sort them, or use --method exact",
-                self.times.flag()
-            ),
-            ScheduleError::TooMany { t, steps, .. } => format!(
-                "--step: '{step:?}': takes {steps:e} steps to t = {t:?}, and at most 2^53 can be counted; take a larger step"
-            ),
-            ScheduleError::NotReached { t, nearest, .. } => format!(
-                "--step: '{step:?}': no whole number of steps leads to the output time {t:?}; the nearest time reached is {nearest:?}"
-            ),
-            error => format!("--step: {error}"),
         })
     }
 }

@@ -26,6 +26,7 @@ mod inputs;
 #[cfg(unix)]
 mod interrupted;
 mod logs;
+mod methods;
 mod motion;
 mod pages;
 mod plot;

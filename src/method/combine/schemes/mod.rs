@@ -12,8 +12,10 @@
 //! [`Dd`], and the lengths of a step add up to 1 without rounding.
 
 mod alternating;
+mod checked;
 mod composition;
 mod force_gradient;
+mod order;
 mod processed;
 
 pub use alternating::{
@@ -34,7 +36,7 @@ use thiserror::Error;
 
 use crate::num::{Dd, Real};
 
-/// Coefficients of a composition or splitting method.
+/// Coefficients of a composition or splitting method, which have the order that they claim: [`new`](Self::new) checks it.
 ///
 /// ```
 /// use polhode::method::schemes::{Part, STRANG, SUZUKI_4};
@@ -45,14 +47,10 @@ use crate::num::{Dd, Real};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scheme {
-    /// Name in [`ALL`].
-    pub name: &'static str,
-    /// Order of Φ_h.
-    pub order: u32,
-    /// Where the coefficients come from.
-    pub source: &'static str,
-    /// What they are coefficients of.
-    pub stages: Stages,
+    pub(crate) name: &'static str,
+    pub(crate) order: u32,
+    pub(crate) source: &'static str,
+    pub(crate) stages: Stages,
 }
 
 /// The maps of one step and the first half of their lengths, as shares of the step.
@@ -138,6 +136,30 @@ pub enum Pairs {
 }
 
 impl Scheme {
+    /// Name: of those in [`ALL`] the one by which [`scheme`] finds it.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Order of Φ_h.
+    #[must_use]
+    pub const fn order(&self) -> u32 {
+        self.order
+    }
+
+    /// Where the coefficients come from.
+    #[must_use]
+    pub const fn source(&self) -> &'static str {
+        self.source
+    }
+
+    /// What they are coefficients of.
+    #[must_use]
+    pub const fn stages(&self) -> Stages {
+        self.stages
+    }
+
     /// Lengths of the steps of one symmetric map, all of them, palindromic; none for two flows in turn. Of a processed
     /// composition those of the kernel.
     #[must_use]
@@ -263,7 +285,7 @@ fn in_turn(first: Part, outer: &[Dd], inner: &[Dd]) -> Vec<(Part, Dd)> {
 ///
 /// ```
 /// use polhode::method::schemes::scheme;
-/// assert_eq!(scheme("kahan-li-8")?.order, 8);
+/// assert_eq!(scheme("kahan-li-8")?.order(), 8);
 /// assert_eq!(scheme("kahan-li8").map_err(|error| error.nearest), Err(Some("kahan-li-8")));
 /// # Ok::<(), polhode::method::schemes::UnknownScheme>(())
 /// ```

@@ -20,7 +20,7 @@ pub(crate) struct TimeArguments {
     #[arg(long, value_name = "LIST|FILE|-", value_parser = times, allow_hyphen_values = true,
           conflicts_with_all = ["until", "every"])]
     times: Option<Times>,
-    /// TimesColumn of the file of --times, by its name or number [default: t]
+    /// Column of the file of --times, by its name or number [default: t]
     #[arg(long, value_name = "NAME|N")]
     times_column: Option<String>,
     /// Last output time, with --every: s, with a unit, or a date with --epoch

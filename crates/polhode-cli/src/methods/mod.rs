@@ -1,4 +1,6 @@
-//! `polhode methods`: the catalogue.
+//! `polhode methods`: the catalogue, and the laws of a method.
+
+mod check;
 
 use std::path::PathBuf;
 
@@ -11,7 +13,8 @@ use polhode_pages::table::Format;
 
 const EXAMPLES: &str = "Examples:
   polhode methods
-  polhode methods --schemes --format json";
+  polhode methods --schemes --format json
+  polhode methods --check rk4 --motion free --format table";
 
 /// List the methods: order, what each conserves, cost per step, source
 #[derive(Args, Clone, Debug)]
@@ -20,6 +23,8 @@ pub(crate) struct Methods {
     /// List the schemes instead: what may stand behind @, as in kick-drift@srkn-6b
     #[arg(long)]
     schemes: bool,
+    #[command(flatten)]
+    check: check::Check,
     /// How rows are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum)]
     format: Option<Format>,
@@ -30,8 +35,13 @@ pub(crate) struct Methods {
 
 impl Methods {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        let format = Format::of(self.format, self.out.as_deref())?;
+        if let Some(report) = self.check.report()? {
+            emit(&check::written(&report, format), self.out.as_deref())?;
+            return check::judged(&report);
+        }
         let table = if self.schemes { schemes() } else { table() };
-        emit(&Format::of(self.format, self.out.as_deref())?.write(&table), self.out.as_deref())
+        emit(&format.write(&table), self.out.as_deref())
     }
 }
 

@@ -1,0 +1,107 @@
+//! Events along a run.
+
+use super::schedule::Place;
+use super::{Run, RunError};
+use crate::events::{Event, EventError, Events, Occurrence, Search, intervals};
+use crate::num::Dd;
+
+impl Run {
+    /// Goes on until `event` happens or the time `end` (s) comes: what happened, or `None`. The run then stands at the last step
+    /// before.
+    ///
+    /// Two changes of sign within one step may be missed. See [`events`](crate::events).
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::events::Event;
+    /// use polhode::{Body, Inertia, Run, method};
+    /// let racket = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+    /// let start = racket.state(UnitQuaternion::identity(), Vector3::new(1e-3, 1.0, 0.0))?;
+    /// let mut run = Run::new(&method("two-turn")?, &racket, &start, 0.01)?;
+    /// let first = run.until(&Event::flip(&racket), 100.0)?.ok_or("it flips")?;
+    /// assert!((run.sample().time.hi() - first.time.hi()).abs() < 0.01);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to), and as [`events`](Self::events).
+    pub fn until(&mut self, event: &Event, end: f64) -> Result<Option<Occurrence>, RunError> {
+        let spacing = self.clock.step.abs();
+        let events = self.events(&[event.clone().stopping()], end, spacing)?;
+        Ok(events.found.into_iter().next())
+    }
+
+    /// What happens of `events` from where the run is to the time `end`, s, with a look at each step, and more of them where
+    /// steps are longer than `spacing`, s. Where an event that [stops](Event::stopping) happens, the run stands at the last
+    /// step before it.
+    ///
+    /// Each look between steps costs a step of methods whose steps are given. Roots are found to rounding in the states of
+    /// [`at`](Self::at), whose error is that of the method.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to); a run that goes backwards; an end that the run has passed; a spacing that is not
+    /// positive; a function that is no number or jumps.
+    pub fn events(&mut self, events: &[Event], end: f64, spacing: f64) -> Result<Events, RunError> {
+        let step = self.clock.step;
+        let begun = self.clock.at(self.point.steps());
+        if step < 0.0 {
+            return Err(EventError::NotAscending {
+                from: begun.seconds(),
+                to: begun.seconds::<f64>() + step,
+            }
+            .into());
+        }
+        intervals(begun.seconds(), end, spacing)?;
+        let (last, rest) = match Place::of(self.clock, end)? {
+            Place::At(steps) => (steps, Dd::ZERO),
+            Place::Behind { steps, later, .. } => (steps, later),
+        };
+        let looks = (step / spacing).ceil().max(1.0);
+        let mut search = Search::new(events, None);
+        search.begin::<RunError>(begun.dd(), &self.body.leave(&self.reading))?;
+        while !search.has_ended() && (self.point.steps() < last || rest != Dd::ZERO) {
+            let whole = self.point.steps() < last;
+            self.look_over(&mut search, if whole { None } else { Some(rest) }, looks)?;
+            if !whole {
+                break;
+            }
+        }
+        Ok(search.finish(spacing.min(step)))
+    }
+
+    /// Looks over the next step, or the `rest` of it, and takes it unless the search ends in it.
+    fn look_over(&mut self, search: &mut Search<'_>, rest: Option<Dd>, looks: f64) -> Result<(), RunError> {
+        let mut here = self.here();
+        let steps = self.point.steps();
+        let base = self.clock.at(steps).dd();
+        let length = rest.unwrap_or(Dd::from(self.clock.step));
+        let body = self.body.clone();
+        let mut k = 1.0;
+        while k < looks && !search.has_ended() {
+            let later = length * (k / looks);
+            let state = body.leave(&here.behind(self, later)?);
+            let mut states = |t: Dd| here.behind(self, t - base).map(|point| body.leave(&point));
+            search.go_on(base + later, &state, &mut states)?;
+            k += 1.0;
+        }
+        if search.has_ended() {
+            return Ok(());
+        }
+        let state = match rest {
+            Some(rest) => body.leave(&here.behind(self, rest)?),
+            None => {
+                let before = self.marked();
+                self.go_to(steps + 1)?;
+                let state = body.leave(&self.reading);
+                let mut states = |t: Dd| here.behind(self, t - base).map(|point| body.leave(&point));
+                search.go_on(base + length, &state, &mut states)?;
+                if search.has_ended() {
+                    self.go_back(before);
+                }
+                return Ok(());
+            }
+        };
+        let mut states = |t: Dd| here.behind(self, t - base).map(|point| body.leave(&point));
+        search.go_on(base + length, &state, &mut states)
+    }
+}

@@ -1,0 +1,370 @@
+//! Events are found where they are, none is missed that the bounds exclude, and looking between steps changes no bit.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::body::{Body, Force, Problem, State};
+use polhode::events::{Crossing, Event, EventError};
+use polhode::flow::{ExactMotion, FreeMotion};
+use polhode::inertia::Inertia;
+use polhode::method::{AnyMethod, Claimed, catalogue, method};
+use polhode::num::{Dd, Precise, Real};
+use polhode::rotation::{Vec3, rotation_angle};
+use polhode::run::{Run, RunError};
+
+fn racket() -> Body {
+    Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap())
+}
+
+fn start(body: &Body, omega: [f64; 3]) -> State {
+    body.state(UnitQuaternion::from_euler_angles(0.3, -0.5, 1.1), omega.into()).unwrap()
+}
+
+fn free(omega: [f64; 3]) -> FreeMotion {
+    FreeMotion::from_state(racket().inertia(), &start(&racket(), omega)).unwrap()
+}
+
+/// A number in [0, 1) for each `k`, spread evenly.
+fn spread(k: usize) -> f64 {
+    (k as f64 * 0.618_033_988_749_894_9).fract()
+}
+
+/// The angle between an axis of the body and one of space, in double-double.
+fn angle(motion: &FreeMotion, t: Dd, of_body: [f64; 3], in_space: [f64; 3]) -> Dd {
+    let turned = motion.point_at_dd(t).attitude.rotate(Vec3(of_body).map(Dd::of));
+    let other = Vec3(in_space).map(Dd::of);
+    turned.cross(other).norm().atan2(turned.dot(other))
+}
+
+/// By bisection in double-double, which shares nothing with the search but the motion. `POLHODE_EVENTS` asks for another number
+/// of motions; 90 have more than 10,000 crossings.
+#[test]
+fn crossings_of_a_cone_are_found_to_rounding_and_none_is_missed() {
+    let (of_body, in_space) = ([0.6, 0.0, 0.8], [0.0, 0.0, 1.0]);
+    let (mut count, mut worst) = (0, 0.0_f64);
+    let motions: usize =
+        std::env::var("POLHODE_EVENTS").ok().and_then(|count| count.parse().ok()).unwrap_or(20);
+    for k in 0..motions {
+        let motion = free([0.4 + spread(k), 1.0 - 2.0 * spread(3 * k + 1), 0.9 * spread(7 * k + 2) - 0.4]);
+        let half = 0.6 + 1.2 * spread(5 * k + 4);
+        let event = Event::enters_cone(of_body.into(), in_space.into(), half).unwrap();
+        let (from, to) = (1000.0 * spread(k + 11), 1000.0 * spread(k + 11) + 900.0);
+        let found = motion.events(&[event], from, to, 0.5).unwrap();
+        assert!(found.may_miss.is_empty());
+        let inside = |t: Dd| Dd::of(half) - angle(&motion, t, of_body, in_space);
+        let fine = 1.0 / 32.0;
+        let is_inside = |t: f64| {
+            let turned = motion.at(t).unwrap().rotation() * Vector3::from(of_body);
+            turned.angle(&Vector3::from(in_space)) < half
+        };
+        let (mut expected, mut before) = (Vec::new(), is_inside(from));
+        for n in 1..=(900.0 / fine) as usize {
+            let t = from + n as f64 * fine;
+            let now = is_inside(t);
+            if !before && now {
+                let (mut low, mut high) = (Dd::of(t - fine), Dd::of(t));
+                for _ in 0..60 {
+                    let middle = (low + high) * 0.5;
+                    if inside(middle).hi() < 0.0 { low = middle } else { high = middle }
+                }
+                expected.push(low);
+            }
+            before = now;
+        }
+        let entered: Vec<Dd> =
+            found.found.iter().filter(|x| x.crossing == Crossing::Rising).map(|x| x.time).collect();
+        // what the search finds between two fine looks, they cannot see
+        assert!(entered.len() >= expected.len(), "{k}: {} of {}", entered.len(), expected.len());
+        for time in expected {
+            let nearest = entered.iter().map(|t| (*t - time).magnitude()).fold(f64::MAX, f64::min);
+            worst = worst.max(nearest / time.hi());
+            count += 1;
+        }
+    }
+    println!("{count} crossings, found within {worst:.1e} of their times");
+    assert!(count > 100 * motions && worst < 1e-13, "{count} crossings, {worst:.1e}");
+}
+
+#[test]
+fn flips_are_those_that_the_closed_form_counts_also_far_away() {
+    let body = racket();
+    for omega in [[1e-3, 1.0, 0.0], [1e-8, 1.0, 1e-9], [0.4, 1.0, -0.3]] {
+        let motion = free(omega);
+        for from in [0.0, 1e6, 1e12] {
+            let to = from + 500.0;
+            let found = motion.events(&[Event::flip(&body)], from, to, 0.25).unwrap();
+            let counted = motion.flips(Dd::of(to)) - motion.flips(Dd::of(from));
+            assert_eq!(found.found.len() as u64, counted, "{omega:?} from {from}");
+        }
+    }
+}
+
+/// The axis of a free symmetric top stays between two cones about any axis in space.
+#[test]
+fn a_cone_that_is_hardly_touched_is_touched_twice_or_not_at_all() {
+    let body = Body::free(Inertia::from_moments([1.0, 1.0, 1.5]).unwrap());
+    let motion = FreeMotion::from_state(body.inertia(), &start(&body, [0.5, 0.0, 2.0])).unwrap();
+    let momentum = motion.at(0.0).unwrap().momentum_space().normalize();
+    let tip = momentum.cross(&Vector3::x()).normalize();
+    // an axis 0.7 rad from L; that of the body is `nutation` from L, so at least 0.7 − nutation away
+    let axis = momentum * libm::cos(0.7) + tip * libm::sin(0.7);
+    let nutation = libm::atan2(0.5, 3.0);
+    let period = core::f64::consts::TAU / motion.at(0.0).unwrap().momentum().norm();
+    let periods = 50.0;
+    for margin in [1e-3, 1e-6, 1e-9, 1e-11] {
+        for (sign, times) in [(1.0, 50), (-1.0, 0)] {
+            let half = 0.7 - nutation + sign * margin;
+            let event = Event::enters_cone(Vector3::z(), axis, half).unwrap();
+            let found = motion.events(&[event], 0.0, periods * period, period / 3.0).unwrap();
+            assert_eq!(found.found.len(), times, "{margin:e} {sign}");
+        }
+    }
+}
+
+#[test]
+fn the_nearest_approach_is_the_least_distance() {
+    let (body, motion) = (racket(), free([0.4, 1.0, -0.3]));
+    let target = UnitQuaternion::from_euler_angles(1.0, 0.2, -2.0);
+    let found = motion.events(&[Event::nearest(&body, target)], 0.0, 200.0, 0.1).unwrap();
+    assert_eq!(found.may_miss, [0]);
+    assert!(found.found.len() > 20);
+    for near in &found.found {
+        let at = |t: f64| motion.at(t).unwrap().rotation().angle_to(&target);
+        let t = near.time.hi();
+        assert!(at(t) <= at(t - 1e-3) && at(t) <= at(t + 1e-3));
+    }
+}
+
+#[test]
+fn along_a_run_events_are_off_by_the_error_of_the_method() {
+    let body = racket();
+    let begin = start(&body, [0.4, 1.0, -0.3]);
+    let motion = FreeMotion::from_state(body.inertia(), &begin).unwrap();
+    let events = [
+        Event::flip(&body),
+        Event::enters_cone(Vector3::z(), Vector3::x(), 1.0).unwrap(),
+        Event::rate_above(&body, 0.9).unwrap(),
+    ];
+    let exact = motion.events(&events, 0.0, 100.0, 0.05).unwrap().found;
+    assert!(exact.len() > 20, "{}", exact.len());
+    for (name, h, most) in [
+        ("rk4", 0.01, 1e-7),
+        ("two-turn@kahan-li-8", 0.05, 1e-7),
+        ("gauss:8", 0.05, 1e-10),
+        ("taylor", 0.05, 1e-12),
+        ("taylor", 10.0, 1e-12),
+        ("dop853:1e-12", 10.0, 1e-9),
+        ("tsit5:1e-10", 10.0, 1e-6),
+        ("exact-step", 0.05, 1e-12),
+    ] {
+        let mut run = Run::new(&method(name).unwrap(), &body, &begin, h).unwrap();
+        let found = run.events(&events, 100.0, 0.05).unwrap();
+        assert_eq!(found.found.len(), exact.len(), "{name}");
+        for (a, b) in found.found.iter().zip(&exact) {
+            assert_eq!((a.event, a.crossing), (b.event, b.crossing), "{name}");
+            let off = (a.time - b.time).magnitude();
+            assert!(off < most, "{name}: {off:.1e} at {}", b.time.hi());
+        }
+        assert_eq!(run.sample().time.hi(), 100.0);
+    }
+}
+
+#[test]
+fn a_search_ends_at_the_first_event_that_stops_and_the_run_stands_before_it() {
+    let body = racket();
+    let begin = start(&body, [1e-3, 1.0, 0.0]);
+    let mut run = Run::new(&method("lie-poisson").unwrap(), &body, &begin, 0.01).unwrap();
+    let untouched = |steps: u64| {
+        Run::new(&method("lie-poisson").unwrap(), &body, &begin, 0.01).unwrap().advance_to(steps).unwrap()
+    };
+    let first = run.until(&Event::flip(&body), 100.0).unwrap().unwrap();
+    let here = run.sample();
+    assert!(here.time < first.time && first.time.hi() < here.time.hi() + 0.01);
+    assert_eq!(here.point, untouched(here.steps).point);
+    assert_eq!((here.flips, here.worst.energy), (Some(0), untouched(here.steps).worst.energy));
+    // from there it goes on as if nobody had looked
+    let second = run.until(&Event::flip(&body), 100.0).unwrap().unwrap();
+    assert_eq!(second.time, first.time);
+    let never = Event::rate_above(&body, 1e3).unwrap();
+    assert_eq!(run.until(&never, 50.0).unwrap(), None);
+    assert_eq!(run.sample().point, untouched(5000).point);
+}
+
+/// Every method of the catalogue, and others that remember something between steps.
+fn methods() -> Vec<Box<dyn AnyMethod>> {
+    let mut all = catalogue();
+    for name in ["dmv:10", "taylor:8", "kick-drift@blanes-casas-murua-6-11", "dop853:1e-7", "lie-newmark"] {
+        all.push(method(name).unwrap());
+    }
+    all
+}
+
+#[test]
+fn looking_between_steps_changes_no_bit() {
+    let body = racket();
+    let begin = start(&body, [0.4, 1.0, -0.3]);
+    for method in methods() {
+        let run = || Run::new(&method, &body, &begin, 0.125).unwrap();
+        let (mut looked, mut straight) = (run(), run());
+        for t in [0.1, 0.2, 0.3125, 1.0, 3.7, 3.71, 7.99] {
+            looked.at(t).unwrap();
+        }
+        looked.events(&[Event::flip(&body)], 9.0, 0.01).unwrap();
+        let (a, b) = (looked.advance_to(80).unwrap(), straight.advance_to(80).unwrap());
+        assert_eq!((a.point, a.worst, a.flips), (b.point, b.worst, b.flips), "{}", method.name());
+        assert_eq!(looked.work(), straight.work(), "{}", method.name());
+        assert_eq!(run().at(1.25).unwrap().point, run().advance_to(10).unwrap().point);
+    }
+}
+
+/// The error of the state 0.4 of a step behind a step, against that of a step half as long.
+#[test]
+fn between_steps_a_method_has_the_local_order_that_it_claims() {
+    let body = racket();
+    let begin = start(&body, [0.4, 1.0, -0.3]);
+    let motion = FreeMotion::from_state(body.inertia(), &begin).unwrap();
+    let error = |method: &dyn AnyMethod, h: f64| {
+        let t = 0.4 * h;
+        let x = Run::new(method, &body, &begin, h).unwrap().at(t).unwrap().point;
+        rotation_angle(x.attitude.map(Dd::of), motion.point_at_dd(Dd::of(t)).attitude).to_f64()
+    };
+    let mut measured = 0;
+    for method in methods() {
+        let Some(order) = method.claims(Problem::Free).and_then(|claims| claims.order) else {
+            continue;
+        };
+        // so long that the error is not rounding, so short that the order shows
+        let h = match order {
+            1..=2 => 0.02,
+            3..=4 => 0.2,
+            _ => 0.8,
+        };
+        let (coarse, fine) = (error(&method, h), error(&method, 0.5 * h));
+        if coarse < 1e-13 {
+            continue;
+        }
+        let found = libm::log2(coarse / fine);
+        assert!(found > f64::from(order) + 0.6, "{}: {found:.2}, {coarse:.1e} {fine:.1e}", method.name());
+        measured += 1;
+    }
+    assert!(measured > 15, "{measured}");
+}
+
+#[test]
+fn dense_output_is_about_as_exact_as_the_steps() {
+    let body = racket();
+    let begin = start(&body, [0.4, 1.0, -0.3]);
+    let motion = FreeMotion::from_state(body.inertia(), &begin).unwrap();
+    // as far off as the tolerance lets a step be
+    for (name, most) in
+        [("dop853:1e-6", 1e-4), ("tsit5:1e-6", 1e-4), ("taylor:1e-8", 1e-7), ("taylor", 1e-14)]
+    {
+        let mut run = Run::new(&method(name).unwrap(), &body, &begin, 5.0).unwrap();
+        let worst = (1..50).fold(0.0_f64, |worst, k| {
+            let t = 0.1 * f64::from(k);
+            let x = run.at(t).unwrap().state;
+            worst.max(x.rotation().angle_to(&motion.at(t).unwrap().rotation()))
+        });
+        assert!(worst < most, "{name}: {worst:.1e}");
+    }
+}
+
+#[test]
+fn times_between_steps_know_the_energy_of_a_field_that_turns() {
+    // a force that depends on time: the readings are of the time asked for
+    let push = Force::torque_fn("push", |t, _, _| Vector3::new(0.0, 0.0, libm::sin(t)));
+    let body = Body::free(Inertia::from_moments([1.0, 1.0, 2.0]).unwrap()).with(push);
+    let begin = body.state(UnitQuaternion::identity(), Vector3::zeros()).unwrap();
+    for name in ["rk8", "dop853:1e-12"] {
+        let mut run = Run::new(&method(name).unwrap(), &body, &begin, 0.25).unwrap();
+        let between = run.at(2.1).unwrap();
+        // I ω = 1 − cos t
+        assert!((between.omega_body.z - 0.5 * (1.0 - libm::cos(2.1))).abs() < 1e-9, "{name}");
+        assert_eq!((between.steps, between.time.hi()), (8, 2.1));
+    }
+}
+
+#[test]
+fn what_is_already_so_is_said_and_what_never_happens_is_not_found() {
+    let (body, motion) = (racket(), free([0.4, 1.0, -0.3]));
+    let always = Event::when("always", |_, _| true);
+    let found = motion.events(&[always.clone().stopping()], 5.0, 6.0, 0.1).unwrap().found;
+    assert_eq!((found.len(), found[0].crossing, found[0].time), (1, Crossing::AtStart, Dd::of(5.0)));
+    let found =
+        motion.events(&[always, Event::zero("t = 5 s", |t, _| t - 5.0)], 5.0, 6.0, 0.1).unwrap().found;
+    assert_eq!(found.len(), 2);
+    let never = Event::rate_above(&body, 100.0).unwrap();
+    assert!(motion.events(&[never], 0.0, 1e4, 1.0).unwrap().found.is_empty());
+    let touching = Event::zero("touches", |t, _| (t - 3.3) * (t - 3.3));
+    let found = motion.events(&[touching], 0.0, 10.0, 0.5).unwrap().found;
+    assert_eq!((found.len(), found[0].crossing), (1, Crossing::Touching));
+    assert!((found[0].time.hi() - 3.3).abs() < 1e-6);
+}
+
+#[test]
+fn a_condition_is_found_where_it_begins_and_a_function_that_jumps_is_refused() {
+    let motion = free([0.4, 1.0, -0.3]);
+    let later = Event::when("later", |t, _| t > 4.56);
+    let found = motion.events(&[later], 0.0, 10.0, 0.5).unwrap().found;
+    assert_eq!(found.len(), 1);
+    assert!((found[0].time.hi() - 4.56).abs() < 1e-14 && found[0].time.hi() > 4.56);
+    let jumps = Event::zero("jumps", |t, _| if t > 4.56 { 2.0 } else { -1.0 });
+    let error = motion.events(&[jumps], 0.0, 10.0, 0.5).unwrap_err();
+    assert!(matches!(error, EventError::NotContinuous { before: -1.0, after: 2.0, .. }), "{error}");
+    let nothing = Event::zero("nothing", |t, _| if t > 2.0 { f64::NAN } else { 1.0 });
+    let error = motion.events(&[nothing], 0.0, 10.0, 0.5).unwrap_err();
+    assert!(
+        matches!(error, EventError::NotANumber { .. }) && error.to_string().contains("t = 2.5 s"),
+        "{error}"
+    );
+    let fast = Event::zero("fast", |t, _| 10.0 * t - 3.0).changing_at_most(1.0);
+    let error = motion.events(&[fast], 0.0, 10.0, 0.5).unwrap_err();
+    assert!(matches!(error, EventError::FasterThanStated { change: 5.0, .. }), "{error}");
+    // infinitely many roots before t = 7 s; each interval between looks has those that its looks show
+    let zeno = Event::zero("zeno", |t, _| (7.0 - t) * libm::sin(1.0 / (7.0 - t + 1e-300)));
+    assert!(motion.events(&[zeno], 0.0, 8.0, 0.01).unwrap().found.len() < 1000);
+}
+
+#[test]
+fn searches_that_cannot_be_are_refused() {
+    let (body, motion) = (racket(), free([0.4, 1.0, -0.3]));
+    let flip = [Event::flip(&body)];
+    let refused = |from: f64, to: f64, spacing: f64| motion.events(&flip, from, to, spacing).unwrap_err();
+    assert!(matches!(refused(0.0, f64::NAN, 1.0), EventError::Time(_)));
+    assert!(matches!(refused(1.0, 1.0, 1.0), EventError::NotAscending { .. }));
+    assert!(matches!(refused(0.0, 1.0, 0.0), EventError::Spacing { .. }));
+    assert!(matches!(refused(0.0, 1.0, f64::NAN), EventError::Spacing { .. }));
+    assert!(matches!(refused(0.0, 1e9, 1e-9), EventError::TooMany { .. }));
+    assert!(Event::enters_cone(Vector3::zeros(), Vector3::z(), 1.0).is_err());
+    assert!(Event::enters_cone(Vector3::z(), Vector3::z(), -1.0).is_err());
+    assert!(Event::rate_above(&body, 0.0).is_err());
+    let begin = start(&body, [0.4, 1.0, -0.3]);
+    let mut run = Run::new(&method("rk4").unwrap(), &body, &begin, 0.1).unwrap();
+    run.advance_to(100).unwrap();
+    assert!(matches!(run.at(-1.0), Err(RunError::Time(_))));
+    assert!(matches!(run.at(f64::NAN), Err(RunError::Time(_))));
+    assert!(matches!(run.at(5.03), Err(RunError::Past { asked: 5.03, reached: 10.0 })));
+    assert!(matches!(run.events(&flip, 5.0, 0.1), Err(RunError::Event(_))));
+    let fast = start(&body, [30.0, 20.0, -10.0]);
+    let mut wild = Run::new(&method("explicit-euler").unwrap(), &body, &fast, 1.0).unwrap();
+    assert!(matches!(wild.at(1000.5), Err(RunError::Diverged { .. })));
+    let mut unsolved = Run::new(&method("rattle").unwrap(), &body, &fast, 1.0).unwrap();
+    let error = unsolved.at(0.9).unwrap_err();
+    assert!(matches!(error, RunError::Unsolved { .. }), "{error}");
+}
+
+#[test]
+fn a_top_is_searched_like_a_free_body() {
+    let top =
+        Body::heavy(Inertia::from_moments([1.0, 1.0, 0.25]).unwrap(), Vector3::new(0.0, 0.0, 2.0)).unwrap();
+    let tilted = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.5);
+    let begin = top.state(tilted, Vector3::new(0.0, 0.0, 20.0)).unwrap();
+    let motion = ExactMotion::new(&top, &begin).unwrap();
+    let event = Event::enters_cone(Vector3::z(), Vector3::z(), 0.6).unwrap();
+    let exact = motion.events(std::slice::from_ref(&event), 0.0, 100.0, 0.05).unwrap();
+    let mut run = Run::new(&method("taylor").unwrap(), &top, &begin, 1.0).unwrap();
+    let found = run.events(&[event], 100.0, 0.05).unwrap();
+    assert!(exact.may_miss.is_empty() && found.may_miss == [0]);
+    assert_eq!(exact.found.len(), found.found.len());
+    assert!(exact.found.iter().zip(&found.found).all(|(a, b)| (a.time - b.time).magnitude() < 1e-11));
+}
