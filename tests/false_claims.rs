@@ -310,7 +310,7 @@ fn coefficients_that_are_not_of_their_order_make_no_scheme() {
     let Stages::Composition([first, second]) = schemes::SUZUKI_4.stages() else { panic!("two lengths") };
     let wrong: &[Dd] = Box::leak(Box::new([*first + Dd::of(1e-3), *second]));
     assert!(Scheme::new("wrong", 4, Stages::Composition(wrong), "").is_err());
-    for order in [0, 1, 3, u32::MAX] {
+    for order in [0, 3, u32::MAX] {
         assert!(Scheme::new("strang", order, schemes::STRANG.stages(), "").is_err(), "{order}");
     }
     assert_eq!(check_scheme(&schemes::SUZUKI_4).unwrap().false_claims().count(), 0);
