@@ -228,7 +228,7 @@ fn steps_that_do_not_fit_are_refused() {
     refused(&with("--method rk4 --step 0.5 --until -1 --every -1"), &["--until: -1.0 comes after"]);
     refused(
         &with("--method rk4 --step 1e-300 --times 1"),
-        &["--step: '1e-300'", "1e+300 steps", "larger step"],
+        &["--step: '1e-300'", "1e300 steps", "larger step"],
     );
     refused(&with("--until 1 --every 0"), &["--every", "'0'", "not zero"]);
     refused(&with("--until 1 --every -0.5"), &["--every: '-0.5'", "--until 1.0", "change its sign"]);
