@@ -1,10 +1,6 @@
 //! What every method that chooses its steps has to do: output changes no bit, runs are taken up, no scale is special.
 
-#![allow(clippy::unwrap_used)]
-
-mod motions;
-
-use motions::{free, magnet, run, satellite, started, thruster, top};
+use crate::motions::{free, magnet, run, satellite, started, thruster, top};
 use polhode::body::{Body, State};
 use polhode::inertia::Inertia;
 use polhode::method::{AnyMethod, Claimed, catalogue, method};

@@ -1,7 +1,5 @@
 //! What is advised does what it says, and what cannot be met is refused with the law.
 
-#![allow(clippy::unwrap_used)]
-
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::advise::{AdviseError, Choice, Demand, Setting, advise, check};
 use polhode::body::{Body, Force, State};

@@ -1,7 +1,5 @@
 //! The exact flows that splittings are made of, used from outside, and what a free part of one's own may claim.
 
-#![allow(clippy::unwrap_used)]
-
 use polhode::body::{Body, Conserved, Field, Point, Problem, Rotor, Time};
 use polhode::flow::{Casimir, Flow, FreeBody, FreeFlow, FreeMotion, SymmetricTop, Turn};
 use polhode::inertia::{Inertia, InertiaError};

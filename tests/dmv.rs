@@ -1,7 +1,5 @@
 //! The discrete Moser–Veselov map of every even order: convergence, what it keeps, and its limits.
 
-#![allow(clippy::unwrap_used)]
-
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Conserved, Point, State, Time};
 use polhode::flow::FreeMotion;

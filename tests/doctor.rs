@@ -1,7 +1,5 @@
 //! The doctor: spoiled tensors whose true cause it must name first, and healthy ones that it must leave alone.
 
-#![allow(clippy::unwrap_used)]
-
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::{Amount, Evidence, Inertia, InertiaError, MassProperties, Solid, Validity, diagnose};
 

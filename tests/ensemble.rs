@@ -1,7 +1,5 @@
 //! Ensembles against their members alone, bit for bit: in lanes of every width, in parts, on threads.
 
-#![allow(clippy::unwrap_used)]
-
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Conserved, Force, State};
 use polhode::flow::{FreeMotion, LagrangeTop};

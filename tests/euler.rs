@@ -1,9 +1,5 @@
 //! Euler angles: all twelve sequences against products of elementary turns, in and out of gimbal lock.
 
-#![allow(clippy::unwrap_used)]
-
-mod cases;
-
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -35,7 +31,7 @@ fn is_proper(sequence: EulerSequence) -> bool {
 }
 
 proptest! {
-    #![proptest_config(cases::usual(256))]
+    #![proptest_config(crate::cases::usual(256))]
     #[test]
     fn a_random_attitude_returns(w in -1.0..1.0, x in -1.0..1.0, y in -1.0..1.0, z in -1.0..1.0_f64) {
         prop_assume!(w * w + x * x + y * y + z * z > 1e-6);

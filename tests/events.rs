@@ -1,7 +1,5 @@
 //! Events are found where they are, none is missed that the bounds exclude, and looking between steps changes no bit.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Force, Problem, State};
 use polhode::events::{Crossing, Event, EventError};

@@ -1,10 +1,6 @@
 //! The exact free motion against fixtures of 36 digits (tests/data/free_body, mpmath) in every regime.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
-mod fixtures;
-
-use fixtures::{BRINK, BY_REGIME, FreeCase, PUBLISHED, free_body};
+use crate::fixtures::{BRINK, BY_REGIME, FreeCase, PUBLISHED, free_body};
 use polhode::body::{Body, Point, State, Time};
 use polhode::flow::{AtRest, Flow, FreeBody, FreeMotion, Mode, TimeError};
 use polhode::inertia::Inertia;

@@ -1,10 +1,6 @@
 //! The exact motion in steps: against fixtures of 36 digits and the closed form in double-double, in every regime.
 
-#![allow(clippy::unwrap_used)]
-
-mod fixtures;
-
-use fixtures::{PUBLISHED, free_body};
+use crate::fixtures::{PUBLISHED, free_body};
 use polhode::body::{Body, Clock, Point, State, Time};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;

@@ -1,7 +1,5 @@
 //! False claims are named, and nothing else: methods, forces and schemes that say what they do not do.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use nalgebra::Vector3;
 use polhode::body::{Body, Clock, Conserved, Field, Force, Point, Potential, Problem, Rotor, Time};
 use polhode::inertia::Inertia;

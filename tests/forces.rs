@@ -1,7 +1,5 @@
 //! Forces against closed forms, against fixtures of 30 digits (tests/data/forces, mpmath) and against what they conserve.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Conserved, Force, ForceError, Point, Potential, Problem, State, Time};
 use polhode::inertia::Inertia;

@@ -2,8 +2,6 @@
 //!
 //! `POLHODE_HOSTILE` asks for another number of calls of each constructor.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use std::fmt::Display;
 use std::time::{Duration, Instant};
 

@@ -1,8 +1,6 @@
 //! Mass properties against references that share no code with them: quadrature in many digits, direct sums over
 //! points, exact boxes.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};

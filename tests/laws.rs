@@ -4,10 +4,6 @@
 //! is 1, and everything is measured in double-double, so that an exact law shows as 1e-28 and a broken one cannot hide
 //! behind rounding.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
-mod fixtures;
-
 use polhode::body::{Body, Clock, Field, Force, Point, Problem, State, Time};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
@@ -26,7 +22,7 @@ use polhode::observe::Invariants;
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode::run::{Run, RunError, Schedule, halvings};
 
-use fixtures::FreeCase;
+use crate::fixtures::FreeCase;
 
 /// Invariants that hold in exact arithmetic hold to this in double-double after some hundred steps.
 const EXACT: f64 = 1e-28;
@@ -76,8 +72,10 @@ fn the_ends_of_the_cases_are_those_of_other_methods() {
         assert!(other < agreement, "{problem:?}: {composition} {other:.1e}");
     }
     // the fixture has the digits of a double
-    let top =
-        fixtures::tops("reference.csv").into_iter().find(|c| c.free.scenario == "E3-asymmetric").unwrap();
+    let top = crate::fixtures::tops("reference.csv")
+        .into_iter()
+        .find(|c| c.free.scenario == "E3-asymmetric")
+        .unwrap();
     let FreeCase { moments, start, attitude, t, momentum, result, .. } = top.free;
     let case = case(Problem::Linear);
     let inertia = Inertia::from_moments(moments.map(|i| i * SIZE)).unwrap();

@@ -1,7 +1,5 @@
 //! Mass properties of meshes: exact boxes, the rate at which polyhedra approach a sphere, and what is refused.
 
-#![allow(clippy::unwrap_used)]
-
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::{Amount, MassProperties, Mesh, Solid};
 

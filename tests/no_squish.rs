@@ -1,7 +1,5 @@
 //! NO_SQUISH, as molecular dynamics programs have it, is `lie-poisson:321` in other variables.
 
-#![allow(clippy::unwrap_used)]
-
 use polhode::body::{Body, Clock, Point, Time, vertical};
 use polhode::inertia::Inertia;
 use polhode::method::{Claimed, method};

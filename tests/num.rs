@@ -1,9 +1,5 @@
 //! Numbers against mpmath (tests/data/num/generate.py), and the accuracy tables in their documentation.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // what clippy.toml allows inside #[test], for the helpers too
-
-mod cases;
-
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
 use polhode::num::{Compensated, Dd, Expansion, Precise, Real, add_carried, trig};
 use proptest::prelude::*;
@@ -344,7 +340,7 @@ fn decimal_text_is_correctly_rounded() {
 }
 
 proptest! {
-    #![proptest_config(cases::usual(500))]
+    #![proptest_config(crate::cases::usual(500))]
 
     #[test]
     fn numbers_are_read_as_they_are_written(hi in 0.0..1.0, lo in 0.0..1e-17, exponent in -200..200) {
@@ -553,7 +549,7 @@ fn compensated_sums_lose_nothing() {
 }
 
 proptest! {
-    #![proptest_config(cases::usual(2000))]
+    #![proptest_config(crate::cases::usual(2000))]
 
     #[test]
     fn expansions_are_exact(numbers in prop::array::uniform4(-(1_i64 << 39)..1 << 39), shares_a in any::<bool>()) {

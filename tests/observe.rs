@@ -1,7 +1,5 @@
 //! What a run reports of its errors, computed again: every step of short runs, in double-double, from the definitions.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Conserved, Force, Potential, State, Time};
 use polhode::inertia::Inertia;

@@ -1,8 +1,5 @@
 //! Members of populations: physically valid, distributed as stated, and the same in any order.
 
-#![cfg(feature = "random")]
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use polhode::body::{AttitudeSpread, Member, Population, Tensors};
 use polhode::inertia::Inertia;
 use polhode::num::{Covariance, Distribution};

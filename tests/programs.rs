@@ -1,8 +1,6 @@
 //! The steps that programs run today, with the figures that the programs themselves give for one body: moments 1, 2, 3,
 //! ω = (0.4, 1, −0.3), steps of 0.01 to the time 10⁴; and single steps as papers write them.
 
-#![allow(clippy::unwrap_used)]
-
 use polhode::body::{Body, State};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;

@@ -1,9 +1,5 @@
 //! Laws over random valid bodies and starts.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
-mod cases;
-
 use polhode::body::{Body, Point, State, StateError, Time};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
@@ -76,7 +72,7 @@ fn check_motion(inertia: &Inertia, omega: nalgebra::Vector3<f64>, t: f64) -> Res
 }
 
 proptest! {
-    #![proptest_config(cases::usual(2000))]
+    #![proptest_config(crate::cases::usual(2000))]
 
     #[test]
     fn a_turn_about_the_middle_axis_is_exact_at_any_deviation(
@@ -127,7 +123,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases::usual(200))]
+    #![proptest_config(crate::cases::usual(200))]
 
     #[test]
     fn exact_motion_keeps_energy_and_momentum_in_space(

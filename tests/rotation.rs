@@ -1,7 +1,5 @@
 //! Vectors and quaternions against closed forms.
 
-#![allow(clippy::unwrap_used)]
-
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::num::{Dd, Real};
 use polhode::rotation::{Quat, Vec3};

@@ -1,7 +1,5 @@
 //! What rounding in double precision adds to quantities that are kept: a random walk, not a drift.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use polhode::body::{Body, Clock, Point, Time};
 use polhode::inertia::Inertia;
 use polhode::method::{AnyMethod, method};

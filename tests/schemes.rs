@@ -1,7 +1,5 @@
 //! Coefficients of every scheme, without any integrator, and what is refused of one's own.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use std::collections::HashSet;
 use std::fs;
 

@@ -1,7 +1,5 @@
 //! Power series as scalars, against the coefficients of functions that are known.
 
-#![allow(clippy::unwrap_used)]
-
 use polhode::body::{Clock, Time};
 use polhode::num::{Dd, Real, Series};
 

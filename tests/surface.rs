@@ -1,7 +1,5 @@
 //! Surfaces as files hold them: welded, closed, hulls, walls.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, Closing, FLOAT_WELD, Mesh, MeshError, Repair, Solid, Surface};
 

@@ -1,13 +1,9 @@
 //! Taylor's method against closed forms and other methods: its tolerance, its steps, its refusals.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
-mod motions;
-
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use motions::{Magnet, free, magnet, run, satellite, started, top};
+use crate::motions::{Magnet, free, magnet, run, satellite, started, top};
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Force, Point, State, Time, Torque};
 use polhode::flow::ExactMotion;

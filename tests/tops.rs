@@ -1,12 +1,8 @@
 //! Heavy tops against fixtures of 32 digits (tests/data/tops, mpmath).
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
-mod fixtures;
-
 use core::f64::consts::PI;
 
-use fixtures::{TopCase, tops};
+use crate::fixtures::{TopCase, tops};
 use polhode::body::{Body, Clock, Point, State, Time};
 use polhode::flow::{Casimir, Flow, FreeFlow, FreeMotion, LagrangeError, LagrangeTop, SymmetricTop};
 use polhode::inertia::Inertia;

@@ -3,8 +3,6 @@
 //! That a system refuses a thread cannot be brought about here: the two runs are then taken one after the other on the calling
 //! thread (`ulimit -u 1` on the command line shows it).
 
-#![allow(clippy::unwrap_used)]
-
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Force, State};
 use polhode::flow::{ExactMotion, FreeMotion};

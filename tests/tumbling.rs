@@ -1,7 +1,5 @@
 //! The elements of tumbling bodies: to a start and back, and against published asteroids.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use core::f64::consts::{PI, TAU};
 
 use nalgebra::{UnitQuaternion, Vector3};

@@ -1,7 +1,5 @@
 //! What the choice of axes does to splittings of free motion: the predicted leading error against runs, over random bodies.
 
-#![allow(clippy::unwrap_used)]
-
 use polhode::body::{Body, Clock, State};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;

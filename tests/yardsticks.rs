@@ -1,10 +1,6 @@
 //! The general-purpose methods against closed forms: tolerances, dense output, steps of their own, checkpoints, refusals.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
-mod motions;
-
-use motions::{free, run, started, thruster, top};
+use crate::motions::{free, run, started, thruster, top};
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Force, Point, State, Time, Torque};
 use polhode::flow::ExactMotion;

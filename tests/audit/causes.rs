@@ -11,8 +11,8 @@ use polhode::rotation::Vec3;
 use polhode::run::Run;
 use polhode::units::RateUnit;
 
-use crate::records::{Form, Seeded, Writing, Written, record};
-use crate::ties::states;
+use super::records::{Form, Seeded, Writing, Written, record};
+use super::ties::states;
 
 fn free(moments: [f64; 3]) -> Body {
     Body::free(Inertia::from_moments(moments).unwrap())

@@ -8,7 +8,7 @@ use polhode::method::{Claimed, without_projections};
 use polhode::rotation::{Vec3, rotation_angle};
 use polhode::run::Run;
 
-use crate::records::{Form, Seeded, Writing, Written, number, reading, record, tumbling};
+use super::records::{Form, Seeded, Writing, Written, number, reading, record, tumbling};
 
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 

@@ -8,8 +8,8 @@ use polhode::audit::{
 use polhode::body::Body;
 use polhode::inertia::Inertia;
 
-use crate::records::{Form, Seeded, Writing, Written, reading, record};
-use crate::ties::states;
+use super::records::{Form, Seeded, Writing, Written, reading, record};
+use super::ties::states;
 
 fn body() -> Body {
     Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap())

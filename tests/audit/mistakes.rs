@@ -8,7 +8,7 @@ use polhode::body::Body;
 use polhode::inertia::Inertia;
 use polhode::rotation::{Quat, Vec3};
 
-use crate::records::{Form, Seeded, Writing, Written, moments, number, reading, record};
+use super::records::{Form, Seeded, Writing, Written, moments, number, reading, record};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mistake {

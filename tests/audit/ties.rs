@@ -10,7 +10,7 @@ use polhode::flow::{ExactMotion, FreeMotion};
 use polhode::inertia::Inertia;
 use polhode::rotation::Vec3;
 
-use crate::records::{Form, Seeded, Writing, Written, reading, record};
+use super::records::{Form, Seeded, Writing, Written, reading, record};
 
 pub(crate) fn states(body: &Body, start: &State, dt: f64, rows: usize) -> Vec<Written> {
     let motion = ExactMotion::new(body, start).unwrap();

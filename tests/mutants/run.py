@@ -23,14 +23,14 @@ RESULTS = Path(__file__).with_name("results.csv")
 COLUMNS = ["module", "of", "every", "commit", "mutant", "outcome"]
 MARKERS = ("<!-- begin generated: mutants -->", "<!-- end generated: mutants -->")
 
-# files, every n-th mutant, arguments of cargo test
+# files, every n-th mutant, package, parts of the names of the tests that are run; all tests where there are none
 MODULES = {
-    "num": (["src/num/**"], 8, ["--lib", "--test=num"]),
-    "rotation": (["src/rotation/**"], 4, ["--lib", "--test=rotation", "--test=euler", "--test=properties", "--test=laws"]),
-    "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], 40, ["--lib", "--test=exact", "--test=properties", "--test=tops"]),
-    "method": (["src/method/**"], 50, ["--lib", "--test=laws", "--test=dmv", "--test=two_turns", "--test=schemes", "--test=taylor", "--test=exact_step"]),
-    "observe": (["src/observe/**"], 2, ["--lib", "--test=observe", "--test=properties"]),
-    "fit": (["crates/polhode-fit/src/**"], 100, ["--package=polhode-fit", "--lib", "--test=fit", "--test=fit_failures"]),
+    "num": (["src/num/**"], 8, "polhode", ["num::"]),
+    "rotation": (["src/rotation/**"], 4, "polhode", ["rotation::", "euler::", "properties::", "laws::"]),
+    "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], 40, "polhode", ["flow::", "exact::", "properties::", "tops::"]),
+    "method": (["src/method/**"], 50, "polhode", ["method::", "laws::", "dmv::", "two_turns::", "schemes::", "taylor::", "exact_step::"]),
+    "observe": (["src/observe/**"], 2, "polhode", ["observe::", "properties::"]),
+    "fit": (["crates/polhode-fit/src/**"], 100, "polhode-fit", []),
 }
 OUTCOMES = {"CaughtMutant": "caught", "Timeout": "timeout", "MissedMutant": "missed", "Unviable": "unviable"}
 
@@ -41,7 +41,7 @@ def output(*command):
 
 def sample(module, every):
     """Rows of the sample of one module."""
-    files, default, tests = MODULES[module]
+    files, default, package, tests = MODULES[module]
     every = every or default
     chosen = [part for file in files for part in ("--file", file)]
     total = len(output("cargo", "mutants", "--list", *chosen).splitlines())
@@ -49,7 +49,7 @@ def sample(module, every):
     with tempfile.TemporaryDirectory() as folder:
         command = ["cargo", "mutants", *chosen, "-j", "1", "--shard", f"0/{every}", "--sharding", "round-robin"]
         # ends with 2 or 3 where mutants are missed or do not end
-        done = subprocess.run([*command, "--output", folder, *(f"--cargo-arg={test}" for test in tests)], cwd=ROOT)
+        done = subprocess.run([*command, "--output", folder, "--", f"--package={package}", "--lib", "--tests", "--", *tests], cwd=ROOT)
         if done.returncode not in (0, 2, 3):
             raise SystemExit(f"cargo mutants ended with {done.returncode}")
         outcomes = json.loads((Path(folder) / "mutants.out" / "outcomes.json").read_text())["outcomes"]

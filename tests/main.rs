@@ -1,0 +1,44 @@
+//! The library as its users call it: one program, so that it is linked once. Every file beside this one is named here.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // what clippy.toml allows inside #[test], for the helpers too
+
+mod adaptive;
+mod advise;
+mod atoms;
+#[allow(clippy::disallowed_methods)] // sines of the records that another program would write
+mod audit;
+mod cases;
+mod dmv;
+mod doctor;
+mod ensemble;
+mod euler;
+mod events;
+mod exact;
+mod exact_step;
+mod false_claims;
+mod fixtures;
+mod forces;
+#[cfg(feature = "random")]
+mod hostile;
+mod inertia;
+mod laws;
+mod mesh;
+mod motions;
+mod no_squish;
+mod num;
+mod observe;
+#[cfg(feature = "random")]
+mod population;
+mod programs;
+mod properties;
+mod rotation;
+mod rounding;
+mod schemes;
+mod series;
+mod surface;
+mod taylor;
+mod tops;
+mod truth;
+mod tumbling;
+mod two_turns;
+mod yardsticks;
