@@ -1,8 +1,10 @@
-//! Whether advice is right, on random bodies, starts, times and demands: `cargo bench --bench advice`.
+//! Whether advice is right, on random bodies, starts, times and demands: `cargo bench -p polhode-benches --bench
+//! advice`.
 //!
-//! Each piece of advice is run to the end and compared with the motion; closed forms are left out. Of the first twenty, every
-//! other method is run by brute force, in steps of a fine grid, to see what would have been quicker. Ends with 1 if fewer than 95 in
-//! 100 demands are met, or if a method is more than twice as quick as the one advised.
+//! Each piece of advice is run to the end and compared with the motion; closed forms are left out. Of the first
+//! twenty, every other method is run by brute force, in steps of a fine grid, to see what would have been quicker.
+//! Ends with 1 if fewer than 95 in 100 demands are met, or if a method is more than twice as quick as the one
+//! advised.
 
 #![allow(clippy::expect_used)]
 

@@ -1,5 +1,5 @@
 //! Error growth against the number of steps: largest errors of the invariants, and attitude error against the exact
-//! motion of the same start. Prints CSV; `cargo bench --bench drift -- 1000000000` takes as many steps.
+//! motion of the same start. Prints CSV; `cargo bench -p polhode-benches --bench drift -- 1000000000` takes as many steps.
 
 #![allow(clippy::expect_used)]
 

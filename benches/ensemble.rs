@@ -1,5 +1,6 @@
-//! Bodies side by side against the scalar rk4 of the crate, bursts in turn in one run: `cargo bench --bench ensemble --features
-//! parallel`. Ends with 1 if a ratio is less than half of what it was when it was last looked at.
+//! Bodies side by side against the scalar rk4 of the crate, bursts in turn in one run: `cargo bench -p
+//! polhode-benches --bench ensemble --features parallel`. Ends with 1 if a ratio is less than half of what it was
+//! when it was last looked at.
 
 #![allow(clippy::expect_used)]
 

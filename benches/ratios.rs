@@ -1,5 +1,6 @@
-//! Time per step of the main methods over that of an RK4 written by hand, bursts in turn in one run: `cargo bench --bench
-//! ratios`. Ends with 1 if one is more than twice what it was when it was last looked at, as where inlining is lost.
+//! Time per step of the main methods over that of an RK4 written by hand, bursts in turn in one run: `cargo bench -p
+//! polhode-benches --bench ratios`. Ends with 1 if one is more than twice what it was when it was last looked at, as
+//! where inlining is lost.
 
 #![allow(clippy::expect_used)]
 

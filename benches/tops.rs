@@ -1,6 +1,6 @@
-//! Milliseconds that methods take to follow heavy tops to an attitude error: `cargo bench --bench tops`. Each method is run over
-//! many steps or tolerances, unwatched; the time between two runs is interpolated. References are Taylor series in
-//! double-double.
+//! Milliseconds that methods take to follow heavy tops to an attitude error: `cargo bench -p polhode-benches --bench
+//! tops`. Each method is run over many steps or tolerances, unwatched; the time between two runs is interpolated.
+//! References are Taylor series in double-double.
 
 #![allow(clippy::expect_used)]
 

@@ -1,7 +1,8 @@
 //! Ensembles against their members alone, bit for bit: in lanes of every width, in parts, on threads.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::{Body, Clock, Conserved, Force, State};
+use polhode::body::{Body, Clock, Conserved, Force, State, StateError};
+use polhode::events::Event;
 use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::inertia::Inertia;
 use polhode::method::method;
@@ -348,4 +349,54 @@ fn many_times_of_one_motion_have_the_bits_of_each() {
     }
     let motion = FreeMotion::from_omega(&inertia, attitude(3), near[0].into()).unwrap();
     assert_eq!(motion.at_many(&[0.0, 1e40, f64::NAN]), Err(motion.at(1e40).unwrap_err()));
+}
+
+/// Each member has the first event of its own motion or run; one without a motion keeps its place.
+#[test]
+fn first_passages_are_those_of_each_member_alone() {
+    let inertia = Inertia::from_moments([1.0, 2.0, 3.0]).unwrap();
+    let body = Body::free(inertia.clone());
+    let omegas: Vec<Vector3<f64>> = (0..200).map(|k| Vector3::new(0.002 * f64::from(k), 1.0, 1e-3)).collect();
+    let mut ensemble = Ensemble::new();
+    for (k, omega) in omegas.iter().enumerate() {
+        if k == 77 {
+            ensemble.push_failed(StateError::NoAttitude);
+        } else {
+            ensemble.push_omega(&inertia, UnitQuaternion::identity(), *omega);
+        }
+    }
+    let exact = ensemble.first(|body| Ok(Event::flip(body)), 6.0, 0.5);
+    let (rk4, clock) = (method("rk4").unwrap(), Clock::new(0.05));
+    let stepped = ensemble.first_by(&rk4, clock, |body| Ok(Event::flip(body)), 6.0);
+    assert_eq!((exact.len(), stepped.len()), (200, 200));
+    let mut happened = 0;
+    for (k, omega) in omegas.iter().enumerate() {
+        if k == 77 {
+            assert!(exact[k].is_err() && stepped[k].is_err());
+            continue;
+        }
+        let motion = FreeMotion::from_omega(&inertia, UnitQuaternion::identity(), *omega).unwrap();
+        let alone = motion.events(&[Event::flip(&body)], 0.0, 6.0, 0.5).unwrap().found;
+        let first = exact[k].as_ref().unwrap();
+        assert_eq!(first.as_ref(), alone.first(), "{k}");
+        let start = body.state(UnitQuaternion::identity(), *omega).unwrap();
+        let run = Run::new(&rk4, &body, &start, 0.05).unwrap().until(&Event::flip(&body), 6.0).unwrap();
+        assert_eq!(stepped[k].as_ref().unwrap(), &run, "{k}");
+        if let (Some(first), Some(run)) = (first, run) {
+            assert!((first.time - run.time).hi().abs() < 1e-4, "{k}");
+            happened += 1;
+        }
+    }
+    assert!((50..190).contains(&happened), "{happened}");
+    #[cfg(feature = "parallel")]
+    {
+        let times = |all: Vec<Result<Option<polhode::events::Occurrence>, _>>| -> Vec<_> {
+            all.into_iter().map(|one| one.ok().flatten()).collect()
+        };
+        ensemble = ensemble.threads(2);
+        assert_eq!(times(ensemble.first(|body| Ok(Event::flip(body)), 6.0, 0.5)), times(exact));
+    }
+    // what is wrong with the search is wrong for each
+    let refused = ensemble.first(|body| Ok(Event::flip(body)), -1.0, 0.5);
+    assert!(refused.iter().all(|one| matches!(one, Err(MemberError::Event(_) | MemberError::State(_)))));
 }

@@ -36,6 +36,7 @@ mod rounding;
 mod schemes;
 mod series;
 mod surface;
+mod switched;
 mod taylor;
 mod tops;
 mod truth;

@@ -10,6 +10,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::Time;
+use super::switched::Switched;
 use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real, Series, Shown};
 use crate::rotation::{Quat, Vec3};
@@ -96,12 +97,14 @@ pub enum Conserved {
 #[derive(Clone)]
 #[must_use]
 pub struct Force {
-    name: String,
+    pub(super) name: String,
     pub(crate) law: Law,
     /// The same law on power series; none of a closure.
     pub(crate) series: Option<SeriesLaw>,
     /// Mean motion, rad/s, and eccentricity of a gravity gradient, which takes the tensor of the body that it acts on.
     pub(super) orbit: Option<[f64; 2]>,
+    /// Of a force that does not act always.
+    pub(super) switched: Option<Switched>,
 }
 
 #[derive(Clone)]
@@ -166,6 +169,19 @@ pub enum ForceError {
         /// The value.
         eccentricity: f64,
     },
+    /// An interval in which it acts is none.
+    #[error(
+        "the interval from {} s to {} s comes after {} s; intervals of a force ascend, and each ends after its beginning",
+        Shown(*from), Shown(*to), Shown(*before)
+    )]
+    Interval {
+        /// The beginning, s.
+        from: f64,
+        /// The end, s.
+        to: f64,
+        /// The end of the interval before, s.
+        before: f64,
+    },
 }
 
 impl Force {
@@ -176,7 +192,7 @@ impl Force {
     {
         let law = Arc::new(potential);
         let series = Some(SeriesLaw::Potential(law.clone()));
-        Force { name: name.into(), law: Law::Potential(law), series, orbit: None }
+        Force { name: name.into(), law: Law::Potential(law), series, orbit: None, switched: None }
     }
 
     /// The torque `torque`, called `name` in messages.
@@ -186,7 +202,7 @@ impl Force {
     {
         let law = Arc::new(torque);
         let series = Some(SeriesLaw::Torque(law.clone()));
-        Force { name: name.into(), law: Law::Torque(law), series, orbit: None }
+        Force { name: name.into(), law: Law::Torque(law), series, orbit: None, switched: None }
     }
 
     /// A potential by two closures of the attitude, body → space: energy in J, and torque in N m, body axes.
@@ -200,7 +216,7 @@ impl Force {
         T: Fn(UnitQuaternion<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
         let law = Law::Potential(Arc::new(PotentialFn { energy, torque }));
-        Force { name: name.into(), law, series: None, orbit: None }
+        Force { name: name.into(), law, series: None, orbit: None, switched: None }
     }
 
     /// A torque, N m, body axes, by a closure of the time (s), the attitude (body → space) and the angular velocity
@@ -225,7 +241,7 @@ impl Force {
         T: Fn(f64, UnitQuaternion<f64>, Vector3<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
         let law = Law::Torque(Arc::new(TorqueFn(torque)));
-        Force { name: name.into(), law, series: None, orbit: None }
+        Force { name: name.into(), law, series: None, orbit: None, switched: None }
     }
 
     /// The same force, a gravity gradient on the orbit `orbit`.
@@ -236,7 +252,7 @@ impl Force {
     /// The same force as it acts on a body with the inertia `inertia`.
     pub(super) fn on(self, inertia: &Inertia) -> Self {
         match self.orbit {
-            Some(orbit) => Force::gradient_on(inertia.tensor(), orbit),
+            Some(orbit) => self.switch(Force::gradient_on(inertia.tensor(), orbit)),
             None => self,
         }
     }

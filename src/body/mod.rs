@@ -15,6 +15,7 @@ mod point;
 mod population;
 mod rotor;
 mod state;
+mod switched;
 mod time;
 
 pub use body::{Body, Problem, StateError};

@@ -57,13 +57,25 @@ impl Event {
     /// # Errors
     /// A limit that is not positive.
     pub fn rate_above(body: &Body, limit: f64) -> Result<Self, EventError> {
+        Event::rate("rate above limit", 1.0, body, limit)
+    }
+
+    /// |ω| of `body` falls below `limit`, rad/s.
+    ///
+    /// # Errors
+    /// A limit that is not positive.
+    pub fn rate_below(body: &Body, limit: f64) -> Result<Self, EventError> {
+        Event::rate("rate below limit", -1.0, body, limit)
+    }
+
+    fn rate(name: &str, sign: f64, body: &Body, limit: f64) -> Result<Self, EventError> {
         if !(limit > 0.0 && limit.is_finite()) {
             let rule = "it must be a positive number of rad/s";
             return Err(EventError::Parameter { quantity: "the rate", value: limit, rule });
         }
         let body = body.clone();
-        let law = move |_: f64, x: &State| body.omega_body(x).norm() - limit;
-        Ok(Event::zero("rate above limit", law).lasting().bounded(Bound::PerRate(1.0)))
+        let law = move |_: f64, x: &State| sign * (body.omega_body(x).norm() - limit);
+        Ok(Event::zero(name, law).lasting().bounded(Bound::PerRate(1.0)))
     }
 
     /// The attitude of `body` is as near to `target` (body → space) as it comes: the angle between them begins to grow.

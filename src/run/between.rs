@@ -1,6 +1,5 @@
 //! The state of a run between two of its steps.
 
-use super::error::SOLVED;
 use super::schedule::Place;
 use super::{Run, RunError, Sample};
 use crate::body::Point;
@@ -52,7 +51,8 @@ impl Run {
 
     /// The step that the run has come to, to look behind it.
     pub(super) fn here(&self) -> Between {
-        Between { form: self.point, memory: self.step.memory(), reading: self.reading, dense: None }
+        let (form, memory) = (self.point, self.step.memory());
+        Between { form, memory, phase: self.phase, reading: self.reading, dense: None }
     }
 }
 
@@ -61,47 +61,53 @@ pub(super) struct Between {
     /// The point in the form in which the method moves it, with what the method remembers.
     form: Point<f64>,
     memory: Vec<f64>,
+    phase: usize,
     pub(super) reading: Point<f64>,
-    /// Steps of a method that chooses them, and how far they have come.
-    dense: Option<(Box<dyn Step<f64>>, Point<f64>)>,
+    dense: Option<Dense>,
+}
+
+/// Steps of a method that chooses them, and how far they have come.
+struct Dense {
+    step: Box<dyn Step<f64>>,
+    form: Point<f64>,
+    phase: usize,
 }
 
 impl Between {
     /// The state `later` s behind the step, of a `run` that has come so far or further.
     pub(super) fn behind(&mut self, run: &mut Run, later: Dd) -> Result<Point<f64>, RunError> {
-        let begun = run.clock.at(self.reading.steps());
-        let (point, residual, stuck) = if run.step.base().is_some() {
-            let elapsed = (begun.elapsed() + later).hi();
-            let (step, form) = match &mut self.dense {
-                Some(dense) => dense,
-                none => {
-                    let mut step = run.method.prepare_f64(run.clock, &run.body)?;
-                    step.open(&mut self.form.clone());
-                    step.remember(&self.memory);
-                    none.insert((step, self.form))
-                }
-            };
-            if step.base().is_some_and(|base| (elapsed - base.hi()) * run.clock.step < 0.0) {
-                step.remember(&self.memory);
-                *form = self.form;
-            }
-            (step.dense(begun.later(later), form), 0.0, step.stuck())
-        } else {
-            let mut step = run.method.prepare_part(run.clock, later, &run.body)?;
-            let mut point = self.reading;
-            step.apply(begun, &mut point);
-            (point, step.worst_residual(), None)
+        if run.step.base().is_none() {
+            return run.divided(self.reading, later);
+        }
+        let until = run.clock.at(0).later(run.clock.elapsed(self.reading.steps()) + later);
+        let forward = run.clock.step.signum();
+        let behind = |time: Dd, other: Dd| (time - other).hi() * forward > 0.0;
+        let ahead = match &self.dense {
+            Some(dense) => dense.step.base().is_some_and(|base| behind(base, until.elapsed())),
+            None => true,
         };
-        if residual > SOLVED {
-            return Err(run.unsolved(residual));
+        if let Some(dense) = self.dense.as_mut().filter(|dense| ahead && dense.phase == self.phase) {
+            dense.step.remember(&self.memory);
+            dense.form = self.form;
+        } else if ahead {
+            let mut step = run.prepared(self.phase)?;
+            step.open(&mut self.form.clone());
+            step.remember(&self.memory);
+            self.dense = Some(Dense { step, form: self.form, phase: self.phase });
         }
-        if point.is_finite() {
-            return Ok(point);
+        let Some(Dense { step, form, phase }) = &mut self.dense else { return Ok(self.reading) };
+        while let Some(switch) =
+            run.phases.end(*phase).filter(|switch| behind(until.elapsed(), switch.elapsed))
+        {
+            let at = run.clock.at(0).later(switch.elapsed);
+            let state = step.dense(at, form);
+            run.check(&state, step.stuck())?;
+            (*form, *phase) = (state, *phase + 1);
+            *step = run.prepared(*phase)?;
+            step.open_at(at, form);
         }
-        let last = run.finite_sample()?;
-        Err(match stuck {
-            Some(stuck) => RunError::Stuck { last, stuck },
-            None => RunError::Diverged { last },
-        })
+        let point = step.dense(until, form);
+        run.check(&point, step.stuck())?;
+        Ok(point)
     }
 }

@@ -84,7 +84,10 @@ pub(super) fn identity(body: &Body, clock: Clock, start: &Point<f64>) -> Vec<Str
     let weight = body.linear_potential::<Dd>().map(|linear| format!("weight {}", numbers(linear.moment)));
     let axes = body.inertia().principal_axes();
     let axes = format!("axes {:?} {:?} {:?} {:?}", axes.w, axes.i, axes.j, axes.k);
-    let forces = body.remainder().map(|force| format!("force {:?}", force.name()));
+    let forces = body.remainder().map(|force| match force.intervals() {
+        None => format!("force {:?}", force.name()),
+        Some(intervals) => format!("force {:?} during {intervals:?}", force.name()),
+    });
     let (at, start) = (clock.at(0), start.to_dd());
     let energy = body.energy_of(at, &start);
     let at_start =

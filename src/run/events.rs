@@ -89,6 +89,13 @@ impl Run {
         }
         let state = match rest {
             Some(rest) => body.leave(&here.behind(self, rest)?),
+            // there is no way back from where forces are switched
+            None if self.steps_ahead() == Some(0) => {
+                let state = body.leave(&here.behind(self, length)?);
+                let mut states = |t: Dd| here.behind(self, t - base).map(|point| body.leave(&point));
+                search.go_on(base + length, &state, &mut states)?;
+                return if search.has_ended() { Ok(()) } else { self.go_to(steps + 1) };
+            }
             None => {
                 let before = self.marked();
                 self.go_to(steps + 1)?;

@@ -7,6 +7,7 @@ mod convergence;
 mod ensemble;
 mod error;
 mod events;
+mod phases;
 #[allow(clippy::module_inception)]
 mod run;
 mod sample;

@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::error::SOLVED;
+use super::phases::Phases;
 use super::{Checkpoint, CheckpointError, RunError, Sample, Schedule, Watch, checkpoint};
 use crate::body::{Body, Clock, Point, State, StateError, Witness};
 use crate::method::{AnyMethod, Step, Work};
@@ -37,18 +38,43 @@ pub struct Run {
     pub(super) method: Box<dyn AnyMethod>,
     pub(super) step: Box<dyn Step<f64>>,
     /// The same step with forces that report a value that is not finite, and that report; with forces only.
-    probe: Option<(Box<dyn Step<f64>>, Witness)>,
+    pub(super) probe: Option<Probe>,
     pub(super) clock: Clock,
-    watch: Watch,
+    /// Of the forces that are switched, and the one that `step` is of.
+    pub(super) phases: Phases,
+    pub(super) phase: usize,
+    pub(super) watch: Watch,
     start: Point<f64>,
     /// In the form in which the step moves it.
     pub(super) point: Point<f64>,
     /// The state behind that form.
     pub(super) reading: Point<f64>,
-    monitor: Monitor,
-    residual: f64,
+    pub(super) monitor: Monitor,
+    /// The worst of the phases before, and their work.
+    pub(super) residual: f64,
+    pub(super) worked: Option<Work>,
     /// Whether steps have been taken that were not watched.
-    missed: bool,
+    pub(super) missed: bool,
+}
+
+/// Steps with forces that report a value that is not finite, and that report.
+pub(super) type Probe = (Box<dyn Step<f64>>, Witness);
+
+/// Of `method` for `body`, with forces only.
+pub(super) fn probe(
+    method: &dyn AnyMethod,
+    body: &Body,
+    clock: Clock,
+    start: &Point<f64>,
+) -> Result<Option<Probe>, RunError> {
+    if body.remainder().next().is_none() {
+        return Ok(None);
+    }
+    let witness = Arc::new(OnceLock::new());
+    let watched = body.witnessed(Arc::clone(&witness));
+    let mut step = method.prepare_f64(clock, &watched)?;
+    step.open(&mut start.clone());
+    Ok(Some((step, witness)))
 }
 
 /// A step of a run and what was watched up to it.
@@ -99,16 +125,11 @@ impl Run {
         {
             return Err(StateError::NotFinite { quantity: "the start", value }.into());
         }
-        let probe = if body.remainder().next().is_none() {
-            None
-        } else {
-            let witness = Arc::new(OnceLock::new());
-            let watched = body.witnessed(Arc::clone(&witness));
-            let mut step = method.prepare_f64(clock, &watched)?;
-            step.open(&mut start.clone());
-            Some((step, witness))
-        };
-        let (mut step, mut point) = (method.prepare_f64(clock, body)?, start);
+        let phases = Phases::of(body, clock)?;
+        let acting = phases.body(0, body, clock);
+        let probe = probe(method, &acting, clock, &start)?;
+        let (mut step, mut point) = (method.prepare_f64(clock, &acting)?, start);
+        phases.check(method, body, clock)?;
         step.open(&mut point);
         Ok(Run {
             step,
@@ -117,11 +138,14 @@ impl Run {
             monitor: Monitor::new(body, clock, &start),
             body: body.clone(),
             clock,
+            phases,
+            phase: 0,
             watch: Watch::default(),
             start,
             point,
             reading: start,
             residual: 0.0,
+            worked: None,
             missed: false,
         })
     }
@@ -173,6 +197,12 @@ impl Run {
         checkpoint.check(&method.name(), body)?;
         let mut run = Run::from_point(method, body, checkpoint.start, checkpoint.clock)?;
         run.watch = checkpoint.watch;
+        let phase = run.phases.after(checkpoint.point.steps());
+        if phase > 0 {
+            // what the method remembers tells the rest
+            let steps = run.phases.begins(phase);
+            run.begin(phase, checkpoint.clock.at(steps), Point::from_parts(checkpoint.start.parts(), steps))?;
+        }
         run.point = checkpoint.point;
         let (needed, stored) = (run.step.memory().len(), checkpoint.method_memory.len());
         if needed != stored {
@@ -216,7 +246,12 @@ impl Run {
             if self.point.steps() >= steps {
                 break;
             }
-            let wanted = CHUNK.min(steps - self.point.steps());
+            let ahead = self.steps_ahead().unwrap_or(u64::MAX);
+            if ahead == 0 {
+                self.change_phase()?;
+                continue;
+            }
+            let wanted = CHUNK.min(steps - self.point.steps()).min(ahead);
             let finite = match self.watch {
                 Watch::EveryStep => self.watched(wanted),
                 Watch::AtSamples | Watch::Never => self.unwatched(wanted),
@@ -256,7 +291,7 @@ impl Run {
         }
     }
 
-    fn read(&mut self) {
+    pub(super) fn read(&mut self) {
         self.reading = self.step.reading(&self.point);
     }
 
@@ -347,10 +382,13 @@ impl Run {
     /// each with the cost that is [claimed](crate::method::Claims::cost).
     #[must_use]
     pub fn work(&self) -> Option<Work> {
-        self.step.work()
+        match (self.worked, self.step.work()) {
+            (Some(before), Some(now)) => Some(before + now),
+            (before, now) => before.or(now),
+        }
     }
 
-    fn worst_residual(&self) -> f64 {
+    pub(super) fn worst_residual(&self) -> f64 {
         self.residual.max(self.step.worst_residual())
     }
 

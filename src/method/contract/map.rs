@@ -168,6 +168,17 @@ pub struct Work {
     pub rejected: u64,
 }
 
+impl core::ops::Add for Work {
+    type Output = Work;
+    fn add(self, more: Work) -> Work {
+        Work {
+            evaluations: self.evaluations + more.evaluations,
+            accepted: self.accepted + more.accepted,
+            rejected: self.rejected + more.rejected,
+        }
+    }
+}
+
 /// Where no step that a map can choose has an error within its tolerance, or those that have are too short.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -189,6 +200,9 @@ pub struct Stuck {
 pub trait Step<S: Real>: Send {
     /// Takes a state to the form in which [`advance`](Self::advance) moves it.
     fn open(&mut self, x: &mut Point<S>);
+
+    /// The same of a state of the time `at`, of a map that chooses its steps; all others begin with whole steps.
+    fn open_at(&mut self, at: Time, x: &mut Point<S>);
 
     /// Takes `n` steps in that form.
     fn advance(&mut self, x: &mut Point<S>, n: u64);
@@ -253,8 +267,12 @@ impl<M> Stepper<M> {
 
 impl<S: Real, M: Map<S>> Step<S> for Stepper<M> {
     fn open(&mut self, x: &mut Point<S>) {
+        self.open_at(self.clock.at(x.steps()), x);
+    }
+
+    fn open_at(&mut self, at: Time, x: &mut Point<S>) {
         self.opened = x.steps();
-        self.map.open(self.clock.at(x.steps()), x);
+        self.map.open(at, x);
     }
 
     fn advance(&mut self, x: &mut Point<S>, n: u64) {

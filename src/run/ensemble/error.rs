@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::body::StateError;
+use crate::events::EventError;
 use crate::flow::{NoClosedForm, TimeError};
 use crate::inertia::InertiaError;
 use crate::method::StepError;
@@ -25,6 +26,9 @@ pub enum MemberError {
     /// It cannot be followed so far.
     #[error(transparent)]
     Time(#[from] TimeError),
+    /// Events could not be looked for.
+    #[error(transparent)]
+    Event(#[from] EventError),
     /// Its run could not go on.
     #[error(transparent)]
     Run(#[from] RunError),

@@ -6,6 +6,7 @@
 
 mod error;
 mod exact;
+mod first;
 mod members;
 mod parts;
 mod rows;
@@ -208,7 +209,7 @@ impl Ensemble {
         self.in_parts(
             parts::of_exact(self.len(), times.len()),
             |part| exact::rows(self, part, times),
-            &mut each,
+            |rows| each(&rows),
         )
     }
 
@@ -259,7 +260,11 @@ impl Ensemble {
             method.prepare_f64(clock, &body).map_err(EnsembleError::from)?;
         }
         let course = Course { ensemble: self, method, clock, steps };
-        self.in_parts(parts::of_stepped(self.len(), steps.len()), |part| course.rows(part), &mut each)
+        self.in_parts(
+            parts::of_stepped(self.len(), steps.len()),
+            |part| course.rows(part),
+            |rows| each(&rows),
+        )
     }
 
     /// The inertia of member `k`; `None` where there is no such member, or none that has one.

@@ -1,5 +1,6 @@
-//! Time of a fit over that of another in the same run: `cargo bench --bench fit_ratios`. Ends with 1 if one is more than
-//! twice what it was when it was last looked at, as where the time grows faster than the record.
+//! Time of a fit over that of another in the same run: `cargo bench -p polhode-benches --bench fit_ratios`. Ends with
+//! 1 if one is more than twice what it was when it was last looked at, as where the time grows faster than the
+//! record.
 
 use std::hint::black_box;
 use std::process::ExitCode;
