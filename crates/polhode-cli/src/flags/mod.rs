@@ -1,6 +1,7 @@
 //! Flags that several commands share.
 
 pub(crate) mod body;
+pub(crate) mod event;
 pub(crate) mod force;
 pub(crate) mod motion;
 pub(crate) mod start;

@@ -135,12 +135,33 @@ impl Columns {
         Ok(Self { places, sequence: sequence.unwrap_or_default() })
     }
 
-    pub(super) fn table(&self) -> Table {
+    /// As [`chosen`](Self::chosen), of single states: without what is compared with a start or an exact motion.
+    pub(super) fn of_states(
+        fields: &[String],
+        sequence: Option<EulerSequence>,
+        body: &Body,
+    ) -> Result<Self, Error> {
+        let mut columns = Columns::chosen(fields, sequence, body)?;
+        let is_error = |place: &usize| ALL[*place].1 == "errors";
+        if let (false, Some(place)) = (fields.is_empty(), columns.places.iter().find(|place| is_error(place)))
+        {
+            let rule = "is an error along a run, and the rows of --event are events";
+            return Err(Error::input("--fields", ALL[*place].2, rule, "leave it out"));
+        }
+        columns.places.retain(|place| !is_error(place));
+        Ok(columns)
+    }
+
+    pub(super) fn columns(&self) -> Vec<Column> {
         let column = |place: &usize| {
             let (_, _, name, unit, meaning, digits) = ALL[*place];
             Column::new(name, unit, meaning).digits(digits)
         };
-        Table::new("trajectory", "Motion of a body.", self.places.iter().map(column).collect())
+        self.places.iter().map(column).collect()
+    }
+
+    pub(super) fn table(&self) -> Table {
+        Table::new("trajectory", "Motion of a body.", self.columns())
     }
 
     fn quantities(&self) -> impl Iterator<Item = Quantity> + '_ {

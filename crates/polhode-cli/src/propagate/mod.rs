@@ -1,6 +1,7 @@
 //! `polhode propagate`: one body to given times.
 
 mod columns;
+mod events;
 
 use std::path::PathBuf;
 
@@ -18,6 +19,7 @@ use polhode_files::numbers::positive;
 use polhode_pages::table::{Format, RowWriter};
 
 use crate::cost;
+use crate::flags::event::{TypedEvent, event};
 use crate::flags::motion::MotionArguments;
 use crate::flags::times::{OutputTimes, TimeArguments};
 use crate::methods::{Unusable, adaptive, at_tolerance, named, not_taken, unknown};
@@ -27,7 +29,8 @@ const USAGE: &str = "polhode propagate <BODY> [START] <TIMES> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
   START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ...
          and --attitude <w,x,y,z> | --angles <phi,theta,psi> | ...
-  TIMES: --times <LIST|FILE|-> | --until <T> --every <DT>";
+  TIMES: --times <LIST|FILE|-> | --until <T> --every <DT>
+         | --until <T> --event <EVENT> [--stop]";
 
 const EXAMPLES: &str = "Examples:
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --times 0,10,1e6
@@ -38,7 +41,10 @@ const EXAMPLES: &str = "Examples:
   polhode propagate --body phone --omega 0,10,1 --until 5 --every 1 \\
     --drag 1e-5 --method rk4 --step 0.01
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 100 --every 10 \\
-    --method dop853 --tolerance 1e-12";
+    --method dop853 --tolerance 1e-12
+  polhode propagate --body t-handle --until 60 --event flip
+  polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 1d \\
+    --event 'angle(body z, space x) < 30deg' --stop";
 
 /// Rotation of one body: attitude, angular velocity and errors at given times
 #[derive(Args, Clone, Debug)]
@@ -48,6 +54,12 @@ pub(crate) struct Propagate {
     pub(crate) motion: MotionArguments,
     #[command(flatten)]
     times: TimeArguments,
+    /// Rows are the times at which this happens, from the start to --until: 'flip', 'angle(body z, space x) < 10deg' (or >), 'rate > 5rad/s' (or <), or 'nearest(w,x,y,z)', the attitude nearest to that one; several times for several
+    #[arg(long = "event", value_name = "EVENT", value_parser = event, help_heading = "Events")]
+    events: Vec<TypedEvent>,
+    /// End with the first event
+    #[arg(long, requires = "events", help_heading = "Events")]
+    stop: bool,
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Method")]
     method: String,
@@ -71,17 +83,24 @@ pub(crate) struct Propagate {
 impl Propagate {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let body = self.motion.body()?;
+        if !self.events.is_empty() {
+            return self.look_for_events(&body);
+        }
         let columns = Columns::chosen(&self.fields, self.motion.start.euler, &body)?;
         let start = self.motion.start(&body)?;
         let times = self.times.output()?;
-        let published = self.motion.body.published_start().filter(|_| !self.motion.start.has_attitude());
-        if let Some(epoch) = published.and_then(|start| start.orientation?.epoch) {
-            self.times.compare_epoch(epoch);
-        }
+        self.compare_epoch();
         if self.method == "exact" {
             self.exact(&body, start, &times, columns)
         } else {
             self.stepped(&body, start, &times, columns)
+        }
+    }
+
+    fn compare_epoch(&self) {
+        let published = self.motion.body.published_start().filter(|_| !self.motion.start.has_attitude());
+        if let Some(epoch) = published.and_then(|start| start.orientation?.epoch) {
+            self.times.compare_epoch(epoch);
         }
     }
 
@@ -100,13 +119,7 @@ impl Propagate {
         ended
     }
 
-    fn exact(
-        &self,
-        body: &Body,
-        start: Point<Dd>,
-        times: &OutputTimes,
-        columns: Columns,
-    ) -> Result<(), Error> {
+    fn exact_motion(&self, body: &Body, start: Point<Dd>) -> Result<ExactMotion, Error> {
         if self.step.is_some() {
             return Err(Error::Input(
                 "--step: --method exact takes no step; leave it out, or name a stepping method".into(),
@@ -115,10 +128,20 @@ impl Propagate {
         if let Some(tolerance) = self.tolerance {
             return Err(self.without_tolerance(tolerance));
         }
-        let motion = ExactMotion::from_point(body, start).map_err(|error| {
+        ExactMotion::from_point(body, start).map_err(|error| {
             let method = if body.problem() == Problem::Torque { "rk4" } else { "kick-drift@srkn-6b" };
             Error::Input(format!("--method exact: {error}; use --method {method} with a --step"))
-        })?;
+        })
+    }
+
+    fn exact(
+        &self,
+        body: &Body,
+        start: Point<Dd>,
+        times: &OutputTimes,
+        columns: Columns,
+    ) -> Result<(), Error> {
+        let motion = self.exact_motion(body, start)?;
         let start_time = self.times.start()?;
         let check = |t: f64| {
             // an overflow of the difference is out of reach too
@@ -168,21 +191,13 @@ impl Propagate {
         let regular = self.times.every().filter(|every| *every > 0.0);
         let watched =
             regular.unwrap_or(if speed > 0.0 { libm::exp2(-libm::ceil(libm::log2(speed))) } else { 1.0 });
-        let Some(h) = self.step.or(adaptive.then_some(watched)) else {
-            return Err(Error::Input(format!(
-                "--step: missing; --method {} needs a step in seconds",
-                self.method
-            )));
-        };
+        let h = self.step_or(adaptive.then_some(watched))?;
         let clock = Clock { start: self.times.start()?, step: h };
         let chosen = adaptive.then_some(speed);
         let mut before = clock.start;
         let count = times.check(|t| self.check_time(clock, chosen, &mut before, t))?;
         let last = ((before - clock.start) / h) as u64;
-        let mut run = Run::from_point(&method, body, start.to_f64(), clock).map_err(|error| match error {
-            RunError::Step(error @ StepError::Refused { .. }) => Error::Input(format!("--method: {error}")),
-            error => Error::Input(format!("--step: {error}")),
-        })?;
+        let mut run = run_of(&method, body, start, clock)?;
         if !columns.errors() {
             run = run.watching(Watch::Never);
         }
@@ -228,13 +243,25 @@ impl Propagate {
     }
 
     fn sample(&self, run: &mut Run, t: f64) -> Result<Sample, Error> {
-        run.at(t).map_err(|error| match error {
+        run.at(t).map_err(|error| self.ended(error))
+    }
+
+    /// Why a run cannot go on.
+    fn ended(&self, error: RunError) -> Error {
+        match error {
             RunError::Diverged { .. }
             | RunError::Unsolved { .. }
             | RunError::Stuck { .. }
             | RunError::Force { .. }
             | RunError::OutOfRange { .. } => Error::Failed(format!("--method {}: {error}", self.method)),
             error => Error::Input(error.to_string()),
+        }
+    }
+
+    /// The step that was given, else `chosen`.
+    fn step_or(&self, chosen: Option<f64>) -> Result<f64, Error> {
+        self.step.or(chosen).ok_or_else(|| {
+            Error::Input(format!("--step: missing; --method {} needs a step in seconds", self.method))
         })
     }
 
@@ -299,4 +326,12 @@ impl Propagate {
             Unusable::OutOfRange(allowed) => not_taken("--tolerance", tolerance, &self.method, &allowed),
         })
     }
+}
+
+/// The run from `start` on, unless the method or the step is not for it.
+fn run_of(method: &dyn AnyMethod, body: &Body, start: Point<Dd>, clock: Clock) -> Result<Run, Error> {
+    Run::from_point(method, body, start.to_f64(), clock).map_err(|error| match error {
+        RunError::Step(error @ StepError::Refused { .. }) => Error::Input(format!("--method: {error}")),
+        error => Error::Input(format!("--step: {error}")),
+    })
 }

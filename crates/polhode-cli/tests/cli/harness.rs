@@ -71,9 +71,12 @@ pub(crate) fn polhode(arguments: &[&str], folder: &Path) -> Answer {
     answer
 }
 
-/// A command line written as a shell would take it; no argument here holds a blank.
+/// A command line written as a shell would take it; only what stands in single quotes holds blanks.
 pub(crate) fn words(line: &str) -> Vec<&str> {
-    line.split_whitespace().collect()
+    let parts = line.split('\'').enumerate();
+    parts
+        .flat_map(|(n, part)| if n % 2 == 1 { vec![part] } else { part.split_whitespace().collect() })
+        .collect()
 }
 
 pub(crate) fn run(line: &str) -> Answer {

@@ -12,6 +12,7 @@ mod compose;
 mod costs;
 mod documents;
 mod ensemble;
+mod events;
 mod experiment;
 mod fit;
 mod fit_inputs;

@@ -23,10 +23,10 @@ pub(crate) struct TimeArguments {
     /// Column of the file of --times, by its name or number [default: t]
     #[arg(long, value_name = "NAME|N")]
     times_column: Option<String>,
-    /// Last output time, with --every: s, with a unit, or a date with --epoch
+    /// Last output time, with --every, or end of the search for --event: s, with a unit, or a date with --epoch
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     until: Option<String>,
-    /// Time between output rows, with --until: s, or with a unit (ms, min, h, d)
+    /// Time between output rows, with --until, or between the looks for --event: s, or with a unit (ms, min, h, d)
     #[arg(long, value_name = "DT", value_parser = duration, allow_hyphen_values = true)]
     every: Option<f64>,
     /// Time of the start: s, with a unit, or a date with --epoch
@@ -102,6 +102,19 @@ impl TimeArguments {
     /// Time between rows, s, if they are regular.
     pub(crate) fn every(&self) -> Option<f64> {
         self.every
+    }
+
+    /// The start and --until, between which something is looked for.
+    pub(crate) fn span(&self) -> Result<[f64; 2], Error> {
+        match (&self.times, &self.until) {
+            (None, Some(until)) => Ok([self.start()?, self.moment("--until", until)?]),
+            (Some(_), _) => Err(Error::Input(
+                "--times: --event looks from the start to --until; give --until T in its place".into(),
+            )),
+            (None, None) => {
+                Err(Error::Input("--until: missing; --event looks from the start to then".into()))
+            }
+        }
     }
 
     /// The output times. Those of a file are read again with each pass.
