@@ -22,6 +22,12 @@ pub struct Clash {
     pub gap: f64,
 }
 
+impl From<FitError> for polhode::Error {
+    fn from(error: FitError) -> Self {
+        polhode::Error::new(error)
+    }
+}
+
 /// Why a fit was refused.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -57,7 +57,7 @@ use crate::verdict::units::open_units;
 /// let spinning = simulate(&body, Vector3::new(0.0, 0.0, 1.0), &times, 1e-3, &mut random)?;
 /// let refused = fit(&Record::from_samples(&times, &spinning)?, &Settings::default());
 /// assert!(matches!(refused, Err(FitError::Unidentifiable(what)) if what.rank == 2)); // an axis, and no ratio
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 ///
 /// # Errors

@@ -25,7 +25,7 @@
 //! assert!(estimate.warnings.is_empty(), "{:?}", estimate.warnings);
 //! let inertia = estimate.inertia.ok_or("a trace was given")?; // kg m², since the trace was
 //! assert!((inertia.tensor()[(1, 1)] - 2.0).abs() < 1e-3);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # Ok::<(), polhode::Error>(())
 //! ```
 //!
 //! [`flights()`] finds the spans of free rotation in a recording that also shows how the body was held and caught.

@@ -67,7 +67,7 @@ pub struct WheelCalibration {
 /// record.segments.push(Segment::new("proof body", times, rates)?.with_wheel(speeds)?);
 /// let wheel = calibrate_wheel(&record, &body, &Settings::default())?;
 /// assert!((wheel.inertia - 0.01).abs() < 4.0 * wheel.sigma && wheel.sigma < 1e-4);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 ///
 /// # Errors

@@ -68,7 +68,7 @@ impl<'a> Motions<'a> {
 /// let wobble = foreseen_bound(&body, Vector3::new(0.03, 0.03, 1.0), &times, 1e-3).ok_or("wobbles")?;
 /// assert!(wobble.trace() > 100.0 * tumble.trace());
 /// assert!(foreseen_bound(&body, Vector3::new(0.0, 0.0, 1.0), &times, 1e-3).is_none()); // a pure spin
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 ///
 /// `None` where the motion does not determine the tensor, or an argument is not finite.

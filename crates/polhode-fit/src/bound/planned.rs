@@ -29,7 +29,7 @@ use crate::signal::terms::{Terms, cross_derivative, slope};
 /// let settings = Settings::default().with_torque(TorqueModel::Drag).with_sensor(sensor);
 /// let real = foreseen_bound_with(&body, omega, &times, 1e-3, &settings, &[0.05]).ok_or("tumbles")?;
 /// assert!(real.trace() > free.trace());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 ///
 /// `None` where the motion does not determine the tensor, an argument is not finite, or the number of coefficients is not

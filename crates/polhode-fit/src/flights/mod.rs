@@ -76,7 +76,7 @@ pub struct Flights {
 /// assert!((flight.start - 1.0).abs() < 0.1 && (flight.end - 2.0).abs() < 0.1);
 /// let estimate = fit(&during(&record, &found.list), &Settings::default())?;
 /// assert!((estimate.principal[0] - 1.0 / 5.6).abs() < 5.0 * estimate.sigma_principal[0]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 ///
 /// # Errors

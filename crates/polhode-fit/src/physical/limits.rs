@@ -28,7 +28,7 @@ use crate::physical::law::LARGEST_SHARE;
 /// // no moment exceeds half the trace
 /// let refused = with(Limit { axis: Vector3::x(), at_least: Some(0.6), at_most: None });
 /// assert!(matches!(refused, Err(FitError::Contradiction(_))));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {

@@ -25,7 +25,7 @@ use crate::physical::nearest::Normal;
 /// let (with, without) = (fit(&record, &settings)?, fit(&record, &Settings::default())?);
 /// assert!(with.sigma_principal[0] < without.sigma_principal[0]);
 /// assert!(with.inertia.is_some() && without.inertia.is_none());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {

@@ -42,7 +42,7 @@ pub struct Residuals {
 /// let torque = |w: &Warning| matches!(w, Warning::MomentumTrend(_) | Warning::EnergyTrend(_));
 /// assert!(!estimate.warnings.iter().any(torque)); // a free body keeps both
 /// assert!(estimate.bound_ratio.is_some_and(|ratio| ratio < 1.2)); // next to the Cramér–Rao bound
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]

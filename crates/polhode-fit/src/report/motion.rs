@@ -54,7 +54,7 @@ impl Estimate {
     /// let rates = fitted[0].fitted.as_ref().ok_or("a motion")?;
     /// assert!((rates[0] - Vector3::new(0.3, 1.0, 0.4)).norm() < 1e-3);
     /// assert!(fitted[0].rms().is_some_and(|rms| (rms / 1e-3 - 1.0).abs() < 0.1)); // the noise
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), polhode::Error>(())
     /// ```
     #[must_use]
     pub fn fitted(&self, record: &Record) -> Vec<FittedMotion> {

@@ -11,6 +11,12 @@ use polhode::num::Random;
 pub use gyroscope::Gyroscope;
 pub use motion::Disturbances;
 
+impl From<SimulationError> for polhode::Error {
+    fn from(error: SimulationError) -> Self {
+        polhode::Error::new(error)
+    }
+}
+
 /// Why a record cannot be simulated.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,7 +57,7 @@ pub enum SimulationError {
 /// let times: Vec<f64> = (0..500).map(|i| f64::from(i) / 100.0).collect();
 /// let exact = simulate(&body, Vector3::new(0.1, 1.0, 0.2), &times, 0.0, &mut Random::new(1))?;
 /// assert!((exact[0] - Vector3::new(0.1, 1.0, 0.2)).norm() < 1e-15);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 ///
 /// # Errors
@@ -86,7 +92,7 @@ pub fn simulate(
 /// // |J ω| falls by the factor exp(−k t)
 /// let momentum = |w: Vector3<f64>| (body.tensor() * (w - offset.offset)).norm();
 /// assert!((momentum(rates[1]) / momentum(rates[0]) - (-1.0_f64).exp()).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), polhode::Error>(())
 /// ```
 ///
 /// # Errors
