@@ -87,14 +87,18 @@ pub(crate) struct Context {
     bar: ProgressBar,
 }
 
+/// Draws it by `template` from here on.
+fn style(bar: &ProgressBar, template: &str) {
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+}
+
 impl Context {
     fn new(title: String, scale: Scale) -> Self {
         let bar =
             if std::io::stderr().is_terminal() { ProgressBar::no_length() } else { ProgressBar::hidden() };
-        if let Ok(style) = ProgressStyle::with_template("{prefix} {bar:24} {pos} of {len}, about {eta} left")
-        {
-            bar.set_style(style);
-        }
+        style(&bar, "{prefix}");
         bar.set_prefix(title);
         Self { scale, bar }
     }
@@ -110,11 +114,11 @@ impl Context {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         parallel::map(parts, cores, |part| {
             let result = work(part);
-            // nothing is drawn for work that is over within a second
+            // nothing is drawn for work that is over within a second, of which no end can be foreseen either
+            self.bar.update(|state| state.set_pos(state.pos() + 1));
             if self.bar.elapsed() > Duration::from_secs(1) {
-                self.bar.inc(1);
-            } else {
-                self.bar.update(|state| state.set_pos(state.pos() + 1));
+                style(&self.bar, "{prefix} {bar:24} {pos} of {len}, about {eta} left");
+                self.bar.tick();
             }
             result
         })
