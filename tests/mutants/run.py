@@ -2,60 +2,123 @@
 """How many small faults the tests find: samples of mutants by module.
 
     cargo install cargo-mutants --version 27.1.0 --locked
-    python3 tests/mutants/run.py num rotation       (python 3.11; minutes to hours)
-    python3 tests/mutants/run.py --every 1 num      all mutants of a module
-    python3 tests/mutants/run.py --table            only the table of CONTRIBUTING.md, from results.csv
+    python3 tests/mutants/run.py method run          (python 3.11; about a minute a mutant)
+    python3 tests/mutants/run.py --sample 1000 num   another size of sample than the usual one
+    python3 tests/mutants/run.py --table             only the table of CONTRIBUTING.md, from results.csv
 
-A mutant is one changed operator, constant or return value; .cargo/mutants.toml holds the settings. Of each module every
-n-th mutant in the order of the source is tried, so that the same source gives the same sample, and only the tests named
-here are run. A mutant is caught if a test fails or does not end; one that does not compile does not count.
+A mutant is one changed operator, constant or return value. Those of a module are put in an order that only --seed and
+their text decide, and the first of them are tried, in a clone beside the target folder. Each result is written at once:
+run again, the script goes on where it was stopped, as long as the commit and the seed are the same. First the tests named
+here are run, and where they find nothing all tests of the package. A mutant is caught if a test fails or does not end;
+one that does not compile does not count.
 """
 
 import argparse
 import csv
+import hashlib
 import json
 import subprocess
-import tempfile
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+CLONE = ROOT / "target" / "mutants"
 RESULTS = Path(__file__).with_name("results.csv")
-COLUMNS = ["module", "of", "every", "commit", "mutant", "outcome"]
+COLUMNS = ["module", "of", "seed", "commit", "mutant", "outcome"]
 MARKERS = ("<!-- begin generated: mutants -->", "<!-- end generated: mutants -->")
 
-# files, every n-th mutant, package, parts of the names of the tests that are run; all tests where there are none
+# files, package, size of the sample, parts of the names of the tests that are run first
 MODULES = {
-    "num": (["src/num/**"], 8, "polhode", ["num::"]),
-    "rotation": (["src/rotation/**"], 4, "polhode", ["rotation::", "euler::", "properties::", "laws::"]),
-    "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], 40, "polhode", ["flow::", "exact::", "properties::", "tops::"]),
-    "method": (["src/method/**"], 50, "polhode", ["method::", "laws::", "dmv::", "two_turns::", "schemes::", "taylor::", "exact_step::"]),
-    "observe": (["src/observe/**"], 2, "polhode", ["observe::", "properties::"]),
-    "fit": (["crates/polhode-fit/src/**"], 100, "polhode-fit", []),
+    "num": (["src/num/**"], "polhode", 150, ["num::"]),
+    "rotation": (["src/rotation/**"], "polhode", 45, ["rotation::", "euler::", "properties::", "laws::"]),
+    "flow": (["src/flow/free/theta/**", *(f"src/flow/free/{name}.rs" for name in ("circulation", "polhode", "phase")), "src/flow/lagrange/cubic.rs", "src/flow/lagrange/nutation.rs"], "polhode", 45, ["exact::", "properties::", "tops::"]),
+    "method": (["src/method/**"], "polhode", 30, ["laws::", "schemes::", "dmv::", "two_turns::", "taylor::", "exact_step::", "adaptive::", "programs::"]),
+    "observe": (["src/observe/**"], "polhode", 30, ["observe::", "properties::", "forces::"]),
+    "run": (["src/run/**", "src/events/**"], "polhode", 30, ["events::", "switched::", "adaptive::", "ensemble::", "observe::", "forces::"]),
+    "advise": (["src/advise/**"], "polhode", 30, ["advise::"]),
+    "audit": (["src/audit/**"], "polhode", 30, ["audit::"]),
+    "fit": (["crates/polhode-fit/src/**"], "polhode-fit", 25, [""]),
 }
-OUTCOMES = {"CaughtMutant": "caught", "Timeout": "timeout", "MissedMutant": "missed", "Unviable": "unviable"}
+# at least this long before a test counts as one that does not end, s
+PATIENCE = 120
 
 
-def output(*command):
-    return subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+def output(*command, cwd=ROOT):
+    return subprocess.run(command, cwd=cwd, check=True, capture_output=True, text=True).stdout
 
 
-def sample(module, every):
-    """Rows of the sample of one module."""
-    files, default, package, tests = MODULES[module]
-    every = every or default
-    chosen = [part for file in files for part in ("--file", file)]
-    total = len(output("cargo", "mutants", "--list", *chosen).splitlines())
-    commit = output("git", "rev-parse", "--short", "HEAD").strip()
-    with tempfile.TemporaryDirectory() as folder:
-        command = ["cargo", "mutants", *chosen, "-j", "1", "--shard", f"0/{every}", "--sharding", "round-robin"]
-        # ends with 2 or 3 where mutants are missed or do not end
-        done = subprocess.run([*command, "--output", folder, "--", f"--package={package}", "--lib", "--tests", "--", *tests], cwd=ROOT)
-        if done.returncode not in (0, 2, 3):
-            raise SystemExit(f"cargo mutants ended with {done.returncode}")
-        outcomes = json.loads((Path(folder) / "mutants.out" / "outcomes.json").read_text())["outcomes"]
-    for outcome in outcomes:
-        if outcome["scenario"] != "Baseline":
-            yield [module, total, every, commit, outcome["scenario"]["Mutant"]["name"], OUTCOMES[outcome["summary"]]]
+def mutants(module):
+    """All of a module: name and diff."""
+    chosen = [part for file in MODULES[module][0] for part in ("--file", file)]
+    found = json.loads(output("cargo", "mutants", "--list", "--json", "--diff", *chosen))
+    return [(one["name"], one["diff"]) for one in found]
+
+
+def prepared(commit):
+    """A clone at `commit`, with the settings of a quick build."""
+    if not (CLONE / ".git").exists():
+        subprocess.run(["git", "clone", "--quiet", ROOT, CLONE], check=True)
+    subprocess.run(["git", "fetch", "--quiet", "origin"], cwd=CLONE, check=True)
+    subprocess.run(["git", "checkout", "--quiet", "--force", commit], cwd=CLONE, check=True)
+
+
+def tests(package, *what, build_only=False, filters=(), limit=None):
+    """Whether the tests pass; None if they do not compile."""
+    build = ["cargo", "test", "--quiet", "--profile", "mutants", "--package", package, "--all-features", *what]
+    if subprocess.run([*build, "--no-run"], cwd=CLONE, capture_output=True).returncode != 0:
+        return None
+    if build_only:
+        return True
+    try:
+        done = subprocess.run([*build, "--", *filters], cwd=CLONE, capture_output=True, timeout=limit)
+    except subprocess.TimeoutExpired:
+        subprocess.run(["pkill", "--full", str(CLONE / "target")])
+        return False
+    return done.returncode == 0
+
+
+def targets(package):
+    return ["--test", "library"] if package == "polhode" else ["--lib", "--tests"]
+
+
+def outcome(diff, package, filters, limit):
+    """What the tests say of the mutant `diff`."""
+    subprocess.run(["git", "apply", "--unidiff-zero", "-"], cwd=CLONE, input=diff, text=True, check=True)
+    try:
+        first = tests(package, *targets(package), filters=filters, limit=limit)
+        if first is None:
+            return "unviable"
+        # all of them, with those that stand beside the code
+        if first and tests(package, "--lib", "--tests", limit=10 * limit) is not False:
+            return "missed"
+        return "caught"
+    finally:
+        subprocess.run(["git", "checkout", "--quiet", "--force", "."], cwd=CLONE, check=True)
+
+
+def sample(module, size, seed, commit, rows, write):
+    """Tries the mutants of the sample that `rows` do not hold yet."""
+    _, package, usual, filters = MODULES[module]
+    every = mutants(module)
+    every.sort(key=lambda one: hashlib.sha256(f"{seed} {one[0]}".encode()).digest())
+    chosen = every[: size or usual]
+    known = {row[4] for row in rows if row[0] == module and row[2:4] == [str(seed), commit]}
+    rows[:] = [row for row in rows if row[0] != module or row[4] in known]
+    missing = [one for one in chosen if one[0] not in known]
+    if not missing:
+        return
+    prepared(commit)
+    begin = time.monotonic()
+    if not tests(package, *targets(package), filters=filters):
+        raise SystemExit(f"{module}: the tests fail without a mutant")
+    begin = time.monotonic()
+    tests(package, *targets(package), filters=filters)
+    limit = PATIENCE + 5 * (time.monotonic() - begin)
+    for name, diff in missing:
+        found = outcome(diff, package, filters, limit)
+        print(f"{found:8} {name}", flush=True)
+        rows.append([module, str(len(every)), str(seed), commit, name, found])
+        write()
 
 
 def stored():
@@ -70,14 +133,13 @@ def table(rows):
     lines = ["| files | mutants | tried | caught | missed | share caught |", "|---|---|---|---|---|---|"]
     for module in MODULES:
         mine = [row for row in rows if row[0] == module]
-        if not mine:
+        caught = sum(row[5] in ("caught", "timeout") for row in mine)
+        tried = caught + sum(row[5] == "missed" for row in mine)
+        if tried == 0:
             continue
-        count = {name: sum(row[5] == name for row in mine) for name in OUTCOMES.values()}
-        caught = count["caught"] + count["timeout"]
-        tried = caught + count["missed"]
-        share = f"{100 * caught / tried:.0f} %" if tried else ""
         files = ", ".join(f"`{file}`" for file in MODULES[module][0])
-        lines.append(f"| {files} | {mine[0][1]} | {tried} | {caught} | {count['missed']} | {share} |")
+        share = f"{100 * caught / tried:.0f} %"
+        lines.append(f"| {files} | {mine[0][1]} | {tried} | {caught} | {tried - caught} | {share} |")
     path = ROOT / "CONTRIBUTING.md"
     before, rest = path.read_text().split(MARKERS[0])
     after = rest.split(MARKERS[1])[1]
@@ -87,17 +149,24 @@ def table(rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("modules", nargs="*", choices=[[], *MODULES], help="which; all without it")
-    parser.add_argument("--every", type=int, help="try every n-th mutant instead of the usual share")
+    parser.add_argument("--sample", type=int, metavar="N", help="how many of each module")
+    parser.add_argument("--seed", type=int, default=1, help="which of them")
+    parser.add_argument("--commit", default="HEAD", help="of which state of the code")
     parser.add_argument("--table", action="store_true", help="write the table from the results there are")
     arguments = parser.parse_args()
     rows = stored()
-    for module in [] if arguments.table else arguments.modules or MODULES:
-        fresh = list(sample(module, arguments.every))
-        rows = [row for row in rows if row[0] != module] + [[str(cell) for cell in row] for row in fresh]
+
+    def write():
         order = list(MODULES)
         rows.sort(key=lambda row: order.index(row[0]))
-        with open(RESULTS, "w", newline="") as file:
+        new = RESULTS.with_suffix(".new")
+        with open(new, "w", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows([COLUMNS, *rows])
+        new.replace(RESULTS)
+
+    commit = output("git", "rev-parse", "--short", arguments.commit).strip()
+    for module in [] if arguments.table else arguments.modules or MODULES:
+        sample(module, arguments.sample, arguments.seed, commit, rows, write)
     table(rows)
 
 
