@@ -46,7 +46,7 @@ impl Force {
     /// use polhode::body::{Body, Force};
     /// use polhode::{Inertia, Run, method};
     /// let burns = [[0.1, 1.3], [2.0, 2.7]];
-    /// let thruster = Force::constant_torque(Vector3::new(0.0, 0.0, 0.5))?.during(burns)?;
+    /// let thruster = Force::constant_torque_body(Vector3::new(0.0, 0.0, 0.5))?.during(burns)?;
     /// let body = Body::free(Inertia::from_moments([1.0, 1.0, 2.0])?).with(thruster);
     /// let start = body.state(Default::default(), Vector3::zeros())?;
     /// let end = Run::new(&method("rk4")?, &body, &start, 0.5)?.advance_to(8)?;

@@ -21,7 +21,8 @@ impl Ensemble {
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
     /// use polhode::events::Event;
-    /// use polhode::{Ensemble, Inertia};
+    /// use polhode::Inertia;
+    /// use polhode::run::Ensemble;
     /// let mut rackets = Ensemble::new();
     /// for k in 1..=100 {
     ///     let inertia = Inertia::from_moments([1.0, 2.0, 3.0])?;

@@ -179,7 +179,7 @@ mod tests {
             ("angle(body z, space x) 10deg", "a limit is missing"),
             ("rate > 5", "has no unit"),
             ("rate > 5deg", "no unit of rates"),
-            ("rate > NaN rad/s", "no unit"),
+            ("rate > NaN rad/s", "a number is missing"),
             ("rate", "a limit is missing"),
         ] {
             let error = event(text).unwrap_err();

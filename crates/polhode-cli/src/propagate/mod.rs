@@ -29,8 +29,7 @@ const USAGE: &str = "polhode propagate <BODY> [START] <TIMES> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
   START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ...
          and --attitude <w,x,y,z> | --angles <phi,theta,psi> | ...
-  TIMES: --times <LIST|FILE|-> | --until <T> --every <DT>
-         | --until <T> --event <EVENT> [--stop]";
+  TIMES: --times <LIST|FILE|-> | --until <T> --every <DT>|--event <EVENT>";
 
 const EXAMPLES: &str = "Examples:
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --times 0,10,1e6
