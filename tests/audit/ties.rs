@@ -250,11 +250,12 @@ fn an_integrator_is_named_with_its_step_and_its_error() {
     }
 }
 
-/// Columns of any numbers: a verdict or a refusal, never a panic, and never right.
+/// Columns of any numbers: a verdict or a refusal, never a panic, and never right. Two of each kind: what befalls fewer than one
+/// in some ten such files is not seen here.
 #[test]
 fn numbers_of_any_size_are_survived() {
     let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap());
-    for seed in 0..20 {
+    for seed in 0..8 {
         let mut random = Seeded(900 + seed);
         let size = 10_f64.powf(random.between(-300.0, 300.0));
         let rows = 10 + random.below(60);

@@ -338,13 +338,17 @@ fn a_torque_that_is_told_and_does_not_act_is_named() {
     let scratch = Scratch::new("audit-torque");
     let columns = "t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
     let file = scratch.file("free.csv", table(columns, rows("").iter().map(|r| r.to_vec())));
-    for torque in ["3e-1,0,0", "1e-2,0,0", "3e-3,1e-3,-2e-3", "1e-4,0,0", "3e-6,-3e-6,3e-6"] {
-        for flag in ["--torque-body", "--torque-space"] {
-            let answer = run(&format!("audit {file} {BODY} {flag} {torque} --format json"));
-            let found = verdict(&answer);
-            assert_eq!(found["suspect"], "other-torque", "{flag} {torque}: {found:#}");
-            assert!(found["other_torque"]["factor"].as_f64().unwrap().abs() < 0.05, "{found:#}");
-        }
+    for torque in [
+        "--torque-body 3e-1,0,0",
+        "--torque-space 1e-2,0,0",
+        "--torque-body 3e-3,1e-3,-2e-3",
+        "--torque-space 1e-4,0,0",
+        "--torque-body 3e-6,-3e-6,3e-6",
+    ] {
+        let answer = run(&format!("audit {file} {BODY} {torque} --format json"));
+        let found = verdict(&answer);
+        assert_eq!(found["suspect"], "other-torque", "{torque}: {found:#}");
+        assert!(found["other_torque"]["factor"].as_f64().unwrap().abs() < 0.05, "{found:#}");
     }
     // one that turns the body by less than the tolerance is no fault
     let small = run(&format!("audit {file} {BODY} --torque-body 1e-9,0,0 --format json"));

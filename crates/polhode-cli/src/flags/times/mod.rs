@@ -23,10 +23,10 @@ pub(crate) struct TimeArguments {
     /// Column of the file of --times, by its name or number [default: t]
     #[arg(long, value_name = "NAME|N")]
     times_column: Option<String>,
-    /// Last output time, with --every, or end of the search for --event: s, with a unit, or a date with --epoch
+    /// Last time, of the rows or of --event: s, with a unit, or a date with --epoch
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     until: Option<String>,
-    /// Time between output rows, with --until, or between the looks for --event: s, or with a unit (ms, min, h, d)
+    /// Time between rows, or between looks for --event: s, or with a unit (ms, min, h, d)
     #[arg(long, value_name = "DT", value_parser = duration, allow_hyphen_values = true)]
     every: Option<f64>,
     /// Time of the start: s, with a unit, or a date with --epoch
