@@ -98,8 +98,9 @@ impl Propagate {
                 worst: None,
                 attitude_error: None,
             };
-            let name = Cell::from(self.events[one.event].text());
-            rows.push(core::iter::once(name).chain(columns.cells(body, &reading)))?;
+            let mut cells = vec![Cell::from(self.events[one.event].text())];
+            cells.extend(columns.cells(body, &reading));
+            rows.push(cells)?;
         }
         rows.finish()
     }
