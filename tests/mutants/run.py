@@ -48,10 +48,20 @@ def output(*command, cwd=ROOT):
 
 
 def mutants(module):
-    """All of a module: name and diff."""
+    """All of a module."""
     chosen = [part for file in MODULES[module][0] for part in ("--file", file)]
-    found = json.loads(output("cargo", "mutants", "--list", "--json", "--diff", *chosen))
-    return [(one["name"], one["diff"]) for one in found]
+    return json.loads(output("cargo", "mutants", "--list", "--json", *chosen))
+
+
+def apply(mutant):
+    """Changes the clone."""
+    path = CLONE / mutant["file"]
+    lines = path.read_text().splitlines(keepends=True)
+    start, end = mutant["span"]["start"], mutant["span"]["end"]
+    first, last = lines[start["line"] - 1], lines[end["line"] - 1]
+    changed = first[: start["column"] - 1] + mutant["replacement"] + last[end["column"] - 1 :]
+    lines[start["line"] - 1 : end["line"]] = [changed]
+    path.write_text("".join(lines))
 
 
 def prepared(commit):
@@ -62,13 +72,11 @@ def prepared(commit):
     subprocess.run(["git", "checkout", "--quiet", "--force", commit], cwd=CLONE, check=True)
 
 
-def tests(package, *what, build_only=False, filters=(), limit=None):
+def tests(package, *what, filters=(), limit=None):
     """Whether the tests pass; None if they do not compile."""
     build = ["cargo", "test", "--quiet", "--profile", "mutants", "--package", package, "--all-features", *what]
     if subprocess.run([*build, "--no-run"], cwd=CLONE, capture_output=True).returncode != 0:
         return None
-    if build_only:
-        return True
     try:
         done = subprocess.run([*build, "--", *filters], cwd=CLONE, capture_output=True, timeout=limit)
     except subprocess.TimeoutExpired:
@@ -81,9 +89,9 @@ def targets(package):
     return ["--test", "library"] if package == "polhode" else ["--lib", "--tests"]
 
 
-def outcome(diff, package, filters, limit):
-    """What the tests say of the mutant `diff`."""
-    subprocess.run(["git", "apply", "--unidiff-zero", "-"], cwd=CLONE, input=diff, text=True, check=True)
+def outcome(mutant, package, filters, limit):
+    """What the tests say of it."""
+    apply(mutant)
     try:
         first = tests(package, *targets(package), filters=filters, limit=limit)
         if first is None:
@@ -100,11 +108,11 @@ def sample(module, size, seed, commit, rows, write):
     """Tries the mutants of the sample that `rows` do not hold yet."""
     _, package, usual, filters = MODULES[module]
     every = mutants(module)
-    every.sort(key=lambda one: hashlib.sha256(f"{seed} {one[0]}".encode()).digest())
+    every.sort(key=lambda one: hashlib.sha256(f"{seed} {one['name']}".encode()).digest())
     chosen = every[: size or usual]
     known = {row[4] for row in rows if row[0] == module and row[2:4] == [str(seed), commit]}
     rows[:] = [row for row in rows if row[0] != module or row[4] in known]
-    missing = [one for one in chosen if one[0] not in known]
+    missing = [one for one in chosen if one["name"] not in known]
     if not missing:
         return
     prepared(commit)
@@ -114,10 +122,10 @@ def sample(module, size, seed, commit, rows, write):
     begin = time.monotonic()
     tests(package, *targets(package), filters=filters)
     limit = PATIENCE + 5 * (time.monotonic() - begin)
-    for name, diff in missing:
-        found = outcome(diff, package, filters, limit)
-        print(f"{found:8} {name}", flush=True)
-        rows.append([module, str(len(every)), str(seed), commit, name, found])
+    for mutant in missing:
+        found = outcome(mutant, package, filters, limit)
+        print(f"{found:8} {mutant['name']}", flush=True)
+        rows.append([module, str(len(every)), str(seed), commit, mutant["name"], found])
         write()
 
 
