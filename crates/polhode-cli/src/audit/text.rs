@@ -76,9 +76,9 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
     let verdict = &outcome.verdict;
     let mut lines = Vec::new();
     if let Some(error) = verdict.attitude_error {
-        let start = if error.fitted_start { "as fits the record best" } else { "at the first row" };
+        let start = if error.fitted_start { "fits all rows best" } else { "starts at the first row" };
         lines.push(format!(
-            "Attitude error: {} rad at t = {} s, from the motion that starts {start}; at the end {} rad along the motion (phase) and {} rad across (drift).",
+            "Attitude error: at most {} rad, at t = {} s, from the exact motion that {start}; at the end {} rad along the motion (phase) and {} rad across it (drift).",
             size(error.largest), to_digits(error.at, 6), size(error.phase), size(error.drift)
         ));
     }
@@ -124,12 +124,12 @@ pub(super) fn causes(outcome: &Outcome) -> Vec<String> {
 fn integrator(found: &Signature) -> Vec<String> {
     let order = found.order.map_or(String::new(), |order| format!(" (order {order})"));
     let mut lines = vec![format!(
-        "Like {}{order} with h = {} s, {} a row: at t = {} s it predicts an attitude error of {:.1e} rad, measured are {:.1e} rad.",
+        "Like {}{order} with h = {} s, {} a row: run from the first row, that is off by {:.1e} rad at t = {} s, and the record by {:.1e} rad.",
         found.method,
         to_digits(found.step, 6),
         if found.steps_per_row == 1 { "one step".into() } else { format!("{} steps", found.steps_per_row) },
-        to_digits(found.at, 6),
         found.predicted_attitude_error,
+        to_digits(found.at, 6),
         found.measured_attitude_error
     )];
     if let (Some(predicted), Some(measured)) = (found.predicted_energy_change, found.measured_energy_change) {
