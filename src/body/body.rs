@@ -3,7 +3,8 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use super::field::{Evaluated, Field, Forces, Witness};
+use super::field::{Field, Forces, Witness};
+use super::law::Evaluated;
 use super::{Conserved, Exit, Force, LinearPotential, Point, Rotor, State, Time};
 use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real, Shown};
