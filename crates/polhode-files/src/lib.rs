@@ -28,6 +28,7 @@ mod did_you_mean;
 pub mod error;
 pub mod given;
 pub mod inputs;
+mod look;
 pub mod members;
 pub mod mesh;
 pub mod moment;
