@@ -80,7 +80,8 @@ thresholds! {
     }
     stacked: "least squares of all stretches" {
         FLAT: f64 = 1e3, "standard deviation of a column without a prior: it says nothing", UNMEASURED;
-        TOGETHER: usize = 16_384, "rows that are brought to a triangle together; memory alone", UNMEASURED;
+        TOGETHER: usize = 256, "rows that are brought to a triangle together, so that they stay in the cache", UNMEASURED;
+        ITERATIONS: usize = 1_000, "of a singular value decomposition of five by five, many times what it takes", UNMEASURED;
         RIDGE: f64 = 1e-7, "least ridge over the size of the triangle, far above its rounding", UNMEASURED;
     }
     levels: "levels of torque noise by restricted likelihood" {
