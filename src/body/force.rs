@@ -7,13 +7,12 @@ use core::fmt;
 use std::sync::Arc;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use thiserror::Error;
 
-use super::Time;
 use super::law::{Conserved, Law, Potential, SeriesLaw, Torque};
 use super::switched::Switched;
+use super::{ForceError, Time};
 use crate::inertia::Inertia;
-use crate::num::{Dd, Precise, Series, Shown};
+use crate::num::{Dd, Precise, Series};
 use crate::rotation::{Quat, Vec3};
 
 /// A potential or a torque with its name, which acts on a [`Body`](super::Body).
@@ -28,56 +27,6 @@ pub struct Force {
     pub(super) orbit: Option<[f64; 2]>,
     /// Of a force that does not act always.
     pub(super) switched: Option<Switched>,
-}
-
-/// Why a force cannot act.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum ForceError {
-    /// A parameter is not a finite number.
-    #[error("{quantity} of the {force} is {}; it must be a finite number", Shown(*value))]
-    NotFinite {
-        /// Name of the force.
-        force: &'static str,
-        /// Which parameter.
-        quantity: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// A drag coefficient is negative.
-    #[error(
-        "{quantity} of the {force} is {}; drag takes energy from the body, so its coefficients are at least 0: change the sign",
-        Shown(*value)
-    )]
-    Negative {
-        /// Name of the force.
-        force: &'static str,
-        /// Which parameter.
-        quantity: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// The eccentricity is that of no ellipse.
-    #[error(
-        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle", Shown(*eccentricity)
-    )]
-    Eccentricity {
-        /// The value.
-        eccentricity: f64,
-    },
-    /// An interval in which it acts is none.
-    #[error(
-        "the interval from {} s to {} s comes after {} s; intervals of a force ascend, and each ends after its beginning",
-        Shown(*from), Shown(*to), Shown(*before)
-    )]
-    Interval {
-        /// The beginning, s.
-        from: f64,
-        /// The end, s.
-        to: f64,
-        /// The end of the interval before, s.
-        before: f64,
-    },
 }
 
 impl Force {

@@ -4,6 +4,7 @@
 mod body;
 mod constant_torque;
 mod drag;
+mod error;
 mod exit;
 mod field;
 mod force;
@@ -19,11 +20,12 @@ mod state;
 mod switched;
 mod time;
 
-pub use body::{Body, Problem, StateError};
+pub use body::{Body, Problem};
+pub use error::{ForceError, StateError};
 pub(crate) use exit::Exit;
 pub use field::{Field, Free};
 pub(crate) use field::{Forces, Witness};
-pub use force::{Force, ForceError};
+pub use force::Force;
 pub(crate) use law::Evaluated;
 pub use law::{Conserved, Potential, Torque};
 pub use linear_potential::{LinearPotential, vertical};

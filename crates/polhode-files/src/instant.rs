@@ -1,4 +1,4 @@
-//! One time as it is written: a number of seconds, a number with a unit, or a date.
+//! An instant or a time span as it is written: a number of seconds, a number with a unit, or a date.
 
 use polhode::units::Date;
 use polhode::units::TimeUnit;

@@ -1,7 +1,6 @@
 //! `polhode ensemble`: many bodies from uncertain starts, on one machine or in shares on many.
 
 mod checksum;
-mod digest;
 mod folder;
 mod gather;
 mod record;

@@ -14,7 +14,7 @@ use polhode::observe::Monitor;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Sample, Watch};
 use polhode_files::error::{Error, warn};
-use polhode_files::moment::positive_duration;
+use polhode_files::instant::positive_duration;
 use polhode_files::numbers::positive;
 use polhode_pages::table::{Format, RowWriter};
 
