@@ -1,0 +1,56 @@
+//! Long work: the interpreter is free meanwhile, and Ctrl-C ends it.
+
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use pyo3::prelude::*;
+
+use crate::error::refused;
+
+/// How often Ctrl-C is looked for.
+const LISTEN: Duration = Duration::from_millis(50);
+
+/// What `work` returns, done on a thread of its own while this one listens for Ctrl-C; work that is given up ends by itself.
+pub(crate) fn aside<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (sender, mut receiver) = channel();
+    thread::Builder::new()
+        .stack_size(8 << 20)
+        .spawn(move || sender.send(work()))
+        .map_err(|error| refused(format!("the system gives no thread: {error}")))?;
+    loop {
+        let (found, again) = py.detach(move || (receiver.recv_timeout(LISTEN), receiver));
+        receiver = again;
+        match found {
+            Ok(found) => return Ok(found),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(refused("the computation ended without a result; please report it"));
+            }
+        }
+    }
+}
+
+/// Looks for Ctrl-C from time to time, in work that does not hold the interpreter.
+pub(crate) struct Listener {
+    heard: Instant,
+}
+
+impl Listener {
+    pub(crate) fn new() -> Self {
+        Listener { heard: Instant::now() }
+    }
+
+    /// # Errors
+    /// `KeyboardInterrupt`, and what else a handler of signals raises.
+    pub(crate) fn listen(&mut self) -> PyResult<()> {
+        if self.heard.elapsed() < LISTEN {
+            return Ok(());
+        }
+        self.heard = Instant::now();
+        Python::attach(|py| py.check_signals())
+    }
+}
