@@ -24,7 +24,7 @@ CASES = [
     ("mujoco-implicit.csv", "implicit", [1, 2, 2.5], {}, None, 1e-6),
     ("mujoco-implicitfast.csv", "implicitfast", [1, 2, 2.5], {}, None, 1e-6),
     ("mujoco-rk4.csv", "RK4", [1, 2, 2.5], {}, None, 1e-6),
-    ("lammps-digits.dump", "fix nve/asphere", [0.05, 0.068, 0.082], {"time_unit": 0.01}, "1", 1e-6),
+    ("lammps-digits.dump", "fix nve/asphere", [0.05, 0.068, 0.082], {}, "1", 1e-6),
     (
         "lammps-rigid.dump",
         "fix rigid/nve",

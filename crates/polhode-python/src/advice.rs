@@ -180,7 +180,7 @@ pub(crate) fn advise(
     let raised = Arc::new(Mutex::new(None));
     let keeper = Arc::clone(&raised);
     let moved = body.body.clone();
-    let found = aside(py, move || {
+    let found = aside(py, move |_| {
         let heed = &mut |now: &Progress| {
             let Some(tell) = &progress else { return };
             let mut raised = keeper.lock().unwrap_or_else(PoisonError::into_inner);

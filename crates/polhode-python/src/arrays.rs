@@ -174,16 +174,13 @@ pub(crate) fn attitude(value: Option<&Bound<'_, PyAny>>, order: Order) -> PyResu
 
 /// A rotation that is given as an attitude is.
 pub(crate) fn rotation(value: &Bound<'_, PyAny>, order: Order) -> PyResult<UnitQuaternion<f64>> {
-    unit(attitude(Some(value), order)?).map_err(|error| refused(format!("attitude: {error}")))
-}
-
-/// The rotation of a quaternion of any norm.
-pub(crate) fn unit(q: Quat<f64>) -> Result<UnitQuaternion<f64>, String> {
+    let q = attitude(Some(value), order)?;
     let size = q.magnitude();
     if size.is_finite() && size > 0.0 {
         Ok(q.map(|part| part / size).into())
     } else {
-        Err(format!("{:?} is no rotation; a quaternion is finite and not zero", q.components()))
+        let parts = q.components();
+        Err(refused(format!("attitude: {parts:?} is no rotation; a quaternion is finite and not zero")))
     }
 }
 

@@ -110,8 +110,8 @@ impl Verdict {
 /// >>> run = polhode.run("rk4", [1, 2, 3], [0.4, 1, -0.3], times=t, step=0.05)
 /// >>> polhode.audit(t, run.attitude, run.omega, moments=[1, 2, 3]).verdict
 /// 'right'
-/// >>> polhode.audit(t, run.attitude, run.omega, moments=[1, 2, 2.9]).suspect
-/// 'other-body'
+/// >>> polhode.audit(t, run.attitude, run.omega, moments=[1, 3, 2]).suspect
+/// 'moments-order'
 #[pyfunction(name = "audit")]
 #[pyo3(signature = (t, attitude = None, omega = None, *, momentum = None, moments = None, inertia = None, body = None,
                     tolerance = 1e-6, noise = None, order = None, direction = None, omega_frame = None, momentum_frame = None,
@@ -224,7 +224,7 @@ pub(crate) fn verdict_on(
     let mut question = Question::new(body.as_ref().map(|body| body.body.clone()));
     (question.tolerance, question.claims, question.noise) = (tolerance, record.claims, noise);
     let Given { name, id, rows, .. } = record;
-    let found = aside(py, move || {
+    let found = aside(py, move |_| {
         let adviser = Adviser::new();
         let verdict = audit::audit(&rows, &question)?;
         Ok::<_, audit::AuditError>(Outcome {
@@ -237,7 +237,7 @@ pub(crate) fn verdict_on(
             notes,
         })
     })?;
-    let found = found.map_err(of("record"));
+    let found = found.map_err(refused);
     let outcome = match &body {
         Some(body) => body.settle(found)?,
         None => found?,

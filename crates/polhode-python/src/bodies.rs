@@ -6,6 +6,7 @@ use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
 use polhode::{body, catalogue};
 use polhode_files::bodies;
+use polhode_pages::table::to_digits;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -180,7 +181,7 @@ impl Body {
     }
 
     fn __repr__(&self) -> String {
-        let [a, b, c] = self.body.inertia().principal_moments().map(polhode_files::text::short);
+        let [a, b, c] = self.body.inertia().principal_moments().map(|moment| to_digits(moment, 6));
         let of = self.named.as_ref().map_or(String::new(), |named| format!("{}; ", named.name));
         let forces = match self.forces().as_slice() {
             [] => String::new(),

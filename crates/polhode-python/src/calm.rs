@@ -1,5 +1,7 @@
 //! Long work: the interpreter is free meanwhile, and Ctrl-C ends it.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -11,22 +13,27 @@ use crate::error::refused;
 /// How often Ctrl-C is looked for.
 const LISTEN: Duration = Duration::from_millis(50);
 
-/// What `work` returns, done on a thread of its own while this one listens for Ctrl-C; work that is given up ends by itself.
+/// What `work` returns, done on a thread of its own while this one listens for Ctrl-C. Work that is given up is told so by its flag, or
+/// ends by itself.
 pub(crate) fn aside<T: Send + 'static>(
     py: Python<'_>,
-    work: impl FnOnce() -> T + Send + 'static,
+    work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
 ) -> PyResult<T> {
     let (sender, mut receiver) = channel();
+    let stop = Arc::new(AtomicBool::new(false));
+    let told = Arc::clone(&stop);
     thread::Builder::new()
         .stack_size(8 << 20)
-        .spawn(move || sender.send(work()))
+        .spawn(move || sender.send(work(&told)))
         .map_err(|error| refused(format!("the system gives no thread: {error}")))?;
     loop {
         let (found, again) = py.detach(move || (receiver.recv_timeout(LISTEN), receiver));
         receiver = again;
         match found {
             Ok(found) => return Ok(found),
-            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Timeout) => {
+                py.check_signals().inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+            }
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(refused("the computation ended without a result; please report it"));
             }

@@ -1,15 +1,18 @@
 //! Many bodies, each from its own start.
 
-use nalgebra::Matrix3;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 use polhode::body::{Clock, State};
 use polhode::inertia::Inertia;
 use polhode::rotation::Vec3;
 use polhode::run::{self, EnsembleError, Rows};
 use pyo3::prelude::*;
 
-use crate::arrays::{Numbers, Order, quaternions, room, unit};
+use crate::arrays::{Numbers, Order, quaternions, room};
 use crate::bodies::Body;
-use crate::calm::Listener;
+use crate::calm::aside;
 use crate::error::{of, refused};
 use crate::runs::named;
 use crate::states::States;
@@ -26,7 +29,7 @@ use crate::states::States;
 /// (3, 1000, 4)
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct Ensemble {
-    members: run::Ensemble,
+    members: Arc<run::Ensemble>,
     body: Option<Body>,
     order: Order,
 }
@@ -84,12 +87,12 @@ impl Ensemble {
             }
         };
         let n = inertias.len().max(rotations.len()).max(attitudes.len());
-        for (name, count) in
-            [("inertia", inertias.len()), (name, rotations.len()), ("attitude", attitudes.len())]
-        {
-            if count != 1 && count != n {
-                return Err(refused(format!("{name}: of {count} members; there are {n}")));
-            }
+        let counts = [inertias.len(), rotations.len(), attitudes.len()];
+        if counts.iter().any(|count| *count != 1 && *count != n) {
+            let [inertias, rotations, attitudes] = counts;
+            return Err(refused(format!(
+                "inertia of {inertias} members, {name} of {rotations}, attitude of {attitudes}: each must be of all members, or of 1"
+            )));
         }
         let mut members = run::Ensemble::with_capacity(n).threads(threads);
         for k in 0..n {
@@ -97,11 +100,10 @@ impl Ensemble {
             let attitude = written.read(attitudes[k % attitudes.len()]);
             let rotation = Vec3(rotations[k % rotations.len()]);
             if is_omega {
-                members.push_omega(
-                    inertia,
-                    unit(attitude).map_err(member("attitude", k))?,
-                    rotation.0.into(),
-                );
+                let [w, x, y, z] = attitude.components();
+                // of any norm: the library makes it 1, or refuses it
+                let attitude = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+                members.push_omega(inertia, attitude, rotation.0.into());
             } else {
                 members.push(inertia, &State { attitude, momentum_body: rotation });
             }
@@ -113,7 +115,7 @@ impl Ensemble {
                 Ok(forces.iter().fold(free, |body, force| body.with(force.clone())))
             });
         }
-        Ok(Ensemble { members, body, order })
+        Ok(Ensemble { members: Arc::new(members), body, order })
     }
 
     /// The exact motion of every member at `times`, s, of either sign: attitudes (times, members, 4), angular velocities (times,
@@ -121,15 +123,12 @@ impl Ensemble {
     fn at(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<States> {
         let times = Numbers::of("times", times)?.list()?;
         let mut rows = Collected::new(times.len(), self.members.len())?;
-        let order = self.order;
-        let found = py.detach(|| {
-            let mut listener = Listener::new();
-            self.members.at(&times, |part: &Rows| {
-                listener.listen()?;
-                rows.take(part, order)
-            })
-        });
-        self.finished(py, found, times, rows)
+        let (members, order, instants) = (Arc::clone(&self.members), self.order, times.clone());
+        let found = aside(py, move |stop| {
+            let found = members.at(&instants, |part: &Rows| rows.take(part, order, stop));
+            found.map(|()| rows)
+        })?;
+        self.finished(py, found, times)
     }
 
     /// Every member at `times`, s, ascending from `start_time` on, each a whole number of steps of `step`, s, by `method`.
@@ -147,16 +146,17 @@ impl Ensemble {
         let clock = Clock { start: start_time, step };
         let schedule = run::Schedule::at_times(clock, &times).map_err(of("times"))?;
         let steps: Vec<u64> = schedule.into_iter().collect();
+        if steps.len() != times.len() {
+            return Err(refused("times: two of them are the same step; give each once"));
+        }
         let mut rows = Collected::new(times.len(), self.members.len())?;
-        let order = self.order;
-        let found = py.detach(|| {
-            let mut listener = Listener::new();
-            self.members.advance(method.as_ref(), clock, &steps, |part: &Rows| {
-                listener.listen()?;
-                rows.take(part, order)
-            })
-        });
-        self.finished(py, found, times, rows)
+        let (members, order) = (Arc::clone(&self.members), self.order);
+        let found = aside(py, move |stop| {
+            let each = |part: &Rows| rows.take(part, order, stop);
+            let found = members.advance(method.as_ref(), clock, &steps, each);
+            found.map(|()| rows)
+        })?;
+        self.finished(py, found, times)
     }
 
     fn __len__(&self) -> usize {
@@ -172,33 +172,26 @@ impl Ensemble {
     fn finished(
         &self,
         py: Python<'_>,
-        found: Result<(), Stopped>,
+        found: Result<Collected, Stopped>,
         times: Vec<f64>,
-        rows: Collected,
     ) -> PyResult<States> {
-        let found = found.map_err(|Stopped(error)| error);
-        match &self.body {
+        let found = found.map_err(|Stopped(error)| refused(error));
+        let rows = match &self.body {
             Some(body) => body.settle(found)?,
             None => found?,
-        }
+        };
         let shape = [times.len(), self.members.len()];
         let all = times.iter().flat_map(|t| std::iter::repeat_n(*t, shape[1])).collect();
         States::many(py, &shape, all, rows.attitudes, rows.omegas, self.order)
     }
 }
 
-/// What ends an ensemble: a refusal, or Ctrl-C.
-struct Stopped(PyErr);
+/// Why an ensemble ended before its end, in words.
+struct Stopped(String);
 
 impl From<EnsembleError> for Stopped {
     fn from(error: EnsembleError) -> Self {
-        Stopped(refused(error))
-    }
-}
-
-impl From<PyErr> for Stopped {
-    fn from(error: PyErr) -> Self {
-        Stopped(error)
+        Stopped(error.to_string())
     }
 }
 
@@ -219,9 +212,12 @@ impl Collected {
         Ok(Collected { members, attitudes, omegas })
     }
 
-    fn take(&mut self, part: &Rows, order: Order) -> Result<(), Stopped> {
+    fn take(&mut self, part: &Rows, order: Order, stop: &AtomicBool) -> Result<(), Stopped> {
+        if stop.load(Ordering::Relaxed) {
+            return Err(Stopped("stopped".into()));
+        }
         if let Some((k, _, error)) = part.failures().next() {
-            return Err(Stopped(refused(format!("member {k}: {error}"))));
+            return Err(Stopped(format!("member {k}: {error}")));
         }
         for time in 0..part.times() {
             let first = time * self.members + part.first();

@@ -351,7 +351,7 @@ pub(crate) fn fitted(
                 .with_misalignment(sigma("gyro_misalignment", gyro_misalignment)?)
                 .with_skew(sigma("gyro_skew", gyro_skew)?),
         );
-    let (found, spans, is_part) = aside(py, move || {
+    let (found, spans, is_part) = aside(py, move |_| {
         let (mut spans, mut is_part) = (Vec::new(), false);
         if whole {
             let Flights { list, whole, .. } = flights(&record, &settings)?;

@@ -141,7 +141,7 @@ pub(crate) fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount
 ///
 /// >>> from polhode import solid
 /// >>> solid("box", [0.1467, 0.0715, 0.0077], mass=0.164).principal_moments * 1e6
-/// array([ 70.67644667, 294.93279   , 363.98854333])
+/// array([ 70.67771333, 294.92912667, 363.98624667])
 #[pyfunction]
 #[pyo3(signature = (name, sizes, *, mass = None, density = None))]
 pub(crate) fn solid(

@@ -356,13 +356,13 @@ impl Samples {
         let Rows { times, errors: [energy, norm, momentum, z, jacobi], attitude_error, .. } = &self.rows;
         let columns = vec![
             Column::new("t", "s", "").digits(7),
-            Column::new("energy", "J", "").digits(7),
-            Column::new("energy_error", "", "").digits(2),
-            Column::new("momentum_error", "", "").digits(2),
-            Column::new("momentum_vector_error", "", "").digits(2),
-            Column::new("momentum_z_error", "", "").digits(2),
-            Column::new("jacobi_error", "", "").digits(2),
-            Column::new("attitude_error", "rad", "").digits(2),
+            Column::new("E", "J", "").digits(7),
+            Column::new("energy", "", "").digits(2),
+            Column::new("|m|", "", "").digits(2),
+            Column::new("L", "", "").digits(2),
+            Column::new("L_z", "", "").digits(2),
+            Column::new("Jacobi", "", "").digits(2),
+            Column::new("attitude", "rad", "").digits(2),
         ];
         let mut table = Table::new("samples", "A run.", columns);
         for k in shown::places(times.len()) {
@@ -370,7 +370,11 @@ impl Samples {
             let errors = errors.map(|error| Cell::from(*error));
             table.push([times[k].into(), self.rows.energy[k].into()].into_iter().chain(errors));
         }
-        format!("{}\n{}", self.method, shown::text(&table, times.len()))
+        format!(
+            "{}, with the largest errors up to each time\n{}",
+            self.method,
+            shown::text(&table, times.len())
+        )
     }
 
     /// The rows with a figure of the errors.

@@ -120,7 +120,7 @@ impl States {
         let columns = std::iter::once(("t", "s"))
             .chain(names.map(|name| (name, "")))
             .chain(["omega_x", "omega_y", "omega_z"].map(|name| (name, "rad/s")));
-        let columns = columns.map(|(name, unit)| Column::new(name, unit, "").digits(7)).collect();
+        let columns = columns.map(|(name, unit)| Column::new(name, unit, "").digits(4)).collect();
         let mut table = Table::new("states", "Attitudes and angular velocities.", columns);
         let (attitudes, omegas) = (attitude.as_chunks::<4>().0, omega.as_chunks::<3>().0);
         let all = t.len();

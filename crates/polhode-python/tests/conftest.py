@@ -35,3 +35,15 @@ def command(tmp_path):
 
     run.folder = tmp_path
     return run
+
+
+def stl_of_an_open_cube():
+    """A cube of 20 mm without its last triangle."""
+    corners = [[20 * (k & 1), 20 * (k >> 1 & 1), 20 * (k >> 2)] for k in range(8)]
+    faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    halves = [half for a, b, c, d in faces for half in ([a, b, c], [a, c, d])][:11]
+    lines = ["solid part"]
+    for half in halves:
+        vertices = ["vertex {} {} {}".format(*corners[k]) for k in half]
+        lines += ["facet normal 0 0 0", "outer loop", *vertices, "endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid part", ""])

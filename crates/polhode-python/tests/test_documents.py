@@ -14,6 +14,7 @@ import pytest
 
 import polhode
 import polhode.testing
+from conftest import PROGRAMS, ROOT, stl_of_an_open_cube
 
 NAMES = [name for name in polhode.__all__ if name not in ("__version__", "testing")]
 FOLDER = pathlib.Path(polhode.__file__).parent
@@ -34,7 +35,7 @@ def documented():
                     yield f"polhode.{name}.{member}", of_class.__doc__
 
 
-@pytest.mark.parametrize("name, text", documented())
+@pytest.mark.parametrize("name, text", list(documented()))
 def test_examples_run(name, text):
     assert text and len(text.split()) > 1, f"{name} says nothing"
     parser, runner = doctest.DocTestParser(), doctest.DocTestRunner(optionflags=FLAGS)
@@ -53,6 +54,50 @@ def test_what_people_call_has_an_example():
         "Advice", "Estimate", "Force", "Link", "Links", "PolhodeError", "PolhodeWarning", "Record", "Samples", "States", "Trajectory",
         "Verdict", "bodies", "drag", "gravity_gradient", "methods", "torque_body", "torque_space",
     }
+
+
+def blocks(page):
+    """The Python blocks of a page."""
+    return [block.split("\n```")[0] for block in page.read_text().split("```python\n")[1:]]
+
+
+def supplied(folder):
+    """Files that stand for those of a reader."""
+    shutil.copy(PROGRAMS / "mujoco-euler.csv", folder / "mujoco.csv")
+    (folder / "robot.urdf").write_text(
+        '<robot name="r"><link name="forearm"><inertial><mass value="1.5"/>'
+        '<inertia ixx="0.01" iyy="0.02" izz="0.025" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+    )
+    (folder / "part.stl").write_text(stl_of_an_open_cube())
+
+
+@pytest.mark.parametrize("page", ["docs/python.md", "crates/polhode-python/README.md"])
+def test_programs_of_the_pages_run(page, tmp_path, monkeypatch):
+    supplied(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    names, found = {}, blocks(ROOT / page)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for block in found:
+            exec(compile(block, page, "exec"), names)
+    assert found
+
+
+@pytest.mark.parametrize("name", ["flip", "record"])
+def test_notebooks_run(name, tmp_path):
+    client, notebooks = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
+    pytest.importorskip("ipykernel")
+    notebook = notebooks.read(ROOT / f"crates/polhode-python/notebooks/{name}.ipynb", 4)
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert all(cell.execution_count for cell in code), "it is committed with its outputs"
+    client.NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": tmp_path}}).execute()
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="the register is TOML")
+def test_the_table_of_simulators_is_what_the_logs_say():
+    program = ROOT / "crates/polhode-python/simulators.py"
+    done = subprocess.run([sys.executable, program, "--check"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def stub():

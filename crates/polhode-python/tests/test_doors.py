@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import polhode
-from conftest import PROGRAMS
+from conftest import PROGRAMS, stl_of_an_open_cube
 
 
 def close_to_all(found, told, but=()):
@@ -54,12 +54,8 @@ def rows(text):
 
 
 def test_a_tensor(command):
-    corners = [[20 * (k & 1), 20 * (k >> 1 & 1), 20 * (k >> 2)] for k in range(8)]
-    faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
-    halves = [half for a, b, c, d in faces for half in ([a, b, c], [a, c, d])][:11]
-    lines = [f"facet normal 0 0 0\nouter loop\n{''.join('vertex {} {} {}'.format(*corners[k]) + chr(10) for k in half)}endloop\nendfacet\n" for half in halves]
     path = command.folder / "part.stl"
-    path.write_text("solid part\n" + "".join(lines) + "endsolid part\n")
+    path.write_text(stl_of_an_open_cube())
     told = command("inertia", "mesh", "part.stl", "--length-unit", "mm", "--density", "2700", "--close", "fan")
     with pytest.warns(polhode.PolhodeWarning, match="mended"):
         found = polhode.read(path, length_unit="mm", density=2700, close="fan")
