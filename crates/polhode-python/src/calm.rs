@@ -41,23 +41,38 @@ pub(crate) fn aside<T: Send + 'static>(
     }
 }
 
-/// Looks for Ctrl-C from time to time, in work that does not hold the interpreter.
+/// Looks for Ctrl-C from time to time, in work that does not hold the interpreter, and tells how far that has come.
 pub(crate) struct Listener {
     heard: Instant,
+    /// Of what, to whom.
+    progress: Option<(String, Py<PyAny>)>,
 }
 
 impl Listener {
     pub(crate) fn new() -> Self {
-        Listener { heard: Instant::now() }
+        Listener { heard: Instant::now(), progress: None }
     }
 
+    /// One that calls `progress`, if there is one, as `progress(stage, done, seconds)`.
+    pub(crate) fn telling(stage: &str, progress: Option<Py<PyAny>>) -> Self {
+        Listener { progress: progress.map(|progress| (stage.into(), progress)), ..Listener::new() }
+    }
+
+    /// `done`: the part of the work that is done.
+    ///
     /// # Errors
-    /// `KeyboardInterrupt`, and what else a handler of signals raises.
-    pub(crate) fn listen(&mut self) -> PyResult<()> {
+    /// `KeyboardInterrupt`, and what else a handler of signals or the function that is told raises.
+    pub(crate) fn listen(&mut self, done: f64) -> PyResult<()> {
         if self.heard.elapsed() < LISTEN {
             return Ok(());
         }
         self.heard = Instant::now();
-        Python::attach(|py| py.check_signals())
+        Python::attach(|py| {
+            py.check_signals()?;
+            match &self.progress {
+                Some((stage, progress)) => progress.call1(py, (stage, done, py.None())).map(drop),
+                None => Ok(()),
+            }
+        })
     }
 }

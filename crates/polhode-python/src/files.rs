@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use polhode::audit::{self, Attitudes, Convention};
-use polhode::record;
 use polhode::units::TimeUnit;
+use polhode::{inertia, record};
 use polhode_files::error::hearing;
 use polhode_files::examined::Examined;
+use polhode_files::given::Given;
 use polhode_files::mesh::{MeshOptions, length_unit};
 use polhode_files::robots::{self, Language};
 use polhode_files::times::{Asked, Source, TimesColumn};
@@ -269,7 +270,7 @@ pub(crate) fn read<'py>(
         }
         Kind::Parts => {
             let found = heard(py, || bodies::parts(&path))?;
-            Ok(Bound::new(py, MassProperties(found))?.into_any())
+            mass_properties(py, found)
         }
         Kind::Mesh => {
             let (amount, close) = (amount(mass, density)?, closing(close)?);
@@ -281,7 +282,7 @@ pub(crate) fn read<'py>(
                 .with_weld(weld.map(|weld| positive("weld", weld)).transpose()?)
                 .with_group(group);
             let found = heard(py, || options.body(&path, amount))?;
-            Ok(Bound::new(py, MassProperties(found))?.into_any())
+            mass_properties(py, found)
         }
         Kind::Record => record_of(py, &path, &table()?),
         Kind::Trajectory => {
@@ -317,7 +318,13 @@ pub(crate) fn read<'py>(
     }
 }
 
-fn links(py: Python<'_>, found: Vec<polhode_files::given::Given>) -> PyResult<Bound<'_, PyAny>> {
+/// As the command has them: without what rounding leaves of a zero.
+fn mass_properties(py: Python<'_>, found: inertia::MassProperties) -> PyResult<Bound<'_, PyAny>> {
+    let examined = Examined::of(Given::body(found), None).map_err(refused)?;
+    Ok(Bound::new(py, MassProperties(examined.body.unwrap_or(found)))?.into_any())
+}
+
+fn links(py: Python<'_>, found: Vec<Given>) -> PyResult<Bound<'_, PyAny>> {
     let found = found.into_iter().map(|given| Py::new(py, Link(Examined::link(given, None))));
     Ok(Bound::new(py, Links(found.collect::<PyResult<_>>()?))?.into_any())
 }

@@ -46,7 +46,7 @@ trait Motion: Sync {
                     omegas.extend_from_slice(omega.as_slice());
                 };
                 self.each_at(part, each).map_err(of("t"))?;
-                listener.listen()?;
+                listener.listen(0.0)?;
             }
             Ok::<_, PyErr>(())
         })?;

@@ -78,7 +78,7 @@ impl Rows {
 ///
 /// `method` is a name of the catalogue, as `rk4`, `dmv:10` or `kick-drift@srkn-6b`, or `exact`, the closed form. `step`, s, is that of
 /// the method; methods that choose their steps take a `tolerance` and need no step. The start is that of `FreeMotion`. Without
-/// `errors` no step is watched, which is the quicker.
+/// `errors` no step is watched, which is the quicker. `progress` is called as `progress(stage, done, seconds)` some times a second.
 ///
 /// >>> import polhode
 /// >>> run = polhode.run("rk4", [1, 2, 3], [0.4, 1, -0.3], times=[0, 500, 1000], step=0.1)
@@ -90,7 +90,7 @@ impl Rows {
 /// polhode.PolhodeError: method: 'rk5': no such method; did you mean 'rk4'?
 #[pyfunction]
 #[pyo3(signature = (method, body, omega = None, attitude = None, *, times, step = None, tolerance = None, momentum = None,
-                    start_time = 0.0, errors = true, order = "wxyz"))]
+                    start_time = 0.0, errors = true, progress = None, order = "wxyz"))]
 #[allow(clippy::too_many_arguments, reason = "they are keywords")]
 pub(crate) fn run(
     py: Python<'_>,
@@ -104,6 +104,7 @@ pub(crate) fn run(
     momentum: Option<&Bound<'_, PyAny>>,
     start_time: f64,
     errors: bool,
+    progress: Option<Py<PyAny>>,
     order: &str,
 ) -> PyResult<Samples> {
     let order = Order::of(order)?;
@@ -118,10 +119,10 @@ pub(crate) fn run(
         if step.is_some() || tolerance.is_some() {
             return Err(refused("step, tolerance: the method exact takes none; leave them out"));
         }
-        py.detach(|| asked.exact())
+        py.detach(|| asked.exact(Listener::telling(method, progress)))
     } else {
         let found = named(method, tolerance)?;
-        py.detach(|| asked.stepped(found.as_ref(), step))
+        py.detach(|| asked.stepped(found.as_ref(), step, Listener::telling(method, progress)))
     };
     Ok(Samples { method: method.into(), rows: body.settle(rows)?, order })
 }
@@ -157,13 +158,13 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    fn exact(&self) -> PyResult<Rows> {
+    fn exact(&self, mut listener: Listener) -> PyResult<Rows> {
         let (body, start) = (&self.body.body, &self.start);
         let motion = ExactMotion::from_point(body, *start).map_err(of("method"))?;
         let mut monitor = self.errors.then(|| Monitor::new(body, Clock::new(1.0), &start.to_f64()));
-        let (mut rows, mut listener) = (Rows::default(), Listener::new());
+        let mut rows = Rows::default();
         for &t in self.times {
-            listener.listen()?;
+            listener.listen(rows.times.len() as f64 / self.times.len() as f64)?;
             motion.check_time(t - self.start_time).map_err(of("times"))?;
             let elapsed = Dd::from(t) - Dd::from(self.start_time);
             let x = motion.point_at(elapsed);
@@ -193,7 +194,7 @@ impl Asked<'_> {
         Ok(rows)
     }
 
-    fn stepped(&self, method: &dyn AnyMethod, step: Option<f64>) -> PyResult<Rows> {
+    fn stepped(&self, method: &dyn AnyMethod, step: Option<f64>, mut listener: Listener) -> PyResult<Rows> {
         let body = &self.body.body;
         let adaptive = method.tolerance().is_some();
         let speed = body.omega_of(&self.start).norm();
@@ -218,7 +219,8 @@ impl Asked<'_> {
             }
         }
         let exact = ExactMotion::from_point(body, run.start().to_dd()).ok();
-        let (mut rows, mut listener, mut taken) = (Rows::default(), Listener::new(), 0);
+        let (mut rows, mut taken) = (Rows::default(), 0);
+        let last = self.times.last().map_or(0.0, |last| (last - self.start_time) / h);
         for &t in self.times {
             // in parts, between which Ctrl-C is heard
             let whole = ((t - self.start_time) / h).floor();
@@ -226,10 +228,10 @@ impl Asked<'_> {
             while taken + PART < whole {
                 taken += PART;
                 run.advance_to(taken).map_err(refused)?;
-                listener.listen()?;
+                listener.listen(taken as f64 / last)?;
             }
             let sample = run.at(t).map_err(refused)?;
-            listener.listen()?;
+            listener.listen((t - self.start_time) / h / last)?;
             let attitude_error = exact.as_ref().map(|exact| {
                 let there = exact.point_at_dd(sample.elapsed);
                 rotation_angle(sample.point.to_dd().attitude, there.attitude).hi()

@@ -13,6 +13,7 @@ import numpy
 import pytest
 
 import polhode
+import polhode.progress
 import polhode.testing
 from conftest import PROGRAMS, ROOT, stl_of_an_open_cube
 
@@ -25,6 +26,7 @@ def documented():
     """Every public name and member with its docstring."""
     yield "polhode", polhode.__doc__
     yield "polhode.testing", polhode.testing.__doc__
+    yield "polhode.progress.bar", polhode.progress.bar.__doc__
     yield "polhode.testing.assert_rotation_right", polhode.testing.assert_rotation_right.__doc__
     for name in NAMES:
         value = getattr(polhode, name)

@@ -36,8 +36,8 @@ def test_advice(command):
     assert (advice.method, advice.step, advice.tolerance) == (told["method"], told["step"], told["tolerance"])
     assert advice.predicted_error == told["predicted_error"] and advice.conditioning == told["conditioning"]
     # of methods that both have run at the same setting the errors are the same
-    ours = {(one["method"], one["step"]): one for one in advice.others if one["whole_time"]}
-    theirs = {(one["method"], one["step"]): one for one in told["others"] if one["whole_time"]}
+    ours = {(one["method"], one["step"], one["tolerance"]): one for one in advice.others if one["whole_time"]}
+    theirs = {(one["method"], one["step"], one["tolerance"]): one for one in told["others"] if one["whole_time"]}
     for both in ours.keys() & theirs.keys():
         assert ours[both]["predicted_error"] == theirs[both]["predicted_error"], both
 

@@ -98,6 +98,14 @@ def test_runs_carry_their_errors():
     assert "<svg" in rk4._repr_html_()
 
 
+def test_long_runs_tell_how_far_they_are():
+    told = []
+    run("rk4", [1, 2, 3], OMEGA, times=[0, 2e5], step=0.05, progress=lambda *now: told.append(now))
+    assert told and all(stage == "rk4" and 0 <= done <= 1 for stage, done, _ in told)
+    with pytest.raises(ZeroDivisionError):
+        run("rk4", [1, 2, 3], OMEGA, times=[0, 1e9], step=0.05, progress=lambda *now: 1 / 0)
+
+
 def test_forces_add_and_stop():
     gravity, brake = polhode.gravity([0, 0, 2]), polhode.drag(0.1)
     body = Body([1, 1, 0.25], [gravity, brake])

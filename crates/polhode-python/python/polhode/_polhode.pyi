@@ -148,6 +148,7 @@ def run(
     momentum: ArrayLike | None = None,
     start_time: float = 0.0,
     errors: bool = True,
+    progress: Callable[[str, float, float | None], object] | None = None,
     order: Order = "wxyz",
 ) -> Samples: ...
 def methods() -> list[str]: ...

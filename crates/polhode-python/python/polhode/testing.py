@@ -9,12 +9,16 @@
 True
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 from polhode._polhode import Verdict, audit
 
 __all__ = ["assert_rotation_right"]
 
 
-def assert_rotation_right(t, attitude=None, omega=None, **question) -> Verdict:
+def assert_rotation_right(t: Any, attitude: Any = None, omega: Any = None, **question: Any) -> Verdict:
     """Raises `AssertionError` with the whole verdict unless `polhode.audit` finds the trajectory right.
 
     Takes what `polhode.audit` takes, and returns its verdict. State `order`, `direction` and `omega_frame`, so that a test also
