@@ -26,6 +26,7 @@ struct Readme;
 pub mod bodies;
 mod did_you_mean;
 pub mod error;
+pub mod examined;
 pub mod given;
 pub mod inputs;
 pub mod instant;
@@ -42,6 +43,7 @@ pub mod text;
 pub mod times;
 pub mod toml_file;
 pub mod trajectory;
+pub mod twins;
 
 pub use error::{Broken, Error, Rule, TableError};
 pub use read::{read, read_own};

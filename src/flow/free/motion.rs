@@ -113,6 +113,32 @@ impl FreeMotion {
         Ok(states)
     }
 
+    /// Gives `each` the states at many `times` with their angular velocities, rad/s, body axes, in order: the bits of
+    /// [`at`](Self::at) and [`omega_at`](Self::omega_at).
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::flow::FreeMotion;
+    /// use polhode::inertia::Inertia;
+    /// let racket = Inertia::from_moments([1.0, 2.0, 3.0])?;
+    /// let motion = FreeMotion::from_omega(&racket, UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+    /// let mut fastest = 0.0_f64;
+    /// motion.each_at(&[-2.0, 0.0, 1e6], |_, omega| fastest = fastest.max(omega.norm()))?;
+    /// assert!(fastest >= motion.omega_at(1e6)?.norm());
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`at_many`](Self::at_many); `each` is not called then.
+    pub fn each_at(&self, times: &[f64], mut each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError> {
+        times.iter().try_for_each(|&t| TimeError::check(t, self.reach))?;
+        let (exit, inverse_moments) = (Exit::of(&self.body), self.body.rotor().inverse_moments());
+        self.phases_at(times, Instructions::Widest, |_, x| {
+            each(exit.state(x), exit.omega(inverse_moments, x.momentum_body));
+        });
+        Ok(())
+    }
+
     /// Gives `each` attitude and momentum in the solver frame at `times`, with their numbers; times are finite and within reach.
     pub(crate) fn phases_at(&self, times: &[f64], by: Instructions, each: impl FnMut(usize, Phase<f64>)) {
         self.orbit.at_many(times, by, each);

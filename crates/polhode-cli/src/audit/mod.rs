@@ -1,20 +1,13 @@
 //! `polhode audit`: a verdict on the trajectory of another program.
 
-mod advice;
 mod against;
 mod arguments;
-mod figure;
 mod golden;
-mod json;
-mod outcome;
-mod page;
-mod steps;
-mod text;
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use polhode::audit::{Attitudes, Noise, Question, Trajectory, audit};
+use polhode::audit::{Attitudes, Noise, Question, Trajectory, audit, step_length};
 use polhode::body::Body;
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{list, positive};
@@ -23,14 +16,13 @@ use polhode_files::trajectory;
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
+use polhode_pages::verdict::{self, Adviser, Outcome};
 
 use crate::flags::body::BodyArguments;
 use crate::flags::force::ForceArguments;
 use crate::memory;
-use advice::Adviser;
 use against::Golden;
 use arguments::ReadingArguments;
-use outcome::Outcome;
 
 const USAGE: &str = "polhode audit <RUN.csv> [BODY] [FORCE] [OPTIONS]
        polhode audit --golden <DIR>
@@ -44,9 +36,6 @@ const EXAMPLES: &str = "Examples:
   polhode audit run.csv --report audit.html --figure audit.svg
   polhode audit --golden golden
   polhode audit golden/free-generic.csv --against golden/free-generic.csv";
-
-/// Readings of the ranking that are shown.
-const RANKED: usize = 5;
 
 /// Whether a trajectory of another program is right, its convention and its error
 ///
@@ -116,19 +105,19 @@ impl Audit {
         let form = self.report.as_deref().map(|path| Form::of("--report", path)).transpose()?;
         let outcomes = self.outcomes(path, &name)?;
         let text = match format {
-            Format::Table => text::text(&name, &outcomes),
-            Format::Json => json::text(&outcomes),
-            Format::Csv => text::rows(&outcomes).csv(),
+            Format::Table => verdict::text(&name, &outcomes),
+            Format::Json => verdict::json(&outcomes),
+            Format::Csv => verdict::rows(&outcomes).csv(),
         };
         // all places are found to be usable before the first is written
         let figure = self.figure.as_deref().map(|path| Output::to_file("--figure", path)).transpose()?;
         let report = self.report.as_deref().map(|path| Output::to_file("--report", path)).transpose()?;
         let output = Output::new(self.out.as_deref())?;
         if let Some(file) = figure {
-            file.write_whole(&figure::panels(&name, &outcomes)?.svg)?;
+            file.write_whole(&verdict::panels(&name, &outcomes)?.svg)?;
         }
         if let Some((file, form)) = report.zip(form) {
-            file.write_whole(&page::page(&name, &outcomes, form)?)?;
+            file.write_whole(&verdict::page(&name, &outcomes, form)?)?;
         }
         output.write_whole(&text)?;
         if format == Format::Csv {
@@ -240,7 +229,7 @@ fn noise(text: &str) -> Result<Noise, String> {
 
 /// Turns counts of steps into times, and says how.
 fn timed(record: &mut Trajectory, body: Option<&Body>, place: &str) -> Result<String, Error> {
-    let Some(step) = steps::length(record, body) else {
+    let Some(step) = step_length(record, body) else {
         let rule = "counts steps of a length that it does not tell";
         let remedy = "give the length of a step, s, as --time-unit, or dump with dump_modify time yes";
         return Err(Error::input(place, "", rule, remedy));

@@ -285,24 +285,7 @@ impl Propagate {
 
     /// Refuses to go on where the numbers no longer are those of a rotation.
     fn check_sense(&self, sample: &Sample) -> Result<(), Error> {
-        let norm = sample.point.attitude.norm_squared().sqrt();
-        let lost = if (norm - 1.0).abs() > 0.5 {
-            format!("the quaternion of the attitude has the norm {norm:.1e}, not 1")
-        } else {
-            // where nothing is watched, those of this row
-            let (worst, now) = (sample.worst, sample.errors);
-            let errors =
-                [("energy", worst.energy.or(now.energy)), ("|m|", worst.momentum_norm.or(now.momentum_norm))];
-            match errors.into_iter().find(|(_, error)| error.is_some_and(|error| error > 1.0)) {
-                Some((what, Some(error))) => format!("the relative error of {what} is {error:.1e}"),
-                _ => return Ok(()),
-            }
-        };
-        Err(Error::Failed(format!(
-            "--method {}: at {:?} s {lost}: the numbers no longer describe the motion; take a smaller step or another method",
-            self.method,
-            sample.time.hi()
-        )))
+        sample.nonsense().map_or(Ok(()), |why| Err(Error::Failed(format!("--method {}: {why}", self.method))))
     }
 
     fn without_tolerance(&self, tolerance: f64) -> Error {

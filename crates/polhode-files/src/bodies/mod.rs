@@ -125,7 +125,8 @@ fn model(path: &Path) -> Result<String, Error> {
 }
 
 /// The language of a model by the ending of its file, or else by its text.
-fn language(kind: &str, text: &str) -> Language {
+#[must_use]
+pub fn language(kind: &str, text: &str) -> Language {
     Language::named(kind).unwrap_or(if text.contains("<robot") {
         Language::Urdf
     } else if text.contains("<sdf") {

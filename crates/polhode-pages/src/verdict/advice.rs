@@ -4,12 +4,12 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use crate::table::to_digits;
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::advise::{Choice, Demand, Setting, advise};
 use polhode::audit::{Judgement, Suspect, Trajectory, Verdict};
 use polhode::body::Problem;
 use polhode_files::text::short;
-use polhode_pages::table::to_digits;
 use serde_json::{Value, json};
 
 /// Longest thought about all bodies of a file.
@@ -19,18 +19,28 @@ const THOUGHT: Duration = Duration::from_secs(2);
 const EXCLUDED: [&str; 4] = ["exact", "taylor", "dop853", "tsit5"];
 
 /// How long may still be thought.
-pub(super) struct Adviser {
+#[derive(Debug)]
+pub struct Adviser {
     until: Instant,
 }
 
+impl Default for Adviser {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Adviser {
-    pub(super) fn new() -> Self {
+    /// Two seconds from now on.
+    #[must_use]
+    pub fn new() -> Self {
         Adviser { until: Instant::now() + THOUGHT }
     }
 
     /// The method that keeps the body of `record` within `tolerance` over its time; `None` where its integrator is not what is
     /// wrong, where no method does, or where that is not found in time.
-    pub(super) fn advice(&self, record: &Trajectory, verdict: &Verdict, tolerance: f64) -> Option<Choice> {
+    #[must_use]
+    pub fn advice(&self, record: &Trajectory, verdict: &Verdict, tolerance: f64) -> Option<Choice> {
         if verdict.judgement != Judgement::Wrong || !matches!(verdict.suspect, Suspect::Integrator(_)) {
             return None;
         }

@@ -4,53 +4,85 @@ use polhode::advise::Choice;
 use polhode::audit::{Fault, Judgement, Missing, Suspect, Verdict};
 use polhode::body::Conserved;
 
-use super::against::Difference;
-
 /// A verdict with what it is about.
-pub(super) struct Outcome {
+pub struct Outcome {
     /// Name of the body, where the file has several.
-    pub(super) body: Option<String>,
-    pub(super) rows: usize,
+    pub body: Option<String>,
+    /// How many rows it has.
+    pub rows: usize,
     /// What the attitude is written as.
-    pub(super) form: Option<&'static str>,
+    pub form: Option<&'static str>,
     /// What to switch to.
-    pub(super) advice: Option<Choice>,
-    pub(super) verdict: Verdict,
+    pub advice: Option<Choice>,
+    /// The verdict.
+    pub verdict: Verdict,
     /// Beside a golden trajectory, where one was given.
-    pub(super) against: Option<Difference>,
+    pub against: Option<Difference>,
     /// Remarks of the reading of the file.
-    pub(super) notes: Vec<String>,
+    pub notes: Vec<String>,
+}
+
+/// How far a record is from a golden trajectory.
+pub struct Difference {
+    /// File of the golden trajectory.
+    pub name: String,
+    /// Rows at the same times.
+    pub rows: usize,
+    /// Rows of the golden trajectory.
+    pub of: usize,
+    /// Largest angle between the attitudes, rad.
+    pub largest: f64,
+    /// When, s.
+    pub at: f64,
+    /// What is allowed, rad.
+    pub tolerance: f64,
+}
+
+impl Difference {
+    /// Whether it is no more than is allowed.
+    #[must_use]
+    pub fn is_within(&self) -> bool {
+        self.largest <= self.tolerance
+    }
 }
 
 impl Outcome {
-    pub(super) fn is_right(&self) -> bool {
+    /// Whether it is right, beside a golden trajectory too.
+    #[must_use]
+    pub fn is_right(&self) -> bool {
         self.verdict.judgement == Judgement::Right && self.against.as_ref().is_none_or(Difference::is_within)
     }
 
     /// `right`, `wrong` or `undecided`.
-    pub(super) fn judgement(&self) -> String {
+    #[must_use]
+    pub fn judgement(&self) -> String {
         match (&self.against, self.verdict.judgement) {
             (Some(difference), Judgement::Right) if !difference.is_within() => Judgement::Wrong.to_string(),
             (_, judgement) => judgement.to_string(),
         }
     }
 
-    pub(super) fn suspect(&self) -> String {
+    /// What is wrong, in one word.
+    #[must_use]
+    pub fn suspect(&self) -> String {
         self.verdict.suspect.to_string()
     }
 
     /// Whether there is a suspect.
-    pub(super) fn is_suspected(&self) -> bool {
+    #[must_use]
+    pub fn is_suspected(&self) -> bool {
         self.verdict.suspect != Suspect::None
     }
 
     /// The largest relative error of a conserved quantity.
-    pub(super) fn error(&self, which: fn(&Conserved) -> bool) -> Option<f64> {
+    #[must_use]
+    pub fn error(&self, which: fn(&Conserved) -> bool) -> Option<f64> {
         self.verdict.conservation.iter().find(|line| which(&line.quantity)).map(|line| line.error)
     }
 
     /// The angle from the golden trajectory, else from the motion that the verdict compares with, rad.
-    pub(super) fn attitude_error(&self) -> Option<f64> {
+    #[must_use]
+    pub fn attitude_error(&self) -> Option<f64> {
         match &self.against {
             Some(difference) => Some(difference.largest),
             None => self.verdict.attitude_error.map(|error| error.largest),
@@ -58,7 +90,8 @@ impl Outcome {
     }
 
     /// The convention that the record is written in, in words.
-    pub(super) fn reading(&self) -> String {
+    #[must_use]
+    pub fn reading(&self) -> String {
         let reading = self.verdict.reading;
         // quaternions and Euler angles are named with their order
         match self.form.filter(|_| reading.quaternion.is_none() && reading.angles.is_none()) {
@@ -68,7 +101,8 @@ impl Outcome {
     }
 
     /// Everything that a reader should know besides the numbers, a sentence each.
-    pub(super) fn warnings(&self) -> Vec<String> {
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
         let verdict = &self.verdict;
         let mut all = self.notes.clone();
         all.extend(verdict.missing.iter().map(Missing::to_string));

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
+use crate::given::Given;
 use polhode::inertia::Twin;
-use polhode_files::given::Given;
 
 /// Words in the names of mirrored links.
 const SIDES: [(&str, &str); 8] = [
@@ -18,7 +18,8 @@ const SIDES: [(&str, &str); 8] = [
 ];
 
 /// Links with the twin that their names point to. Only stated tensors have one: those computed here cannot be mistyped.
-pub(super) fn paired(mut links: Vec<Given>) -> Vec<Given> {
+#[must_use]
+pub fn paired(mut links: Vec<Given>) -> Vec<Given> {
     let is_stated = |link: &Given| link.writing.is_some() && !link.massless && link.defect.is_none();
     let places: HashMap<String, usize> = links
         .iter()

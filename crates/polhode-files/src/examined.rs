@@ -1,36 +1,45 @@
-//! A body with what the examination of its tensor found.
+//! Bodies as they were given, with what the examination of their tensors found.
 
 use std::fmt::Write;
 
+use crate::given::Given;
+use crate::text::{rounded, visible};
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Diagnosis, Evidence, InertiaError, MassError, MassProperties, Validity, diagnose};
-use polhode_files::given::Given;
-use polhode_files::text::{rounded, visible};
 
-pub(super) struct Examined {
-    pub(super) given: Given,
+/// A body with what the examination of its tensor found.
+#[derive(Clone, Debug)]
+pub struct Examined {
+    /// As it was given.
+    pub given: Given,
     /// Absent of a link that states no tensor.
-    pub(super) diagnosis: Option<Diagnosis>,
+    pub diagnosis: Option<Diagnosis>,
     /// In the axes of the frame; of unit mass if none is known, and absent if no body that turns has the tensor.
-    pub(super) body: Option<MassProperties>,
+    pub body: Option<MassProperties>,
     /// A point and the tensor about it, if there is one.
-    pub(super) about: Option<(Vector3<f64>, Option<Matrix3<f64>>)>,
+    pub about: Option<(Vector3<f64>, Option<Matrix3<f64>>)>,
 }
 
 /// What a body is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Worth {
+pub enum Worth {
+    /// No law is broken, and no likelier tensor is near.
     Valid,
+    /// Physically valid, but a common mistake explains it better, or it is odd.
     Suspicious,
+    /// No body has it.
     Invalid,
     /// A frame without a body.
     Massless,
 }
 
 impl Worth {
-    pub(super) const ALL: [Worth; 4] = [Worth::Valid, Worth::Suspicious, Worth::Invalid, Worth::Massless];
+    /// All of them.
+    pub const ALL: [Worth; 4] = [Worth::Valid, Worth::Suspicious, Worth::Invalid, Worth::Massless];
 
-    pub(super) fn name(self) -> &'static str {
+    /// In one lowercase word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
         match self {
             Worth::Valid => Validity::Valid.name(),
             Worth::Suspicious => Validity::Suspicious.name(),
@@ -45,7 +54,7 @@ impl Examined {
     ///
     /// # Errors
     /// Numbers without a meaning: a mass that is not positive, a tensor that is not symmetric.
-    pub(super) fn of(given: Given, point: Option<Vector3<f64>>) -> Result<Self, MassError> {
+    pub fn of(given: Given, point: Option<Vector3<f64>>) -> Result<Self, MassError> {
         if given.defect.is_some() || given.massless {
             return Ok(Examined {
                 given,
@@ -87,7 +96,8 @@ impl Examined {
     }
 
     /// A link of a model, whose trouble is its own.
-    pub(super) fn link(given: Given, point: Option<Vector3<f64>>) -> Self {
+    #[must_use]
+    pub fn link(given: Given, point: Option<Vector3<f64>>) -> Self {
         let fallback = given.clone();
         Self::of(given, point).unwrap_or_else(|error| {
             let place = fallback.place.clone().map_or(String::new(), |place| format!("{place}: "));
@@ -96,7 +106,9 @@ impl Examined {
         })
     }
 
-    pub(super) fn name(&self) -> String {
+    /// Its name, and where it stands if it has none.
+    #[must_use]
+    pub fn name(&self) -> String {
         let name = visible(&self.given.name);
         match &self.given.place {
             Some(place) if name.is_empty() => format!("(unnamed, {})", visible(place)),
@@ -105,7 +117,8 @@ impl Examined {
     }
 
     /// What the tensor is worth; a point, which has none, does not turn.
-    pub(super) fn worth(&self) -> Worth {
+    #[must_use]
+    pub fn worth(&self) -> Worth {
         match &self.diagnosis {
             None if self.given.massless => Worth::Massless,
             None => Worth::Invalid,
@@ -119,7 +132,8 @@ impl Examined {
     }
 
     /// Which law is broken and by how much, in one sentence.
-    pub(super) fn trouble(&self) -> Option<String> {
+    #[must_use]
+    pub fn trouble(&self) -> Option<String> {
         let Some(found) = &self.diagnosis else { return self.given.defect.clone() };
         if is_zero(&self.given.tensor) {
             return Some(ZERO.into());
@@ -143,7 +157,8 @@ impl Examined {
     }
 
     /// The probable cause, or the two between which nothing decides.
-    pub(super) fn cause(&self) -> Option<String> {
+    #[must_use]
+    pub fn cause(&self) -> Option<String> {
         let found = self.diagnosis.as_ref()?;
         match found.causes.as_slice() {
             [] => found.oddity.filter(|oddity| oddity.is_placeholder()).map(|oddity| oddity.to_string()),
@@ -155,7 +170,8 @@ impl Examined {
     }
 
     /// Everything that is to be said about a tensor that is not simply valid.
-    pub(super) fn report(&self) -> String {
+    #[must_use]
+    pub fn report(&self) -> String {
         let name = match self.name() {
             name if name.is_empty() => "the tensor".into(),
             name => name,
@@ -217,13 +233,7 @@ fn share_of_norm(distance: f64, tensor: &Matrix3<f64>) -> f64 {
 }
 
 /// Ixx, Iyy, Izz, Ixy, Ixz, Iyz, without signed zeros.
-pub(super) fn six(tensor: &Matrix3<f64>) -> [f64; 6] {
+#[must_use]
+pub fn six(tensor: &Matrix3<f64>) -> [f64; 6] {
     [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|place| tensor[place] + 0.0)
-}
-
-/// A model with the text that its links were read from.
-pub(super) struct Model {
-    pub(super) path: String,
-    pub(super) text: String,
-    pub(super) links: Vec<Examined>,
 }

@@ -1,9 +1,9 @@
 //! The errors of a record against time, in four panels.
 
+use crate::figure::Drawing;
+use crate::figure::{Curve, Figure, Scale, sheet};
 use polhode::audit::Traces;
 use polhode_files::error::Error;
-use polhode_pages::figure::Drawing;
-use polhode_pages::figure::{Curve, Figure, Scale, sheet};
 
 use super::outcome::Outcome;
 
@@ -14,7 +14,7 @@ type Values = fn(&Traces) -> &[f64];
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub(super) fn panels(name: &str, outcomes: &[Outcome]) -> Result<Drawing, Error> {
+pub fn panels(name: &str, outcomes: &[Outcome]) -> Result<Drawing, Error> {
     let panels: [(&str, &str, Values); 4] = [
         ("Energy", "relative change", |traces| &traces.energy),
         ("|m|", "relative change", |traces| &traces.momentum_norm),

@@ -1,7 +1,7 @@
 //! Verdicts in words, for a terminal.
 
+use crate::table::{Cell, Column, Table, row, to_digits};
 use polhode::audit::{Signature, Verdict};
-use polhode_pages::table::{Cell, Column, Table, row, to_digits};
 
 use super::advice;
 use super::outcome::{Outcome, named, sentence};
@@ -9,7 +9,8 @@ use super::outcome::{Outcome, named, sentence};
 const WIDTH: usize = 78;
 
 /// Every body of the file, the answer first.
-pub(super) fn text(name: &str, outcomes: &[Outcome]) -> String {
+#[must_use]
+pub fn text(name: &str, outcomes: &[Outcome]) -> String {
     outcomes.iter().map(|outcome| one(name, outcome)).collect::<Vec<_>>().join("\n")
 }
 
@@ -141,7 +142,8 @@ fn integrator(found: &Signature) -> Vec<String> {
 }
 
 /// One row for each body, for programs.
-pub(super) fn rows(outcomes: &[Outcome]) -> Table {
+#[must_use]
+pub fn rows(outcomes: &[Outcome]) -> Table {
     let of_reading = |name, meaning| Column::new(name, "", meaning);
     let mut table = Table::new(
         "verdicts",

@@ -8,7 +8,8 @@ use super::advice;
 use super::outcome::{Outcome, named};
 
 /// An object for a file of one body, else an array.
-pub(super) fn text(outcomes: &[Outcome]) -> String {
+#[must_use]
+pub fn text(outcomes: &[Outcome]) -> String {
     let value = match outcomes {
         [one] => object(one),
         several => Value::Array(several.iter().map(object).collect()),
@@ -16,7 +17,7 @@ pub(super) fn text(outcomes: &[Outcome]) -> String {
     format!("{value:#}\n")
 }
 
-pub(super) fn reading(reading: &Reading) -> Value {
+fn reading(reading: &Reading) -> Value {
     let mut value = Map::new();
     let mut put = |key: &str, found: Option<String>| {
         if let Some(found) = found {
@@ -40,7 +41,9 @@ fn with_form(mut reading: Value, form: Option<&str>) -> Value {
     reading
 }
 
-fn object(outcome: &Outcome) -> Value {
+/// The answer for one body.
+#[must_use]
+pub fn object(outcome: &Outcome) -> Value {
     let verdict = &outcome.verdict;
     let mut value = json!({
         "verdict": outcome.judgement(),

@@ -1,16 +1,19 @@
 //! Verdicts as one page that needs no other file.
 
+use crate::document::{Block, Form, Tone};
 use polhode::audit::Judgement;
 use polhode_files::error::Error;
 use polhode_files::text::short;
-use polhode_pages::document::{Block, Form, Tone};
 
 use super::figure::panels;
 use super::outcome::{Outcome, named, sentence};
 use super::text::{attitude, causes};
 
 /// The page of the record `name`.
-pub(super) fn page(name: &str, outcomes: &[Outcome], form: Form) -> Result<String, Error> {
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn page(name: &str, outcomes: &[Outcome], form: Form) -> Result<String, Error> {
     let mut parts = Vec::new();
     for outcome in outcomes {
         if let Some(body) = &outcome.body {

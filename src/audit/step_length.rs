@@ -1,8 +1,8 @@
 //! Times of records that count steps: the length of a step from how far the body turns.
 
-use polhode::audit::{Attitudes, Trajectory};
-use polhode::body::Body;
-use polhode::rotation::{Quat, Vec3, rotation_angle};
+use super::{Attitudes, Trajectory};
+use crate::body::Body;
+use crate::rotation::{Quat, Vec3, rotation_angle};
 
 /// Intervals that are looked at.
 const LOOKS: usize = 1000;
@@ -14,7 +14,7 @@ const NEAR: f64 = 0.01;
 ///
 /// The quaternions are scalar first, from body to space; rates and momenta are along the axes of space. `None` where the body
 /// turns too far between rows, or where the record has no rates and no momenta with a body.
-pub(super) fn length(record: &Trajectory, body: Option<&Body>) -> Option<f64> {
+pub fn step_length(record: &Trajectory, body: Option<&Body>) -> Option<f64> {
     let Some(Attitudes::Quaternions(rows)) = &record.attitude else { return None };
     let attitude = |k: usize| Quat::from_components(rows[k]).normalized();
     let inverse = body.and_then(|body| body.inertia().tensor().try_inverse());
@@ -63,7 +63,7 @@ mod tests {
         let record = Trajectory::new((0..20).map(|k| 100.0 * f64::from(k)).collect())
             .with_attitude(Attitudes::Quaternions(rows.collect()))
             .with_rates(vec![[0.0, 0.0, 0.5]; 20]);
-        assert_eq!(length(&record, None), Some(0.005));
+        assert_eq!(step_length(&record, None), Some(0.005));
         assert_eq!(rounded(0.002_504), 0.0025);
     }
 }
