@@ -1,6 +1,6 @@
 //! Random arguments over the whole range of doubles: no panic, no endless call, nothing but numbers in what is `Ok`.
 //!
-//! `POLHODE_HOSTILE` asks for another number of calls of each constructor.
+//! `POLHODE_HOSTILE` asks for another number of calls of each constructor, `POLHODE_HOSTILE_SEED` for other ones.
 
 use std::fmt::Display;
 use std::time::{Duration, Instant};
@@ -126,20 +126,36 @@ impl Draw {
     }
 }
 
+/// No call takes longer.
+const LONGEST: Duration = Duration::from_secs(1);
+
 /// Runs `call` often, each time with another stream of random numbers; it returns what is wrong.
 fn hostile(seed: u64, share: f64, mut call: impl FnMut(&mut Draw) -> Result<(), String>) {
     let count = std::env::var("POLHODE_HOSTILE").map_or(3000.0, |count| count.parse().unwrap());
+    let other: u64 = std::env::var("POLHODE_HOSTILE_SEED").map_or(0, |seed| seed.parse().unwrap());
+    let (seed, count) = (seed ^ other << 32, (count * share) as u64);
     let random = Random::new(seed);
     let mut slowest = Duration::ZERO;
-    for number in 0..(count * share) as u64 {
-        let mut draw = Draw(random.stream(number));
-        let start = Instant::now();
-        if let Err(what) = call(&mut draw) {
-            panic!("seed {seed}, stream {number}: {what}");
+    for number in 0..count {
+        let mut took = || {
+            let start = Instant::now();
+            if let Err(what) = call(&mut Draw(random.stream(number))) {
+                panic!("seed {seed}, stream {number}: {what}");
+            }
+            start.elapsed()
+        };
+        // other programs on the machine make a call slow now and then, not each time
+        let mut least = took();
+        for _ in 0..4 {
+            if least > LONGEST {
+                least = least.min(took());
+            }
         }
-        slowest = slowest.max(start.elapsed());
+        assert!(least < LONGEST, "seed {seed}, stream {number} took {least:?}");
+        slowest = slowest.max(least);
     }
-    assert!(slowest < Duration::from_secs(1), "the slowest call took {slowest:?}");
+    let thread = std::thread::current();
+    println!("{}: {count} calls, the slowest {slowest:?}", thread.name().unwrap_or_default());
 }
 
 /// A refusal in words, without hundreds of digits.

@@ -1,5 +1,6 @@
 //! The search: a setting for each candidate from short runs, then the quickest over as much of the time as is affordable.
 
+use std::cell::Cell;
 use std::time::Instant;
 
 use super::candidate::Candidate;
@@ -52,7 +53,17 @@ pub(super) struct Calibration<'a> {
     /// The least time of a setting that meets the demand so far, s.
     quickest: f64,
     begun: Instant,
+    /// Whether thinking ends, and whether it ended before everything was tried.
+    ends: bool,
+    ended: Cell<bool>,
     heed: &'a mut dyn FnMut(&Progress),
+}
+
+/// Choices that meet the demand, those of which only a short run says so, and methods that do not.
+struct Sought {
+    fit: Vec<Choice>,
+    rest: Vec<Choice>,
+    unfit: Vec<(String, Option<f64>)>,
 }
 
 /// A setting of a candidate, and what it is expected to do over the whole time.
@@ -74,19 +85,45 @@ impl<'a> Calibration<'a> {
         if conditioning > wanted {
             return Err(AdviseError::Conditioning { demand: wanted, attainable: conditioning, until });
         }
-        Ok(Calibration { body, demand, reference, conditioning, quickest: f64::INFINITY, begun, heed })
+        let quickest = f64::INFINITY;
+        let (ends, ended) = (true, Cell::new(false));
+        Ok(Calibration { body, demand, reference, conditioning, quickest, begun, ends, ended, heed })
     }
 
     /// Whether a thought of `seconds` more is too long.
     fn late(&self, seconds: f64) -> bool {
         let (least, times) = THOUGHT;
-        self.begun.elapsed().as_secs_f64() + seconds > least + times * self.quickest
+        let late = self.ends && self.begun.elapsed().as_secs_f64() + seconds > least + times * self.quickest;
+        self.ended.set(self.ended.get() || late);
+        late
     }
 
     pub(super) fn advice(mut self) -> Result<Advice, AdviseError> {
         let candidates = Candidate::all(self.body, self.demand);
-        let (mut found, mut unfit) = (Vec::new(), Vec::new());
-        let mut fit = self.closed_form();
+        let mut sought = self.search(&candidates)?;
+        if sought.fit.is_empty() && self.ended.get() {
+            // nothing is refused because the machine was busy
+            self.ends = false;
+            sought = self.search(&candidates)?;
+        }
+        let Sought { mut fit, rest, unfit } = sought;
+        fit.sort_by(|a, b| a.seconds.value.total_cmp(&b.seconds.value));
+        if fit.is_empty() {
+            return Err(self.unreached(&unfit));
+        }
+        let best = fit.remove(0);
+        if let Some(budget) = self.demand.budget.filter(|budget| best.seconds.value > *budget) {
+            return Err(AdviseError::Budget { budget, method: best.method, seconds: best.seconds.value });
+        }
+        fit.extend(rest);
+        let jump = self.reference.truth().jump();
+        Ok(Advice { best, others: fit, unfit, conditioning: self.conditioning, jump })
+    }
+
+    /// What is found until thinking ends.
+    fn search(&mut self, candidates: &[Candidate]) -> Result<Sought, AdviseError> {
+        let mut found = Vec::new();
+        let (mut fit, mut rest, mut unfit) = (self.closed_form(), Vec::new(), Vec::new());
         self.quickest = fit.first().map_or(f64::INFINITY, |closed| closed.seconds.value);
         let short = self.reference.short()?;
         for (place, candidate) in candidates.iter().enumerate() {
@@ -111,7 +148,6 @@ impl<'a> Calibration<'a> {
         });
         let quickest = found.first().map_or(0.0, |first| first.1.choice.seconds.value);
         let (most, multiple) = FINALISTS;
-        let mut rest = Vec::new();
         for (place, (candidate, first)) in found.into_iter().enumerate() {
             let seconds = first.choice.seconds.value;
             let more = place < most && seconds <= multiple * quickest && !self.late(seconds);
@@ -132,16 +168,7 @@ impl<'a> Calibration<'a> {
                 Err(nearest) => unfit.push((candidate.name.clone(), nearest)),
             }
         }
-        fit.sort_by(|a, b| a.seconds.value.total_cmp(&b.seconds.value));
-        if fit.is_empty() {
-            return Err(self.unreached(&unfit));
-        }
-        let best = fit.remove(0);
-        if let Some(budget) = self.demand.budget.filter(|budget| best.seconds.value > *budget) {
-            return Err(AdviseError::Budget { budget, method: best.method, seconds: best.seconds.value });
-        }
-        fit.extend(rest);
-        Ok(Advice { best, others: fit, unfit, conditioning: self.conditioning, jump })
+        Ok(Sought { fit, rest, unfit })
     }
 
     fn unreached(&self, unfit: &[(String, Option<f64>)]) -> AdviseError {

@@ -26,7 +26,7 @@ pub(super) fn misplaced(
         return Vec::new();
     }
     let few = beyond.len() as f64 <= MOST * rows as f64;
-    let sweep = Sweep { record, reading, start: &found.start, size: found.size };
+    let sweep = Sweep { record, reading, start: &found.start, size: found.size, scale: found.scale };
     let of_rates = if record.rates.is_some() { allowed.rates } else { allowed.momentum };
     let limits = [allowed.attitude, of_rates, allowed.momentum].map(|allowance| allowance.largest(rows));
     let distance = |seen: &Seen| {

@@ -22,6 +22,8 @@ pub struct FoundTrajectory {
     pub counts_steps: bool,
     /// Lines before the header that begin with #, without that.
     pub comments: Vec<String>,
+    /// Names of the columns that are not read.
+    pub unread: Vec<String>,
 }
 
 /// Reads the trajectories at `path`, or of standard input where that is `-`.
@@ -64,6 +66,7 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
         bodies: bodies.collect(),
         claims,
         counts_steps: table.counts_steps(),
+        unread: table.header.unread().map(|name| visible(name).into_owned()).collect(),
         comments: table.comments,
     })
 }

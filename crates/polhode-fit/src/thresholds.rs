@@ -145,6 +145,8 @@ thresholds! {
         DRIVEN: f64 = 0.15,
             "share of the squared derivative of the rates that no drag and constant torque explain, from which a body is driven", "a_body_that_a_hand_drives_gets_no_tensor";
         GROWN: f64 = 0.1, "relative growth of |J w| over a segment that drag cannot make", UNMEASURED;
+        GROWN_BY_HALF: f64 = 0.5,
+            "the same that nothing but what drives a body makes, however near to the law its tensor is", "a_body_that_gains_half_of_its_momentum_gets_no_tensor";
         OUTSIDE_OF_LAW: f64 = 5.0,
             "standard deviations of the physical tensor from the unconstrained one, beside such growth", UNMEASURED;
         AUDIBLE: f64 = 0.5, "share of the squared derivative of the rates that noise may be where that of torques is told", UNMEASURED;

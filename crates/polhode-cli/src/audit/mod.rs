@@ -37,6 +37,9 @@ const EXAMPLES: &str = "Examples:
   polhode audit --golden golden
   polhode audit golden/free-generic.csv --against golden/free-generic.csv";
 
+/// Columns without a use that are named.
+const NAMED: usize = 12;
+
 /// Whether a trajectory of another program is right, its convention and its error
 ///
 /// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
@@ -64,8 +67,8 @@ pub(crate) struct Audit {
     /// Audit this body of the column id alone
     #[arg(long, value_name = "NAME", help_heading = "Reading")]
     id: Option<String>,
-    /// Largest error of a record that is right, rad and relative
-    #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
+    /// Largest error of a record that is right, rad and relative, at most 0.1
+    #[arg(long, value_name = "E", value_parser = tolerance, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
     tolerance: f64,
     /// Noise that the record has, standard deviations of a component of the attitude, rad, and of the angular velocity, rad/s; a noisy record is undecided without it
     #[arg(long, value_name = "ANGLE[,RATE]", value_parser = noise, allow_hyphen_values = true, help_heading = "Verdict")]
@@ -178,6 +181,9 @@ impl Audit {
         for (id, mut record) in bodies {
             let place = id.as_ref().map_or(name.to_string(), |id| format!("{name}, body {id}"));
             let mut notes = Vec::new();
+            if outcomes.is_empty() && !found.unread.is_empty() {
+                notes.push(format!("not read: {}", listed(&found.unread)));
+            }
             if found.counts_steps {
                 notes.push(timed(&mut record, body.as_ref(), &place)?);
             }
@@ -206,6 +212,24 @@ impl Audit {
             });
         }
         Ok(outcomes)
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        value if value <= 0.1 => Ok(value),
+        value => {
+            Err(format!("{value:?} is more than 0.1, within which nearly anything is; give a smaller number"))
+        }
+    }
+}
+
+/// The first of some names, and how many more there are.
+fn listed(names: &[String]) -> String {
+    let shown = names[..names.len().min(NAMED)].join(", ");
+    match names.len().saturating_sub(NAMED) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
     }
 }
 

@@ -80,6 +80,15 @@ impl Element {
         self.named(tag).next()
     }
 
+    /// The one child of this tag, if there is one: of two it is not said which counts.
+    pub(super) fn single(&self, tag: &'static str) -> Result<Option<&Element>, String> {
+        let mut named = self.named(tag);
+        match (named.next(), named.next()) {
+            (_, Some(second)) => Err(second.error("is there a second time; leave one out")),
+            (first, None) => Ok(first),
+        }
+    }
+
     pub(super) fn value(&self, attribute: &str) -> Option<&Value> {
         self.attributes.iter().find(|(name, _)| name == attribute).map(|(_, value)| value)
     }
