@@ -107,6 +107,10 @@ from!(
     crate::run::MemberError,
     crate::run::RunError,
     crate::run::ScheduleError,
+    crate::strapdown::FlightError,
+    crate::strapdown::RuleError,
+    crate::strapdown::StrapdownError,
+    crate::strapdown::UnknownKind,
     crate::units::DateError,
 );
 #[cfg(any(test, feature = "random"))]

@@ -30,6 +30,7 @@
 //! | [`body`] | inertia with forces, states, the solver frame of kernels |
 //! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the top |
 //! | [`events`] | when something happens: roots of functions of time and state |
+//! | [`strapdown`] | attitude from measured rates: rules for rates, increments and averages, with an error budget |
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
@@ -90,11 +91,14 @@ pub mod observe;
 pub mod record;
 pub mod rotation;
 pub mod run;
+pub mod strapdown;
 pub mod truth;
 pub mod units;
 
 /// A chapter for each kind of user, and what stands behind the exact motion.
 pub mod guide {
+    #[doc = include_str!("../docs/attitude.md")]
+    pub mod attitude {}
     #[doc = include_str!("../docs/exact-motion.md")]
     pub mod exact_motion {}
     #[doc = include_str!("../docs/inertia-tensors.md")]

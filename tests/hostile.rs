@@ -651,6 +651,59 @@ fn records() {
     });
 }
 
+#[test]
+fn attitudes() {
+    use polhode::strapdown::{Budgeted, Kind, Rule, Sensor, Strapdown, choose, noise};
+    let rules =
+        [(2, 2), (4, 4), (6, 8), (6, 12)].map(|(order, samples)| Rule::magnus(order, samples).unwrap());
+    let rules: Vec<Rule> = rules.into_iter().chain(Rule::RIVALS).collect();
+    hostile(12, 0.5, |draw| {
+        let count = draw.below(30) as usize;
+        let (size, decades) = draw.scale();
+        let mut t = 0.0;
+        let mut times = Vec::new();
+        for _ in 0..count {
+            t += if draw.one_in(20) { draw.any() } else { draw.near(size, decades) };
+            times.push(t);
+        }
+        let slow = draw.share() / size;
+        let readings: Vec<Vector3<f64>> = (0..count)
+            .map(|_| if draw.one_in(40) { draw.vector() } else { Vector3::repeat(slow * draw.sign()) })
+            .collect();
+        let kind = Kind::ALL[draw.below(3) as usize];
+        let rule = rules[draw.below(rules.len() as u64) as usize];
+        let start = draw.attitude();
+        let mut plain = match Strapdown::new(kind, rule, start.into()) {
+            Ok(strapdown) => strapdown,
+            Err(error) => return refused(&error),
+        };
+        let sensor = Sensor::default().with_noise(draw.share()).with_stamps(draw.share());
+        let mut budgeted = Budgeted::new(kind, rule, start, sensor).map_err(|error| error.to_string())?;
+        let (mut known, mut estimated) = (Vec::new(), Vec::new());
+        for (t, reading) in times.iter().zip(&readings) {
+            match plain.push(*t, (*reading).into()) {
+                Ok(ready) => known.extend_from_slice(ready),
+                Err(error) => refused(&error)?,
+            }
+            match budgeted.push(*t, *reading) {
+                Ok(ready) => estimated.extend_from_slice(ready),
+                Err(error) => refused(&error)?,
+            }
+        }
+        known.extend_from_slice(plain.finish());
+        estimated.extend_from_slice(budgeted.finish());
+        all(known.len() == estimated.len(), "lengths", &(known.len(), estimated.len()))?;
+        for (stamped, estimate) in known.iter().zip(&estimated) {
+            let q = stamped.attitude;
+            let good = (q.norm_squared() - 1.0).abs() < 1e-12 && estimate.budget.truncation.is_finite();
+            all(good, "attitude", &(kind, rule, &times, &readings, stamped, estimate))?;
+        }
+        let found = noise(&times, &readings);
+        all(found >= 0.0, "noise", &(&times, &readings, found))?;
+        choose(&times, &readings, kind, None, None, sensor).map_or_else(|error| refused(&error), |_| Ok(()))
+    });
+}
+
 /// Forces of any parameters; those built in that are refused are left out.
 fn forces(draw: &mut Draw) -> Result<Vec<Force>, String> {
     let made = [

@@ -35,6 +35,7 @@ mod rotation;
 mod rounding;
 mod schemes;
 mod series;
+mod strapdown;
 mod surface;
 mod switched;
 mod taylor;

@@ -2,9 +2,9 @@
 
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::solve::exponential::{exponential, turn_with_impulse};
+use crate::method::solve::impulse::turn_with_impulse;
 use crate::num::{Dd, Real};
-use crate::rotation::Vec3;
+use crate::rotation::{Quat, Vec3};
 
 /// Buss's methods of second order, plain and augmented.
 ///
@@ -71,7 +71,7 @@ impl<S: Real, F: Field<S>> Map<S> for BussMap<S, F> {
         if let Some(share) = self.share {
             mean = mean + acceleration.cross(omega) * share;
         }
-        let turn = exponential(mean * h);
+        let turn = Quat::exponential(mean * h);
         let impulse = if F::ACTS {
             let omega = turn.rotate_back(m + torque * h).times(self.inverse_moments);
             let last = self.field.torque(at.later(self.whole), x.attitude * turn, omega);

@@ -2,9 +2,8 @@
 
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::solve::exponential::exponential;
 use crate::num::{Dd, Real};
-use crate::rotation::Vec3;
+use crate::rotation::{Quat, Vec3};
 
 /// Euler's step of the momentum with the derivative of the gyroscopic term on the left side, and a turn by the new angular
 /// velocity.
@@ -73,7 +72,7 @@ impl<S: Real, F: Field<S>> Map<S> for LinearlyImplicitEulerMap<S, F> {
         let rate = Vec3([rate.dot(b.cross(c)), a.dot(rate.cross(c)), a.dot(b.cross(rate))]);
         let new = m + rate * (self.h / volume);
         x.momentum_body = new;
-        let turn = exponential(new.times(self.inverse_moments) * self.h);
+        let turn = Quat::exponential(new.times(self.inverse_moments) * self.h);
         x.attitude = (x.attitude * turn).normalized();
     }
 }

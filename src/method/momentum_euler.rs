@@ -2,9 +2,8 @@
 
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::solve::exponential::exponential;
 use crate::num::{Dd, Real};
-use crate::rotation::Vec3;
+use crate::rotation::{Quat, Vec3};
 
 /// Euler's step of the momentum, brought back to its length, and a turn by the new angular velocity.
 ///
@@ -66,7 +65,7 @@ impl<S: Real, F: Field<S>> Map<S> for MomentumEulerMap<S, F> {
             new = new + self.field.torque(at, x.attitude, omega) * self.h;
         }
         x.momentum_body = new;
-        let turn = exponential(new.times(self.inverse_moments) * self.h);
+        let turn = Quat::exponential(new.times(self.inverse_moments) * self.h);
         x.attitude = (x.attitude * turn).normalized();
     }
 }

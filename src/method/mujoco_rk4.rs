@@ -2,9 +2,8 @@
 
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::solve::exponential::exponential;
 use crate::num::{Dd, Real};
-use crate::rotation::Vec3;
+use crate::rotation::{Quat, Vec3};
 
 /// The classical Runge–Kutta method on the momentum in the body, and in the algebra on the attitude, as MuJoCo takes it.
 ///
@@ -63,7 +62,7 @@ impl<S: Real, F: Field<S>> MujocoRk4Map<S, F> {
         let omega = m.times(self.inverse_moments);
         let mut rate = m.cross(omega);
         if F::ACTS {
-            rate = rate + self.field.torque(at, x.attitude * exponential(u), omega);
+            rate = rate + self.field.torque(at, x.attitude * Quat::exponential(u), omega);
         }
         let bracket = u.cross(omega);
         let turn = omega + bracket * S::of(0.5) + u.cross(bracket) * (S::of(1.0) / S::of(12.0));
@@ -81,7 +80,7 @@ impl<S: Real, F: Field<S>> Map<S> for MujocoRk4Map<S, F> {
         let (k4, f4) = self.rates(end, x, k3 * h, m + f3 * h);
         let sixth = h / S::of(6.0);
         x.momentum_body = m + (f1 + (f2 + f3) * two + f4) * sixth;
-        let turn = exponential((k1 + (k2 + k3) * two + k4) * sixth);
+        let turn = Quat::exponential((k1 + (k2 + k3) * two + k4) * sixth);
         x.attitude = (x.attitude * turn).normalized();
     }
 }

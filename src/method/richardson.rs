@@ -2,7 +2,7 @@
 
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::solve::exponential::turn_with_impulse;
+use crate::method::solve::impulse::turn_with_impulse;
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
 

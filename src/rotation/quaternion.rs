@@ -5,7 +5,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::Vec3;
-use crate::num::Real;
+use crate::num::{Precise, Real};
 
 /// A quaternion `w + v`. As an attitude it takes body vectors to space: `v_space = q v_body q*`.
 ///
@@ -93,6 +93,24 @@ impl<S: Real> Quat<S> {
         Quat { w, v: c * w }
     }
 
+    /// The turn by |u| rad about u, `(cos ½|u|, sin ½|u| · u/|u|)`: the exponential of a rotation vector.
+    ///
+    /// ```
+    /// use polhode::rotation::{Quat, Vec3};
+    /// let third = Quat::exponential(Vec3([0.0, 0.0, core::f64::consts::TAU / 3.0]));
+    /// assert!((third * third * third + Quat::identity()).magnitude() < 1e-15); // a whole turn is −1
+    /// ```
+    #[inline]
+    pub fn exponential(u: Vec3<S>) -> Self {
+        let half = u * S::of(0.5);
+        let angle = half.norm();
+        if angle.magnitude() == 0.0 {
+            return Quat::new(S::of(1.0), half);
+        }
+        let (sin, cos) = angle.sin_cos();
+        Quat::new(cos, half * (sin / angle))
+    }
+
     /// `q v q*`: the body vector `v` in space. Not divided by |q|².
     #[inline]
     pub fn rotate(self, v: Vec3<S>) -> Vec3<S> {
@@ -119,6 +137,24 @@ impl<S: Real> Quat<S> {
     pub fn magnitude(self) -> f64 {
         let (w, v) = (self.w.magnitude(), self.v.magnitude());
         if w.is_nan() || v.is_nan() { f64::NAN } else { w.max(v) }
+    }
+}
+
+impl<S: Precise> Quat<S> {
+    /// The rotation vector of the turn, of length 0 to π: the same of q and −q, whatever the norm.
+    ///
+    /// ```
+    /// use polhode::rotation::{Quat, Vec3};
+    /// let u = Vec3([0.3, -0.2, 1e-9]);
+    /// assert!((Quat::exponential(u).logarithm() - u).norm() < 1e-16);
+    /// ```
+    pub fn logarithm(self) -> Vec3<S> {
+        let sine = self.v.norm();
+        let two = S::of(if self.w < S::of(0.0) { -2.0 } else { 2.0 });
+        if sine.magnitude() == 0.0 {
+            return self.v * two;
+        }
+        self.v * (two * sine.atan2(self.w.abs()) / sine)
     }
 }
 

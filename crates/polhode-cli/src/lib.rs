@@ -1,6 +1,7 @@
 //! The command line of polhode. A library, so that it is compiled while what it calls is still being optimised.
 
 mod advise;
+mod attitude;
 mod audit;
 mod bodies;
 mod compare;
@@ -53,6 +54,7 @@ enum Command {
     Advise(Box<advise::Advise>),
     Inertia(Box<inertia::Inertia>),
     Fit(Box<fit::Fit>),
+    Attitude(Box<attitude::Attitude>),
     Simulate(Box<simulate::Simulate>),
     Ensemble(Box<ensemble::Ensemble>),
     Gather(Box<ensemble::Gather>),
@@ -91,6 +93,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Ensemble(ensemble) => ensemble.run(),
         Command::Gather(gather) => gather.run(),
         Command::Fit(fit) => fit.run(),
+        Command::Attitude(attitude) => attitude.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Methods(methods) => methods.run(),
         Command::Bodies(bodies) => bodies.run(),

@@ -3,7 +3,7 @@
 use clap::{ArgAction, Command};
 
 /// By command, the flags of its short help; places without a name are always shown.
-const SHOWN: [(&str, &[&str]); 11] = [
+const SHOWN: [(&str, &[&str]); 12] = [
     ("show", &["moments", "body", "omega", "until", "against", "out"]),
     ("propagate", &["moments", "body", "omega", "until", "every", "times", "method", "step", "out"]),
     ("motion", &["moments", "body", "omega", "periods", "mode", "pole", "out"]),
@@ -11,6 +11,7 @@ const SHOWN: [(&str, &[&str]); 11] = [
     ("compare", &["moments", "body", "omega", "until", "methods", "steps", "figure"]),
     ("advise", &["moments", "body", "omega", "until", "attitude_error", "exclude", "check"]),
     ("fit", &["columns", "axes", "torque", "prior_inertia", "report", "out"]),
+    ("attitude", &["columns", "kind", "start", "order", "samples", "noise", "against", "out"]),
     ("simulate", &["moments", "body", "omega", "until", "every", "noise", "out"]),
     ("inertia", &["mass", "density", "length_unit", "repair", "format", "out"]),
     ("ensemble", &["out", "shard"]),

@@ -25,6 +25,8 @@ pub struct FoundRecord {
     pub skipped: Vec<TableError>,
     /// What else a user should know.
     pub remarks: Vec<String>,
+    /// Whether the columns are angles by their unit, which [`ReadOptions::increments`] allows: increments since the row before, rad.
+    pub are_increments: bool,
 }
 
 /// A record from a text of rows, which messages call `file`.
@@ -142,7 +144,7 @@ fn found(
     };
     let record = Record::cleaned(table.name(), rows).map_err(refused)?;
     let record = inputs.complete(record, &lines).map_err(refused)?;
-    Ok(FoundRecord { record, skipped, remarks })
+    Ok(FoundRecord { record, skipped, remarks, are_increments: table.are_increments })
 }
 
 /// The body of the row before, where rows have names.

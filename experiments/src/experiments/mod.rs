@@ -22,6 +22,7 @@ mod round_off;
 mod scoreboard;
 mod separatrix;
 mod splitting_order;
+mod strapdown;
 mod work_precision;
 
 pub(crate) use work_precision::Which;
@@ -138,5 +139,10 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "advice",
         question: "whether the method and step that are advised keep the error that is stated, under every kind of force",
         run: advice::run,
+    },
+    Experiment {
+        name: "strapdown",
+        question: "how far attitudes from measured rates are off, by rule, noise and rate of samples, and whether their budgets hold",
+        run: strapdown::run,
     },
 ];

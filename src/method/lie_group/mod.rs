@@ -7,7 +7,7 @@ use self::tableau::{Exponential, MOST_STAGES};
 pub(super) use self::tableau::{of, with_bracket};
 use super::{Claimed, Claims, Cost, Kept, Map, Method};
 use crate::body::{Field, Point, Problem, Rotor, Time};
-use crate::method::solve::exponential::{exponential, turn_with_impulse};
+use crate::method::solve::impulse::turn_with_impulse;
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -86,7 +86,7 @@ impl<S: Real> Stage<S> {
             if let Some((a, b, share)) = factor.bracket {
                 u = u + k[a].cross(k[b]) * share;
             }
-            turn * exponential(u)
+            turn * Quat::exponential(u)
         })
     }
 }

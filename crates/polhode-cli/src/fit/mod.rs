@@ -6,7 +6,6 @@ mod flights;
 mod inputs;
 mod page;
 mod plot;
-mod reading;
 mod report;
 mod residuals;
 
@@ -22,12 +21,12 @@ use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
 
+use crate::flags::record::RecordArguments;
 use crate::memory;
 use crate::plot::Picture;
 use arguments::{KnownArguments, PriorArguments, Scope, SensorArguments, Torque};
 use flights::Spans;
 use inputs::WheelArguments;
-use reading::ReadingArguments;
 use report::Facts;
 
 const EXAMPLES: &str = "Examples:
@@ -51,7 +50,7 @@ pub(crate) struct Fit {
     #[arg(required = true, value_name = "DATA.csv")]
     data: Vec<PathBuf>,
     #[command(flatten)]
-    reading: ReadingArguments,
+    reading: RecordArguments,
     /// Half width of the window that smooths the equations, s; rarely needed [default: that of the smallest uncertainty]
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     radius: Option<f64>,
@@ -119,7 +118,7 @@ impl Fit {
         });
         let figure = figure.transpose()?;
         memory::check_files(&self.data, 3)?;
-        let mut record = self.reading.record(&self.data, &self.wheel)?;
+        let mut record = self.reading.record(&self.data, self.wheel.momentum())?;
         let limit = |axis: &[f64; 4]| Limit {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
             at_least: None,

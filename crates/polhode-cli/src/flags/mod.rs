@@ -4,6 +4,7 @@ pub(crate) mod body;
 pub(crate) mod event;
 pub(crate) mod force;
 pub(crate) mod motion;
+pub(crate) mod record;
 pub(crate) mod start;
 pub(crate) mod table;
 pub(crate) mod times;

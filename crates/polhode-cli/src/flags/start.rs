@@ -77,7 +77,7 @@ pub(crate) fn rate_unit(text: &str) -> Result<Factor, String> {
     unit.ok_or_else(|| format!("'{text}' is no unit of rates here; write rad/s, deg/s, deg/d, rev/h or rpm"))
 }
 
-fn sequence(text: &str) -> Result<EulerSequence, String> {
+pub(crate) fn sequence(text: &str) -> Result<EulerSequence, String> {
     text.parse::<EulerSequence>().map_err(|error| error.to_string())
 }
 

@@ -6,6 +6,7 @@
 #![allow(clippy::disallowed_methods, reason = "tests look at files that a command has written")]
 
 mod advise;
+mod attitude;
 mod audit;
 mod compare;
 mod compose;

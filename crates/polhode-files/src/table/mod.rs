@@ -18,7 +18,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::path::Path;
 
-use polhode::units::{RateUnit, TimeUnit};
+use polhode::units::{AngleUnit, RateUnit, TimeUnit};
 
 pub use axes::SignedAxes;
 pub(crate) use cells::{Delimiter, digits, plain, uncommented, width_rule};
@@ -48,6 +48,8 @@ pub struct ReadOptions {
     pub most_skipped: Option<f64>,
     /// Which columns are the rates of a record about x, y and z, and with which signs; without it as they are named.
     pub axes: Option<SignedAxes>,
+    /// Whether the columns of a record may be angles, rad or deg: increments since the row before.
+    pub increments: bool,
 }
 
 impl ReadOptions {
@@ -86,6 +88,12 @@ impl ReadOptions {
     pub fn with_axes(self, axes: impl Into<Option<SignedAxes>>) -> Self {
         Self { axes: axes.into(), ..self }
     }
+
+    /// With columns of a record that may be increments since the row before, if `increments` is true.
+    #[must_use]
+    pub fn with_increments(self, increments: bool) -> Self {
+        Self { increments, ..self }
+    }
 }
 
 const TIME_UNITS: &str = "s, ms, us, ns, min, h";
@@ -105,6 +113,8 @@ pub(crate) struct Table<'t> {
     delimiter: Delimiter,
     /// The unit of the times, where something names one.
     pub(crate) time_unit: Option<TimeUnit>,
+    /// Whether the columns of the rates are angles by their unit.
+    pub(crate) are_increments: bool,
     clock: Clock,
     /// The present row.
     line: Line,
@@ -141,6 +151,7 @@ impl<'t> Table<'t> {
             preamble,
             delimiter: looked.delimiter,
             time_unit: None,
+            are_increments: false,
             clock: Clock::new(None),
             line: Line::default(),
             cells: Vec::new(),
@@ -371,7 +382,9 @@ impl<'t> Table<'t> {
         let stated = self.header.bodies.iter().filter_map(|body| body.rates.as_ref());
         for (place, text) in stated.flat_map(|rates| rates.places.iter().zip(&rates.units)) {
             let Some(text) = text else { continue };
-            let Some(unit) = RateUnit::named(text) else {
+            let angle = AngleUnit::named(text).filter(|_| reading.increments);
+            self.are_increments |= angle.is_some();
+            let Some(unit) = angle.map(per_second).or(RateUnit::named(text)) else {
                 return Err(self.refused_column(*place, Rule::KnownUnit(RATE_UNITS)).value(text));
             };
             if let Some(set) = reading.rate_unit.filter(|set| *set != unit) {
@@ -387,7 +400,16 @@ impl<'t> Table<'t> {
         let rates = self.header.bodies.get(body).and_then(|body| body.rates.as_ref());
         [0, 1, 2].map(|axis| {
             let stated = rates.and_then(|rates| rates.units.get(axis)?.as_deref());
-            stated.and_then(RateUnit::named).or(self.header.rate_unit)
+            let angle = stated.filter(|_| self.are_increments).and_then(AngleUnit::named);
+            angle.map(per_second).or(stated.and_then(RateUnit::named)).or(self.header.rate_unit)
         })
+    }
+}
+
+/// The rate that is this angle in every second: the same factor.
+fn per_second(unit: AngleUnit) -> RateUnit {
+    match unit {
+        AngleUnit::Radians => RateUnit::RadiansPerSecond,
+        AngleUnit::Degrees => RateUnit::DegreesPerSecond,
     }
 }

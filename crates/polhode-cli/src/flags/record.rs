@@ -1,20 +1,21 @@
-//! How the files of a record are read, and which windows of them.
+//! How the files of a record are read, and which windows of them: `fit` and `attitude`.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use nalgebra::Vector3;
+use polhode::record::Record;
+use polhode::units::RateUnit;
 use polhode_files::SignedAxes;
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{number, numbers};
-use polhode_files::record;
-use polhode_fit::{RateUnit, Record};
+use polhode_files::record::{self, FoundRecord};
 
-use super::inputs::WheelArguments;
-use crate::flags::table::{TableArguments, rate_unit};
+use super::table::{TableArguments, rate_unit};
 
 /// Columns, units and windows.
 #[derive(Args, Clone, Debug)]
-pub(super) struct ReadingArguments {
+pub(crate) struct RecordArguments {
     #[command(flatten)]
     table: TableArguments,
     /// Fraction of the rows that may be left out because they cannot be read [default: 0.02]
@@ -62,21 +63,45 @@ fn share(text: &str) -> Result<f64, String> {
     }
 }
 
-impl ReadingArguments {
+impl RecordArguments {
     /// Whether no window is cut out.
-    pub(super) fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         self.window.is_empty()
     }
 
-    /// All files and windows as one record.
-    pub(super) fn record(&self, data: &[PathBuf], wheel: &WheelArguments) -> Result<Record, Error> {
-        if let Some((n, w)) =
-            self.window.iter().find_map(|w| w.file.filter(|n| *n > data.len()).map(|n| (n, w)))
-        {
+    /// All files and windows as one record; `wheel` is the momentum of a wheel per rad/s of its speed.
+    pub(crate) fn record(&self, data: &[PathBuf], wheel: Option<Vector3<f64>>) -> Result<Record, Error> {
+        self.check_windows(data.len())?;
+        self.tell_axes();
+        let mut all = Record::default();
+        for (k, path) in data.iter().enumerate() {
+            let record = self.read(path, wheel, false)?.record;
+            if let Some(cut) = self.cut(record, k)? {
+                all = all.join(cut);
+            }
+        }
+        Ok(all)
+    }
+
+    /// One file and its windows, whether its columns are increments by their unit, and how many rows were left out.
+    pub(crate) fn readings(&self, path: &Path) -> Result<(Record, bool, usize), Error> {
+        self.check_windows(1)?;
+        self.tell_axes();
+        let found = self.read(path, None, true)?;
+        let record = self.cut(found.record, 0)?.unwrap_or_default();
+        Ok((record, found.are_increments, found.skipped.len()))
+    }
+
+    fn check_windows(&self, files: usize) -> Result<(), Error> {
+        if let Some((n, w)) = self.window.iter().find_map(|w| w.file.filter(|n| *n > files).map(|n| (n, w))) {
             let value = format!("{n}:{:?},{:?}", w.span.0, w.span.1);
-            let rule = format!("there are {} files", data.len());
+            let rule = format!("there are {files} files");
             return Err(Error::input("--window", &value, &rule, "count them from 1"));
         }
+        Ok(())
+    }
+
+    fn tell_axes(&self) {
         if let Some(axes) = self.axes {
             let [x, y, z] = axes.apply([1.0, 2.0, 3.0]).map(|k| {
                 format!("{}{}", if k < 0.0 { "-" } else { "" }, ["x", "y", "z"][k.abs() as usize - 1])
@@ -88,25 +113,23 @@ impl ReadingArguments {
             };
             warn(&format!("the rates about x, y, z are those of the columns {x}, {y}, {z} ({kind})"));
         }
-        let mut all = Record::default();
-        for (k, path) in data.iter().enumerate() {
-            let record = self.read(path, wheel)?;
-            let own: Vec<(f64, f64)> =
-                self.window.iter().filter(|w| w.file.is_none_or(|n| n == k + 1)).map(|w| w.span).collect();
-            let cut = match (self.window.is_empty(), own.is_empty()) {
-                (true, _) => record,
-                (false, true) => continue,
-                (false, false) => record.windows(&own).map_err(|error| Error::Input(error.to_string()))?,
-            };
-            all = all.join(cut);
-        }
-        Ok(all)
     }
 
-    fn read(&self, path: &Path, wheel: &WheelArguments) -> Result<Record, Error> {
-        let reading =
-            self.table.reading(self.rate_unit).with_most_skipped(self.skip_rows).with_axes(self.axes);
-        let found = record::open(path, &reading, wheel.momentum()).map_err(|error| match error {
+    /// The windows of the file with number `k`; `None` where other files alone have some.
+    fn cut(&self, record: Record, k: usize) -> Result<Option<Record>, Error> {
+        let own = self.window.iter().filter(|w| w.file.is_none_or(|n| n == k + 1));
+        let own: Vec<(f64, f64)> = own.map(|w| w.span).collect();
+        match (self.window.is_empty(), own.is_empty()) {
+            (true, _) => Ok(Some(record)),
+            (false, true) => Ok(None),
+            (false, false) => record.windows(&own).map(Some).map_err(|error| Error::Input(error.to_string())),
+        }
+    }
+
+    fn read(&self, path: &Path, wheel: Option<Vector3<f64>>, increments: bool) -> Result<FoundRecord, Error> {
+        let reading = self.table.reading(self.rate_unit).with_most_skipped(self.skip_rows);
+        let reading = reading.with_axes(self.axes).with_increments(increments);
+        let found = record::open(path, &reading, wheel).map_err(|error| match error {
             Error::Table(error) if error.is_of_a_row() => {
                 let remedy = format!("{}, or allow for more such rows by --skip-rows FRACTION", error.remedy);
                 Error::from(error.with_remedy(&remedy))
@@ -122,7 +145,7 @@ impl ReadingArguments {
             warn(&format!("{rows} left out beside {samples} that are read; the first: {first}"));
         }
         found.remarks.iter().for_each(|remark| warn(remark));
-        Ok(found.record)
+        Ok(found)
     }
 }
 

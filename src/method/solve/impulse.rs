@@ -1,20 +1,8 @@
-//! The exponential map of rotations, and a turn of a body that leaves its momentum in space alone.
+//! A turn of a body that leaves its momentum in space alone.
 
 use crate::body::Point;
 use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
-
-/// The turn by |u| about u: `(cos |u|/2, sin |u|/2 · u/|u|)`.
-#[inline]
-pub(in crate::method) fn exponential<S: Real>(u: Vec3<S>) -> Quat<S> {
-    let half = u * S::of(0.5);
-    let angle = half.norm();
-    if angle.magnitude() == 0.0 {
-        return Quat::new(S::of(1.0), half);
-    }
-    let (sin, cos) = angle.sin_cos();
-    Quat::new(cos, half * (sin / angle))
-}
 
 /// `q ← q ∘ p`, and `m ← p* (m + impulse) p`: the momentum in space changes by the impulse alone, which is in the axes of
 /// the body before the turn. The turn has to be below half of one.

@@ -1,0 +1,92 @@
+//! The attitudes of a reference.
+
+use std::path::Path;
+
+use nalgebra::UnitQuaternion;
+use polhode::audit::{Direction, QuaternionOrder, Reading, Trajectory};
+use polhode::strapdown::Estimate;
+use polhode_files::ReadOptions;
+use polhode_files::error::{Error, tell};
+use polhode_files::text::{short, visible};
+use polhode_files::trajectory::read;
+
+/// Times agree within this share of the mean interval of the reference.
+const SAME_TIME: f64 = 1e-6;
+
+/// A trajectory to compare with, and what was found.
+pub(super) struct Reference {
+    pub(super) name: String,
+    rows: Trajectory,
+    reading: Reading,
+    /// Rows that were compared, and those whose error is inside the 95 % of its budget.
+    compared: usize,
+    inside: usize,
+    largest: f64,
+    at: f64,
+}
+
+impl Reference {
+    pub(super) fn read(path: &Path) -> Result<Self, Error> {
+        let found = read(path, &ReadOptions::default())?;
+        let name = visible(&path.display().to_string()).into_owned();
+        let mut bodies = found.bodies;
+        let rows = match (bodies.len(), bodies.pop()) {
+            (1, Some((_, rows))) if rows.attitude.is_some() => rows,
+            _ => {
+                let rule = "is not the trajectory of one body with its attitude";
+                return Err(Error::input("--against", &name, rule, "name a file with t, q_w, q_x, q_y, q_z"));
+            }
+        };
+        let mut reading = Reading::default();
+        reading.quaternion = Some(found.claims.quaternion.unwrap_or(QuaternionOrder::ScalarFirst));
+        reading.attitude = Some(found.claims.attitude.unwrap_or(Direction::BodyToSpace));
+        Ok(Self { name, rows, reading, compared: 0, inside: 0, largest: 0.0, at: 0.0 })
+    }
+
+    /// Its attitude at the time `t`, s.
+    pub(super) fn at(&self, t: f64) -> Option<UnitQuaternion<f64>> {
+        let times = &self.rows.times;
+        let (first, last) = (times.first()?, times.last()?);
+        let near = SAME_TIME * (last - first) / (times.len() - 1).max(1) as f64;
+        let row = times.partition_point(|known| *known < t - near);
+        times.get(row).filter(|known| (**known - t).abs() <= near)?;
+        self.reading.attitude(&self.rows, row).map(UnitQuaternion::from)
+    }
+
+    /// The angle between an estimate and its attitude at the same time, rad; `None` where it has none.
+    pub(super) fn error(&mut self, estimate: &Estimate) -> Option<f64> {
+        let truth = self.at(estimate.time)?;
+        let angle = estimate.error(truth).norm();
+        self.compared += 1;
+        self.inside += usize::from(estimate.holds(truth));
+        if angle > self.largest {
+            (self.largest, self.at) = (angle, estimate.time);
+        }
+        Some(angle)
+    }
+
+    /// What the comparison found.
+    pub(super) fn tell(&self) -> Result<(), Error> {
+        if self.compared == 0 {
+            let rule = "no row at a time of the record";
+            return Err(Error::input(
+                "--against",
+                &self.name,
+                rule,
+                "name attitudes at the times of the record",
+            ));
+        }
+        tell(
+            "note",
+            &format!(
+                "{}: {} rows compared, largest error {:.1e} rad at t = {} s, {} inside their 95 %",
+                self.name,
+                self.compared,
+                self.largest,
+                short(self.at),
+                self.inside
+            ),
+        );
+        Ok(())
+    }
+}

@@ -1,0 +1,111 @@
+//! By which rule, and what another one would have said.
+
+use clap::{Args, ValueEnum};
+use nalgebra::UnitQuaternion;
+use polhode::record::Segment;
+use polhode::strapdown::{Kind, MOST_SAMPLES, Rule, Sensor, Strapdown, choose};
+use polhode_files::error::Error;
+
+use super::readings::Readings;
+
+/// Order, samples and rule.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Method")]
+pub(super) struct RuleArguments {
+    /// Order of the Magnus series
+    #[arg(long, value_enum, default_value_t = Order::Auto)]
+    order: Order,
+    /// Samples that a polynomial goes through, an even number [default: chosen from the record with its noise]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    samples: Option<usize>,
+    /// A rule that others run, in place of the Magnus series
+    #[arg(long, value_enum, conflicts_with_all = ["order", "samples"])]
+    rule: Option<RivalName>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Order {
+    Auto,
+    #[value(name = "2")]
+    Two,
+    #[value(name = "4")]
+    Four,
+    #[value(name = "6")]
+    Six,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum RivalName {
+    /// Each rate is held to the next sample
+    Hold,
+    /// Straight lines between the rates, with a coning term
+    Trapezoid,
+    /// Coning summed over four samples, as PX4 does
+    TwoSpeed,
+    /// Runge and Kutta on straight lines
+    RungeKutta,
+}
+
+impl RuleArguments {
+    pub(super) fn rule(&self, readings: &Readings, sensor: Sensor) -> Result<Rule, Error> {
+        let rule = match self.rule {
+            Some(RivalName::Hold) => Rule::Hold,
+            Some(RivalName::Trapezoid) => Rule::Trapezoid,
+            Some(RivalName::TwoSpeed) => Rule::TwoSpeed,
+            Some(RivalName::RungeKutta) => Rule::RungeKutta,
+            None => return self.magnus(readings, sensor),
+        };
+        rule.check(readings.kind)
+            .map_err(|error| Error::Input(format!("--rule: {error}; name another rule")))?;
+        Ok(rule)
+    }
+
+    fn magnus(&self, readings: &Readings, sensor: Sensor) -> Result<Rule, Error> {
+        let order = match self.order {
+            Order::Auto => None,
+            Order::Two => Some(2),
+            Order::Four => Some(4),
+            Order::Six => Some(6),
+        };
+        if let Some(samples) = self.samples.filter(|n| *n % 2 == 1 || !(2..=MOST_SAMPLES).contains(n)) {
+            let rule =
+                format!("a polynomial goes through an even number of samples from 2 to {MOST_SAMPLES}");
+            return Err(Error::input("--samples", &samples.to_string(), &rule, "give such a number"));
+        }
+        if let (Some(order), Some(samples)) = (order, self.samples) {
+            return Rule::magnus(order, samples).map_err(|error| Error::Input(format!("--samples: {error}")));
+        }
+        let longest = readings.segments().iter().max_by_key(|segment| segment.times().len());
+        let Some(segment) = longest else {
+            return Rule::magnus(2, 2).map_err(polhode_files::error::unexpected);
+        };
+        let chosen = choose(segment.times(), segment.rates(), readings.kind, order, self.samples, sensor);
+        chosen.map_err(|error| match error.downcast_ref() {
+            Some(refusal) => readings.refused(segment, refusal),
+            None => Error::Input(error.to_string()),
+        })
+    }
+}
+
+/// The rule in words.
+pub(super) fn words(rule: Rule) -> String {
+    match rule {
+        Rule::Magnus(magnus) => format!("order {} through {} samples", magnus.order(), magnus.samples()),
+        other => other.to_string(),
+    }
+}
+
+/// The last attitude of a segment whose readings are of this `kind`, by a rule; `None` where it is not for such readings.
+pub(super) fn last(
+    kind: Kind,
+    segment: &Segment,
+    rule: Rule,
+    start: UnitQuaternion<f64>,
+) -> Option<UnitQuaternion<f64>> {
+    let mut strapdown = Strapdown::new(kind, rule, start.into()).ok()?;
+    for (t, w) in segment.times().iter().zip(segment.rates()) {
+        strapdown.push(*t, (*w).into()).ok()?;
+    }
+    strapdown.finish();
+    Some(strapdown.attitude().into())
+}

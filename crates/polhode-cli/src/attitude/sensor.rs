@@ -1,0 +1,53 @@
+//! What is wrong with the sensor.
+
+use clap::Args;
+use polhode::strapdown::{Sensor, noise};
+use polhode_files::numbers::not_negative;
+
+use super::readings::Readings;
+
+/// Standard deviations of the errors of the sensor.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Sensor (standard deviations)")]
+pub(super) struct SensorArguments {
+    /// White noise of a reading, rad/s; of increments rad [default: found in the record]
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true)]
+    noise: Option<f64>,
+    /// Constant bias of each axis, rad/s [default: none]
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true)]
+    bias: Option<f64>,
+    /// Scale error of each axis: 0.01 for one per cent [default: none]
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true)]
+    scale_error: Option<f64>,
+    /// Error of each time stamp, s; where the noise is found in the record it is part of that [default: none]
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true)]
+    stamps: Option<f64>,
+}
+
+/// The noise of a reading, and whether it was found in the record.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Noise {
+    sigma: f64,
+    pub(super) is_found: bool,
+}
+
+impl SensorArguments {
+    /// As given, or that of the longest segment; steps of digital readings count as noise.
+    pub(super) fn noise(&self, readings: &Readings) -> Noise {
+        if let Some(sigma) = self.noise {
+            return Noise { sigma, is_found: false };
+        }
+        let longest = readings.segments().iter().max_by_key(|segment| segment.times().len());
+        let found = longest.map_or(0.0, |segment| noise(segment.times(), segment.rates()));
+        let rounding = readings.record.rounding(&readings.record.quanta()).sqrt();
+        Noise { sigma: found.max(rounding), is_found: true }
+    }
+
+    pub(super) fn sensor(&self, noise: Noise) -> Sensor {
+        Sensor::default()
+            .with_noise(noise.sigma)
+            .with_bias(self.bias.unwrap_or(0.0))
+            .with_scale(self.scale_error.unwrap_or(0.0))
+            .with_stamps(self.stamps.filter(|_| !noise.is_found).unwrap_or(0.0))
+    }
+}

@@ -1,0 +1,170 @@
+//! `polhode attitude`: attitudes from records, budgets, and records that tell no attitude.
+
+use crate::harness::{Answer, Scratch, polhode, refused_with, run, words};
+
+/// A record of the command itself in a file of `scratch`.
+fn simulated(scratch: &Scratch, name: &str, flags: &str) -> String {
+    let path = scratch.0.join(name).display().to_string();
+    let line = format!("simulate --body textbook --omega 0.4,1,-0.3 --until 20 {flags} --out {path}");
+    assert_eq!(run(&line).code, 0, "{line}");
+    path
+}
+
+fn column(text: &str, name: &str) -> Vec<f64> {
+    let mut lines = text.lines();
+    let place = lines.next().unwrap().split(',').position(|found| found == name).unwrap();
+    lines.map(|line| line.split(',').nth(place).unwrap().parse().unwrap()).collect()
+}
+
+/// The exact attitudes of the simulated motion.
+fn exact(scratch: &Scratch, every: f64) -> String {
+    let path = scratch.0.join("exact.csv").display().to_string();
+    let line = format!(
+        "propagate --body textbook --omega 0.4,1,-0.3 --attitude 1,0,0,0 --until 20 --every {every} --fields t,q --out {path}"
+    );
+    assert_eq!(run(&line).code, 0, "{line}");
+    path
+}
+
+fn last(values: &[f64]) -> f64 {
+    *values.last().unwrap()
+}
+
+#[test]
+fn columns_are_those_of_the_contract_and_errors_those_of_the_budget() {
+    let scratch = Scratch::new("attitude-columns");
+    let record = simulated(&scratch, "rates.csv", "--every 0.05");
+    let reference = exact(&scratch, 0.05);
+    let answer = run(&format!("attitude {record} --kind rate --against {reference} --noise 0"));
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    assert!(answer.out.starts_with("t,q_w,q_x,q_y,q_z,attitude_sigma,truncation,attitude_error\n"));
+    assert_eq!(answer.out.lines().count(), 402);
+    let (error, truncation) = (column(&answer.out, "attitude_error"), column(&answer.out, "truncation"));
+    assert!(last(&error) < 1e-8 && last(&error) > 0.0, "{}", last(&error));
+    assert!((0.3..3.0).contains(&(last(&truncation) / last(&error))));
+    assert!(answer.err.contains("; at t = 20 s: truncation"), "{}", answer.err);
+    assert!(answer.err.contains("the trapezoid with coning would be off by"), "{}", answer.err);
+    assert!(answer.err.contains("401 rows compared"), "{}", answer.err);
+    // the rules that others run, and orders by hand
+    let of = |flags: &str| {
+        let answer = run(&format!("attitude {record} --kind rate --against {reference} {flags}"));
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        last(&column(&answer.out, "attitude_error"))
+    };
+    let (hold, trapezoid) = (of("--rule hold"), of("--rule trapezoid"));
+    let (second, fourth, sixth) = (of("--order 2"), of("--order 4 --samples 4"), of("--order 6 --samples 6"));
+    assert!(hold > 1e-3 && trapezoid > 1e-5 && second > 1e-5, "{hold} {trapezoid} {second}");
+    assert!(fourth < 1e-2 * second && sixth < 0.1 * fourth, "{second} {fourth} {sixth}");
+}
+
+#[test]
+fn a_noisy_record_has_its_random_walk() {
+    let scratch = Scratch::new("attitude-noise");
+    let record = simulated(&scratch, "noisy.csv", "--every 0.05 --noise 1e-3");
+    let answer = run(&format!("attitude {record} --kind rate --bias 1e-4 --scale-error 1e-3 --euler zyx"));
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    assert!(answer.out.starts_with("t,q_w,q_x,q_y,q_z,attitude_sigma,truncation,phi,theta,psi\n"));
+    let walk = 1e-3 * (0.05_f64 * 20.0).sqrt();
+    let sigma = column(&answer.out, "attitude_sigma");
+    assert_eq!(sigma[0], 0.0);
+    assert!(last(&sigma) > walk && last(&sigma) < 20.0 * walk, "{} {walk}", last(&sigma));
+    for part in ["random walk", "(noise found in the record)", "bias", "scale"] {
+        assert!(answer.err.contains(part), "{part}: {}", answer.err);
+    }
+    // a body that is known: its exact motion, with far less error
+    let smoothed = run(&format!("attitude {record} --kind rate --body textbook"));
+    assert_eq!(smoothed.code, 0, "{}", smoothed.err);
+    assert!(smoothed.out.starts_with("t,q_w,q_x,q_y,q_z,attitude_sigma,truncation,integrated\n"));
+    assert!(last(&column(&smoothed.out, "attitude_sigma")) < walk);
+    assert!(last(&column(&smoothed.out, "integrated")) < 6.0 * walk);
+    assert!(smoothed.err.contains("chi^2"), "{}", smoothed.err);
+    let other = run(&format!("attitude {record} --kind rate --body racket"));
+    assert_eq!((other.code, other.out.as_str()), (1, ""));
+    assert!(other.err.contains("the body contradicts the record"), "{}", other.err);
+}
+
+#[test]
+fn the_kind_is_told_by_the_unit_or_asked_for() {
+    let scratch = Scratch::new("attitude-kind");
+    let rows = |head: &str| {
+        let rows: String = (0..50).map(|k| format!("{},0.01,0.02,0.03\n", 0.1 * f64::from(k))).collect();
+        scratch.file(&format!("{}.csv", head.len()), format!("{head}\n{rows}"))
+    };
+    let answer = |path: &str, flags: &str| -> Answer {
+        let line = format!("attitude {path} {flags}");
+        polhode(&words(&line), &scratch.0)
+    };
+    let angle = |answer: &Answer| {
+        let [w, x, y, z] = ["q_w", "q_x", "q_y", "q_z"].map(|name| last(&column(&answer.out, name)));
+        2.0 * libm::atan2((x * x + y * y + z * z).sqrt(), w)
+    };
+    let size = 0.014_f64.sqrt() * 0.1;
+    let silent = rows("t,wx,wy,wz");
+    refused_with(&["attitude", &silent], &["--kind", "cannot be told", "rate", "increment", "average"]);
+    // 49 intervals of 0.1 s, or 49 increments
+    assert!((angle(&answer(&silent, "--kind rate")) - 4.9 * size).abs() < 1e-12);
+    assert!((angle(&answer(&silent, "--kind increment")) - 49.0 * size).abs() < 1e-12);
+    let rates = rows("t (s),wx (rad/s),wy (rad/s),wz (rad/s)");
+    let told = answer(&rates, "");
+    assert!((angle(&told) - 4.9 * size).abs() < 1e-12);
+    assert!(told.err.contains("taken for rates"), "{}", told.err);
+    let angles = rows("t (s),wx (rad),wy (rad),wz (rad)");
+    assert!((angle(&answer(&angles, "")) - 49.0 * size).abs() < 1e-12);
+    refused_with(&["attitude", &angles, "--kind", "rate"], &["--kind", "unit", "angle", "increment"]);
+    // a fit needs rates
+    refused_with(&["fit", &angles], &["column 2 (wx (rad))", "rad/s, deg/s, rpm"]);
+}
+
+#[test]
+fn records_that_tell_no_attitude_are_refused_by_name() {
+    let scratch = Scratch::new("attitude-refused");
+    let file = |name: &str, rows: &str| {
+        scratch.file(name, format!("t (s),wx (rad/s),wy (rad/s),wz (rad/s)\n{rows}"))
+    };
+    let fast = file("fast.csv", "0,1,0,0\n0.1,1,0,0\n0.2,40,0,0\n0.3,1,0,0\n");
+    refused_with(
+        &["attitude", &fast],
+        &["fast.csv, line 4", "4.000 rad", "half a turn", "aliasing", "--rate-unit"],
+    );
+    let even: String = (0..40).map(|k| format!("{},1,0,0\n", 0.1 * f64::from(k))).collect();
+    let late: String = (0..40).map(|k| format!("{},1,0,0\n", 9.0 + 0.1 * f64::from(k))).collect();
+    let gap = file("gap.csv", &format!("{even}{late}"));
+    refused_with(&["attitude", &gap], &["gap.csv, line 42", "a gap from 3.9", "9", "--window", "--restart"]);
+    let restarted = run(&format!("attitude {gap} --kind rate --restart"));
+    assert_eq!((restarted.code, restarted.out.lines().count()), (0, 81), "{}", restarted.err);
+    assert_eq!(run(&format!("attitude {gap} --kind rate --window 9,20")).code, 0);
+    let twice = file("twice.csv", &format!("{even}3.9,2,0,0\n4,1,0,0\n"));
+    refused_with(
+        &["attitude", &twice, "--kind", "average"],
+        &["1 rows have the time of the row before", "averages"],
+    );
+    let merged = run(&format!("attitude {twice} --kind rate"));
+    assert!(merged.code == 0 && merged.err.contains("averaged"), "{}", merged.err);
+    let broken = file("broken.csv", "0,1,0,0\n0.1,nan,0,0\n");
+    refused_with(&["attitude", &broken], &["line 3", "nan"]);
+    let plain = file("plain.csv", &even);
+    let with = |flags: &str| format!("attitude {plain} {flags}");
+    let refused = |flags: &str, says: &[&str]| refused_with(&words(&with(flags)), says);
+    refused("--samples 5", &["--samples", "5", "even"]);
+    refused("--order 6 --samples 4", &["--samples", "from 6 to 12"]);
+    refused("--order 3", &["--order", "3"]);
+    refused("--rule runge-kutta --kind average", &["--rule", "runge-kutta", "rates"]);
+    refused("--rule hold --order 4", &["--rule", "--order"]);
+    refused("--bias=-1", &["--bias", "-1"]);
+    refused("--start 0,0,0,0", &["--start", "zero"]);
+    refused("--body nobody", &["--body", "nobody"]);
+    refused("--body gyroscope", &["--body", "gravity"]);
+    refused("--kind average --body phone", &["--body", "rates"]);
+    let other = scratch.file("other.csv", "t,q_w,q_x,q_y,q_z\n100,1,0,0,0\n101,1,0,0,0\n");
+    refused(&format!("--against {other}"), &["--against", "first time"]);
+    refused(&format!("--start 1,0,0,0 --against {other}"), &["--against", "no row at a time"]);
+}
+
+#[test]
+fn an_attitude_that_is_lost_ends_with_exit_code_1() {
+    let scratch = Scratch::new("attitude-lost");
+    let record = simulated(&scratch, "rates.csv", "--every 0.05");
+    let answer = run(&format!("attitude {record} --kind rate --bias 0.2"));
+    assert_eq!((answer.code, answer.out.lines().count()), (1, 402));
+    assert!(answer.err.contains("the attitude is lost: from t = "), "{}", answer.err);
+}

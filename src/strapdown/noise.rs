@@ -1,0 +1,64 @@
+//! The white noise of readings, from the readings alone.
+
+use nalgebra::Vector3;
+
+/// Degrees of the polynomials that are taken out of the readings, plus one: differences of these orders are tried.
+const ORDERS: [usize; 4] = [4, 6, 8, 10];
+
+/// Squares above so many medians are blows and catches, not noise.
+const OUTLYING: f64 = 30.0;
+
+/// Standard deviation of the white noise of a component, in the unit of the readings; 0 where there are too few to tell.
+///
+/// The combination Σ c_i r_i of p + 1 neighbours with c_i = 1/Π(t_i − t_j) vanishes for polynomials of degree p − 1; divided by |c|
+/// it has the deviation of the noise, and beside it a rest of the motion that falls with p. Of several p the least is taken: what is
+/// left of the motion can only add. Noise that is not white, as behind a filter, is underestimated.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// let times: Vec<f64> = (0..1000).map(|k| 0.1 * f64::from(k)).collect();
+/// let rates: Vec<_> = times.iter().map(|t| Vector3::new(libm::sin(*t), libm::cos(*t), 0.0)).collect();
+/// assert!(polhode::strapdown::noise(&times, &rates) < 1e-10);
+/// ```
+#[must_use]
+pub fn noise(times: &[f64], readings: &[Vector3<f64>]) -> f64 {
+    let found = ORDERS.iter().filter_map(|order| variance(times, readings, *order));
+    found.fold(f64::INFINITY, f64::min).sqrt().min(f64::MAX) * f64::from(times.len() > ORDERS[0])
+}
+
+fn variance(times: &[f64], readings: &[Vector3<f64>], order: usize) -> Option<f64> {
+    let mut squares: Vec<f64> = Vec::new();
+    let mut even: Option<(f64, Vec<f64>)> = None;
+    for (t, r) in times.windows(order + 1).zip(readings.windows(order + 1)) {
+        let span = t[order] - t[0];
+        // weights do not change where steps are even to what counts here
+        let is_even = |known: f64| {
+            let step = span / order as f64;
+            (span / known - 1.0).abs() < 1e-6
+                && t.iter().enumerate().all(|(k, t_k)| (t_k - t[0] - step * k as f64).abs() < 1e-6 * step)
+        };
+        let known = even.as_ref().filter(|(known, _)| is_even(*known)).map(|(_, weights)| weights);
+        let fresh;
+        let weights = match known {
+            Some(weights) => weights,
+            None => {
+                let others = |i: usize| (0..=order).filter(move |j| *j != i);
+                let weight = |i: usize| others(i).fold(1.0, |w, j| w * span / (order as f64 * (t[i] - t[j])));
+                fresh = (0..=order).map(weight).collect::<Vec<f64>>();
+                even = Some((span, fresh.clone()));
+                &fresh
+            }
+        };
+        let norm: f64 = weights.iter().map(|w| w * w).sum();
+        let left = r.iter().zip(weights).fold(Vector3::zeros(), |sum, (r, w)| sum + r * *w);
+        squares.push(left.norm_squared() / (3.0 * norm));
+    }
+    if squares.is_empty() {
+        return None;
+    }
+    let middle = squares.len() / 2;
+    let median = *squares.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let limit = if median > 0.0 { OUTLYING * median } else { f64::INFINITY };
+    let kept = || squares.iter().filter(|square| **square <= limit);
+    Some(kept().sum::<f64>() / kept().count().max(1) as f64)
+}
