@@ -8,6 +8,7 @@ mod atoms;
 #[allow(clippy::disallowed_methods)] // sines of the records that another program would write
 mod audit;
 mod cases;
+mod derivative;
 mod dmv;
 mod doctor;
 mod ensemble;
@@ -38,6 +39,7 @@ mod series;
 mod surface;
 mod switched;
 mod taylor;
+mod through;
 mod tops;
 mod truth;
 mod tumbling;

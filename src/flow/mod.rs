@@ -23,8 +23,8 @@ pub use casimir::Casimir;
 pub use exact_motion::{ExactMotion, NoClosedForm};
 pub(crate) use free::{Addition, Curve, FreeOrbit};
 pub use free::{
-    AtRest, Character, FreeBody, FreeFlow, FreeMotion, Mode, PureSpin, Stability, SymmetricTop,
-    TumblingElements, TumblingError,
+    AtRest, Character, DerivativeError, FreeBody, FreeFlow, FreeMotion, Mode, Passage, Passages, PureSpin,
+    Stability, StateDerivative, SymmetricTop, ThroughError, TumblingElements, TumblingError, TurnAxes,
 };
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop};

@@ -1,0 +1,261 @@
+//! All places on the cone where a motion makes the turn about its momentum too.
+
+use super::branch::{Miss, Place};
+use super::cone::{Cone, Quarter};
+use crate::num::exponential::exp_of_positive;
+use crate::num::trig::sin_cos;
+use crate::rotation::{Quat, Vec3};
+
+/// Pieces into which a stretch of the cone is cut at first.
+const PIECES: u32 = 16;
+/// Half angles that are followed within a piece, rad.
+const FOLLOWED: f64 = 0.4;
+/// Deviation of the half angle in the middle of a piece from a straight line, rad.
+const STRAIGHT: f64 = 0.05;
+/// How often a piece is halved.
+const DEEPEST: u32 = 26;
+/// The ends of a stretch are as near as the digits of a direction tell: e^−34 of its length.
+const NEAREST: f64 = 34.0;
+
+/// What a search finds.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Found {
+    /// Momenta for the time 1 that lead from the one attitude to the other.
+    pub(super) momenta: Vec<Vec3<f64>>,
+    /// Pieces that were halved as often as is allowed and still are not smooth.
+    pub(super) unresolved: u32,
+}
+
+/// A stretch of the cone between two places where the motion changes its kind.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    quarter: Quarter,
+    from: f64,
+    to: f64,
+}
+
+pub(super) struct Search<'a> {
+    pub(super) moments: Vec3<f64>,
+    pub(super) turn: Quat<f64>,
+    pub(super) turns: f64,
+    pub(super) cone: &'a Cone,
+    /// Times as many pieces as usual.
+    pub(super) finer: u32,
+}
+
+/// Coordinate in a stretch and the place there.
+type At = (f64, Place);
+
+impl Search<'_> {
+    pub(super) fn run(&self) -> Found {
+        let mut found = Found::default();
+        for quarter in Cone::quarters() {
+            for stretch in self.stretches(quarter) {
+                self.along(stretch, &mut found);
+            }
+        }
+        found
+    }
+
+    fn direction(&self, quarter: Quarter, phi: f64) -> Vec3<f64> {
+        let (sin, cos) = sin_cos(phi);
+        self.cone.direction(quarter, sin, cos)
+    }
+
+    /// Which axis the momentum circulates about, in which direction; `None` where the two ends differ in that.
+    fn kind(&self, quarter: Quarter, phi: f64) -> Option<(bool, bool)> {
+        let m = self.direction(quarter, phi);
+        let end = self.turn.rotate_back(m);
+        let i = self.moments;
+        let [l, mu, h] = i.ascending();
+        let separation = m[h] * m[h] * i[l] * (i[h] - i[mu]) - m[l] * m[l] * i[h] * (i[mu] - i[l]);
+        let about_smallest = separation <= 0.0;
+        let a = if about_smallest { l } else { h };
+        (m[a] * end[a] > 0.0).then_some((about_smallest, m[a] > 0.0))
+    }
+
+    /// The quarter, cut where the kind changes.
+    fn stretches(&self, quarter: Quarter) -> Vec<Stretch> {
+        const LOOKS: u32 = 64;
+        let (start, step) = (-core::f64::consts::FRAC_PI_2, core::f64::consts::PI / f64::from(LOOKS));
+        let mut stretches = Vec::new();
+        let (mut from, mut before, mut kind) = (start, start, self.kind(quarter, start + 1e-9));
+        for n in 1..=LOOKS {
+            let phi = start + step * f64::from(n);
+            let next = self.kind(quarter, if n == LOOKS { phi - 1e-9 } else { phi });
+            if next != kind {
+                let (mut low, mut high) = (before, phi);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if self.kind(quarter, middle) == kind { low = middle } else { high = middle }
+                }
+                if kind.is_some() {
+                    stretches.push(Stretch { quarter, from, to: low });
+                }
+                (from, kind) = (high, next);
+            }
+            before = phi;
+        }
+        if kind.is_some() {
+            stretches.push(Stretch { quarter, from, to: start + core::f64::consts::PI });
+        }
+        stretches
+    }
+
+    /// The place at z ∈ (−∞, ∞): the ends, where periods become infinite, are approached exponentially.
+    fn place(&self, stretch: Stretch, z: f64) -> Option<Place> {
+        let share = 1.0 / (1.0 + exp_of_positive(z.abs()));
+        let length = stretch.to - stretch.from;
+        let phi = if z < 0.0 { stretch.from + length * share } else { stretch.to - length * share };
+        Place::of(self.moments, self.turn, self.turns, self.direction(stretch.quarter, phi))
+    }
+
+    fn along(&self, stretch: Stretch, found: &mut Found) {
+        let pieces = PIECES * self.finer;
+        let mut before: Option<At> = None;
+        for n in 0..=pieces {
+            let z = NEAREST * (2.0 * f64::from(n) / f64::from(pieces) - 1.0);
+            let Some(mut place) = self.place(stretch, z) else {
+                before = None;
+                continue;
+            };
+            if let Some(before) = &before {
+                place = place.near(before.1.part);
+                self.piece(stretch, before, &(z, place.clone()), 0, found);
+            }
+            before = Some((z, place));
+        }
+    }
+
+    /// All roots between two places, by halves until the half angle is almost a straight line.
+    fn piece(&self, stretch: Stretch, low: &At, high: &At, depth: u32, found: &mut Found) {
+        let (first, last) = (low.1.periods(), high.1.periods());
+        let (from, to) = ((*first.start()).min(*last.start()), (*first.end()).max(*last.end()));
+        let within = |n: &i64| low.1.is_within(*n) || high.1.is_within(*n);
+        let counts: Vec<i64> = (from..=to).filter(within).collect();
+        if counts.is_empty() {
+            return;
+        }
+        let z = 0.5 * (low.0 + high.0);
+        let Some(middle) = self.place(stretch, z) else { return };
+        let middle = (z, middle.near(low.1.part));
+        let jump = (high.1.part - middle.1.part).round();
+        if (jump != 0.0 || (high.1.part - low.1.part).abs() > 0.25) && depth < DEEPEST {
+            return self.halves(stretch, low, &middle, high, depth, found);
+        }
+        for n in counts {
+            let [a, b, c] = [low, &middle, high].map(|at| at.1.miss(self.turn, n));
+            let (first, second) = (b.since(a), c.since(b));
+            let smooth =
+                first.abs() < FOLLOWED && second.abs() < FOLLOWED && (first - second).abs() < STRAIGHT;
+            if !smooth && depth < DEEPEST {
+                return self.halves(stretch, low, &middle, high, depth, found);
+            }
+            if !smooth {
+                found.unresolved += 1;
+            }
+        }
+        // smooth for all of them
+        self.roots(stretch, low, &middle, high, found);
+    }
+
+    fn halves(&self, stretch: Stretch, low: &At, middle: &At, high: &At, depth: u32, found: &mut Found) {
+        self.piece(stretch, low, middle, depth + 1, found);
+        let high = (high.0, high.1.clone().near(middle.1.part));
+        self.piece(stretch, middle, &high, depth + 1, found);
+    }
+
+    /// The roots of all branches in a smooth piece.
+    fn roots(&self, stretch: Stretch, low: &At, middle: &At, high: &At, found: &mut Found) {
+        let periods = low.1.periods();
+        let other = high.1.periods();
+        for n in (*periods.start()).min(*other.start())..=(*periods.end()).max(*other.end()) {
+            if !(low.1.is_within(n) || high.1.is_within(n)) {
+                continue;
+            }
+            let branch = Branch { search: self, stretch, part: low.1.part, n };
+            let mut points: Vec<Point> =
+                [low, middle, high].map(|at| Point { z: at.0, miss: at.1.miss(self.turn, n) }).into();
+            if let Some(top) = branch.extremum([points[0], points[1], points[2]]) {
+                points.push(top);
+                points.sort_by(|a, b| a.z.total_cmp(&b.z));
+            }
+            for pair in points.windows(2) {
+                let (a, b) = (pair[0], pair[1]);
+                if a.miss.sin * b.miss.sin < 0.0 || a.miss.sin == 0.0 {
+                    found.momenta.extend(branch.root(a, b));
+                }
+            }
+        }
+    }
+}
+
+/// The motions of one number of periods, along a stretch.
+struct Branch<'a> {
+    search: &'a Search<'a>,
+    stretch: Stretch,
+    part: f64,
+    n: i64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    z: f64,
+    miss: Miss,
+}
+
+impl Branch<'_> {
+    fn place(&self, z: f64) -> Option<Place> {
+        self.search.place(self.stretch, z).map(|place| place.near(self.part))
+    }
+
+    fn at(&self, z: f64) -> Option<Point> {
+        Some(Point { z, miss: self.place(z)?.miss(self.search.turn, self.n) })
+    }
+
+    /// The point between where the half angle turns round, if it does: two roots may be nearer to each other than the points.
+    fn extremum(&self, [a, b, c]: [Point; 3]) -> Option<Point> {
+        let (first, second) = (b.miss.since(a.miss), c.miss.since(b.miss));
+        if first * second >= 0.0 {
+            return None;
+        }
+        let half = 0.5 * (c.z - a.z);
+        let mut best = self.at(b.z + half * 0.5 * (first + second) / (first - second))?;
+        // once more with a tenth of the width
+        let width = 0.1 * half;
+        if let (Some(left), Some(right)) = (self.at(best.z - width), self.at(best.z + width)) {
+            let (first, second) = (best.miss.since(left.miss), right.miss.since(best.miss));
+            if first * second < 0.0 {
+                best = self.at(best.z + width * 0.5 * (first + second) / (first - second))?;
+            }
+        }
+        Some(best)
+    }
+
+    /// The momentum at the root between two points; regula falsi with halved weights (Illinois), whose bracket never is lost.
+    fn root(&self, mut a: Point, mut b: Point) -> Option<Vec3<f64>> {
+        let (mut f, mut g) = (a.miss.sin, b.miss.sin);
+        let mut best = if f.abs() < g.abs() { a } else { b };
+        for _ in 0..60 {
+            if f == 0.0 || g == 0.0 || (b.z - a.z).abs() <= 4e-16 * a.z.abs().max(1.0) {
+                break;
+            }
+            let next = self.at((a.z * g - b.z * f) / (g - f))?;
+            let h = next.miss.sin;
+            if h.abs() < best.miss.sin.abs() {
+                best = next;
+            }
+            if h.abs() < 1e-14 {
+                break;
+            }
+            if h * g < 0.0 {
+                (a, f) = (b, g);
+            } else {
+                f *= 0.5;
+            }
+            (b, g) = (next, h);
+        }
+        let place = self.place(best.z)?;
+        place.is_within(self.n).then(|| place.momentum(self.n))
+    }
+}
