@@ -77,6 +77,7 @@ from!(
     crate::body::StateError,
     crate::events::EventError,
     crate::flow::AtRest,
+    crate::flow::CovarianceError,
     crate::flow::DerivativeError,
     crate::flow::LagrangeError,
     crate::flow::NoClosedForm,

@@ -3,6 +3,7 @@
 mod addition;
 mod character;
 mod circulation;
+mod covariance;
 mod derivative;
 mod free_body;
 mod free_flow;
@@ -19,6 +20,7 @@ mod tumbling;
 
 pub(crate) use addition::{Addition, Curve};
 pub use character::{AtRest, Character, Mode};
+pub use covariance::{CovarianceError, StartCovariance, StateCovariance};
 pub use derivative::{DerivativeError, StateDerivative, TurnAxes};
 pub use free_body::FreeBody;
 pub use free_flow::FreeFlow;

@@ -115,6 +115,16 @@ impl FreeMotion {
         Matrix3::from_fn(|row, column| columns.rotation[column][row])
     }
 
+    /// The rate of the fastest part of the phase, rad/s.
+    pub(super) fn fastest_rate(&self) -> f64 {
+        MOST_RADIANS / self.reach
+    }
+
+    /// I⁻¹ in body axes.
+    pub(super) fn inverse_inertia(&self) -> Matrix3<f64> {
+        self.derivative().inverse_inertia()
+    }
+
     fn derivative(&self) -> &Derivative {
         self.derivative
             .get_or_init(|| Box::new(Derivative::new(&self.body, self.orbit.variation(), self.orbit.start())))

@@ -1,4 +1,4 @@
-"""Writes reference.csv: the derivative of the torque-free motion by its start and by the inertia tensor.
+"""Writes experiments/data/derivative.csv: the derivative of the torque-free motion by its start and by the inertia tensor.
 
     python3 tests/data/derivative/generate.py        (python 3.11, mpmath 1.3)
 
@@ -108,7 +108,7 @@ def check(moments, m, q, t, found):
 
 def main():
     seen, rows, checked = {}, 0, 0
-    with open(HERE / "reference.csv", "w", newline="") as file:
+    with open(HERE.parents[2] / "experiments/data/derivative.csv", "w", newline="") as file:
         file.write("# Derivative of (rotation vector in space, momentum in the body) by (momentum in the body, xx, yy, zz, xy, xz, yz)\n")
         file.write("# python3 tests/data/derivative/generate.py (mpmath 1.3, 400 digits); 20 digits are printed\n")
         file.write("# start names the datum s1..s3 (m or omega, body axes); q0 is normalised exactly; t, I, s, q0 are exact doubles\n")

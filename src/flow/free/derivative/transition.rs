@@ -152,6 +152,10 @@ impl Derivative {
         }
     }
 
+    pub(in crate::flow::free) fn inverse_inertia(&self) -> Matrix3<f64> {
+        self.inverse_inertia
+    }
+
     /// The columns along the axes of the solver frame, at the time `t`, where the motion is at `now`.
     pub(in crate::flow::free) fn columns(&self, t: f64, now: &Point<f64>) -> Columns {
         if self.start.momentum_body.magnitude() == 0.0 {

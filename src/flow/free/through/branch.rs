@@ -5,6 +5,9 @@ use crate::flow::free::polhode::{Polhode, rounded_separation};
 use crate::num::elliptic::incomplete;
 use crate::rotation::{Quat, Vec3};
 
+/// Of the longest time, beyond it and before the start.
+const MARGIN: f64 = 0.3;
+
 /// A direction of the momentum, from which one of its own length comes to the right place in the body after each whole number of
 /// periods; the attitude then is right but for a turn about the momentum.
 #[derive(Clone, Debug)]
@@ -89,10 +92,16 @@ impl Place {
         length > 0.0 && length <= self.longest
     }
 
-    /// The whole periods that may be within.
+    /// The same with a margin, for what may be within at a place beside this one.
+    pub(super) fn is_near(&self, n: i64) -> bool {
+        let share = self.length(n) / self.longest;
+        share > -MARGIN && share < 1.0 + MARGIN
+    }
+
+    /// The whole periods that may be near.
     pub(super) fn periods(&self) -> core::ops::RangeInclusive<i64> {
-        let most = self.longest / self.period;
-        let (low, high) = (most.min(0.0) - self.part, most.max(0.0) - self.part);
+        let most = self.longest * (1.0 + MARGIN) / self.period;
+        let (low, high) = (most.min(-MARGIN * most) - self.part, most.max(-MARGIN * most) - self.part);
         low.floor() as i64..=high.ceil() as i64
     }
 

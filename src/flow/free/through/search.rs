@@ -6,15 +6,17 @@ use crate::num::exponential::exp_of_positive;
 use crate::num::trig::sin_cos;
 use crate::rotation::{Quat, Vec3};
 
-/// Pieces into which a stretch of the cone is cut at first.
-const PIECES: u32 = 16;
+/// Pieces into which the inner part of a stretch of the cone is cut at first, and each of its ends.
+const PIECES: [u32; 2] = [20, 8];
 /// Half angles that are followed within a piece, rad.
 const FOLLOWED: f64 = 0.4;
 /// Deviation of the half angle in the middle of a piece from a straight line, rad.
 const STRAIGHT: f64 = 0.05;
 /// How often a piece is halved.
 const DEEPEST: u32 = 26;
-/// The ends of a stretch are as near as the digits of a direction tell: e^−34 of its length.
+/// Where the ends of a stretch begin, e^−5 of its length from its limits.
+const END: f64 = 5.0;
+/// They are as near as the digits of a direction tell: e^−34 of its length.
 const NEAREST: f64 = 34.0;
 
 /// What a search finds.
@@ -111,10 +113,12 @@ impl Search<'_> {
     }
 
     fn along(&self, stretch: Stretch, found: &mut Found) {
-        let pieces = PIECES * self.finer;
+        let [inner, outer] = PIECES.map(|pieces| pieces * self.finer);
+        let ends = (1..=outer).map(|n| END + (NEAREST - END) * f64::from(n) / f64::from(outer));
+        let middle = (0..=inner).map(|n| END * (2.0 * f64::from(n) / f64::from(inner) - 1.0));
+        let before_end: Vec<f64> = ends.clone().map(|z| -z).rev().collect();
         let mut before: Option<At> = None;
-        for n in 0..=pieces {
-            let z = NEAREST * (2.0 * f64::from(n) / f64::from(pieces) - 1.0);
+        for z in before_end.into_iter().chain(middle).chain(ends) {
             let Some(mut place) = self.place(stretch, z) else {
                 before = None;
                 continue;
@@ -131,7 +135,7 @@ impl Search<'_> {
     fn piece(&self, stretch: Stretch, low: &At, high: &At, depth: u32, found: &mut Found) {
         let (first, last) = (low.1.periods(), high.1.periods());
         let (from, to) = ((*first.start()).min(*last.start()), (*first.end()).max(*last.end()));
-        let within = |n: &i64| low.1.is_within(*n) || high.1.is_within(*n);
+        let within = |n: &i64| low.1.is_near(*n) || high.1.is_near(*n);
         let counts: Vec<i64> = (from..=to).filter(within).collect();
         if counts.is_empty() {
             return;
@@ -170,7 +174,7 @@ impl Search<'_> {
         let periods = low.1.periods();
         let other = high.1.periods();
         for n in (*periods.start()).min(*other.start())..=(*periods.end()).max(*other.end()) {
-            if !(low.1.is_within(n) || high.1.is_within(n)) {
+            if !(low.1.is_near(n) || high.1.is_near(n)) {
                 continue;
             }
             let branch = Branch { search: self, stretch, part: low.1.part, n };
