@@ -102,8 +102,12 @@ fn fixtures(report: &mut Report) -> Result<f64, Error> {
             Column::new("regime", "", "kind of body and start"),
             Column::new("cases", "", "derivatives compared"),
             Column::new("turned", "rad", "|omega| t at most").digits(2),
-            Column::new("error", "", "largest error over the largest entry, with |m| and the largest moment as units")
-                .digits(2),
+            Column::new(
+                "error",
+                "",
+                "largest error over the largest entry, with |m| and the largest moment as units",
+            )
+            .digits(2),
         ],
     );
     let mut worst = 0.0_f64;
@@ -211,10 +215,20 @@ fn through(context: &Context, report: &mut Report, timing: &mut Table) -> Result
         let cores = std::thread::available_parallelism().map_or(1, usize::from).min((pairs / BATCH) as usize);
         let each = clock.elapsed().as_secs_f64() * cores as f64 / seen.solutions as f64;
         timing.push(row!["through, one solution", name, each * 1e6]);
-        table.push(row![name, seen.pairs, seen.found, seen.solutions, u64::from(seen.iterations), seen.miss, seen.incomplete]);
+        table.push(row![
+            name,
+            seen.pairs,
+            seen.found,
+            seen.solutions,
+            u64::from(seen.iterations),
+            seen.miss,
+            seen.incomplete
+        ]);
         report.checks += seen.pairs;
         if seen.found < seen.pairs {
-            report.failures.push(format!("{name}: of {} pairs the true motion is not found", seen.pairs - seen.found));
+            report
+                .failures
+                .push(format!("{name}: of {} pairs the true motion is not found", seen.pairs - seen.found));
         }
         all += seen.pairs;
         solutions += seen.solutions;
@@ -326,7 +340,9 @@ fn covariance(context: &Context, report: &mut Report) -> Result<(), Error> {
             let gap = (first_order / spread - 1.0).abs();
             let noise = 4.0 / (members as f64).sqrt();
             if found.nonlinearity < 0.1 && gap > 0.1 + noise {
-                report.failures.push(format!("{name}: first order is off by {gap:e} where the measure is small"));
+                report
+                    .failures
+                    .push(format!("{name}: first order is off by {gap:e} where the measure is small"));
             }
             if gap > 0.3 + noise && found.nonlinearity < 0.1 {
                 report.failures.push(format!("{name}: the measure is small where the first order is off"));

@@ -41,7 +41,10 @@ impl Variational {
         while now != t {
             let (series, q) = self.series();
             let largest = |n: usize| {
-                let state = series.iter().flatten().map(|s| (s[n] / s.iter().fold(1.0, |a: f64, b| a.max(b.abs()))).abs());
+                let state = series
+                    .iter()
+                    .flatten()
+                    .map(|s| (s[n] / s.iter().fold(1.0, |a: f64, b| a.max(b.abs()))).abs());
                 state.chain(q.iter().map(|s| s[n].abs())).fold(0.0, f64::max)
             };
             let step = |n: usize| (TOLERANCE / largest(n)).powf(1.0 / n as f64);
@@ -107,7 +110,8 @@ impl Variational {
                 s[0][k][n + 1] = turned[k] * next;
             }
             for column in 0..9 {
-                let (change, gyroscopic) = (cross(&s[1 + column], &omega, n), cross(&s[0], &rates[column], n));
+                let (change, gyroscopic) =
+                    (cross(&s[1 + column], &omega, n), cross(&s[0], &rates[column], n));
                 let turn = cross(&s[10 + column], &omega, n);
                 for k in 0..3 {
                     s[1 + column][k][n + 1] = (change[k] + gyroscopic[k]) * next;
@@ -142,7 +146,12 @@ fn cross(a: &Series3, b: &Series3, n: usize) -> [f64; 3] {
 
 /// Largest difference of two sets of columns over the largest entry of the second, momenta in units of `norm` and tensors in units
 /// of `moment`.
-pub(super) fn relative_error(found: &SMatrix<f64, 6, 9>, exact: &SMatrix<f64, 6, 9>, norm: f64, moment: f64) -> f64 {
+pub(super) fn relative_error(
+    found: &SMatrix<f64, 6, 9>,
+    exact: &SMatrix<f64, 6, 9>,
+    norm: f64,
+    moment: f64,
+) -> f64 {
     let rows = SVector::<f64, 6>::from_fn(|k, _| if k < 3 { 1.0 } else { 1.0 / norm });
     let columns = SVector::<f64, 9>::from_fn(|k, _| if k < 3 { norm } else { moment });
     let unit = rows * columns.transpose();

@@ -40,6 +40,7 @@ impl<const N: usize> Sub for Tangent<N> {
 impl<const N: usize> Mul for Tangent<N> {
     type Output = Self;
     #[inline(always)]
+    #[allow(clippy::suspicious_arithmetic_impl)] // the rule of products has a sum
     fn mul(self, b: Self) -> Self {
         let by = from_fn(|n| self.by[n] * b.value + self.value * b.by[n]);
         Tangent { value: self.value * b.value, by }

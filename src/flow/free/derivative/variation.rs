@@ -103,8 +103,8 @@ impl Variation {
         let inverse_squares = [i_a, i_b, i_c].map(|i| 1.0 / (i * i));
 
         let mut momentum = [[0.0; 3]; 9];
-        for n in 0..3 {
-            momentum[n] = by(n);
+        for (n, column) in momentum.iter_mut().enumerate().take(3) {
+            *column = by(n);
         }
         // κ_j = 1/I_i − 1/I_k and κ_k = 1/I_j − 1/I_i, (i, j, k) an even permutation of the axes in space
         for i in 0..3 {

@@ -92,10 +92,10 @@ impl Place {
         length > 0.0 && length <= self.longest
     }
 
-    /// The same with a margin, for what may be within at a place beside this one.
-    pub(super) fn is_near(&self, n: i64) -> bool {
-        let share = self.length(n) / self.longest;
-        share > -MARGIN && share < 1.0 + MARGIN
+    /// Whether somewhere between this place and `other` the motion of `n` further periods may be within.
+    pub(super) fn may_be_within(&self, other: &Place, n: i64) -> bool {
+        let (a, b) = (self.length(n) / self.longest, other.length(n) / other.longest);
+        a.min(b) < 1.0 + MARGIN && a.max(b) > -MARGIN
     }
 
     /// The whole periods that may be near.

@@ -242,10 +242,11 @@ impl<'a> Task<'a> {
             let other = FreeMotion::from_point(self.inertia, next);
             let missed = self.miss(&other);
             iterations += 1;
-            if !(missed.1 < miss.1) {
+            if missed.1 < miss.1 {
+                (start, motion, miss) = (next, other, missed);
+            } else {
                 break;
             }
-            (start, motion, miss) = (next, other, missed);
         }
         let omega_body = motion.body().omega_of(&start);
         let norm = start.momentum_body.norm().hi();

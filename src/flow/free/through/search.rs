@@ -12,6 +12,8 @@ const PIECES: [u32; 2] = [20, 8];
 const FOLLOWED: f64 = 0.4;
 /// Deviation of the half angle in the middle of a piece from a straight line, rad.
 const STRAIGHT: f64 = 0.05;
+/// Iterations for the place where a half angle turns round.
+const EXTREMUM: u32 = 40;
 /// How often a piece is halved.
 const DEEPEST: u32 = 26;
 /// Where the ends of a stretch begin, e^−5 of its length from its limits.
@@ -78,7 +80,7 @@ impl Search<'_> {
 
     /// The quarter, cut where the kind changes.
     fn stretches(&self, quarter: Quarter) -> Vec<Stretch> {
-        const LOOKS: u32 = 64;
+        const LOOKS: u32 = 256;
         let (start, step) = (-core::f64::consts::FRAC_PI_2, core::f64::consts::PI / f64::from(LOOKS));
         let mut stretches = Vec::new();
         let (mut from, mut before, mut kind) = (start, start, self.kind(quarter, start + 1e-9));
@@ -133,21 +135,21 @@ impl Search<'_> {
 
     /// All roots between two places, by halves until the half angle is almost a straight line.
     fn piece(&self, stretch: Stretch, low: &At, high: &At, depth: u32, found: &mut Found) {
-        let (first, last) = (low.1.periods(), high.1.periods());
-        let (from, to) = ((*first.start()).min(*last.start()), (*first.end()).max(*last.end()));
-        let within = |n: &i64| low.1.is_near(*n) || high.1.is_near(*n);
-        let counts: Vec<i64> = (from..=to).filter(within).collect();
+        let counts = counts(low, high);
         if counts.is_empty() {
             return;
         }
         let z = 0.5 * (low.0 + high.0);
-        let Some(middle) = self.place(stretch, z) else { return };
+        let Some(middle) = self.place(stretch, z) else {
+            found.unresolved += 1;
+            return;
+        };
         let middle = (z, middle.near(low.1.part));
         let jump = (high.1.part - middle.1.part).round();
         if (jump != 0.0 || (high.1.part - low.1.part).abs() > 0.25) && depth < DEEPEST {
             return self.halves(stretch, low, &middle, high, depth, found);
         }
-        for n in counts {
+        for &n in &counts {
             let [a, b, c] = [low, &middle, high].map(|at| at.1.miss(self.turn, n));
             let (first, second) = (b.since(a), c.since(b));
             let smooth =
@@ -159,8 +161,7 @@ impl Search<'_> {
                 found.unresolved += 1;
             }
         }
-        // smooth for all of them
-        self.roots(stretch, low, &middle, high, found);
+        self.roots(stretch, low, &middle, high, counts, found);
     }
 
     fn halves(&self, stretch: Stretch, low: &At, middle: &At, high: &At, depth: u32, found: &mut Found) {
@@ -169,21 +170,16 @@ impl Search<'_> {
         self.piece(stretch, middle, &high, depth + 1, found);
     }
 
-    /// The roots of all branches in a smooth piece.
-    fn roots(&self, stretch: Stretch, low: &At, middle: &At, high: &At, found: &mut Found) {
-        let periods = low.1.periods();
-        let other = high.1.periods();
-        for n in (*periods.start()).min(*other.start())..=(*periods.end()).max(*other.end()) {
-            if !(low.1.is_near(n) || high.1.is_near(n)) {
-                continue;
-            }
+    /// The roots of the branches `counts` in a smooth piece.
+    fn roots(&self, stretch: Stretch, low: &At, middle: &At, high: &At, counts: Vec<i64>, found: &mut Found) {
+        for n in counts {
             let branch = Branch { search: self, stretch, part: low.1.part, n };
-            let mut points: Vec<Point> =
-                [low, middle, high].map(|at| Point { z: at.0, miss: at.1.miss(self.turn, n) }).into();
-            if let Some(top) = branch.extremum([points[0], points[1], points[2]]) {
-                points.push(top);
-                points.sort_by(|a, b| a.z.total_cmp(&b.z));
-            }
+            let inner = [low, middle, high].map(|at| Point { z: at.0, miss: at.1.miss(self.turn, n) });
+            let mut points = inner.to_vec();
+            points.extend(branch.extremum(inner));
+            points.extend(branch.beyond(inner[1], inner[0], inner[2]));
+            points.extend(branch.beyond(inner[1], inner[2], inner[0]));
+            points.sort_by(|a, b| a.z.total_cmp(&b.z));
             for pair in points.windows(2) {
                 let (a, b) = (pair[0], pair[1]);
                 if a.miss.sin * b.miss.sin < 0.0 || a.miss.sin == 0.0 {
@@ -192,6 +188,13 @@ impl Search<'_> {
             }
         }
     }
+}
+
+/// The whole periods after which a motion may be within, somewhere between two places.
+fn counts(low: &At, high: &At) -> Vec<i64> {
+    let (first, last) = (low.1.periods(), high.1.periods());
+    let all = (*first.start()).min(*last.start())..=(*first.end()).max(*last.end());
+    all.filter(|&n| low.1.may_be_within(&high.1, n)).collect()
 }
 
 /// The motions of one number of periods, along a stretch.
@@ -218,22 +221,66 @@ impl Branch<'_> {
     }
 
     /// The point between where the half angle turns round, if it does: two roots may be nearer to each other than the points.
-    fn extremum(&self, [a, b, c]: [Point; 3]) -> Option<Point> {
-        let (first, second) = (b.miss.since(a.miss), c.miss.since(b.miss));
-        if first * second >= 0.0 {
+    ///
+    /// By parabolas, until it is clear that there is no root or until the sign there differs.
+    fn extremum(&self, [mut a, mut b, mut c]: [Point; 3]) -> Option<Point> {
+        let up = b.miss.since(a.miss);
+        if up * c.miss.since(b.miss) >= 0.0 {
             return None;
         }
-        let half = 0.5 * (c.z - a.z);
-        let mut best = self.at(b.z + half * 0.5 * (first + second) / (first - second))?;
-        // once more with a tenth of the width
-        let width = 0.1 * half;
-        if let (Some(left), Some(right)) = (self.at(best.z - width), self.at(best.z + width)) {
-            let (first, second) = (best.miss.since(left.miss), right.miss.since(best.miss));
-            if first * second < 0.0 {
-                best = self.at(best.z + width * 0.5 * (first + second) / (first - second))?;
+        let sign = b.miss.sin;
+        for _ in 0..EXTREMUM {
+            let (first, second) = (b.miss.since(a.miss), c.miss.since(b.miss));
+            let (left, right) = (b.z - a.z, c.z - b.z);
+            let (slope, other) = (first / left, second / right);
+            let vertex = b.z + (slope * right + other * left) / (2.0 * (slope - other));
+            // not where it is known already
+            let least = 1e-3 * (c.z - a.z);
+            let z = if (vertex - b.z).abs() >= least && vertex > a.z && vertex < c.z {
+                vertex
+            } else if left > right {
+                b.z - least
+            } else {
+                b.z + least
+            };
+            let next = self.at(z)?;
+            if next.miss.sin * sign <= 0.0 {
+                return Some(next);
+            }
+            let gained = next.miss.since(b.miss);
+            if gained * up > 0.0 {
+                if z < b.z {
+                    c = b
+                } else {
+                    a = b
+                }
+                b = next;
+            } else if z < b.z {
+                a = next;
+            } else {
+                c = next;
+            }
+            if b.miss.sin.abs() > 10.0 * gained.abs() + 1e-12 && (b.z - z).abs() <= 2.0 * least
+                || c.z - a.z <= 1e-8 * b.z.abs().max(1.0)
+            {
+                break;
             }
         }
-        Some(best)
+        Some(b)
+    }
+
+    /// The same where the half angle seems to turn round at or beyond the end `end` of the piece: the piece beside it sees no more of it.
+    fn beyond(&self, middle: Point, end: Point, other: Point) -> Option<Point> {
+        let (near, far) = (end.miss.since(middle.miss), middle.miss.since(other.miss));
+        // by a parabola through the three the slope at the end, and how much more there is to come
+        let slope = 1.5 * near - 0.5 * far;
+        let straight = slope.abs() > 0.7 * near.abs() && slope * near > 0.0;
+        if straight || end.miss.sin.abs() > near.abs() + far.abs() {
+            return None;
+        }
+        let next = self.at(end.z + (end.z - middle.z))?;
+        let triple = if end.z > middle.z { [middle, end, next] } else { [next, end, middle] };
+        self.extremum(triple)
     }
 
     /// The momentum at the root between two points; regula falsi with halved weights (Illinois), whose bracket never is lost.
