@@ -8,6 +8,7 @@ mod atoms;
 #[allow(clippy::disallowed_methods)] // sines of the records that another program would write
 mod audit;
 mod cases;
+mod covariance;
 mod derivative;
 mod dmv;
 mod doctor;

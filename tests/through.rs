@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use polhode::flow::{FreeMotion, Passages, ThroughError};
+use polhode::flow::{FreeMotion, Interpolation, Passages, ThroughError};
 use polhode::inertia::Inertia;
 
 const BODIES: [[f64; 3]; 5] =
@@ -186,4 +186,80 @@ fn the_order_of_the_attitudes_does_not_matter() {
     let back = FreeMotion::through(&inertia, (2.5, there), (1.0, here), 1.0).unwrap();
     let rates = |found: &Passages| found.list.iter().map(|passage| passage.omega_body).collect::<Vec<_>>();
     assert_eq!(rates(&forth), rates(&back));
+}
+
+/// A free motion of a body that tumbles, and looks at it every 0.7 s.
+fn looks(count: usize) -> (Inertia, FreeMotion, Vec<(f64, UnitQuaternion<f64>)>) {
+    let inertia = body([1.0, 2.0, 3.0]);
+    let start = UnitQuaternion::from_euler_angles(0.1, 0.7, -0.4);
+    let motion = FreeMotion::from_omega(&inertia, start, [1.4, 1.0, -0.3].into()).unwrap();
+    let look = |n: usize| {
+        let t = 5.0 + 0.7 * n as f64;
+        (t, motion.at(t - 5.0).unwrap().rotation())
+    };
+    let table = (0..count).map(look).collect();
+    (inertia, motion, table)
+}
+
+#[test]
+fn a_table_of_a_free_motion_is_continued_between_its_rows() {
+    let (inertia, motion, table) = looks(30);
+    let between = Interpolation::new(&inertia, &table, 1.0).unwrap();
+    assert!(between.largest_jump() < 1e-11, "{:.1e}", between.largest_jump());
+    let (mut worst, mut slerp) = (0.0_f64, 0.0_f64);
+    for n in 0..200 {
+        let t = 5.0 + 0.1 * f64::from(n);
+        let (state, slerp_error) = between.at(t).unwrap();
+        worst = worst.max(state.rotation().angle_to(&motion.at(t - 5.0).unwrap().rotation()));
+        slerp = slerp.max(slerp_error);
+    }
+    assert!(worst < 1e-12 && slerp > 0.02, "{worst:.1e}, slerp {slerp:.1e}");
+    for t in [4.9, 1e9, f64::NAN] {
+        assert!(matches!(between.at(t), Err(ThroughError::Outside { .. })));
+    }
+}
+
+#[test]
+fn tables_that_cannot_be_used_are_refused() {
+    let (inertia, motion, table) = looks(5);
+    let of = |table: &[(f64, UnitQuaternion<f64>)]| Interpolation::new(&inertia, table, 1.0).unwrap_err();
+    assert_eq!(of(&table[..1]), ThroughError::TooFew { attitudes: 1 });
+    let swapped = [table[1], table[0]];
+    assert!(matches!(of(&swapped), ThroughError::NotAscending { .. }));
+    let twice = swapped.repeat(2);
+    let fitted = |table, noise| FreeMotion::fitted(&inertia, table, noise, &motion).unwrap_err();
+    assert_eq!(fitted(&table[..2], 1e-3), ThroughError::TooFew { attitudes: 2 });
+    assert!(matches!(fitted(&twice, 1e-3), ThroughError::NotAscending { .. }));
+    for noise in [0.0, -1.0, f64::NAN] {
+        assert!(matches!(fitted(&table, noise), ThroughError::Noise { .. }));
+    }
+}
+
+#[cfg(feature = "random")]
+#[test]
+fn a_fit_through_noisy_attitudes_has_the_errors_that_its_covariance_states() {
+    use polhode::num::Random;
+    let (inertia, motion, table) = looks(100);
+    let noise = 1e-3;
+    let (mut squares, mut chi2) = (0.0, 0.0);
+    const TRIALS: u64 = 20;
+    for trial in 0..TRIALS {
+        let mut random = Random::new(11).stream(trial);
+        let noisy: Vec<_> = table
+            .iter()
+            .map(|&(t, q)| (t, UnitQuaternion::from_scaled_axis(random.normal_vector() * noise) * q))
+            .collect();
+        let first = Interpolation::new(&inertia, &noisy[..4], 1.0).unwrap();
+        let fit = FreeMotion::fitted(&inertia, &noisy, noise, &first.pieces()[0].motion).unwrap();
+        let (found, exact) = (fit.motion.at(0.0).unwrap(), motion.at(0.0).unwrap());
+        let turn = (found.rotation() * exact.rotation().inverse()).scaled_axis();
+        let change = found.momentum() - exact.momentum();
+        let error = nalgebra::Vector6::from_iterator(turn.iter().chain(change.iter()).copied());
+        squares += (error.transpose() * fit.covariance.try_inverse().unwrap() * error)[0];
+        chi2 += fit.chi2_per_dof;
+    }
+    // six degrees of freedom each: the mean of 20 is within 4 standard deviations of 6
+    let mean = squares / TRIALS as f64;
+    assert!((mean - 6.0).abs() < 4.0 * (12.0 / TRIALS as f64).sqrt(), "{mean}");
+    assert!((chi2 / TRIALS as f64 - 1.0).abs() < 0.1, "{chi2}");
 }

@@ -1,13 +1,14 @@
 //! What becomes of an uncertain start: covariances on SO(3) × R³ to first order, and how far the first order is to be trusted.
 
-use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector3};
 use thiserror::Error;
 
 use super::derivative::{DerivativeError, TurnAxes};
 use super::motion::FreeMotion;
-use crate::body::State;
+use crate::body::Body;
 use crate::inertia::Inertia;
 use crate::num::eigen::eigen;
+use crate::rotation::{Quat, rotation_angle, turn_by};
 
 /// A covariance may be this far below zero, of its largest eigenvalue: what rounding does to a singular one.
 const ROUNDING: f64 = 1e-12;
@@ -238,26 +239,29 @@ impl FreeMotion {
         derivative: &SMatrix<f64, 6, 12>,
     ) -> Result<f64, CovarianceError> {
         let zero = self.at(0.0).map_err(DerivativeError::Time)?;
-        let now = self.at(t).map_err(DerivativeError::Time)?.rotation();
+        let now = self.at(t).map_err(DerivativeError::Time)?.attitude;
         let omega = self.body().omega_body(&zero);
         let tensor = self.body().inertia().tensor();
+        let axes = start.axes;
         let (mut missed, mut moved) = (0.0, 0.0);
-        let mut compare =
-            |inertia: &Inertia, q0: UnitQuaternion<f64>, omega: Vector3<f64>, turn: Vector3<f64>| {
-                let Ok(other) = FreeMotion::from_omega(inertia, q0, omega) else { return };
-                let Ok(end) = other.at(t).as_ref().map(State::rotation) else { return };
-                let first_order = turned(now, turn, start.axes);
-                let angle = first_order.angle_to(&end);
-                // a turn by more than half a turn is no small one, wherever it ends
-                missed +=
-                    if turn.norm() > core::f64::consts::PI { turn.norm_squared() } else { angle * angle };
-                moved += turn.norm_squared();
+        let mut compare = |inertia: &Inertia, q0: Quat<f64>, omega: Vector3<f64>, turn: Vector3<f64>| {
+            let start = Body::free(inertia.clone()).enter_omega(q0, omega.into());
+            let end = start.ok().and_then(|start| FreeMotion::from_point(inertia, start).at(t).ok());
+            // a turn by more than half a turn is no small one, wherever it ends; nor is one that has no end
+            let angle = match end {
+                Some(end) if turn.norm() <= core::f64::consts::PI => {
+                    rotation_angle(turned(now, turn, axes), end.attitude)
+                }
+                _ => turn.norm(),
             };
+            missed += angle * angle;
+            moved += turn.norm_squared();
+        };
         for deviation in deviations(&start.state) {
             for sign in [1.0, -1.0] {
                 let change: SVector<f64, 6> = deviation * sign;
                 let turn = derivative.fixed_view::<3, 6>(0, 0) * change;
-                let q0 = turned(zero.rotation(), change.fixed_rows::<3>(0).into_owned(), start.axes);
+                let q0 = turned(zero.attitude, change.fixed_rows::<3>(0).into_owned(), start.axes);
                 compare(self.body().inertia(), q0, omega + change.fixed_rows::<3>(3), turn);
             }
         }
@@ -268,7 +272,7 @@ impl FreeMotion {
                 let Ok(inertia) = Inertia::from_tensor(tensor + symmetric(&change)) else { continue };
                 bodies += 1;
                 let turn = derivative.fixed_view::<3, 6>(0, 6) * change;
-                compare(&inertia, zero.rotation(), omega, turn);
+                compare(&inertia, zero.attitude, omega, turn);
             }
             if bodies == 0 {
                 return Err(CovarianceError::NoBody);
@@ -279,12 +283,8 @@ impl FreeMotion {
 }
 
 /// The attitude `q`, turned by a rotation vector in the `axes`.
-fn turned(q: UnitQuaternion<f64>, by: Vector3<f64>, axes: TurnAxes) -> UnitQuaternion<f64> {
-    // the exponential by sine and cosine that are the same on every machine
-    let half = 0.5 * by.norm();
-    let (sin, cos) = crate::num::trig::sin_cos(half);
-    let sinc = if half > 0.0 { 0.5 * sin / half } else { 0.5 };
-    let turn = UnitQuaternion::new_normalize(nalgebra::Quaternion::from_parts(cos, by * sinc));
+fn turned(q: Quat<f64>, by: Vector3<f64>, axes: TurnAxes) -> Quat<f64> {
+    let turn = turn_by(by.into());
     match axes {
         TurnAxes::Space => turn * q,
         TurnAxes::Body => q * turn,

@@ -30,5 +30,5 @@ pub(super) use phase::{Pair, Phase, TOO_FAR, pair, reduce};
 pub use pure_spin::{PureSpin, Stability};
 pub use symmetric_top::SymmetricTop;
 pub(super) use theta::{Family, LEAST_TERMS, Powers, T, U, V_MINUS, V_PLUS, least_value, polynomial};
-pub use through::{Passage, Passages, ThroughError};
+pub use through::{FittedMotion, Interpolation, Passage, Passages, ThroughError};
 pub use tumbling::{TumblingElements, TumblingError};

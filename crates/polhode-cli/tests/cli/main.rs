@@ -39,4 +39,5 @@ mod robots;
 mod scarce;
 mod show;
 mod tables;
+mod through;
 mod times;

@@ -9,7 +9,11 @@
 
 mod branch;
 mod cone;
+mod fitted;
+mod interpolation;
 mod passages;
 mod search;
 
+pub use fitted::FittedMotion;
+pub use interpolation::Interpolation;
 pub use passages::{Passage, Passages, ThroughError};

@@ -30,6 +30,8 @@ pub struct Passage {
     pub miss: f64,
     /// Newton's iterations that were taken after the search.
     pub iterations: u32,
+    /// Whether the search that found it is known to have found all others.
+    pub complete: bool,
 }
 
 /// All free motions through two attitudes up to a number of turns.
@@ -66,6 +68,44 @@ pub enum ThroughError {
     Turns {
         /// The number given.
         turns: f64,
+    },
+    /// Too few attitudes.
+    #[error("{attitudes} attitudes are too few: two are wanted for an interpolation, three for a fit")]
+    TooFew {
+        /// How many there are.
+        attitudes: usize,
+    },
+    /// Times of a table do not ascend.
+    #[error("the attitude at {after} s comes after that at {before} s: times of a table ascend")]
+    NotAscending {
+        /// A time, s.
+        before: f64,
+        /// The time after it, s.
+        after: f64,
+    },
+    /// A time is not between the attitudes.
+    #[error("{t} s is not between the first attitude, at {first} s, and the last, at {last} s")]
+    Outside {
+        /// The time, s.
+        t: f64,
+        /// The first time, s.
+        first: f64,
+        /// The last time, s.
+        last: f64,
+    },
+    /// The noise of attitudes is no standard deviation.
+    #[error("{noise} rad is no standard deviation of attitudes: a positive number is wanted")]
+    Noise {
+        /// The noise, rad.
+        noise: f64,
+    },
+    /// Least squares that do not converge.
+    #[error(
+        "least squares over the first {attitudes} attitudes do not converge: the start is too far from them"
+    )]
+    NotConverged {
+        /// How many attitudes were taken.
+        attitudes: usize,
     },
     /// No free motion of so few turns leads from one attitude to the other.
     #[error(
@@ -146,7 +186,7 @@ impl FreeMotion {
         let task = Task::new(inertia, first, second, turns);
         let passages = task.passages(finer);
         if passages.list.is_empty() {
-            let angle = first.1.angle_to(&second.1);
+            let angle = rotation_angle(Quat::from(first.1), Quat::from(second.1));
             return Err(ThroughError::NoneWithin { turns, angle });
         }
         Ok(passages)
@@ -197,7 +237,9 @@ impl<'a> Task<'a> {
         list.dedup_by(|a, b| {
             (a.omega_body - b.omega_body).norm() <= 1e-9 * b.omega_body.norm() && a.turns - b.turns < 1e-9
         });
-        Passages { list, complete: found.unresolved == 0 && lost == 0, families: cone.is_none() }
+        let complete = found.unresolved == 0 && lost == 0;
+        list.iter_mut().for_each(|passage| passage.complete = complete);
+        Passages { list, complete, families: cone.is_none() }
     }
 
     /// Momenta of steady spins for the time 1: the axis of the turn is a principal axis.
@@ -253,7 +295,14 @@ impl<'a> Task<'a> {
         let twice_energy =
             start.momentum_body.dot(start.momentum_body.times(motion.body().rotor().inverse_moments())).hi();
         let turns = if norm == 0.0 { 0.0 } else { twice_energy / norm * self.time / core::f64::consts::TAU };
-        (miss.1 <= 1e-9).then_some(Passage { motion, omega_body, turns, miss: miss.1, iterations })
+        (miss.1 <= 1e-9).then_some(Passage {
+            motion,
+            omega_body,
+            turns,
+            miss: miss.1,
+            iterations,
+            complete: true,
+        })
     }
 
     /// Rotation vector in space from the attitude that `motion` reaches to that asked for, and its angle.
