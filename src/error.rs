@@ -101,6 +101,7 @@ from!(
     crate::method::TwoAxesError,
     crate::method::UnknownMethod,
     crate::method::schemes::UnknownScheme,
+    crate::num::DistributionError,
     crate::num::ParseDdError,
     crate::record::RecordError,
     crate::rotation::EulerSequenceError,
@@ -113,4 +114,4 @@ from!(
     crate::units::DateError,
 );
 #[cfg(any(test, feature = "random"))]
-from!(crate::body::NoMember, crate::num::DistributionError);
+from!(crate::body::NoMember);

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, UnitQuaternion};
 
 use polhode::flow::{CovarianceError, FreeMotion, StartCovariance, TurnAxes};
 use polhode::inertia::Inertia;
+use polhode::num::Covariance;
 
 fn motion() -> FreeMotion {
     let inertia = Inertia::from_moments([1.0, 2.0, 2.5]).unwrap();
@@ -11,8 +12,10 @@ fn motion() -> FreeMotion {
     FreeMotion::from_omega(&inertia, start, [0.5, 0.4, -0.8].into()).unwrap()
 }
 
-fn independent(angle: f64, rate: f64) -> Matrix6<f64> {
-    Matrix6::from_diagonal(&SVector::from([angle, angle, angle, rate, rate, rate]).map(|x: f64| x * x))
+/// With independent components of these standard deviations: of the angle, of the rate, of the tensor.
+fn independent(sigma: [f64; 3]) -> StartCovariance {
+    let deviation = |k: usize| sigma[(k / 3).min(2)];
+    StartCovariance::new(Covariance::independent(core::array::from_fn(deviation)).unwrap(), TurnAxes::Space)
 }
 
 #[cfg(feature = "random")]
@@ -47,11 +50,7 @@ mod beside_ensembles {
         let allowed = 4.0 * (2.0 / members as f64).sqrt() + 0.02;
         for (sigma, t) in [([1e-3, 1e-3, 1e-3], 3.0), ([1e-3, 1e-5, 1e-5], 300.0), ([0.05, 1e-4, 0.0], -50.0)]
         {
-            let start = StartCovariance {
-                state: independent(sigma[0], sigma[1]),
-                tensor: Matrix6::identity() * (sigma[2] * sigma[2]),
-                ..StartCovariance::default()
-            };
+            let start = independent(sigma);
             let found = motion.covariance(t, &start).unwrap();
             assert!(found.nonlinearity < 0.1, "{}", found.nonlinearity);
             let members = spread(&motion, sigma, t, members);
@@ -65,7 +64,7 @@ mod beside_ensembles {
             }
         }
         // where the phase is lost, first order is far off, and says so
-        let start = StartCovariance { state: independent(1e-3, 3e-3), ..StartCovariance::default() };
+        let start = independent([1e-3, 3e-3, 0.0]);
         let late = motion.covariance(1e5, &start).unwrap();
         let members = spread(&motion, [1e-3, 3e-3, 0.0], 1e5, members);
         let angle = |p: &Matrix6<f64>| p.fixed_view::<3, 3>(0, 0).trace().sqrt();
@@ -88,7 +87,7 @@ mod beside_ensembles {
 fn the_measure_grows_with_what_is_unknown() {
     let motion = motion();
     let measure = |rate: f64| {
-        let start = StartCovariance { state: independent(rate, rate), ..StartCovariance::default() };
+        let start = independent([rate, rate, 0.0]);
         motion.covariance(100.0, &start).unwrap().nonlinearity
     };
     let [small, larger] = [1e-5, 1e-4].map(measure);
@@ -100,7 +99,8 @@ fn white_torque_on_a_sphere_spreads_as_its_integral() {
     let inertia = Inertia::from_moments([2.0; 3]).unwrap();
     let motion =
         FreeMotion::from_omega(&inertia, UnitQuaternion::identity(), [0.0, 0.0, 0.0].into()).unwrap();
-    let start = StartCovariance { torque: Matrix3::identity() * 0.01, ..StartCovariance::default() };
+    let start =
+        StartCovariance { torque: Covariance::independent([0.1; 3]).unwrap(), ..independent([0.0; 3]) };
     let found = motion.covariance(3.0, &start).unwrap().state;
     // rate: q t/I²; angle: q t³/3I²; both: q t²/2I²
     let exact = [0.01 * 9.0 / 4.0, 0.01 * 4.5 / 4.0, 0.01 * 3.0 / 4.0];
@@ -116,36 +116,29 @@ fn white_torque_on_a_sphere_spreads_as_its_integral() {
 #[test]
 fn white_torque_adds_up_over_two_times() {
     let motion = motion();
-    let start = StartCovariance {
-        torque: Matrix3::from_diagonal(&[0.01, 0.02, 0.0].into()),
-        ..StartCovariance::default()
-    };
+    let torque = Covariance::independent([0.1, 0.15, 0.0]).unwrap();
+    let start = StartCovariance { torque, ..independent([0.0; 3]) };
     let half = motion.covariance(7.0, &start).unwrap().state;
     let second = FreeMotion::from_point(motion.body().inertia(), motion.point_at_dd(7.0.into()));
-    let both = second.covariance(7.0, &StartCovariance { state: half, ..start }).unwrap().state;
+    let entry = |i: usize, j: usize| if i < 6 && j < 6 { half[(i, j)] } else { 0.0 };
+    let half = Covariance::new(core::array::from_fn(|i| core::array::from_fn(|j| entry(i, j)))).unwrap();
+    let both = second.covariance(7.0, &StartCovariance { matrix: half, ..start.clone() }).unwrap().state;
     let whole = motion.covariance(14.0, &start).unwrap().state;
     assert!((both - whole).amax() < 1e-9 * whole.amax(), "{both} {whole}");
 }
 
 #[test]
-fn matrices_that_are_no_covariances_are_refused() {
+fn what_has_no_covariance_is_refused() {
     let motion = motion();
-    let of = |state: Matrix6<f64>| {
-        motion.covariance(1.0, &StartCovariance { state, ..StartCovariance::default() }).unwrap_err()
-    };
-    let mut negative = independent(1e-3, 1e-3);
-    negative[(4, 4)] = -1e-6;
-    assert!(matches!(of(negative), CovarianceError::NotPositive { of: "the state", .. }));
-    let mut askew = independent(1e-3, 1e-3);
-    askew[(4, 1)] = 1e-7;
-    assert!(matches!(of(askew), CovarianceError::NotSymmetric { row: 4, column: 1, .. }));
-    assert!(matches!(of(Matrix6::identity() * f64::NAN), CovarianceError::NotFinite { .. }));
-    let wide = StartCovariance { tensor: Matrix6::identity() * 100.0, ..StartCovariance::default() };
-    assert_eq!(motion.covariance(1.0, &wide), Err(CovarianceError::NoBody));
-    let noisy = StartCovariance { torque: Matrix3::identity(), ..StartCovariance::default() };
+    let mut negative = [[0.0; 12]; 12];
+    negative[4][4] = -1e-6;
+    assert!(Covariance::new(negative).is_err());
+    assert_eq!(motion.covariance(1.0, &independent([0.0, 0.0, 10.0])), Err(CovarianceError::NoBody));
+    let noisy =
+        StartCovariance { torque: Covariance::independent([1.0; 3]).unwrap(), ..independent([0.0; 3]) };
     assert!(matches!(motion.covariance(1e9, &noisy), Err(CovarianceError::TooLong { .. })));
     assert!(matches!(
-        motion.covariance(f64::NAN, &StartCovariance::default()),
+        motion.covariance(f64::NAN, &independent([0.0; 3])),
         Err(CovarianceError::Derivative(_))
     ));
 }
@@ -153,7 +146,7 @@ fn matrices_that_are_no_covariances_are_refused() {
 #[test]
 fn in_body_axes_the_covariance_of_the_rotation_is_turned() {
     let motion = motion();
-    let start = StartCovariance { state: independent(1e-3, 2e-3), ..StartCovariance::default() };
+    let start = independent([1e-3, 2e-3, 0.0]);
     let space = motion.covariance(9.0, &start).unwrap().state;
     let body = motion.covariance(9.0, &StartCovariance { axes: TurnAxes::Body, ..start }).unwrap().state;
     let mut turn = SMatrix::<f64, 6, 6>::identity();

@@ -54,23 +54,34 @@ mod random {
 
     fn true_motion_is_found(pairs: usize, seed: u64) {
         let mut random = Random::new(seed);
-        let (mut solutions, mut iterations) = (0, [0_usize; 10]);
+        let (mut solutions, mut missed, mut incomplete, mut iterations) = (0, 0, 0, [0_usize; 10]);
         for number in 0..pairs {
             let Pair { inertia, q0, q1, omega, time, turns } = pair(&mut random);
             let most = turns + 0.05;
-            let found = FreeMotion::through(&inertia, (0.0, q0), (time, q1), most).unwrap();
+            let found = FreeMotion::through(&inertia, (0.0, q0), (time, q1), most);
+            let nearest = found.as_ref().ok().and_then(|found| found.nearest(omega));
+            let distance = nearest.map_or(1.0, |near| (near.omega_body - omega).norm() / omega.norm());
+            // the attitude at the end is rounded: next to conjugate attitudes that moves the rate more
+            if distance > 1e-7 {
+                println!(
+                    "pair {number}: {distance:.1e}, {turns} turns, {:?}, {omega:?}",
+                    inertia.principal_moments()
+                );
+                missed += 1;
+            }
+            let Ok(found) = found else { continue };
             check(&found, q0, q1, time, most);
             assert!(!found.families);
-            let nearest = found.nearest(omega).unwrap();
-            let distance = (nearest.omega_body - omega).norm() / omega.norm();
-            // the attitude at the end is rounded: next to conjugate attitudes that moves the rate more
-            assert!(distance < 1e-7, "pair {number}: {distance:.1e}, {turns} turns, {inertia:?}, {omega:?}");
+            incomplete += usize::from(!found.complete);
             solutions += found.list.len();
             for passage in &found.list {
                 iterations[passage.iterations as usize] += 1;
             }
         }
-        println!("{solutions} solutions of {pairs} pairs; Newton's iterations {iterations:?}");
+        println!(
+            "{solutions} solutions of {pairs} pairs, of which {incomplete} may lack some; Newton's iterations {iterations:?}"
+        );
+        assert_eq!(missed, 0);
     }
 
     #[test]

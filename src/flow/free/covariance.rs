@@ -7,16 +7,19 @@ use super::derivative::{DerivativeError, TurnAxes};
 use super::motion::FreeMotion;
 use crate::body::Body;
 use crate::inertia::Inertia;
-use crate::num::eigen::eigen;
+use crate::num::Covariance;
 use crate::rotation::{Quat, rotation_angle, turn_by};
+#[cfg(any(test, feature = "random"))]
+use crate::{
+    body::{AttitudeSpread, Population},
+    rotation::Vec3,
+};
 
-/// A covariance may be this far below zero, of its largest eigenvalue: what rounding does to a singular one.
-const ROUNDING: f64 = 1e-12;
 /// Radians of the turn in one panel of the integral of the process noise.
 const PANEL: f64 = 1.0;
 /// Most panels.
 const MOST_PANELS: f64 = 1e6;
-/// Nodes and weights of Gauss–Legendre on (−1, 1), one half of each.
+/// Nodes and weights of Gauss and Legendre of six points on (−1, 1), one half of each (Abramowitz and Stegun, table 25.4).
 const GAUSS: [(f64, f64); 3] = [
     (0.238_619_186_083_196_9, 0.467_913_934_572_691_04),
     (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
@@ -24,14 +27,14 @@ const GAUSS: [(f64, f64); 3] = [
 ];
 
 /// How uncertain a start is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct StartCovariance {
-    /// Of rotation vector (rad) and angular velocity (body axes, rad/s) at t = 0.
-    pub state: Matrix6<f64>,
-    /// Of the entries xx, yy, zz, xy, xz, yz of the inertia tensor, kg² m⁴; independent of the state.
-    pub tensor: Matrix6<f64>,
+    /// Of rotation vector (rad), angular velocity (body axes, rad/s), both at t = 0, and the entries xx, yy, zz, xy, xz, yz of the
+    /// inertia tensor (kg m², body axes).
+    pub matrix: Covariance<12>,
     /// Spectral density of a white torque in body axes, N² m² s: in a time dt its angular impulse has the covariance `torque dt`.
-    pub torque: Matrix3<f64>,
+    pub torque: Covariance<3>,
     /// Axes of the rotation vectors, at the start and at the time asked for.
     pub axes: TurnAxes,
 }
@@ -52,43 +55,7 @@ pub struct StateCovariance {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CovarianceError {
-    /// An entry is not a number.
-    #[error("the covariance of {of} has an entry {value}, which is no finite number")]
-    NotFinite {
-        /// Of what.
-        of: &'static str,
-        /// The entry.
-        value: f64,
-    },
-    /// The two halves differ.
-    #[error(
-        "the covariance of {of} is not symmetric: its entries {row}, {column} are {value:e} and {other:e}"
-    )]
-    NotSymmetric {
-        /// Of what.
-        of: &'static str,
-        /// Row of the entry, from 0.
-        row: usize,
-        /// Its column.
-        column: usize,
-        /// The entry.
-        value: f64,
-        /// Its mirror image.
-        other: f64,
-    },
-    /// A direction has a negative variance.
-    #[error(
-        "the covariance of {of} has the eigenvalue {eigenvalue:e} beside {largest:e}: a variance is not negative"
-    )]
-    NotPositive {
-        /// Of what.
-        of: &'static str,
-        /// The least eigenvalue.
-        eigenvalue: f64,
-        /// The largest eigenvalue.
-        largest: f64,
-    },
-    /// No tensor one standard deviation away is that of a body.
+    /// No start one standard deviation away is that of a body.
     #[error(
         "one standard deviation from the inertia tensor, either way, no body has the tensor: use a narrower covariance"
     )]
@@ -108,61 +75,64 @@ pub enum CovarianceError {
     Derivative(#[from] DerivativeError),
 }
 
-impl Default for StartCovariance {
-    fn default() -> Self {
-        StartCovariance {
-            state: Matrix6::zeros(),
-            tensor: Matrix6::zeros(),
-            torque: Matrix3::zeros(),
-            axes: TurnAxes::Space,
-        }
-    }
-}
-
 impl StartCovariance {
-    fn check(&self) -> Result<(), CovarianceError> {
-        check("the state", &self.state)?;
-        check("the tensor", &self.tensor)?;
-        check("the torque", &self.torque)
+    /// Of a start with this covariance of rotation vector (rad, in the `axes`) and of tensor and angular velocity, and no torque.
+    pub fn new(matrix: Covariance<12>, axes: TurnAxes) -> Self {
+        StartCovariance { matrix, torque: Covariance::zero(), axes }
     }
 }
 
-fn check<const N: usize>(of: &'static str, p: &SMatrix<f64, N, N>) -> Result<(), CovarianceError> {
-    if let Some(&value) = p.iter().find(|value| !value.is_finite()) {
-        return Err(CovarianceError::NotFinite { of, value });
-    }
-    for row in 0..N {
-        for column in 0..row {
-            let (value, other) = (p[(row, column)], p[(column, row)]);
-            if (value - other).abs() > ROUNDING * (p[(row, row)].abs() * p[(column, column)].abs()).sqrt() {
-                return Err(CovarianceError::NotSymmetric { of, row, column, value, other });
+#[cfg(any(test, feature = "random"))]
+impl StartCovariance {
+    /// The motion of the mean of a population, and its covariance; `None` where attitudes are anything at all, or where the mean is no body
+    /// with a start. Needs the feature `random`.
+    ///
+    /// ```
+    /// use polhode::body::{AttitudeSpread, Population, Tensors};
+    /// use polhode::flow::StartCovariance;
+    /// use polhode::inertia::Inertia;
+    /// use polhode::num::{Covariance, Distribution};
+    /// use polhode::rotation::Quat;
+    /// let uncertain = Population::Independent {
+    ///     attitude: AttitudeSpread::Fixed(Quat::identity()),
+    ///     omega_body: Distribution::Normal { mean: [0.4, 1.0, -0.3], covariance: Covariance::independent([1e-4; 3])? },
+    ///     inertia: Box::new(Tensors::moments(Inertia::from_moments([1.0, 2.0, 2.5])?, [1e-4; 3])?),
+    /// };
+    /// let (motion, start) = StartCovariance::of(&uncertain).ok_or("it has a mean")?;
+    /// assert!(motion.covariance(100.0, &start)?.nonlinearity < 0.05);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    #[must_use]
+    pub fn of(population: &Population) -> Option<(FreeMotion, Self)> {
+        let (q0, omega, inertia, matrix) = match population {
+            Population::Independent { attitude, omega_body, inertia } => {
+                let (q0, turn) = match attitude {
+                    AttitudeSpread::Fixed(q0) => (*q0, Covariance::zero()),
+                    AttitudeSpread::Near { mean, turn } => {
+                        (*mean * turn_by(Vec3(turn.mean())), turn.covariance())
+                    }
+                    AttitudeSpread::Uniform => return None,
+                };
+                let (mean, tensor) = inertia.entries().ok()?;
+                let rates = omega_body.covariance();
+                (q0, Vec3(omega_body.mean()), mean, Covariance::of_parts(&turn, &rates, &tensor))
             }
-        }
+            Population::Joint { attitude, omega_body, inertia, covariance } => {
+                (*attitude, *omega_body, inertia.clone(), (**covariance).clone())
+            }
+        };
+        let start = Body::free(inertia.clone()).enter_omega(q0, omega).ok()?;
+        Some((FreeMotion::from_point(&inertia, start), StartCovariance::new(matrix, TurnAxes::Body)))
     }
-    let (values, _) = eigen(rows(&correlation(p)));
-    let (eigenvalue, largest) = (values[0], values[N - 1]);
-    if eigenvalue < -ROUNDING * largest.abs() {
-        return Err(CovarianceError::NotPositive { of, eigenvalue, largest });
-    }
-    Ok(())
 }
 
-/// `p` in units of its standard deviations, so that no unit of measurement matters.
-fn correlation<const N: usize>(p: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-    let unit = |k: usize| if p[(k, k)] > 0.0 { 1.0 / p[(k, k)].sqrt() } else { 1.0 };
-    SMatrix::from_fn(|row, column| p[(row, column)] * unit(row) * unit(column))
-}
-
-fn rows<const N: usize>(p: &SMatrix<f64, N, N>) -> [[f64; N]; N] {
-    core::array::from_fn(|row| core::array::from_fn(|column| p[(row, column)]))
-}
-
-/// Displacements by one standard deviation along the principal directions, in units of the standard deviations of the components.
-fn deviations<const N: usize>(p: &SMatrix<f64, N, N>) -> Vec<SVector<f64, N>> {
-    let (values, vectors) = eigen(rows(&correlation(p)));
-    let unit = |k: usize| p[(k, k)].max(0.0).sqrt();
-    let one = |n: usize| SVector::from_fn(|k, _| vectors[n][k] * values[n].max(0.0).sqrt() * unit(k));
-    (0..N).map(one).filter(|deviation: &SVector<f64, N>| deviation.amax() > 0.0).collect()
+/// Σ x xᵀ of displacements x.
+fn sum_of_squares<const N: usize, const M: usize>(
+    by: &SMatrix<f64, M, N>,
+    covariance: &Covariance<N>,
+) -> SMatrix<f64, M, M> {
+    let moved = covariance.deviations().map(|deviation| by * SVector::from(deviation));
+    moved.iter().map(|x| x * x.transpose()).sum()
 }
 
 impl FreeMotion {
@@ -170,13 +140,16 @@ impl FreeMotion {
     /// measure of what that neglects.
     ///
     /// ```
-    /// use nalgebra::{Matrix6, UnitQuaternion, Vector3};
-    /// use polhode::flow::{FreeMotion, StartCovariance};
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::flow::{FreeMotion, StartCovariance, TurnAxes};
     /// use polhode::inertia::Inertia;
+    /// use polhode::num::Covariance;
     /// let body = Inertia::from_moments([1.0, 2.0, 3.0])?;
     /// let motion = FreeMotion::from_omega(&body, UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
-    /// let sure = 1e-5_f64; // rad and rad/s
-    /// let start = StartCovariance { state: Matrix6::identity() * sure.powi(2), ..StartCovariance::default() };
+    /// // 1e-5 rad and rad/s, and a tensor that is known
+    /// let sure = |k: usize| if k < 6 { 1e-5 } else { 0.0 };
+    /// let start = Covariance::independent(core::array::from_fn(sure))?;
+    /// let start = StartCovariance::new(start, TurnAxes::Space);
     /// let (soon, late) = (motion.covariance(100.0, &start)?, motion.covariance(1e5, &start)?);
     /// let angle = soon.state.fixed_view::<3, 3>(0, 0).trace().sqrt();
     /// assert!(angle > 1e-4 && angle < 1e-2 && soon.nonlinearity < 0.01);
@@ -185,34 +158,26 @@ impl FreeMotion {
     /// ```
     ///
     /// # Errors
-    /// Matrices that are no covariances, a tensor so near to the border of what bodies have that neither side of it can be tried, and
+    /// A tensor so near to the border of what bodies have that neither side of it can be tried, and
     /// times without a derivative; with process noise, times in which the body turns by more than 10⁶ rad.
     pub fn covariance(&self, t: f64, start: &StartCovariance) -> Result<StateCovariance, CovarianceError> {
-        start.check()?;
         let derivative = self.at_with_derivative(t)?.by_omega(start.axes);
-        let by_state = derivative.fixed_columns::<6>(0);
-        let by_tensor = derivative.fixed_columns::<6>(6);
-        let mut state =
-            by_state * start.state * by_state.transpose() + by_tensor * start.tensor * by_tensor.transpose();
-        if start.torque != Matrix3::zeros() {
+        let mut state = sum_of_squares(&derivative, &start.matrix);
+        if start.torque != Covariance::zero() {
             state += self.process_noise(t, start)?;
         }
-        let nonlinearity = self.nonlinearity(t, start, &derivative)?;
-        Ok(StateCovariance { state: (state + state.transpose()) * 0.5, nonlinearity })
+        Ok(StateCovariance { state, nonlinearity: self.nonlinearity(t, start, &derivative)? })
     }
 
     /// ∫ Φ B q Bᵀ Φᵀ ds, where Φ leads from the time s to `t` and B is what an impulse does to ω.
     fn process_noise(&self, t: f64, start: &StartCovariance) -> Result<Matrix6<f64>, CovarianceError> {
-        let fastest = self.fastest_rate();
-        let radians = fastest * t.abs();
+        let radians = self.fastest_rate() * t.abs();
         let panels = libm::ceil(radians / PANEL).max(1.0);
         if panels > MOST_PANELS {
             return Err(CovarianceError::TooLong { t, radians });
         }
-        let whole = self.at_with_derivative(t)?.by_omega(start.axes);
-        let whole = whole.fixed_columns::<6>(0).into_owned();
-        let inverse = self.inverse_inertia();
-        let density = inverse * start.torque * inverse.transpose();
+        let whole = self.at_with_derivative(t)?.by_omega(start.axes).fixed_columns::<6>(0).into_owned();
+        let impulse = self.inverse_inertia();
         let half = 0.5 * t / panels;
         let mut sum = Matrix6::zeros();
         for panel in 0..panels as u64 {
@@ -223,8 +188,8 @@ impl FreeMotion {
                     let Some(back) = before.fixed_columns::<6>(0).into_owned().try_inverse() else {
                         continue;
                     };
-                    let response = (whole * back).fixed_columns::<3>(3).into_owned();
-                    sum += response * density * response.transpose() * (weight * half.abs());
+                    let response = (whole * back).fixed_columns::<3>(3) * impulse;
+                    sum += sum_of_squares(&response, &start.torque) * (weight * half.abs());
                 }
             }
         }
@@ -241,38 +206,34 @@ impl FreeMotion {
         let zero = self.at(0.0).map_err(DerivativeError::Time)?;
         let now = self.at(t).map_err(DerivativeError::Time)?.attitude;
         let omega = self.body().omega_body(&zero);
-        let tensor = self.body().inertia().tensor();
-        let axes = start.axes;
+        let inertia = self.body().inertia();
         let (mut missed, mut moved) = (0.0, 0.0);
-        let mut compare = |inertia: &Inertia, q0: Quat<f64>, omega: Vector3<f64>, turn: Vector3<f64>| {
-            let start = Body::free(inertia.clone()).enter_omega(q0, omega.into());
-            let end = start.ok().and_then(|start| FreeMotion::from_point(inertia, start).at(t).ok());
-            // a turn by more than half a turn is no small one, wherever it ends; nor is one that has no end
-            let angle = match end {
-                Some(end) if turn.norm() <= core::f64::consts::PI => {
-                    rotation_angle(turned(now, turn, axes), end.attitude)
-                }
-                _ => turn.norm(),
-            };
-            missed += angle * angle;
-            moved += turn.norm_squared();
-        };
-        for deviation in deviations(&start.state) {
-            for sign in [1.0, -1.0] {
-                let change: SVector<f64, 6> = deviation * sign;
-                let turn = derivative.fixed_view::<3, 6>(0, 0) * change;
-                let q0 = turned(zero.attitude, change.fixed_rows::<3>(0).into_owned(), start.axes);
-                compare(self.body().inertia(), q0, omega + change.fixed_rows::<3>(3), turn);
-            }
-        }
-        for deviation in deviations(&start.tensor) {
+        for deviation in start.matrix.deviations() {
+            let deviation = SVector::<f64, 12>::from(deviation);
             let mut bodies = 0;
-            for sign in [1.0, -1.0] {
-                let change: SVector<f64, 6> = deviation * sign;
-                let Ok(inertia) = Inertia::from_tensor(tensor + symmetric(&change)) else { continue };
+            for change in [deviation, -deviation] {
+                let tensor: SVector<f64, 6> = change.fixed_rows::<6>(6).into_owned();
+                let other = if tensor.amax() == 0.0 {
+                    Ok(inertia.clone())
+                } else {
+                    Inertia::from_tensor(inertia.tensor() + symmetric(&tensor))
+                };
+                let Ok(other) = other else { continue };
                 bodies += 1;
-                let turn = derivative.fixed_view::<3, 6>(0, 6) * change;
-                compare(&inertia, zero.attitude, omega, turn);
+                let q0 = turned(zero.attitude, change.fixed_rows::<3>(0).into_owned(), start.axes);
+                let rate: Vector3<f64> = omega + change.fixed_rows::<3>(3);
+                let from = Body::free(other.clone()).enter_omega(q0, rate.into());
+                let end = from.ok().and_then(|from| FreeMotion::from_point(&other, from).at(t).ok());
+                let turn: Vector3<f64> = derivative.fixed_rows::<3>(0) * change;
+                // a turn by more than half a turn is no small one, wherever it ends; nor is one that has no end
+                let angle = match end {
+                    Some(end) if turn.norm() <= core::f64::consts::PI => {
+                        rotation_angle(turned(now, turn, start.axes), end.attitude)
+                    }
+                    _ => turn.norm(),
+                };
+                missed += angle * angle;
+                moved += turn.norm_squared();
             }
             if bodies == 0 {
                 return Err(CovarianceError::NoBody);

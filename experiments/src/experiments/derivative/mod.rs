@@ -6,12 +6,12 @@ mod taylor;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use nalgebra::{Matrix6, SMatrix, SVector, UnitQuaternion, Vector3};
+use nalgebra::{SMatrix, UnitQuaternion, Vector3};
 use polhode::body::{Body, State};
 use polhode::catalogue;
 use polhode::flow::{FreeMotion, StartCovariance, TurnAxes};
 use polhode::inertia::Inertia;
-use polhode::num::Random;
+use polhode::num::{Covariance, Random};
 use polhode::rotation::{Quat, Vec3};
 use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row, to_digits};
@@ -312,8 +312,10 @@ fn covariance(context: &Context, report: &mut Report) -> Result<(), Error> {
         for (turned, sigma) in [(10.0, 1e-3), (1e3, 1e-5), (1e3, 1e-3), (1e5, 1e-3)] {
             let t = turned / speed;
             let rate = sigma * speed;
-            let diagonal = SVector::<f64, 6>::from_fn(|k, _| if k < 3 { sigma * sigma } else { rate * rate });
-            let start = StartCovariance { state: Matrix6::from_diagonal(&diagonal), ..Default::default() };
+            let deviation = |k: usize| [sigma, rate, 0.0][(k / 3).min(2)];
+            let start = Covariance::independent(std::array::from_fn(deviation))
+                .map_err(|error| failed(name, &error))?;
+            let start = StartCovariance::new(start, TurnAxes::Space);
             let found = motion.covariance(t, &start).map_err(|error| failed(name, &error))?;
             let first_order = found.state.fixed_view::<3, 3>(0, 0).trace().sqrt();
             let now = motion.at(t).map_err(|error| failed(name, &error))?.rotation();

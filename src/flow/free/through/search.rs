@@ -7,7 +7,10 @@ use crate::num::trig::sin_cos;
 use crate::rotation::{Quat, Vec3};
 
 /// Pieces into which the inner part of a stretch of the cone is cut at first, and each of its ends.
-const PIECES: [u32; 2] = [20, 8];
+const PIECES: [u32; 2] = [20, 16];
+/// Looks for changes of the kind in each half of a quarter: regular ones, and close to its corner.
+const LOOKS: u32 = 96;
+const CLOSE: u32 = 11;
 /// Half angles that are followed within a piece, rad.
 const FOLLOWED: f64 = 0.4;
 /// Deviation of the half angle in the middle of a piece from a straight line, rad.
@@ -80,13 +83,18 @@ impl Search<'_> {
 
     /// The quarter, cut where the kind changes.
     fn stretches(&self, quarter: Quarter) -> Vec<Stretch> {
-        const LOOKS: u32 = 256;
-        let (start, step) = (-core::f64::consts::FRAC_PI_2, core::f64::consts::PI / f64::from(LOOKS));
+        let half = core::f64::consts::FRAC_PI_2;
+        // next to the corners, where the cone turns sharply, by quarters of the distance
+        let near = (0..CLOSE).map(|n| 1e-9 * libm::exp2(f64::from(2 * n)));
+        let least = 1e-9 * libm::exp2(f64::from(2 * CLOSE));
+        let regular = (0..=LOOKS).map(|n| least + (half - least) * f64::from(n) / f64::from(LOOKS));
+        let distances: Vec<f64> = near.chain(regular).collect();
+        let before_half = distances.iter().map(|distance| distance - half);
+        let looks = before_half.chain(distances.iter().rev().skip(1).map(|distance| half - distance));
         let mut stretches = Vec::new();
-        let (mut from, mut before, mut kind) = (start, start, self.kind(quarter, start + 1e-9));
-        for n in 1..=LOOKS {
-            let phi = start + step * f64::from(n);
-            let next = self.kind(quarter, if n == LOOKS { phi - 1e-9 } else { phi });
+        let (mut from, mut before, mut kind) = (-half, -half, self.kind(quarter, distances[0] - half));
+        for phi in looks.skip(1) {
+            let next = self.kind(quarter, phi);
             if next != kind {
                 let (mut low, mut high) = (before, phi);
                 for _ in 0..60 {
@@ -101,7 +109,7 @@ impl Search<'_> {
             before = phi;
         }
         if kind.is_some() {
-            stretches.push(Stretch { quarter, from, to: start + core::f64::consts::PI });
+            stretches.push(Stretch { quarter, from, to: half });
         }
         stretches
     }
