@@ -8,6 +8,8 @@ mod atoms;
 #[allow(clippy::disallowed_methods)] // sines of the records that another program would write
 mod audit;
 mod cases;
+mod covariance;
+mod derivative;
 mod dmv;
 mod doctor;
 mod ensemble;
@@ -39,6 +41,7 @@ mod strapdown;
 mod surface;
 mod switched;
 mod taylor;
+mod through;
 mod tops;
 mod truth;
 mod tumbling;

@@ -3,7 +3,7 @@
 use core::f64::consts::FRAC_PI_2;
 
 use super::as_written::off_in_space;
-use super::columns::{Columns, Source, rotation_vector};
+use super::columns::{Columns, Source};
 use super::conservation::conservation;
 use super::detective::Finding;
 use super::deviation::{Allowances, deviation, trace};
@@ -23,7 +23,7 @@ use super::{
 };
 use crate::body::{Body, Problem};
 use crate::inertia::Symmetry;
-use crate::rotation::Vec3;
+use crate::rotation::{Vec3, rotation_vector};
 
 /// An angular velocity between two attitudes, relative, is off by at most so many times what one of them is, over the turn.
 const DERIVED: f64 = 3.0;

@@ -1,11 +1,10 @@
 //! What the rows hold that are further from the motion than is allowed.
 
-use super::columns::rotation_vector;
 use super::deviation::{Allowances, Deviation};
 use super::sweep::{Seen, Sweep};
 use super::{Fault, Misplaced, Reading, Trajectory};
 use crate::body::Problem;
-use crate::rotation::{Quat, Vec3};
+use crate::rotation::{Quat, Vec3, rotation_vector};
 
 /// More than this share of the rows, and it is the motion that is another, not rows that are misplaced.
 const MOST: f64 = 0.6;

@@ -2,13 +2,12 @@
 
 use nalgebra::Matrix3;
 
-use super::columns::{rotation_vector, turn_by};
 use super::motion::motion;
 use super::states::Row;
 use crate::body::{Body, Problem};
 use crate::inertia::Inertia;
 use crate::num::eigen::eigen;
-use crate::rotation::Vec3;
+use crate::rotation::{Vec3, rotation_vector, turn_by};
 
 /// Three turns of the start, three components of its angular velocity, six entries of the tensor.
 const UNKNOWNS: usize = 12;

@@ -2,12 +2,12 @@
 
 use core::cell::Cell;
 
-use super::columns::{Columns, Source, rotation_vector};
+use super::columns::{Columns, Source};
 use super::motion::{follow, way};
 use super::program::Dynamics;
 use super::start::Start;
 use super::{Reading, Trajectory};
-use crate::rotation::{Quat, Vec3};
+use crate::rotation::{Quat, Vec3, rotation_vector};
 
 /// Rows and the way, rad, up to which a motion without closed form is followed in double-double.
 const FEW: usize = 2000;

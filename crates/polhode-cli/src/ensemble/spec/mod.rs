@@ -170,6 +170,14 @@ impl Spec {
         matches!(self.source, Source::Drawn(_))
     }
 
+    /// What members are drawn from, if they are drawn.
+    pub(super) fn population(&self) -> Option<&Population> {
+        match &self.source {
+            Source::Drawn(population) => Some(population),
+            Source::Listed(_) => None,
+        }
+    }
+
     pub(super) fn acting(&self) -> Acting {
         self.acting
     }
