@@ -390,3 +390,28 @@ fn scaled(mut choice: Choice, finer: f64, smaller: f64) -> Choice {
     }
     choice
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inertia::Inertia;
+
+    #[test]
+    fn what_is_not_known_of_the_motion_widens_the_stated_error() {
+        let inertia = Inertia::from_moments([0.5, 0.85, 1.0]).unwrap();
+        let top = Body::heavy(inertia, [0.0, 0.0, 1.0].into()).unwrap();
+        let start = top.state(Default::default(), [0.4, 1.2, 0.4].into()).unwrap();
+        let start = top.enter(&start).unwrap().to_f64();
+        let demand = Demand::new(10.0, 1e-6);
+        let reference = Reference::new(&top, start, &demand, &mut |_| {}).unwrap();
+        let mut heed = |_: &Progress| {};
+        let mut search = Calibration::new(&top, &demand, reference, (Instant::now(), &mut heed)).unwrap();
+        let (apart, whole) = (search.reference.truth().apart(), search.reference.short().unwrap());
+        let candidates = Candidate::all(&top, &demand);
+        let candidate = candidates.iter().find(|candidate| candidate.is_adaptive()).unwrap();
+        let mut run = search.run(candidate, 1e-8, &whole, Some((&Stage::Methods, 0.0))).unwrap();
+        run.attitude = 1e-3 * apart;
+        let Predicted { value, factor } = search.expected(candidate, 1e-8, &whole, &run).attitude_error;
+        assert!(apart > 0.0 && value * factor >= 2.0 * apart, "{value:e} by {factor}, known to {apart:e}");
+    }
+}
