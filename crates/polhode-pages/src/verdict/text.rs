@@ -79,7 +79,7 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
     if let Some(error) = verdict.attitude_error {
         let start = if error.fitted_start { "fits all rows best" } else { "starts at the first row" };
         lines.push(format!(
-            "Attitude error: at most {} rad, at t = {} s, from the exact motion that {start}; at the end {} rad along the motion (phase) and {} rad across it (drift).",
+            "Largest attitude error: {} rad, at t = {} s, from the exact motion that {start}. At the end it is {} rad along the motion (phase) and {} rad across it (drift).",
             size(error.largest), to_digits(error.at, 6), size(error.phase), size(error.drift)
         ));
     }
@@ -108,7 +108,7 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
 
 /// A size with two digits.
 fn size(x: f64) -> String {
-    if x == 0.0 { "0".into() } else { format!("{x:.1e}") }
+    if x == 0.0 { "0".into() } else { to_digits(x, 2) }
 }
 
 /// What makes the record wrong, and what to do about it, a sentence each.
@@ -125,17 +125,19 @@ pub(super) fn causes(outcome: &Outcome) -> Vec<String> {
 fn integrator(found: &Signature) -> Vec<String> {
     let order = found.order.map_or(String::new(), |order| format!(" (order {order})"));
     let mut lines = vec![format!(
-        "Like {}{order} with h = {} s, {} a row: run from the first row, that is off by {:.1e} rad at t = {} s, and the record by {:.1e} rad.",
+        "Like {}{order} with h = {} s, {} a row. Run from the first row, that method is off by {} rad at t = {} s; the record is off by {} rad.",
         found.method,
         to_digits(found.step, 6),
         if found.steps_per_row == 1 { "one step".into() } else { format!("{} steps", found.steps_per_row) },
-        found.predicted_attitude_error,
+        size(found.predicted_attitude_error),
         to_digits(found.at, 6),
-        found.measured_attitude_error
+        size(found.measured_attitude_error)
     )];
     if let (Some(predicted), Some(measured)) = (found.predicted_energy_change, found.measured_energy_change) {
         lines.push(format!(
-            "Relative change of the energy there: predicted {predicted:.1e}, measured {measured:.1e}."
+            "Relative change of the energy up to then: {} by that method, {} in the record.",
+            size(predicted),
+            size(measured)
         ));
     }
     lines
