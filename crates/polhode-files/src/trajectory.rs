@@ -50,6 +50,14 @@ pub fn read(path: &Path, reading: &ReadOptions) -> Result<FoundTrajectory, Error
     Ok(found(Table::open(path, reading)?)?)
 }
 
+/// The same of a text of rows, which messages call `file`.
+///
+/// # Errors
+/// As [`read`].
+pub fn of_text(text: &str, file: &str, reading: &ReadOptions) -> Result<FoundTrajectory, Error> {
+    Ok(found(Table::of_text(text, file, reading)?)?)
+}
+
 fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
     let claims = claims(&table)?;
     let mut rows = Bodies::default();

@@ -1,7 +1,7 @@
 //! From whatever Python calls numbers to numbers, and back.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray};
 use polhode::rotation::Quat;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
@@ -25,15 +25,23 @@ impl Numbers {
                 value.extract().map_err(|_| refused(format!("{name}: outside the range of a double")))?;
             return Ok(Numbers { name, shape: Vec::new(), values: vec![number] });
         }
-        let array = as_floats(name, value)?;
-        let array: PyReadonlyArrayDyn<'_, f64> =
-            array.extract().map_err(|_| refused(format!("{name}: numpy makes no array of numbers of it")))?;
+        // an array of doubles needs nothing made of it
+        let given = value.is_exact_instance_of::<PyUntypedArray>().then(|| value.extract().ok()).flatten();
+        let array: PyReadonlyArrayDyn<'_, f64> = match given {
+            Some(array) => array,
+            None => as_floats(name, value)?
+                .extract()
+                .map_err(|_| refused(format!("{name}: numpy makes no array of numbers of it")))?,
+        };
         let view = array.as_array();
         let mut values = Vec::new();
         values
             .try_reserve_exact(view.len())
             .map_err(|_| PyMemoryError::new_err(format!("{name}: no memory for {} numbers", view.len())))?;
-        values.extend(view.iter());
+        match view.as_slice() {
+            Some(together) => values.extend_from_slice(together),
+            None => values.extend(view.iter()),
+        }
         Ok(Numbers { name, shape: view.shape().to_vec(), values })
     }
 

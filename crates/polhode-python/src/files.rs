@@ -16,6 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
 use crate::arrays::array;
+use crate::columns;
 use crate::error::{refused, warn};
 use crate::masses::{Link, Links, MassProperties, amount, closing};
 
@@ -24,6 +25,35 @@ pub(crate) fn heard<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T, Er
     let (found, remarks) = py.detach(|| hearing(work));
     remarks.iter().try_for_each(|remark| warn(py, remark))?;
     found.map_err(refused)
+}
+
+/// Where the rows of a table come from.
+enum Rows {
+    File(PathBuf),
+    Text(String),
+}
+
+impl Rows {
+    fn name(&self) -> String {
+        match self {
+            Rows::File(path) => polhode_files::text::visible(&path.display().to_string()).into_owned(),
+            Rows::Text(_) => "columns".into(),
+        }
+    }
+
+    fn trajectory(&self, options: &ReadOptions) -> Result<trajectory::FoundTrajectory, Error> {
+        match self {
+            Rows::File(path) => trajectory::read(path, options),
+            Rows::Text(text) => trajectory::of_text(text, &self.name(), options),
+        }
+    }
+
+    fn record(&self, options: &ReadOptions) -> Result<polhode_files::record::FoundRecord, Error> {
+        match self {
+            Rows::File(path) => polhode_files::record::open(path, options, None),
+            Rows::Text(text) => polhode_files::record::read(text, &self.name(), options),
+        }
+    }
 }
 
 /// A trajectory of a file, with what its names claim of the convention: for `audit`.
@@ -186,7 +216,8 @@ impl Kind {
     }
 }
 
-/// What a file holds, by its ending or by `kind`.
+/// What a file holds, by its ending or by `kind`; or a table in memory: a data frame, a structured array or a dict of columns, read by the
+/// names of its columns as a file is.
 ///
 /// | file | result |
 /// |---|---|
@@ -216,7 +247,7 @@ impl Kind {
 #[allow(clippy::too_many_arguments, reason = "they are keywords")]
 pub(crate) fn read<'py>(
     py: Python<'py>,
-    path: PathBuf,
+    path: &Bound<'py, PyAny>,
     kind: Option<&str>,
     columns: Option<&str>,
     time_unit: Option<&Bound<'py, PyAny>>,
@@ -233,9 +264,21 @@ pub(crate) fn read<'py>(
     group: Option<String>,
     root: Option<PathBuf>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    // a file of that name, not standard input
-    let path = if path.as_os_str() == "-" { PathBuf::from("./-") } else { path };
-    let kind = Kind::of(kind, &path)?;
+    let (rows, kind) = match columns::text(path)? {
+        Some(text) => (Rows::Text(text), Kind::of(kind, Path::new(""))?),
+        None => {
+            let path: PathBuf = path.extract()?;
+            // a file of that name, not standard input
+            let path = if path.as_os_str() == "-" { PathBuf::from("./-") } else { path };
+            let kind = Kind::of(kind, &path)?;
+            (Rows::File(path), kind)
+        }
+    };
+    let path = match &rows {
+        Rows::File(path) => path.clone(),
+        Rows::Text(_) if matches!(kind, Kind::Trajectory | Kind::Record | Kind::Table) => PathBuf::new(),
+        Rows::Text(_) => return Err(refused("kind: columns in memory are a trajectory or a record")),
+    };
     let about_meshes =
         [mass.is_some(), density.is_some(), length_unit.is_some(), close.is_some(), shell.is_some()];
     if kind != Kind::Mesh && about_meshes.contains(&true) {
@@ -284,11 +327,11 @@ pub(crate) fn read<'py>(
             let found = heard(py, || options.body(&path, amount))?;
             mass_properties(py, found)
         }
-        Kind::Record => record_of(py, &path, &table()?),
+        Kind::Record => record_of(py, &rows, &table()?),
         Kind::Trajectory => {
             let options = table()?;
-            let found = heard(py, || trajectory::read(&path, &options))?;
-            trajectories(py, &path, found)
+            let found = heard(py, || rows.trajectory(&options))?;
+            trajectories(py, &rows, found)
         }
         Kind::Times => {
             let source = TimesColumn {
@@ -303,16 +346,16 @@ pub(crate) fn read<'py>(
         }
         Kind::Table => {
             let options = table()?;
-            let found = py.detach(|| hearing(|| trajectory::read(&path, &options)));
+            let found = py.detach(|| hearing(|| rows.trajectory(&options)));
             let is_trajectory = |found: &trajectory::FoundTrajectory| {
                 found.bodies.iter().any(|(_, rows)| rows.attitude.is_some() || rows.momentum.is_some())
             };
             match found {
                 (Ok(found), remarks) if is_trajectory(&found) => {
                     remarks.iter().try_for_each(|remark| warn(py, remark))?;
-                    trajectories(py, &path, found)
+                    trajectories(py, &rows, found)
                 }
-                _ => record_of(py, &path, &options),
+                _ => record_of(py, &rows, &options),
             }
         }
     }
@@ -329,8 +372,8 @@ fn links(py: Python<'_>, found: Vec<Given>) -> PyResult<Bound<'_, PyAny>> {
     Ok(Bound::new(py, Links(found.collect::<PyResult<_>>()?))?.into_any())
 }
 
-fn record_of<'py>(py: Python<'py>, path: &Path, options: &ReadOptions) -> PyResult<Bound<'py, PyAny>> {
-    let found = heard(py, || polhode_files::record::open(path, options, None))?;
+fn record_of<'py>(py: Python<'py>, rows: &Rows, options: &ReadOptions) -> PyResult<Bound<'py, PyAny>> {
+    let found = heard(py, || rows.record(options))?;
     if let Some(first) = found.skipped.first() {
         let (count, samples) = (found.skipped.len(), found.record.samples());
         warn(py, &format!("rows left out: {count}, beside {samples} that are read; the first: {first}"))?;
@@ -341,11 +384,11 @@ fn record_of<'py>(py: Python<'py>, path: &Path, options: &ReadOptions) -> PyResu
 
 fn trajectories<'py>(
     py: Python<'py>,
-    path: &Path,
+    rows: &Rows,
     found: trajectory::FoundTrajectory,
 ) -> PyResult<Bound<'py, PyAny>> {
     let trajectory::FoundTrajectory { bodies, claims, counts_steps, comments, .. } = found;
-    let file = polhode_files::text::visible(&path.display().to_string()).into_owned();
+    let file = rows.name();
     let one = |(id, rows)| {
         let comments = comments.clone();
         Bound::new(py, Trajectory { file: file.clone(), id, rows, claims, counts_steps, comments })

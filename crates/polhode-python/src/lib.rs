@@ -8,6 +8,7 @@ mod arrays;
 mod audits;
 mod bodies;
 mod calm;
+mod columns;
 mod ensembles;
 mod error;
 mod files;

@@ -195,6 +195,33 @@ def test_links_of_a_robot_are_examined(tmp_path):
         robot["hand"].properties
 
 
+def test_tables_in_memory_are_read_by_their_names(exact):
+    attitude, omega = exact
+    table = {"t": T, **{f"q_{axis}": attitude[:, k] for k, axis in enumerate("wxyz")}}
+    table |= {f"Gyroscope {axis} (deg/s)": np.degrees(omega[:, k]) for k, axis in enumerate("xyz")}
+    kinds = [(name, "f8") for name in table]
+    structured = np.array(list(zip(*table.values())), dtype=kinds)
+
+    class Frame:
+        """As a data frame writes itself."""
+
+        def to_csv(self, index=True):
+            assert not index
+            return "\n".join([",".join(table), *(",".join(map(repr, map(float, row))) for row in zip(*table.values()))])
+
+    for given in (table, structured, Frame()):
+        trajectory = polhode.read(given)
+        assert_array_equal(trajectory.attitude, attitude)
+        verdict = polhode.audit(trajectory, moments=[1, 2, 3])
+        assert verdict.is_right and verdict.reading["rate_unit"] == "deg/s"
+    record = polhode.read({name: table[name] for name in ["t", *(name for name in table if "Gyro" in name)]})
+    assert_allclose(record.rates, omega, rtol=1e-15)
+    with pytest.raises(PolhodeError, match=r"wx: an array of shape \(2,\); it must be of shape \(3,\), as t"):
+        polhode.read({"t": [1, 2, 3], "wx": [1, 2]})
+    with pytest.raises(PolhodeError, match="a trajectory or a record"):
+        polhode.read(table, kind="mesh")
+
+
 def test_every_kind_of_file_is_read(tmp_path):
     trajectory = polhode.read(PROGRAMS / "basilisk.csv")
     assert isinstance(trajectory, polhode.Trajectory) and trajectory.attitude.shape == (len(trajectory), 3)

@@ -73,7 +73,7 @@ def supplied(folder):
     (folder / "part.stl").write_text(stl_of_an_open_cube())
 
 
-@pytest.mark.parametrize("page", ["docs/python.md", "crates/polhode-python/README.md"])
+@pytest.mark.parametrize("page", ["docs/python.md", "crates/polhode-python/package.md"])
 def test_programs_of_the_pages_run(page, tmp_path, monkeypatch):
     supplied(tmp_path)
     monkeypatch.chdir(tmp_path)

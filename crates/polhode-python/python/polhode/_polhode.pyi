@@ -466,8 +466,11 @@ class Record:
     def rates(self) -> Floats: ...
     def __len__(self) -> int: ...
 
+# a path, or a table: a data frame, a structured array, a dict of columns
+Table: TypeAlias = Any
+
 def read(
-    path: Path,
+    path: Path | Table,
     *,
     kind: Literal["trajectory", "record", "times", "urdf", "mjcf", "sdf", "parts", "json", "mesh"] | None = None,
     columns: str | None = None,
