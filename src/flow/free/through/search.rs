@@ -17,6 +17,8 @@ const FOLLOWED: f64 = 0.4;
 const STRAIGHT: f64 = 0.05;
 /// Iterations for the place where a half angle turns round.
 const EXTREMUM: u32 = 40;
+/// Part of a period by which the ends of a piece may differ unseen.
+const STEADY: f64 = 0.06;
 /// How often a piece is halved.
 const DEEPEST: u32 = 26;
 /// Where the ends of a stretch begin, e^−5 of its length from its limits.
@@ -144,7 +146,8 @@ impl Search<'_> {
     /// All roots between two places, by halves until the half angle is almost a straight line.
     fn piece(&self, stretch: Stretch, low: &At, high: &At, depth: u32, found: &mut Found) {
         let counts = counts(low, high);
-        if counts.is_empty() {
+        let change = high.1.part - low.1.part;
+        if counts.is_empty() && change.abs() < STEADY {
             return;
         }
         let z = 0.5 * (low.0 + high.0);
@@ -153,8 +156,9 @@ impl Search<'_> {
             return;
         };
         let middle = (z, middle.near(low.1.part));
-        let jump = (high.1.part - middle.1.part).round();
-        if (jump != 0.0 || (high.1.part - low.1.part).abs() > 0.25) && depth < DEEPEST {
+        // a part that runs fast looks slow where whole periods are left out, but not in the middle too
+        let bent = middle.1.part - 0.5 * (low.1.part + high.1.part);
+        if (change.abs() > 0.25 || bent.abs() > STEADY) && depth < DEEPEST {
             return self.halves(stretch, low, &middle, high, depth, found);
         }
         for &n in &counts {
