@@ -143,7 +143,7 @@ fn processor_time() -> Duration {
 fn hostile(seed: u64, share: f64, mut call: impl FnMut(&mut Draw) -> Result<(), String>) {
     let count = std::env::var("POLHODE_HOSTILE").map_or(3000.0, |count| count.parse().unwrap());
     let other: u64 = std::env::var("POLHODE_HOSTILE_SEED").map_or(0, |seed| seed.parse().unwrap());
-    let (seed, count) = (seed ^ other << 32, (count * share) as u64);
+    let (seed, count) = (seed ^ (other << 32), (count * share) as u64);
     let random = Random::new(seed);
     let mut slowest = Duration::ZERO;
     for number in 0..count {
