@@ -181,11 +181,11 @@ impl Audit {
         for (id, mut record) in bodies {
             let place = id.as_ref().map_or(name.to_string(), |id| format!("{name}, body {id}"));
             let mut notes = Vec::new();
-            if outcomes.is_empty() && !found.unread.is_empty() {
-                notes.push(format!("not read: {}", listed(&found.unread)));
-            }
             if found.counts_steps {
                 notes.push(timed(&mut record, body.as_ref(), &place)?);
+            }
+            if outcomes.is_empty() && !found.unread.is_empty() {
+                notes.push(format!("not read: {}", listed(&found.unread)));
             }
             let mut question = Question::new(body.clone());
             (question.tolerance, question.claims) = (self.tolerance, claims);

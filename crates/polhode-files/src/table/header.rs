@@ -131,11 +131,12 @@ impl Header {
         groups.flatten().flat_map(|group| group.places.iter().copied()).collect()
     }
 
-    /// The names of the other columns, of those that have one.
+    /// The names of the other columns, of those that have one; the places and velocities of MuJoCo are known to be such.
     pub(crate) fn unread(&self) -> impl Iterator<Item = &str> {
         let read: Vec<usize> =
             self.columns().into_iter().chain(self.time).chain(self.nanoseconds).chain(self.id).collect();
-        let others = (0..).zip(&self.names).filter(move |(place, _)| !read.contains(place));
+        let others =
+            (0..).zip(&self.names).filter(move |(place, _)| !self.is_generalized && !read.contains(place));
         others.map(|(_, name)| name.text.trim()).filter(|name| !name.is_empty())
     }
 
