@@ -9,6 +9,7 @@ mod atoms;
 mod audit;
 mod cases;
 mod covariance;
+#[allow(clippy::disallowed_methods)] // sizes of cases and tolerances
 mod derivative;
 mod dmv;
 mod doctor;
@@ -41,6 +42,7 @@ mod strapdown;
 mod surface;
 mod switched;
 mod taylor;
+#[allow(clippy::disallowed_methods)] // sizes of cases and tolerances
 mod through;
 mod tops;
 mod truth;
