@@ -47,7 +47,7 @@ impl Variational {
                     .map(|s| (s[n] / s.iter().fold(1.0, |a: f64, b| a.max(b.abs()))).abs());
                 state.chain(q.iter().map(|s| s[n].abs())).fold(0.0, f64::max)
             };
-            let step = |n: usize| (TOLERANCE / largest(n)).powf(1.0 / n as f64);
+            let step = |n: usize| libm::pow(TOLERANCE / largest(n), 1.0 / n as f64);
             let h = step(ORDER).min(step(ORDER - 1)).min((t - now).abs()) * (t - now).signum();
             let h = if (t - now - h).abs() < 1e-12 * t.abs() { t - now } else { h };
             let value = |s: &Series| s.iter().rev().fold(0.0, |sum, c| sum * h + c);
@@ -82,8 +82,8 @@ impl Variational {
             }
         }
         let mut q = [[0.0; ORDER + 1]; 4];
-        for k in 0..4 {
-            q[k][0] = self.q[k];
+        for (series, x) in q.iter_mut().zip(self.q) {
+            series[0] = x;
         }
         let mut omega: Series3 = [[0.0; ORDER + 1]; 3];
         let mut rates = [[[0.0; ORDER + 1]; 3]; 9];
