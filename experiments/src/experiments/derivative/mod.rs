@@ -12,7 +12,7 @@ use polhode::catalogue;
 use polhode::flow::{FreeMotion, StartCovariance, TurnAxes};
 use polhode::inertia::Inertia;
 use polhode::num::{Covariance, Random};
-use polhode::rotation::{Quat, Vec3};
+use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row, to_digits};
 
@@ -317,7 +317,7 @@ fn covariance(context: &Context, report: &mut Report) -> Result<(), Error> {
             let start = StartCovariance::new(start, TurnAxes::Space);
             let found = motion.covariance(t, &start).map_err(|error| failed(name, &error))?;
             let first_order = found.state.fixed_view::<3, 3>(0, 0).trace().sqrt();
-            let now = motion.at(t).map_err(|error| failed(name, &error))?.rotation();
+            let now = motion.at(t).map_err(|error| failed(name, &error))?.attitude;
             const BATCH: u64 = 500;
             let batch = |number: u64| {
                 let mut random = Random::new(SEED).stream(number);
@@ -330,7 +330,7 @@ fn covariance(context: &Context, report: &mut Report) -> Result<(), Error> {
                         FreeMotion::from_omega(&named.inertia, q0, omega + random.normal_vector() * rate);
                     let Ok(end) = other.map(|motion| motion.at(t)) else { continue };
                     let Ok(end) = end else { continue };
-                    let angle = end.rotation().angle_to(&now);
+                    let angle = rotation_angle(now, end.attitude);
                     sum += angle * angle;
                 }
                 sum
