@@ -46,7 +46,7 @@ mod random {
         let q0 = UnitQuaternion::from_scaled_axis(random.normal_vector());
         let omega = random.normal_vector();
         let motion = FreeMotion::from_omega(&inertia, q0, omega).unwrap();
-        let turns = 10f64.powf(random.between(-2.0, 4f64.log10()));
+        let turns = libm::exp10(random.between(-2.0, libm::log10(4.0)));
         let time = turns * core::f64::consts::TAU / motion.character().unwrap().spin;
         let q1 = motion.at(time).unwrap().rotation();
         Pair { inertia, q0, q1, omega, time, turns }

@@ -44,6 +44,8 @@ const EXAMPLES: &str = "Examples:
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 100 --every 10 \\
     --method dop853 --tolerance 1e-12
   polhode propagate --body t-handle --until 60 --event flip
+  polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 8 --every 2 \\
+    --fields t,q --out poses.csv
   polhode propagate --moments 1,2,3 --through poses.csv --every 0.1
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 1d \\
     --event 'angle(body z, space x) < 30deg' --stop";

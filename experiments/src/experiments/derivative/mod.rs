@@ -12,7 +12,7 @@ use polhode::catalogue;
 use polhode::flow::{FreeMotion, StartCovariance, TurnAxes};
 use polhode::inertia::Inertia;
 use polhode::num::{Covariance, Random};
-use polhode::rotation::{Quat, Vec3};
+use polhode::rotation::{Quat, Vec3, rotation_angle};
 use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row, to_digits};
 
@@ -204,7 +204,6 @@ fn through(context: &Context, report: &mut Report, timing: &mut Table) -> Result
     for (number, name) in BODIES.into_iter().enumerate() {
         let named = catalogue::body(name).ok_or_else(|| failed(name, &"not in the catalogue"))?;
         const BATCH: u64 = 20;
-        let clock = Instant::now();
         let batch = |batch: u64| {
             let mut random = Random::new(SEED + number as u64).stream(batch);
             let mut seen = Seen::default();
@@ -217,8 +216,8 @@ fn through(context: &Context, report: &mut Report, timing: &mut Table) -> Result
         for one in context.in_parallel((0..pairs / BATCH).collect(), batch) {
             seen.add(&one);
         }
-        let cores = std::thread::available_parallelism().map_or(1, usize::from).min((pairs / BATCH) as usize);
-        let each = clock.elapsed().as_secs_f64() * cores as f64 / seen.solutions as f64;
+        let first = batch(0);
+        let each = best(5, &|| discard(batch(0))) / first.solutions as f64;
         timing.push(row!["through, one solution", name, each * 1e6]);
         table.push(row![
             name,
@@ -323,7 +322,7 @@ fn covariance(context: &Context, report: &mut Report) -> Result<(), Error> {
             let start = StartCovariance::new(start, TurnAxes::Space);
             let found = motion.covariance(t, &start).map_err(|error| failed(name, &error))?;
             let first_order = found.state.fixed_view::<3, 3>(0, 0).trace().sqrt();
-            let now = motion.at(t).map_err(|error| failed(name, &error))?.rotation();
+            let now = motion.at(t).map_err(|error| failed(name, &error))?.attitude;
             const BATCH: u64 = 500;
             let batch = |number: u64| {
                 let mut random = Random::new(SEED).stream(number);
@@ -336,7 +335,7 @@ fn covariance(context: &Context, report: &mut Report) -> Result<(), Error> {
                         FreeMotion::from_omega(&named.inertia, q0, omega + random.normal_vector() * rate);
                     let Ok(end) = other.map(|motion| motion.at(t)) else { continue };
                     let Ok(end) = end else { continue };
-                    let angle = end.rotation().angle_to(&now);
+                    let angle = rotation_angle(now, end.attitude);
                     sum += angle * angle;
                 }
                 sum
