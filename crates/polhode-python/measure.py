@@ -62,7 +62,7 @@ def main():
 
     print(f"one state: {1e9 * least(scalars, 300) / len(ten):.0f} ns")
     t = np.linspace(0, 1e4, 1_000_000)
-    few = t[:10_000]
+    few = t[:10_000].copy()
     print(f"10000 states: {1e9 * least(lambda: at(few), 300) / few.size:.1f} ns a state")
     print(f"1000000 states: {1e9 * least(lambda: at(t), 15, time.process_time) / t.size:.1f} ns of processor time a state")
     part = t[:100_000]

@@ -213,3 +213,21 @@ def test_threads_share_a_motion():
     [thread.start() for thread in threads]
     [thread.join() for thread in threads]
     assert all((found[k] == found[0]).all() for k in found) and len(found) == 4
+
+
+@pytest.mark.parametrize("work", [
+    lambda: FreeMotion([1, 2, 3], OMEGA).at(np.arange(3e6)),
+    lambda: run("rk4", [1, 2, 3], OMEGA, times=[0, 1e6], step=0.1),
+    lambda: Ensemble([1, 2, 3], np.tile(OMEGA, (20000, 1)), threads=1).run("rk4", times=[0, 300], step=0.1),
+    lambda: [polhode.audit(np.arange(3e3), *FreeMotion([1, 2, 3], OMEGA).at(np.arange(3e3)), moments=[1, 2, 3]) for _ in range(20)],
+])  # fmt: skip
+def test_the_interpreter_is_free_meanwhile(work):
+    done = threading.Event()
+    thread = threading.Thread(target=lambda: (work(), done.set()))
+    thread.start()
+    ticks = 0
+    while not done.wait(0.001):
+        ticks += 1
+    thread.join()
+    # with the lock held there would be one or two
+    assert ticks > 10
