@@ -97,6 +97,9 @@ impl Attitude {
         memory::check_files(std::slice::from_ref(&self.record), 4)?;
         let readings = self.kind.readings(&self.record, &self.reading)?;
         let mut reference = self.against.as_deref().map(Reference::read).transpose()?;
+        if let Some(reference) = &reference {
+            reference.check(readings.segments().iter().flat_map(|segment| segment.times()))?;
+        }
         let noise = self.sensor.noise(&readings);
         let sensor = self.sensor.sensor(noise);
         let rule = self.rule.rule(&readings, sensor)?;
@@ -123,7 +126,7 @@ impl Attitude {
             self.tell(&readings, segment, rule, start, &found, noise.is_found);
         }
         if let Some(reference) = &reference {
-            reference.tell()?;
+            reference.tell();
         }
         rows.finish()?;
         match lost {
