@@ -7,7 +7,7 @@ use polhode::audit::{Direction, QuaternionOrder, Reading, Trajectory};
 use polhode::strapdown::Estimate;
 use polhode_files::ReadOptions;
 use polhode_files::error::{Error, tell};
-use polhode_files::text::{short, visible};
+use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
 
 /// Times agree within this share of the mean interval of the reference.
@@ -83,7 +83,7 @@ impl Reference {
                 self.name,
                 self.compared,
                 self.largest,
-                short(self.at),
+                rounded(self.at),
                 self.inside
             ),
         );

@@ -15,7 +15,7 @@ use polhode::rotation::{EulerAngles, EulerSequence, Quat};
 use polhode::strapdown::{Estimate, Kind, Rule, attitudes};
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::numbers::{quaternion, turn};
-use polhode_files::text::short;
+use polhode_files::text::rounded;
 use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
 use crate::flags::record::RecordArguments;
@@ -134,7 +134,7 @@ impl Attitude {
             Some(t) => Err(Error::Failed(format!(
                 "{}: the attitude is lost: from t = {} s on its standard deviation is above {LOST} rad",
                 readings.name,
-                short(t)
+                rounded(t)
             ))),
         }
     }
@@ -235,7 +235,7 @@ impl Attitude {
         });
         tell(
             "note",
-            &format!("{}; at t = {} s: {}{line}", rule::words(rule), short(last.time), parts.join(", ")),
+            &format!("{}; at t = {} s: {}{line}", rule::words(rule), rounded(last.time), parts.join(", ")),
         );
         if readings.is_assumed {
             let mean = rule::last(Kind::Average, segment, rule, start);

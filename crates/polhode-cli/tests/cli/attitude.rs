@@ -124,7 +124,7 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     let fast = file("fast.csv", "0,1,0,0\n0.1,1,0,0\n0.2,40,0,0\n0.3,1,0,0\n");
     refused_with(
         &["attitude", &fast],
-        &["fast.csv, line 4", "4.000 rad", "half a turn", "aliasing", "--rate-unit"],
+        &["fast.csv, line 4", "a turn by 4 rad", "half a turn", "aliasing", "--rate-unit"],
     );
     let even: String = (0..40).map(|k| format!("{:.1},1,0,0\n", 0.1 * f64::from(k))).collect();
     let late: String = (0..40).map(|k| format!("{:.1},1,0,0\n", 9.0 + 0.1 * f64::from(k))).collect();
