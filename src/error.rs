@@ -77,8 +77,11 @@ from!(
     crate::body::StateError,
     crate::events::EventError,
     crate::flow::AtRest,
+    crate::flow::CovarianceError,
+    crate::flow::DerivativeError,
     crate::flow::LagrangeError,
     crate::flow::NoClosedForm,
+    crate::flow::ThroughError,
     crate::flow::TimeError,
     crate::flow::TumblingError,
     crate::inertia::MassDistributionError,
@@ -98,6 +101,7 @@ from!(
     crate::method::TwoAxesError,
     crate::method::UnknownMethod,
     crate::method::schemes::UnknownScheme,
+    crate::num::DistributionError,
     crate::num::ParseDdError,
     crate::record::RecordError,
     crate::rotation::EulerSequenceError,
@@ -114,4 +118,4 @@ from!(
     crate::units::DateError,
 );
 #[cfg(any(test, feature = "random"))]
-from!(crate::body::NoMember, crate::num::DistributionError);
+from!(crate::body::NoMember);

@@ -105,6 +105,8 @@ pub mod guide {
     pub mod inertia_tensors {}
     #[doc = include_str!("../docs/own-force-and-method.md")]
     pub mod own_force_and_method {}
+    #[doc = include_str!("../docs/python.md")]
+    pub mod python {}
     #[doc = include_str!("../docs/simulators.md")]
     pub mod simulators {}
     #[doc = include_str!("../docs/teaching.md")]

@@ -1,7 +1,7 @@
 //! What is advised does what it says, and what cannot be met is refused with the law.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::advise::{AdviseError, Choice, Demand, Setting, advise, check};
+use polhode::advise::{AdviseError, Choice, Demand, Setting, Stage, advise, advise_telling, check};
 use polhode::body::{Body, Force, State};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
@@ -75,6 +75,20 @@ fn method_and_step_stand_for_a_run() {
     let exact = FreeMotion::from_state(body.inertia(), &start).unwrap().at(100.0).unwrap();
     let error = end.state.rotation().angle_to(&exact.rotation());
     assert!(error < 1e-5 && error < 1.3 * best.attitude_error.value, "{error:e}, {best:?}");
+}
+
+#[test]
+fn progress_grows_from_method_to_method() {
+    let (body, start) = textbook();
+    let mut done = Vec::new();
+    let mut heed = |progress: &polhode::advise::Progress| {
+        if progress.stage == Stage::Methods {
+            done.push(progress.done);
+        }
+    };
+    advise_telling(&body, &start, &without_closed_form(20.0, 1e-3), &mut heed).unwrap();
+    assert!(done.len() > 10 && done[0] == 0.0, "{done:?}");
+    assert!(done.windows(2).all(|pair| pair[0] < pair[1] && pair[1] < 1.0), "{done:?}");
 }
 
 #[test]

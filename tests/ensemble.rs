@@ -367,7 +367,7 @@ fn first_passages_are_those_of_each_member_alone() {
     }
     let exact = ensemble.first(|body| Ok(Event::flip(body)), 6.0, 0.5);
     let (rk4, clock) = (method("rk4").unwrap(), Clock::new(0.05));
-    let stepped = ensemble.first_by(&rk4, clock, |body| Ok(Event::flip(body)), 6.0);
+    let stepped = ensemble.first_by(&rk4, clock, |body| Ok(Event::flip(body)), 6.0, 0.05);
     assert_eq!((exact.len(), stepped.len()), (200, 200));
     let mut happened = 0;
     for (k, omega) in omegas.iter().enumerate() {

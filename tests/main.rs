@@ -8,6 +8,9 @@ mod atoms;
 #[allow(clippy::disallowed_methods)] // sines of the records that another program would write
 mod audit;
 mod cases;
+mod covariance;
+#[allow(clippy::disallowed_methods)] // sizes of cases and tolerances
+mod derivative;
 mod dmv;
 mod doctor;
 mod ensemble;
@@ -39,6 +42,8 @@ mod strapdown;
 mod surface;
 mod switched;
 mod taylor;
+#[allow(clippy::disallowed_methods)] // sizes of cases and tolerances
+mod through;
 mod tops;
 mod truth;
 mod tumbling;

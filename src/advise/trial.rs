@@ -137,3 +137,42 @@ impl Trial {
 fn growth(before: f64, after: f64, fastest: f64) -> f64 {
     if after > 0.0 { libm::log2(after / before.max(0.25 * after)).clamp(0.5, fastest) } else { 1.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(times_longer: f64, [before, attitude]: [f64; 2], energy: Option<[f64; 2]>) -> Trial {
+        Trial {
+            horizon: 10.0,
+            times_longer,
+            attitude,
+            attitude_before: before,
+            energy: energy.map(|energy| energy[1]),
+            energy_before: energy.map_or(0.0, |energy| energy[0]),
+            setup: 0.0,
+            price: 1.0,
+            scatter: 1.0,
+            steps: 1,
+        }
+    }
+
+    #[test]
+    fn an_error_goes_on_as_it_grew() {
+        let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a:e} for {b:e}");
+        let whole = seen(1.0, [1e-6, 2e-6], None).attitude_at(1e3, 2.0, false);
+        assert_eq!((whole.value, whole.factor), (2e-6, SAME_RUN));
+        // as t, as the root of t, and, where nothing tells the energy, as t²
+        let steady = seen(4.0, [1e-6, 2e-6], None).attitude_at(1e3, 2.0, false);
+        near(steady.value, 8e-6);
+        assert!(steady.value * steady.factor >= 8e-6 && steady.value / steady.factor <= 4e-6);
+        near(seen(4.0, [2e-6, 2e-6], None).attitude_at(1e3, 2.0, false).value, 4e-6);
+        near(seen(4.0, [5e-7, 2e-6], None).attitude_at(1e3, 2.0, true).value, 32e-6);
+        // the rate of turning is off by the energy: 4e-9 of 2 rad/s for 1000 s more than before
+        let drifting = seen(4.0, [1e-6, 2e-6], Some([5e-10, 1e-9]));
+        near(drifting.energy_at(true).unwrap(), 4e-9);
+        near(drifting.attitude_at(1e3, 2.0, true).value, 16e-6);
+        near(drifting.attitude_at(1e3, 2.0, false).value, 8e-6);
+        assert_eq!(drifting.energy_at(false), Some(1e-9));
+    }
+}

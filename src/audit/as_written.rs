@@ -36,7 +36,7 @@ pub(super) fn off_in_space(
     let weights = Weights { attitude: found.attitude_noise, rates: found.rates_noise, size };
     let Some(start) = fitted(&found.start, &rows, weights, true, false) else { return false };
     let dynamics = Dynamics::new(&start.body);
-    let scale = start.body.scale();
+    let scale = found.scale;
     let length = dynamics.momentum(start.row.omega).norm() * scale;
     let unit = reading.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
     let left = LEFT * allowed.attitude.rounding;
@@ -51,7 +51,7 @@ pub(super) fn off_in_space(
         momentum.map_or(0.0, |momentum| limit(momentum, &writings.momentum, of_momentum, length)),
     ];
     let mut is_off = false;
-    let sweep = Sweep { record, reading, start: &start, size };
+    let sweep = Sweep { record, reading, start: &start, size, scale };
     let followed = sweep.every(&mut |seen| {
         let (q, omega) = seen.exact;
         let rates = rates.map_or(0.0, |rates| (Vec3(rates[seen.row]) * unit - q.rotate(omega)).norm() / size);

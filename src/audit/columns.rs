@@ -4,8 +4,7 @@ use super::program::{Dynamics, Program, Turn};
 use super::rows::Windows;
 use super::shape::Look;
 use super::{Attitudes, Frame, Reading, Trajectory};
-use crate::num::trig::sin_cos;
-use crate::rotation::{Quat, Vec3};
+use crate::rotation::{Quat, Vec3, rotation_vector, turn_by};
 
 /// What the angular velocity is read from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -212,20 +211,6 @@ fn shot(
         }
     }
     omega
-}
-
-/// The rotation by the vector `v`, rad.
-pub(super) fn turn_by(v: Vec3<f64>) -> Quat<f64> {
-    let angle = v.norm();
-    let (sin, cos) = sin_cos(0.5 * angle);
-    Quat::new(cos, v * if angle > 0.0 { sin / angle } else { 0.5 })
-}
-
-/// The vector of a rotation, rad, at most half a turn long.
-pub(super) fn rotation_vector(q: Quat<f64>) -> Vec3<f64> {
-    let q = if q.w < 0.0 { -q } else { q };
-    let sin = q.v.norm();
-    q.v * if sin > 0.0 { 2.0 * libm::atan2(sin, q.w) / sin } else { 2.0 }
 }
 
 /// The angle between two attitudes of norm 1, rad, by the chord where it is small.

@@ -1,5 +1,7 @@
 //! How far a record is from the motion that starts like it, and what of that its noise explains.
 
+use super::program::Dynamics;
+use super::question::MOST;
 use super::resolution::{noise, triples};
 use super::signature::Flips;
 use super::start::{Start, Weights, distances, fitted};
@@ -24,8 +26,9 @@ const SMALL: f64 = 0.3;
 /// The turn between rows, rad, above which an error that swings with the motion looks like noise.
 const COARSE: f64 = 0.8;
 
-/// A resolution above this, rad or relative, decides nothing.
-const COARSEST: f64 = 0.1;
+/// The least noise of a column beside that of the other that a fit reckons with: its square, and what the rates of a motion grow
+/// by, stay above what a fit leaves alone.
+const APART: f64 = 1e-4;
 
 /// A row that is this many times the spread of all rows away is none of noise.
 const OUTLIER: f64 = 10.0;
@@ -55,6 +58,8 @@ pub(super) struct Deviation {
     pub(super) is_noisy: bool,
     /// Root mean square of ω at the rows that were looked at first, rad/s.
     pub(super) size: f64,
+    /// Momenta of the record over those of the solver frame.
+    pub(super) scale: f64,
     /// Rows further from the motion than is allowed in any column, ascending.
     pub(super) beyond: Vec<usize>,
     /// Changes of sign of the momentum along the middle axis in the record and in the motion, at the same rows; the same number
@@ -141,11 +146,11 @@ pub(super) fn deviation(
     let mut fitted_start = false;
     if !is_near(&from_first) {
         let weigh = |noise: f64, rounding: f64| noise.max(rounding).max(1e-15);
-        let weights = Weights {
-            attitude: weigh(noise.0, allowed.attitude.rounding),
-            rates: weigh(noise.1, of_rates.rounding).max(if measured_rates { 0.0 } else { 1e-3 }),
-            size,
-        };
+        let attitude = weigh(noise.0, allowed.attitude.rounding);
+        let rates = weigh(noise.1, of_rates.rounding).max(if measured_rates { 0.0 } else { 1e-3 });
+        // beside a column that is far more exact the other would leave the start as it is
+        let weights =
+            Weights { attitude: attitude.max(APART * rates), rates: rates.max(APART * attitude), size };
         let best = fitted(&first, &rows, weights, measured_rates, shape)
             .and_then(|start| Distance::of(&start, &rows, size));
         // by the middle row: a few bad rows drag a fit, and leave the first row where it is
@@ -159,7 +164,12 @@ pub(super) fn deviation(
         }
     }
     let noise = noise_at(&chosen);
-    let sweep = Sweep { record, reading, start: &chosen.start, size };
+    let scale = if shape {
+        momentum_scale(record, reading, &chosen.start.body, &rows)
+    } else {
+        chosen.start.body.scale()
+    };
+    let sweep = Sweep { record, reading, start: &chosen.start, size, scale };
     let found = every_row(&sweep, allowed, &of_rates, noise)?;
     let judge = |tally: Option<&Tally>, allowance: &Allowance, noise: f64| {
         tally.map_or(Judgement::Right, |tally| of_column(tally, allowance, noise, size, record))
@@ -191,7 +201,20 @@ pub(super) fn deviation(
         flips: found.flips,
         start: chosen.start,
         size,
+        scale,
     })
+}
+
+/// What momenta of a body that was fitted, of whose size the motion tells nothing, are in units of the record.
+fn momentum_scale(record: &Trajectory, reading: &Reading, body: &Body, rows: &[Row]) -> f64 {
+    let dynamics = Dynamics::new(body);
+    let sums = rows.iter().fold((0.0, 0.0), |(along, square), row| {
+        let expected = dynamics.momentum(row.omega);
+        let written = reading.momentum_body(record, row.row).unwrap_or(Vec3::zero());
+        (along + written.dot(expected), square + expected.norm_squared())
+    });
+    // of momenta against the motion nothing is right
+    (sums.0 / sums.1).max(f64::MIN_POSITIVE)
 }
 
 /// What a pass over all rows finds.
@@ -269,8 +292,9 @@ fn every_row(
 /// The judgement of one column. `noise`: root mean square of a component between neighbours.
 fn of_column(tally: &Tally, allowance: &Allowance, noise: f64, size: f64, record: &Trajectory) -> Judgement {
     if tally.is_exact() || tally.is_declared_noise() {
-        // digits that leave a tenth of a radian open decide nothing
-        return if 1.5 * allowance.rounding > COARSEST { Judgement::Undecided } else { Judgement::Right };
+        // digits or a noise that leave a tenth of a radian open, or of ω, decide nothing
+        let decides = 1.5 * allowance.rounding <= MOST && allowance.noise <= MOST;
+        return if decides { Judgement::Right } else { Judgement::Undecided };
     }
     let spread = tally.spread();
     let swings = record.times.windows(2).any(|pair| (pair[1] - pair[0]) * size > COARSE);

@@ -56,10 +56,12 @@ pub enum AuditError {
         row: usize,
     },
     /// The tolerance is not usable.
-    #[error("the tolerance is {}; it must be a finite number above 0", Shown(*value))]
+    #[error("the tolerance is {}; it must be above 0 and at most {}: within more than that nearly anything is", Shown(*value), Shown(*most))]
     Tolerance {
         /// What was given.
         value: f64,
+        /// What is allowed at most.
+        most: f64,
     },
     /// Noise that is declared is not usable.
     #[error("the noise of the {quantity} is {}; it must be a number from 0 to {}", Shown(*value), Shown(*most))]

@@ -1,10 +1,9 @@
 //! Records whose rows are all exchanged with a neighbour.
 
-use super::columns::rotation_vector;
 use super::deviation::{Allowances, deviation};
 use super::{Attitudes, Fault, Judgement, Misplaced, Reading, Trajectory};
 use crate::body::Body;
-use crate::rotation::Vec3;
+use crate::rotation::{Vec3, rotation_vector};
 
 /// Rows that are looked at first.
 const LOOKS: usize = 256;

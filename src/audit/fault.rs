@@ -75,6 +75,10 @@ pub enum Fault {
         /// How many.
         digits: u32,
     },
+    /// Forces turn the body so far over the record that its motion is not followed.
+    NotFollowed,
+    /// Angular velocities alone, and no body is found that moves so.
+    NoBodyFound,
     /// Rows that are further from the motion than is allowed.
     Misplaced {
         /// What they hold.
@@ -155,6 +159,12 @@ impl fmt::Display for Fault {
             Fault::Plateau { row, rows } => write!(
                 f,
                 "row {row}: a component of the angular velocity stays the same over {rows} rows; are rates clamped or held?"
+            ),
+            Fault::NoBodyFound => f.write_str(
+                "no body is found whose angular velocity this is; give its moments, or record the attitude too",
+            ),
+            Fault::NotFollowed => f.write_str(
+                "the forces turn the body so far over the record that its motion is not followed: are the units of times, moments and forces those of each other?",
             ),
             Fault::SinglePrecision => f.write_str("every number is one of single precision; write doubles"),
             Fault::FewDigits { digits } => {

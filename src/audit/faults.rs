@@ -2,10 +2,9 @@
 
 use core::f64::consts::PI;
 
-use super::columns::rotation_vector;
 use super::resolution::Writing;
 use super::{Attitudes, Fault, Reading, Trajectory};
-use crate::rotation::Vec3;
+use crate::rotation::{Vec3, rotation_vector};
 
 /// An interval this many times the usual one is a jump.
 const JUMP: f64 = 1.5;

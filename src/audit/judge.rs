@@ -1,7 +1,9 @@
 //! From a reading to a verdict.
 
+use core::f64::consts::FRAC_PI_2;
+
 use super::as_written::off_in_space;
-use super::columns::{Columns, Source, rotation_vector};
+use super::columns::{Columns, Source};
 use super::conservation::conservation;
 use super::detective::Finding;
 use super::deviation::{Allowances, deviation, trace};
@@ -11,6 +13,7 @@ use super::misplaced::misplaced;
 use super::other_body::other_body as other_body_of;
 use super::other_torque::other_torque as other_torque_of;
 use super::resolution::{Writings, rounding_turn, triples};
+use super::rows::typical_turn;
 use super::signature::signature as signature_of;
 use super::states::{Quantities, states};
 use super::sweep::Allowance;
@@ -20,7 +23,7 @@ use super::{
 };
 use crate::body::{Body, Problem};
 use crate::inertia::Symmetry;
-use crate::rotation::Vec3;
+use crate::rotation::{Vec3, rotation_vector};
 
 /// An angular velocity between two attitudes, relative, is off by at most so many times what one of them is, over the turn.
 const DERIVED: f64 = 3.0;
@@ -59,6 +62,9 @@ pub(super) fn judge(
 fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> Result<Verdict, AuditError> {
     let first = finding.right.first().ok_or(AuditError::NoReading)?;
     let (mut reading, body) = (first.reading, first.body.clone());
+    if record.rates.is_some() && record.momentum.is_some() {
+        reading.momentum_frame = momentum_frame(record, &reading, &body);
+    }
     let writings = Writings::of(record);
     let rounding = writings.rates.rounding().max(writings.momentum.rounding());
     let angle_rounding = rounding_turn(record, &reading, writings.attitude);
@@ -94,6 +100,20 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
         if by_motion == Judgement::Right && contradicted { Judgement::Undecided } else { by_motion };
     let mut faults = faults(record, &reading, &writings.coarsest(), tolerance);
     faults.extend(no_rotation);
+    if deviation.is_none() && !free {
+        faults.push(Fault::NotFollowed);
+    }
+    // of attitudes alone nobody knows which way they turn from row to row, nor how often
+    let angle = if has_omega { 0.0 } else { typical_turn(record) };
+    if by_motion == Judgement::Wrong && angle > FRAC_PI_2 {
+        by_motion = Judgement::Undecided;
+        faults.push(Fault::TooCoarse { angle });
+    }
+    // rates alone lead a search for the body astray now and then
+    if by_motion == Judgement::Wrong && fits && record.attitude.is_none() {
+        by_motion = Judgement::Undecided;
+        faults.push(Fault::NoBodyFound);
+    }
     if by_motion != Judgement::Right {
         faults.extend(discontinuity(record, &reading, rounding));
         if let Some(found) = &deviation {
@@ -155,9 +175,6 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
         digits: writings.coarsest().digits,
         single_precision: writings.coarsest().single_precision,
     };
-    if record.rates.is_some() && record.momentum.is_some() {
-        reading.momentum_frame = momentum_frame(record, &reading, &body);
-    }
     let noise = deviation
         .as_ref()
         .filter(|found| judgement == Judgement::Undecided && found.is_noisy)

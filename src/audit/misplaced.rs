@@ -1,11 +1,10 @@
 //! What the rows hold that are further from the motion than is allowed.
 
-use super::columns::rotation_vector;
 use super::deviation::{Allowances, Deviation};
 use super::sweep::{Seen, Sweep};
 use super::{Fault, Misplaced, Reading, Trajectory};
 use crate::body::Problem;
-use crate::rotation::{Quat, Vec3};
+use crate::rotation::{Quat, Vec3, rotation_vector};
 
 /// More than this share of the rows, and it is the motion that is another, not rows that are misplaced.
 const MOST: f64 = 0.6;
@@ -26,7 +25,7 @@ pub(super) fn misplaced(
         return Vec::new();
     }
     let few = beyond.len() as f64 <= MOST * rows as f64;
-    let sweep = Sweep { record, reading, start: &found.start, size: found.size };
+    let sweep = Sweep { record, reading, start: &found.start, size: found.size, scale: found.scale };
     let of_rates = if record.rates.is_some() { allowed.rates } else { allowed.momentum };
     let limits = [allowed.attitude, of_rates, allowed.momentum].map(|allowance| allowance.largest(rows));
     let distance = |seen: &Seen| {

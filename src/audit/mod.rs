@@ -31,6 +31,7 @@ mod shape;
 mod signature;
 mod start;
 mod states;
+mod step_length;
 mod sweep;
 mod trajectory;
 mod verdict;
@@ -40,6 +41,7 @@ pub use error::AuditError;
 pub use fault::{Fault, Misplaced, Missing};
 pub use question::{Convention, Noise, Question};
 pub use reading::{Angles, Direction, Frame, Product, QuaternionOrder, Reading, Turns};
+pub use step_length::step_length;
 pub use trajectory::{Attitudes, Digits, FEWEST_ROWS, Trajectory};
 pub use verdict::{
     AttitudeError, Conservation, Judgement, OtherBody, OtherTorque, Ranked, Resolution, Signature, Suspect,

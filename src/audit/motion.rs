@@ -1,20 +1,23 @@
 //! The motion that a record is compared with: the closed form where there is one, else steps of a power series.
 
 use super::states::Row;
-use crate::body::{Body, Clock, Point};
+use crate::body::{Body, Clock, Point, Problem};
 use crate::flow::ExactMotion;
 use crate::method::{AdaptiveTaylor, AnyMethod, Rk8, Step};
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};
 
-/// Longest way, rad, that is run in double-double.
+/// Longest way, rad, that is run in double-double more than once.
 const FAR: f64 = 2000.0;
+
+/// Longest way, rad, that is run at all, between two rows typically and in all.
+const FARTHEST: [f64; 2] = [10.0, 1e5];
 
 /// The turn of a step where no power series takes the forces, rad.
 const STEP: f64 = 0.05;
 
 /// Attitude, body → space, and angular velocity, body axes, of the motion from `start` at each of `times`, not before its own;
-/// `None` where it cannot be followed. `precise`: in double-double, where it has to be run and is not too long.
+/// `None` where it cannot be followed. `precise`: in double-double, where it has to be run.
 pub(super) fn follow(
     body: &Body,
     start: &Row,
@@ -32,13 +35,14 @@ pub(super) fn follow(
         times.for_each(|t| read(exact.point_at(Dd::from(t) - Dd::from(start.time))));
         return Some(());
     }
-    let rate = start.omega.norm();
     let series = AdaptiveTaylor::to_rounding();
     if precise {
         let prepare = |clock| prepared(&series, |method| method.prepare_dd(clock, body).ok());
+        let rate = |point: &Point<Dd>| body.omega_of(point).norm();
         return stepped(prepare, inside, start.time, rate, times, &mut |point| read(point.to_f64()));
     }
     let prepare = |clock| prepared(&series, |method| method.prepare_f64(clock, body).ok());
+    let rate = |point: &Point<f64>| body.omega_of(point).norm();
     stepped(prepare, inside.to_f64(), start.time, rate, times, &mut |point| read(*point))
 }
 
@@ -50,11 +54,25 @@ pub(super) fn motion(
     precise: bool,
 ) -> Option<Vec<(Quat<f64>, Vec3<f64>)>> {
     let times: Vec<f64> = times.collect();
-    let way = start.omega.norm() * (times.last()? - start.time);
     let mut found = Vec::with_capacity(times.len());
-    let mut times = times.into_iter();
-    follow(body, start, &mut times, precise && way < FAR, &mut |q, omega| found.push((q, omega)))?;
+    let precise = precise && way(body, start, &times)? < FAR;
+    follow(body, start, &mut times.into_iter(), precise, &mut |q, omega| found.push((q, omega)))?;
     Some(found)
+}
+
+/// How far the body turns up to the last of `times`, rad: a motion without closed form is run for that, and that of a free body
+/// counts as none; `None` where it cannot be followed.
+pub(super) fn way(body: &Body, start: &Row, times: &[f64]) -> Option<f64> {
+    if body.problem() == Problem::Free {
+        return Some(0.0);
+    }
+    let (mut way, mut before, mut at) = (0.0, start.time, 0);
+    let mut measure = |_, omega: Vec3<f64>| {
+        way += omega.norm() * (times[at] - before);
+        (before, at) = (times[at], at + 1);
+    };
+    follow(body, start, &mut times.iter().copied(), false, &mut measure)?;
+    Some(way)
 }
 
 /// A step of `series`, or of a Runge-Kutta method where a force is a closure; and whether it chooses its own substeps.
@@ -69,12 +87,13 @@ fn stepped<S: Precise>(
     prepare: impl Fn(Clock) -> Option<(Box<dyn Step<S>>, bool)>,
     start: Point<S>,
     start_time: f64,
-    rate: f64,
+    rate_of: impl Fn(&Point<S>) -> f64,
     times: &mut dyn Iterator<Item = f64>,
     each: &mut dyn FnMut(&Point<S>),
 ) -> Option<()> {
     let (mut x, mut t) = (start, start_time);
-    for time in times {
+    let (rate, mut way) = (rate_of(&start), 0.0);
+    for (row, time) in times.enumerate() {
         if time > t {
             let (mut step, adaptive) = prepare(Clock { start: t, step: time - t })?;
             let mut n = 1;
@@ -86,9 +105,10 @@ fn stepped<S: Precise>(
             step.advance(&mut x, n);
             let reached = step.reading(&x);
             x = Point::new(reached.attitude, reached.momentum_body);
+            way += rate_of(&x) * (time - t);
             t = time;
         }
-        if !x.is_finite() {
+        if !x.is_finite() || way > FARTHEST[1].max(FARTHEST[0] * row as f64) {
             return None;
         }
         each(&x);

@@ -1,12 +1,11 @@
 //! The torque that a record shows beside what acts on its body.
 
-use super::columns::rotation_vector;
 use super::program::Dynamics;
 use super::rows::Windows;
 use super::states::{Row, states};
 use super::{Frame, OtherTorque, Reading, Trajectory};
 use crate::body::{Body, Problem, Time};
-use crate::rotation::Vec3;
+use crate::rotation::{Vec3, rotation_vector};
 
 /// A change of L over a window this many times what a row may be off stands out.
 const STANDS_OUT: f64 = 5.0;

@@ -3,8 +3,8 @@
 use super::{AngleUnit, Angles, AuditError, Direction, Frame, QuaternionOrder, RateUnit, Reading};
 use crate::body::Body;
 
-/// Most noise of the attitude that may be declared, rad: more hides any motion.
-const MOST_NOISE: f64 = 0.1;
+/// Most noise of the attitude that may be declared, rad, and the largest tolerance, rad and relative: more hides any motion.
+pub(super) const MOST: f64 = 0.1;
 
 /// What is asked of a record.
 ///
@@ -20,7 +20,7 @@ const MOST_NOISE: f64 = 0.1;
 pub struct Question {
     /// The body with what acts on it; `None`: a free body whose shape is found from the record.
     pub body: Option<Body>,
-    /// Largest error of a record that is right, rad and relative.
+    /// Largest error of a record that is right, rad and relative; at most 0.1.
     pub tolerance: f64,
     /// Noise of the record that is declared; without it a noisy record is undecided at best.
     pub noise: Noise,
@@ -33,7 +33,7 @@ pub struct Question {
 pub struct Noise {
     /// Of the attitude, rad.
     pub attitude: f64,
-    /// Of the angular velocity, rad/s.
+    /// Of the angular velocity, rad/s; where it is more than a tenth of the angular velocity, nothing is decided.
     pub rates: f64,
 }
 
@@ -86,12 +86,12 @@ impl Question {
     }
 
     pub(super) fn check(&self) -> Result<(), AuditError> {
-        if !(self.tolerance.is_finite() && self.tolerance > 0.0) {
-            return Err(AuditError::Tolerance { value: self.tolerance });
+        if !(self.tolerance > 0.0 && self.tolerance <= MOST) {
+            return Err(AuditError::Tolerance { value: self.tolerance, most: MOST });
         }
         let Noise { attitude, rates } = self.noise;
-        if !(0.0..=MOST_NOISE).contains(&attitude) {
-            return Err(AuditError::Noise { quantity: "attitude", value: attitude, most: MOST_NOISE });
+        if !(0.0..=MOST).contains(&attitude) {
+            return Err(AuditError::Noise { quantity: "attitude", value: attitude, most: MOST });
         }
         if !(rates >= 0.0 && rates.is_finite()) {
             return Err(AuditError::Noise { quantity: "angular velocity", value: rates, most: f64::MAX });

@@ -1,8 +1,7 @@
 //! What the writing of a record leaves open: digits, single precision, noise.
 
-use super::columns::rotation_vector;
 use super::{Attitudes, Reading, Trajectory};
-use crate::rotation::Vec3;
+use crate::rotation::{Vec3, rotation_vector};
 
 /// Most rows whose digits are counted.
 const MOST: usize = 2000;

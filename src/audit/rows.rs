@@ -64,7 +64,7 @@ impl Windows {
 
 /// How far the body turns between neighbouring rows, typically, rad: the same by every reading of a column but that of
 /// Euler angles, of which it is the middle of the changes.
-fn typical_turn(record: &Trajectory) -> f64 {
+pub(super) fn typical_turn(record: &Trajectory) -> f64 {
     let rows = record.times.len();
     let count = 256.min(rows - 1);
     let mut turns: Vec<f64> = (0..count).map(|k| turn_between(record, k * (rows - 1) / count)).collect();

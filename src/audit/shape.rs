@@ -7,6 +7,9 @@ use crate::inertia::Inertia;
 use crate::num::eigen::eigen;
 use crate::rotation::{Quat, Vec3};
 
+/// By which parts of a ball a tensor is made rounder that lies beyond the law.
+const ROUNDER: [f64; 5] = [0.0, 1e-9, 1e-6, 1e-4, 1e-2];
+
 /// One state of a record.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
@@ -103,5 +106,8 @@ fn body_of(gram: [[f64; 6]; 6]) -> Option<Body> {
     let trace = entries[0] + entries[1] + entries[2];
     let [xx, yy, zz, xy, xz, yz] = entries.map(|entry| entry / trace);
     let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    Inertia::from_tensor(tensor).ok().map(Body::free)
+    // what a lamina leaves to rounding may lie beyond what a body can be: the nearest to it that is nearer to a ball
+    let rounder = |part: f64| tensor * (1.0 - part) + Matrix3::from_diagonal_element(part / 3.0);
+    let inertia = ROUNDER.into_iter().find_map(|part| Inertia::from_tensor(rounder(part)).ok())?;
+    Some(Body::free(inertia))
 }

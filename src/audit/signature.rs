@@ -1,7 +1,6 @@
 //! Which integrator leaves the errors of a record: those of the catalogue are run from its start.
 
 use super::Signature;
-use super::columns::rotation_vector;
 use super::motion::motion;
 use super::states::{Quantities, Row, states};
 use super::{Reading, Trajectory};
@@ -10,7 +9,7 @@ use crate::inertia::Symmetry;
 use crate::method::{
     AnyMethod, AxisOrder, AxisSplit, Claimed as _, Kicks, LiePoisson, method, without_projections,
 };
-use crate::rotation::{Quat, Vec3};
+use crate::rotation::{Quat, Vec3, rotation_vector};
 use crate::run::{Run, Watch};
 
 /// Methods outside the catalogue that programs in use are built on.

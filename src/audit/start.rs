@@ -2,13 +2,12 @@
 
 use nalgebra::Matrix3;
 
-use super::columns::{rotation_vector, turn_by};
 use super::motion::motion;
 use super::states::Row;
-use crate::body::Body;
+use crate::body::{Body, Problem};
 use crate::inertia::Inertia;
 use crate::num::eigen::eigen;
-use crate::rotation::Vec3;
+use crate::rotation::{Vec3, rotation_vector, turn_by};
 
 /// Three turns of the start, three components of its angular velocity, six entries of the tensor.
 const UNKNOWNS: usize = 12;
@@ -19,6 +18,12 @@ const ITERATIONS: usize = 12;
 /// Relative change by which derivatives are taken, about the square root of the rounding of a double: over a long record next to
 /// the separatrix it grows a million times, and must stay small.
 const CHANGE: f64 = 1e-8;
+
+/// A row this far from the motion, rad or relative, is lost.
+const LOST: f64 = 0.5;
+
+/// Halvings of a step that no body takes.
+const HALVINGS: i32 = 10;
 
 /// Directions that the record bounds less than this, beside the best bounded, are left alone.
 const UNBOUNDED: f64 = 1e-13;
@@ -80,11 +85,21 @@ pub(super) fn fitted(
                 break;
             }
         }
-        if within.len() == rows.len() {
+        // what is lost on a short horizon is on a longer one, whose runs are dear
+        if within.len() == rows.len()
+            || best.body.problem() != Problem::Free && is_lost(&best, within, weights)?
+        {
             return Some(best);
         }
         reach *= 4.0;
     }
+}
+
+/// Whether most of `rows` are far from the motion.
+fn is_lost(start: &Start, rows: &[Row], weights: Weights) -> Option<bool> {
+    let all = distances(start, rows, false)?;
+    let far = all.iter().filter(|(turn, omega)| turn.norm().max(omega.norm() / weights.size) > LOST);
+    Some(2 * far.count() > all.len())
 }
 
 /// One iteration, and how far it moved the start, in units of its uncertainty.
@@ -105,10 +120,13 @@ fn improved(start: &Start, rows: &[Row], weights: Weights, rates: bool, shape: b
     let unknowns = if shape { UNKNOWNS } else { 6 };
     let mut slopes = Vec::new();
     for n in 0..unknowns {
-        let mut change = [0.0; UNKNOWNS];
-        change[n] = CHANGE;
-        let there = residual(&changed(start, change, weights.size)?)?;
-        slopes.push(there.iter().zip(&here).map(|(a, b)| (a - b) / CHANGE).collect::<Vec<f64>>());
+        // at the bounds of what a body can be there is one side only
+        let (there, by) = [CHANGE, -CHANGE].into_iter().find_map(|by| {
+            let mut change = [0.0; UNKNOWNS];
+            change[n] = by;
+            Some((residual(&changed(start, change, weights.size)?)?, by))
+        })?;
+        slopes.push(there.iter().zip(&here).map(|(a, b)| (a - b) / by).collect::<Vec<f64>>());
     }
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (mut normal, mut right) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
@@ -130,10 +148,12 @@ fn improved(start: &Start, rows: &[Row], weights: Weights, rates: bool, shape: b
             *entry += along * component;
         }
     }
-    // a long way is no linear problem
+    // a long way is no linear problem, and one that leaves what a body can be is too long
     let longest = step.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let part = if longest > 0.2 { 0.2 / longest } else { 1.0 };
-    Some((changed(start, step.map(|x| x * part), weights.size)?, moved.sqrt()))
+    let next =
+        (0..HALVINGS).find_map(|k| changed(start, step.map(|x| x * libm::scalbn(part, -k)), weights.size))?;
+    Some((next, moved.sqrt()))
 }
 
 /// The start with a turn, rad, and an angular velocity, in units of `size`, added in body axes, and entries of the tensor in units

@@ -2,15 +2,16 @@
 
 use core::cell::Cell;
 
-use super::columns::{Columns, Source, rotation_vector};
-use super::motion::follow;
+use super::columns::{Columns, Source};
+use super::motion::{follow, way};
 use super::program::Dynamics;
 use super::start::Start;
 use super::{Reading, Trajectory};
-use crate::rotation::{Quat, Vec3};
+use crate::rotation::{Quat, Vec3, rotation_vector};
 
-/// Rows up to which a motion without closed form is followed in double-double.
+/// Rows and the way, rad, up to which a motion without closed form is followed in double-double.
 const FEW: usize = 2000;
+const FAR: f64 = 1e4;
 
 /// One row as it was written and as it should be.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +39,8 @@ pub(super) struct Sweep<'a> {
     pub(super) start: &'a Start,
     /// Root mean square of ω, rad/s.
     pub(super) size: f64,
+    /// Momenta of the record over those of the solver frame.
+    pub(super) scale: f64,
 }
 
 impl Sweep<'_> {
@@ -56,8 +59,8 @@ impl Sweep<'_> {
         let source = Columns::new(record).source;
         let dynamics = Dynamics::new(&self.start.body);
         let beside = record.rates.is_some() && record.momentum.is_some();
-        let scale = self.start.body.scale();
-        let size = dynamics.momentum(self.start.row.omega).norm() * scale;
+        let scale = self.scale;
+        let size = dynamics.momentum(self.start.row.omega).norm() * scale.abs();
         let row = Cell::new(0);
         let mut look = |q: Quat<f64>, omega: Vec3<f64>| {
             let row = row.get();
@@ -80,7 +83,8 @@ impl Sweep<'_> {
             };
             each(&seen);
         };
-        let precise = record.times.len() <= FEW;
+        let precise = record.times.len() <= FEW
+            && way(&self.start.body, &self.start.row, &record.times).is_some_and(|way| way < FAR);
         // the motion asks for the next time when the row before has been looked at
         let mut times = rows.map(|next| {
             row.set(next);
@@ -118,6 +122,13 @@ const BLOCKS: usize = 64;
 /// Fewest rows of a block.
 const FEWEST: usize = 16;
 
+/// The noise of independent rows is at most this many times what the second differences of few of them show.
+const SEEN: f64 = 2.0;
+
+/// The mean length of a second difference of vectors of normal deviates over the standard deviation of a component:
+/// √6 times that of such a vector, 2 √(2/π).
+const SECOND_DIFFERENCE: f64 = 3.908_820_095_223_47;
+
 /// Units of the last digit from row to row beyond which the rounding of neighbours is independent.
 const MOVING: f64 = 10.0;
 
@@ -134,6 +145,9 @@ pub(super) struct Tally {
     largest_allowed: f64,
     beyond: usize,
     blocks: Vec<(Vec3<f64>, usize)>,
+    /// The deviations of the two rows before, and the sum of the lengths of second differences.
+    before: [Vec3<f64>; 2],
+    changes: f64,
     /// The largest mean of a block that is rounding, where rounding changes from row to row.
     lasting: Option<f64>,
 }
@@ -151,6 +165,8 @@ impl Tally {
             largest_allowed: allowance.largest(rows),
             beyond: 0,
             blocks: vec![(Vec3::zero(), 0); blocks],
+            before: [Vec3::zero(); 2],
+            changes: 0.0,
             lasting: None,
         }
     }
@@ -169,6 +185,11 @@ impl Tally {
     /// Whether the deviation at `row` is beyond the allowance, which counts too.
     pub(super) fn add(&mut self, row: usize, deviation: Vec3<f64>) -> bool {
         let size = deviation.norm();
+        let [first, second] = self.before;
+        if self.count >= 2 {
+            self.changes += (deviation - second * 2.0 + first).norm();
+        }
+        self.before = [second, deviation];
         self.count += 1;
         self.squares += size * size;
         if size > self.largest || size.is_nan() {
@@ -189,6 +210,11 @@ impl Tally {
         (self.squares / (3 * self.count.max(1)) as f64).sqrt()
     }
 
+    /// Noise of a component, by the second differences of neighbours, which an error that lasts leaves out.
+    fn between_neighbours(&self) -> f64 {
+        self.changes / self.count.saturating_sub(2).max(1) as f64 / SECOND_DIFFERENCE
+    }
+
     /// How many rows were added.
     pub(super) fn rows_seen(&self) -> usize {
         self.count
@@ -202,14 +228,16 @@ impl Tally {
     }
 
     /// Whether the deviations are within the noise that is declared: each of them, their spread, and the means of blocks, in
-    /// which an error that lasts adds up and noise does not.
+    /// which an error that lasts adds up and noise does not. Where neighbours differ by less than the declared noise, an error that
+    /// lasts hides in no more than that.
     pub(super) fn is_declared_noise(&self) -> bool {
         let Allowance { exact, noise, .. } = self.allowance;
         let fewer = |count: usize| 1.0 / (count.max(1) as f64).sqrt();
+        let lasting = noise.min(SEEN * self.between_neighbours());
         let in_blocks = |(sum, count): &(Vec3<f64>, usize)| {
             let mean = sum.norm() * (1.0 / (*count).max(1) as f64);
             // a quarter: what the start that was fitted to some of the rows leaves
-            mean <= exact + noise * (5.0 * fewer(*count) + 0.25)
+            mean <= exact + lasting * (5.0 * fewer(*count) + 0.25)
         };
         noise > 0.0
             && self.beyond == 0
@@ -252,5 +280,7 @@ mod tests {
         assert_eq!(tally_of(1e-3, &|row| swing(row) + if row > 2000 { 9e-4 } else { 0.0 }), (false, false));
         assert_eq!(tally_of(1e-3, &|row| if row == 5 { 8e-3 } else { swing(row) }), (false, false));
         assert_eq!(tally_of(1e-3, &|_| f64::NAN), (false, false));
+        // what is smooth is no noise, however much is declared
+        assert_eq!(tally_of(1e-2, &|row| 1e-6 * row as f64), (false, false));
     }
 }

@@ -1,54 +1,13 @@
 //! A body and what acts on it, with the conversions between a user's axes and the solver frame.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use thiserror::Error;
 
-use super::field::{Evaluated, Field, Forces, Witness};
-use super::{Conserved, Exit, Force, LinearPotential, Point, Rotor, State, Time};
+use super::field::{Field, Forces, Witness};
+use super::law::Evaluated;
+use super::{Conserved, Exit, Force, LinearPotential, Point, Rotor, State, StateError, Time};
 use crate::inertia::Inertia;
-use crate::num::{Dd, Precise, Real, Shown};
+use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
-
-/// Why a start is not usable.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum StateError {
-    /// A component is not a finite number.
-    #[error("{quantity} has the component {value}; every component must be a finite number")]
-    NotFinite {
-        /// Which quantity.
-        quantity: &'static str,
-        /// The offending value.
-        value: f64,
-    },
-    /// The quaternion of the attitude is zero.
-    #[error("the attitude is the zero quaternion, which has no direction; any other norm is fine")]
-    NoAttitude,
-    /// The spin is too large or too small for its energy to be a double.
-    #[error(
-        "{quantity} {} {unit} with this inertia puts the energy outside the range of a double; change the units", Shown(*value)
-    )]
-    OutOfRange {
-        /// Angular velocity or momentum, which was given.
-        quantity: &'static str,
-        /// Its largest component.
-        value: f64,
-        /// In which unit.
-        unit: &'static str,
-    },
-    /// The weight moment is too large or too small beside the inertia.
-    #[error(
-        "weight moment {} N m beside moments of inertia of {}: the rate of falling is outside the range \
-         of a double; change the units",
-        Shown(*weight_moment), Shown(*moment)
-    )]
-    WeightOutOfRange {
-        /// Size of the weight moment, N m.
-        weight_moment: f64,
-        /// Largest moment of inertia, to a power of two.
-        moment: f64,
-    },
-}
 
 /// Kinds of motion, by what acts on the body; the claims of a method differ between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::force::{Law, SeriesLaw};
-use super::{Force, LinearPotential, Potential, Time, Torque};
-use crate::num::{Dd, Precise, Real, Series};
+use super::law::Evaluated;
+use super::{Force, LinearPotential, Time};
+use crate::num::{Dd, Real, Series};
 use crate::rotation::{Quat, Vec3};
 
 /// The torque of everything that acts on a body, along its principal axes, in N m divided by
@@ -97,54 +97,6 @@ pub(crate) struct Failure {
 
 /// Takes note of the first force that is not finite at a state of a body.
 pub(crate) type Witness = Arc<OnceLock<Failure>>;
-
-/// The scalars in which every force can be evaluated.
-pub(crate) trait Evaluated: Precise {
-    fn torque(law: &Law, at: Time, attitude: Quat<Self>, omega_body: Vec3<Self>) -> Vec3<Self>;
-    fn energy(law: &Law, at: Time, attitude: Quat<Self>) -> Self;
-    fn series(
-        law: &SeriesLaw,
-        at: Time,
-        attitude: Quat<Series<Self>>,
-        omega_body: Vec3<Series<Self>>,
-    ) -> Vec3<Series<Self>>;
-}
-
-macro_rules! evaluated {
-    ($scalar:ty) => {
-        impl Evaluated for $scalar {
-            fn torque(law: &Law, at: Time, attitude: Quat<Self>, omega_body: Vec3<Self>) -> Vec3<Self> {
-                match law {
-                    Law::Potential(potential) => Potential::<Self>::torque(&**potential, at, attitude),
-                    Law::Torque(torque) => Torque::<Self>::torque(&**torque, at, attitude, omega_body),
-                }
-            }
-            fn energy(law: &Law, at: Time, attitude: Quat<Self>) -> Self {
-                match law {
-                    Law::Potential(potential) => Potential::<Self>::energy(&**potential, at, attitude),
-                    Law::Torque(_) => Self::of(0.0),
-                }
-            }
-            fn series(
-                law: &SeriesLaw,
-                at: Time,
-                attitude: Quat<Series<Self>>,
-                omega_body: Vec3<Series<Self>>,
-            ) -> Vec3<Series<Self>> {
-                match law {
-                    SeriesLaw::Potential(potential) => {
-                        Potential::<Series<Self>>::torque(&**potential, at, attitude)
-                    }
-                    SeriesLaw::Torque(torque) => {
-                        Torque::<Series<Self>>::torque(&**torque, at, attitude, omega_body)
-                    }
-                }
-            }
-        }
-    };
-}
-evaluated!(f64);
-evaluated!(Dd);
 
 impl<S: Evaluated> Forces<S> {
     pub(super) fn new(

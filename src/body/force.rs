@@ -7,91 +7,13 @@ use core::fmt;
 use std::sync::Arc;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use thiserror::Error;
 
-use super::Time;
+use super::law::{Conserved, Law, Potential, SeriesLaw, Torque};
 use super::switched::Switched;
+use super::{ForceError, Time};
 use crate::inertia::Inertia;
-use crate::num::{Dd, Precise, Real, Series, Shown};
+use crate::num::{Dd, Precise, Series};
 use crate::rotation::{Quat, Vec3};
-
-/// A torque that comes from a potential energy U(t, q).
-///
-/// An implementation for every `S: Real` serves steps in `f64`, references in double-double and the
-/// [power series](crate::num::Series) of [Taylor's method](crate::method::Taylor) alike; a closure in `f64` becomes one by
-/// [`Force::potential_fn`], without the series.
-///
-/// ```
-/// use nalgebra::{UnitQuaternion, Vector3};
-/// use polhode::body::{Body, Conserved, Force, Potential, Time};
-/// use polhode::inertia::Inertia;
-/// use polhode::num::Real;
-/// use polhode::rotation::{Quat, Vec3};
-///
-/// /// A magnet along body z in a field along space x: U = −s x·R e_z.
-/// struct Magnet(f64);
-///
-/// impl<S: Real> Potential<S> for Magnet {
-///     fn energy(&self, _: Time, attitude: Quat<S>) -> S {
-///         -(S::of(self.0) * attitude.rotate(Vec3::unit(2))[0])
-///     }
-///     fn torque(&self, _: Time, attitude: Quat<S>) -> Vec3<S> {
-///         Vec3::unit(2).cross(attitude.rotate_back(Vec3::unit(0))) * S::of(self.0)
-///     }
-/// }
-///
-/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?).with(Force::potential("magnet", Magnet(0.5)));
-/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.0, 1.0, 0.0))?;
-/// assert_eq!(body.energy(&start), 1.0); // 1 J of spin; the magnet lies across the field
-/// # Ok::<(), polhode::Error>(())
-/// ```
-pub trait Potential<S: Real>: Send + Sync {
-    /// Potential energy, J, at the time `at` and the attitude `attitude`, body → space. With methods that do not keep |q|
-    /// the attitude is not exactly of norm 1.
-    fn energy(&self, at: Time, attitude: Quat<S>) -> S;
-
-    /// Torque, N m, body axes: −∂U/∂θ of a turn θ about the body axes.
-    fn torque(&self, at: Time, attitude: Quat<S>) -> Vec3<S>;
-
-    /// What motion in this potential alone conserves. The default is the energy: override it if U depends on `at`, or if
-    /// L_z is conserved too.
-    fn conserved(&self) -> Vec<Conserved> {
-        vec![Conserved::Energy]
-    }
-
-    /// The moment c, N m, body axes, of a potential `U = c·Γ` that is linear in the vertical Γ = Qᵀ e_z, such as that of
-    /// [uniform gravity](Force::gravity); `None`, the default, of all others. Where it is given, energy and torque must be
-    /// those of c, and methods take them from it by the closed forms of a [linear potential](super::LinearPotential).
-    fn linear_moment(&self) -> Option<Vec3<f64>> {
-        None
-    }
-}
-
-/// A torque of any kind, such as drag or a thruster's.
-pub trait Torque<S: Real>: Send + Sync {
-    /// Torque, N m, body axes, at the time `at`, the attitude `attitude`, body → space, and the angular velocity
-    /// `omega_body`, rad/s, body axes.
-    fn torque(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S>;
-}
-
-/// A quantity that a motion may conserve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Conserved {
-    /// Kinetic and potential energy.
-    Energy,
-    /// |m|.
-    MomentumNorm,
-    /// The angular momentum L in space, as a vector.
-    Momentum,
-    /// The component of L along z of space.
-    MomentumZ,
-    /// Jacobi's constant E − n L_z, of a potential that turns about z of space at the rate n.
-    Jacobi {
-        /// n, rad/s.
-        rate: f64,
-    },
-}
 
 /// A potential or a torque with its name, which acts on a [`Body`](super::Body).
 #[derive(Clone)]
@@ -105,83 +27,6 @@ pub struct Force {
     pub(super) orbit: Option<[f64; 2]>,
     /// Of a force that does not act always.
     pub(super) switched: Option<Switched>,
-}
-
-#[derive(Clone)]
-pub(crate) enum Law {
-    Potential(Arc<dyn PrecisePotential>),
-    Torque(Arc<dyn PreciseTorque>),
-}
-
-/// A potential in both precisions.
-pub(crate) trait PrecisePotential: Potential<f64> + Potential<Dd> {}
-impl<P: Potential<f64> + Potential<Dd>> PrecisePotential for P {}
-
-/// A torque in both precisions.
-pub(crate) trait PreciseTorque: Torque<f64> + Torque<Dd> {}
-impl<T: Torque<f64> + Torque<Dd>> PreciseTorque for T {}
-
-/// A law on power series in both precisions.
-#[derive(Clone)]
-pub(crate) enum SeriesLaw {
-    Potential(Arc<dyn SeriesPotential>),
-    Torque(Arc<dyn SeriesTorque>),
-}
-
-pub(crate) trait SeriesPotential: Potential<Series<f64>> + Potential<Series<Dd>> {}
-impl<P: Potential<Series<f64>> + Potential<Series<Dd>>> SeriesPotential for P {}
-
-pub(crate) trait SeriesTorque: Torque<Series<f64>> + Torque<Series<Dd>> {}
-impl<T: Torque<Series<f64>> + Torque<Series<Dd>>> SeriesTorque for T {}
-
-/// Why a force cannot act.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum ForceError {
-    /// A parameter is not a finite number.
-    #[error("{quantity} of the {force} is {}; it must be a finite number", Shown(*value))]
-    NotFinite {
-        /// Name of the force.
-        force: &'static str,
-        /// Which parameter.
-        quantity: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// A drag coefficient is negative.
-    #[error(
-        "{quantity} of the {force} is {}; drag takes energy from the body, so its coefficients are at least 0: change the sign",
-        Shown(*value)
-    )]
-    Negative {
-        /// Name of the force.
-        force: &'static str,
-        /// Which parameter.
-        quantity: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// The eccentricity is that of no ellipse.
-    #[error(
-        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle", Shown(*eccentricity)
-    )]
-    Eccentricity {
-        /// The value.
-        eccentricity: f64,
-    },
-    /// An interval in which it acts is none.
-    #[error(
-        "the interval from {} s to {} s comes after {} s; intervals of a force ascend, and each ends after its beginning",
-        Shown(*from), Shown(*to), Shown(*before)
-    )]
-    Interval {
-        /// The beginning, s.
-        from: f64,
-        /// The end, s.
-        to: f64,
-        /// The end of the interval before, s.
-        before: f64,
-    },
 }
 
 impl Force {

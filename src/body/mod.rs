@@ -4,11 +4,13 @@
 mod body;
 mod constant_torque;
 mod drag;
+mod error;
 mod exit;
 mod field;
 mod force;
 mod gravity;
 mod gravity_gradient;
+mod law;
 mod linear_potential;
 mod point;
 #[cfg(any(test, feature = "random"))]
@@ -18,11 +20,14 @@ mod state;
 mod switched;
 mod time;
 
-pub use body::{Body, Problem, StateError};
+pub use body::{Body, Problem};
+pub use error::{ForceError, StateError};
 pub(crate) use exit::Exit;
-pub(crate) use field::{Evaluated, Forces, Witness};
 pub use field::{Field, Free};
-pub use force::{Conserved, Force, ForceError, Potential, Torque};
+pub(crate) use field::{Forces, Witness};
+pub use force::Force;
+pub(crate) use law::Evaluated;
+pub use law::{Conserved, Potential, Torque};
 pub use linear_potential::{LinearPotential, vertical};
 pub(crate) use point::RENORMALIZE_EVERY;
 pub use point::{Phase, Point};

@@ -159,6 +159,32 @@ impl Tensors {
         Ok(Self::Moments { axes: body, moments: Distribution::Normal { mean, covariance } })
     }
 
+    /// The mean, and the covariance of the entries xx, yy, zz, xy, xz, yz of the tensor in body axes.
+    ///
+    /// # Errors
+    /// A mean that no body has.
+    pub(crate) fn entries(&self) -> Result<(Inertia, Covariance<6>), InertiaError> {
+        match self {
+            Self::Fixed(inertia) => Ok((inertia.clone(), Covariance::zero())),
+            Self::Entries(entries) => {
+                Ok((Inertia::from_tensor(symmetric(entries.mean()))?, entries.covariance()))
+            }
+            Self::Moments { axes, moments } => {
+                let mean = axes.with_moments(moments.mean())?;
+                let frame = axes.frame().map(|x| x.hi());
+                let mut columns = [[0.0; 6]; 6];
+                for (column, deviation) in columns.iter_mut().zip(moments.covariance().deviations()) {
+                    for (k, size) in deviation.into_iter().enumerate() {
+                        let Vec3([x, y, z]) = frame.rotate(Vec3::unit(k));
+                        let entries = [x * x, y * y, z * z, x * y, x * z, y * z];
+                        column.iter_mut().zip(entries).for_each(|(sum, entry)| *sum += size * entry);
+                    }
+                }
+                Ok((mean, Covariance::of_deviations(columns)))
+            }
+        }
+    }
+
     fn draw(&self, random: &mut Random) -> Result<Inertia, InertiaError> {
         match self {
             Self::Fixed(inertia) => Ok(inertia.clone()),

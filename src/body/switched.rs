@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use super::field::Evaluated;
-use super::force::{Law, SeriesLaw};
+use super::law::{Evaluated, Law, SeriesLaw};
 use super::{Body, Force, ForceError, Time, Torque};
 use crate::rotation::{Quat, Vec3};
 

@@ -246,7 +246,7 @@ impl<'a> Search<'a> {
         }
         if a.value == 0.0 {
             self.looks += looks;
-            return self.happened(n, Crossing::Touching, base, states);
+            return self.happened(n, Crossing::Touching, base + a.u, states);
         }
         let width = SLOPE * (b.u - a.u);
         let falls = known * (at(a.u + width)? - a.value) < 0.0;

@@ -115,6 +115,18 @@ impl Event {
         Event { bound, ..self }
     }
 
+    /// Whether the rate of g is bounded: closed forms then [miss](super) no event between looks, and runs may.
+    ///
+    /// ```
+    /// use polhode::events::Event;
+    /// let noon = Event::zero("noon", |t, _| t - 43_200.0);
+    /// assert!(!noon.is_bounded() && noon.changing_at_most(1.0).is_bounded());
+    /// ```
+    #[must_use]
+    pub fn is_bounded(&self) -> bool {
+        self.bound != Bound::Unknown
+    }
+
     /// Its name.
     #[must_use]
     pub fn name(&self) -> &str {

@@ -5,10 +5,11 @@
 //! [`ExactMotion::events`](crate::flow::ExactMotion::events) look for them on closed forms, at any time;
 //! [`Run::events`](crate::Run::events) and [`Run::until`](crate::Run::until) along a run.
 //!
-//! g is looked at in intervals of a spacing that the caller chooses. Between two looks of one sign a closed form misses
-//! nothing where the rate of g is bounded: the ready-made events know their bounds, an own one states its
-//! [own](Event::changing_at_most). Elsewhere two events that are nearer together than the spacing may be missed;
-//! [`Events::may_miss`] says which.
+//! g is looked at in intervals of a spacing that the caller chooses. Where the rate of g is bounded, a closed form excludes an
+//! event between two looks by that bound, and divides in two an interval that it cannot exclude, down to 1/4096 of the spacing
+//! (1/64 about a change of sign): only what g does more than once within that may be missed. Flips, cones and rates know their
+//! bounds, an event of one's own states [its own](Event::changing_at_most). Elsewhere, and along runs, two events that are nearer
+//! together than the spacing may be missed; [`Events::may_miss`] says which.
 //!
 //! ```
 //! use nalgebra::{UnitQuaternion, Vector3};

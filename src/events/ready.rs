@@ -22,16 +22,11 @@ fn axis(quantity: &'static str, of: Vector3<f64>) -> Result<Vec3<f64>, EventErro
 }
 
 impl Event {
-    /// `body` turns over: the momentum along the axis of its middle moment changes sign.
+    /// `body` turns over: its angular velocity about the axis of its middle moment changes sign.
     pub fn flip(body: &Body) -> Self {
         let axis: Vec3<f64> = (body.inertia().principal_axes() * Vector3::y()).into();
-        // its direction turns as fast as the body
-        Event::zero("flip", move |_, x| {
-            let m = x.momentum_body;
-            let size = m.norm();
-            if size > 0.0 { m.dot(axis) / size } else { 0.0 }
-        })
-        .bounded(Bound::PerRadian(1.0))
+        let [_, moment, _] = body.inertia().principal_moments();
+        Event::zero("flip", move |_, x| x.momentum_body.dot(axis) / moment).bounded(Bound::PerRate(1.0))
     }
 
     /// The axis `of_body` (body axes) comes nearer to `in_space` (space axes) than `half_angle`, rad; from outside to inside.

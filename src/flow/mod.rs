@@ -23,8 +23,9 @@ pub use casimir::Casimir;
 pub use exact_motion::{ExactMotion, NoClosedForm};
 pub(crate) use free::{Addition, Curve, FreeOrbit};
 pub use free::{
-    AtRest, Character, FreeBody, FreeFlow, FreeMotion, Mode, PureSpin, Stability, SymmetricTop,
-    TumblingElements, TumblingError,
+    AtRest, Character, CovarianceError, DerivativeError, FittedMotion, FreeBody, FreeFlow, FreeMotion,
+    Interpolation, Mode, Passage, Passages, PureSpin, Stability, StartCovariance, StateCovariance,
+    StateDerivative, SymmetricTop, ThroughError, TumblingElements, TumblingError, TurnAxes,
 };
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop};

@@ -1,13 +1,7 @@
 //! Distributions of vectors, to draw from. Needs the feature `random`.
 
-use thiserror::Error;
-
 use super::Random;
-use super::eigen::eigen;
-use super::shown::Shown;
-
-/// Rounding that a covariance may show, as a share of its variances: symmetry and signs are judged up to it.
-const ROUNDING: f64 = 1e-12;
+use super::covariance::{Covariance, DistributionError, finite};
 
 /// A distribution of vectors of `N` components.
 ///
@@ -52,6 +46,28 @@ impl<const N: usize> Distribution<N> {
         Ok(Self::Uniform(ranges))
     }
 
+    /// The mean.
+    #[must_use]
+    pub fn mean(&self) -> [f64; N] {
+        match self {
+            Self::Fixed(mean) | Self::Normal { mean, .. } => *mean,
+            Self::Uniform(ranges) => ranges.map(|[low, high]| low + 0.5 * (high - low)),
+        }
+    }
+
+    /// The covariance.
+    pub fn covariance(&self) -> Covariance<N> {
+        match self {
+            Self::Fixed(_) => Covariance::zero(),
+            Self::Normal { covariance, .. } => covariance.clone(),
+            Self::Uniform(ranges) => {
+                let deviation = |k: usize| (ranges[k][1] - ranges[k][0]) / 12_f64.sqrt();
+                let entry = |k: usize, i: usize| if i == k { deviation(k) } else { 0.0 };
+                Covariance::of_deviations(core::array::from_fn(|k| core::array::from_fn(|i| entry(k, i))))
+            }
+        }
+    }
+
     /// The next vector of `random`. A fixed one takes no numbers of it, a uniform one `N`.
     pub fn draw(&self, random: &mut Random) -> [f64; N] {
         match self {
@@ -67,68 +83,11 @@ impl<const N: usize> Distribution<N> {
     }
 }
 
-/// The covariance of a vector: a symmetric positive semidefinite matrix.
-///
-/// Kept as a factor F with C = F Fᵀ, whose columns are the principal axes times their standard deviations; they are those of
-/// the matrix of correlations, so that units of the components do not matter.
-#[derive(Clone, Debug, PartialEq)]
-#[must_use]
-pub struct Covariance<const N: usize> {
-    columns: [[f64; N]; N],
-}
-
 impl<const N: usize> Covariance<N> {
-    /// From the matrix. Eigenvalues that rounding has pushed below zero, by less than 1e-12 of the variances, count as zero.
-    ///
-    /// # Errors
-    /// Entries that are not finite, a matrix that is not symmetric, and an eigenvalue below zero.
-    ///
-    /// ```
-    /// use polhode::num::Covariance;
-    /// let error = Covariance::new([[1.0, 2.0], [2.0, 1.0]]).unwrap_err();
-    /// assert!(error.to_string().contains("eigenvalue -1"));
-    /// ```
-    pub fn new(matrix: [[f64; N]; N]) -> Result<Self, DistributionError> {
-        finite(matrix.as_flattened())?;
-        let deviations: [f64; N] = core::array::from_fn(|k| matrix[k][k].abs().sqrt());
-        let over = |x: f64, deviation: f64| if deviation == 0.0 { x } else { x / deviation };
-        let correlation = |i: usize, j: usize| over(over(matrix[i][j], deviations[i]), deviations[j]);
-        let mut pairs = (0..N).flat_map(|i| (0..i).map(move |j| (j, i)));
-        let differs = |(j, i): &(usize, usize)| (correlation(*i, *j) - correlation(*j, *i)).abs() > ROUNDING;
-        if let Some((row, column)) = pairs.find(differs) {
-            let (upper, lower) = (matrix[row][column], matrix[column][row]);
-            return Err(DistributionError::NotSymmetric { row, column, upper, lower });
-        }
-        let mean = |i: usize, j: usize| 0.5 * (correlation(i, j) + correlation(j, i));
-        let (values, axes) = eigen::<f64, N>(core::array::from_fn(|i| core::array::from_fn(|j| mean(i, j))));
-        if values.iter().any(|value| *value < -ROUNDING * N as f64) {
-            let own = core::array::from_fn(|i| core::array::from_fn(|j| matrix[i.min(j)][i.max(j)]));
-            let (own, _) = eigen::<f64, N>(own);
-            return Err(DistributionError::Negative { eigenvalue: own[0], of_correlations: values[0] });
-        }
-        let columns = core::array::from_fn(|k| {
-            core::array::from_fn(|i| axes[k][i] * values[k].max(0.0).sqrt() * deviations[i])
-        });
-        Ok(Self { columns })
-    }
-
-    /// Of independent components with these standard deviations.
-    ///
-    /// # Errors
-    /// A standard deviation that is negative or not finite.
-    pub fn independent(deviations: [f64; N]) -> Result<Self, DistributionError> {
-        finite(&deviations)?;
-        if let Some(&value) = deviations.iter().find(|deviation| **deviation < 0.0) {
-            return Err(DistributionError::NegativeDeviation { value });
-        }
-        let entry = |k: usize, i: usize| if i == k { deviations[k] } else { 0.0 };
-        Ok(Self { columns: core::array::from_fn(|k| core::array::from_fn(|i| entry(k, i))) })
-    }
-
     /// A vector with mean zero, from the next `N` normal numbers of `random`.
     pub fn draw(&self, random: &mut Random) -> [f64; N] {
         let mut sum = [0.0; N];
-        for column in &self.columns {
+        for column in &self.deviations() {
             let deviate = random.normal();
             for (sum, entry) in sum.iter_mut().zip(column) {
                 *sum += deviate * entry;
@@ -136,67 +95,6 @@ impl<const N: usize> Covariance<N> {
         }
         sum
     }
-}
-
-fn finite(values: &[f64]) -> Result<(), DistributionError> {
-    match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(DistributionError::NotFinite { value }),
-        None => Ok(()),
-    }
-}
-
-/// Why nothing can be drawn from a distribution.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum DistributionError {
-    /// A number is not finite.
-    #[error("has the entry {value}; every entry must be a finite number")]
-    NotFinite {
-        /// The offending value.
-        value: f64,
-    },
-    /// The covariance is not symmetric.
-    #[error(
-        "is not symmetric: {} in row {}, column {} and {} across the diagonal; cov(x, y) = cov(y, x)",
-        Shown(*upper), row + 1, column + 1, Shown(*lower)
-    )]
-    NotSymmetric {
-        /// Row of the entry above the diagonal, from 0.
-        row: usize,
-        /// Its column, from 0.
-        column: usize,
-        /// The entry above the diagonal.
-        upper: f64,
-        /// The entry below it.
-        lower: f64,
-    },
-    /// The covariance is not positive semidefinite.
-    #[error(
-        "is not positive semidefinite: it has the eigenvalue {} ({} of its correlations), and a variance cannot be negative",
-        Shown(*eigenvalue), Shown(*of_correlations)
-    )]
-    Negative {
-        /// Its smallest eigenvalue.
-        eigenvalue: f64,
-        /// The same of the matrix of correlations, which is free of units.
-        of_correlations: f64,
-    },
-    /// A standard deviation is negative.
-    #[error("has the standard deviation {}, and none is negative", Shown(*value))]
-    NegativeDeviation {
-        /// The offending value.
-        value: f64,
-    },
-    /// The ends of a range stand the wrong way round.
-    #[error("has the range from {} to {} of component {}; the lower end comes first", Shown(*low), Shown(*high), component + 1)]
-    Reversed {
-        /// Of which component, from 0.
-        component: usize,
-        /// The end that came first.
-        low: f64,
-        /// The end that came second.
-        high: f64,
-    },
 }
 
 #[cfg(test)]

@@ -7,12 +7,14 @@
 //! * [`Compensated`]: compensated sums;
 //! * [`Expansion`]: exact sums and products of a few numbers;
 //! * [`elliptic`]: elliptic integrals and functions;
-//! * `Random`, `Distribution`, `Covariance`: seeded random numbers and vectors (feature `random`).
+//! * [`Covariance`]: covariances of vectors;
+//! * `Random`, `Distribution`: seeded random numbers and vectors (feature `random`).
 //!
 //! Nothing here calls the platform's mathematical library or fuses a multiplication with an addition: the
 //! same input gives the same bits on every CPU and at every optimisation level.
 
 pub(crate) mod complex;
+mod covariance;
 pub(crate) mod dd;
 #[cfg(any(test, feature = "random"))]
 mod distribution;
@@ -31,9 +33,10 @@ mod shown;
 pub(crate) mod sum;
 pub mod trig;
 
+pub use covariance::{Covariance, DistributionError};
 pub use dd::{Dd, ParseDdError};
 #[cfg(any(test, feature = "random"))]
-pub use distribution::{Covariance, Distribution, DistributionError};
+pub use distribution::Distribution;
 pub use expansion::Expansion;
 pub use lanes::Instructions;
 pub(crate) use lanes::{LANES, Lane};

@@ -301,4 +301,31 @@ mod tests {
             assert_eq!(reference.heavy_differences::<true>(q, m), reference.heavy_differences::<false>(q, m));
         }
     }
+
+    /// Where products underflow their errors differ, and every processor takes those by Dekker's way.
+    #[test]
+    fn products_that_underflow_are_not_fused() {
+        let small = libm::scalbn(1.0, -500);
+        let inertia = Inertia::from_moments([1.0, 2.3, 2.9]).unwrap();
+        let body = Body::free(inertia);
+        let attitude = Quat::from_components([0.5, -0.1, 0.7, 0.3]).normalized();
+        let at = |k: usize| Point::new(attitude, Vec3([0.3 + 0.01 * k as f64, -0.7, 0.9]) * small);
+        let points: Vec<_> = (0..BLOCK).map(at).collect();
+        let (mut free_differ, mut heavy_differ) = (false, false);
+        for x in &points {
+            // of a point alone what is left of its energy is the error of its products
+            let start = Invariants::of(&body, Time::from_seconds(0.0), x);
+            let reference = Reference::new(body.rotor().inverse_moments(), &start, None);
+            assert!(!reference.ordinary);
+            let (lanes, q, m) = (Lanes::of(&[*x]), x.attitude, x.momentum_body);
+            let (free, heavy) = (free(&reference, &lanes), heavy(&reference, &lanes));
+            let expected = reference.free_differences::<false>(q, m);
+            assert_eq!(free.map(|lane| lane[0]), expected);
+            free_differ |= expected != reference.free_differences::<true>(q, m);
+            let expected = reference.heavy_differences::<false>(q, m);
+            assert_eq!(heavy.map(|lane| lane[0]), expected);
+            heavy_differ |= expected != reference.heavy_differences::<true>(q, m);
+        }
+        assert!(free_differ && heavy_differ, "the points tell nothing");
+    }
 }

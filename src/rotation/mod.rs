@@ -11,6 +11,7 @@ mod vec3;
 
 pub use dispersion::Dispersion;
 pub use distance::rotation_angle;
+pub(crate) use distance::{rotation_vector, turn_by};
 pub use euler::{EulerAngles, EulerSequence, EulerSequenceError};
 pub use quaternion::Quat;
 pub(crate) use vec3::AXES;

@@ -13,7 +13,8 @@ impl Run {
     /// At a step the sample is that of [`advance_to`](Self::advance_to). Behind it, of methods that choose their steps, it
     /// comes from the dense output of the next one: of order 7 of `dop853`, 4 of `tsit5`, and the series itself of `taylor`.
     /// All other methods take one step of their own from there, as long as it has to be: its local error is that of the
-    /// order. What that costs is not counted in [`work`](Self::work), nor watched.
+    /// order. So does `gauss`, whose collocation polynomial has between nodes half the order of its steps. What that costs is
+    /// not counted in [`work`](Self::work), nor watched.
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};

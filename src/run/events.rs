@@ -7,7 +7,8 @@ use crate::num::Dd;
 
 impl Run {
     /// Goes on until `event` happens or the time `end` (s) comes: what happened, or `None`. The run then stands at the last step
-    /// before.
+    /// before: asked again, it finds the same. What comes behind it is found by [`events`](Self::events) in one go, or by a
+    /// run that starts from the state of the event.
     ///
     /// Two changes of sign within one step may be missed. See [`events`](crate::events).
     ///

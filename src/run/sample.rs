@@ -80,6 +80,27 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// Why the numbers no longer are those of a rotation, in words; `None` where they may be.
+    #[must_use]
+    pub fn nonsense(&self) -> Option<String> {
+        let norm = self.point.attitude.norm_squared().sqrt();
+        let lost = if (norm - 1.0).abs() > 0.5 {
+            format!("the quaternion of the attitude has the norm {norm:.1e}, not 1")
+        } else {
+            // where nothing is watched, those of this sample
+            let (worst, now) = (self.worst, self.errors);
+            let errors =
+                [("energy", worst.energy.or(now.energy)), ("|m|", worst.momentum_norm.or(now.momentum_norm))];
+            let (what, error) =
+                errors.into_iter().find(|(_, error)| error.is_some_and(|error| error > 1.0))?;
+            format!("the relative error of {what} is {:.1e}", error.unwrap_or_default())
+        };
+        Some(format!(
+            "at {:?} s {lost}: the numbers no longer describe the motion; take a smaller step or another method",
+            self.time.hi()
+        ))
+    }
+
     /// Whether state, readings and errors are finite numbers in the units of the body.
     pub(super) fn is_finite(&self) -> bool {
         self.state.is_finite()

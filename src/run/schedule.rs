@@ -213,3 +213,22 @@ impl Iterator for Multiples {
         Some(now)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_that_no_steps_lead_to_are_refused_by_their_law() {
+        let at =
+            |step: f64, times: &[f64]| Schedule::at_times(Clock { start: 1.0, step }, times).unwrap_err();
+        for step in [0.0, -0.5, f64::NAN, f64::INFINITY] {
+            assert!(matches!(at(step, &[1.0]), ScheduleError::NotAStep { .. }), "{step}");
+        }
+        assert!(matches!(at(0.5, &[f64::NAN]), ScheduleError::NotFinite { .. }));
+        assert!(matches!(at(0.5, &[0.5]), ScheduleError::NotAscending { before: 1.0, .. }));
+        assert!(matches!(at(0.5, &[2.0, 1.5]), ScheduleError::NotAscending { before: 2.0, .. }));
+        assert_eq!(at(0.5, &[2.2]), ScheduleError::NotReached { t: 2.2, step: 0.5, nearest: 2.0 });
+        assert!(matches!(at(1e-17, &[2.0]), ScheduleError::TooMany { .. }));
+    }
+}

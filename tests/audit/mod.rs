@@ -3,6 +3,7 @@
 mod causes;
 mod conventions;
 mod every_row;
+mod hidden;
 mod mistakes;
 mod records;
 mod ties;

@@ -213,8 +213,11 @@ fn what_cannot_be_audited_is_refused_with_the_numbers() {
     short.rates.as_mut().unwrap().pop();
     assert!(matches!(refused(&short), AuditError::Lengths { found: 399, rows: 400, .. }));
     let mut question = Question::new(None);
-    question.tolerance = -1.0;
-    assert_eq!(audit(&file, &question).unwrap_err(), AuditError::Tolerance { value: -1.0 });
+    // within half a radian nearly any attitude is right
+    for value in [-1.0, 0.5, f64::INFINITY] {
+        question.tolerance = value;
+        assert_eq!(audit(&file, &question).unwrap_err(), AuditError::Tolerance { value, most: 0.1 });
+    }
 }
 
 /// What an exact motion does with the flips of the record, and what a run leaves: the integrator by its name and step.

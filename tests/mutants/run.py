@@ -4,19 +4,24 @@
     cargo install cargo-mutants --version 27.1.0 --locked
     python3 tests/mutants/run.py method run          (python 3.11; about a minute a mutant)
     python3 tests/mutants/run.py --sample 1000 num   another size of sample than the usual one
+    python3 tests/mutants/run.py --again run         those that were not caught, with the tests of the present commit
     python3 tests/mutants/run.py --table             only the table of CONTRIBUTING.md, from results.csv
 
 A mutant is one changed operator, constant or return value. Those of a module are put in an order that only --seed and
 their text decide, and the first of them are tried, in a clone beside the target folder. Each result is written at once:
 run again, the script goes on where it was stopped, as long as the commit and the seed are the same. First the tests named
-here are run, and where they find nothing all tests of the package. A mutant is caught if a test fails or does not end;
-one that does not compile does not count.
+here are run, and where they find nothing all tests of the package. A mutant is caught if a test fails, and fails again:
+tests that measure times may fail by themselves. One whose tests do not end in time is a timeout, to be looked at; one that
+does not compile does not count. `by` names the first test that failed, `again` what became of the mutant at a later commit.
 """
 
 import argparse
 import csv
 import hashlib
 import json
+import os
+import re
+import signal
 import subprocess
 import time
 from pathlib import Path
@@ -24,7 +29,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 CLONE = ROOT / "target" / "mutants"
 RESULTS = Path(__file__).with_name("results.csv")
-COLUMNS = ["module", "of", "seed", "commit", "mutant", "outcome"]
+COLUMNS = ["module", "of", "seed", "commit", "mutant", "outcome", "by", "again"]
 MARKERS = ("<!-- begin generated: mutants -->", "<!-- end generated: mutants -->")
 
 # files, package, size of the sample, parts of the names of the tests that are run first
@@ -48,9 +53,9 @@ def output(*command, cwd=ROOT):
 
 
 def mutants(module):
-    """All of a module."""
+    """All of a module, in the clone."""
     chosen = [part for file in MODULES[module][0] for part in ("--file", file)]
-    return json.loads(output("cargo", "mutants", "--list", "--json", *chosen))
+    return json.loads(output("cargo", "mutants", "--list", "--json", *chosen, cwd=CLONE))
 
 
 def apply(mutant):
@@ -73,16 +78,20 @@ def prepared(commit):
 
 
 def tests(package, *what, filters=(), limit=None):
-    """Whether the tests pass; None if they do not compile."""
+    """`passed`, `unviable` where the tests do not compile, `timeout`, or the name of one that failed."""
     build = ["cargo", "test", "--quiet", "--profile", "mutants", "--package", package, "--all-features", *what]
     if subprocess.run([*build, "--no-run"], cwd=CLONE, capture_output=True).returncode != 0:
-        return None
-    try:
-        done = subprocess.run([*build, "--", *filters], cwd=CLONE, capture_output=True, timeout=limit)
-    except subprocess.TimeoutExpired:
-        subprocess.run(["pkill", "--full", str(CLONE / "target")])
-        return False
-    return done.returncode == 0
+        return "unviable"
+    # a group of its own, so that the tests end with cargo
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "start_new_session": True}
+    with subprocess.Popen([*build, "--", *filters], cwd=CLONE, **pipes) as run:
+        try:
+            said, _ = run.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(run.pid, signal.SIGKILL)
+            return "timeout"
+    failed = re.findall(r"^---- (.+) stdout ----$", said, re.MULTILINE)
+    return "passed" if run.returncode == 0 else (min(failed) if failed else "aborted")
 
 
 def targets(package):
@@ -90,64 +99,87 @@ def targets(package):
 
 
 def outcome(mutant, package, filters, limit):
-    """What the tests say of it."""
+    """What the tests say of it, and which of them."""
     apply(mutant)
     try:
-        first = tests(package, *targets(package), filters=filters, limit=limit)
-        if first is None:
-            return "unviable"
-        # all of them, with those that stand beside the code
-        if first and tests(package, "--lib", "--tests", limit=10 * limit) is not False:
-            return "missed"
-        return "caught"
+        # those named first, then all of them, with those that stand beside the code
+        for what, filters, limit in [(targets(package), filters, limit), (["--lib", "--tests"], (), 10 * limit)]:
+            found = tests(package, *what, filters=filters, limit=limit)
+            if found in ("unviable", "timeout"):
+                return found, ""
+            if found != "passed" and tests(package, *what, filters=filters, limit=limit) != "passed":
+                return "caught", found
+        return "missed", ""
     finally:
         subprocess.run(["git", "checkout", "--quiet", "--force", "."], cwd=CLONE, check=True)
+
+
+def patience(module, package, filters):
+    """How long tests may take, s; they have to pass without a mutant."""
+    for _ in range(2):  # the first time builds
+        begin = time.monotonic()
+        if (found := tests(package, *targets(package), filters=filters)) != "passed":
+            raise SystemExit(f"{module}: {found} without a mutant")
+    return PATIENCE + 5 * (time.monotonic() - begin)
 
 
 def sample(module, size, seed, commit, rows, write):
     """Tries the mutants of the sample that `rows` do not hold yet."""
     _, package, usual, filters = MODULES[module]
+    prepared(commit)
     every = mutants(module)
     every.sort(key=lambda one: hashlib.sha256(f"{seed} {one['name']}".encode()).digest())
     chosen = every[: size or usual]
     known = {row[4] for row in rows if row[0] == module and row[2:4] == [str(seed), commit]}
     rows[:] = [row for row in rows if row[0] != module or row[4] in known]
     missing = [one for one in chosen if one["name"] not in known]
-    if not missing:
-        return
-    prepared(commit)
-    begin = time.monotonic()
-    if not tests(package, *targets(package), filters=filters):
-        raise SystemExit(f"{module}: the tests fail without a mutant")
-    begin = time.monotonic()
-    tests(package, *targets(package), filters=filters)
-    limit = PATIENCE + 5 * (time.monotonic() - begin)
+    limit = patience(module, package, filters) if missing else None
     for mutant in missing:
-        found = outcome(mutant, package, filters, limit)
-        print(f"{found:8} {mutant['name']}", flush=True)
-        rows.append([module, str(len(every)), str(seed), commit, mutant["name"], found])
+        found, by = outcome(mutant, package, filters, limit)
+        print(f"{found:8} {mutant['name']} {by}", flush=True)
+        rows.append([module, str(len(every)), str(seed), commit, mutant["name"], found, by, ""])
         write()
+
+
+def again(module, commit, rows, write):
+    """Tries those that were not caught once more, where the present code still has them."""
+    _, package, _, filters = MODULES[module]
+    prepared(commit)
+    # by file and text; of several those of the nearest line
+    place = re.compile(r"(.+?):(\d+):\d+: (.*)", re.DOTALL)
+    every = [(place.fullmatch(one["name"]), one) for one in mutants(module)]
+    limit = patience(module, package, filters)
+    for row in [row for row in rows if row[0] == module and row[5] in ("missed", "timeout")]:
+        file, line, text = place.fullmatch(row[4]).groups()
+        alike = [(abs(int(at[2]) - int(line)), one["name"], one) for at, one in every if (at[1], at[3]) == (file, text)]
+        if alike:
+            found, by = outcome(min(alike)[2], package, filters, limit)
+            print(f"{found:8} {row[4]} {by}", flush=True)
+            row[7] = f"{found} at {commit}" + (f" by {by}" if by else "")
+            write()
 
 
 def stored():
     if not RESULTS.exists():
         return []
     with open(RESULTS, newline="") as file:
-        return list(csv.reader(file))[1:]
+        return [row + [""] * (len(COLUMNS) - len(row)) for row in list(csv.reader(file))[1:]]
 
 
 def table(rows):
     """Between the markers of CONTRIBUTING.md."""
-    lines = ["| files | mutants | tried | caught | missed | share caught |", "|---|---|---|---|---|---|"]
+    heads = ["files", "mutants", "tried", "caught", "no end", "missed", "share caught", "with the tests since"]
+    lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     for module in MODULES:
-        mine = [row for row in rows if row[0] == module]
-        caught = sum(row[5] in ("caught", "timeout") for row in mine)
-        tried = caught + sum(row[5] == "missed" for row in mine)
-        if tried == 0:
+        mine = [row for row in rows if row[0] == module and row[5] != "unviable"]
+        if not mine:
             continue
+        caught, ended, missed = (sum(row[5] == found for row in mine) for found in ("caught", "timeout", "missed"))
+        since = sum(row[7].startswith("caught") for row in mine)
         files = ", ".join(f"`{file}`" for file in MODULES[module][0])
-        share = f"{100 * caught / tried:.0f} %"
-        lines.append(f"| {files} | {mine[0][1]} | {tried} | {caught} | {tried - caught} | {share} |")
+        share = [f"{100 * part / len(mine):.0f} %" for part in (caught + ended, caught + ended + since)]
+        cells = [files, mine[0][1], len(mine), caught, ended, missed, *share]
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
     path = ROOT / "CONTRIBUTING.md"
     before, rest = path.read_text().split(MARKERS[0])
     after = rest.split(MARKERS[1])[1]
@@ -160,6 +192,7 @@ def main():
     parser.add_argument("--sample", type=int, metavar="N", help="how many of each module")
     parser.add_argument("--seed", type=int, default=1, help="which of them")
     parser.add_argument("--commit", default="HEAD", help="of which state of the code")
+    parser.add_argument("--again", action="store_true", help="try those that were not caught once more")
     parser.add_argument("--table", action="store_true", help="write the table from the results there are")
     arguments = parser.parse_args()
     rows = stored()
@@ -174,7 +207,10 @@ def main():
 
     commit = output("git", "rev-parse", "--short", arguments.commit).strip()
     for module in [] if arguments.table else arguments.modules or MODULES:
-        sample(module, arguments.sample, arguments.seed, commit, rows, write)
+        if arguments.again:
+            again(module, commit, rows, write)
+        else:
+            sample(module, arguments.sample, arguments.seed, commit, rows, write)
     table(rows)
 
 

@@ -11,7 +11,7 @@ use polhode::advise::{
 };
 use polhode::method::method;
 use polhode_files::error::{Error, tell, warn};
-use polhode_files::moment::{duration, positive_duration};
+use polhode_files::instant::{duration, positive_duration};
 use polhode_files::numbers::positive;
 use polhode_files::text::short;
 use polhode_pages::output::emit;

@@ -1,5 +1,6 @@
 //! What can go wrong with a file, a flag or a run, and how it is told.
 
+use std::cell::RefCell;
 use std::fmt::{self, Write as _};
 use std::io::Write as _;
 
@@ -322,9 +323,24 @@ impl Error {
     }
 }
 
-/// A remark on standard error; the run goes on.
+thread_local! {
+    /// Remarks of a program that shows them itself.
+    static HEARD: RefCell<Option<Vec<String>>> = const { RefCell::new(None) };
+}
+
+/// What `work` returns, and its remarks on this thread, which then do not go to standard error.
+pub fn hearing<T>(work: impl FnOnce() -> T) -> (T, Vec<String>) {
+    HEARD.set(Some(Vec::new()));
+    let found = work();
+    (found, HEARD.take().unwrap_or_default())
+}
+
+/// A remark on standard error, unless somebody [hears](hearing) it; the run goes on.
 pub fn warn(message: &str) {
-    tell("warning", message);
+    let heard = HEARD.with_borrow_mut(|heard| heard.as_mut().map(|all| all.push(message.into())));
+    if heard.is_none() {
+        tell("warning", message);
+    }
 }
 
 /// A line on standard error. Where nobody listens (`2>&1 | head`), nothing is said.
@@ -335,6 +351,17 @@ pub fn tell(kind: &str, message: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn remarks_are_heard_by_those_who_ask() {
+        let (found, heard) = hearing(|| {
+            warn("first");
+            warn("second");
+            7
+        });
+        assert_eq!((found, heard), (7, vec!["first".to_string(), "second".to_string()]));
+        assert!(HEARD.take().is_none());
+    }
 
     #[test]
     fn codes_tell_a_refusal_from_unusable_input() {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 use std::path::Path;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::{MassProperties, Twin};
@@ -47,7 +47,7 @@ pub struct Given {
 #[derive(Clone, Debug)]
 pub struct Writing {
     /// The file.
-    pub file: Rc<Path>,
+    pub file: Arc<Path>,
     /// Of xx, yy, zz, xy, xz, yz each.
     pub entries: [Option<Range<usize>>; 6],
     /// Of all entries, where they stand in one list.

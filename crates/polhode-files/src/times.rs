@@ -6,7 +6,7 @@ use polhode::units::Date;
 use polhode::units::TimeUnit;
 
 use crate::error::{Error, Rule, TableError};
-use crate::moment::{is_moment, seconds};
+use crate::instant::{is_moment, seconds};
 use crate::table::{
     ColumnNames, Delimiter, Lines as Text, Name, ReadOptions, Source as Rows, Table, uncommented, width_rule,
 };

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::Error;
-use crate::moment::duration;
+use crate::instant::duration;
 use crate::numbers::number;
 use crate::text::visible;
 

@@ -22,6 +22,8 @@ pub struct FoundTrajectory {
     pub counts_steps: bool,
     /// Lines before the header that begin with #, without that.
     pub comments: Vec<String>,
+    /// Names of the columns that are not read.
+    pub unread: Vec<String>,
 }
 
 /// Reads the trajectories at `path`, or of standard input where that is `-`.
@@ -48,6 +50,14 @@ pub fn read(path: &Path, reading: &ReadOptions) -> Result<FoundTrajectory, Error
     Ok(found(Table::open(path, reading)?)?)
 }
 
+/// The same of a text of rows, which messages call `file`.
+///
+/// # Errors
+/// As [`read`].
+pub fn of_text(text: &str, file: &str, reading: &ReadOptions) -> Result<FoundTrajectory, Error> {
+    Ok(found(Table::of_text(text, file, reading)?)?)
+}
+
 fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
     let claims = claims(&table)?;
     let mut rows = Bodies::default();
@@ -64,6 +74,7 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
         bodies: bodies.collect(),
         claims,
         counts_steps: table.counts_steps(),
+        unread: table.header.unread().map(|name| visible(name).into_owned()).collect(),
         comments: table.comments,
     })
 }

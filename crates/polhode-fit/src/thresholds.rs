@@ -80,7 +80,8 @@ thresholds! {
     }
     stacked: "least squares of all stretches" {
         FLAT: f64 = 1e3, "standard deviation of a column without a prior: it says nothing", UNMEASURED;
-        TOGETHER: usize = 16_384, "rows that are brought to a triangle together; memory alone", UNMEASURED;
+        TOGETHER: usize = 256, "rows that are brought to a triangle together, so that they stay in the cache", UNMEASURED;
+        ITERATIONS: usize = 1_000, "of a singular value decomposition of five by five, many times what it takes", UNMEASURED;
         RIDGE: f64 = 1e-7, "least ridge over the size of the triangle, far above its rounding", UNMEASURED;
     }
     levels: "levels of torque noise by restricted likelihood" {
@@ -144,6 +145,8 @@ thresholds! {
         DRIVEN: f64 = 0.15,
             "share of the squared derivative of the rates that no drag and constant torque explain, from which a body is driven", "a_body_that_a_hand_drives_gets_no_tensor";
         GROWN: f64 = 0.1, "relative growth of |J w| over a segment that drag cannot make", UNMEASURED;
+        GROWN_BY_HALF: f64 = 0.5,
+            "the same that nothing but what drives a body makes, however near to the law its tensor is", "a_body_that_gains_half_of_its_momentum_gets_no_tensor";
         OUTSIDE_OF_LAW: f64 = 5.0,
             "standard deviations of the physical tensor from the unconstrained one, beside such growth", UNMEASURED;
         AUDIBLE: f64 = 0.5, "share of the squared derivative of the rates that noise may be where that of torques is told", UNMEASURED;

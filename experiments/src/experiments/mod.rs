@@ -5,6 +5,7 @@ mod audit;
 mod chaos;
 mod conservation;
 mod contestants;
+mod derivative;
 mod drift;
 mod exact;
 mod fit_efficiency;
@@ -54,6 +55,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "exact",
         question: "how accurate the exact motion is, in every regime and at any time",
         run: exact::run,
+    },
+    Experiment {
+        name: "derivative",
+        question: "how exact the derivative of the exact motion is, whether all motions through two attitudes are found, and what a covariance is worth",
+        run: derivative::run,
     },
     Experiment {
         name: "long-run",

@@ -3,6 +3,8 @@
 mod addition;
 mod character;
 mod circulation;
+mod covariance;
+mod derivative;
 mod free_body;
 mod free_flow;
 mod motion;
@@ -13,10 +15,13 @@ mod pure_spin;
 mod short_flow;
 mod symmetric_top;
 mod theta;
+mod through;
 mod tumbling;
 
 pub(crate) use addition::{Addition, Curve};
 pub use character::{AtRest, Character, Mode};
+pub use covariance::{CovarianceError, StartCovariance, StateCovariance};
+pub use derivative::{DerivativeError, StateDerivative, TurnAxes};
 pub use free_body::FreeBody;
 pub use free_flow::FreeFlow;
 pub use motion::FreeMotion;
@@ -25,4 +30,5 @@ pub(super) use phase::{Pair, Phase, TOO_FAR, pair, reduce};
 pub use pure_spin::{PureSpin, Stability};
 pub use symmetric_top::SymmetricTop;
 pub(super) use theta::{Family, LEAST_TERMS, Powers, T, U, V_MINUS, V_PLUS, least_value, polynomial};
+pub use through::{FittedMotion, Interpolation, Passage, Passages, ThroughError};
 pub use tumbling::{TumblingElements, TumblingError};

@@ -1,8 +1,11 @@
 //! The motion of the free rigid body at any time.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use std::sync::OnceLock;
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::character::{AtRest, Character, Mode};
+use super::derivative::{Derivative, DerivativeError, StateDerivative};
 use super::orbit::FreeOrbit;
 use super::pure_spin::PureSpin;
 use crate::body::{Body, Exit, Phase, Point, State, StateError};
@@ -31,6 +34,7 @@ pub struct FreeMotion {
     body: Body,
     orbit: FreeOrbit,
     reach: f64,
+    derivative: OnceLock<Box<Derivative>>,
 }
 
 impl FreeMotion {
@@ -63,7 +67,7 @@ impl FreeMotion {
         let moments: Vec3<Dd> = body.rotor().moments();
         // no part of the phase runs faster than G/I_l
         let reach = MOST_RADIANS * (moments[moments.ascending()[0]] / start.momentum_body.norm()).to_f64();
-        FreeMotion { body, orbit: FreeOrbit::new(moments, start), reach }
+        FreeMotion { body, orbit: FreeOrbit::new(moments, start), reach, derivative: OnceLock::new() }
     }
 
     /// The body that moves.
@@ -78,6 +82,52 @@ impl FreeMotion {
     pub fn at(&self, t: f64) -> Result<State, TimeError> {
         TimeError::check(t, self.reach)?;
         Ok(self.body.leave(&self.point_at(t)))
+    }
+
+    /// The state at time `t` (s, of either sign) with its derivative by the state at t = 0 and by the inertia tensor, of a body of
+    /// any shape and any motion. The first call works out constants; each takes the same time at any `t`.
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::flow::{FreeMotion, TurnAxes};
+    /// use polhode::inertia::Inertia;
+    /// let (racket, omega) = (Inertia::from_moments([1.0, 2.0, 3.0])?, Vector3::new(0.4, 1.0, -0.3));
+    /// let motion = FreeMotion::from_omega(&racket, UnitQuaternion::identity(), omega)?;
+    /// let later = motion.at_with_derivative(100.0)?;
+    /// assert_eq!(later.state(), &motion.at(100.0)?);
+    /// // what a change of 1e-6 rad/s about the first axis makes of the angular velocity
+    /// let change = later.by_omega(TurnAxes::Space).fixed_view::<3, 1>(3, 3) * 1e-6;
+    /// let other = FreeMotion::from_omega(&racket, UnitQuaternion::identity(), omega + Vector3::x() * 1e-6)?;
+    /// assert!((other.omega_at(100.0)? - motion.omega_at(100.0)? - change).norm() < 1e-3 * change.norm());
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`at`](Self::at), and a derivative that has grown beyond the range of a double, next to the unstable axis.
+    pub fn at_with_derivative(&self, t: f64) -> Result<StateDerivative, DerivativeError> {
+        self.check_time(t)?;
+        self.derivative().at(&self.body, t, &self.point_at(t)).ok_or(DerivativeError::OutOfRange { t })
+    }
+
+    /// The rotation vector in space by the momentum at the start, both in the solver frame.
+    pub(super) fn turn_by_momentum(&self, t: f64) -> Matrix3<f64> {
+        let columns = self.derivative().columns(t, &self.point_at(t));
+        Matrix3::from_fn(|row, column| columns.rotation[column][row])
+    }
+
+    /// The rate of the fastest part of the phase, rad/s.
+    pub(super) fn fastest_rate(&self) -> f64 {
+        MOST_RADIANS / self.reach
+    }
+
+    /// I⁻¹ in body axes.
+    pub(super) fn inverse_inertia(&self) -> Matrix3<f64> {
+        self.derivative().inverse_inertia()
+    }
+
+    fn derivative(&self) -> &Derivative {
+        self.derivative
+            .get_or_init(|| Box::new(Derivative::new(&self.body, self.orbit.variation(), self.orbit.start())))
     }
 
     /// The largest |t| at which the phase still has digits, s: some 2⁹⁶ rad; infinite at rest.
@@ -111,6 +161,32 @@ impl FreeMotion {
         let (mut states, exit) = (Vec::with_capacity(times.len()), Exit::of(&self.body));
         self.phases_at(times, Instructions::Widest, |_, x| states.push(exit.state(x)));
         Ok(states)
+    }
+
+    /// Gives `each` the states at many `times` with their angular velocities, rad/s, body axes, in order: the bits of
+    /// [`at`](Self::at) and [`omega_at`](Self::omega_at).
+    ///
+    /// ```
+    /// use nalgebra::{UnitQuaternion, Vector3};
+    /// use polhode::flow::FreeMotion;
+    /// use polhode::inertia::Inertia;
+    /// let racket = Inertia::from_moments([1.0, 2.0, 3.0])?;
+    /// let motion = FreeMotion::from_omega(&racket, UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+    /// let mut fastest = 0.0_f64;
+    /// motion.each_at(&[-2.0, 0.0, 1e6], |_, omega| fastest = fastest.max(omega.norm()))?;
+    /// assert!(fastest >= motion.omega_at(1e6)?.norm());
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`at_many`](Self::at_many); `each` is not called then.
+    pub fn each_at(&self, times: &[f64], mut each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError> {
+        times.iter().try_for_each(|&t| TimeError::check(t, self.reach))?;
+        let (exit, inverse_moments) = (Exit::of(&self.body), self.body.rotor().inverse_moments());
+        self.phases_at(times, Instructions::Widest, |_, x| {
+            each(exit.state(x), exit.omega(inverse_moments, x.momentum_body));
+        });
+        Ok(())
     }
 
     /// Gives `each` attitude and momentum in the solver frame at `times`, with their numbers; times are finite and within reach.

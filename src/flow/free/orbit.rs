@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use super::addition::{Addition, Curve};
 use super::character::{AtRest, Character};
 use super::circulation::Circulation;
+use super::derivative::Variation;
 use super::phase::{Spin, pair, steady};
 use super::polhode::{Polhode, exact_separation};
 use super::theta::{Points, Theta};
@@ -145,6 +146,20 @@ impl FreeOrbit {
     pub(crate) fn addition<S: Precise>(&self, h: Dd) -> Option<Addition<S>> {
         let Kind::Circulating(orbit) = &self.kind else { return None };
         Addition::of(&orbit.polhode, self.moments, h, self.start.momentum_body, || self.turned(h))
+    }
+
+    /// The constants of the derivative by the start and the moments.
+    pub(super) fn variation(&self) -> Variation {
+        let polhode = match &self.kind {
+            Kind::Circulating(orbit) => Some(&orbit.polhode),
+            Kind::Rest | Kind::Steady(_) => None,
+        };
+        Variation::new(self.moments, self.start.momentum_body, polhode)
+    }
+
+    /// The point at the start.
+    pub(super) fn start(&self) -> Point<Dd> {
+        self.start
     }
 
     /// Periods, mode and distance to the separatrix.

@@ -220,6 +220,20 @@ impl LagrangeTop {
         times.iter().map(|&t| self.at(t)).collect()
     }
 
+    /// Gives `each` the states at many `times` with their angular velocities, rad/s, body axes, in order: the bits of
+    /// [`at`](Self::at).
+    ///
+    /// # Errors
+    /// As [`at_many`](Self::at_many); `each` is not called then.
+    pub fn each_at(&self, times: &[f64], mut each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError> {
+        times.iter().try_for_each(|&t| TimeError::check(t, self.reach()))?;
+        for &t in times {
+            let x = self.point_at(t);
+            each(self.body.leave(&x), self.body.omega_of(&x));
+        }
+        Ok(())
+    }
+
     /// The point of the solver frame at time `t` (s), finite and within [`reach`](Self::reach).
     ///
     /// By theta functions, with phases reduced in double-double; on the separatrix of the sleeping top and after 2⁴³ turns by

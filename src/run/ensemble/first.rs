@@ -51,17 +51,19 @@ impl Ensemble {
     }
 
     /// As [`first`](Self::first), along a [`Run`] of each member by `method` and the steps of `clock`, up to the time `end`, s,
-    /// with a look at each step.
+    /// with the looks of [`Run::events`].
     pub fn first_by(
         &self,
         method: &dyn AnyMethod,
         clock: Clock,
         event: impl Fn(&Body) -> Result<Event, EventError> + Sync,
         end: f64,
+        spacing: f64,
     ) -> Vec<First> {
         self.each_by_itself(|body, start| {
-            let run = Run::from_point(method, body, start.to_f64(), clock)?;
-            Ok(run.watching(Watch::Never).until(&event(body)?, end)?)
+            let mut run = Run::from_point(method, body, start.to_f64(), clock)?.watching(Watch::Never);
+            let found = run.events(&[event(body)?.stopping()], end, spacing)?.found;
+            Ok(found.into_iter().next())
         })
     }
 

@@ -12,6 +12,7 @@ use polhode_files::error::Error;
 use polhode_files::numbers::numbers;
 use polhode_files::text::visible;
 use polhode_files::trajectory::read;
+use polhode_pages::verdict::Difference;
 
 /// A trajectory that is right, with its body.
 pub(super) struct Golden {
@@ -21,33 +22,11 @@ pub(super) struct Golden {
     pub(super) body: Body,
 }
 
-/// How far a record is from a golden trajectory.
-pub(super) struct Difference {
-    /// File of the golden trajectory.
-    pub(super) name: String,
-    /// Rows at the same times.
-    pub(super) rows: usize,
-    /// Rows of the golden trajectory.
-    pub(super) of: usize,
-    /// Largest angle between the attitudes, rad.
-    pub(super) largest: f64,
-    /// When, s.
-    pub(super) at: f64,
-    /// What is allowed, rad.
-    pub(super) tolerance: f64,
-}
-
 /// Times agree within this share of the interval of the golden trajectory.
 const SAME_TIME: f64 = 1e-6;
 
 /// Noise of so many standard deviations is allowed beside the tolerance.
 const SIGMAS: f64 = 6.0;
-
-impl Difference {
-    pub(super) fn is_within(&self) -> bool {
-        self.largest <= self.tolerance
-    }
-}
 
 impl Golden {
     /// Of a file that `polhode audit --golden` has written, or one with the same columns and the line `# moments: I1,I2,I3`.

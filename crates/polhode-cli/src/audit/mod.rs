@@ -1,20 +1,13 @@
 //! `polhode audit`: a verdict on the trajectory of another program.
 
-mod advice;
 mod against;
 mod arguments;
-mod figure;
 mod golden;
-mod json;
-mod outcome;
-mod page;
-mod steps;
-mod text;
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use polhode::audit::{Attitudes, Noise, Question, Trajectory, audit};
+use polhode::audit::{Attitudes, Noise, Question, Trajectory, audit, step_length};
 use polhode::body::Body;
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{list, positive};
@@ -23,14 +16,13 @@ use polhode_files::trajectory;
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
+use polhode_pages::verdict::{self, Adviser, Outcome};
 
 use crate::flags::body::BodyArguments;
 use crate::flags::force::ForceArguments;
 use crate::memory;
-use advice::Adviser;
 use against::Golden;
 use arguments::ReadingArguments;
-use outcome::Outcome;
 
 const USAGE: &str = "polhode audit <RUN.csv> [BODY] [FORCE] [OPTIONS]
        polhode audit --golden <DIR>
@@ -45,8 +37,8 @@ const EXAMPLES: &str = "Examples:
   polhode audit --golden golden
   polhode audit golden/free-generic.csv --against golden/free-generic.csv";
 
-/// Readings of the ranking that are shown.
-const RANKED: usize = 5;
+/// Columns without a use that are named.
+const NAMED: usize = 12;
 
 /// Whether a trajectory of another program is right, its convention and its error
 ///
@@ -75,8 +67,8 @@ pub(crate) struct Audit {
     /// Audit this body of the column id alone
     #[arg(long, value_name = "NAME", help_heading = "Reading")]
     id: Option<String>,
-    /// Largest error of a record that is right, rad and relative
-    #[arg(long, value_name = "E", value_parser = positive, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
+    /// Largest error of a record that is right, rad and relative, at most 0.1
+    #[arg(long, value_name = "E", value_parser = tolerance, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
     tolerance: f64,
     /// Noise that the record has, standard deviations of a component of the attitude, rad, and of the angular velocity, rad/s; a noisy record is undecided without it
     #[arg(long, value_name = "ANGLE[,RATE]", value_parser = noise, allow_hyphen_values = true, help_heading = "Verdict")]
@@ -116,19 +108,19 @@ impl Audit {
         let form = self.report.as_deref().map(|path| Form::of("--report", path)).transpose()?;
         let outcomes = self.outcomes(path, &name)?;
         let text = match format {
-            Format::Table => text::text(&name, &outcomes),
-            Format::Json => json::text(&outcomes),
-            Format::Csv => text::rows(&outcomes).csv(),
+            Format::Table => verdict::text(&name, &outcomes),
+            Format::Json => verdict::json(&outcomes),
+            Format::Csv => verdict::rows(&outcomes).csv(),
         };
         // all places are found to be usable before the first is written
         let figure = self.figure.as_deref().map(|path| Output::to_file("--figure", path)).transpose()?;
         let report = self.report.as_deref().map(|path| Output::to_file("--report", path)).transpose()?;
         let output = Output::new(self.out.as_deref())?;
         if let Some(file) = figure {
-            file.write_whole(&figure::panels(&name, &outcomes)?.svg)?;
+            file.write_whole(&verdict::panels(&name, &outcomes)?.svg)?;
         }
         if let Some((file, form)) = report.zip(form) {
-            file.write_whole(&page::page(&name, &outcomes, form)?)?;
+            file.write_whole(&verdict::page(&name, &outcomes, form)?)?;
         }
         output.write_whole(&text)?;
         if format == Format::Csv {
@@ -192,6 +184,9 @@ impl Audit {
             if found.counts_steps {
                 notes.push(timed(&mut record, body.as_ref(), &place)?);
             }
+            if outcomes.is_empty() && !found.unread.is_empty() {
+                notes.push(format!("not read: {}", listed(&found.unread)));
+            }
             let mut question = Question::new(body.clone());
             (question.tolerance, question.claims) = (self.tolerance, claims);
             question.noise = self.noise.unwrap_or_default();
@@ -220,6 +215,24 @@ impl Audit {
     }
 }
 
+fn tolerance(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        value if value <= 0.1 => Ok(value),
+        value => {
+            Err(format!("{value:?} is more than 0.1, within which nearly anything is; give a smaller number"))
+        }
+    }
+}
+
+/// The first of some names, and how many more there are.
+fn listed(names: &[String]) -> String {
+    let shown = names[..names.len().min(NAMED)].join(", ");
+    match names.len().saturating_sub(NAMED) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
 /// Standard deviations of the attitude, rad, and of the angular velocity, rad/s, which is 0 where it is left out.
 fn noise(text: &str) -> Result<Noise, String> {
     let (attitude, rates) = match list(text)?[..] {
@@ -240,7 +253,7 @@ fn noise(text: &str) -> Result<Noise, String> {
 
 /// Turns counts of steps into times, and says how.
 fn timed(record: &mut Trajectory, body: Option<&Body>, place: &str) -> Result<String, Error> {
-    let Some(step) = steps::length(record, body) else {
+    let Some(step) = step_length(record, body) else {
         let rule = "counts steps of a length that it does not tell";
         let remedy = "give the length of a step, s, as --time-unit, or dump with dump_modify time yes";
         return Err(Error::input(place, "", rule, remedy));

@@ -12,7 +12,7 @@ use polhode::run::RunError;
 use polhode::truth::{AGREEMENT, Care, Judged, Truth, TruthError, evenly};
 use polhode_experiments::timing::StepTime;
 use polhode_files::error::{Error, warn};
-use polhode_files::moment::duration;
+use polhode_files::instant::duration;
 use polhode_files::text::short;
 use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::output::Output;

@@ -76,6 +76,7 @@ impl Compare {
         }
         if found.ending == Ending::Held {
             set("attitude_error", found.attitude_error.into());
+            set("largest_attitude_error", found.largest.into());
             set("attitude_time", found.at.map(|at| self.start_time + at).into());
         }
         Ok(row)
@@ -95,7 +96,12 @@ pub(super) fn columns(body: &Body) -> Vec<Column> {
         Column::new("attitude_error", "rad", "angle to the true attitude at the end")
             .heading("attitude")
             .digits(2),
-        Column::new("largest_attitude_error", "rad", "the largest at 64 times up to then").hidden(),
+        Column::new(
+            "largest_attitude_error",
+            "rad",
+            "the largest up to then, at 64 times or at the rows of the file",
+        )
+        .hidden(),
         Column::new("attitude_time", "s", "time of the attitude error").hidden(),
         shown(
             Column::new("energy_error", "", "largest relative error of the energy")

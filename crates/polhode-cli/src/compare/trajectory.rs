@@ -35,8 +35,9 @@ pub(crate) struct Row {
 
 /// How far a trajectory is off.
 pub(super) struct Off {
-    /// At the last row, rad.
+    /// At the last row, and the largest of all rows, rad.
     pub(super) attitude_error: f64,
+    pub(super) largest: f64,
     /// When that is, s since the start; `None` where the true motion is not known so far.
     pub(super) at: Option<f64>,
     pub(super) ending: Ending,
@@ -107,7 +108,7 @@ impl Trajectory {
     pub(super) fn against(&self, truth: &Truth, start_time: f64) -> Result<Off, Error> {
         let known = truth.known_until();
         let invariants = self.invariants(truth, start_time)?;
-        let mut off = Off { attitude_error: 0.0, at: None, ending: Ending::Held, invariants };
+        let mut off = Off { attitude_error: 0.0, largest: 0.0, at: None, ending: Ending::Held, invariants };
         for row in &self.rows {
             let elapsed = Dd::from(row.t) - Dd::from(start_time);
             if elapsed.hi() > known {
@@ -117,7 +118,7 @@ impl Trajectory {
             let state = State { attitude, momentum_body: Vec3::zero() };
             let point = truth.body().enter(&state).map_err(unexpected)?;
             off.attitude_error = truth.attitude_error(&point, elapsed).map_err(unexpected)?;
-            off.at = Some(elapsed.hi());
+            (off.largest, off.at) = (off.largest.max(off.attitude_error), Some(elapsed.hi()));
             if off.attitude_error > LOST {
                 off.ending = Ending::Lost(elapsed.hi());
                 break;

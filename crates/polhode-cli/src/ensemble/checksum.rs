@@ -1,6 +1,6 @@
-//! SHA-256 of files, as `sha256sum` prints it.
+//! SHA-256 of files and texts, as `sha256sum` prints it.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write};
 use std::io::{self, Read};
 
 use sha2::{Digest, Sha256};
@@ -36,6 +36,13 @@ impl Checksum {
             let _ = write!(text, "{byte:02x}");
             text
         })
+    }
+}
+
+impl Write for Checksum {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.add(text.as_bytes());
+        Ok(())
     }
 }
 

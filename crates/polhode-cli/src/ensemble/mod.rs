@@ -1,7 +1,7 @@
 //! `polhode ensemble`: many bodies from uncertain starts, on one machine or in shares on many.
 
 mod checksum;
-mod digest;
+mod first_order;
 mod folder;
 mod gather;
 mod record;
@@ -59,7 +59,8 @@ Examples:
 /// Members are drawn from standard deviations, covariances or ranges of start and inertia, or listed in a CSV (members_file).
 /// Tensors that no body has are drawn again, so the spread of the inertia ends at the triangle inequalities. Member k is the
 /// same in any division of the work. DIR gets summary.csv, dispersion.csv, dispersion.svg, failures.csv,
-/// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml.
+/// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml. Of free bodies in exact motion the spread to
+/// first order is printed beside that of the members.
 ///
 /// With --shard K/N, or in a Slurm array or under an MPI launcher, only the K-th of N parts of the members is run. Its results,
 /// a shard, go to DIR/shards, and `polhode gather DIR` makes those of all members. A shard that is finished is not run again.
@@ -181,7 +182,11 @@ impl Ensemble {
             staging.remove(ATTITUDES)?;
         }
         staging.commit()?;
-        said(&results, &shares, &identity, &self.out)
+        said(&results, &shares, &identity, &self.out)?;
+        match first_order::beside(spec, &reduced, &results.rows_shown()) {
+            Some(text) => emit(&text, None),
+            None => Ok(()),
+        }
     }
 
     /// One share, into a folder of its own.

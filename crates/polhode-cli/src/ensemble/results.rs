@@ -61,14 +61,18 @@ impl Results {
         Ok(files)
     }
 
+    /// Numbers of the rows that are shown.
+    pub(super) fn rows_shown(&self) -> Vec<usize> {
+        let rows = self.summary.rows().len();
+        let (last, count) = (rows.saturating_sub(1), rows.min(SHOWN));
+        (0..count).map(|k| if count > 1 { k * last / (count - 1) } else { 0 }).collect()
+    }
+
     /// Some rows of the summary, for reading.
     pub(super) fn shown(&self) -> String {
-        let rows = self.summary.rows();
         let mut table = Table::new("summary", "", self.summary.columns.clone());
-        let last = rows.len().saturating_sub(1);
-        let count = rows.len().min(SHOWN);
-        for k in 0..count {
-            table.push(rows[if count > 1 { k * last / (count - 1) } else { 0 }].clone());
+        for k in self.rows_shown() {
+            table.push(self.summary.rows()[k].clone());
         }
         table.terminal()
     }

@@ -6,7 +6,7 @@ use polhode::body::{Body, Point, State};
 use polhode::num::Dd;
 use polhode::rotation::{EulerSequence, Quat, Vec3};
 use polhode_files::error::{Error, tell, warn};
-use polhode_files::moment::seconds_in;
+use polhode_files::instant::seconds_in;
 use polhode_files::numbers::{numbers, quaternion, turn};
 use polhode_files::text::visible;
 

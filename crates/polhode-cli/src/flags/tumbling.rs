@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use polhode::flow::{Mode, TumblingElements, TumblingError};
 use polhode_files::error::Error;
-use polhode_files::moment::positive_duration;
+use polhode_files::instant::positive_duration;
 use polhode_files::numbers::numbers;
 
 /// Periods, mode and angles of a tumbling body.

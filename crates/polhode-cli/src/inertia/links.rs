@@ -4,12 +4,19 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use polhode_files::error::{Error, warn};
-use polhode_files::read;
+use polhode_files::examined::{Examined, Worth};
 use polhode_files::robots::{self as models, Language};
+use polhode_files::{read, twins};
 use polhode_pages::output::Output;
 
-use super::examined::{Examined, Model, Worth};
-use super::{Form, Inertia, output, repair, summary, twins};
+use super::{Form, Inertia, output, repair, summary};
+
+/// A model with the text that its links were read from.
+pub(super) struct Model {
+    pub(super) path: String,
+    pub(super) text: String,
+    pub(super) links: Vec<Examined>,
+}
 
 /// Examines the models that `command` names.
 ///

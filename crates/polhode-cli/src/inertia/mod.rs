@@ -1,12 +1,10 @@
 //! `polhode inertia`: builds, checks and converts inertia tensors.
 
-mod examined;
 mod links;
 mod meshes;
 mod output;
 mod repair;
 mod summary;
-mod twins;
 
 use std::path::{Path, PathBuf};
 
@@ -15,6 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, InertiaError, MassError, MassProperties, Solid};
 use polhode_files::bodies;
 use polhode_files::error::{Error, warn};
+use polhode_files::examined::{Examined, Worth};
 use polhode_files::given::{self, Given};
 use polhode_files::numbers::{list, numbers, positive};
 use polhode_files::read;
@@ -23,7 +22,6 @@ use polhode_files::text::{short, visible};
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
 
-use examined::{Examined, Worth};
 use meshes::MeshArguments;
 
 const EXAMPLES: &str = "Examples:

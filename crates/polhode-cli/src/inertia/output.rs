@@ -3,12 +3,12 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::{Diagnosis, MassProperties};
 use polhode_files::error::warn;
+use polhode_files::examined::{Examined, six};
 use polhode_files::text::{visible, visible_json};
 use polhode_pages::table::{Cell, Column, Format, Table, row};
 use serde_json::{Value, json};
 
 use super::Form;
-use super::examined::{Examined, six};
 
 /// The sign of the products, which no two programs agree on.
 const SIGN: &str = "I_xy = -int x y dm";

@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use nalgebra::Matrix3;
 use polhode::inertia::Diagnosis;
 use polhode_files::error::Error;
+use polhode_files::examined::{Examined, Worth, six};
 use polhode_files::given::Writing;
 use polhode_files::text::{rounded, visible};
 use polhode_pages::output::Output;
 
-use super::examined::{Examined, Model, Worth, six};
+use super::links::Model;
 
 /// By how much the moments of a nearest tensor are raised, relative to its trace, so that programs that judge without a tolerance
 /// accept it.

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use polhode_files::examined::{Examined, Worth};
 use polhode_files::text::{short, visible};
 
-use super::examined::{Examined, Model, Worth};
+use super::links::Model;
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;

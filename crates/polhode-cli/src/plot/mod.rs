@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use polhode_files::error::{Error, warn};
-use polhode_files::moment::positive_duration;
+use polhode_files::instant::positive_duration;
 use polhode_files::numbers::{number, numbers, positive};
 use polhode_pages::figure::Canvas;
 use polhode_pages::output::Output;

@@ -2,6 +2,7 @@
 
 mod columns;
 mod events;
+mod through;
 
 use std::path::PathBuf;
 
@@ -14,7 +15,7 @@ use polhode::observe::Monitor;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, RunError, Sample, Watch};
 use polhode_files::error::{Error, warn};
-use polhode_files::moment::positive_duration;
+use polhode_files::instant::positive_duration;
 use polhode_files::numbers::positive;
 use polhode_pages::table::{Format, RowWriter};
 
@@ -29,7 +30,8 @@ const USAGE: &str = "polhode propagate <BODY> [START] <TIMES> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
   START: --omega <wx,wy,wz> | --momentum-body <mx,my,mz> | ...
          and --attitude <w,x,y,z> | --angles <phi,theta,psi> | ...
-  TIMES: --times <LIST|FILE|-> | --until <T> --every <DT>|--event <EVENT>";
+  TIMES: --times <LIST|FILE|-> | --until <T> --every <DT>|--event <EVENT>
+  or --through <POSES> --every <DT> in place of START and TIMES";
 
 const EXAMPLES: &str = "Examples:
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --times 0,10,1e6
@@ -42,6 +44,7 @@ const EXAMPLES: &str = "Examples:
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 100 --every 10 \\
     --method dop853 --tolerance 1e-12
   polhode propagate --body t-handle --until 60 --event flip
+  polhode propagate --moments 1,2,3 --through poses.csv --every 0.1
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 1d \\
     --event 'angle(body z, space x) < 30deg' --stop";
 
@@ -59,6 +62,13 @@ pub(crate) struct Propagate {
     /// End with the first event
     #[arg(long, requires = "events", help_heading = "Events")]
     stop: bool,
+    /// The exact motion between the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space), in rows of --every from the first to the last, with the error of spherical linear interpolation
+    #[arg(long, value_name = "POSES", requires = "every", help_heading = "Through attitudes",
+          conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation", "times", "until", "start_time", "events", "method", "step", "tolerance"])]
+    through: Option<PathBuf>,
+    /// Most turns between two attitudes, by the mean spin 2E/|L| [default: 1]
+    #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true, requires = "through", help_heading = "Through attitudes")]
+    turns: Option<f64>,
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Method")]
     method: String,
@@ -82,6 +92,9 @@ pub(crate) struct Propagate {
 impl Propagate {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let body = self.motion.body()?;
+        if let Some(file) = &self.through {
+            return self.through(&body, file);
+        }
         if !self.events.is_empty() {
             return self.look_for_events(&body);
         }
@@ -285,24 +298,7 @@ impl Propagate {
 
     /// Refuses to go on where the numbers no longer are those of a rotation.
     fn check_sense(&self, sample: &Sample) -> Result<(), Error> {
-        let norm = sample.point.attitude.norm_squared().sqrt();
-        let lost = if (norm - 1.0).abs() > 0.5 {
-            format!("the quaternion of the attitude has the norm {norm:.1e}, not 1")
-        } else {
-            // where nothing is watched, those of this row
-            let (worst, now) = (sample.worst, sample.errors);
-            let errors =
-                [("energy", worst.energy.or(now.energy)), ("|m|", worst.momentum_norm.or(now.momentum_norm))];
-            match errors.into_iter().find(|(_, error)| error.is_some_and(|error| error > 1.0)) {
-                Some((what, Some(error))) => format!("the relative error of {what} is {error:.1e}"),
-                _ => return Ok(()),
-            }
-        };
-        Err(Error::Failed(format!(
-            "--method {}: at {:?} s {lost}: the numbers no longer describe the motion; take a smaller step or another method",
-            self.method,
-            sample.time.hi()
-        )))
+        sample.nonsense().map_or(Ok(()), |why| Err(Error::Failed(format!("--method {}: {why}", self.method))))
     }
 
     fn without_tolerance(&self, tolerance: f64) -> Error {

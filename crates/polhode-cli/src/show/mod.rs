@@ -12,7 +12,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Problem};
 use polhode::flow::ExactMotion;
 use polhode_files::error::{Error, tell};
-use polhode_files::moment::positive_duration;
+use polhode_files::instant::positive_duration;
 use polhode_files::numbers::{number, positive};
 use polhode_files::text::{rounded, short};
 use polhode_pages::output::Output;

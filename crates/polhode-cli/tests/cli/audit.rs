@@ -359,3 +359,24 @@ fn a_torque_that_is_told_and_does_not_act_is_named() {
     let file = scratch.file("driven.csv", table(columns, driven.iter().map(|r| r.to_vec())));
     assert_eq!(verdict(&run(&format!("audit {file} {BODY} {told} --format json")))["verdict"], "right");
 }
+
+/// What is not read is not right; what stands twice is not read.
+#[test]
+fn columns_that_are_not_read_are_named_and_none_stands_twice() {
+    let scratch = Scratch::new("audit-unread");
+    let file = |name: &str, more: &str, cells: &[f64]| {
+        let head = format!("t,q_w,q_x,q_y,q_z,wx,wy,wz{more}");
+        let rows = rows("").into_iter().map(|row| row.into_iter().chain(cells.iter().copied()).collect());
+        scratch.file(name, table(&head, rows))
+    };
+    let beside = file("beside.csv", ",energy,lx,ly", &[7.0, 1.0, 2.0]);
+    let answer = run(&format!("audit {beside} {BODY} --format json"));
+    assert_eq!(answer.code, 0, "{answer:?}");
+    assert_eq!(verdict(&answer)["warnings"][0], "not read: energy, lx, ly");
+    let twice = file("twice.csv", ",qw,qx,qy,qz", &[1.0, 0.0, 0.0, 0.0]);
+    let answer = run(&format!("audit {twice} {BODY}"));
+    assert_eq!(answer.code, 2, "{answer:?}");
+    assert!(answer.err.contains("columns 2 and 9 have this one name"), "{answer:?}");
+    let answer = run(&format!("audit {beside} {BODY} --tolerance 0.5"));
+    assert!(answer.code == 2 && answer.err.contains("0.5 is more than 0.1"), "{answer:?}");
+}

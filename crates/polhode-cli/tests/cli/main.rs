@@ -40,4 +40,5 @@ mod robots;
 mod scarce;
 mod show;
 mod tables;
+mod through;
 mod times;

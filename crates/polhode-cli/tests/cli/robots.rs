@@ -313,6 +313,26 @@ fn orientations_and_settings_of_mjcf_are_obeyed() {
     assert!(answer.err.contains("eulerseq is not three of the letters"), "{answer:?}");
 }
 
+/// Which of two tensors counts, a format may say and nobody reads: programs take the first, the last, or none.
+#[test]
+fn a_link_of_two_tensors_is_invalid() {
+    let scratch = Scratch::new("twice");
+    let one = "<mass value='1'/><inertia ixx='1' iyy='2' izz='2.5' ixy='0' ixz='0' iyz='0'/>";
+    let link = |inertials: &str| format!("<robot name='r'><link name='a'>{inertials}</link></robot>");
+    scratch.file("links.urdf", link(&format!("<inertial>{one}</inertial>").repeat(2)));
+    scratch.file("tensors.urdf", link(&format!("<inertial>{one}{one}</inertial>")));
+    let inertial = "<inertial pos='0 0 0' mass='1' diaginertia='1 2 2.5'/>".repeat(2);
+    scratch.file(
+        "bodies.xml",
+        format!("<mujoco><worldbody><body name='a'>{inertial}</body></worldbody></mujoco>"),
+    );
+    for line in ["urdf links.urdf", "urdf tensors.urdf", "mjcf bodies.xml"] {
+        let answer = scratch.run(line);
+        assert_eq!(answer.code, 1, "{line}");
+        assert!(answer.err.contains("a second time; leave one out"), "{line}: {answer:?}");
+    }
+}
+
 #[test]
 fn copies_of_copies_and_circles_of_includes_end() {
     let scratch = Scratch::new("bombs");

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::inertia::{Amount, MassProperties, Solid, Surface};
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::inertia::{Amount, MassProperties};
 
 use super::{Chosen, chosen, language, parts};
 use crate::error::Error;
+use crate::look::{Look, Piece};
 use crate::mesh::{MeshOptions, surface};
 use crate::robots;
 
@@ -20,30 +21,6 @@ pub struct Form {
     pub center_of_mass: Vector3<f64>,
     /// What is to be known of it.
     pub remark: Option<String>,
-}
-
-/// A part of a body: turned, then moved.
-#[derive(Clone, Debug)]
-#[allow(missing_docs, reason = "the type says what they are")]
-pub struct Piece {
-    pub look: Look,
-    pub turn: UnitQuaternion<f64>,
-    /// m.
-    pub at: Vector3<f64>,
-}
-
-/// What a part looks like.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub enum Look {
-    /// A solid in its own axes.
-    Solid(Solid),
-    /// Triangles, m.
-    Surface(Surface),
-    /// A mass, kg, and a tensor about its centre, kg m²: no more is known.
-    Tensor(f64, Matrix3<f64>),
-    /// A point.
-    Point,
 }
 
 /// What the body that `text` names as FILE or FILE:LINK looks like; `None` where there is no such file. Messages begin with `flag`.

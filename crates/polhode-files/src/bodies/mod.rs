@@ -11,10 +11,11 @@ use polhode::inertia::Inertia;
 
 use crate::error::Error;
 use crate::given::Given;
+pub use crate::look::{Look, Piece};
 use crate::read;
 use crate::robots::{self, Language};
 use crate::text::visible;
-pub use form::{Form, Look, Piece, form};
+pub use form::{Form, form};
 pub use parts::parts;
 
 /// Name and tensor of a body in the axes of its frame, about its centre of mass, kg m²; the name may be empty.
@@ -124,7 +125,8 @@ fn model(path: &Path) -> Result<String, Error> {
 }
 
 /// The language of a model by the ending of its file, or else by its text.
-fn language(kind: &str, text: &str) -> Language {
+#[must_use]
+pub fn language(kind: &str, text: &str) -> Language {
     Language::named(kind).unwrap_or(if text.contains("<robot") {
         Language::Urdf
     } else if text.contains("<sdf") {

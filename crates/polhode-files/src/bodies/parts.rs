@@ -7,8 +7,8 @@ use polhode::inertia::{Amount, MassError, MassProperties, Solid};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::form::{Look, Piece};
 use crate::error::Error;
+use crate::look::{Look, Piece};
 use crate::mesh::{MeshOptions, length_unit, surface};
 use crate::numbers::turn;
 use crate::read;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 use std::path::Path;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use roxmltree::{Document, Node, NodeType};
 
@@ -31,7 +31,7 @@ pub(super) struct Element {
     pub(super) children: Vec<Element>,
     /// The text of an element that has nothing else.
     pub(super) text: Option<Value>,
-    pub(super) file: Rc<Path>,
+    pub(super) file: Arc<Path>,
     line: usize,
 }
 
@@ -68,7 +68,7 @@ impl Element {
     }
 
     /// An element without a name around others.
-    pub(super) fn around(children: Vec<Element>, file: Rc<Path>) -> Element {
+    pub(super) fn around(children: Vec<Element>, file: Arc<Path>) -> Element {
         Element { tag: String::new(), attributes: Vec::new(), children, text: None, file, line: 1 }
     }
 
@@ -78,6 +78,15 @@ impl Element {
 
     pub(super) fn child(&self, tag: &'static str) -> Option<&Element> {
         self.named(tag).next()
+    }
+
+    /// The one child of this tag, if there is one: of two it is not said which counts.
+    pub(super) fn single(&self, tag: &'static str) -> Result<Option<&Element>, String> {
+        let mut named = self.named(tag);
+        match (named.next(), named.next()) {
+            (_, Some(second)) => Err(second.error("is there a second time; leave one out")),
+            (first, None) => Ok(first),
+        }
     }
 
     pub(super) fn value(&self, attribute: &str) -> Option<&Value> {
@@ -184,7 +193,7 @@ impl Lines {
 }
 
 struct Reader {
-    file: Rc<Path>,
+    file: Arc<Path>,
     lines: Lines,
     /// Bytes before the text of the file.
     head: usize,

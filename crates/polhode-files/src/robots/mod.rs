@@ -9,7 +9,7 @@ mod urdf;
 mod visuals;
 
 use std::path::Path;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::error::Error;
 use crate::given::{Given, Writing};
@@ -94,7 +94,7 @@ fn link(name: &str, element: &Element, stated: Result<Option<Given>, String>) ->
 /// The parts of the file that state a tensor.
 fn writing(element: &Element, values: [Option<&Value>; 6]) -> Writing {
     let entries = values.map(|value| value.map(|found| found.range.clone()));
-    Writing { file: Rc::clone(&element.file), entries, list: None }
+    Writing { file: Arc::clone(&element.file), entries, list: None }
 }
 
 /// A mass of zero with a tensor of zeros is the idiom for a frame without a body.

@@ -24,7 +24,7 @@ fn collect(element: &Element, scope: &str, scoped: bool, found: &mut Vec<Given>)
         match child.tag.as_str() {
             "model" if scoped => collect(child, &format!("{scope}{name}::"), scoped, found),
             "link" => {
-                let given = child.child("inertial").map_or(Ok(None), stated);
+                let given = child.single("inertial").and_then(|inertial| inertial.map_or(Ok(None), stated));
                 found.push(link(&format!("{scope}{name}"), child, given));
             }
             "inertial" => found.push(link(scope, child, stated(child))),
@@ -47,9 +47,9 @@ fn stated(inertial: &Element) -> Result<Option<Given>, String> {
         Some(pose) => angles_in_radians(pose)?,
         None => [0.0; 6],
     };
-    let mass = inertial.child("mass").ok_or_else(|| inertial.error("<mass> is missing"))?;
+    let mass = inertial.single("mass")?.ok_or_else(|| inertial.error("<mass> is missing"))?;
     let [value] = mass.content::<1>()?;
-    let Some(inertia) = inertial.child("inertia") else {
+    let Some(inertia) = inertial.single("inertia")? else {
         return if value == 0.0 { Ok(None) } else { Err(inertial.error("<inertia> is missing")) };
     };
     let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];

@@ -17,7 +17,7 @@ pub(super) fn links(document: &Element) -> Vec<Given> {
     }
     let each = |element: &&&Element| {
         let name = element.attribute("name").unwrap_or_default();
-        let stated = element.child("inertial").map_or(Ok(None), stated);
+        let stated = element.single("inertial").and_then(|inertial| inertial.map_or(Ok(None), stated));
         link(name, element, stated)
     };
     links.iter().map(each).collect()
@@ -34,9 +34,9 @@ fn stated(inertial: &Element) -> Result<Option<Given>, String> {
         Some(origin) => (origin.optional::<3>("xyz")?, origin.optional::<3>("rpy")?),
         None => (None, None),
     };
-    let mass = inertial.child("mass").ok_or_else(|| inertial.error("<mass> is missing"))?;
+    let mass = inertial.single("mass")?.ok_or_else(|| inertial.error("<mass> is missing"))?;
     let [value] = mass.needed::<1>("value")?;
-    let Some(inertia) = inertial.child("inertia") else {
+    let Some(inertia) = inertial.single("inertia")? else {
         return if value == 0.0 { Ok(None) } else { Err(inertial.error("<inertia> is missing")) };
     };
     let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];

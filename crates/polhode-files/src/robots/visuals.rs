@@ -8,8 +8,8 @@ use polhode::inertia::Solid;
 use super::Language;
 use super::element::{Element, list};
 use super::pose::{quarter_turns_exact, roll_pitch_yaw};
-use crate::bodies::{Look, Piece};
 use crate::error::Error;
+use crate::look::{Look, Piece};
 use crate::mesh;
 use crate::text::visible;
 

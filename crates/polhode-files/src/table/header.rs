@@ -131,6 +131,15 @@ impl Header {
         groups.flatten().flat_map(|group| group.places.iter().copied()).collect()
     }
 
+    /// The names of the other columns, of those that have one; the places and velocities of MuJoCo are known to be such.
+    pub(crate) fn unread(&self) -> impl Iterator<Item = &str> {
+        let read: Vec<usize> =
+            self.columns().into_iter().chain(self.time).chain(self.nanoseconds).chain(self.id).collect();
+        let others =
+            (0..).zip(&self.names).filter(move |(place, _)| !self.is_generalized && !read.contains(place));
+        others.map(|(_, name)| name.text.trim()).filter(|name| !name.is_empty())
+    }
+
     /// The one component that a quaternion or an angular velocity lacks, or that there is none.
     fn missing(&self, cells: &[String]) -> Rule {
         let all = SPELLINGS.iter().filter(|spelling| !spelling.yields);
@@ -154,11 +163,15 @@ impl Header {
         Rule::Quantity(cells.to_vec())
     }
 
-    /// No column that is read has a second one of its name, but for those that flags have `named`.
+    /// No column that is read has a second one of its name, in whatever spelling, but for those that flags have `named`.
     fn check_unique(&self, named: &[usize]) -> Result<(), Rule> {
         for place in self.columns().into_iter().chain(self.time).filter(|place| !named.contains(place)) {
-            let is_same =
-                |other: &&Name| other.text.trim().eq_ignore_ascii_case(self.names[place].text.trim());
+            // a time may stand in several units, the numbers of a quantity not
+            let name = &self.names[place];
+            let is_same = |other: &&Name| {
+                let same_letters = Some(place) != self.time && other.letters == name.letters;
+                same_letters || other.text.trim().eq_ignore_ascii_case(name.text.trim())
+            };
             let mut same =
                 (1..).zip(&self.names).filter(|(_, other)| is_same(other)).map(|(number, _)| number);
             if let (Some(first), Some(second)) = (same.next(), same.next()) {

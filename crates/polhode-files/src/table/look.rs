@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use super::ReadOptions;
 use super::cells::{Delimiter, is_number, uncommented};
-use super::dump::spelled;
 use super::header::Header;
+use super::lammps::spelled;
 use super::lines::Line;
 use super::source::Source;
 use crate::error::{Rule, TableError};

@@ -4,13 +4,13 @@ mod array;
 mod axes;
 mod cells;
 mod clock;
-mod dump;
-mod echo;
 mod flags;
 mod header;
+mod lammps;
 mod lines;
 mod look;
 mod name;
+mod ros;
 mod source;
 mod spellings;
 

@@ -1,8 +1,8 @@
 //! What rows come from: plain lines, messages of ROS, dumps of LAMMPS.
 
-use super::dump::Dump;
-use super::echo::Echo;
+use super::lammps::Dump;
 use super::lines::{Line, Lines};
+use super::ros::Echo;
 use crate::error::TableError;
 
 /// Lines of a table.

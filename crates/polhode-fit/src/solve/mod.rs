@@ -31,4 +31,5 @@ pub(crate) mod radius;
 pub(crate) mod rounds;
 pub(crate) mod rows;
 pub(crate) mod stacked;
+pub(crate) mod triangle;
 pub(crate) mod weak_estimate;

@@ -1,11 +1,11 @@
 //! Rows of all stretches and priors stacked into one triangle.
 
-use crate::thresholds::stacked::{FLAT, RIDGE, TOGETHER};
-use faer::Mat;
 use nalgebra::{DMatrix, DVector, SMatrix};
 
 use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::{Coordinates, Form};
+use crate::solve::triangle::Triangle;
+use crate::thresholds::stacked::{FLAT, RIDGE};
 
 /// Further equations W (x − centre) = 0 of the tensor alone.
 #[derive(Clone, Copy, Debug)]
@@ -39,27 +39,20 @@ impl Stacked {
         let small = triangles(rows, columns, width);
         let all: Vec<&[f64]> =
             small.as_ref().map_or(rows.to_vec(), |s| s.iter().map(Vec::as_slice).collect());
-        let height: usize = all.iter().map(|rows| rows.len() / width).sum();
-        let mut each = all.iter().flat_map(|rows| rows.chunks_exact(width));
-        let mut r = Mat::<f64>::zeros(0, width);
-        for part in 0..=height / TOGETHER {
-            let first = r.nrows();
-            let own = TOGETHER.min(height - part * TOGETHER);
-            let priors = if part == height / TOGETHER { count } else { 0 };
-            let mut stack = Mat::<f64>::zeros((first + own + priors).max(width), width);
-            stack.as_mut().subrows_mut(0, first).copy_from(&r);
-            for (i, row) in each.by_ref().take(own).enumerate() {
-                for (k, value) in row.iter().enumerate() {
-                    stack[(first + i, k)] = *value;
-                }
-            }
-            for (k, column) in columns.iter().enumerate().take(priors) {
-                let weight = deviation / column.prior.unwrap_or(FLAT);
-                stack[(first + own + k, k)] = weight;
-                stack[(first + own + k, width - 1)] = weight * origin.c[k];
-            }
-            r = stack.qr().thin_R().to_owned();
+        let mut triangle = Triangle::new(width);
+        for row in all.iter().flat_map(|rows| rows.chunks_exact(width)) {
+            triangle.push(row.iter().copied());
         }
+        for (k, column) in columns.iter().enumerate() {
+            let weight = deviation / column.prior.unwrap_or(FLAT);
+            let entry = |i| match i {
+                i if i == k => weight,
+                i if i == width - 1 => weight * origin.c[k],
+                _ => 0.0,
+            };
+            triangle.push((0..width).map(entry));
+        }
+        let r = triangle.finished();
         let flat = columns.iter().filter(|column| column.prior.is_none()).count();
         let left = r[(width - 1, width - 1)];
         Stacked {
@@ -142,33 +135,16 @@ pub(crate) fn responses(
     let (wide, own) = (columns.len() + 6, columns.len() - errors);
     let small = triangles(rows, columns, wide);
     let all: Vec<&[f64]> = small.as_ref().map_or(rows.to_vec(), |s| s.iter().map(Vec::as_slice).collect());
+    let mut triangle = Triangle::new(wide - 1);
     // the errors are the right-hand sides, in the place of the residual
-    let place = |k: usize| if k < errors { own + 5 + k } else { k - errors };
-    let mut r = Mat::<f64>::zeros(0, wide - 1);
-    let mut each = all.iter().flat_map(|rows| rows.chunks_exact(wide)).peekable();
-    let mut priors =
-        columns[errors..].iter().map(|column| deviation / column.prior.unwrap_or(FLAT)).enumerate();
-    loop {
-        let part: Vec<&[f64]> = each.by_ref().take(TOGETHER).collect();
-        let weights: Vec<(usize, f64)> =
-            if each.peek().is_none() { priors.by_ref().collect() } else { Vec::new() };
-        let first = r.nrows();
-        let height = first + part.len() + weights.len();
-        let mut stack = Mat::<f64>::zeros(height.max(wide - 1), wide - 1);
-        stack.as_mut().subrows_mut(0, first).copy_from(&r);
-        for (i, row) in part.iter().enumerate() {
-            for (k, value) in row[..wide - 1].iter().enumerate() {
-                stack[(first + i, place(k))] = *value;
-            }
-        }
-        for (k, weight) in weights {
-            stack[(first + part.len() + k, k)] = weight;
-        }
-        r = stack.qr().thin_R().to_owned();
-        if each.peek().is_none() {
-            break;
-        }
+    for row in all.iter().flat_map(|rows| rows.chunks_exact(wide)) {
+        triangle.push(row[errors..wide - 1].iter().chain(&row[..errors]).copied());
     }
+    for (k, column) in columns[errors..].iter().enumerate() {
+        let weight = deviation / column.prior.unwrap_or(FLAT);
+        triangle.push((0..wide - 1).map(|i| if i == k { weight } else { 0.0 }));
+    }
+    let r = triangle.finished();
     let root = Form::from_fn(|i, k| if i <= k { r[(own + i, own + k)] } else { 0.0 });
     let moved =
         |k: usize| root.solve_upper_triangular(&Coordinates::from_fn(|i, _| r[(own + i, own + 5 + k)]));
@@ -188,9 +164,9 @@ fn triangle(rows: &[f64], width: usize) -> Vec<f64> {
     if rows.len() / width <= used.len() {
         return rows.to_vec();
     }
-    let full = Mat::from_fn(rows.len() / width, used.len(), |i, k| rows[i * width + used[k]]);
-    let qr = full.qr();
-    let r = qr.thin_R();
+    let mut triangle = Triangle::new(used.len());
+    rows.chunks_exact(width).for_each(|row| triangle.push(used.iter().map(|&k| row[k])));
+    let r = triangle.finished();
     let mut small = vec![0.0; used.len() * width];
     for i in 0..used.len() {
         for k in i..used.len() {

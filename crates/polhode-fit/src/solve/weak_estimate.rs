@@ -2,7 +2,7 @@
 
 use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::rounds::{BEYOND, RESTLESS, STILL};
-use faer::Mat;
+use crate::thresholds::stacked::ITERATIONS;
 use nalgebra::Vector3;
 
 use crate::columns::column::{Column, Unknowns};
@@ -172,11 +172,11 @@ impl WeakEstimate {
     /// Singular values of R less what is in doubt, descending, and the directions they belong to: the eigenvalues of H
     /// without its squares.
     pub(crate) fn spectrum(&self) -> Option<(Coordinates, Form)> {
-        let svd = Mat::from_fn(5, 5, |i, k| self.root[(i, k)]).svd().ok()?;
-        let (values, directions) = (svd.S().column_vector(), svd.V());
+        let svd = self.root.try_svd(false, true, f64::EPSILON, ITERATIONS)?;
+        let directions = svd.v_t?;
         let mut pairs: [(f64, Coordinates); 5] = core::array::from_fn(|k| {
-            let direction = Coordinates::from_fn(|i, _| directions[(i, k)]);
-            let sure = values[k] * values[k] - (self.doubt * direction).norm_squared();
+            let (value, direction) = (svd.singular_values[k], directions.row(k).transpose());
+            let sure = value * value - (self.doubt * direction).norm_squared();
             (sure.max(0.0).sqrt(), direction)
         });
         pairs.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -4,13 +4,13 @@ use crate::error::FitError;
 use crate::physical::constraint::Constraint;
 use crate::report::estimate::Estimate;
 use crate::signal::stretch::Stretch;
-use crate::thresholds::judgement::{DRIVEN, GROWN, OUTSIDE_OF_LAW};
+use crate::thresholds::judgement::{DRIVEN, GROWN, GROWN_BY_HALF, OUTSIDE_OF_LAW};
 use crate::units::Motion;
 
 /// Refuses the tensor of a driven body; `rms` is the unit of the rates.
 ///
 /// Either free motion with drag and a constant torque leaves much of |ω'|² unexplained, or the momentum grows while drag stands
-/// at its bound and the tensor is held far from what the record tells without the physical law.
+/// at its bound, by half, or less where the tensor is held far from what the record tells without the physical law.
 pub(crate) fn check_driven(
     e: &Estimate,
     motion: Option<&Motion>,
@@ -24,7 +24,8 @@ pub(crate) fn check_driven(
         .active_constraints
         .iter()
         .any(|active| matches!(active.constraint, Constraint::Drag { .. } | Constraint::DragMatrix { .. }));
-    let grows = is_at_bound && e.pull > OUTSIDE_OF_LAW && growth * longest > GROWN;
+    let least = if e.pull > OUTSIDE_OF_LAW { GROWN } else { GROWN_BY_HALF };
+    let grows = is_at_bound && growth * longest > least;
     let is_unexplained = unexplained.is_some_and(|share| share > DRIVEN);
     match is_unexplained || (grows && e.momentum_trend.significant()) {
         true => Err(FitError::Driven { unexplained, growth, pull: e.pull }),

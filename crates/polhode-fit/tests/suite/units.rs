@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::body::Body;
+use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
@@ -167,4 +169,27 @@ fn a_body_that_a_hand_drives_gets_no_tensor() {
         }
     }
     assert!(refused > 0, "none for that reason");
+}
+
+/// Drag takes momentum. A torque k J w gives it: the motion is the free one, run through ever faster.
+#[test]
+fn a_body_that_gains_half_of_its_momentum_gets_no_tensor() {
+    let inertia = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let free =
+        FreeMotion::from_omega(&inertia, UnitQuaternion::identity(), Vector3::new(0.6, 2.0, 0.8)).unwrap();
+    let of = |k: f64| {
+        let mut random = Random::new(33);
+        let times: Vec<f64> = (0..3000).map(|i| f64::from(i) / 100.0).collect();
+        let rates: Vec<Vector3<f64>> = times
+            .iter()
+            .map(|t| {
+                let grown = libm::exp(k * t);
+                let state = free.at((grown - 1.0) / k).unwrap();
+                Body::free(inertia.clone()).omega_body(&state) * grown + random.normal_vector() * 1e-2
+            })
+            .collect();
+        fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default())
+    };
+    assert!(of(-0.02).is_ok(), "drag");
+    assert!(matches!(of(0.02).unwrap_err(), FitError::Driven { growth, .. } if growth > 0.0));
 }

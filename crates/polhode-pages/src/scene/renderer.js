@@ -137,6 +137,7 @@ function rendererOf(canvas) {
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
       gl.enable(gl.DEPTH_TEST);
       gl.enable(gl.BLEND);
+      gl.enable(gl.POLYGON_OFFSET_FILL);
       gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
       const [sa, ca, se, ce] = [Math.sin(azimuth), Math.cos(azimuth), Math.sin(elevation), Math.cos(elevation)];
       const right = [-sa, ca, 0], up = [-se * ca, -se * sa, ce], eye = [ce * ca, ce * sa, se];
@@ -152,6 +153,8 @@ function rendererOf(canvas) {
     // seen of it through others.
     drawSolid(kept, { q, stretch, offset, colours, opacity = 1, hides = true, faint = 0 }) {
       use(solid, kept, q, stretch, offset);
+      // of faces that coincide the opaque one is seen
+      gl.polygonOffset(opacity < 1 ? 1 : 0, opacity < 1 ? 4 : 0);
       gl.uniform3fv(solid.places.colours, colours.concat(colours, colours).slice(0, 3).flat());
       gl.uniform3fv(solid.places.eye, view.eye);
       gl.uniform3fv(solid.places.light, view.light);

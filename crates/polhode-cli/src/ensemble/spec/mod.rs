@@ -16,7 +16,7 @@ use polhode_files::toml_file::{Section, TomlFile};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::digest::Digest;
+use super::checksum::Checksum;
 use crate::flags::force::Forces;
 use candidates::Candidates;
 use nominal::Nominal;
@@ -127,20 +127,20 @@ impl Spec {
             omegas,
             hash: String::new(),
         };
-        spec.hash = spec.digest();
+        spec.hash = spec.hashed();
         Ok(spec)
     }
 
     /// Of everything that the results depend on: numbers as they were understood, not comments or the order of keys.
-    fn digest(&self) -> String {
-        let mut digest = Digest::new();
+    fn hashed(&self) -> String {
+        let mut sum = Checksum::new();
         let _ = match &self.source {
-            Source::Drawn(population) => write!(digest, "{} {population:?}", self.seed),
-            Source::Listed(candidates) => write!(digest, "{candidates:?}"),
+            Source::Drawn(population) => write!(sum, "{} {population:?}", self.seed),
+            Source::Listed(candidates) => write!(sum, "{candidates:?}"),
         };
         let kept = (self.attitudes, self.omegas);
-        let _ = write!(digest, " {} {:?} {:?} {kept:?}", self.members, self.acting, self.plan);
-        digest.to_string()
+        let _ = write!(sum, " {} {:?} {:?} {kept:?}", self.members, self.acting, self.plan);
+        sum.hexadecimal()
     }
 
     /// Member number `k`, from 0.
@@ -168,6 +168,14 @@ impl Spec {
     /// Whether members are drawn, with `seed`.
     pub(super) fn is_drawn(&self) -> bool {
         matches!(self.source, Source::Drawn(_))
+    }
+
+    /// What members are drawn from, if they are drawn.
+    pub(super) fn population(&self) -> Option<&Population> {
+        match &self.source {
+            Source::Drawn(population) => Some(population),
+            Source::Listed(_) => None,
+        }
     }
 
     pub(super) fn acting(&self) -> Acting {

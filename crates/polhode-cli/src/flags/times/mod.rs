@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use polhode::units::Date;
 use polhode_files::error::{Error, warn};
-use polhode_files::moment::{duration, epoch, is_moment, seconds};
+use polhode_files::instant::{duration, epoch, is_moment, seconds};
 use polhode_files::times::{Asked, Source, TimesColumn};
 
 pub(crate) use regular::{Regular, regular};

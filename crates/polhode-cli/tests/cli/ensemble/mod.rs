@@ -2,6 +2,7 @@
 
 #[cfg(unix)]
 mod cluster;
+mod first_order;
 #[cfg(unix)]
 mod killed;
 mod refusals;

@@ -108,13 +108,14 @@ impl<'e> Model<'e> {
         self.found.push(Given::massless());
         let mut geoms = Some(Geoms::new());
         self.walk(element, Pose::identity(), class, suffix, &mut geoms);
-        let inertial = element.child("inertial").filter(|_| self.compiler.source != Source::Geoms);
-        let stated = match inertial {
-            Some(inertial) => self.stated(inertial),
-            None if self.compiler.source == Source::Inertial => Ok(None),
-            None => match self.of_geoms(&geoms.unwrap_or_default()) {
+        let own = element.single("inertial");
+        let stated = match own {
+            Err(error) => Err(error),
+            Ok(Some(inertial)) if self.compiler.source != Source::Geoms => self.stated(inertial),
+            Ok(_) if self.compiler.source == Source::Inertial => Ok(None),
+            Ok(own) => match self.of_geoms(&geoms.unwrap_or_default()) {
                 // without geoms of mass there is nothing to infer from
-                Ok(None) => element.child("inertial").map_or(Ok(None), |inertial| self.stated(inertial)),
+                Ok(None) => own.map_or(Ok(None), |inertial| self.stated(inertial)),
                 other => other,
             },
         };

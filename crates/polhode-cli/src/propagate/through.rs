@@ -1,0 +1,109 @@
+//! `propagate --through`: the exact motion between the attitudes of a file.
+
+use std::path::Path;
+
+use nalgebra::{Quaternion, UnitQuaternion};
+use polhode::audit::{Attitudes, QuaternionOrder};
+use polhode::body::{Body, Problem, Time};
+use polhode::flow::{Interpolation, ThroughError};
+use polhode_files::error::{Error, tell};
+use polhode_files::text::visible;
+use polhode_files::{ReadOptions, trajectory};
+use polhode_pages::table::{Cell, Column, RowWriter, Table};
+
+use super::Propagate;
+use super::columns::{Columns, Reading};
+use crate::flags::times::regular;
+
+/// Jumps of the angular velocity below this share of it are rounding.
+const SMOOTH: f64 = 1e-6;
+
+impl Propagate {
+    /// Writes a row every DT from the first attitude of `file` to the last.
+    pub(super) fn through(&self, body: &Body, file: &Path) -> Result<(), Error> {
+        if body.problem() != Problem::Free {
+            return Err(Error::Input(
+                "--through: the motion between two attitudes is known for free bodies; leave out what acts on the body".into(),
+            ));
+        }
+        let columns = Columns::of_states(&self.fields, self.motion.start.euler, body)?;
+        let attitudes = read(file)?;
+        let turns = self.turns.unwrap_or(1.0);
+        let refused = |error: ThroughError| {
+            let flag = match error {
+                ThroughError::Turns { .. } | ThroughError::NoneWithin { .. } => "--turns",
+                _ => "--through",
+            };
+            Error::Input(format!("{flag}: {error}"))
+        };
+        let between = Interpolation::new(body.inertia(), &attitudes, turns).map_err(refused)?;
+        let [first, last] = between.span();
+        let every = self.times.every().unwrap_or(last - first);
+        let times = regular(first, last, every).map_err(Error::Input)?;
+
+        let mut all = columns.columns();
+        all.push(Column::new("slerp_error", "rad", "angle by which the attitude of slerp is off").digits(2));
+        let table = Table::new("through", "Exact motion between attitudes.", all);
+        let mut rows = RowWriter::new(table, self.format, self.out.as_deref(), Some(times.len()))?;
+        let (mut worst, mut fastest) = (0.0_f64, 0.0_f64);
+        for t in times {
+            let (state, slerp_error) = between.at(t).map_err(refused)?;
+            let point = body.enter(&state).map_err(|error| Error::Failed(error.to_string()))?.to_f64();
+            let reading = Reading {
+                state,
+                omega: body.omega_body(&state),
+                at: Time::from_seconds(t),
+                point: &point,
+                worst: None,
+                attitude_error: None,
+            };
+            (worst, fastest) = (worst.max(slerp_error), fastest.max(reading.omega.norm()));
+            let mut cells: Vec<Cell> = columns.cells(body, &reading).collect();
+            cells.push(slerp_error.into());
+            rows.push(cells)?;
+        }
+        rows.finish()?;
+        tell(
+            "note",
+            &format!("spherical linear interpolation is off by up to {worst:.1e} rad at these times"),
+        );
+        let jump = between.largest_jump();
+        if jump > SMOOTH * fastest {
+            let rule = "the angular velocity jumps by up to";
+            tell(
+                "note",
+                &format!("these are not attitudes of one free motion: {rule} {jump:.1e} rad/s at them"),
+            );
+        }
+        if !between.pieces().iter().all(|piece| piece.complete) {
+            tell(
+                "note",
+                "between some attitudes the search for motions may have missed some; --turns sets how far it looks",
+            );
+        }
+        Ok(())
+    }
+}
+
+/// Times and attitudes of a file.
+fn read(file: &Path) -> Result<Vec<(f64, UnitQuaternion<f64>)>, Error> {
+    let name = visible(&file.display().to_string()).into_owned();
+    let refused = |rule: &str, remedy: &str| Err(Error::input("--through", &name, rule, remedy));
+    let found = trajectory::read(file, &ReadOptions::default())?;
+    let mut bodies = found.bodies;
+    let (1, Some((_, rows))) = (bodies.len(), bodies.pop()) else {
+        return refused("has several bodies", "name a file of one body");
+    };
+    let Some(Attitudes::Quaternions(attitudes)) = rows.attitude else {
+        return refused("has no quaternions", "write the attitudes as q_w, q_x, q_y, q_z, body to space");
+    };
+    if found.claims.quaternion != Some(QuaternionOrder::ScalarFirst) {
+        return refused("leaves open where the scalar stands", "name the columns q_w, q_x, q_y, q_z");
+    }
+    let unit = |[w, x, y, z]: [f64; 4]| UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 0.0);
+    let all: Option<Vec<_>> = rows.times.iter().zip(attitudes).map(|(t, q)| Some((*t, unit(q)?))).collect();
+    match all {
+        Some(all) => Ok(all),
+        None => refused("has a quaternion of norm 0", "leave out rows without an attitude"),
+    }
+}

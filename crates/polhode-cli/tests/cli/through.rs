@@ -1,0 +1,48 @@
+//! `polhode propagate --through`: the motion between the attitudes of a file.
+
+use crate::harness::{Scratch, output, refused, run};
+
+const BODY: &str = "propagate --moments 1,2,3";
+
+fn columns(text: &str) -> Vec<Vec<f64>> {
+    text.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+}
+
+#[test]
+fn rows_between_attitudes_are_those_of_the_motion_itself() {
+    let scratch = Scratch::new("through");
+    let poses = scratch.0.join("poses.csv");
+    let (fields, times) = ("--fields t,q,omega --format csv", "--until 12 --every");
+    output(&format!("{BODY} --omega 0.4,1,-0.3 {times} 2 --fields t,q --out {}", poses.display()));
+    let exact = columns(&output(&format!("{BODY} --omega 0.4,1,-0.3 {times} 0.5 {fields}")));
+    let answer = run(&format!("{BODY} --through {} --every 0.5 {fields}", poses.display()));
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    let found = columns(&answer.out);
+    assert_eq!(found.len(), exact.len());
+    for (row, exact) in found.iter().zip(&exact) {
+        // a quaternion and its opposite are one attitude
+        let sign = (1..5).map(|k| row[k] * exact[k]).sum::<f64>().signum();
+        for k in 0..8 {
+            let value = if (1..5).contains(&k) { row[k] * sign } else { row[k] };
+            assert!((value - exact[k]).abs() < 1e-12, "{row:?} {exact:?}");
+        }
+    }
+    let worst = found.iter().map(|row| row[8]).fold(0.0, f64::max);
+    assert!(worst > 0.1 && answer.err.contains("spherical linear interpolation is off by up to"), "{worst}");
+}
+
+#[test]
+fn what_is_no_table_of_attitudes_is_refused() {
+    let scratch = Scratch::new("through-refused");
+    let refuse = |text: &str, flags: &str, says: &str| {
+        let file = scratch.file("poses.csv", text);
+        refused(&format!("{BODY} --through {file} --every 0.5 {flags}"), &[says]);
+    };
+    let two = "t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0.8,0.6,0,0\n";
+    refuse("t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n", "", "too few");
+    refuse("t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0,0,0,0\n", "", "norm 0");
+    refuse("t,wx,wy,wz\n0,1,0,0\n1,0,0,0\n", "", "no quaternions");
+    refuse(two, "--turns 0.01", "allow more turns");
+    refuse(two, "--omega 1,2,3", "--omega");
+    refuse(two, "--drag 0.1", "free bodies");
+}

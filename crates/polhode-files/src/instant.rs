@@ -1,0 +1,120 @@
+//! An instant or a time span as it is written: a number of seconds, a number with a unit, or a date.
+
+use polhode::units::Date;
+use polhode::units::TimeUnit;
+
+use crate::numbers::number;
+
+/// The seconds in the unit of time `name`.
+#[must_use]
+pub fn seconds_in(name: &str) -> Option<f64> {
+    TimeUnit::named(name).map(|unit| unit.seconds(1.0))
+}
+
+/// A number and the name of a unit behind it.
+fn with_unit(text: &str) -> Option<(&str, &str)> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let is_number = || digits.trim_end().parse::<f64>().is_ok();
+    (digits.len() < text.len() && is_number()).then(|| (digits.trim_end(), &text[digits.len()..]))
+}
+
+/// A time span: a number of seconds, or with a unit, as 12h.
+pub fn duration(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let Some((digits, name)) = with_unit(text) else { return number(text) };
+    let value = number(digits)?;
+    let unit = TimeUnit::named(name)
+        .ok_or_else(|| format!("'{name}' is no unit of time here; write ns, us, ms, s, min, h or d"))?;
+    let seconds = unit.seconds(value);
+    if seconds.is_finite() { Ok(seconds) } else { Err(format!("'{text}' is too long a time for a double")) }
+}
+
+/// The same, above zero.
+pub fn positive_duration(text: &str) -> Result<f64, String> {
+    match duration(text)? {
+        value if value > 0.0 => Ok(value),
+        value => Err(format!("{value:?} is not positive; give a time above zero")),
+    }
+}
+
+/// The date of t = 0.
+pub fn epoch(text: &str) -> Result<Date, String> {
+    text.parse::<Date>().map_err(|error| error.to_string())
+}
+
+/// The time `text` in seconds, from `epoch` on where there is one.
+pub fn seconds(text: &str, epoch: Option<&Date>) -> Result<f64, String> {
+    let text = text.trim();
+    if with_unit(text).is_some_and(|(_, name)| TimeUnit::named(name).is_some()) {
+        return duration(text);
+    }
+    match epoch {
+        Some(epoch) => {
+            let date: Date = text.parse().map_err(|error: polhode::units::DateError| error.to_string())?;
+            Ok(date.seconds_since(epoch))
+        }
+        None => duration(text).map_err(|error| match text.parse::<Date>() {
+            Ok(_) => format!("'{text}' is a date; give the date of t = 0 by --epoch"),
+            Err(_) => error,
+        }),
+    }
+}
+
+/// Whether `text` is a time of one of the three kinds.
+pub fn is_moment(text: &str) -> Result<(), String> {
+    duration(text).map(|_| ()).or_else(|error| {
+        let is_date = number(text).is_err() && text.parse::<Date>().is_ok();
+        if is_date { Ok(()) } else { Err(error) }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_are_seconds_or_have_a_unit() {
+        for (text, expected) in [
+            ("0.1", 0.1),
+            ("-1e3", -1e3),
+            ("30d", 2_592_000.0),
+            ("12h", 43_200.0),
+            ("90min", 5400.0),
+            ("90 min", 5400.0),
+            ("5s", 5.0),
+            ("-250ms", -0.25),
+            ("3us", 3e-6),
+            ("7ns", 7e-9),
+            ("1e3h", 3.6e6),
+        ] {
+            assert_eq!(duration(text), Ok(expected), "{text}");
+        }
+        assert_eq!(
+            duration("5e").unwrap_err(),
+            "'e' is no unit of time here; write ns, us, ms, s, min, h or d"
+        );
+        assert!(duration("3 weeks").unwrap_err().contains("'weeks' is no unit of time"));
+        assert!(duration("1e308d").unwrap_err().contains("too long a time"));
+        assert!(duration("h").unwrap_err().contains("'h' is not a number"));
+        assert!(duration("inf").unwrap_err().contains("not a finite number"));
+        assert!(positive_duration("0h").unwrap_err().contains("not positive"));
+    }
+
+    #[test]
+    fn dates_count_from_the_epoch() {
+        let noon = epoch("2000-01-01T12:00").unwrap();
+        for (text, expected) in [
+            ("2451545", 0.0),
+            ("2451545.1", 8640.0),
+            ("2451546.000011574074074074", 86_401.0),
+            ("2000-01-01", -43_200.0),
+            ("3h", 10_800.0),
+        ] {
+            let found = seconds(text, Some(&noon)).unwrap();
+            approx::assert_relative_eq!(found, expected, max_relative = 1e-15);
+        }
+        assert!(seconds("2000-01-01", None).unwrap_err().contains("--epoch"));
+        assert!(seconds("2000-01-32", Some(&noon)).unwrap_err().contains("no such day"));
+        assert!(is_moment("2000-01-01").is_ok() && is_moment("12h").is_ok() && is_moment("2e").is_err());
+    }
+}

@@ -1,0 +1,132 @@
+//! A free motion in named quantities: periods, mode, pole and start.
+
+use nalgebra::Vector3;
+use polhode::body::{Body, Point};
+use polhode::flow::{AtRest, Character, FreeMotion, Mode, Stability};
+use polhode::num::Dd;
+
+use crate::table::Cell;
+
+/// Name, symbol of the field, unit, meaning and value of a quantity.
+pub type Quantity = (&'static str, &'static str, &'static str, &'static str, Cell);
+
+/// What is to be known of the free `motion` of `body` from `start`; empty where the motion does not have it.
+///
+/// # Errors
+/// A body at rest.
+pub fn quantities(body: &Body, start: &Point<Dd>, motion: &FreeMotion) -> Result<Vec<Quantity>, AtRest> {
+    let character = &motion.character()?;
+    let (tumbling, spin) = (motion.tumbling(), motion.pure_spin());
+    let tilt = motion.tilt_range();
+    let (axis_name, axis) = axis(body, motion, character);
+    let precession_period = character.precession_rate.map(|rate| core::f64::consts::TAU / rate.abs());
+    // the frequency of the light curve: the turn about L seen with the turn about the axis
+    let sign = if character.mode == Mode::LongAxis { 1.0 } else { -1.0 };
+    let combined = tumbling.map(|found| 1.0 / (1.0 / found.precession_period + sign / found.rotation_period));
+    let moments = body.inertia().principal_moments();
+    let largest = moments.iter().fold(0.0_f64, |most, moment| most.max(*moment));
+    let state = body.leave(start);
+    let momentum = state.momentum_body.norm();
+    let omega = body.omega_of(start);
+    let q = state.attitude.components();
+    let pole = tumbling.map(|found| found.pole);
+    let angles = tumbling.map(|found| found.angles);
+    Ok(vec![
+        ("mode", "", "", "long-axis, short-axis, separatrix or steady", character.mode.name().into()),
+        ("modulus", "k", "", "of the elliptic functions", character.parameter.map(|k| k.sqrt() + 0.0).into()),
+        ("complement", "1-k^2", "", "", character.complement.into()),
+        (
+            "polhode_period",
+            "P_psi",
+            "s",
+            "L once round the axis in the body",
+            character.polhode_period.into(),
+        ),
+        ("nutation_period", "", "s", "the axis nods towards L and back", character.nutation_period.into()),
+        ("precession_period", "P_phi", "s", "mean, the axis once round L", precession_period.into()),
+        ("precession_rate", "", "rad/s", "mean, positive about L", character.precession_rate.into()),
+        ("spin", "2E/|L|", "rad/s", "constant part of omega along L", character.spin.into()),
+        (
+            "separatrix_distance",
+            "",
+            "",
+            "(|L|^2/2E - I_middle)/I_middle, 0 on the separatrix",
+            character.separatrix_distance.into(),
+        ),
+        (
+            "combined_period",
+            "P_1",
+            "s",
+            "1/P_1 = 1/P_phi + 1/P_psi (long-axis) or - (short)",
+            combined.into(),
+        ),
+        (
+            "energy_ratio",
+            "E/E_0",
+            "",
+            "to the least energy with this L",
+            (largest * character.spin / momentum).into(),
+        ),
+        ("axis", "", "", "of the mode or of the spin", axis_name.into()),
+        ("axis_x", "", "", "unit vector, body axes", axis.map(|axis| axis.x + 0.0).into()),
+        ("axis_y", "", "", "", axis.map(|axis| axis.y + 0.0).into()),
+        ("axis_z", "", "", "", axis.map(|axis| axis.z + 0.0).into()),
+        ("stability", "", "", "of a steady spin", spin.map(|spin| spin.stability.name()).into()),
+        (
+            "growth_rate",
+            "",
+            "rad/s",
+            "of deviations from it, e-fold",
+            spin.map(|spin| spin.growth_rate).into(),
+        ),
+        ("theta_min", "theta", "rad", "least angle of the axis to L", tilt.map(|tilt| tilt[0]).into()),
+        ("theta_max", "theta", "rad", "largest", tilt.map(|tilt| tilt[1]).into()),
+        (
+            "lambda",
+            "lambda",
+            "rad",
+            "longitude of L in space, 0 to 2 pi",
+            pole.map(|pole| pole[0].rem_euclid(core::f64::consts::TAU)).into(),
+        ),
+        ("beta", "beta", "rad", "latitude of L in space", pole.map(|pole| pole[1]).into()),
+        ("phi", "phi_0", "rad", "of the axis about L at the start", angles.map(|angles| angles[0]).into()),
+        (
+            "psi",
+            "psi_0",
+            "rad",
+            "of the body about the axis at the start",
+            angles.map(|angles| angles[1]).into(),
+        ),
+        ("q_w", "", "", "attitude at the start, body to space", q[0].into()),
+        ("q_x", "", "", "", q[1].into()),
+        ("q_y", "", "", "", q[2].into()),
+        ("q_z", "", "", "", q[3].into()),
+        ("omega_body_x", "", "rad/s", "angular velocity at the start", omega.x.into()),
+        ("omega_body_y", "", "rad/s", "", omega.y.into()),
+        ("omega_body_z", "", "rad/s", "", omega.z.into()),
+    ])
+}
+
+/// The axis of the mode or of a steady spin by its place among the moments, and its direction in body axes.
+fn axis(
+    body: &Body,
+    motion: &FreeMotion,
+    character: &Character,
+) -> (Option<&'static str>, Option<Vector3<f64>>) {
+    const NAMES: [&str; 3] = ["long", "middle", "short"];
+    let principal = |rank: usize| Some(body.inertia().principal_axes() * Vector3::ith(rank, 1.0));
+    if let Some(spin) = motion.pure_spin() {
+        let [least, _, most] = body.inertia().principal_moments();
+        let name = match spin.stability {
+            Stability::Neutral if least == most => "any",
+            Stability::Neutral => "equatorial",
+            _ => NAMES[spin.rank],
+        };
+        return (Some(name), Some(spin.axis));
+    }
+    match character.mode {
+        Mode::LongAxis => (Some(NAMES[0]), principal(0)),
+        Mode::ShortAxis => (Some(NAMES[2]), principal(2)),
+        _ => (Some(NAMES[1]), principal(1)),
+    }
+}

@@ -1,0 +1,214 @@
+//! Which method, with which step.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use polhode::advise::{Advice as Found, Choice, Demand, Progress, Setting, advise_telling, check_telling};
+use polhode_pages::table::{Column, Table, row};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::Order;
+use crate::bodies::{Body, Start};
+use crate::calm::aside;
+use crate::error::{refused, warn};
+
+/// The quickest method that meets a demand, and the others that do.
+#[pyclass(frozen, module = "polhode")]
+pub(crate) struct Advice {
+    found: Found,
+    actual_error: Option<f64>,
+}
+
+fn step_and_tolerance(choice: &Choice) -> (Option<f64>, Option<f64>) {
+    match choice.setting {
+        Setting::Step(step) => (Some(step), None),
+        Setting::Tolerance { tolerance, step } => (Some(step), Some(tolerance)),
+        _ => (None, None),
+    }
+}
+
+fn dict<'py>(py: Python<'py>, choice: &Choice) -> PyResult<Bound<'py, PyDict>> {
+    let (step, tolerance) = step_and_tolerance(choice);
+    let found = PyDict::new(py);
+    found.set_item("method", &choice.method)?;
+    found.set_item("step", step)?;
+    found.set_item("tolerance", tolerance)?;
+    found.set_item("predicted_error", choice.attitude_error.value)?;
+    found.set_item("predicted_error_factor", choice.attitude_error.factor)?;
+    found.set_item("predicted_energy_error", choice.energy_error)?;
+    found.set_item("predicted_cost", choice.seconds.value)?;
+    found.set_item("predicted_cost_factor", choice.seconds.factor)?;
+    found.set_item("whole_time", choice.whole_time)?;
+    Ok(found)
+}
+
+#[pymethods]
+impl Advice {
+    /// Name of the method, as `run` takes it.
+    #[getter]
+    fn method(&self) -> &str {
+        &self.found.best.method
+    }
+
+    /// Its step, s; of a method that chooses its steps the interval of its output; `None` of the closed form.
+    #[getter]
+    fn step(&self) -> Option<f64> {
+        step_and_tolerance(&self.found.best).0
+    }
+
+    /// Its tolerance, of a method that chooses its steps.
+    #[getter]
+    fn tolerance(&self) -> Option<f64> {
+        step_and_tolerance(&self.found.best).1
+    }
+
+    /// Largest attitude error that is expected, rad.
+    #[getter]
+    fn predicted_error(&self) -> f64 {
+        self.found.best.attitude_error.value
+    }
+
+    /// Largest relative energy error that is expected; `None` where energy is not conserved.
+    #[getter]
+    fn predicted_energy_error(&self) -> Option<f64> {
+        self.found.best.energy_error
+    }
+
+    /// Processor time on this machine, s.
+    #[getter]
+    fn predicted_cost(&self) -> f64 {
+        self.found.best.seconds.value
+    }
+
+    /// The attitude error of the advice when run to the end, rad, where `check` asked for it.
+    #[getter]
+    fn actual_error(&self) -> Option<f64> {
+        self.actual_error
+    }
+
+    /// The next best method.
+    #[getter]
+    fn runner_up(&self) -> Option<&str> {
+        self.found.others.first().map(|choice| choice.method.as_str())
+    }
+
+    /// How far a start with other last digits is away at the end, rad.
+    #[getter]
+    fn conditioning(&self) -> f64 {
+        self.found.conditioning
+    }
+
+    /// The others that meet the demand, the quicker first, as dicts.
+    #[getter]
+    fn others<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        self.found.others.iter().map(|choice| dict(py, choice)).collect()
+    }
+
+    /// Methods that do not meet it, with the smallest attitude error at which they were seen, rad.
+    #[getter]
+    fn unfit(&self) -> Vec<(String, Option<f64>)> {
+        self.found.unfit.clone()
+    }
+
+    /// The advice as a dict, by the names of the command's JSON.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = dict(py, &self.found.best)?;
+        found.set_item("runner_up", self.runner_up())?;
+        found.set_item("actual_error", self.actual_error)?;
+        found.set_item("conditioning", self.found.conditioning)?;
+        found.set_item("others", self.others(py)?)?;
+        Ok(found)
+    }
+
+    fn __repr__(&self) -> String {
+        let columns = vec![
+            Column::new("method", "", ""),
+            Column::new("step", "s", "").digits(9),
+            Column::new("tolerance", "", "").digits(2),
+            Column::new("attitude", "rad", "").digits(2),
+            Column::new("energy", "", "").digits(2),
+            Column::new("time", "s", "").digits(2),
+        ];
+        let mut table = Table::new("advice", "Methods that meet the demand.", columns);
+        for choice in std::iter::once(&self.found.best).chain(&self.found.others).take(8) {
+            let (step, tolerance) = step_and_tolerance(choice);
+            let (attitude, cost) = (choice.attitude_error.value, choice.seconds.value);
+            table.push(row![choice.method.as_str(), step, tolerance, attitude, choice.energy_error, cost]);
+        }
+        table.terminal().trim_end().into()
+    }
+}
+
+/// The quickest method that moves `body` from the start up to the time `until`, s, with an attitude error of at most `attitude_error`,
+/// rad, and its step or tolerance: found by running the methods on the body itself.
+///
+/// The start is that of `FreeMotion`. `energy_error`: largest relative error of the energy; `budget`: largest processor time, s;
+/// `exclude`: names of methods that are not wanted; `check`: whether the advice is run to the end and compared with the motion.
+/// `progress` is called as `progress(stage, done, seconds)`: what is done, which part of it, and about how long all of it takes.
+///
+/// >>> import polhode
+/// >>> advice = polhode.advise("toutatis", until=30 * 86400, attitude_error=1e-6, exclude=["exact"])
+/// >>> advice.predicted_error <= 1e-6
+/// True
+/// >>> run = polhode.run(advice.method, "toutatis", step=advice.step, tolerance=advice.tolerance, times=[0, 30 * 86400])
+#[pyfunction]
+#[pyo3(signature = (body, omega = None, attitude = None, *, until, attitude_error, momentum = None, energy_error = None, budget = None,
+                    exclude = None, start_time = 0.0, check = false, progress = None, order = "wxyz"))]
+#[allow(clippy::too_many_arguments, reason = "they are keywords")]
+pub(crate) fn advise(
+    py: Python<'_>,
+    body: &Bound<'_, PyAny>,
+    omega: Option<&Bound<'_, PyAny>>,
+    attitude: Option<&Bound<'_, PyAny>>,
+    until: f64,
+    attitude_error: f64,
+    momentum: Option<&Bound<'_, PyAny>>,
+    energy_error: Option<f64>,
+    budget: Option<f64>,
+    exclude: Option<Vec<String>>,
+    start_time: f64,
+    check: bool,
+    progress: Option<Py<PyAny>>,
+    order: &str,
+) -> PyResult<Advice> {
+    let body = Body::of("body", body)?;
+    let start = body.start(&Start { omega, attitude, momentum, order: Order::of(order)? })?;
+    let start = body.body.leave(&start);
+    let mut demand = Demand::new(until, attitude_error);
+    (demand.energy_error, demand.budget, demand.start_time) = (energy_error, budget, start_time);
+    demand.excluded = exclude.unwrap_or_default();
+    let raised = Arc::new(Mutex::new(None));
+    let keeper = Arc::clone(&raised);
+    let moved = body.body.clone();
+    let found = aside(py, move |_| {
+        let heed = &mut |now: &Progress| {
+            let Some(tell) = &progress else { return };
+            let mut raised = keeper.lock().unwrap_or_else(PoisonError::into_inner);
+            if raised.is_none() {
+                let told =
+                    Python::attach(|py| tell.call1(py, (now.stage.to_string(), now.done, now.seconds)));
+                *raised = told.err();
+            }
+        };
+        let found = advise_telling(&moved, &start, &demand, heed)?;
+        let actual = check.then(|| check_telling(&moved, &start, &demand, &found.best, heed)).transpose()?;
+        Ok::<_, polhode::advise::AdviseError>((found, actual))
+    })?;
+    if let Some(error) = raised.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        return Err(error);
+    }
+    let (found, actual_error) = body.settle(found.map_err(refused))?;
+    if let Some(time) = found.jump {
+        let first = start_time + time;
+        warn(
+            py,
+            &format!(
+                "the torque jumps, first at t = {first} s: steps and tolerances hold for this start and time alone"
+            ),
+        )?;
+    }
+    if !found.best.whole_time && actual_error.is_none() {
+        warn(py, "the error over the whole time was not seen but extrapolated; check=True runs it")?;
+    }
+    Ok(Advice { found, actual_error })
+}

@@ -1,0 +1,321 @@
+//! Is a rotation right?
+
+use polhode::audit::{
+    self, Angles, Attitudes, Convention, Direction, Frame, Noise, QuaternionOrder, Question, Turns,
+    step_length,
+};
+use polhode::units::AngleUnit;
+use polhode_files::text::short;
+use polhode_pages::verdict::{Adviser, Outcome, json, object, panels, text};
+use pyo3::exceptions::PyAttributeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::Value;
+
+use crate::arrays::{Numbers, array};
+use crate::bodies::Body;
+use crate::calm::aside;
+use crate::error::{of, refused};
+use crate::files::{Trajectory, named_rate};
+use crate::json::python;
+use crate::shown;
+
+/// A verdict on a trajectory. It has what the JSON of `polhode audit` has as attributes, and prints as the command does.
+///
+/// `verdict` (`right`, `wrong` or `undecided`), `suspect`, `reading` (the convention, a dict), `ties`, `ranking`, `rows`,
+/// `energy_error`, `momentum_error`, `momentum_vector_error` (relative), `attitude_error` (rad), `flips`, `flips_exact`,
+/// `conservation`, `motion`, `integrator`, `other_body`, `other_torque`, `advice`, `resolution`, `body`, `warnings`.
+#[pyclass(frozen, module = "polhode", name = "Verdict")]
+pub(crate) struct Verdict {
+    name: String,
+    outcome: Outcome,
+    answer: Value,
+}
+
+#[pymethods]
+impl Verdict {
+    /// Whether the record is right.
+    #[getter]
+    fn is_right(&self) -> bool {
+        self.outcome.is_right()
+    }
+
+    /// Errors at rows of the record, at most some 2000: arrays `t`, `energy`, `momentum_norm`, `momentum_direction`, `attitude`.
+    #[getter]
+    fn traces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let traces = &self.outcome.verdict.traces;
+        let found = PyDict::new(py);
+        for (name, values) in [
+            ("t", &traces.times),
+            ("energy", &traces.energy),
+            ("momentum_norm", &traces.momentum_norm),
+            ("momentum_direction", &traces.momentum_direction),
+            ("attitude", &traces.attitude),
+        ] {
+            found.set_item(name, array(py, values.clone(), &[values.len()])?)?;
+        }
+        Ok(found)
+    }
+
+    /// Everything as a dict.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        python(py, &self.answer)
+    }
+
+    /// Everything as the JSON that the command writes.
+    fn to_json(&self) -> String {
+        json(std::slice::from_ref(&self.outcome))
+    }
+
+    fn __getattr__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        match self.answer.get(name) {
+            Some(value) => python(py, value),
+            None => Err(PyAttributeError::new_err(format!("a verdict has no '{name}'"))),
+        }
+    }
+
+    fn __dir__(&self) -> Vec<String> {
+        let own = ["is_right", "traces", "to_dict", "to_json"].map(String::from);
+        let names = self.answer.as_object().map(|all| all.keys().cloned().collect::<Vec<_>>());
+        own.into_iter().chain(names.unwrap_or_default()).collect()
+    }
+
+    fn __repr__(&self) -> String {
+        text(&self.name, std::slice::from_ref(&self.outcome)).trim_end().into()
+    }
+
+    /// The words with the figure of the errors.
+    fn _repr_html_(&self) -> PyResult<String> {
+        let drawing = panels(&self.name, std::slice::from_ref(&self.outcome)).map_err(refused)?;
+        Ok(shown::page(&self.__repr__(), &drawing.svg))
+    }
+}
+
+/// The verdict on a trajectory: whether it is right, in which convention it is written, and how large its error is.
+///
+/// `t`: times, s; `attitude`: quaternions (n, 4), matrices (n, 3, 3), a scipy rotation, or with `form` `"euler"` or `"rodrigues"` angles
+/// or modified Rodrigues parameters (n, 3); `omega`: angular velocities (n, 3); `momentum`: angular momenta (n, 3). Or in place of `t` a
+/// `Trajectory` of `read`, with what its names claim. The body is given by its `moments`, its tensor `inertia`, or as a `body`, with
+/// forces; without one the moments are fitted up to a factor.
+///
+/// Conventions are found from the rows; what is stated by `order` (`"wxyz"`, `"xyzw"`), `direction` (`"body-to-space"`,
+/// `"space-to-body"`), `omega_frame` and `momentum_frame` (`"body"`, `"space"`), `rate_unit`, `euler` (as `"zyx"`, or
+/// `"zyx:extrinsic"`) and `angle_unit`, and the rows contradict, makes the record wrong. `any_order`: the moments may belong to the axes
+/// in any order. `tolerance`: largest error of a record that is right, rad and relative; `noise`: standard deviations that the record
+/// has, rad, or a pair of rad and rad/s. `advice`: whether a record that is wrong by its integrator gets a method that would do, which
+/// takes two seconds at most.
+///
+/// >>> import numpy, polhode
+/// >>> t = numpy.arange(400) * 0.05
+/// >>> run = polhode.run("rk4", [1, 2, 3], [0.4, 1, -0.3], times=t, step=0.05)
+/// >>> polhode.audit(t, run.attitude, run.omega, moments=[1, 2, 3]).verdict
+/// 'right'
+/// >>> polhode.audit(t, run.attitude, run.omega, moments=[1, 3, 2]).suspect
+/// 'moments-order'
+#[pyfunction(name = "audit")]
+#[pyo3(signature = (t, attitude = None, omega = None, *, momentum = None, moments = None, inertia = None, body = None,
+                    tolerance = 1e-6, noise = None, order = None, direction = None, omega_frame = None, momentum_frame = None,
+                    rate_unit = None, euler = None, angle_unit = None, form = None, any_order = false, advice = true))]
+#[allow(clippy::too_many_arguments, reason = "they are keywords")]
+pub(crate) fn verdict_on(
+    py: Python<'_>,
+    t: &Bound<'_, PyAny>,
+    attitude: Option<&Bound<'_, PyAny>>,
+    omega: Option<&Bound<'_, PyAny>>,
+    momentum: Option<&Bound<'_, PyAny>>,
+    moments: Option<&Bound<'_, PyAny>>,
+    inertia: Option<&Bound<'_, PyAny>>,
+    body: Option<&Bound<'_, PyAny>>,
+    tolerance: f64,
+    noise: Option<&Bound<'_, PyAny>>,
+    order: Option<&str>,
+    direction: Option<&str>,
+    omega_frame: Option<&str>,
+    momentum_frame: Option<&str>,
+    rate_unit: Option<&str>,
+    euler: Option<&str>,
+    angle_unit: Option<&str>,
+    form: Option<&str>,
+    any_order: bool,
+    advice: bool,
+) -> PyResult<Verdict> {
+    let body = match (moments, inertia, body) {
+        (None, None, None) => None,
+        (Some(moments), None, None) => {
+            let moments = Numbers::of("moments", moments)?.fixed()?;
+            let inertia = polhode::Inertia::from_moments(moments).map_err(of("moments"))?;
+            Some(Body::from(inertia))
+        }
+        (None, Some(inertia), None) => Some(Body::of("inertia", inertia)?),
+        (None, None, Some(body)) => Some(Body::of("body", body)?),
+        _ => return Err(refused("moments, inertia, body: give one of them")),
+    };
+    let mut record = Given::of(t, attitude, omega, momentum, form)?;
+    let claims = &mut record.claims;
+    let one_of =
+        |name: &str, found: &str, known: &str| refused(format!("{name}: '{found}'; it must be {known}"));
+    if let Some(order) = order {
+        claims.quaternion = Some(match order {
+            "wxyz" => QuaternionOrder::ScalarFirst,
+            "xyzw" => QuaternionOrder::ScalarLast,
+            _ => return Err(one_of("order", order, "'wxyz' or 'xyzw'")),
+        });
+    }
+    if let Some(direction) = direction {
+        claims.attitude = Some(match direction {
+            "body-to-space" => Direction::BodyToSpace,
+            "space-to-body" => Direction::SpaceToBody,
+            _ => return Err(one_of("direction", direction, "'body-to-space' or 'space-to-body'")),
+        });
+    }
+    let frame = |name: &str, text: &str| match text {
+        "body" => Ok(Frame::Body),
+        "space" => Ok(Frame::Space),
+        _ => Err(one_of(name, text, "'body' or 'space'")),
+    };
+    if let Some(text) = omega_frame {
+        claims.omega_frame = Some(frame("omega_frame", text)?);
+    }
+    if let Some(text) = momentum_frame {
+        claims.momentum_frame = Some(frame("momentum_frame", text)?);
+    }
+    if let Some(unit) = rate_unit {
+        claims.rate_unit = Some(named_rate(unit)?);
+    }
+    if let Some(unit) = angle_unit {
+        let found = AngleUnit::named(unit).ok_or_else(|| one_of("angle_unit", unit, "'rad' or 'deg'"))?;
+        claims.angle_unit = Some(found);
+    }
+    if let Some(text) = euler {
+        let (sequence, turns) = match text.split_once(':') {
+            None | Some((_, "intrinsic")) => (text.split(':').next().unwrap_or(text), Turns::Intrinsic),
+            Some((sequence, "extrinsic")) => (sequence, Turns::Extrinsic),
+            Some(_) => return Err(one_of("euler", text, "a sequence, as 'zyx' or 'zyx:extrinsic'")),
+        };
+        let sequence = sequence.parse().map_err(of("euler"))?;
+        claims.angles =
+            Some(Angles { sequence, turns, unit: claims.angle_unit.unwrap_or(AngleUnit::Radians) });
+    }
+    if any_order {
+        claims.moments = None;
+    }
+    let noise = match Numbers::maybe("noise", noise)? {
+        None => Noise::default(),
+        Some(noise) => match (noise.shape.as_slice(), noise.values.as_slice()) {
+            ([] | [1], &[attitude]) => Noise { attitude, rates: 0.0 },
+            ([2], &[attitude, rates]) => Noise { attitude, rates },
+            _ => return Err(noise.unexpected("() or (2,)")),
+        },
+    };
+    let mut notes = Vec::new();
+    if record.counts_steps {
+        let Some(step) = step_length(&record.rows, body.as_ref().map(|body| &body.body)) else {
+            return Err(refused(format!(
+                "{}: counts steps of a length that it does not tell; give the length of a step, s, as time_unit of read",
+                record.name
+            )));
+        };
+        record.rows.times.iter_mut().for_each(|t| *t *= step);
+        notes.push(format!(
+            "the record counts steps; they are taken to be {} s long, as the body turns; time_unit of read gives their length",
+            short(step)
+        ));
+    }
+    let mut question = Question::new(body.as_ref().map(|body| body.body.clone()));
+    (question.tolerance, question.claims, question.noise) = (tolerance, record.claims, noise);
+    let Given { name, id, rows, .. } = record;
+    let found = aside(py, move |_| {
+        let adviser = Adviser::new();
+        let verdict = audit::audit(&rows, &question)?;
+        Ok::<_, audit::AuditError>(Outcome {
+            body: id,
+            rows: rows.times.len(),
+            form: rows.attitude.as_ref().map(Attitudes::name),
+            advice: if advice { adviser.advice(&rows, &verdict, tolerance) } else { None },
+            verdict,
+            against: None,
+            notes,
+        })
+    })?;
+    let found = found.map_err(refused);
+    let outcome = match &body {
+        Some(body) => body.settle(found)?,
+        None => found?,
+    };
+    Ok(Verdict { answer: object(&outcome), name, outcome })
+}
+
+/// A record as it was given.
+struct Given {
+    name: String,
+    id: Option<String>,
+    rows: audit::Trajectory,
+    claims: Convention,
+    counts_steps: bool,
+}
+
+impl Given {
+    fn of(
+        t: &Bound<'_, PyAny>,
+        attitude: Option<&Bound<'_, PyAny>>,
+        omega: Option<&Bound<'_, PyAny>>,
+        momentum: Option<&Bound<'_, PyAny>>,
+        form: Option<&str>,
+    ) -> PyResult<Self> {
+        if let Ok(read) = t.cast::<Trajectory>() {
+            if attitude.is_some() || omega.is_some() || momentum.is_some() || form.is_some() {
+                return Err(refused(
+                    "attitude, omega, momentum, form: the trajectory has its own; leave them out",
+                ));
+            }
+            let Trajectory { file, id, rows, claims, counts_steps, .. } = read.get();
+            let (name, id, rows) = (file.clone(), id.clone(), rows.clone());
+            return Ok(Given { name, id, rows, claims: *claims, counts_steps: *counts_steps });
+        }
+        let mut claims = Convention::default();
+        let mut rows = audit::Trajectory::new(Numbers::of("t", t)?.list()?);
+        let n = Some(rows.times.len());
+        if let Some(attitude) = attitude {
+            rows = rows.with_attitude(attitudes(attitude, n, form, &mut claims)?);
+        }
+        if let Some(omega) = omega {
+            rows = rows.with_rates(Numbers::of("omega", omega)?.rows(n)?);
+        }
+        if let Some(momentum) = momentum {
+            rows = rows.with_momentum(Numbers::of("momentum", momentum)?.rows(n)?);
+        }
+        Ok(Given { name: "record".into(), id: None, rows, claims, counts_steps: false })
+    }
+}
+
+fn attitudes(
+    value: &Bound<'_, PyAny>,
+    n: Option<usize>,
+    form: Option<&str>,
+    claims: &mut Convention,
+) -> PyResult<Attitudes> {
+    if value.hasattr("as_quat")? {
+        claims.quaternion = Some(QuaternionOrder::ScalarLast);
+        let written = value.call_method0("as_quat")?;
+        return Numbers::of("attitude", &written)?.rows(n).map(Attitudes::Quaternions);
+    }
+    let mut numbers = Numbers::of("attitude", value)?;
+    if let &[rows, 3, 3] = numbers.shape.as_slice() {
+        numbers.shape = vec![rows, 9];
+    }
+    match (form, numbers.shape.as_slice()) {
+        (None | Some("matrix"), [_, 9]) => numbers.rows(n).map(Attitudes::Matrices),
+        (None | Some("quaternion"), [_, 4]) => numbers.rows(n).map(Attitudes::Quaternions),
+        (Some("euler"), _) => numbers.rows(n).map(Attitudes::Angles),
+        (Some("rodrigues"), _) => numbers.rows(n).map(Attitudes::Rodrigues),
+        (None, [_, 3]) => {
+            Err(refused("form: missing; three numbers a row are 'euler' angles or 'rodrigues' parameters"))
+        }
+        (None, _) => Err(numbers.unexpected("(n, 4), (n, 3, 3), or (n, 3) with form")),
+        (Some("matrix"), _) => Err(numbers.unexpected("(n, 3, 3)")),
+        (Some("quaternion"), _) => Err(numbers.unexpected("(n, 4)")),
+        (Some(other), _) => Err(refused(format!(
+            "form: '{other}'; it must be 'quaternion', 'matrix', 'euler' or 'rodrigues'"
+        ))),
+    }
+}

@@ -1,0 +1,236 @@
+//! Bodies: inertia, what acts on it, and a start.
+
+use polhode::body::{Point, State};
+use polhode::inertia::Inertia;
+use polhode::num::Dd;
+use polhode::rotation::{Quat, Vec3};
+use polhode::{body, catalogue};
+use polhode_files::bodies;
+use polhode_pages::table::to_digits;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+
+use crate::arrays::{Numbers, Order, array, attitude, matrix};
+use crate::error::{of, refused};
+use crate::files::heard;
+use crate::forces::{Force, Raised};
+use crate::masses::{Link, MassProperties};
+
+/// A rigid body: inertia in body axes, kg m^2, and the forces that act on it.
+///
+/// `inertia` is three principal moments, the k-th of the k-th body axis; a tensor of shape (3, 3), entries I_xy = -int x y dm; mass
+/// properties or a link of a model, of which it takes the tensor about the centre of mass; or the text that `body` takes.
+///
+/// >>> from polhode import Body
+/// >>> Body([1, 2, 3]).tensor
+/// array([[1., 0., 0.],
+///        [0., 2., 0.],
+///        [0., 0., 3.]])
+/// >>> Body([1, 2, 4])
+/// Traceback (most recent call last):
+///     ...
+/// polhode.PolhodeError: inertia: principal moments 1, 2, 4 violate I1 + I2 >= I3 by 1 (25.000 % of the largest); no mass distribution has them
+#[pyclass(frozen, module = "polhode", from_py_object)]
+#[derive(Clone)]
+pub(crate) struct Body {
+    pub(crate) body: body::Body,
+    named: Option<Box<catalogue::NamedBody>>,
+    raised: Vec<Raised>,
+}
+
+/// The inertia of whatever states one.
+pub(crate) fn inertia(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Inertia> {
+    if let Ok(mass) = value.extract::<MassProperties>() {
+        return mass.0.inertia().map_err(of(name));
+    }
+    if let Ok(link) = value.cast::<Link>() {
+        return link.get().properties()?.inertia().map_err(of(name));
+    }
+    let numbers = Numbers::of(name, value)?;
+    match numbers.shape.as_slice() {
+        [3] => Inertia::from_moments(numbers.fixed()?).map_err(of(name)),
+        [3, 3] => Inertia::from_tensor(numbers.matrix()?).map_err(of(name)),
+        _ => Err(numbers.unexpected("(3,) or (3, 3)")),
+    }
+}
+
+impl From<Inertia> for Body {
+    fn from(inertia: Inertia) -> Self {
+        Body { body: body::Body::free(inertia), named: None, raised: Vec::new() }
+    }
+}
+
+impl Body {
+    /// A body, or what one can be made of.
+    pub(crate) fn of(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(body) = value.extract::<Body>() {
+            return Ok(body);
+        }
+        match value.cast::<PyString>() {
+            Ok(text) => by_name(value.py(), &text.to_string_lossy()),
+            Err(_) => inertia(name, value).map(Body::from),
+        }
+    }
+
+    /// The start in the solver frame with the attitude and either the angular velocity or the angular momentum that are given, body
+    /// axes; what is not given is that of the catalogue.
+    pub(crate) fn start(&self, given: &Start<'_, '_>) -> PyResult<Point<Dd>> {
+        let known = self.named.as_deref();
+        let attitude = match (given.attitude, known) {
+            (None, Some(known)) => Quat::from_components(known.attitude),
+            (turned, _) => attitude(turned, given.order)?,
+        };
+        match (given.omega, given.momentum) {
+            (Some(_), Some(_)) => Err(refused("omega, momentum: give one of the two")),
+            (None, Some(momentum)) => {
+                let momentum_body = Vec3(Numbers::of("momentum", momentum)?.fixed()?);
+                self.body.enter(&State { attitude, momentum_body }).map_err(refused)
+            }
+            (omega, None) => {
+                let omega = match (omega, known) {
+                    (Some(omega), _) => Numbers::of("omega", omega)?.fixed()?,
+                    (None, Some(known)) => known.omega_body,
+                    (None, None) => {
+                        return Err(refused(
+                            "omega: missing; give omega or momentum; bodies of the catalogue have a start",
+                        ));
+                    }
+                };
+                self.body.enter_omega(attitude, Vec3(omega)).map_err(refused)
+            }
+        }
+    }
+
+    /// What was found, unless a Python function that acts on the body raised an exception meanwhile.
+    pub(crate) fn settle<T>(&self, found: PyResult<T>) -> PyResult<T> {
+        match self.raised.iter().filter_map(Raised::take).next() {
+            Some(error) => Err(error),
+            None => found,
+        }
+    }
+}
+
+/// A start as it is given.
+#[derive(Clone, Copy)]
+pub(crate) struct Start<'a, 'py> {
+    pub(crate) omega: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) attitude: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) momentum: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) order: Order,
+}
+
+#[pymethods]
+impl Body {
+    #[new]
+    #[pyo3(signature = (inertia, forces = None))]
+    fn new(inertia: &Bound<'_, PyAny>, forces: Option<Vec<Force>>) -> PyResult<Self> {
+        let Body { mut body, named, mut raised } = Body::of("inertia", inertia)?;
+        for Force { force, raised: own } in forces.unwrap_or_default() {
+            body = body.with(force);
+            raised.extend(own);
+        }
+        Ok(Body { body, named, raised })
+    }
+
+    /// The inertia tensor, body axes, kg m^2.
+    #[getter]
+    fn tensor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        matrix(py, &self.body.inertia().tensor())
+    }
+
+    /// Principal moments, ascending, kg m^2.
+    #[getter]
+    fn principal_moments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.body.inertia().principal_moments().to_vec(), &[3])
+    }
+
+    /// Names of the forces that act on it.
+    #[getter]
+    fn forces(&self) -> Vec<String> {
+        self.body.forces().iter().map(|force| force.name().into()).collect()
+    }
+
+    /// Its name in the catalogue.
+    #[getter]
+    fn name(&self) -> Option<&'static str> {
+        self.named.as_ref().map(|named| named.name)
+    }
+
+    /// What it is, and where its moments come from, of a body of the catalogue.
+    #[getter]
+    fn source(&self) -> Option<String> {
+        self.named.as_ref().map(|named| format!("{}; {}", named.summary, named.source))
+    }
+
+    /// The angular velocity of its published motion, body axes, rad/s, of a body of the catalogue.
+    #[getter]
+    fn omega<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.named.as_ref().map(|named| array(py, named.omega_body.to_vec(), &[3])).transpose()
+    }
+
+    /// The attitude at the start of that motion, w, x, y, z, body to space.
+    #[getter]
+    fn attitude<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.named.as_ref().map(|named| array(py, named.attitude.to_vec(), &[4])).transpose()
+    }
+
+    /// What is known of that attitude, in words.
+    #[getter]
+    fn attitude_known(&self) -> Option<String> {
+        self.named.as_ref().map(|named| named.attitude_known())
+    }
+
+    fn __repr__(&self) -> String {
+        let [a, b, c] = self.body.inertia().principal_moments().map(|moment| to_digits(moment, 6));
+        let of = self.named.as_ref().map_or(String::new(), |named| format!("{}; ", named.name));
+        let forces = match self.forces().as_slice() {
+            [] => String::new(),
+            forces => format!("; forces: {}", forces.join(", ")),
+        };
+        format!("Body({of}principal moments {a}, {b}, {c}{forces})")
+    }
+}
+
+/// The body that a text names: one of the catalogue, with its start, or one of a file as `FILE` or `FILE:LINK`.
+///
+/// >>> import polhode
+/// >>> polhode.body("toutatis")
+/// Body(toutatis; principal moments 1, 3.0836, 3.235)
+/// >>> polhode.body("toutatsi")
+/// Traceback (most recent call last):
+///     ...
+/// polhode.PolhodeError: body: 'toutatsi': no such body; did you mean 'toutatis'?
+#[pyfunction(name = "body")]
+pub(crate) fn named_body(py: Python<'_>, name: &str) -> PyResult<Body> {
+    by_name(py, name)
+}
+
+fn by_name(py: Python<'_>, text: &str) -> PyResult<Body> {
+    if let Some(named) = catalogue::body(text).or_else(|| catalogue::top(text)) {
+        let body = named.body().map_err(refused)?;
+        return Ok(Body { body, named: Some(Box::new(named)), raised: Vec::new() });
+    }
+    if let Some(inertia) = heard(py, || bodies::inertia("body", text))? {
+        return Ok(Body::from(inertia));
+    }
+    if text.contains(['.', '/']) {
+        let rule = "no such file, and no such body in the catalogue";
+        return Err(refused(polhode_files::Error::input(
+            "body",
+            text,
+            rule,
+            "polhode.bodies() lists the catalogue",
+        )));
+    }
+    Err(refused(polhode_files::Error::unknown_name("body", "body", text, names().iter().copied())))
+}
+
+fn names() -> Vec<&'static str> {
+    catalogue::bodies().iter().chain(&catalogue::tops()).map(|body| body.name).collect()
+}
+
+/// The names of the catalogue, tops last.
+#[pyfunction(name = "bodies")]
+pub(crate) fn catalogue_names() -> Vec<&'static str> {
+    names()
+}

@@ -1,0 +1,78 @@
+//! Long work: the interpreter is free meanwhile, and Ctrl-C ends it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use pyo3::prelude::*;
+
+use crate::error::refused;
+
+/// How often Ctrl-C is looked for.
+const LISTEN: Duration = Duration::from_millis(50);
+
+/// What `work` returns, done on a thread of its own while this one listens for Ctrl-C. Work that is given up is told so by its flag, or
+/// ends by itself.
+pub(crate) fn aside<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+) -> PyResult<T> {
+    let (sender, mut receiver) = channel();
+    let stop = Arc::new(AtomicBool::new(false));
+    let told = Arc::clone(&stop);
+    thread::Builder::new()
+        .stack_size(8 << 20)
+        .spawn(move || sender.send(work(&told)))
+        .map_err(|error| refused(format!("the system gives no thread: {error}")))?;
+    loop {
+        let (found, again) = py.detach(move || (receiver.recv_timeout(LISTEN), receiver));
+        receiver = again;
+        match found {
+            Ok(found) => return Ok(found),
+            Err(RecvTimeoutError::Timeout) => {
+                py.check_signals().inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+            }
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(refused("the computation ended without a result; please report it"));
+            }
+        }
+    }
+}
+
+/// Looks for Ctrl-C from time to time, in work that does not hold the interpreter, and tells how far that has come.
+pub(crate) struct Listener {
+    heard: Instant,
+    /// Of what, to whom.
+    progress: Option<(String, Py<PyAny>)>,
+}
+
+impl Listener {
+    pub(crate) fn new() -> Self {
+        Listener { heard: Instant::now(), progress: None }
+    }
+
+    /// One that calls `progress`, if there is one, as `progress(stage, done, seconds)`.
+    pub(crate) fn telling(stage: &str, progress: Option<Py<PyAny>>) -> Self {
+        Listener { progress: progress.map(|progress| (stage.into(), progress)), ..Listener::new() }
+    }
+
+    /// `done`: the part of the work that is done.
+    ///
+    /// # Errors
+    /// `KeyboardInterrupt`, and what else a handler of signals or the function that is told raises.
+    pub(crate) fn listen(&mut self, done: f64) -> PyResult<()> {
+        if self.heard.elapsed() < LISTEN {
+            return Ok(());
+        }
+        self.heard = Instant::now();
+        Python::attach(|py| {
+            py.check_signals()?;
+            match &self.progress {
+                Some((stage, progress)) => progress.call1(py, (stage, done, py.None())).map(drop),
+                None => Ok(()),
+            }
+        })
+    }
+}

@@ -1,0 +1,137 @@
+//! Forces by name, and those of a Python function.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::body;
+use pyo3::prelude::*;
+
+use crate::arrays::{Numbers, array};
+use crate::error::{of, refused};
+
+/// A torque or a potential that acts on a body; all add up.
+#[pyclass(frozen, module = "polhode", from_py_object)]
+#[derive(Clone)]
+pub(crate) struct Force {
+    pub(crate) force: body::Force,
+    /// Of a Python function.
+    pub(crate) raised: Option<Raised>,
+}
+
+/// The exception of a Python function that was called between steps.
+#[derive(Clone, Default)]
+pub(crate) struct Raised(Arc<Mutex<Option<PyErr>>>);
+
+impl Raised {
+    fn is_any(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    fn keep(&self, error: PyErr) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    }
+
+    pub(crate) fn take(&self) -> Option<PyErr> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+impl From<body::Force> for Force {
+    fn from(force: body::Force) -> Self {
+        Force { force, raised: None }
+    }
+}
+
+#[pymethods]
+impl Force {
+    /// Its name.
+    #[getter]
+    fn name(&self) -> &str {
+        self.force.name()
+    }
+
+    /// The same force, acting only during intervals [begin, end), s: an array of shape (n, 2). Steps of a run end there.
+    fn during(&self, intervals: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let intervals: Vec<[f64; 2]> = Numbers::of("intervals", intervals)?.rows(None)?;
+        let force = self.force.clone().during(intervals).map_err(of("intervals"))?;
+        Ok(Force { force, raised: self.raised.clone() })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Force({:?})", self.force.name())
+    }
+}
+
+fn vector(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>> {
+    Numbers::of(name, value)?.vector()
+}
+
+/// Uniform gravity along -z of space on a body with a fixed point: weight times centre of mass, N m, body axes.
+///
+/// >>> from polhode import Body, gravity
+/// >>> Body([1, 1, 0.25], [gravity([0, 0, 2])])
+/// Body(principal moments 0.25, 1, 1; forces: gravity)
+#[pyfunction]
+pub(crate) fn gravity(weight_moment: &Bound<'_, PyAny>) -> PyResult<Force> {
+    body::Force::gravity(vector("weight_moment", weight_moment)?).map(Force::from).map_err(refused)
+}
+
+/// The gravity gradient on an orbit with the mean motion, rad/s, in the x-y plane of space, perigee on +x at t = 0.
+#[pyfunction]
+#[pyo3(signature = (mean_motion, eccentricity = 0.0))]
+pub(crate) fn gravity_gradient(mean_motion: f64, eccentricity: f64) -> PyResult<Force> {
+    body::Force::gravity_gradient(mean_motion, eccentricity).map(Force::from).map_err(refused)
+}
+
+/// A torque constant in body axes, N m.
+#[pyfunction]
+pub(crate) fn torque_body(torque: &Bound<'_, PyAny>) -> PyResult<Force> {
+    body::Force::constant_torque_body(vector("torque", torque)?).map(Force::from).map_err(refused)
+}
+
+/// A torque constant in the axes of space, N m.
+#[pyfunction]
+pub(crate) fn torque_space(torque: &Bound<'_, PyAny>) -> PyResult<Force> {
+    body::Force::constant_torque_space(vector("torque", torque)?).map(Force::from).map_err(refused)
+}
+
+/// Drag: the torque -linear w - quadratic |w| w of the angular velocity w; N m s and N m s^2.
+#[pyfunction]
+#[pyo3(signature = (linear, quadratic = 0.0))]
+pub(crate) fn drag(linear: f64, quadratic: f64) -> PyResult<Force> {
+    body::Force::drag(linear, quadratic).map(Force::from).map_err(refused)
+}
+
+/// A torque, N m, body axes, by a function `torque(t, attitude, omega)` of the time, s, the attitude w, x, y, z, body to space, and
+/// the angular velocity, rad/s, body axes. Equal arguments must give equal values.
+///
+/// Each evaluation calls Python: some thousand times as slow as a force by name. An exception ends the run and is raised by it.
+///
+/// >>> import polhode
+/// >>> brake = polhode.force("brake", lambda t, attitude, omega: -0.1 * omega)
+/// >>> body = polhode.Body([1, 2, 3], [brake])
+/// >>> run = polhode.run("rk4", body, [0.4, 1, -0.3], times=[0, 10], step=0.1)
+/// >>> bool(run.energy[1] < run.energy[0])
+/// True
+#[pyfunction]
+pub(crate) fn force(name: String, torque: Py<PyAny>) -> Force {
+    let raised = Raised::default();
+    let keeper = raised.clone();
+    let law = move |t: f64, q: UnitQuaternion<f64>, omega: Vector3<f64>| {
+        // after an exception no more Python is called; the run sees a force that is no number, and ends
+        if keeper.is_any() {
+            return Vector3::repeat(f64::NAN);
+        }
+        let found = Python::attach(|py| -> PyResult<Vector3<f64>> {
+            py.check_signals()?;
+            let attitude = array(py, vec![q.w, q.i, q.j, q.k], &[4])?;
+            let omega = array(py, omega.as_slice().to_vec(), &[3])?;
+            vector("torque", &torque.bind(py).call1((t, attitude, omega))?)
+        });
+        found.unwrap_or_else(|error| {
+            keeper.keep(error);
+            Vector3::repeat(f64::NAN)
+        })
+    };
+    Force { force: body::Force::torque_fn(name, law), raised: Some(raised) }
+}

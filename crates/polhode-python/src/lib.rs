@@ -1,0 +1,55 @@
+//! The compiled half of the Python package `polhode`: classes and functions on arrays, each over the library's own.
+//!
+//! Arrays are taken in any form that `numpy.asarray` makes numbers of; results are new arrays. The interpreter is free while
+//! numbers are computed, and long work ends at Ctrl-C. Errors are `PolhodeError`, a `ValueError` with the library's words.
+
+mod advice;
+mod arrays;
+mod audits;
+mod bodies;
+mod calm;
+mod columns;
+mod ensembles;
+mod error;
+mod files;
+mod fits;
+mod forces;
+mod json;
+mod masses;
+mod motions;
+mod runs;
+mod shown;
+mod states;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _polhode {
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "the name that Python has for it")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+    #[pymodule_export]
+    use super::advice::{Advice, advise};
+    #[pymodule_export]
+    use super::audits::{Verdict, verdict_on};
+    #[pymodule_export]
+    use super::bodies::{Body, catalogue_names, named_body};
+    #[pymodule_export]
+    use super::ensembles::Ensemble;
+    #[pymodule_export]
+    use super::error::{PolhodeError, PolhodeWarning};
+    #[pymodule_export]
+    use super::files::{Record, Trajectory, read};
+    #[pymodule_export]
+    use super::fits::{Estimate, fitted};
+    #[pymodule_export]
+    use super::forces::{Force, drag, force, gravity, gravity_gradient, torque_body, torque_space};
+    #[pymodule_export]
+    use super::masses::{Link, Links, MassProperties, diagnose, mesh, solid};
+    #[pymodule_export]
+    use super::motions::{FreeMotion, LagrangeTop};
+    #[pymodule_export]
+    use super::runs::{Samples, methods, run};
+    #[pymodule_export]
+    use super::states::States;
+}

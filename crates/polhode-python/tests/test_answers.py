@@ -1,0 +1,250 @@
+"""Audits, fits, advice, tensors and files."""
+
+import json
+import warnings
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import polhode
+from conftest import PROGRAMS
+from polhode import PolhodeError, PolhodeWarning
+from polhode.testing import assert_rotation_right
+
+OMEGA = [0.4, 1, -0.3]
+T = np.arange(300) * 0.1
+
+
+@pytest.fixture(scope="module")
+def exact():
+    return polhode.FreeMotion([1, 2, 3], OMEGA).at(T)
+
+
+def test_conventions_are_told_from_the_rows(exact):
+    attitude, omega = exact
+    last = np.roll(attitude, -1, axis=1)
+    for q, w, told in [
+        (attitude, omega, {"quaternion": "wxyz", "attitude": "body-to-space", "omega_frame": "body", "rate_unit": "rad/s"}),
+        (last, np.degrees(omega), {"quaternion": "xyzw", "rate_unit": "deg/s"}),
+        (attitude * [1, -1, -1, -1], omega, {"attitude": "space-to-body"}),
+    ]:
+        verdict = polhode.audit(T, q, w, moments=[1, 2, 3])
+        assert verdict.is_right and verdict.attitude_error < 1e-12
+        assert told.items() <= verdict.reading.items()
+    stated = polhode.audit(T, attitude, omega, moments=[1, 2, 3], direction="space-to-body")
+    assert (stated.verdict, stated.suspect) == ("wrong", "transposed")
+
+
+def test_matrices_and_rotations_are_attitudes_too(exact):
+    transform = pytest.importorskip("scipy.spatial.transform")
+    turn = exact.rotation
+    assert isinstance(turn, transform.Rotation)
+    for attitude in (turn, turn.as_matrix()):
+        assert polhode.audit(T, attitude, exact.omega, moments=[1, 2, 3]).verdict == "right"
+    angles = turn.as_euler("ZXZ")
+    verdict = polhode.audit(T, angles, exact.omega, moments=[1, 2, 3], form="euler", euler="zxz")
+    assert verdict.verdict == "right" and verdict.reading["euler"] == "zxz"
+
+
+def test_a_noisy_record_is_undecided_until_its_noise_is_declared(exact):
+    noise = np.random.default_rng(1).normal(0, 1e-3, exact.omega.shape)
+    undecided = polhode.audit(T, exact.attitude, exact.omega + noise, moments=[1, 2, 3])
+    assert undecided.verdict == "undecided"
+    assert polhode.audit(T, exact.attitude, exact.omega + noise, moments=[1, 2, 3], noise=[0, 1.1e-3]).is_right
+
+
+def test_a_wrong_integrator_is_named_with_what_to_switch_to():
+    verdict = polhode.audit(polhode.read(PROGRAMS / "mujoco-euler.csv"), moments=[1, 2, 2.5])
+    assert (verdict.verdict, verdict.suspect) == ("wrong", "integrator:semi-implicit-euler")
+    assert abs(verdict.integrator["step"] - 0.05) < 1e-9 and not verdict.is_right
+    assert " ".join(str(verdict).split()).startswith(f"{PROGRAMS / 'mujoco-euler.csv'}: wrong; suspect: integrator:semi-implicit-euler")
+    assert "<svg" in verdict._repr_html_() and json.loads(verdict.to_json()) == verdict.to_dict()
+    assert verdict.traces["t"].shape == verdict.traces["energy"].shape
+    with pytest.raises(AssertionError, match="semi-implicit-euler"):
+        assert_rotation_right(polhode.read(PROGRAMS / "mujoco-euler.csv"), moments=[1, 2, 2.5], advice=False)
+
+
+def test_forces_are_part_of_the_question():
+    body = polhode.Body([1.25, 1.3, 0.75], [polhode.gravity([0.1, 0, 2])])
+    run = polhode.run("dop853", body, [0.5, 0, 20], [0.97, 0.24, 0, 0], times=T / 10, tolerance=1e-12)
+    assert polhode.audit(T / 10, run.attitude, run.omega, body=body).is_right
+    assert not polhode.audit(T / 10, run.attitude, run.omega, moments=[1.25, 1.3, 0.75], advice=False).is_right
+
+
+def test_what_cannot_be_audited_is_refused(exact):
+    attitude, omega = exact
+    for call, words in [
+        (lambda: polhode.audit(T[:5], attitude[:5], omega[:5]), "the record has 5 rows; a verdict needs at least 10"),
+        (lambda: polhode.audit(T, attitude[:9], omega), r"attitude: an array of shape \(9, 4\); it must be of shape \(300, 4\)"),
+        (lambda: polhode.audit(T, omega, omega), "form: missing"),
+        (lambda: polhode.audit(T, attitude * np.nan, omega), "NaN"),
+        (lambda: polhode.audit(T, attitude, omega, moments=[1, 2, 3], body="phone"), "give one of them"),
+        (lambda: polhode.audit(T, attitude, omega, tolerance=0), "tolerance"),
+        (lambda: polhode.audit(T, attitude, omega, order="zyxw"), "order: 'zyxw'; it must be"),
+    ]:
+        with pytest.raises(PolhodeError, match=words):
+            call()
+
+
+def test_bodies_of_a_file_are_audited_one_by_one():
+    bodies = polhode.read(PROGRAMS / "lammps-digits.dump")
+    assert set(bodies) == {"1", "2"}
+    verdict = polhode.audit(bodies["1"], moments=[0.05, 0.068, 0.082], advice=False)
+    assert verdict.suspect == "integrator:richardson"
+
+
+def simulated(noise=0.01, seed=1):
+    t = np.arange(4000) * 0.01
+    omega = polhode.FreeMotion([1, 2, 2.5], OMEGA).at(t).omega
+    return t, omega + np.random.default_rng(seed).normal(0, noise, omega.shape)
+
+
+def test_a_fit_finds_the_ratios_and_says_how_well():
+    estimate = polhode.fit(*simulated())
+    assert (abs(estimate.ratios - [0.4, 0.8]) < 5 * estimate.sigma_ratios).all()
+    assert_allclose(estimate.principal.sum(), 1)
+    assert estimate.covariance.shape == (6, 6) and abs(estimate.noise_sigma / 0.01 - 1) < 0.1
+    assert estimate.inertia is None and estimate.flights == [(0.0, 39.99)]
+    assert "offset_x" in estimate.systematic and "I1 / trace" in repr(estimate) and "<svg" in estimate._repr_html_()
+    sized = polhode.fit(*simulated(), trace=5.5)
+    assert_allclose(np.trace(sized.inertia), 5.5)
+
+
+def test_warnings_of_a_fit_are_python_warnings():
+    t, rates = simulated()
+    rates[1000] += 1
+    with pytest.warns(PolhodeWarning, match="1 sample was left out as standing far out"):
+        estimate = polhode.fit(t, rates)
+    assert any("stand" in text for text in estimate.warnings)
+
+
+def test_what_a_record_does_not_tell_is_refused():
+    t = np.arange(4000) * 0.01
+    spin = np.tile([0, 0, 1.0], (4000, 1)) + np.random.default_rng(1).normal(0, 0.01, (4000, 3))
+    for call, words in [
+        (lambda: polhode.fit(t, spin), "determine"),
+        (lambda: polhode.fit(t, 0 * spin), "."),
+        (lambda: polhode.fit(t[:3], spin), r"rates: an array of shape \(4000, 3\); it must be of shape \(3, 3\)"),
+        (lambda: polhode.fit(t), "rates: missing"),
+        (lambda: polhode.fit(*simulated(), torque="wind"), "torque: 'wind'; it must be"),
+        (lambda: polhode.fit(*simulated(), gyro_bias=-1), "gyro_bias: -1.0; it must be"),
+    ]:
+        with pytest.raises(PolhodeError, match=words):
+            call()
+
+
+def test_advice_names_a_method_that_does():
+    told = []
+    advice = polhode.advise([1, 2, 3], OMEGA, until=100, attitude_error=1e-6, exclude=["exact"], check=True,
+                            progress=lambda *now: told.append(now))
+    assert advice.actual_error <= 1e-6 and advice.method and told
+    run = polhode.run(advice.method, [1, 2, 3], OMEGA, times=[0, 100], step=advice.step, tolerance=advice.tolerance)
+    assert run.attitude_error[-1] < 2e-6
+    assert advice.to_dict()["method"] == advice.method and advice.method in repr(advice)
+    with pytest.raises(PolhodeError, match="at rest"):
+        polhode.advise([1, 2, 3], [0, 0, 0], until=1, attitude_error=1e-6)
+    with pytest.raises(ZeroDivisionError):
+        polhode.advise([1, 2, 3], OMEGA, until=1e4, attitude_error=1e-6, exclude=["exact"], progress=lambda *now: 1 / 0)
+
+
+def test_solids_add_up():
+    rod = polhode.solid("rod", [2], mass=3)
+    assert_allclose(rod.principal_moments, [0, 1, 1], atol=1e-15)
+    half = [polhode.solid("rod", [1], mass=1.5).moved([0, 0, z]) for z in (-0.5, 0.5)]
+    assert_allclose((half[0] + half[1]).tensor, rod.tensor, rtol=1e-14)
+    assert_allclose(rod.tensor_about([0, 0, 1])[0, 0], 4)
+    box = polhode.solid("box", [1, 2, 3], density=2)
+    assert_allclose(box.mass, 12)
+    assert_allclose(box.turned([0, 1, 0, 0]).tensor, box.tensor, rtol=1e-14)
+    assert_array_equal(polhode.Body(box).tensor, box.tensor)
+    with pytest.raises(PolhodeError, match="give mass"):
+        polhode.solid("box", [1, 2, 3])
+    with pytest.raises(PolhodeError):
+        polhode.solid("boxx", [1, 2, 3], mass=1)
+
+
+def test_a_tensor_is_examined():
+    valid = polhode.diagnose(np.diag([1.0, 2, 2.5]))
+    assert valid.verdict == "valid" and valid.trouble is None
+    wrong = polhode.diagnose([[0.75, 0.3125, 0.3125], [0.3125, 0.75, 0.3125], [0.3125, 0.3125, 0.75]])
+    assert_array_equal(wrong.corrected[0], [0.75, -0.3125, -0.3125])
+    assert "cause 1" in repr(wrong)
+    with pytest.raises(PolhodeError, match="violate"):
+        polhode.Body(wrong)
+
+
+URDF = """<robot name="r">
+<link name="forearm"><inertial><mass value="1.5"/><inertia ixx="0.01" iyy="0.02" izz="0.025" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="hand"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial></link>
+</robot>"""
+
+
+def test_links_of_a_robot_are_examined(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text(URDF)
+    robot = polhode.read(path)
+    assert len(robot) == 2 and robot.keys() == ["forearm", "hand"] and "hand" in robot
+    assert robot["forearm"].verdict == "valid" and robot[1].verdict == "invalid"
+    assert_array_equal(polhode.Body(robot["forearm"]).principal_moments, [0.01, 0.02, 0.025])
+    assert_array_equal(polhode.body(f"{path}:forearm").tensor, robot["forearm"].tensor)
+    assert "violate" in repr(robot) and [link.name for link in robot] == robot.keys()
+    with pytest.raises(KeyError, match="did you mean 'forearm'"):
+        robot["forearn"]
+    with pytest.raises(PolhodeError, match="violate"):
+        robot["hand"].properties
+
+
+def test_tables_in_memory_are_read_by_their_names(exact):
+    attitude, omega = exact
+    table = {"t": T, **{f"q_{axis}": attitude[:, k] for k, axis in enumerate("wxyz")}}
+    table |= {f"Gyroscope {axis} (deg/s)": np.degrees(omega[:, k]) for k, axis in enumerate("xyz")}
+    kinds = [(name, "f8") for name in table]
+    structured = np.array(list(zip(*table.values())), dtype=kinds)
+
+    class Frame:
+        """As a data frame writes itself."""
+
+        def to_csv(self, index=True):
+            assert not index
+            return "\n".join([",".join(table), *(",".join(map(repr, map(float, row))) for row in zip(*table.values()))])
+
+    for given in (table, structured, Frame()):
+        trajectory = polhode.read(given)
+        assert_array_equal(trajectory.attitude, attitude)
+        verdict = polhode.audit(trajectory, moments=[1, 2, 3])
+        assert verdict.is_right and verdict.reading["rate_unit"] == "deg/s"
+    record = polhode.read({name: table[name] for name in ["t", *(name for name in table if "Gyro" in name)]})
+    assert_allclose(record.rates, omega, rtol=1e-15)
+    with pytest.raises(PolhodeError, match=r"wx: an array of shape \(2,\); it must be of shape \(3,\), as t"):
+        polhode.read({"t": [1, 2, 3], "wx": [1, 2]})
+    with pytest.raises(PolhodeError, match="a trajectory or a record"):
+        polhode.read(table, kind="mesh")
+
+
+def test_every_kind_of_file_is_read(tmp_path):
+    trajectory = polhode.read(PROGRAMS / "basilisk.csv")
+    assert isinstance(trajectory, polhode.Trajectory) and trajectory.attitude.shape == (len(trajectory), 3)
+    columns = "t=1,s1=2,s2=3,s3=4,wx=5,wy=6,wz=7"
+    saved = polhode.read(PROGRAMS / "numpy.npy", columns=columns)
+    assert_array_equal(saved.t, trajectory.t)
+    (tmp_path / "log.csv").write_text("time,gx,gy,gz\n0,0.4,1,-0.3\n10,0.41,0.99,-0.28\n20,x,y,z\n")
+    with pytest.warns(PolhodeWarning, match="left out"):
+        record = polhode.read(tmp_path / "log.csv", time_unit="ms", skip_rows=0.5)
+    assert isinstance(record, polhode.Record) and record.t.tolist() == [0, 0.01] and record.rates.shape == (2, 3)
+    (tmp_path / "parts.toml").write_text('[[part]]\nshape = "sphere"\nsizes = [0.1]\nmass = 2\n')
+    (tmp_path / "tetrahedron.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    solid = polhode.read(tmp_path / "tetrahedron.obj", density=6, length_unit="m")
+    assert_allclose(solid.mass, 1)
+    assert_allclose(solid.center_of_mass, [0.25, 0.25, 0.25])
+    (tmp_path / "times.txt").write_text("0\n1.5\n3\n")
+    assert polhode.read(tmp_path / "times.txt", kind="times").tolist() == [0, 1.5, 3]
+    for call, words in [
+        (lambda: polhode.read(tmp_path / "missing.csv"), "missing.csv"),
+        (lambda: polhode.read(tmp_path / "log.csv", kind="film"), "kind: 'film'"),
+        (lambda: polhode.read(tmp_path / "log.csv", density=1), "they are for meshes"),
+        (lambda: polhode.read(tmp_path / "tetrahedron.obj"), "give mass"),
+        (lambda: polhode.read("-"), "-"),
+    ]:
+        with pytest.raises(PolhodeError, match=words):
+            call()

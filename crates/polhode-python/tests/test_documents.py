@@ -1,0 +1,187 @@
+"""Examples of docstrings run, every public name has one, and the stubs are those of the running module."""
+
+import ast
+import doctest
+import inspect
+import pathlib
+import shutil
+import subprocess
+import sys
+import warnings
+
+import numpy
+import pytest
+
+import polhode
+import polhode.progress
+import polhode.testing
+from conftest import PROGRAMS, ROOT, stl_of_an_open_cube
+
+NAMES = [name for name in polhode.__all__ if name not in ("__version__", "testing")]
+FOLDER = pathlib.Path(polhode.__file__).parent
+FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE | doctest.IGNORE_EXCEPTION_DETAIL
+
+
+def documented():
+    """Every public name and member with its docstring."""
+    yield "polhode", polhode.__doc__
+    yield "polhode.testing", polhode.testing.__doc__
+    yield "polhode.progress.bar", polhode.progress.bar.__doc__
+    yield "polhode.testing.assert_rotation_right", polhode.testing.assert_rotation_right.__doc__
+    for name in NAMES:
+        value = getattr(polhode, name)
+        yield f"polhode.{name}", value.__doc__
+        if inspect.isclass(value):
+            for member, of_class in vars(value).items():
+                if not member.startswith("_"):
+                    yield f"polhode.{name}.{member}", of_class.__doc__
+
+
+@pytest.mark.parametrize("name, text", list(documented()))
+def test_examples_run(name, text):
+    assert text and len(text.split()) > 1, f"{name} says nothing"
+    parser, runner = doctest.DocTestParser(), doctest.DocTestRunner(optionflags=FLAGS)
+    test = parser.get_doctest(text, {"assert_rotation_right": polhode.testing.assert_rotation_right}, name, None, 0)
+    said = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        runner.run(test, out=said.append)
+    assert runner.summarize(verbose=False).failed == 0, "".join(said)
+
+
+def test_what_people_call_has_an_example():
+    without = [name for name in NAMES if callable(getattr(polhode, name)) and ">>>" not in getattr(polhode, name).__doc__]
+    # results and what needs no more than its name
+    assert set(without) <= {
+        "Advice", "Estimate", "Force", "Link", "Links", "PolhodeError", "PolhodeWarning", "Record", "Samples", "States", "Trajectory",
+        "Verdict", "bodies", "drag", "gravity_gradient", "methods", "torque_body", "torque_space",
+    }
+
+
+def blocks(page):
+    """The Python blocks of a page."""
+    return [block.split("\n```")[0] for block in page.read_text().split("```python\n")[1:]]
+
+
+def supplied(folder):
+    """Files that stand for those of a reader."""
+    shutil.copy(PROGRAMS / "mujoco-euler.csv", folder / "mujoco.csv")
+    (folder / "robot.urdf").write_text(
+        '<robot name="r"><link name="forearm"><inertial><mass value="1.5"/>'
+        '<inertia ixx="0.01" iyy="0.02" izz="0.025" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+    )
+    (folder / "part.stl").write_text(stl_of_an_open_cube())
+
+
+@pytest.mark.parametrize("page", ["docs/python.md", "crates/polhode-python/package.md"])
+def test_programs_of_the_pages_run(page, tmp_path, monkeypatch):
+    supplied(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    names, found = {}, blocks(ROOT / page)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for block in found:
+            exec(compile(block, page, "exec"), names)
+    assert found
+
+
+@pytest.mark.parametrize("name", ["flip", "record"])
+def test_notebooks_run(name, tmp_path):
+    client, notebooks = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
+    pytest.importorskip("ipykernel")
+    notebook = notebooks.read(ROOT / f"crates/polhode-python/notebooks/{name}.ipynb", 4)
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert all(cell.execution_count for cell in code), "it is committed with its outputs"
+    client.NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": tmp_path}}).execute()
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="the register is TOML")
+def test_the_table_of_simulators_is_what_the_logs_say():
+    program = ROOT / "crates/polhode-python/simulators.py"
+    done = subprocess.run([sys.executable, program, "--check"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def stub():
+    return ast.parse((FOLDER / "_polhode.pyi").read_text())
+
+
+def parameters(arguments):
+    """Names, kinds and defaults of a function of the stub."""
+    positional = [argument.arg for argument in arguments.args if argument.arg not in ("self", "cls")]
+    defaults = dict(zip(positional[len(positional) - len(arguments.defaults) :], arguments.defaults))
+    defaults |= {a.arg: d for a, d in zip(arguments.kwonlyargs, arguments.kw_defaults) if d is not None}
+    values = {name: ast.literal_eval(value) for name, value in defaults.items()}
+    return positional, [argument.arg for argument in arguments.kwonlyargs], values
+
+
+def of_runtime(function):
+    found = list(inspect.signature(function).parameters.values())
+    found = [parameter for parameter in found if parameter.name not in ("self", "cls")]
+    empty = inspect.Parameter.empty
+    return (
+        [p.name for p in found if p.kind in (p.POSITIONAL_OR_KEYWORD, p.POSITIONAL_ONLY)],
+        [p.name for p in found if p.kind == p.KEYWORD_ONLY],
+        {p.name: p.default for p in found if p.default is not empty},
+    )
+
+
+def test_stubs_are_those_of_the_running_module():
+    seen = set()
+    for node in stub().body:
+        if isinstance(node, ast.FunctionDef):
+            seen.add(node.name)
+            assert parameters(node.args) == of_runtime(getattr(polhode, node.name)), node.name
+        elif isinstance(node, ast.ClassDef):
+            seen.add(node.name)
+            found = getattr(polhode, node.name)
+            members = [member for member in node.body if isinstance(member, ast.FunctionDef)]
+            told = {member.name for member in members if not member.name.startswith("_")}
+            if node.name == "Verdict":
+                continue  # its names are those of the JSON: the test below
+            assert told == {name for name in vars(found) if not name.startswith("_")}, node.name
+            for member in members:
+                if member.name == "__new__":
+                    assert parameters(member.args) == of_runtime(found), node.name
+                elif not member.name.startswith("_"):
+                    is_property = any(getattr(d, "id", "") == "property" for d in member.decorator_list)
+                    of_class = inspect.getattr_static(found, member.name)
+                    assert is_property == inspect.isgetsetdescriptor(of_class), f"{node.name}.{member.name}"
+                    if not is_property:
+                        assert parameters(member.args) == of_runtime(of_class), f"{node.name}.{member.name}"
+    assert set(NAMES) == seen
+
+
+def test_the_stub_of_a_verdict_has_what_a_verdict_has():
+    t = numpy.arange(40) * 0.2
+    attitude, omega = polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3]).at(t)
+    verdict = polhode.audit(t, attitude, omega, moments=[1, 2, 3])
+    told = next(node for node in stub().body if isinstance(node, ast.ClassDef) and node.name == "Verdict")
+    told = {member.name for member in told.body if not member.name.startswith("_")}
+    assert told == {name for name in dir(verdict) if not name.startswith("_")}
+    for name in told:
+        getattr(verdict, name)
+    with pytest.raises(AttributeError, match="no 'verdicts'"):
+        verdict.verdicts
+
+
+def test_a_checker_of_types_takes_the_stubs(tmp_path):
+    checker = shutil.which("pyright") or shutil.which("mypy")
+    if checker is None:
+        pytest.skip("neither pyright nor mypy is installed")
+    program = tmp_path / "program.py"
+    program.write_text(
+        "import numpy as np\nimport polhode\nfrom polhode.testing import assert_rotation_right\n"
+        "motion = polhode.FreeMotion([1, 2, 3], omega=[0.4, 1, -0.3])\n"
+        "attitude, omega = motion.at(np.linspace(0, 1, 100))\n"
+        "right: bool = polhode.audit(np.linspace(0, 1, 100), attitude, omega, moments=[1, 2, 3]).is_right\n"
+        "shape: tuple[int, ...] = polhode.fit(np.zeros(3), np.zeros((3, 3))).principal.shape\n"
+        "assert_rotation_right([0.0], attitude)\n"
+    )
+    arguments = ["--strict"] if checker.endswith("mypy") else ["--pythonpath", sys.executable]
+    done = subprocess.run([checker, *arguments, str(program)], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    # and sees a mistake
+    program.write_text("import polhode\npolhode.FreeMotion([1, 2, 3]).at(0).attitudes\n")
+    done = subprocess.run([checker, *arguments, str(program)], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 1 and "attitudes" in done.stdout, done.stdout

@@ -1,0 +1,95 @@
+"""What the front page shows with the command comes out of Python too, bit for bit; times of processors excepted."""
+
+import csv
+import io
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import polhode
+from conftest import PROGRAMS, stl_of_an_open_cube
+
+
+def close_to_all(found, told, but=()):
+    """The same values under the same names, without those that are times of processors."""
+    assert found.keys() == told.keys()
+    for name in set(told) - set(but):
+        assert found[name] == told[name], name
+
+
+@pytest.mark.parametrize("log, body", [
+    ("mujoco-euler.csv", [1, 2, 2.5]), ("mujoco-rk4.csv", [1, 2, 2.5]), ("basilisk.csv", [10, 20, 26]), ("drake.csv", [1, 2, 2.6]),
+])  # fmt: skip
+def test_a_simulator(command, log, body):
+    told = command("audit", PROGRAMS / log, "--moments", ",".join(map(str, body)))
+    verdict = polhode.audit(polhode.read(PROGRAMS / log), moments=body)
+    # advice is that of the quickest on this machine, found in two seconds
+    close_to_all(verdict.to_dict(), told, but=["advice"])
+    text = command("audit", PROGRAMS / log, "--moments", ",".join(map(str, body)), format="table")
+    assert [line for line in str(verdict).splitlines() if "Switch to" not in line][:8] == text.splitlines()[:8]
+
+
+def test_advice(command):
+    told = command("advise", "--body", "toutatis", "--until", "30d", "--attitude-error", "1e-6")
+    advice = polhode.advise("toutatis", until=30 * 86400, attitude_error=1e-6)
+    assert (advice.method, advice.step, advice.tolerance) == (told["method"], told["step"], told["tolerance"])
+    assert advice.predicted_error == told["predicted_error"] and advice.conditioning == told["conditioning"]
+    # of methods that both have run at the same setting the errors are the same
+    ours = {(one["method"], one["step"], one["tolerance"]): one for one in advice.others if one["whole_time"]}
+    theirs = {(one["method"], one["step"], one["tolerance"]): one for one in told["others"] if one["whole_time"]}
+    for both in ours.keys() & theirs.keys():
+        assert ours[both]["predicted_error"] == theirs[both]["predicted_error"], both
+
+
+def test_a_tumbling_asteroid(command):
+    (told,) = command("motion", "--body", "toutatis")
+    assert (told.pop("frame"), told.pop("epoch")) == ("ecliptic J2000", "1992-11-09T17:49:47")
+    close_to_all(polhode.FreeMotion("toutatis").character(), told)
+
+
+def rows(text):
+    found = list(csv.DictReader(io.StringIO(text)))
+    return {name: np.array([float(row[name] or "nan") for row in found]) for name in found[0]}
+
+
+def test_a_tensor(command):
+    path = command.folder / "part.stl"
+    path.write_text(stl_of_an_open_cube())
+    told = command("inertia", "mesh", "part.stl", "--length-unit", "mm", "--density", "2700", "--close", "fan")
+    with pytest.warns(polhode.PolhodeWarning, match="mended"):
+        found = polhode.read(path, length_unit="mm", density=2700, close="fan")
+    assert (found.mass, found.tensor.tolist()) == (told["mass"], told["inertia"])
+    assert_array_equal(found.center_of_mass, told["center_of_mass"])
+    assert_array_equal(found.principal_moments, told["principal_moments"])
+    wrong = command("inertia", "tensor", "0.75,0.75,0.75,0.3125,0.3125,0.3125")
+    examined = polhode.diagnose([[0.75, 0.3125, 0.3125], [0.3125, 0.75, 0.3125], [0.3125, 0.3125, 0.75]])
+    assert (examined.verdict, examined.trouble, examined.cause) == (wrong["verdict"], wrong["trouble"], wrong["cause"])
+
+
+def test_a_record(command):
+    command("simulate", "--body", "spacecraft", "--omega", "0.3,1,0.4", "--until", "60", "--every", "0.01", "--noise", "0.01", "--out", "record.csv", format=None)
+    told = command("fit", "record.csv")
+    found = polhode.fit(polhode.read(command.folder / "record.csv", kind="record"))
+    for name in ("shape", "principal", "sigma_principal", "axes", "covariance", "ratios", "sigma_ratios", "bound"):
+        assert_array_equal(getattr(found, name), told[name], err_msg=name)
+    for name in ("noise_sigma", "samples", "segments", "radius", "chi2_per_dof", "triangle_slack", "unexplained", "warnings", "identifiable"):
+        assert getattr(found, name) == told[name], name
+    assert [list(flight) for flight in found.flights] == told["flights"]
+    for line in told["systematic"]:
+        assert found.systematic[line["name"]]["principal"].tolist() == line["principal"]
+
+
+@pytest.mark.parametrize("method, flags", [("rk4", ["--step", "0.05"]), ("rattle", ["--step", "0.05"]), ("dop853", ["--tolerance", "1e-12", "--step", "0.1"]), ("exact", [])])
+def test_a_class(command, method, flags):
+    told = rows(command("propagate", "--body", "racket", "--until", "10", "--every", "0.1", "--method", method, *flags, format="csv"))
+    times = told["t"]
+    setting = {flag.lstrip("-"): float(value) for flag, value in zip(flags[::2], flags[1::2])}
+    found = polhode.run(method, "racket", times=times, **setting)
+    for k, axis in enumerate("wxyz"):
+        assert_array_equal(found.attitude[:, k], told[f"q_{axis}"])
+    for k, axis in enumerate("xyz"):
+        assert_array_equal(found.omega[:, k], told[f"omega_body_{axis}"])
+    for name in ("energy", "momentum", "energy_error", "momentum_error", "momentum_vector_error", "attitude_error"):
+        values = getattr(found, name)
+        assert_array_equal(np.full(len(times), np.nan) if values is None else values, told[name], err_msg=name)

@@ -1,0 +1,215 @@
+"""Motions, runs, forces and ensembles in arrays."""
+
+import threading
+import warnings
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import polhode
+from polhode import Body, Ensemble, FreeMotion, LagrangeTop, PolhodeError, run
+
+OMEGA = [0.4, 1, -0.3]
+
+
+def test_a_spin_about_an_axis_is_a_turn():
+    t = np.linspace(-5, 5, 101)
+    attitude, omega = FreeMotion([1, 2, 3], [0, 0, 0.5]).at(t)
+    assert_allclose(attitude, np.column_stack([np.cos(t / 4), 0 * t, 0 * t, np.sin(t / 4)]), atol=1e-15)
+    assert_allclose(omega, np.tile([0, 0, 0.5], (101, 1)))
+
+
+def test_any_shape_of_times_and_one_time_give_the_same_bits():
+    motion = FreeMotion([1, 2, 3], OMEGA, [0.5, 0.1, -0.3, 0.9])
+    t = np.arange(24.0).reshape(2, 3, 4)
+    states = motion.at(t)
+    assert states.attitude.shape == (2, 3, 4, 4) and states.omega.shape == (2, 3, 4, 3)
+    assert_array_equal(states.t, t)
+    one = motion.at(7.0)
+    assert one.attitude.shape == (4,) and one.t == 7.0
+    assert_array_equal(one.attitude, states.attitude[0, 1, 3])
+    assert_array_equal(motion.at(7).omega, states.omega[0, 1, 3])
+    # strides, types and lists of times
+    for same in (t[:, ::2], t.astype("f4"), t.astype(int), np.asfortranarray(t), t.tolist(), t.astype(">f8")):
+        assert_array_equal(motion.at(same).attitude, motion.at(np.array(same, dtype=float)).attitude)
+
+
+def test_the_order_of_quaternions_is_explicit():
+    first = FreeMotion([1, 2, 3], OMEGA, [0.5, 0.1, -0.3, 0.9])
+    last = FreeMotion([1, 2, 3], OMEGA, [0.1, -0.3, 0.9, 0.5], order="xyzw")
+    t = [0, 1, 2]
+    assert_array_equal(np.roll(first.at(t).attitude, -1, axis=-1), last.at(t).attitude)
+    assert_array_equal(first.at(t, order="xyzw").attitude, last.at(t).attitude)
+    with pytest.raises(PolhodeError, match="order: 'xzyw'; it must be 'wxyz' or 'xyzw'"):
+        first.at(t, order="xzyw")
+
+
+def test_rotations_of_scipy_go_in_and_out():
+    transform = pytest.importorskip("scipy.spatial.transform")
+    turn = transform.Rotation.from_euler("zxz", [0.3, 0.5, 0.7])
+    motion = FreeMotion([1, 2, 3], OMEGA, turn)
+    assert (motion.at(0).rotation * turn.inv()).magnitude() < 1e-15
+    states = motion.at([0, 5])
+    moments = np.array([1, 2, 3]) * states.omega
+    in_space = states.rotation.apply(moments)
+    assert_allclose(in_space[0], in_space[1], rtol=1e-13)
+
+
+def test_the_motion_of_a_top_keeps_its_energy():
+    body = Body([1.25, 1.25, 0.75], [polhode.gravity([0, 0, 2])])
+    top = LagrangeTop(body, [0.5, 0, 20], [0.97, 0.24, 0, 0])
+    states = top.at(np.linspace(0, 1e4, 1000))
+    up = 1 - 2 * (states.attitude[:, 1] ** 2 + states.attitude[:, 2] ** 2)
+    energy = 0.5 * (states.omega**2 * [1.25, 1.25, 0.75]).sum(1) + 2 * up
+    assert np.ptp(energy) < 1e-12 * energy[0]
+    assert top.nutation_period > 0 and top.turning_points.shape == (2,)
+    with pytest.raises(PolhodeError, match="gravity acts on the body"):
+        FreeMotion(body, [0, 0, 20])
+    with pytest.raises(PolhodeError, match="the body is free"):
+        LagrangeTop([1, 1, 2], [0, 0, 20])
+
+
+def test_a_body_of_the_catalogue_has_its_start():
+    body = polhode.body("toutatis")
+    assert "toutatis" in polhode.bodies() and body.attitude_known.startswith("attitude in the frame ecliptic J2000")
+    assert_array_equal(FreeMotion("toutatis").at(0).omega, FreeMotion(body, body.omega, body.attitude).at(0).omega)
+    character = FreeMotion(body).character()
+    assert character["mode"] == "long-axis" and character["stability"] is None
+
+
+def test_runs_carry_their_errors():
+    times = np.arange(0, 101, 10.0)
+    rk4 = run("rk4", [1, 2, 3], OMEGA, times=times, step=0.1)
+    assert len(rk4) == 11 and rk4.attitude.shape == (11, 4)
+    assert (np.diff(rk4.energy_error) >= 0).all() and 1e-8 < rk4.energy_error[-1] < 1e-4
+    exact = FreeMotion([1, 2, 3], OMEGA).at(times)
+    angle = 2 * np.linalg.norm(rk4.attitude * np.sign(rk4.attitude[:, :1]) - exact.attitude * np.sign(exact.attitude[:, :1]), axis=1)
+    assert_allclose(rk4.attitude_error, angle, rtol=0.01, atol=1e-13)
+    rattle = run("rattle", [1, 2, 3], OMEGA, times=times, step=0.1)
+    assert rattle.momentum_vector_error[-1] < 1e-13 < 1e-4 < rattle.attitude_error[-1]
+    bare = run("rattle", [1, 2, 3], OMEGA, times=times, step=0.1, errors=False)
+    assert bare.energy_error is None and bare.flips is None
+    assert_array_equal(bare.attitude, rattle.attitude)
+    adaptive = run("dop853", [1, 2, 3], OMEGA, times=times, tolerance=1e-12)
+    assert adaptive.attitude_error.max() < 1e-9
+    for found in (rk4, rattle, bare, adaptive):
+        assert "<pre>" in found._repr_html_() and found.method in repr(found)
+    assert "<svg" in rk4._repr_html_()
+
+
+def test_long_runs_tell_how_far_they_are():
+    told = []
+    run("rk4", [1, 2, 3], OMEGA, times=[0, 2e5], step=0.05, progress=lambda *now: told.append(now))
+    assert told and all(stage == "rk4" and 0 <= done <= 1 for stage, done, _ in told)
+    with pytest.raises(ZeroDivisionError):
+        run("rk4", [1, 2, 3], OMEGA, times=[0, 1e9], step=0.05, progress=lambda *now: 1 / 0)
+
+
+def test_forces_add_and_stop():
+    gravity, brake = polhode.gravity([0, 0, 2]), polhode.drag(0.1)
+    body = Body([1, 1, 0.25], [gravity, brake])
+    assert body.forces == ["gravity", "drag"]
+    slow = run("rk4", body, [0, 0, 4], times=[0, 10], step=0.01)
+    assert slow.energy[1] < slow.energy[0] and slow.energy_error is None
+    short = Body([1, 2, 3], [brake.during([[0, 1]])])
+    braked = run("rk4", short, OMEGA, times=[0, 1, 5, 10], step=0.01)
+    assert braked.energy[1] < braked.energy[0] and abs(braked.energy[3] / braked.energy[1] - 1) < 1e-9
+
+
+def test_a_function_is_a_force():
+    times = np.linspace(0, 3, 4)
+    built_in = run("rk4", Body([1, 2, 3], [polhode.drag(0.1)]), OMEGA, times=times, step=0.1)
+    own = polhode.force("own", lambda t, attitude, omega: -0.1 * omega)
+    assert_allclose(run("rk4", Body([1, 2, 3], [own]), OMEGA, times=times, step=0.1).attitude, built_in.attitude, rtol=1e-14)
+
+
+def test_an_exception_of_a_force_ends_the_run_and_comes_back():
+    calls = []
+
+    def broken(t, attitude, omega):
+        calls.append(t)
+        if t > 0.5:
+            raise RuntimeError("no more")
+        return 0 * omega
+
+    body = Body([1, 2, 3], [polhode.force("broken", broken)])
+    with pytest.raises(RuntimeError, match="no more"):
+        run("rk4", body, OMEGA, times=[0, 1e6], step=0.1)
+    assert len(calls) < 100
+    bad = Body([1, 2, 3], [polhode.force("bad", lambda t, q, w: [1, 2])])
+    with pytest.raises(PolhodeError, match=r"torque: an array of shape \(2,\); it must be of shape \(3,\)"):
+        run("rk4", bad, OMEGA, times=[0, 1], step=0.1)
+    nan = Body([1, 2, 3], [polhode.force("nan", lambda t, q, w: w * np.nan)])
+    with pytest.raises(PolhodeError, match="nan is not finite at t = 0 s"):
+        run("rk4", nan, OMEGA, times=[0, 1], step=0.1)
+
+
+def test_members_of_an_ensemble_have_the_bits_of_one_body():
+    omega = OMEGA + np.random.default_rng(1).normal(0, 0.1, (100, 3))
+    states = Ensemble([1, 2, 3], omega).at([0, 10, 1000])
+    alone = FreeMotion([1, 2, 3], omega[37]).at([0, 10, 1000])
+    assert_array_equal(states.attitude[:, 37], alone.attitude)
+    assert_array_equal(states.omega[:, 37], alone.omega)
+    stepped = Ensemble([1, 2, 3], omega, threads=1).run("rk4", times=[0, 10], step=0.1)
+    assert_array_equal(stepped.attitude[1, 5], run("rk4", [1, 2, 3], omega[5], times=[0, 10], step=0.1).attitude[1])
+    moments = np.random.default_rng(2).uniform(2, 3, (7, 3))
+    each = Ensemble(moments=moments, omega=OMEGA).at([5])
+    assert_array_equal(each.attitude[0, 3], FreeMotion(moments[3], OMEGA).at(5).attitude)
+    top = Body([1.25, 1.25, 0.75], [polhode.gravity([0, 0, 2])])
+    heavy = Ensemble(top, omega=[[0, 0, 20], [0, 0, 21]], attitude=[0.97, 0.24, 0, 0]).at([3])
+    assert_array_equal(heavy.omega[0, 1], LagrangeTop(top, [0, 0, 21], [0.97, 0.24, 0, 0]).at(3).omega)
+
+
+def test_members_are_named_where_they_are_refused():
+    with pytest.raises(PolhodeError, match="moments: member 1: principal moments 1, 2, 4 violate"):
+        Ensemble(moments=[[1, 2, 3], [1, 2, 4]], omega=OMEGA)
+    with pytest.raises(PolhodeError, match="inertia of 2 members, omega of 3, attitude of 1"):
+        Ensemble(moments=[[1, 2, 3], [1, 2, 2]], omega=np.ones((3, 3)))
+    with pytest.raises(PolhodeError, match="member 1: angular velocity has the component NaN"):
+        Ensemble([1, 2, 3], [OMEGA, [0, np.nan, 0]]).at([1])
+
+
+def test_refusals_have_the_words_of_the_library_and_name_the_argument():
+    cases = [
+        (lambda: FreeMotion([1, 2, 4], OMEGA), "inertia: principal moments 1, 2, 4 violate I1 \\+ I2 >= I3 by 1"),
+        (lambda: FreeMotion([1, 2, 3, 4], OMEGA), r"inertia: an array of shape \(4,\); it must be of shape \(3,\) or \(3, 3\)"),
+        (lambda: FreeMotion([1, 2, 3], [1, 2]), r"omega: an array of shape \(2,\); it must be of shape \(3,\)"),
+        (lambda: FreeMotion([1, 2, 3]), "omega: missing; give omega or momentum"),
+        (lambda: FreeMotion([1, 2, 3], OMEGA, [0, 0, 0, 0]), "zero quaternion, which has no direction"),
+        (lambda: FreeMotion([1, 2, 3], OMEGA).at(np.nan), "t: time NaN s is not a finite number"),
+        (lambda: FreeMotion([1, 2, 3], OMEGA).at([0, 1e300]), "the phase has no digits left"),
+        (lambda: FreeMotion([1, 2, 3], OMEGA).at("now"), "t: an array of <U3; it must hold real numbers"),
+        (lambda: FreeMotion([1, 2, 3], OMEGA).at([1 + 2j]), "t: an array of complex128"),
+        (lambda: FreeMotion([1, 2, 3], OMEGA).at(np.ma.masked_array([1.0, 2.0], [0, 1])), "NaN s is not a finite number"),
+        (lambda: run("rk4", [1, 2, 3], OMEGA, times=[0, 1]), "step: missing; rk4 needs a step in seconds"),
+        (lambda: run("rk4", [1, 2, 3], OMEGA, times=[1, 0], step=0.1), "goes forwards only|ascending"),
+        (lambda: run("rk4", [1, 2, 3], OMEGA, times=[0, 1], step=0.1, tolerance=1e-9), "tolerance"),
+        (lambda: run("explicit-euler", [1, 2, 3], [4, 10, -3], times=[0, 1e4], step=1), "diverged|no longer describe"),
+        (lambda: polhode.body("robot.urdf"), "no such file, and no such body in the catalogue"),
+    ]
+    for call, words in cases:
+        with pytest.raises(PolhodeError, match=words):
+            call()
+    assert issubclass(PolhodeError, ValueError)
+
+
+def test_results_print_as_tables():
+    motion = FreeMotion("toutatis")
+    assert "long-axis" in repr(motion) and "464870.6" in repr(motion)
+    text = repr(motion.at(np.arange(1000.0)))
+    assert "omega_z" in text and "1000 rows" in text and len(text.splitlines()) < 20
+    assert repr(LagrangeTop("gyroscope")).startswith("LagrangeTop(tilt")
+
+
+def test_threads_share_a_motion():
+    motion, found = FreeMotion([1, 2, 3], OMEGA), {}
+    t = np.arange(20000.0)
+
+    def work(k):
+        found[k] = motion.at(t).attitude
+
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(4)]
+    [thread.start() for thread in threads]
+    [thread.join() for thread in threads]
+    assert all((found[k] == found[0]).all() for k in found) and len(found) == 4

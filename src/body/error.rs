@@ -1,0 +1,96 @@
+//! Why a state is none of a body, and why a force cannot act.
+
+use thiserror::Error;
+
+use crate::num::Shown;
+
+/// Why a start is not usable.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum StateError {
+    /// A component is not a finite number.
+    #[error("{quantity} has the component {value}; every component must be a finite number")]
+    NotFinite {
+        /// Which quantity.
+        quantity: &'static str,
+        /// The offending value.
+        value: f64,
+    },
+    /// The quaternion of the attitude is zero.
+    #[error("the attitude is the zero quaternion, which has no direction; any other norm is fine")]
+    NoAttitude,
+    /// The spin is too large or too small for its energy to be a double.
+    #[error(
+        "{quantity} {} {unit} with this inertia puts the energy outside the range of a double; change the units", Shown(*value)
+    )]
+    OutOfRange {
+        /// Angular velocity or momentum, which was given.
+        quantity: &'static str,
+        /// Its largest component.
+        value: f64,
+        /// In which unit.
+        unit: &'static str,
+    },
+    /// The weight moment is too large or too small beside the inertia.
+    #[error(
+        "weight moment {} N m beside moments of inertia of {}: the rate of falling is outside the range \
+         of a double; change the units",
+        Shown(*weight_moment), Shown(*moment)
+    )]
+    WeightOutOfRange {
+        /// Size of the weight moment, N m.
+        weight_moment: f64,
+        /// Largest moment of inertia, to a power of two.
+        moment: f64,
+    },
+}
+
+/// Why a force cannot act.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ForceError {
+    /// A parameter is not a finite number.
+    #[error("{quantity} of the {force} is {}; it must be a finite number", Shown(*value))]
+    NotFinite {
+        /// Name of the force.
+        force: &'static str,
+        /// Which parameter.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A drag coefficient is negative.
+    #[error(
+        "{quantity} of the {force} is {}; drag takes energy from the body, so its coefficients are at least 0: change the sign",
+        Shown(*value)
+    )]
+    Negative {
+        /// Name of the force.
+        force: &'static str,
+        /// Which parameter.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The eccentricity is that of no ellipse.
+    #[error(
+        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle", Shown(*eccentricity)
+    )]
+    Eccentricity {
+        /// The value.
+        eccentricity: f64,
+    },
+    /// An interval in which it acts is none.
+    #[error(
+        "the interval from {} s to {} s comes after {} s; intervals of a force ascend, and each ends after its beginning",
+        Shown(*from), Shown(*to), Shown(*before)
+    )]
+    Interval {
+        /// The beginning, s.
+        from: f64,
+        /// The end, s.
+        to: f64,
+        /// The end of the interval before, s.
+        before: f64,
+    },
+}

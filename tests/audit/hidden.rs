@@ -1,0 +1,136 @@
+//! Faults that hide in what is declared, beside other columns, or in what a record leaves open.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::audit::{Fault, Frame, Judgement, Noise, Question, RateUnit, Reading, Trajectory, audit};
+use polhode::body::{Body, Force};
+use polhode::inertia::Inertia;
+use polhode::rotation::{Quat, Vec3};
+
+use super::records::{Form, Seeded, Writing, Written, record, tumbling};
+use super::ties::states;
+
+const MOMENTS: [f64; 3] = [1.0, 2.0, 2.5];
+
+fn body() -> Body {
+    Body::free(Inertia::from_moments(MOMENTS).unwrap())
+}
+
+/// Every 0.05 s, in this library's convention.
+fn motion(rows: usize) -> Vec<Written> {
+    let body = body();
+    let start =
+        body.state(UnitQuaternion::from_euler_angles(0.3, -0.8, 1.9), Vector3::new(0.4, 1.0, -0.3)).unwrap();
+    states(&body, &start, 0.05, rows)
+}
+
+fn plain(states: &[Written]) -> Trajectory {
+    let mut convention = Reading::default();
+    convention.rate_unit = Some(RateUnit::RadiansPerSecond);
+    record(&mut Seeded(3), states, &convention, Form::Quaternion, Writing::EXACT)
+}
+
+fn judged(record: &Trajectory, body: Option<Body>) -> Judgement {
+    audit(record, &Question::new(body)).unwrap().judgement
+}
+
+/// What is smooth from row to row is no noise, however much of it is declared.
+#[test]
+fn no_error_that_lasts_hides_in_noise_that_is_not_there() {
+    let with = |turn: &dyn Fn(usize) -> f64, noise: f64| {
+        let turned = |(row, &(t, q, omega)): (usize, &Written)| {
+            (t, Quat::cayley(Vec3([0.5 * turn(row), 0.0, 0.0])) * q, omega)
+        };
+        let rows: Vec<Written> = motion(800).iter().enumerate().map(turned).collect();
+        let mut question = Question::new(Some(body()));
+        question.noise = Noise { attitude: noise, rates: noise };
+        audit(&plain(&rows), &question).unwrap().judgement
+    };
+    assert_eq!(with(&|_| 0.0, 1e-2), Judgement::Right, "declared, and not there");
+    assert_ne!(with(&|row| 2.5e-7 * row as f64, 1e-3), Judgement::Right, "a drift of 2e-4");
+    assert_ne!(with(&|row| if row == 300 { 3e-2 } else { 0.0 }, 1e-2), Judgement::Right, "one row");
+    let mut random = Seeded(5);
+    let noise: Vec<f64> = (0..800).map(|_| 1e-3 * random.normal()).collect();
+    assert_eq!(with(&|row| noise[row], 1e-3), Judgement::Right, "noise that is there");
+}
+
+#[test]
+fn a_noise_of_more_than_a_tenth_of_the_rates_decides_nothing() {
+    let mut rates = plain(&motion(400));
+    rates.attitude = None;
+    let mut question = Question::new(Some(body()));
+    question.noise.rates = 10.0;
+    assert_eq!(audit(&rates, &question).unwrap().judgement, Judgement::Undecided);
+}
+
+/// Momenta beside rates: in body axes or in space, and of a body whose size nobody tells in any unit, but not reversed.
+#[test]
+fn momenta_beside_rates_are_judged_in_their_axes() {
+    let rows = motion(400);
+    let of = |frame: Frame, factor: f64, bad: Option<usize>| {
+        let mut both = plain(&rows);
+        let momentum = |(k, (_, q, w)): (usize, &Written)| {
+            let m = w.times(Vec3(MOMENTS)) * factor;
+            let Vec3(mut m) = if frame == Frame::Space { q.rotate(m) } else { m };
+            m[1] += if bad == Some(k) { 1e-4 } else { 0.0 };
+            m
+        };
+        both.momentum = Some(rows.iter().enumerate().map(momentum).collect());
+        both
+    };
+    for frame in [Frame::Body, Frame::Space] {
+        assert_eq!(judged(&of(frame, 1.0, None), Some(body())), Judgement::Right, "{frame}");
+        assert_eq!(judged(&of(frame, 1.0, Some(123)), Some(body())), Judgement::Wrong, "{frame}");
+        assert_eq!(judged(&of(frame, 1.000_01, None), Some(body())), Judgement::Wrong, "{frame}");
+        assert_eq!(judged(&of(frame, 7.0, None), None), Judgement::Right, "{frame}");
+        assert_ne!(judged(&of(frame, 7.0, Some(123)), None), Judgement::Right, "{frame}");
+        assert_ne!(judged(&of(frame, -7.0, None), None), Judgement::Right, "{frame}");
+    }
+}
+
+/// Without a body its moments come from the record, of a lamina too, whose tensor is at the bound of what a body can have.
+#[test]
+fn exact_records_without_a_body_are_not_wrong() {
+    let mut random = Seeded(41);
+    for trial in 0..6 {
+        let (mut body, mut start, spin) = tumbling(&mut random);
+        if trial == 0 {
+            body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap());
+            start = body.state(random.attitude(), Vector3::new(0.4, 1.0, -0.3) * spin).unwrap();
+        }
+        let rows = states(&body, &start, 0.05 / spin, 801);
+        let whole = plain(&rows);
+        let (mut attitude, mut rates) = (whole.clone(), whole.clone());
+        (attitude.rates, rates.attitude) = (None, None);
+        for (columns, record) in [("both", &whole), ("attitude", &attitude), ("rates", &rates)] {
+            let judgement = judged(record, None);
+            // what is derived from one column alone may leave it open, but contradicts no motion
+            let open = columns != "both" && judgement == Judgement::Undecided;
+            assert!(judgement == Judgement::Right || open, "{trial}: {columns}: {judgement}");
+        }
+    }
+}
+
+/// Attitudes that turn by more than half a turn from row to row do not tell which way.
+#[test]
+fn attitudes_alone_that_are_too_far_apart_are_undecided() {
+    let body = body();
+    let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.5, -0.3)).unwrap();
+    let mut record = plain(&states(&body, &start, 2.5, 100));
+    assert_eq!(judged(&record, Some(body.clone())), Judgement::Right, "with rates");
+    record.rates = None;
+    let verdict = audit(&record, &Question::new(Some(body))).unwrap();
+    assert_eq!(verdict.judgement, Judgement::Undecided);
+    assert!(verdict.faults.iter().any(|fault| matches!(fault, Fault::TooCoarse { .. })));
+}
+
+/// Times in ms that are read as s: under a torque the body would turn by 5e5 rad.
+#[test]
+fn a_forced_motion_that_turns_without_end_is_undecided() {
+    let force = Force::constant_torque_body(Vector3::new(1e-3, 2e-3, 0.0)).unwrap();
+    let forced = body().with(force);
+    let slow = |(t, q, omega): &Written| (1e3 * t, *q, *omega * 1e-3);
+    let rows: Vec<Written> = motion(801).iter().map(slow).collect();
+    let verdict = audit(&plain(&rows), &Question::new(Some(forced))).unwrap();
+    assert_eq!(verdict.judgement, Judgement::Undecided);
+    assert!(verdict.faults.contains(&Fault::NotFollowed), "{:?}", verdict.faults);
+}
