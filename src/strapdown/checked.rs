@@ -4,7 +4,7 @@ use super::Kind;
 use super::error::StrapdownError;
 use super::window::Sample;
 use crate::num::Precise;
-use crate::rotation::Quat;
+use crate::rotation::{Quat, Vec3};
 
 /// A start of norm 1.
 pub(super) fn attitude<S: Precise>(start: Quat<S>) -> Result<Quat<S>, StrapdownError> {
@@ -38,13 +38,13 @@ pub(super) fn sample<S: Precise>(
         return Err(StrapdownError::Order { sample: number, time, before });
     }
     let h = (sample.time - before.time).to_f64();
-    let size = sample.reading.map(S::to_f64).norm();
+    // the product first: squares of rates may leave the range of a double where those of angles do not
+    let turn = |reading: Vec3<S>, h: f64| (reading.map(S::to_f64) * h).norm();
     let angle = match kind {
-        Kind::Rate => size.max(before.reading.map(S::to_f64).norm()) * h,
-        Kind::Average => size * h,
-        Kind::Increment => size,
+        Kind::Rate => turn(sample.reading, h).max(turn(before.reading, h)),
+        Kind::Average => turn(sample.reading, h),
+        Kind::Increment => turn(sample.reading, 1.0),
     };
-    // beside numbers whose square overflows
     if angle.is_nan() || angle > core::f64::consts::PI {
         return Err(StrapdownError::HalfTurn { sample: number, time: sample.time.to_f64(), angle });
     }

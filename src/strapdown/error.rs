@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::{Kind, Rule};
-use crate::num::Shown;
+use crate::num::{Computed, Shown};
 
 /// Why readings cannot be integrated. Samples count from 0.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -35,9 +35,9 @@ pub enum StrapdownError {
     },
     /// The body turns more than half a turn between two samples.
     #[error(
-        "sample {sample}, at {} s: a turn by {angle:.3} rad since the sample before, more than half a turn (pi): readings so far \
+        "sample {sample}, at {} s: a turn by {} rad since the sample before, more than half a turn (pi): readings so far \
          apart cannot be told from those of another motion (aliasing)",
-        Shown(*time)
+        Shown(*time), Computed(*angle)
     )]
     HalfTurn {
         /// The sample.

@@ -7,7 +7,7 @@ use polhode::audit::{Direction, QuaternionOrder, Reading, Trajectory};
 use polhode::strapdown::Estimate;
 use polhode_files::ReadOptions;
 use polhode_files::error::{Error, tell};
-use polhode_files::text::{short, visible};
+use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
 
 /// Times agree within this share of the mean interval of the reference.
@@ -65,17 +65,17 @@ impl Reference {
         Some(angle)
     }
 
-    /// What the comparison found.
-    pub(super) fn tell(&self) -> Result<(), Error> {
-        if self.compared == 0 {
-            let rule = "no row at a time of the record";
-            return Err(Error::input(
-                "--against",
-                &self.name,
-                rule,
-                "name attitudes at the times of the record",
-            ));
+    /// Refuses a reference that has no row at any of `times`.
+    pub(super) fn check<'a>(&self, mut times: impl Iterator<Item = &'a f64>) -> Result<(), Error> {
+        if times.any(|t| self.at(*t).is_some()) {
+            return Ok(());
         }
+        let (rule, remedy) = ("no row at a time of the record", "name attitudes at the times of the record");
+        Err(Error::input("--against", &self.name, rule, remedy))
+    }
+
+    /// What the comparison found.
+    pub(super) fn tell(&self) {
         tell(
             "note",
             &format!(
@@ -83,10 +83,9 @@ impl Reference {
                 self.name,
                 self.compared,
                 self.largest,
-                short(self.at),
+                rounded(self.at),
                 self.inside
             ),
         );
-        Ok(())
     }
 }

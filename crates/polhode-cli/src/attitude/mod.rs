@@ -15,7 +15,7 @@ use polhode::rotation::{EulerAngles, EulerSequence, Quat};
 use polhode::strapdown::{Estimate, Kind, Rule, attitudes};
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::numbers::{quaternion, turn};
-use polhode_files::text::short;
+use polhode_files::text::rounded;
 use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
 use crate::flags::record::RecordArguments;
@@ -97,6 +97,9 @@ impl Attitude {
         memory::check_files(std::slice::from_ref(&self.record), 4)?;
         let readings = self.kind.readings(&self.record, &self.reading)?;
         let mut reference = self.against.as_deref().map(Reference::read).transpose()?;
+        if let Some(reference) = &reference {
+            reference.check(readings.segments().iter().flat_map(|segment| segment.times()))?;
+        }
         let noise = self.sensor.noise(&readings);
         let sensor = self.sensor.sensor(noise);
         let rule = self.rule.rule(&readings, sensor)?;
@@ -123,7 +126,7 @@ impl Attitude {
             self.tell(&readings, segment, rule, start, &found, noise.is_found);
         }
         if let Some(reference) = &reference {
-            reference.tell()?;
+            reference.tell();
         }
         rows.finish()?;
         match lost {
@@ -131,7 +134,7 @@ impl Attitude {
             Some(t) => Err(Error::Failed(format!(
                 "{}: the attitude is lost: from t = {} s on its standard deviation is above {LOST} rad",
                 readings.name,
-                short(t)
+                rounded(t)
             ))),
         }
     }
@@ -232,7 +235,7 @@ impl Attitude {
         });
         tell(
             "note",
-            &format!("{}; at t = {} s: {}{line}", rule::words(rule), short(last.time), parts.join(", ")),
+            &format!("{}; at t = {} s: {}{line}", rule::words(rule), rounded(last.time), parts.join(", ")),
         );
         if readings.is_assumed {
             let mean = rule::last(Kind::Average, segment, rule, start);

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use polhode::record::{Record, Segment};
 use polhode::strapdown::{Kind, StrapdownError};
 use polhode_files::error::{Error, warn};
-use polhode_files::text::{short, visible};
+use polhode_files::text::{rounded, short, visible};
 
 use crate::flags::record::RecordArguments;
 
@@ -179,8 +179,9 @@ impl Readings {
         match error {
             StrapdownError::HalfTurn { sample, angle, .. } => {
                 let rule = format!(
-                    "a turn by {angle:.3} rad since the row before, more than half a turn (pi): samples so far apart cannot be told \
-                     from those of another motion (aliasing)"
+                    "a turn by {} rad since the row before, more than half a turn (pi): samples so far apart cannot be told \
+                     from those of another motion (aliasing)",
+                    rounded(*angle)
                 );
                 Error::input(
                     &place(sample),

@@ -87,7 +87,7 @@ fn a_noisy_record_has_its_random_walk() {
 fn the_kind_is_told_by_the_unit_or_asked_for() {
     let scratch = Scratch::new("attitude-kind");
     let rows = |head: &str| {
-        let rows: String = (0..50).map(|k| format!("{},0.01,0.02,0.03\n", 0.1 * f64::from(k))).collect();
+        let rows: String = (0..50).map(|k| format!("{:.1},0.01,0.02,0.03\n", 0.1 * f64::from(k))).collect();
         scratch.file(&format!("{}.csv", head.len()), format!("{head}\n{rows}"))
     };
     let answer = |path: &str, flags: &str| -> Answer {
@@ -98,7 +98,7 @@ fn the_kind_is_told_by_the_unit_or_asked_for() {
         let [w, x, y, z] = ["q_w", "q_x", "q_y", "q_z"].map(|name| last(&column(&answer.out, name)));
         2.0 * libm::atan2((x * x + y * y + z * z).sqrt(), w)
     };
-    let size = 0.014_f64.sqrt() * 0.1;
+    let size = 0.001_4_f64.sqrt(); // rad/s, or rad
     let silent = rows("t,wx,wy,wz");
     refused_with(&["attitude", &silent], &["--kind", "cannot be told", "rate", "increment", "average"]);
     // 49 intervals of 0.1 s, or 49 increments
@@ -124,10 +124,10 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     let fast = file("fast.csv", "0,1,0,0\n0.1,1,0,0\n0.2,40,0,0\n0.3,1,0,0\n");
     refused_with(
         &["attitude", &fast],
-        &["fast.csv, line 4", "4.000 rad", "half a turn", "aliasing", "--rate-unit"],
+        &["fast.csv, line 4", "a turn by 4 rad", "half a turn", "aliasing", "--rate-unit"],
     );
-    let even: String = (0..40).map(|k| format!("{},1,0,0\n", 0.1 * f64::from(k))).collect();
-    let late: String = (0..40).map(|k| format!("{},1,0,0\n", 9.0 + 0.1 * f64::from(k))).collect();
+    let even: String = (0..40).map(|k| format!("{:.1},1,0,0\n", 0.1 * f64::from(k))).collect();
+    let late: String = (0..40).map(|k| format!("{:.1},1,0,0\n", 9.0 + 0.1 * f64::from(k))).collect();
     let gap = file("gap.csv", &format!("{even}{late}"));
     refused_with(&["attitude", &gap], &["gap.csv, line 42", "a gap from 3.9", "9", "--window", "--restart"]);
     let restarted = run(&format!("attitude {gap} --kind rate --restart"));
@@ -156,8 +156,10 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     refused("--body gyroscope", &["--body", "gravity"]);
     refused("--kind average --body phone", &["--body", "rates"]);
     let other = scratch.file("other.csv", "t,q_w,q_x,q_y,q_z\n100,1,0,0,0\n101,1,0,0,0\n");
-    refused(&format!("--against {other}"), &["--against", "first time"]);
+    refused(&format!("--against {other}"), &["--against", "no row at a time"]);
     refused(&format!("--start 1,0,0,0 --against {other}"), &["--against", "no row at a time"]);
+    let later = scratch.file("later.csv", "t,q_w,q_x,q_y,q_z\n1,1,0,0,0\n2,1,0,0,0\n");
+    refused(&format!("--against {later}"), &["--against", "no attitude at the first time", "--start"]);
 }
 
 #[test]
