@@ -4,6 +4,7 @@
 mod cluster;
 #[cfg(unix)]
 mod killed;
+mod passages;
 mod refusals;
 mod shards;
 
