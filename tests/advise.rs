@@ -1,7 +1,9 @@
 //! What is advised does what it says, and what cannot be met is refused with the law.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::advise::{AdviseError, Choice, Demand, Setting, Stage, advise, advise_telling, check};
+use polhode::advise::{
+    AdviseError, Choice, Demand, Setting, Stage, advise, advise_telling, check, check_telling,
+};
 use polhode::body::{Body, Force, State};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
@@ -75,6 +77,17 @@ fn method_and_step_stand_for_a_run() {
     let exact = FreeMotion::from_state(body.inertia(), &start).unwrap().at(100.0).unwrap();
     let error = end.state.rotation().angle_to(&exact.rotation());
     assert!(error < 1e-5 && error < 1.3 * best.attitude_error.value, "{error:e}, {best:?}");
+    // the largest error that a check finds is not below that at the end, which it looks at
+    let mut done = Vec::new();
+    let mut heed = |progress: &polhode::advise::Progress| {
+        if progress.stage == Stage::Check(best.method.clone()) {
+            done.push(progress.done);
+        }
+    };
+    let checked = check_telling(&body, &start, &demand, &best, &mut heed).unwrap();
+    assert!(checked > 0.99 * error && checked < 1e-5, "{checked:e} for {error:e}");
+    assert_eq!(check(&body, &start, &demand, &best).unwrap(), checked);
+    assert!(done.windows(2).all(|pair| pair[0] < pair[1]) && done.last() == Some(&1.0), "{done:?}");
 }
 
 #[test]

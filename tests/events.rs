@@ -39,7 +39,7 @@ fn angle(motion: &FreeMotion, t: Dd, of_body: [f64; 3], in_space: [f64; 3]) -> D
 #[test]
 fn crossings_of_a_cone_are_found_to_rounding_and_none_is_missed() {
     let (of_body, in_space) = ([0.6, 0.0, 0.8], [0.0, 0.0, 1.0]);
-    let (mut count, mut worst) = (0, 0.0_f64);
+    let (mut count, mut looks, mut worst) = (0, 0, 0.0_f64);
     let motions: usize =
         std::env::var("POLHODE_EVENTS").ok().and_then(|count| count.parse().ok()).unwrap_or(20);
     for k in 0..motions {
@@ -49,6 +49,7 @@ fn crossings_of_a_cone_are_found_to_rounding_and_none_is_missed() {
         let (from, to) = (1000.0 * spread(k + 11), 1000.0 * spread(k + 11) + 900.0);
         let found = motion.events(&[event], from, to, 0.5).unwrap();
         assert!(found.may_miss.is_empty());
+        looks += found.looks;
         let inside = |t: Dd| Dd::of(half) - angle(&motion, t, of_body, in_space);
         let fine = 1.0 / 32.0;
         let is_inside = |t: f64| {
@@ -79,8 +80,11 @@ fn crossings_of_a_cone_are_found_to_rounding_and_none_is_missed() {
             count += 1;
         }
     }
-    println!("{count} crossings, found within {worst:.1e} of their times");
+    let each = looks as f64 / count as f64;
+    println!("{count} crossings, found within {worst:.1e} of their times, by {each:.1} looks each");
     assert!(count > 100 * motions && worst < 1e-13, "{count} crossings, {worst:.1e}");
+    // an interval without exclusion would be looked at 4096 times
+    assert!(each < 200.0, "{each} looks");
 }
 
 #[test]

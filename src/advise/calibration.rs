@@ -397,6 +397,27 @@ mod tests {
     use crate::inertia::Inertia;
 
     #[test]
+    fn a_finer_setting_takes_as_many_times_the_steps_over_the_same_time() {
+        let choice = Choice {
+            method: "rk4".into(),
+            setting: Setting::Step(0.25),
+            steps: Some(120),
+            attitude_error: Predicted { value: 1e-4, factor: 1.5 },
+            energy_error: Some(1e-6),
+            seconds: Predicted { value: 2.0, factor: 1.0 },
+            whole_time: true,
+        };
+        let finer = scaled(choice, 0.5, 0.0625);
+        assert_eq!((finer.setting, finer.steps), (Setting::Step(0.125), Some(240)));
+        assert_eq!((finer.attitude_error.value, finer.energy_error), (6.25e-6, Some(6.25e-8)));
+        assert_eq!(finer.seconds.value, 4.0);
+        // whole steps, that end when they did: 120/0.7 = 171.4 of 30 s
+        let finer = scaled(finer, 0.7, 0.5);
+        let (Setting::Step(h), Some(steps)) = (finer.setting, finer.steps) else { panic!("{finer:?}") };
+        assert!(steps == 343 && (h * steps as f64 - 30.0).abs() < 1e-13, "{steps} of {h}");
+    }
+
+    #[test]
     fn what_is_not_known_of_the_motion_widens_the_stated_error() {
         let inertia = Inertia::from_moments([0.5, 0.85, 1.0]).unwrap();
         let top = Body::heavy(inertia, [0.0, 0.0, 1.0].into()).unwrap();

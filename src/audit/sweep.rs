@@ -264,6 +264,26 @@ mod tests {
     }
 
     #[test]
+    fn what_lasts_over_a_block_of_a_moving_column_is_no_rounding() {
+        // digits of 1e-6, in blocks of 64 rows
+        let is_exact = |change: f64, tolerance: f64, of: &dyn Fn(usize) -> f64| {
+            let mut tally = Tally::new(4096, Allowance::of(tolerance, 1e-6, 0.0)).moving(change, tolerance);
+            (0..4096).for_each(|row| {
+                tally.add(row, Vec3([of(row), 0.0, 0.0]));
+            });
+            tally.is_exact()
+        };
+        let swing = |row: usize| if row.is_multiple_of(2) { 9e-7 } else { -9e-7 };
+        assert!(is_exact(1e-3, 1e-9, &swing));
+        for block in [0, 20, 63] {
+            let lasts = |row: usize| if row / 64 == block { 9e-7 } else { swing(row) };
+            assert!(!is_exact(1e-3, 1e-9, &lasts), "{block}");
+            // of a column that hardly moves rounding lasts, and a tolerance above the digits allows it
+            assert!(is_exact(1e-6, 1e-9, &lasts) && is_exact(1e-3, 1e-5, &lasts), "{block}");
+        }
+    }
+
+    #[test]
     fn noise_must_be_declared_and_nothing_else_hides_in_it() {
         // alternating signs of one size have the spread of noise, and a mean of zero
         let tally_of = |noise: f64, of: &dyn Fn(usize) -> f64| {

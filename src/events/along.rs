@@ -86,7 +86,7 @@ pub(crate) struct Rates {
 pub(crate) struct Search<'a> {
     events: &'a [Event],
     /// What g changes by at most in a second, of each event.
-    bounds: Vec<Option<f64>>,
+    pub(super) bounds: Vec<Option<f64>>,
     /// The last look.
     last: Option<Look>,
     /// Of each event the sign that counts, 0 where none is known.

@@ -74,3 +74,42 @@ fn rates(body: &Body, x: &Point<f64>) -> Rates {
     let room = 1.0 + 1e-9;
     Rates { speed: speed * room, acceleration: (momentum * speed + weight) * largest * room }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inertia::Inertia;
+
+    /// A free body, and a top that swings through small momenta, whose direction then turns fast.
+    #[test]
+    fn no_event_changes_faster_than_its_bound() {
+        let moments = |moments| Inertia::from_moments(moments).unwrap();
+        let top = Body::heavy(moments([1.0, 1.0, 0.25]), [0.0, 0.0, 2.0].into()).unwrap();
+        for (body, omega) in [
+            (Body::free(moments([1.0, 2.0, 3.0])), [0.4, 1.0, -0.3]),
+            (top.clone(), [0.0, 0.3, 0.01]),
+            (top, [0.1, 0.2, 20.0]),
+        ] {
+            let tilted = nalgebra::UnitQuaternion::from_euler_angles(0.3, -0.5, 1.1);
+            let motion = ExactMotion::new(&body, &body.state(tilted, omega.into()).unwrap()).unwrap();
+            let events = [
+                Event::flip(&body),
+                Event::enters_cone([0.6, 0.0, 0.8].into(), [0.0, 0.0, 1.0].into(), 1.0).unwrap(),
+                Event::rate_above(&body, 0.9).unwrap(),
+            ];
+            let point = |t: f64| motion.point_at(Dd::from(t));
+            let bounds = Search::new(&events, Some(rates(&body, &point(0.0)))).bounds;
+            let (step, mut most) = (1.0 / 1024.0, [0.0_f64; 3]);
+            for k in 0..20_000 {
+                let [before, after] = [k, k + 1].map(|k| body.leave(&point(f64::from(k) * step)));
+                for (most, event) in most.iter_mut().zip(&events) {
+                    *most = most.max((event.value(0.0, &after) - event.value(0.0, &before)).abs() / step);
+                }
+            }
+            for ((most, bound), event) in most.into_iter().zip(bounds).zip(&events) {
+                let bound = bound.unwrap();
+                assert!(most <= bound && most > 0.0, "{event:?}: {most} of {bound}");
+            }
+        }
+    }
+}

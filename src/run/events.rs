@@ -1,7 +1,9 @@
 //! Events along a run.
 
+use super::between::Between;
 use super::schedule::Place;
 use super::{Run, RunError};
+use crate::body::State;
 use crate::events::{Event, EventError, Events, Occurrence, Search, intervals};
 use crate::num::Dd;
 
@@ -73,43 +75,48 @@ impl Run {
     /// Looks over the next step, or the `rest` of it, and takes it unless the search ends in it.
     fn look_over(&mut self, search: &mut Search<'_>, rest: Option<Dd>, looks: f64) -> Result<(), RunError> {
         let mut here = self.here();
-        let steps = self.point.steps();
-        let base = self.clock.at(steps).dd();
+        let next = self.point.steps() + 1;
         let length = rest.unwrap_or(Dd::from(self.clock.step));
-        let body = self.body.clone();
         let mut k = 1.0;
         while k < looks && !search.has_ended() {
-            let later = length * (k / looks);
-            let state = body.leave(&here.behind(self, later)?);
-            let mut states = |t: Dd| here.behind(self, t - base).map(|point| body.leave(&point));
-            search.go_on(base + later, &state, &mut states)?;
+            self.look(search, &mut here, length * (k / looks), None)?;
             k += 1.0;
         }
         if search.has_ended() {
             return Ok(());
         }
-        let state = match rest {
-            Some(rest) => body.leave(&here.behind(self, rest)?),
-            // there is no way back from where forces are switched
-            None if self.steps_ahead() == Some(0) => {
-                let state = body.leave(&here.behind(self, length)?);
-                let mut states = |t: Dd| here.behind(self, t - base).map(|point| body.leave(&point));
-                search.go_on(base + length, &state, &mut states)?;
-                return if search.has_ended() { Ok(()) } else { self.go_to(steps + 1) };
-            }
-            None => {
-                let before = self.marked();
-                self.go_to(steps + 1)?;
-                let state = body.leave(&self.reading);
-                let mut states = |t: Dd| here.behind(self, t - base).map(|point| body.leave(&point));
-                search.go_on(base + length, &state, &mut states)?;
-                if search.has_ended() {
-                    self.go_back(before);
-                }
-                return Ok(());
-            }
+        if rest.is_some() {
+            return self.look(search, &mut here, length, None);
+        }
+        // there is no way back from where forces are switched
+        if self.steps_ahead() == Some(0) {
+            self.look(search, &mut here, length, None)?;
+            return if search.has_ended() { Ok(()) } else { self.go_to(next) };
+        }
+        let before = self.marked();
+        self.go_to(next)?;
+        let state = self.body.leave(&self.reading);
+        self.look(search, &mut here, length, Some(state))?;
+        if search.has_ended() {
+            self.go_back(before);
+        }
+        Ok(())
+    }
+
+    /// Looks at the time `later` s behind the step `here`, at the `state` of then, where it is known.
+    fn look(
+        &mut self,
+        search: &mut Search<'_>,
+        here: &mut Between,
+        later: Dd,
+        state: Option<State>,
+    ) -> Result<(), RunError> {
+        let (base, body) = (self.clock.at(here.reading.steps()).dd(), self.body.clone());
+        let state = match state {
+            Some(state) => state,
+            None => body.leave(&here.behind(self, later)?),
         };
         let mut states = |t: Dd| here.behind(self, t - base).map(|point| body.leave(&point));
-        search.go_on(base + length, &state, &mut states)
+        search.go_on(base + later, &state, &mut states)
     }
 }

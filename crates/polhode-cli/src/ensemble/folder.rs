@@ -10,6 +10,7 @@ use polhode_pages::output::{MARK, Staging};
 use polhode_pages::table::{Cell, Column, Table};
 
 use super::checksum::Checksum;
+use super::passages::{self, PASSAGES, Passage};
 use super::record::Record;
 use super::shard::Shard;
 use super::work::{ATTITUDES, Failure, Largest, OMEGAS, Shares};
@@ -98,8 +99,9 @@ pub(super) fn commit(staging: Staging, shares: &Shares, mut record: Record) -> R
     for (t, largest) in shares.times.iter().zip(&shares.largest) {
         errors.push([Cell::from(*t), Cell::from(largest.energy), Cell::from(largest.momentum_vector)]);
     }
-    let tables =
-        [errors, failures_table(&shares.failures)].map(|table| (format!("{}.csv", table.name), table));
+    let passages = record.identity.event.is_some().then(|| passages::table(&shares.passages));
+    let tables = [errors, failures_table(&shares.failures)].into_iter().chain(passages);
+    let tables: Vec<_> = tables.map(|table| (format!("{}.csv", table.name), table)).collect();
     for (name, table) in &tables {
         staging.write(name, table.csv().as_bytes())?;
     }
@@ -144,12 +146,17 @@ impl Finished {
         self.damaged(path, &io::Error::new(io::ErrorKind::InvalidData, rule))
     }
 
+    /// The tables beside the arrays.
+    pub(super) fn tables(&self) -> impl Iterator<Item = &'static str> {
+        [ERRORS, FAILURES].into_iter().chain(self.record.identity.event.as_ref().map(|_| PASSAGES))
+    }
+
     /// Where its record stands.
     pub(super) fn mark(&self) -> PathBuf {
         self.path.join(MARK)
     }
 
-    /// Largest errors and failures.
+    /// Largest errors, failures and passages.
     pub(super) fn shares(&self) -> Result<Shares, Error> {
         let rows = |name: &str| -> Result<Vec<csv::StringRecord>, Error> {
             let path = self.path.join(format!("{name}.csv"));
@@ -183,6 +190,17 @@ impl Finished {
             };
             parsed().ok_or_else(|| wrong(FAILURES))
         });
-        Ok(Shares { times, largest, failures: failures.collect::<Result<_, _>>()?, draws: self.record.draws })
+        let failures = failures.collect::<Result<_, _>>()?;
+        let mut passages: Vec<Passage> = Vec::new();
+        if self.record.identity.event.is_some() {
+            let each = rows(PASSAGES)?.into_iter();
+            let each = each.map(|row| Passage::parsed(&row).ok_or_else(|| wrong(PASSAGES)));
+            passages = each.collect::<Result<_, _>>()?;
+            let members = self.shard.range(self.record.identity.members);
+            if !passages.iter().map(|one| one.member).eq(members.start + 1..=members.end) {
+                return Err(wrong(PASSAGES));
+            }
+        }
+        Ok(Shares { times, largest, failures, passages, draws: self.record.draws })
     }
 }

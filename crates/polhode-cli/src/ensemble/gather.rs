@@ -194,6 +194,7 @@ fn together(shards: &[Finished]) -> Result<Shares, Error> {
             *all = all.or(one);
         }
         all.failures.extend(shares.failures);
+        all.passages.extend(shares.passages);
         all.draws += shares.draws;
     }
     Ok(all)

@@ -4,6 +4,7 @@ mod checksum;
 mod first_order;
 mod folder;
 mod gather;
+mod passages;
 mod record;
 mod reduce;
 mod results;
@@ -46,6 +47,8 @@ const AFTER_HELP: &str = "SPEC.toml:
             times_file and times_column, or until and every;
             errors = false leaves energy and L unwatched
   [force]   weight_moment, gravity_gradient, torque_body, torque_space, drag
+  [event]   first = \"flip\", or another event of propagate --event, up to the
+            last time; every: between looks
   [output]  arrays = [\"attitudes\", \"omegas\"]
 
 Examples:
@@ -59,8 +62,8 @@ Examples:
 /// Members are drawn from standard deviations, covariances or ranges of start and inertia, or listed in a CSV (members_file).
 /// Tensors that no body has are drawn again, so the spread of the inertia ends at the triangle inequalities. Member k is the
 /// same in any division of the work. DIR gets summary.csv, dispersion.csv, dispersion.svg, failures.csv,
-/// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml. Of free bodies in exact motion the spread to
-/// first order is printed beside that of the members.
+/// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml; with an [event] passages.csv, when it
+/// first happens to each member. Of free bodies in exact motion the spread to first order is printed beside that of the members.
 ///
 /// With --shard K/N, or in a Slurm array or under an MPI launcher, only the K-th of N parts of the members is run. Its results,
 /// a shard, go to DIR/shards, and `polhode gather DIR` makes those of all members. A shard that is finished is not run again.
@@ -239,7 +242,8 @@ impl Ensemble {
         let rows = members.saturating_mul(times).saturating_mul(80);
         let work = BYTES_OF_MEMBER
             .saturating_mul(members)
-            .saturating_add(rows.min(BYTES_OF_THREAD.saturating_mul(threads as u64)));
+            .saturating_add(rows.min(BYTES_OF_THREAD.saturating_mul(threads as u64)))
+            .saturating_add(if spec.watched.is_some() { passages::BYTES.saturating_mul(members) } else { 0 });
         let needed = work.max(reduction).saturating_add(spec.bytes_of_source());
         let refused = |what: &str, needed: u64, free: u64, remedy: &str| {
             let rule = format!(
@@ -298,6 +302,9 @@ fn said(results: &Results, shares: &Shares, identity: &Identity, out: &Path) -> 
     } else {
         String::new()
     };
+    let last = shares.times.iter().fold(f64::NEG_INFINITY, |last, t| t.max(last));
+    let event = identity.event.as_ref().map(|event| passages::sentence(&shares.passages, event, last));
+    let redrawn = redrawn + &event.unwrap_or_default();
     emit(&format!("{}\n{redrawn}Written to {}\n", results.shown(), out.display()), None)?;
     if none_left {
         return Err(unexpected(format!("{}: no member has a row; see failures.csv", out.display())));

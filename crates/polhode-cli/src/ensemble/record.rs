@@ -22,6 +22,9 @@ pub(super) struct Identity {
     /// Whether the arrays are kept.
     pub(super) attitudes: bool,
     pub(super) omegas: bool,
+    /// The event whose first passages are looked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) event: Option<String>,
 }
 
 /// The contents of `run.toml`.
@@ -67,6 +70,7 @@ impl Identity {
             times: spec.plan.times.len() as u64,
             attitudes: spec.attitudes,
             omegas: spec.omegas,
+            event: spec.watched.as_ref().map(|watched| watched.event.text().into()),
         }
     }
 

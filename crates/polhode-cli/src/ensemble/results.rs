@@ -8,6 +8,7 @@ use polhode_pages::output::MARK;
 use polhode_pages::table::{Cell, Column, Table};
 
 use super::folder::failures_table;
+use super::passages;
 use super::record::Record;
 use super::reduce::Reduced;
 use super::work::{ATTITUDES, OMEGAS, Shares};
@@ -25,10 +26,13 @@ pub(super) struct Results {
 
 impl Results {
     pub(super) fn new(reduced: &[Option<Reduced>], shares: &Shares, mut record: Record) -> Self {
-        let (summary, dispersion) = (summary(reduced, shares), dispersion(reduced, shares));
-        let failures = failures_table(&shares.failures);
-        record.files = [&summary, &dispersion, &failures].into_iter().map(columns_of).collect();
+        let summary = summary(reduced, shares);
         let identity = &record.identity;
+        let mut tables = vec![dispersion(reduced, shares), failures_table(&shares.failures)];
+        if identity.event.is_some() {
+            tables.push(passages::table(&shares.passages));
+        }
+        record.files = tables.iter().chain([&summary]).map(columns_of).collect();
         for (name, kept, width, what) in [
             (ATTITUDES, identity.attitudes, 4, "q_w, q_x, q_y, q_z; zeros where a member has no row"),
             (
@@ -48,7 +52,7 @@ impl Results {
             }
         }
         let figure = figure(reduced, shares);
-        Self { summary, tables: vec![dispersion, failures], figure, record }
+        Self { summary, tables, figure, record }
     }
 
     /// Names and contents, the record last.

@@ -9,7 +9,7 @@ use polhode_files::inputs;
 use polhode_files::npy::{Array, head};
 
 use super::checksum::Checksum;
-use super::folder::{ERRORS, FAILURES, Finished};
+use super::folder::{FAILURES, Finished};
 use super::work::{ATTITUDES, OMEGAS, Shares};
 
 /// What rounding makes of a norm of 1 at most, by a method that keeps it: the random walk of 2^53 steps, half an ulp each.
@@ -24,7 +24,7 @@ pub(super) fn verified(shard: &Finished) -> Result<Shares, Error> {
     if !shard.record.is_as_written() {
         return Err(shard.wrong(&shard.mark(), "it is not as its run wrote it"));
     }
-    for name in [ERRORS, FAILURES].map(|name| format!("{name}.csv")) {
+    for name in shard.tables().map(|name| format!("{name}.csv")) {
         let path = shard.path.join(&name);
         let found =
             inputs::open(&path).and_then(Checksum::of).map_err(|error| shard.damaged(&path, &error))?;

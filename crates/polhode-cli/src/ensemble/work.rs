@@ -10,11 +10,12 @@ use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::observe::Errors;
 use polhode::run::{Ensemble, EnsembleError, Observed, Rows};
-use polhode_files::error::Error;
+use polhode_files::error::{Error, tell};
 use polhode_files::npy::Array;
 use polhode_pages::output::{Staging, unwritable};
 
 use super::Means;
+use super::passages::{Passage, passages};
 use super::spec::{Motion, Spec};
 
 /// Names of the arrays.
@@ -30,6 +31,8 @@ pub(super) struct Shares {
     pub(super) largest: Vec<Largest>,
     /// Members that have no rows from some time on.
     pub(super) failures: Vec<Failure>,
+    /// Where an event is looked for.
+    pub(super) passages: Vec<Passage>,
     /// Tensors that were drawn.
     pub(super) draws: u64,
 }
@@ -128,6 +131,14 @@ pub(super) fn propagate(
         Ok(()) => {}
         Err(Stop::All(error)) => return Err(Error::Input(format!("{}: {error}", spec.path.display()))),
         Err(Stop::Unwritten(error)) => return Err(made(error)),
+    }
+    if let Some(watched) = &spec.watched {
+        if watched.may_miss {
+            let (event, spacing) = (watched.event.text(), watched.spacing);
+            let rule = "may be missed; every in [event] sets the time between looks";
+            tell("note", &format!("{event}: what begins and ends within {spacing} s {rule}"));
+        }
+        shares.passages = passages(spec, watched, &ensemble, first);
     }
     arrays.attitudes.sync().map_err(made)?;
     if let Some(omegas) = &arrays.omegas {

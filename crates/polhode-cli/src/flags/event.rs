@@ -1,15 +1,16 @@
 //! Events as they are typed: `flip`, `angle(body z, space x) < 10deg`, `rate > 5rad/s`, `nearest(1,0,0,0)`.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::Body;
-use polhode::events::Event;
+use polhode::events::{Event, EventError};
 use polhode_files::error::Error;
 use polhode_files::numbers::{number, numbers, quaternion, turn};
 
 use super::start::{Factor, angle_unit, rate_unit};
 
 /// The forms, for messages.
-const FORMS: &str = "write flip, angle(body z, space x) < 10deg, rate > 5rad/s or nearest(w,x,y,z)";
+pub(crate) const FORMS: &str =
+    "write flip, angle(body z, space x) < 10deg, rate > 5rad/s or nearest(w,x,y,z)";
 
 /// What `--event` names.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +26,7 @@ enum Kind {
     Cone([f64; 3], [f64; 3], Limit),
     /// rad/s.
     Rate(Limit),
-    Nearest([f64; 4]),
+    Nearest(UnitQuaternion<f64>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +42,10 @@ pub(crate) fn event(text: &str) -> Result<TypedEvent, String> {
         _ if text.starts_with("angle") => cone(&text["angle".len()..])?,
         _ if text.starts_with("rate") => Kind::Rate(limit(&text["rate".len()..], rate_unit, "5rad/s")?),
         _ => match text.strip_prefix("nearest").and_then(|rest| inside(rest)) {
-            Some((components, "")) => Kind::Nearest(quaternion(components)?),
+            Some((components, "")) => {
+                let target = turn(quaternion(components)?);
+                Kind::Nearest(target.ok_or("the quaternion is zero, which is no attitude")?)
+            }
             _ => return Err(format!("it is no event that is known; {FORMS}")),
         },
     };
@@ -116,7 +120,11 @@ impl TypedEvent {
     }
 
     pub(crate) fn of(&self, body: &Body) -> Result<Event, Error> {
-        let made = match &self.kind {
+        self.made(body).map_err(|error| Error::input("--event", &self.text, &error.to_string(), FORMS))
+    }
+
+    pub(crate) fn made(&self, body: &Body) -> Result<Event, EventError> {
+        match &self.kind {
             Kind::Flip => Ok(Event::flip(body)),
             Kind::Cone(of_body, in_space, limit) => {
                 let (a, b) = (Vector3::from(*of_body), Vector3::from(*in_space));
@@ -127,17 +135,16 @@ impl TypedEvent {
             }
             Kind::Rate(Limit::Above(limit)) => Event::rate_above(body, *limit),
             Kind::Rate(Limit::Below(limit)) => Event::rate_below(body, *limit),
-            Kind::Nearest(components) => match turn(*components) {
-                Some(target) => Ok(Event::nearest(body, target)),
-                None => return Err(self.refused("the quaternion is zero, which is no attitude")),
-            },
-        };
-        made.map_err(|error| self.refused(&error.to_string()))
+            Kind::Nearest(target) => Ok(Event::nearest(body, *target)),
+        }
     }
+}
 
-    fn refused(&self, rule: &str) -> Error {
-        Error::input("--event", &self.text, rule, FORMS)
-    }
+/// Time between looks at a body that turns at `rate` rad/s, of `whole` s: the largest power of two in which it turns by a
+/// quarter of a radian at most.
+pub(crate) fn spacing(rate: f64, whole: f64) -> f64 {
+    let short = libm::exp2(libm::floor(libm::log2(0.25 / rate)));
+    if rate > 0.0 { short.min(whole) } else { whole }
 }
 
 #[cfg(test)]
@@ -161,7 +168,8 @@ mod tests {
             kind("rate<1.5e+1rev/h"),
             Kind::Rate(Limit::Below(15.0 * (core::f64::consts::TAU / 3600.0)))
         );
-        assert_eq!(kind("nearest(1, 0,0,-1)"), Kind::Nearest([1.0, 0.0, 0.0, -1.0]));
+        let Kind::Nearest(target) = kind("nearest(1, 0,0,-1)") else { panic!("another kind") };
+        assert!((target.euler_angles().2 + core::f64::consts::FRAC_PI_2).abs() < 1e-15);
     }
 
     #[test]
@@ -171,6 +179,7 @@ mod tests {
             ("flips", "no event"),
             ("nearest(1,0,0,0) now", "no event"),
             ("nearest(1,0,0)", "4"),
+            ("nearest(0,0,0,0)", "no attitude"),
             ("angle(body z) < 1deg", "between two axes"),
             ("angle(body z, body x) < 1deg", "between two axes"),
             ("angle(body w, space x) < 1deg", "'w' is no axis"),

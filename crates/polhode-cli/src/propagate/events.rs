@@ -10,9 +10,7 @@ use polhode_pages::table::{Cell, Column, RowWriter, Table};
 use super::columns::{Columns, Reading};
 use super::{Propagate, run_of};
 use crate::cost;
-
-/// Looks at a motion are at most this far apart, rad, unless --every says so; a power of two in seconds.
-const TURN: f64 = 0.25;
+use crate::flags::event::spacing;
 
 impl Propagate {
     /// Writes a row of each event, by time.
@@ -54,11 +52,7 @@ impl Propagate {
                 "is no time between looks",
                 "give a positive one",
             )),
-            None => {
-                let speed = body.omega_of(start).norm();
-                let short = libm::exp2(libm::floor(libm::log2(TURN / speed)));
-                Ok(if speed > 0.0 { short.min(whole) } else { whole })
-            }
+            None => Ok(spacing(body.omega_of(start).norm(), whole)),
         }
     }
 

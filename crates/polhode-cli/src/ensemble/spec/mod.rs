@@ -1,6 +1,7 @@
 //! The file that says what an ensemble is: bodies, starts, how they are spread, and what is done with them.
 
 mod candidates;
+mod event;
 mod nominal;
 mod run;
 mod spread;
@@ -19,10 +20,11 @@ use toml::de::{DeTable, DeValue};
 use super::checksum::Checksum;
 use crate::flags::force::Forces;
 use candidates::Candidates;
+pub(super) use event::Watched;
 use nominal::Nominal;
 pub(super) use run::{Motion, Plan};
 
-const SECTIONS: [&str; 6] = ["body", "start", "spread", "run", "force", "output"];
+const SECTIONS: [&str; 7] = ["body", "start", "spread", "run", "force", "event", "output"];
 
 /// An ensemble as it was specified, checked.
 #[derive(Debug)]
@@ -35,6 +37,7 @@ pub(super) struct Spec {
     source: Source,
     acting: Acting,
     pub(super) plan: Plan,
+    pub(super) watched: Option<Watched>,
     /// Which arrays are kept.
     pub(super) attitudes: bool,
     pub(super) omegas: bool,
@@ -81,7 +84,7 @@ impl Spec {
                 other => Err(top.at(name, &format!("{} given, a table [{name}] needed", other.type_str()))),
             },
         };
-        let [body, start, spread, run, force, output] = SECTIONS.map(section);
+        let [body, start, spread, run, force, event, output] = SECTIONS.map(section);
         let (spread, run, output) = (spread?, run?, output?);
         let listed = spread::members_file(&spread)?;
         let nominal = Nominal::read(&body?, &start?, &force?, listed.is_some())?;
@@ -123,10 +126,12 @@ impl Spec {
             source,
             acting,
             plan,
+            watched: None,
             attitudes,
             omegas,
             hash: String::new(),
         };
+        spec.watched = Watched::read(&event?, &run, &spec)?;
         spec.hash = spec.hashed();
         Ok(spec)
     }
@@ -140,6 +145,9 @@ impl Spec {
         };
         let kept = (self.attitudes, self.omegas);
         let _ = write!(sum, " {} {:?} {:?} {kept:?}", self.members, self.acting, self.plan);
+        if let Some(watched) = &self.watched {
+            let _ = write!(sum, " {watched:?}");
+        }
         sum.hexadecimal()
     }
 

@@ -5,6 +5,7 @@ mod cluster;
 mod first_order;
 #[cfg(unix)]
 mod killed;
+mod passages;
 mod refusals;
 mod shards;
 
