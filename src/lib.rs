@@ -98,6 +98,7 @@ pub mod units;
 /// A chapter for each kind of user, and what stands behind the exact motion.
 pub mod guide {
     #[doc = include_str!("../docs/attitude.md")]
+    #[allow(rustdoc::broken_intra_doc_links, reason = "its tables name units in brackets")]
     pub mod attitude {}
     #[doc = include_str!("../docs/exact-motion.md")]
     pub mod exact_motion {}
@@ -106,6 +107,7 @@ pub mod guide {
     #[doc = include_str!("../docs/own-force-and-method.md")]
     pub mod own_force_and_method {}
     #[doc = include_str!("../docs/python.md")]
+    #[allow(rustdoc::broken_intra_doc_links, reason = "its table names units in brackets")]
     pub mod python {}
     #[doc = include_str!("../docs/simulators.md")]
     pub mod simulators {}
