@@ -179,7 +179,7 @@ mod tests {
             ("flips", "no event"),
             ("nearest(1,0,0,0) now", "no event"),
             ("nearest(1,0,0)", "4"),
-            ("nearest(0,0,0,0)", "no attitude"),
+            ("nearest(0,0,0,0)", "has no direction"),
             ("angle(body z) < 1deg", "between two axes"),
             ("angle(body z, body x) < 1deg", "between two axes"),
             ("angle(body w, space x) < 1deg", "'w' is no axis"),

@@ -9,14 +9,8 @@ use polhode_files::robots::{self as models, Language};
 use polhode_files::{read, twins};
 use polhode_pages::output::Output;
 
+use super::model::Model;
 use super::{Form, Inertia, output, repair, summary};
-
-/// A model with the text that its links were read from.
-pub(super) struct Model {
-    pub(super) path: String,
-    pub(super) text: String,
-    pub(super) links: Vec<Examined>,
-}
 
 /// Examines the models that `command` names.
 ///

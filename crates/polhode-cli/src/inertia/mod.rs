@@ -2,6 +2,7 @@
 
 mod links;
 mod meshes;
+mod model;
 mod output;
 mod repair;
 mod summary;

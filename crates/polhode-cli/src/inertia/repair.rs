@@ -12,7 +12,7 @@ use polhode_files::given::Writing;
 use polhode_files::text::{rounded, visible};
 use polhode_pages::output::Output;
 
-use super::links::Model;
+use super::model::Model;
 
 /// By how much the moments of a nearest tensor are raised, relative to its trace, so that programs that judge without a tolerance
 /// accept it.

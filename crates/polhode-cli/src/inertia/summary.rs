@@ -5,7 +5,7 @@ use std::fmt::Write;
 use polhode_files::examined::{Examined, Worth};
 use polhode_files::text::{short, visible};
 
-use super::links::Model;
+use super::model::Model;
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;
