@@ -26,6 +26,22 @@ pub struct FoundTrajectory {
     pub unread: Vec<String>,
 }
 
+/// Columns that are not read of which the names are told.
+const NAMED: usize = 12;
+
+impl FoundTrajectory {
+    /// Which columns are not read, in words; `None` where all are.
+    #[must_use]
+    pub fn remark(&self) -> Option<String> {
+        let shown = self.unread[..self.unread.len().min(NAMED)].join(", ");
+        match self.unread.len() {
+            0 => None,
+            count if count > NAMED => Some(format!("not read: {shown} and {} more", count - NAMED)),
+            _ => Some(format!("not read: {shown}")),
+        }
+    }
+}
+
 /// Reads the trajectories at `path`, or of standard input where that is `-`.
 ///
 /// Rows hold a time and an attitude (quaternion, matrix, Euler angles, modified Rodrigues parameters), an angular velocity or

@@ -221,6 +221,7 @@ pub(crate) fn verdict_on(
             short(step)
         ));
     }
+    notes.extend(record.remark.take());
     let mut question = Question::new(body.as_ref().map(|body| body.body.clone()));
     (question.tolerance, question.claims, question.noise) = (tolerance, record.claims, noise);
     let Given { name, id, rows, .. } = record;
@@ -252,6 +253,7 @@ struct Given {
     rows: audit::Trajectory,
     claims: Convention,
     counts_steps: bool,
+    remark: Option<String>,
 }
 
 impl Given {
@@ -268,9 +270,16 @@ impl Given {
                     "attitude, omega, momentum, form: the trajectory has its own; leave them out",
                 ));
             }
-            let Trajectory { file, id, rows, claims, counts_steps, .. } = read.get();
+            let Trajectory { file, id, rows, claims, counts_steps, remark, .. } = read.get();
             let (name, id, rows) = (file.clone(), id.clone(), rows.clone());
-            return Ok(Given { name, id, rows, claims: *claims, counts_steps: *counts_steps });
+            return Ok(Given {
+                name,
+                id,
+                rows,
+                claims: *claims,
+                counts_steps: *counts_steps,
+                remark: remark.clone(),
+            });
         }
         let mut claims = Convention::default();
         let mut rows = audit::Trajectory::new(Numbers::of("t", t)?.list()?);
@@ -284,7 +293,7 @@ impl Given {
         if let Some(momentum) = momentum {
             rows = rows.with_momentum(Numbers::of("momentum", momentum)?.rows(n)?);
         }
-        Ok(Given { name: "record".into(), id: None, rows, claims, counts_steps: false })
+        Ok(Given { name: "record".into(), id: None, rows, claims, counts_steps: false, remark: None })
     }
 }
 

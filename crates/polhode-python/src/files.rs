@@ -64,6 +64,8 @@ pub(crate) struct Trajectory {
     pub(crate) rows: audit::Trajectory,
     pub(crate) claims: Convention,
     pub(crate) counts_steps: bool,
+    /// Of the file, with its first body.
+    pub(crate) remark: Option<String>,
     comments: Vec<String>,
 }
 
@@ -387,11 +389,13 @@ fn trajectories<'py>(
     rows: &Rows,
     found: trajectory::FoundTrajectory,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let mut remark = found.remark();
     let trajectory::FoundTrajectory { bodies, claims, counts_steps, comments, .. } = found;
     let file = rows.name();
     let one = |(id, rows)| {
         let comments = comments.clone();
-        Bound::new(py, Trajectory { file: file.clone(), id, rows, claims, counts_steps, comments })
+        let remark = remark.take();
+        Bound::new(py, Trajectory { file: file.clone(), id, rows, claims, counts_steps, remark, comments })
     };
     let several = bodies.len() > 1;
     let mut all: Vec<Bound<'py, Trajectory>> = bodies.into_iter().map(one).collect::<PyResult<_>>()?;

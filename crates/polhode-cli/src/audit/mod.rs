@@ -37,9 +37,6 @@ const EXAMPLES: &str = "Examples:
   polhode audit --golden golden
   polhode audit golden/free-generic.csv --against golden/free-generic.csv";
 
-/// Columns without a use that are named.
-const NAMED: usize = 12;
-
 /// Whether a trajectory of another program is right, its convention and its error
 ///
 /// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
@@ -158,6 +155,7 @@ impl Audit {
         }
         memory::check_files(&[path.to_path_buf()], 2)?;
         let found = trajectory::read(path, &self.reading.table())?;
+        let mut remark = found.remark();
         let claims = self.reading.claims(found.claims);
         let bodies: Vec<(Option<String>, Trajectory)> = match &self.id {
             None => found.bodies,
@@ -184,9 +182,7 @@ impl Audit {
             if found.counts_steps {
                 notes.push(timed(&mut record, body.as_ref(), &place)?);
             }
-            if outcomes.is_empty() && !found.unread.is_empty() {
-                notes.push(format!("not read: {}", listed(&found.unread)));
-            }
+            notes.extend(remark.take());
             let mut question = Question::new(body.clone());
             (question.tolerance, question.claims) = (self.tolerance, claims);
             question.noise = self.noise.unwrap_or_default();
@@ -221,15 +217,6 @@ fn tolerance(text: &str) -> Result<f64, String> {
         value => {
             Err(format!("{value:?} is more than 0.1, within which nearly anything is; give a smaller number"))
         }
-    }
-}
-
-/// The first of some names, and how many more there are.
-fn listed(names: &[String]) -> String {
-    let shown = names[..names.len().min(NAMED)].join(", ");
-    match names.len().saturating_sub(NAMED) {
-        0 => shown,
-        more => format!("{shown} and {more} more"),
     }
 }
 
