@@ -343,21 +343,26 @@ mod tests {
     /// Every answer is certified inside; law and limits hold it together, and the face that the solver's answer is near is
     /// not always the one that it lies on.
     #[test]
-    fn random_programs_with_limits_end_certified() {
-        let mut next = numbers(7);
+    fn random_programs_with_a_lower_limit_end_certified() {
+        with_limits(7, |axis, s| Limit { axis, at_least: Some(0.4 + 0.05 * s), at_most: None });
+    }
+
+    #[test]
+    fn random_programs_with_an_upper_limit_end_certified() {
+        with_limits(8, |axis, s| Limit { axis, at_least: None, at_most: Some(0.2 + 0.05 * s) });
+    }
+
+    fn with_limits(seed: u64, limit: impl Fn(Vector3<f64>, f64) -> Limit) {
+        let mut next = numbers(seed);
         let (mut of_law, mut of_limits) = (0, 0);
-        for trial in 0..300 {
+        for trial in 0..150 {
             let mut root = Form::from_fn(|i, k| if i < k { 50.0 * next() } else { 0.0 });
             for k in 0..5 {
                 root[(k, k)] = libm::pow(10.0, 2.0 + next());
             }
             let centre = Coordinates::from_fn(|_, _| 0.3 * next());
             let axis = Vector3::new(next(), next(), next());
-            let limit = if trial % 2 == 0 {
-                Limit { axis, at_least: Some(0.4 + 0.05 * next()), at_most: None }
-            } else {
-                Limit { axis, at_least: None, at_most: Some(0.2 + 0.05 * next()) }
-            };
+            let limit = limit(axis, next());
             let answer =
                 tensor_nearest(centre, root, &[limit]).unwrap_or_else(|error| panic!("{trial}: {error}"));
             let j = tensor(&answer.x);
@@ -369,6 +374,6 @@ mod tests {
             of_law += usize::from(answer.active.iter().any(|a| is_law(a.constraint)));
             of_limits += usize::from(answer.active.iter().any(|a| !is_law(a.constraint)));
         }
-        assert!(of_law > 50 && of_limits > 50, "{of_law}, {of_limits}");
+        assert!(of_law > 25 && of_limits > 25, "{of_law}, {of_limits}");
     }
 }
