@@ -48,4 +48,5 @@ mod tops;
 mod truth;
 mod tumbling;
 mod two_turns;
+mod units;
 mod yardsticks;

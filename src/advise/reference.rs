@@ -237,3 +237,80 @@ fn rate(body: &Body, start: Point<Dd>, start_time: f64, until: f64) -> f64 {
     let tipped = libm::sqrt(acceleration).min(acceleration * until);
     body.omega_of(&start).norm().max(tipped)
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::body::Force;
+    use crate::inertia::Inertia;
+
+    fn body() -> Body {
+        Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap())
+    }
+
+    fn start(body: &Body, omega: [f64; 3]) -> Point<f64> {
+        body.enter(&body.state(Default::default(), omega.into()).unwrap()).unwrap().to_f64()
+    }
+
+    #[test]
+    fn there_are_two_to_four_looks_a_radian_within_bounds() {
+        assert_eq!([0.0, 16.0, 16.1, 100.0, 128.5, 300.0, 1e9].map(looks), [32, 32, 64, 256, 512, 512, 512]);
+        assert_eq!(times(10.0, 4).map(Dd::hi).collect::<Vec<f64>>(), [2.5, 5.0, 7.5, 10.0]);
+    }
+
+    /// From rest a torque turns a body by half its acceleration times t²: a radian takes about 1/√a.
+    #[test]
+    fn the_rate_is_that_of_the_start_or_what_its_torque_brings_about() {
+        let pushed = body().with(Force::constant_torque_body(Vector3::new(0.0, 0.18, 0.0)).unwrap());
+        let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} for {b}");
+        let of = |body: &Body, omega, until| rate(body, start(body, omega).to_dd(), 0.0, until);
+        near(of(&body(), [0.0, 3.0, 4.0], 10.0), 5.0);
+        near(of(&pushed, [0.0; 3], 100.0), 0.3);
+        near(of(&pushed, [0.0; 3], 2.0), 0.18);
+        near(of(&pushed, [0.0, 3.0, 4.0], 100.0), 5.0);
+    }
+
+    /// Of a closed form every half of a half of the time can be the part; the longest that is paid for is taken.
+    #[test]
+    fn a_run_is_as_long_as_it_is_affordable() {
+        let (body, demand) = (body(), Demand::new(4096.0, 1e-6));
+        let start = start(&body, [0.6, 0.0, 0.8]);
+        let mut reference = Reference::new(&body, start, &demand, &mut |_| {}).unwrap();
+        assert_eq!((reference.rate, reference.short), (1.0, 3));
+        for (price, horizon) in [(1e-6, 4096.0), (0.9 / 4096.0, 4096.0), (1.1 / 4096.0, 2048.0), (1.0, 512.0)]
+        {
+            let span = reference.long(price, 1.0).unwrap();
+            assert_eq!((span.horizon, span.times_longer), (horizon, 4096.0 / horizon));
+            let exact = reference.truth.point_at(Dd::from(horizon)).unwrap();
+            assert!(rotation_angle(span.points[span.points.len() - 1].attitude, exact.attitude).hi() < 1e-25);
+        }
+    }
+
+    /// A body that spins up is fastest at the end, one that drag stops at the start.
+    #[test]
+    fn the_short_part_is_where_the_body_turns_fastest() {
+        for (force, from) in [
+            (Force::constant_torque_body(Vector3::new(0.0, 0.0, 0.02)).unwrap(), 0.5),
+            (Force::drag(5e-4, 0.0).unwrap(), 0.0),
+        ] {
+            let (body, demand) = (body().with(force), Demand::new(1600.0, 1e-3));
+            let start = start(&body, [0.1, 0.1, 1.0]);
+            let mut reference = Reference::new(&body, start, &demand, &mut |_| {}).unwrap();
+            let angle = reference.truth.turning().unwrap().angle;
+            let (rate, span) = (reference.rate, reference.short().unwrap());
+            assert!((span.horizon * rate / SHORT - 1.0).abs() < 1e-12 && span.points.len() == 512);
+            assert!((span.times_longer * SHORT / angle - 1.0).abs() < 1e-12);
+            let (begin, latest) = (span.start_time, 1600.0 - span.horizon);
+            assert!(
+                if from > 0.0 { begin > latest - 20.0 && begin <= latest } else { begin == 0.0 },
+                "{begin}"
+            );
+            // the motion of the part is that of the whole
+            let whole = reference.truth.point_at(Dd::from(begin)).unwrap().to_f64();
+            assert_eq!(span.start, whole);
+            assert_eq!(reference.long(1e9, 1.0).unwrap().horizon, 1600.0);
+        }
+    }
+}

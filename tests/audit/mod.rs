@@ -3,7 +3,9 @@
 mod causes;
 mod conventions;
 mod every_row;
+mod figures;
 mod hidden;
 mod mistakes;
 mod records;
 mod ties;
+mod units;
