@@ -129,6 +129,48 @@ mod random {
     }
 }
 
+/// Of a body that starts with `omega` and turns as often as stated, the motions to the attitude that it reaches.
+fn to_the_end_of(moments: [f64; 3], q0: [f64; 4], omega: [f64; 3], turns: f64) -> (Passages, Vector3<f64>) {
+    let inertia = body(moments);
+    let [w, x, y, z] = q0;
+    let q0 = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+    let omega = Vector3::from(omega);
+    let motion = FreeMotion::from_omega(&inertia, q0, omega).unwrap();
+    let time = turns * core::f64::consts::TAU / motion.character().unwrap().spin;
+    let q1 = motion.at(time).unwrap().rotation();
+    let found = FreeMotion::through(&inertia, (0.0, q0), (time, q1), turns + 0.05).unwrap();
+    check(&found, q0, q1, time, turns + 0.05);
+    (found, omega)
+}
+
+#[test]
+fn motions_that_almost_coincide_are_both_found() {
+    // half angles that turn round 1e-6 rad beyond zero, and one next to the end of a piece: of some 1e5 random pairs those
+    // that a search by values alone has missed
+    let double = to_the_end_of(
+        [1.0, 2.0, 3.0],
+        [-0.919_226_525_305_41, -0.057_673_206_309_872_78, 0.239_667_845_907_254_6, -0.307_010_944_572_107_6],
+        [0.361_569_241_444_340_1, -1.571_729_571_703_864_2, 0.977_716_905_458_177_4],
+        1.371_658_830_410_933,
+    );
+    let round = to_the_end_of(
+        [1.0, 1.0, 0.25],
+        [
+            -0.298_109_908_756_286_9,
+            0.355_653_194_502_881_9,
+            -0.185_834_164_823_673_04,
+            -0.866_087_493_815_907_2,
+        ],
+        [0.257_053_142_823_082_56, 1.122_661_621_323_099_1, 0.090_393_435_087_041_33],
+        2.938_064_518_581_405,
+    );
+    for (found, omega) in [double, round] {
+        let nearest = found.nearest(omega).unwrap().omega_body;
+        assert!((nearest - omega).norm() < 1e-9 * omega.norm(), "{nearest} beside {omega}");
+        assert!(found.complete);
+    }
+}
+
 #[test]
 fn a_sphere_turns_about_one_axis_either_way() {
     let turn = UnitQuaternion::from_scaled_axis([0.3, -0.4, 1.2].into());

@@ -177,9 +177,23 @@ impl<S: Precise> Circulation<S> {
         // the secular parts grow with t and partly cancel; they are reduced mod 4π, for the double cover
         let secular = reduce(secular, S::from_dd(Dd::TAU * 2.0));
         let psi = secular - polhode.delta * (self.periodic_twist(sn, cn) - self.twist_at_start);
+        (self.turn(psi, m), m)
+    }
+
+    /// The turn since the start where the twist is `psi` and the momentum `m`.
+    pub(super) fn turn(&self, psi: S, m: Vec3<S>) -> Quat<S> {
         let (sin, cos) = (psi * S::of(0.5)).sin_cos();
-        let turn = Quat::new(cos, Vec3::unit(a) * (sin * polhode.sigma));
-        (self.swing_back * turn * polhode.swing(m), m)
+        let along = Vec3::unit(self.polhode.axes[0]) * (sin * self.polhode.sigma);
+        self.swing_back * Quat::new(cos, along) * self.polhode.swing(m)
+    }
+
+    /// The twist after the time `t`, which is `half_turns` half periods less the phases of the start and of the pair (sn, cn ≥ 0), and
+    /// what it grows by in the time `period` of two half periods; none on the separatrix.
+    pub(super) fn twists(&self, t: S, half_turns: S, (sn, cn): (S, S), period: S) -> Option<[S; 2]> {
+        let (delta, half) = (self.polhode.delta, self.period?.twist);
+        let periodic = self.periodic_twist(sn, cn) - self.twist_at_start;
+        let twist = self.twist_rate * t - delta * (half * half_turns + periodic);
+        Some([twist, self.twist_rate * period - delta * half * S::of(2.0)])
     }
 
     /// The part of the twist that depends on the place on the polhode alone, at sn = x, cn = y ≥ 0.

@@ -14,6 +14,12 @@ use crate::rotation::{Quat, rotation_vector, turn_by};
 
 /// Iterations of Gauss and Newton at most.
 const ITERATIONS: u32 = 30;
+/// Share of a step below which it is not shortened further: rounding keeps the sum of squares from falling.
+const SHORTEST: f64 = 1e-6;
+/// Share of the sum of squares that a further step would gain, below which it is at its least: the sum has some sixteen digits.
+const GAIN: f64 = 1e-12;
+/// Square of an angle that is rounding, rad².
+const ROUNDING: f64 = 1e-28;
 
 /// The free motion that passes many attitudes as nearly as their noise allows.
 #[derive(Clone, Debug)]
@@ -115,15 +121,14 @@ impl Fit<'_> {
                 let next = self.moved(step * share).ok_or_else(|| lost.clone())?;
                 match self.equations(&next, count) {
                     Some(found) if found.0 <= sum => break Some((next, found)),
-                    _ if share < 1e-6 => break None,
+                    _ if share < SHORTEST => break None,
                     _ => share *= 0.25,
                 }
             };
             let Some((next, found)) = improved else { return Ok((sum, covariance)) };
             self.motion = next;
             (sum, gradient, normal) = found;
-            // what a further step would gain is rounding
-            if gain <= 1e-12 * sum || sum <= 1e-28 * count as f64 {
+            if gain <= GAIN * sum || sum <= ROUNDING * count as f64 {
                 return Ok((sum, covariance));
             }
         }

@@ -9,6 +9,7 @@
 
 mod branch;
 mod cone;
+mod cubic;
 mod fitted;
 mod interpolation;
 mod passages;

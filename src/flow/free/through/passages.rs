@@ -15,6 +15,18 @@ use crate::rotation::{Quat, Vec3, rotation_angle};
 const MOST_TURNS: f64 = 1000.0;
 /// Newton's iterations after the search; two are enough where the attitudes are not conjugate.
 const ITERATIONS: u32 = 8;
+/// Angle to the attitude asked for that no iteration makes smaller, rad: that attitude is itself rounded to 2⁻⁵².
+const REACHED: f64 = 1e-15;
+/// The same above which a momentum leads elsewhere, rad. Where the attitudes are conjugate the derivative has no inverse, and the root
+/// of the rounding is left.
+const ELSEWHERE: f64 = 1e-9;
+/// Step of Newton's iteration, of the momentum, from which on it may lead to another motion.
+const LONG: f64 = 0.5;
+/// Difference of angular velocities (relative) and of turns up to which two motions are one that was met twice: the search leaves some
+/// 10⁻¹² before Newton's iteration.
+const SAME: f64 = 1e-9;
+/// Of the angle between the axis of a turn and a principal axis, below which it is rounding.
+const ALONG: f64 = 1e-13;
 
 /// One free motion through two attitudes.
 #[derive(Clone, Debug)]
@@ -133,8 +145,10 @@ impl FreeMotion {
     /// them, counted by the mean spin 2E/|L|.
     ///
     /// A momentum has the same energy at both attitudes only along a cone; along it the number of periods between gives its size,
-    /// and the turn about it is one smooth function, whose roots are bracketed and can not be lost. A root that is double to within
-    /// some 10⁻⁶ of a turn may be missed, and one that is so near to the separatrix that no double tells it apart.
+    /// and the turn about it is one smooth function of which the derivative is known too. Pieces of the cone are halved until function
+    /// and derivative agree at their ends; then each root has a bracket, and where the function turns round two roots have one each,
+    /// however near they are. Where that is not reached, [`Passages::complete`] is false. A motion that is so near to the separatrix that
+    /// no double tells it apart may be missed.
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
@@ -232,10 +246,11 @@ impl<'a> Task<'a> {
         let count = found.momenta.len();
         let mut list: Vec<Passage> = found.momenta.into_iter().filter_map(|m| self.polished(m)).collect();
         let lost = count - list.len();
+        list.extend(found.candidates.into_iter().filter_map(|m| self.polished(m)));
         list.sort_by(|a, b| a.turns.total_cmp(&b.turns));
         // one that was met from both sides
         list.dedup_by(|a, b| {
-            (a.omega_body - b.omega_body).norm() <= 1e-9 * b.omega_body.norm() && a.turns - b.turns < 1e-9
+            (a.omega_body - b.omega_body).norm() <= SAME * b.omega_body.norm() && a.turns - b.turns < SAME
         });
         let complete = found.unresolved == 0 && lost == 0;
         list.iter_mut().for_each(|passage| passage.complete = complete);
@@ -266,7 +281,7 @@ impl<'a> Task<'a> {
         let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
         let axis = turn.v * (sign / turn.v.norm());
         let m = self.moments.times(axis);
-        if axis.cross(m).norm() <= 1e-13 * m.norm() {
+        if axis.cross(m).norm() <= ALONG * m.norm() {
             let moment = axis.dot(m);
             about(axis, moment, angle);
             about(-axis, moment, core::f64::consts::TAU - angle);
@@ -279,7 +294,7 @@ impl<'a> Task<'a> {
         let mut iterations = 0;
         let mut motion = FreeMotion::from_point(self.inertia, start);
         let mut miss = self.miss(&motion);
-        while iterations < ITERATIONS && miss.1 > 1e-15 {
+        while iterations < ITERATIONS && miss.1 > REACHED {
             let Some(next) = self.improved(&motion, start, miss.0) else { break };
             let other = FreeMotion::from_point(self.inertia, next);
             let missed = self.miss(&other);
@@ -295,7 +310,7 @@ impl<'a> Task<'a> {
         let twice_energy =
             start.momentum_body.dot(start.momentum_body.times(motion.body().rotor().inverse_moments())).hi();
         let turns = if norm == 0.0 { 0.0 } else { twice_energy / norm * self.time / core::f64::consts::TAU };
-        (miss.1 <= 1e-9).then_some(Passage {
+        (miss.1 <= ELSEWHERE).then_some(Passage {
             motion,
             omega_body,
             turns,
@@ -319,7 +334,7 @@ impl<'a> Task<'a> {
         let change = derivative.lu().solve(&miss.into())?;
         let change = Vec3([change.x, change.y, change.z]);
         // a step as long as the momentum is none that this iteration can vouch for
-        let small = change.norm() < 0.5 * start.momentum_body.norm().hi();
+        let small = change.norm() < LONG * start.momentum_body.norm().hi();
         small.then(|| Point::new(start.attitude, start.momentum_body + change.map(Dd::of)))
     }
 }

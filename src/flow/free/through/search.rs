@@ -1,36 +1,41 @@
 //! All places on the cone where a motion makes the turn about its momentum too.
 
-use super::branch::{Miss, Place};
-use super::cone::{Cone, Quarter};
+use core::f64::consts::FRAC_PI_2;
+
+use super::branch::Place;
+use super::cone::{Cone, HALVES, Half};
+use super::cubic::Cubic;
 use crate::num::exponential::exp_of_positive;
 use crate::num::trig::sin_cos;
 use crate::rotation::{Quat, Vec3};
 
 /// Pieces into which the inner part of a stretch of the cone is cut at first, and each of its ends.
-const PIECES: [u32; 2] = [20, 16];
-/// Looks for changes of the kind in each half of a quarter: regular ones, and close to its corner.
-const LOOKS: u32 = 96;
-const CLOSE: u32 = 11;
-/// Half angles that are followed within a piece, rad.
-const FOLLOWED: f64 = 0.4;
-/// Deviation of the half angle in the middle of a piece from a straight line, rad.
-const STRAIGHT: f64 = 0.05;
-/// Iterations for the place where a half angle turns round.
-const EXTREMUM: u32 = 40;
-/// Part of a period by which the ends of a piece may differ unseen.
-const STEADY: f64 = 0.06;
-/// How often a piece is halved.
-const DEEPEST: u32 = 26;
+const PIECES: [u32; 2] = [10, 7];
 /// Where the ends of a stretch begin, e^−5 of its length from its limits.
 const END: f64 = 5.0;
-/// They are as near as the digits of a direction tell: e^−34 of its length.
-const NEAREST: f64 = 34.0;
+/// They are as near as the digits of a direction tell, rad: the complementary parameter has two digits left there.
+const NEAREST: f64 = 4e-14;
+/// Part of a period by which the ends of a piece may differ where no motion between them makes few enough turns.
+const STEADY: f64 = 0.06;
+/// The same where one does: more, and whole periods might be left out.
+const FOLLOWED: f64 = 0.3;
+/// How often a piece is halved.
+const DEEPEST: u32 = 26;
+/// Evaluations for a root or an extremum in a bracket: halving alone leaves 2⁻⁵² of it.
+const EVALUATIONS: u32 = 60;
+/// Half angle that is rounding, rad.
+const ROUNDING: f64 = 1e-13;
+/// Half angle of a root at the corner of two stretches, and of one that is double to within rounding, rad: Newton's iteration after the
+/// search tells whether there is one.
+const CANDIDATE: f64 = 1e-11;
 
 /// What a search finds.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Found {
     /// Momenta for the time 1 that lead from the one attitude to the other.
     pub(super) momenta: Vec<Vec3<f64>>,
+    /// Momenta of which only Newton's iteration tells whether they do.
+    pub(super) candidates: Vec<Vec3<f64>>,
     /// Pieces that were halved as often as is allowed and still are not smooth.
     pub(super) unresolved: u32,
 }
@@ -38,7 +43,7 @@ pub(super) struct Found {
 /// A stretch of the cone between two places where the motion changes its kind.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
-    quarter: Quarter,
+    half: Half,
     from: f64,
     to: f64,
 }
@@ -53,67 +58,37 @@ pub(super) struct Search<'a> {
 }
 
 /// Coordinate in a stretch and the place there.
-type At = (f64, Place);
+#[derive(Clone, Copy, Debug)]
+struct At {
+    z: f64,
+    place: Place,
+}
 
 impl Search<'_> {
+    /// One side of the cone is enough: from the opposite directions the same motions go back in time.
     pub(super) fn run(&self) -> Found {
         let mut found = Found::default();
-        for quarter in Cone::quarters() {
-            for stretch in self.stretches(quarter) {
-                self.along(stretch, &mut found);
+        for half in HALVES {
+            let mut cuts = self.cone.cuts(half, self.moments);
+            cuts.extend([-FRAC_PI_2, FRAC_PI_2]);
+            cuts.sort_by(f64::total_cmp);
+            for pair in cuts.windows(2) {
+                self.along(Stretch { half, from: pair[0], to: pair[1] }, &mut found);
             }
+        }
+        for phi in [-FRAC_PI_2, FRAC_PI_2] {
+            self.corner(phi, &mut found);
         }
         found
     }
 
-    fn direction(&self, quarter: Quarter, phi: f64) -> Vec3<f64> {
-        let (sin, cos) = sin_cos(phi);
-        self.cone.direction(quarter, sin, cos)
-    }
-
-    /// Which axis the momentum circulates about, in which direction; `None` where the two ends differ in that.
-    fn kind(&self, quarter: Quarter, phi: f64) -> Option<(bool, bool)> {
-        let m = self.direction(quarter, phi);
-        let end = self.turn.rotate_back(m);
-        let i = self.moments;
-        let [l, mu, h] = i.ascending();
-        let separation = m[h] * m[h] * i[l] * (i[h] - i[mu]) - m[l] * m[l] * i[h] * (i[mu] - i[l]);
-        let about_smallest = separation <= 0.0;
-        let a = if about_smallest { l } else { h };
-        (m[a] * end[a] > 0.0).then_some((about_smallest, m[a] > 0.0))
-    }
-
-    /// The quarter, cut where the kind changes.
-    fn stretches(&self, quarter: Quarter) -> Vec<Stretch> {
-        let half = core::f64::consts::FRAC_PI_2;
-        // next to the corners, where the cone turns sharply, by quarters of the distance
-        let near = (0..CLOSE).map(|n| 1e-9 * libm::exp2(f64::from(2 * n)));
-        let least = 1e-9 * libm::exp2(f64::from(2 * CLOSE));
-        let regular = (0..=LOOKS).map(|n| least + (half - least) * f64::from(n) / f64::from(LOOKS));
-        let distances: Vec<f64> = near.chain(regular).collect();
-        let before_half = distances.iter().map(|distance| distance - half);
-        let looks = before_half.chain(distances.iter().rev().skip(1).map(|distance| half - distance));
-        let mut stretches = Vec::new();
-        let (mut from, mut before, mut kind) = (-half, -half, self.kind(quarter, distances[0] - half));
-        for phi in looks.skip(1) {
-            let next = self.kind(quarter, phi);
-            if next != kind {
-                let (mut low, mut high) = (before, phi);
-                for _ in 0..60 {
-                    let middle = 0.5 * (low + high);
-                    if self.kind(quarter, middle) == kind { low = middle } else { high = middle }
-                }
-                if kind.is_some() {
-                    stretches.push(Stretch { quarter, from, to: low });
-                }
-                (from, kind) = (high, next);
-            }
-            before = phi;
-        }
-        if kind.is_some() {
-            stretches.push(Stretch { quarter, from, to: half });
-        }
-        stretches
+    /// Motions that start at the corner of both halves, which no piece of either contains.
+    fn corner(&self, phi: f64, found: &mut Found) {
+        let [start, change] = self.cone.direction(HALVES[0], sin_cos(phi));
+        let Some(place) = Place::of(self.moments, self.turn, self.turns, start, change) else { return };
+        let [first, last] = place.periods();
+        let near = (first..=last).filter(|&n| place.miss(n).value.abs() < CANDIDATE);
+        found.candidates.extend(near.filter_map(|n| place.momentum(n)));
     }
 
     /// The place at z ∈ (−∞, ∞): the ends, where periods become infinite, are approached exponentially.
@@ -121,106 +96,117 @@ impl Search<'_> {
         let share = 1.0 / (1.0 + exp_of_positive(z.abs()));
         let length = stretch.to - stretch.from;
         let phi = if z < 0.0 { stretch.from + length * share } else { stretch.to - length * share };
-        Place::of(self.moments, self.turn, self.turns, self.direction(stretch.quarter, phi))
+        let [start, change] = self.cone.direction(stretch.half, sin_cos(phi));
+        let change = change * (length * share * (1.0 - share));
+        Place::of(self.moments, self.turn, self.turns, start, change)
     }
 
     fn along(&self, stretch: Stretch, found: &mut Found) {
+        let limit = libm::log((stretch.to - stretch.from) / NEAREST);
+        if limit.is_nan() || limit <= 1.0 {
+            return; // two cuts that are one
+        }
+        let end = END.min(0.5 * limit);
         let [inner, outer] = PIECES.map(|pieces| pieces * self.finer);
-        let ends = (1..=outer).map(|n| END + (NEAREST - END) * f64::from(n) / f64::from(outer));
-        let middle = (0..=inner).map(|n| END * (2.0 * f64::from(n) / f64::from(inner) - 1.0));
-        let before_end: Vec<f64> = ends.clone().map(|z| -z).rev().collect();
+        let ends = (1..=outer).map(|n| end + (limit - end) * f64::from(n) / f64::from(outer));
+        let middle = (0..=inner).map(|n| end * (2.0 * f64::from(n) / f64::from(inner) - 1.0));
+        let before_end = ends.clone().rev().map(|z| -z);
         let mut before: Option<At> = None;
-        for z in before_end.into_iter().chain(middle).chain(ends) {
-            let Some(mut place) = self.place(stretch, z) else {
-                before = None;
-                continue;
-            };
+        for z in before_end.chain(middle).chain(ends) {
+            let Some(mut place) = self.place(stretch, z) else { continue };
             if let Some(before) = &before {
-                place = place.near(before.1.part);
-                self.piece(stretch, before, &(z, place.clone()), 0, found);
+                place = place.near(before.place.part().value);
+                self.piece(stretch, before, &At { z, place }, 0, found);
             }
-            before = Some((z, place));
+            before = Some(At { z, place });
         }
     }
 
-    /// All roots between two places, by halves until the half angle is almost a straight line.
+    /// All roots between two places, by halves until half angles and phases agree with what their derivatives at both ends say.
     fn piece(&self, stretch: Stretch, low: &At, high: &At, depth: u32, found: &mut Found) {
-        let counts = counts(low, high);
-        let change = high.1.part - low.1.part;
-        if counts.is_empty() && change.abs() < STEADY {
+        let width = high.z - low.z;
+        let (from, to) = (low.place.part(), high.place.part());
+        let change = to.value - from.value;
+        let bent = (change - 0.5 * width * (from.slope + to.slope)).abs();
+        let counts = counts(&low.place, &high.place);
+        if counts.is_empty() && change.abs().max(bent) < STEADY {
             return;
         }
-        let z = 0.5 * (low.0 + high.0);
-        let Some(middle) = self.place(stretch, z) else {
-            found.unresolved += 1;
-            return;
-        };
-        let middle = (z, middle.near(low.1.part));
-        // a part that runs fast looks slow where whole periods are left out, but not in the middle too
-        let bent = middle.1.part - 0.5 * (low.1.part + high.1.part);
-        if (change.abs() > 0.25 || bent.abs() > STEADY) && depth < DEEPEST {
-            return self.halves(stretch, low, &middle, high, depth, found);
-        }
-        for &n in &counts {
-            let [a, b, c] = [low, &middle, high].map(|at| at.1.miss(self.turn, n));
-            let (first, second) = (b.since(a), c.since(b));
-            let smooth =
-                first.abs() < FOLLOWED && second.abs() < FOLLOWED && (first - second).abs() < STRAIGHT;
-            if !smooth && depth < DEEPEST {
-                return self.halves(stretch, low, &middle, high, depth, found);
-            }
-            if !smooth {
+        let cubic = |n| Cubic::between(low.place.miss(n), high.place.miss(n), width);
+        let smooth = change.abs() < FOLLOWED && bent < STEADY && counts.iter().all(|&n| cubic(n).is_smooth());
+        if !smooth && depth < DEEPEST {
+            let z = 0.5 * (low.z + high.z);
+            let Some(middle) = self.place(stretch, z) else {
                 found.unresolved += 1;
-            }
+                return;
+            };
+            let middle = At { z, place: middle.near(from.value) };
+            self.piece(stretch, low, &middle, depth + 1, found);
+            let high = At { z: high.z, place: high.place.near(middle.place.part().value) };
+            return self.piece(stretch, &middle, &high, depth + 1, found);
         }
-        self.roots(stretch, low, &middle, high, counts, found);
-    }
-
-    fn halves(&self, stretch: Stretch, low: &At, middle: &At, high: &At, depth: u32, found: &mut Found) {
-        self.piece(stretch, low, middle, depth + 1, found);
-        let high = (high.0, high.1.clone().near(middle.1.part));
-        self.piece(stretch, middle, &high, depth + 1, found);
-    }
-
-    /// The roots of the branches `counts` in a smooth piece.
-    fn roots(&self, stretch: Stretch, low: &At, middle: &At, high: &At, counts: Vec<i64>, found: &mut Found) {
+        if !smooth {
+            found.unresolved += 1;
+        }
         for n in counts {
-            let branch = Branch { search: self, stretch, part: low.1.part, n };
-            let inner = [low, middle, high].map(|at| Point { z: at.0, miss: at.1.miss(self.turn, n) });
-            let mut points = inner.to_vec();
-            points.extend(branch.extremum(inner));
-            points.extend(branch.beyond(inner[1], inner[0], inner[2]));
-            points.extend(branch.beyond(inner[1], inner[2], inner[0]));
-            points.sort_by(|a, b| a.z.total_cmp(&b.z));
-            for pair in points.windows(2) {
-                let (a, b) = (pair[0], pair[1]);
-                if a.miss.sin * b.miss.sin < 0.0 || a.miss.sin == 0.0 {
-                    found.momenta.extend(branch.root(a, b));
-                }
-            }
+            self.roots(stretch, low, high, n, found);
+        }
+    }
+
+    /// The roots after `n` further periods in a smooth piece: one where the signs at its ends differ, else two or none where the half
+    /// angle turns round.
+    fn roots(&self, stretch: Stretch, low: &At, high: &At, n: i64, found: &mut Found) {
+        let origin = low.place.miss(n).value;
+        let point = |at: &At| Point::of(at, n, origin);
+        let branch = Branch { search: self, stretch, part: low.place.part().value, n, origin };
+        let (a, b) = (point(low), point(high));
+        if a.miss == 0.0 || a.miss * b.miss < 0.0 {
+            return found.momenta.extend(branch.root(a, b));
+        }
+        let toward = a.miss * a.slope < 0.0 && b.miss * b.slope > 0.0;
+        let reach = a.slope.abs().max(b.slope.abs()) * (b.z - a.z);
+        if !toward || a.miss.abs().min(b.miss.abs()) > reach {
+            return;
+        }
+        let Some(turning) = branch.turning(a, b) else { return };
+        if turning.miss * a.miss <= 0.0 {
+            found.momenta.extend(branch.root(a, turning));
+            found.momenta.extend(branch.root(turning, b));
+        } else if turning.miss.abs() < CANDIDATE {
+            found.candidates.extend(branch.momentum(turning.z));
         }
     }
 }
 
-/// The whole periods after which a motion may be within, somewhere between two places.
-fn counts(low: &At, high: &At) -> Vec<i64> {
-    let (first, last) = (low.1.periods(), high.1.periods());
-    let all = (*first.start()).min(*last.start())..=(*first.end()).max(*last.end());
-    all.filter(|&n| low.1.may_be_within(&high.1, n)).collect()
+/// The whole periods after which a motion may make few enough turns, somewhere between two places.
+fn counts(low: &Place, high: &Place) -> Vec<i64> {
+    let ([a, b], [c, d]) = (low.periods(), high.periods());
+    (a.min(c)..=b.max(d)).filter(|&n| low.may_be_within(high, n)).collect()
 }
 
-/// The motions of one number of periods, along a stretch.
+/// The motions of one number of periods, along a piece of a stretch.
 struct Branch<'a> {
     search: &'a Search<'a>,
     stretch: Stretch,
     part: f64,
     n: i64,
+    /// Half angle within π/2 of all others.
+    origin: f64,
 }
 
+/// Half angle by which the end is missed, rad, and its derivative by z.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     z: f64,
-    miss: Miss,
+    miss: f64,
+    slope: f64,
+}
+
+impl Point {
+    fn of(at: &At, n: i64, origin: f64) -> Point {
+        let miss = at.place.miss(n);
+        Point { z: at.z, miss: origin + super::branch::folded(miss.value - origin), slope: miss.slope }
+    }
 }
 
 impl Branch<'_> {
@@ -229,96 +215,58 @@ impl Branch<'_> {
     }
 
     fn at(&self, z: f64) -> Option<Point> {
-        Some(Point { z, miss: self.place(z)?.miss(self.search.turn, self.n) })
+        Some(Point::of(&At { z, place: self.place(z)? }, self.n, self.origin))
     }
 
-    /// The point between where the half angle turns round, if it does: two roots may be nearer to each other than the points.
-    ///
-    /// By parabolas, until it is clear that there is no root or until the sign there differs.
-    fn extremum(&self, [mut a, mut b, mut c]: [Point; 3]) -> Option<Point> {
-        let up = b.miss.since(a.miss);
-        if up * c.miss.since(b.miss) >= 0.0 {
-            return None;
-        }
-        let sign = b.miss.sin;
-        for _ in 0..EXTREMUM {
-            let (first, second) = (b.miss.since(a.miss), c.miss.since(b.miss));
-            let (left, right) = (b.z - a.z, c.z - b.z);
-            let (slope, other) = (first / left, second / right);
-            let vertex = b.z + (slope * right + other * left) / (2.0 * (slope - other));
-            // not where it is known already
-            let least = 1e-3 * (c.z - a.z);
-            let z = if (vertex - b.z).abs() >= least && vertex > a.z && vertex < c.z {
-                vertex
-            } else if left > right {
-                b.z - least
-            } else {
-                b.z + least
-            };
-            let next = self.at(z)?;
-            if next.miss.sin * sign <= 0.0 {
-                return Some(next);
-            }
-            let gained = next.miss.since(b.miss);
-            if gained * up > 0.0 {
-                if z < b.z {
-                    c = b
-                } else {
-                    a = b
-                }
-                b = next;
-            } else if z < b.z {
-                a = next;
-            } else {
-                c = next;
-            }
-            if b.miss.sin.abs() > 10.0 * gained.abs() + 1e-12 && (b.z - z).abs() <= 2.0 * least
-                || c.z - a.z <= 1e-8 * b.z.abs().max(1.0)
+    fn momentum(&self, z: f64) -> Option<Vec3<f64>> {
+        self.place(z)?.momentum(self.n)
+    }
+
+    /// The point between `a` and `b`, where the slopes differ in sign, at which the half angle turns round, or one before at which its
+    /// sign differs or from which it cannot reach zero.
+    fn turning(&self, mut a: Point, mut b: Point) -> Option<Point> {
+        let (mut f, mut g) = (a.slope, b.slope);
+        let mut last = if a.miss.abs() < b.miss.abs() { a } else { b };
+        for _ in 0..EVALUATIONS {
+            let width = b.z - a.z;
+            if a.miss.abs().min(b.miss.abs()) > a.slope.abs().max(b.slope.abs()) * width
+                || width.abs() <= 4.0 * f64::EPSILON * a.z.abs().max(1.0)
             {
                 break;
             }
-        }
-        Some(b)
-    }
-
-    /// The same where the half angle seems to turn round at or beyond the end `end` of the piece: the piece beside it sees no more of it.
-    fn beyond(&self, middle: Point, end: Point, other: Point) -> Option<Point> {
-        let (near, far) = (end.miss.since(middle.miss), middle.miss.since(other.miss));
-        // by a parabola through the three the slope at the end, and how much more there is to come
-        let slope = 1.5 * near - 0.5 * far;
-        let straight = slope.abs() > 0.7 * near.abs() && slope * near > 0.0;
-        if straight || end.miss.sin.abs() > near.abs() + far.abs() {
-            return None;
-        }
-        let next = self.at(end.z + (end.z - middle.z))?;
-        let triple = if end.z > middle.z { [middle, end, next] } else { [next, end, middle] };
-        self.extremum(triple)
-    }
-
-    /// The momentum at the root between two points; regula falsi with halved weights (Illinois), whose bracket never is lost.
-    fn root(&self, mut a: Point, mut b: Point) -> Option<Vec3<f64>> {
-        let (mut f, mut g) = (a.miss.sin, b.miss.sin);
-        let mut best = if f.abs() < g.abs() { a } else { b };
-        for _ in 0..60 {
-            if f == 0.0 || g == 0.0 || (b.z - a.z).abs() <= 4e-16 * a.z.abs().max(1.0) {
-                break;
-            }
+            // regula falsi with halved weights (Illinois), whose bracket never is lost
             let next = self.at((a.z * g - b.z * f) / (g - f))?;
-            let h = next.miss.sin;
-            if h.abs() < best.miss.sin.abs() {
-                best = next;
-            }
-            if h.abs() < 1e-14 {
+            last = next;
+            if next.miss * a.miss <= 0.0 || next.slope == 0.0 {
                 break;
             }
-            if h * g < 0.0 {
-                (a, f) = (b, g);
+            if next.slope * a.slope > 0.0 {
+                (a, f) = (next, next.slope);
+                g *= 0.5;
             } else {
+                (b, g) = (next, next.slope);
                 f *= 0.5;
             }
-            (b, g) = (next, h);
         }
-        let place = self.place(best.z)?;
-        place.is_within(self.n).then(|| place.momentum(self.n))
+        Some(last)
+    }
+
+    /// The momentum at the root between two points, by Newton's iteration within a bracket.
+    fn root(&self, mut a: Point, mut b: Point) -> Option<Vec3<f64>> {
+        let mut next = if a.miss.abs() < b.miss.abs() { a } else { b };
+        for _ in 0..EVALUATIONS {
+            if next.miss.abs() < ROUNDING || (b.z - a.z).abs() <= f64::EPSILON * a.z.abs().max(1.0) {
+                break;
+            }
+            let newton = next.z - next.miss / next.slope;
+            let inside = newton > a.z.min(b.z) && newton < a.z.max(b.z);
+            next = self.at(if inside { newton } else { 0.5 * (a.z + b.z) })?;
+            if next.miss * a.miss > 0.0 {
+                a = next;
+            } else {
+                b = next;
+            }
+        }
+        self.momentum(next.z)
     }
 }
