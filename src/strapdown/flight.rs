@@ -253,12 +253,11 @@ fn settle(
     best.ok_or(FlightError::Undetermined)
 }
 
+/// An angular velocity with its derivative.
+type Known = (Vector3<f64>, Matrix3<f64>);
+
 /// The angular velocities of the motion with their derivatives by that at the start.
-fn along(
-    inertia: &Inertia,
-    elapsed: &[f64],
-    omega: Vector3<f64>,
-) -> Result<Vec<(Vector3<f64>, Matrix3<f64>)>, FlightError> {
+fn along(inertia: &Inertia, elapsed: &[f64], omega: Vector3<f64>) -> Result<Vec<Known>, FlightError> {
     let motion = FreeMotion::from_omega(inertia, UnitQuaternion::identity(), omega)?;
     let known = elapsed.iter().map(|t| {
         let there = motion.at_with_derivative(*t)?;
