@@ -1,4 +1,4 @@
-//! A double that counts sines and square roots.
+//! A double that counts what is done with it.
 
 use core::cell::Cell;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -6,56 +6,106 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use crate::num::{Dd, Precise, Real};
 
 thread_local! {
-    static SINES: Cell<u32> = const { Cell::new(0) };
-    static ROOTS: Cell<u32> = const { Cell::new(0) };
+    static DONE: Cell<Operations> = const { Cell::new(Operations::NONE) };
     static TORQUES: Cell<u32> = const { Cell::new(0) };
 }
 
-/// A double that counts, on each thread, how often a sine and cosine and a square root are taken: the scalar that
-/// [`check_cost`](super::check_cost) needs a method for.
+/// A double that counts, on each thread, the [operations] done with it: the scalar that [`check_cost`](super::check_cost) needs a
+/// method for.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Counted(pub(super) f64);
 
+/// Numbers of operations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Operations {
+    /// Sums, differences, products and quotients.
+    pub arithmetic: u64,
+    /// Square roots.
+    pub roots: u64,
+    /// Sines with their cosines.
+    pub sines: u64,
+    /// Arcs, exponentials and logarithms.
+    pub others: u64,
+}
+
+impl Operations {
+    const NONE: Operations = Operations { arithmetic: 0, roots: 0, sines: 0, others: 0 };
+}
+
+/// Operations with [`Counted`] on this thread while `work` was done.
+///
+/// ```
+/// use polhode::laws::{Counted, operations};
+/// use polhode::num::Real;
+/// use polhode::rotation::Vec3;
+/// let v = Vec3([1.0, 2.0, 3.0].map(Counted::of));
+/// let done = operations(|| _ = v.cross(v));
+/// assert_eq!((done.arithmetic, done.roots, done.sines), (9, 0, 0));
+/// ```
+pub fn operations(work: impl FnOnce()) -> Operations {
+    let before = DONE.replace(Operations::NONE);
+    work();
+    let done = DONE.get();
+    DONE.set(Operations {
+        arithmetic: before.arithmetic + done.arithmetic,
+        roots: before.roots + done.roots,
+        sines: before.sines + done.sines,
+        others: before.others + done.others,
+    });
+    done
+}
+
 /// Sines, roots and torques while `work` was done, on this thread.
 pub(super) fn counts(work: impl FnOnce()) -> [u32; 3] {
-    let counters = [&SINES, &ROOTS, &TORQUES];
-    for counter in counters {
-        counter.set(0);
-    }
-    work();
-    counters.map(|counter| counter.get())
+    TORQUES.set(0);
+    let done = operations(work);
+    let narrow = |count: u64| u32::try_from(count).unwrap_or(u32::MAX);
+    [narrow(done.sines), narrow(done.roots), TORQUES.get()]
 }
 
 pub(super) fn count_torque() {
-    count(&TORQUES);
+    TORQUES.set(TORQUES.get().saturating_add(1));
 }
 
-fn count(counter: &'static std::thread::LocalKey<Cell<u32>>) {
-    counter.set(counter.get().saturating_add(1));
+fn count(add: impl FnOnce(&mut Operations)) {
+    let mut done = DONE.get();
+    add(&mut done);
+    DONE.set(done);
+}
+
+fn arithmetic(value: f64) -> Counted {
+    count(|done| done.arithmetic += 1);
+    Counted(value)
+}
+
+fn other(value: f64) -> Counted {
+    count(|done| done.others += 1);
+    Counted(value)
 }
 
 impl Add for Counted {
     type Output = Self;
     fn add(self, b: Self) -> Self {
-        Counted(self.0 + b.0)
+        arithmetic(self.0 + b.0)
     }
 }
 impl Sub for Counted {
     type Output = Self;
     fn sub(self, b: Self) -> Self {
-        Counted(self.0 - b.0)
+        arithmetic(self.0 - b.0)
     }
 }
 impl Mul for Counted {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
-        Counted(self.0 * b.0)
+        arithmetic(self.0 * b.0)
     }
 }
 impl Div for Counted {
     type Output = Self;
     fn div(self, b: Self) -> Self {
-        Counted(self.0 / b.0)
+        arithmetic(self.0 / b.0)
     }
 }
 impl Neg for Counted {
@@ -71,11 +121,11 @@ impl Real for Counted {
         Counted(x)
     }
     fn sqrt(self) -> Self {
-        count(&ROOTS);
+        count(|done| done.roots += 1);
         Counted(self.0.sqrt())
     }
     fn sin_cos(self) -> (Self, Self) {
-        count(&SINES);
+        count(|done| done.sines += 1);
         let (s, c) = Real::sin_cos(self.0);
         (Counted(s), Counted(c))
     }
@@ -98,15 +148,15 @@ impl Precise for Counted {
         Counted(self.0.round())
     }
     fn atan2(self, x: Self) -> Self {
-        Counted(Precise::atan2(self.0, x.0))
+        other(Precise::atan2(self.0, x.0))
     }
     fn exp(self) -> Self {
-        Counted(Precise::exp(self.0))
+        other(Precise::exp(self.0))
     }
     fn exp_m1(self) -> Self {
-        Counted(Precise::exp_m1(self.0))
+        other(Precise::exp_m1(self.0))
     }
     fn ln(self) -> Self {
-        Counted(Precise::ln(self.0))
+        other(Precise::ln(self.0))
     }
 }

@@ -90,7 +90,7 @@ mod words;
 
 pub use case::{Case, cases};
 pub use cost::check_cost;
-pub use counted::Counted;
+pub use counted::{Counted, Operations, operations};
 pub use error::LawsError;
 pub use finding::Finding;
 pub use force::check_force;

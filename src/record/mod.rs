@@ -192,30 +192,39 @@ impl Record {
     /// # Errors
     /// A window that is not ascending, or without samples.
     pub fn windows(&self, windows: &[(f64, f64)]) -> Result<Record, RecordError> {
-        if let Some(&(start, end)) =
-            windows.iter().find(|(start, end)| !(start.is_finite() && end.is_finite() && start < end))
-        {
-            return Err(RecordError::Window { start, end });
-        }
         let mut cut = self.of_none();
-        for (start, end) in joined(windows) {
-            cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
-            let before = cut.segments.len();
-            for s in &self.segments {
-                let (a, b) =
-                    (s.times.partition_point(|&t| t < start), s.times.partition_point(|&t| t <= end));
-                if a < b {
-                    cut.segments.push(s.part(a..b));
-                }
-            }
-            if cut.segments.len() == before {
+        for window in joined(windows)? {
+            let part = self.span(window);
+            if part.segments.is_empty() {
                 let first = self.segments.first().and_then(|s| s.times.first()).copied().unwrap_or(0.0);
                 let last = self.segments.last().and_then(|s| s.times.last()).copied().unwrap_or(0.0);
                 let file = self.segments.first().map_or(String::new(), |s| s.source.clone());
-                return Err(RecordError::Empty { file, window: Some((start, end)), span: (first, last) });
+                return Err(RecordError::Empty { file, window: Some(window), span: (first, last) });
             }
+            cut.add(part);
         }
         Ok(cut)
+    }
+
+    /// The part from `start` to `end`, s, both included; without segments where there are no samples.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn span(&self, (start, end): (f64, f64)) -> Record {
+        let mut cut = self.of_none();
+        cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
+        for s in &self.segments {
+            let (a, b) = (s.times.partition_point(|&t| t < start), s.times.partition_point(|&t| t <= end));
+            if a < b {
+                cut.segments.push(s.part(a..b));
+            }
+        }
+        cut
+    }
+
+    /// The samples and findings of another part of the same files.
+    fn add(&mut self, other: Record) {
+        self.segments.extend(other.segments);
+        self.findings.extend(other.findings);
     }
 
     /// The parts from `start` to `end` (s, both included) of the segment of each span, a segment each.
@@ -239,14 +248,21 @@ impl Record {
     /// This record and another of the same body.
     #[must_use]
     pub fn join(mut self, other: Record) -> Record {
-        self.segments.extend(other.segments);
-        self.findings.extend(other.findings);
-        self.unused.extend(other.unused);
+        self.unused.extend_from_slice(&other.unused);
+        self.add(other);
         self
     }
 }
 /// The windows with those that overlap made one, in the order of their starts.
-fn joined(windows: &[(f64, f64)]) -> Vec<(f64, f64)> {
+///
+/// # Errors
+/// A window that is not ascending.
+#[doc(hidden)]
+pub fn joined(windows: &[(f64, f64)]) -> Result<Vec<(f64, f64)>, RecordError> {
+    let is_window = |(start, end): &(f64, f64)| start.is_finite() && end.is_finite() && start < end;
+    if let Some(&(start, end)) = windows.iter().find(|window| !is_window(window)) {
+        return Err(RecordError::Window { start, end });
+    }
     let mut sorted = windows.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut joined: Vec<(f64, f64)> = Vec::new();
@@ -256,5 +272,5 @@ fn joined(windows: &[(f64, f64)]) -> Vec<(f64, f64)> {
             _ => joined.push((start, end)),
         }
     }
-    joined
+    Ok(joined)
 }

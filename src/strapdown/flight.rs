@@ -1,13 +1,13 @@
 //! Free flights: the exact motion of a known body through the rates of a record.
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::Sensor;
 use super::budget::{Budget, Estimate};
 use super::error::StrapdownError;
-use crate::body::{State, StateError};
-use crate::flow::{FreeMotion, TimeError};
+use crate::body::StateError;
+use crate::flow::{DerivativeError, FreeMotion, StateDerivative, TurnAxes};
 use crate::inertia::Inertia;
 
 /// Samples that the first fit goes through; each further one goes through twice as many.
@@ -16,8 +16,6 @@ const FIRST: usize = 16;
 const ROUNDS: usize = 20;
 /// The rounds end where the start changes by less than this part of itself.
 const SETTLED: f64 = 1e-10;
-/// Differences of the start, relative: third root of the rounding, the best for central differences.
-const DIFFERENCE: f64 = 6e-6;
 /// Residuals that exceed the known errors of the sensor so many times, and this part of the rates, contradict the body.
 const CONTRADICTION: (f64, f64) = (5.0, 0.05);
 
@@ -31,9 +29,9 @@ pub enum FlightError {
     /// The start.
     #[error(transparent)]
     Start(#[from] StateError),
-    /// A time of the record.
+    /// A time of the record, or the motion there, which next to the unstable axis no start determines.
     #[error(transparent)]
-    Time(#[from] TimeError),
+    Motion(#[from] DerivativeError),
     /// Too few samples.
     #[error("{samples} samples: the start of a free flight needs at least {FIRST}")]
     Few {
@@ -61,7 +59,8 @@ pub enum FlightError {
 /// The free motion of a body that fits a record of instantaneous rates best: least squares over its angular velocity at the first sample.
 ///
 /// The rates tell nothing of the attitude at the start, which is given; between them and the attitude stands the exact motion, and the
-/// noise of all samples is averaged over the three numbers that are free. Derivatives are central differences of the exact motion.
+/// noise of all samples is averaged over the three numbers that are free. Derivatives are those of the
+/// [exact motion](FreeMotion::at_with_derivative).
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -83,21 +82,27 @@ pub struct Flight {
     attitude: UnitQuaternion<f64>,
     start: f64,
     omega: Vector3<f64>,
-    /// Covariances of the angular velocity at the start by noise, bias, scale and stamps.
+    /// R of the derivatives: R⁻¹R⁻ᵀ is the covariance of the angular velocity at the start by noise of variance 1.
+    root: Matrix3<f64>,
+    /// Covariances of R times that angular velocity by noise, bias, scale and stamps.
     covariances: [Matrix3<f64>; 4],
     residual: f64,
     chi2_per_dof: f64,
 }
 
-/// Sums of one round.
-struct Normal {
-    matrix: Matrix3<f64>,
-    gradient: Vector3<f64>,
+/// The least squares of one round: derivatives J and residuals r as `R x = d`, by Householder's reflections. JᵀJ would not do: J
+/// grows with the time in one direction and not in the others.
+struct Squares {
+    root: Matrix3<f64>,
+    right: Vector3<f64>,
     square: f64,
-    /// Jᵀ and Jᵀ diag ω, summed, and Σ JᵀẇẇᵀJ.
-    bias: Matrix3<f64>,
-    scale: Matrix3<f64>,
-    stamps: Matrix3<f64>,
+}
+
+impl Squares {
+    /// The step to the least square.
+    fn change(&self) -> Option<Vector3<f64>> {
+        self.root.solve_upper_triangular(&self.right).filter(|change| change.iter().all(|x| x.is_finite()))
+    }
 }
 
 impl Flight {
@@ -123,16 +128,16 @@ impl Flight {
         let elapsed: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
         let mut omega = rates[0];
         let mut count = FIRST;
-        let (normal, inverse) = loop {
-            let (found, normal, inverse) = settle(inertia, &elapsed[..count], &rates[..count], omega)?;
+        let squares = loop {
+            let (found, squares) = settle(inertia, &elapsed[..count], &rates[..count], omega)?;
             omega = found;
             if count == samples {
-                break (normal, inverse);
+                break squares;
             }
             count = (2 * count).min(samples);
         };
         let dof = (3 * samples - 3) as f64;
-        let mean_square = normal.square / dof;
+        let mean_square = squares.square / dof;
         let square = |x: f64| x * x;
         let rate = (rates.iter().map(Vector3::norm_squared).sum::<f64>() / (3 * samples) as f64).sqrt();
         let known = (square(sensor.noise) + square(sensor.bias) + square(sensor.scale * rate)).sqrt();
@@ -142,15 +147,25 @@ impl Flight {
         }
         // what is left beyond the noise counts as noise
         let noise = mean_square.max(square(sensor.noise));
-        let spread = |by: &Matrix3<f64>, sigma: f64| {
-            let response = inverse * by;
-            response * response.transpose() * square(sigma)
-        };
+        let root = squares.root;
+        let [mut bias, mut scale, mut stamps] = [Matrix3::zeros(); 3];
+        let known = along(inertia, &elapsed, omega)?;
+        for (k, (rate, slope)) in known.iter().enumerate() {
+            let Some(share) = root.tr_solve_upper_triangular(&slope.transpose()) else {
+                return Err(FlightError::Undetermined);
+            };
+            bias += share;
+            scale += share * Matrix3::from_diagonal(rate);
+            let (low, high) = (k.saturating_sub(1), (k + 1).min(samples - 1));
+            let moved = share * ((known[high].0 - known[low].0) / (elapsed[high] - elapsed[low]));
+            stamps += moved * moved.transpose();
+        }
+        let spread = |by: Matrix3<f64>, sigma: f64| by * by.transpose() * square(sigma);
         let covariances = [
-            inverse * noise,
-            spread(&normal.bias, sensor.bias),
-            spread(&normal.scale, sensor.scale),
-            inverse * normal.stamps * inverse * square(sensor.stamps),
+            Matrix3::identity() * noise,
+            spread(bias, sensor.bias),
+            spread(scale, sensor.scale),
+            stamps * square(sensor.stamps),
         ];
         let chi2_per_dof = if sensor.noise > 0.0 { mean_square / square(sensor.noise) } else { f64::NAN };
         Ok(Flight {
@@ -158,6 +173,7 @@ impl Flight {
             attitude,
             start: times[0],
             omega,
+            root,
             covariances,
             residual,
             chi2_per_dof,
@@ -187,58 +203,48 @@ impl Flight {
     /// # Errors
     /// A time that is not finite or out of reach of the motion.
     pub fn at(&self, times: &[f64]) -> Result<Vec<Estimate>, FlightError> {
-        let elapsed: Vec<f64> = times.iter().map(|t| t - self.start).collect();
-        let states = |omega: Vector3<f64>| -> Result<Vec<State>, FlightError> {
-            Ok(FreeMotion::from_omega(&self.inertia, self.attitude, omega)?.at_many(&elapsed)?)
-        };
-        let step = DIFFERENCE * self.omega.norm();
-        let unit = |axis: usize| Vector3::ith(axis, step);
-        let middle = states(self.omega)?;
-        let mut sides = Vec::with_capacity(3);
-        for axis in 0..3 {
-            sides.push([states(self.omega - unit(axis))?, states(self.omega + unit(axis))?]);
-        }
-        let estimate = |k: usize, state: &State| {
-            let column = |axis: usize| {
-                let [low, high] = &sides[axis];
-                let turn = high[k].attitude * low[k].attitude.conjugate();
-                Vector3::from(turn.logarithm()) / (2.0 * step)
-            };
-            let response = Matrix3::from_columns(&[column(0), column(1), column(2)]);
+        let motion = FreeMotion::from_omega(&self.inertia, self.attitude, self.omega)?;
+        let estimate = |time: f64| -> Result<Estimate, FlightError> {
+            let there = motion.at_with_derivative(time - self.start)?;
+            let [turn, _] = by_start(&there);
+            let response = self.root.tr_solve_upper_triangular(&turn.transpose());
+            let response = response.ok_or(FlightError::Undetermined)?.transpose();
             let [noise, bias, scale, stamps] = self.covariances.map(|c| response * c * response.transpose());
-            Estimate {
-                time: times[k],
-                attitude: state.rotation(),
-                budget: Budget::of(Vector3::zeros(), noise, bias, scale, stamps),
-            }
+            let budget = Budget::of(Vector3::zeros(), noise, bias, scale, stamps);
+            Ok(Estimate { time, attitude: there.state().rotation(), budget })
         };
-        Ok(middle.iter().enumerate().map(|(k, state)| estimate(k, state)).collect())
+        times.iter().map(|time| estimate(*time)).collect()
     }
 }
 
-/// The start nearest to the rates, from one near it, with the sums there and their inverse matrix.
+/// The turn in space and the angular velocity by the angular velocity at the start.
+fn by_start(there: &StateDerivative) -> [Matrix3<f64>; 2] {
+    let whole = there.by_omega(TurnAxes::Space);
+    [0, 3].map(|row| whole.fixed_view::<3, 3>(row, 3).into_owned())
+}
+
+/// The start nearest to the rates, from one near it, with the least squares there.
 fn settle(
     inertia: &Inertia,
     elapsed: &[f64],
     rates: &[Vector3<f64>],
     mut omega: Vector3<f64>,
-) -> Result<(Vector3<f64>, Normal, Matrix3<f64>), FlightError> {
-    let mut best: Option<(Vector3<f64>, Normal, Matrix3<f64>)> = None;
+) -> Result<(Vector3<f64>, Squares), FlightError> {
+    let mut best: Option<(Vector3<f64>, Squares)> = None;
     for _ in 0..ROUNDS {
-        let normal = normal(inertia, elapsed, rates, omega)?;
-        let inverse = normal.matrix.try_inverse().ok_or(FlightError::Undetermined)?;
-        let change = inverse * normal.gradient;
-        let better = best.as_ref().is_none_or(|(_, known, _)| normal.square < known.square);
+        let squares = squares(inertia, elapsed, rates, omega)?;
+        let change = squares.change().ok_or(FlightError::Undetermined)?;
+        let better = best.as_ref().is_none_or(|(_, known)| squares.square < known.square);
         match (better, &best) {
             // half way back to the best so far
-            (false, Some((known, ..))) if (omega - known).norm() > SETTLED * known.norm() => {
+            (false, Some((known, _))) if (omega - known).norm() > SETTLED * known.norm() => {
                 omega = (omega + known) * 0.5;
                 continue;
             }
             (false, _) => break,
             (true, _) => {}
         }
-        best = Some((omega, normal, inverse));
+        best = Some((omega, squares));
         if change.norm() <= SETTLED * omega.norm() {
             break;
         }
@@ -247,48 +253,37 @@ fn settle(
     best.ok_or(FlightError::Undetermined)
 }
 
-fn normal(
+/// An angular velocity with its derivative.
+type Known = (Vector3<f64>, Matrix3<f64>);
+
+/// The angular velocities of the motion with their derivatives by that at the start.
+fn along(inertia: &Inertia, elapsed: &[f64], omega: Vector3<f64>) -> Result<Vec<Known>, FlightError> {
+    let motion = FreeMotion::from_omega(inertia, UnitQuaternion::identity(), omega)?;
+    let known = elapsed.iter().map(|t| {
+        let there = motion.at_with_derivative(*t)?;
+        Ok((there.omega_body(), by_start(&there)[1]))
+    });
+    known.collect()
+}
+
+fn squares(
     inertia: &Inertia,
     elapsed: &[f64],
     rates: &[Vector3<f64>],
     omega: Vector3<f64>,
-) -> Result<Normal, FlightError> {
-    let of = |omega: Vector3<f64>| -> Result<Vec<Vector3<f64>>, FlightError> {
-        let motion = FreeMotion::from_omega(inertia, UnitQuaternion::identity(), omega)?;
-        let states = motion.at_many(elapsed)?;
-        Ok(states.iter().map(|state| motion.body().omega_body(state)).collect())
-    };
-    let step = DIFFERENCE * omega.norm();
-    if step == 0.0 {
+) -> Result<Squares, FlightError> {
+    if omega.norm() == 0.0 {
         return Err(FlightError::Undetermined);
     }
-    let middle = of(omega)?;
-    let mut slopes = Vec::with_capacity(3);
-    for axis in 0..3 {
-        let (low, high) = (of(omega - Vector3::ith(axis, step))?, of(omega + Vector3::ith(axis, step))?);
-        slopes.push([low, high]);
+    let (mut square, mut stacked) = (0.0, SMatrix::<f64, 6, 4>::zeros());
+    for ((rate, slope), measured) in along(inertia, elapsed, omega)?.iter().zip(rates) {
+        let rest = measured - rate;
+        square += rest.norm_squared();
+        stacked.fixed_view_mut::<3, 3>(3, 0).copy_from(slope);
+        stacked.fixed_view_mut::<3, 1>(3, 3).copy_from(&rest);
+        let reduced = stacked.qr().r();
+        stacked.fixed_view_mut::<3, 4>(0, 0).copy_from(&reduced.fixed_rows::<3>(0));
     }
-    let zero = Matrix3::zeros();
-    let mut sums = Normal {
-        matrix: zero,
-        gradient: Vector3::zeros(),
-        square: 0.0,
-        bias: zero,
-        scale: zero,
-        stamps: zero,
-    };
-    for k in 0..elapsed.len() {
-        let column = |axis: usize| (slopes[axis][1][k] - slopes[axis][0][k]) / (2.0 * step);
-        let transposed = Matrix3::from_columns(&[column(0), column(1), column(2)]).transpose();
-        let rest = rates[k] - middle[k];
-        sums.matrix += transposed * transposed.transpose();
-        sums.gradient += transposed * rest;
-        sums.square += rest.norm_squared();
-        sums.bias += transposed;
-        sums.scale += transposed * Matrix3::from_diagonal(&middle[k]);
-        let (low, high) = (k.saturating_sub(1), (k + 1).min(elapsed.len() - 1));
-        let moved = transposed * ((middle[high] - middle[low]) / (elapsed[high] - elapsed[low]));
-        sums.stamps += moved * moved.transpose();
-    }
-    Ok(sums)
+    let root = stacked.fixed_view::<3, 3>(0, 0).into_owned();
+    Ok(Squares { root, right: stacked.fixed_view::<3, 1>(0, 3).into_owned(), square })
 }

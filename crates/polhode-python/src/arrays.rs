@@ -181,14 +181,22 @@ pub(crate) fn attitude(value: Option<&Bound<'_, PyAny>>, order: Order) -> PyResu
 }
 
 /// A rotation that is given as an attitude is.
-pub(crate) fn rotation(value: &Bound<'_, PyAny>, order: Order) -> PyResult<UnitQuaternion<f64>> {
-    let q = attitude(Some(value), order)?;
+pub(crate) fn rotation(
+    name: &'static str,
+    value: &Bound<'_, PyAny>,
+    order: Order,
+) -> PyResult<UnitQuaternion<f64>> {
+    unit(name, attitude(Some(value), order)?)
+}
+
+/// The rotation of a quaternion of any norm but zero.
+pub(crate) fn unit(name: &'static str, q: Quat<f64>) -> PyResult<UnitQuaternion<f64>> {
     let size = q.magnitude();
     if size.is_finite() && size > 0.0 {
         Ok(q.map(|part| part / size).into())
     } else {
         let parts = q.components();
-        Err(refused(format!("attitude: {parts:?} is no rotation; a quaternion is finite and not zero")))
+        Err(refused(format!("{name}: {parts:?} is no rotation; a quaternion is finite and not zero")))
     }
 }
 
@@ -204,11 +212,11 @@ pub(crate) fn matrix<'py>(py: Python<'py>, m: &Matrix3<f64>) -> PyResult<Bound<'
 }
 
 /// Room for `count` numbers, where there is so much memory.
-pub(crate) fn room(count: usize) -> PyResult<Vec<f64>> {
-    let mut values = Vec::new();
-    let found = values.try_reserve_exact(count);
-    found.map_err(|_| PyMemoryError::new_err(format!("no memory for {count} numbers")))?;
-    Ok(values)
+pub(crate) fn room<T>(count: usize) -> PyResult<Vec<T>> {
+    let mut rows = Vec::new();
+    let found = rows.try_reserve_exact(count);
+    found.map_err(|_| PyMemoryError::new_err(format!("no memory for {count} rows")))?;
+    Ok(rows)
 }
 
 /// `scipy`'s rotations of quaternions in this order.

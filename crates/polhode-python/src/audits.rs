@@ -16,9 +16,10 @@ use crate::arrays::{Numbers, array};
 use crate::bodies::Body;
 use crate::calm::aside;
 use crate::error::{of, refused};
-use crate::files::{Trajectory, named_rate};
 use crate::json::python;
 use crate::shown;
+use crate::tables::Trajectory;
+use crate::units::named_rate;
 
 /// A verdict on a trajectory. It has what the JSON of `polhode audit` has as attributes, and prints as the command does.
 ///

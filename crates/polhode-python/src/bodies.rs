@@ -14,7 +14,8 @@ use crate::arrays::{Numbers, Order, array, attitude, matrix};
 use crate::error::{of, refused};
 use crate::files::heard;
 use crate::forces::{Force, Raised};
-use crate::masses::{Link, MassProperties};
+use crate::links::Link;
+use crate::masses::MassProperties;
 
 /// A rigid body: inertia in body axes, kg m^2, and the forces that act on it.
 ///

@@ -19,6 +19,15 @@ pub(crate) fn aside<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
 ) -> PyResult<T> {
+    aside_telling(py, work, || Ok(()))
+}
+
+/// The same; `tell` is called now and then, and what it raises ends the work too.
+pub(crate) fn aside_telling<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+    tell: impl Fn() -> PyResult<()>,
+) -> PyResult<T> {
     let (sender, mut receiver) = channel();
     let stop = Arc::new(AtomicBool::new(false));
     let told = Arc::clone(&stop);
@@ -32,7 +41,8 @@ pub(crate) fn aside<T: Send + 'static>(
         match found {
             Ok(found) => return Ok(found),
             Err(RecvTimeoutError::Timeout) => {
-                py.check_signals().inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+                let heard = py.check_signals().and_then(|()| tell());
+                heard.inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
             }
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(refused("the computation ended without a result; please report it"));

@@ -1,7 +1,7 @@
 //! Many bodies, each from its own start.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 use polhode::body::{Clock, State};
@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Order, quaternions, room};
 use crate::bodies::Body;
-use crate::calm::aside;
+use crate::calm::aside_telling;
 use crate::error::{of, refused};
 use crate::runs::named;
 use crate::states::States;
@@ -119,20 +119,28 @@ impl Ensemble {
     }
 
     /// The exact motion of every member at `times`, s, of either sign: attitudes (times, members, 4), angular velocities (times,
-    /// members, 3).
-    fn at(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<States> {
+    /// members, 3). `progress` is called as `progress(stage, done, seconds)` some times a second.
+    #[pyo3(signature = (times, *, progress = None))]
+    fn at(
+        &self,
+        py: Python<'_>,
+        times: &Bound<'_, PyAny>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<States> {
         let times = Numbers::of("times", times)?.list()?;
         let mut rows = Collected::new(times.len(), self.members.len())?;
         let (members, order, instants) = (Arc::clone(&self.members), self.order, times.clone());
-        let found = aside(py, move |stop| {
+        let tell = rows.told(progress);
+        let work = move |stop: &AtomicBool| {
             let found = members.at(&instants, |part: &Rows| rows.take(part, order, stop));
             found.map(|()| rows)
-        })?;
+        };
+        let found = aside_telling(py, work, tell)?;
         self.finished(py, found, times)
     }
 
     /// Every member at `times`, s, ascending from `start_time` on, each a whole number of steps of `step`, s, by `method`.
-    #[pyo3(signature = (method, *, times, step, start_time = 0.0))]
+    #[pyo3(signature = (method, *, times, step, start_time = 0.0, progress = None))]
     fn run(
         &self,
         py: Python<'_>,
@@ -140,6 +148,7 @@ impl Ensemble {
         times: &Bound<'_, PyAny>,
         step: f64,
         start_time: f64,
+        progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<States> {
         let times = Numbers::of("times", times)?.list()?;
         let method = named(method, None)?;
@@ -151,11 +160,13 @@ impl Ensemble {
         }
         let mut rows = Collected::new(times.len(), self.members.len())?;
         let (members, order) = (Arc::clone(&self.members), self.order);
-        let found = aside(py, move |stop| {
+        let tell = rows.told(progress);
+        let work = move |stop: &AtomicBool| {
             let each = |part: &Rows| rows.take(part, order, stop);
             let found = members.advance(method.as_ref(), clock, &steps, each);
             found.map(|()| rows)
-        })?;
+        };
+        let found = aside_telling(py, work, tell)?;
         self.finished(py, found, times)
     }
 
@@ -200,16 +211,29 @@ struct Collected {
     members: usize,
     attitudes: Vec<f64>,
     omegas: Vec<f64>,
+    /// Rows that are done, of how many.
+    done: Arc<AtomicUsize>,
+    all: usize,
 }
 
 impl Collected {
     fn new(times: usize, members: usize) -> PyResult<Self> {
         let count = times.checked_mul(members).filter(|count| *count < usize::MAX / 4);
         let count = count.ok_or_else(|| refused("times: too many for so many members"))?;
-        let (mut attitudes, mut omegas) = (room(4 * count)?, room(3 * count)?);
+        let (mut attitudes, mut omegas) = (room::<f64>(4 * count)?, room::<f64>(3 * count)?);
         attitudes.resize(4 * count, 0.0);
         omegas.resize(3 * count, 0.0);
-        Ok(Collected { members, attitudes, omegas })
+        Ok(Collected { members, attitudes, omegas, done: Arc::default(), all: count })
+    }
+
+    /// What tells `progress`, if it is given, how much is done.
+    fn told<'a>(&self, progress: Option<&'a Bound<'_, PyAny>>) -> impl Fn() -> PyResult<()> + use<'a> {
+        let (done, all) = (Arc::clone(&self.done), self.all.max(1) as f64);
+        move || {
+            let Some(progress) = progress else { return Ok(()) };
+            let share = done.load(Ordering::Relaxed) as f64 / all;
+            progress.call1(("ensemble", share, progress.py().None())).map(drop)
+        }
     }
 
     fn take(&mut self, part: &Rows, order: Order, stop: &AtomicBool) -> Result<(), Stopped> {
@@ -228,6 +252,7 @@ impl Collected {
             for (to, omega) in w.as_chunks_mut::<3>().0.iter_mut().zip(part.omegas(time)) {
                 *to = (*omega).into();
             }
+            self.done.fetch_add(part.states(time).len(), Ordering::Relaxed);
         }
         Ok(())
     }

@@ -2,181 +2,29 @@
 
 use std::path::{Path, PathBuf};
 
-use polhode::audit::{self, Attitudes, Convention};
-use polhode::units::TimeUnit;
-use polhode::{inertia, record};
+use polhode::inertia;
 use polhode_files::error::hearing;
 use polhode_files::examined::Examined;
 use polhode_files::given::Given;
-use polhode_files::mesh::{MeshOptions, length_unit};
+use polhode_files::mesh::MeshOptions;
 use polhode_files::robots::{self, Language};
 use polhode_files::times::{Asked, Source, TimesColumn};
 use polhode_files::{ColumnNames, Error, ReadOptions, SignedAxes, bodies, given, trajectory, twins};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
 
 use crate::arrays::array;
 use crate::columns;
 use crate::error::{refused, warn};
-use crate::masses::{Link, Links, MassProperties, amount, closing};
+use crate::links::{Link, Links};
+use crate::masses::{MassProperties, amount, closing};
+use crate::tables::{Rows, record_of, trajectories};
+use crate::units::{named_length, named_rate, named_time, positive, share};
 
 /// What `work` finds without the interpreter; its remarks are Python warnings.
 pub(crate) fn heard<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T, Error> + Send) -> PyResult<T> {
     let (found, remarks) = py.detach(|| hearing(work));
     remarks.iter().try_for_each(|remark| warn(py, remark))?;
     found.map_err(refused)
-}
-
-/// Where the rows of a table come from.
-enum Rows {
-    File(PathBuf),
-    Text(String),
-}
-
-impl Rows {
-    fn name(&self) -> String {
-        match self {
-            Rows::File(path) => polhode_files::text::visible(&path.display().to_string()).into_owned(),
-            Rows::Text(_) => "columns".into(),
-        }
-    }
-
-    fn trajectory(&self, options: &ReadOptions) -> Result<trajectory::FoundTrajectory, Error> {
-        match self {
-            Rows::File(path) => trajectory::read(path, options),
-            Rows::Text(text) => trajectory::of_text(text, &self.name(), options),
-        }
-    }
-
-    fn record(&self, options: &ReadOptions) -> Result<polhode_files::record::FoundRecord, Error> {
-        match self {
-            Rows::File(path) => polhode_files::record::open(path, options, None),
-            Rows::Text(text) => polhode_files::record::read(text, &self.name(), options),
-        }
-    }
-}
-
-/// A trajectory of a file, with what its names claim of the convention: for `audit`.
-#[pyclass(frozen, module = "polhode")]
-pub(crate) struct Trajectory {
-    pub(crate) file: String,
-    pub(crate) id: Option<String>,
-    pub(crate) rows: audit::Trajectory,
-    pub(crate) claims: Convention,
-    pub(crate) counts_steps: bool,
-    /// Of the file, with its first body.
-    pub(crate) remark: Option<String>,
-    comments: Vec<String>,
-}
-
-#[pymethods]
-impl Trajectory {
-    /// Name of the body, where the file has several.
-    #[getter]
-    fn id(&self) -> Option<&str> {
-        self.id.as_deref()
-    }
-
-    /// Times, s, or counts of steps where the file tells no step.
-    #[getter]
-    fn t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, self.rows.times.clone(), &[self.rows.times.len()])
-    }
-
-    /// Attitudes as they stand in the columns: quaternions (n, 4), matrices (n, 3, 3), Euler angles or Rodrigues parameters (n, 3).
-    #[getter]
-    fn attitude<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let Some(attitude) = &self.rows.attitude else { return Ok(None) };
-        let n = attitude.len();
-        match attitude {
-            Attitudes::Quaternions(rows) => array(py, rows.as_flattened().to_vec(), &[n, 4]),
-            Attitudes::Matrices(rows) => array(py, rows.as_flattened().to_vec(), &[n, 3, 3]),
-            Attitudes::Angles(rows) | Attitudes::Rodrigues(rows) => {
-                array(py, rows.as_flattened().to_vec(), &[n, 3])
-            }
-            _ => return Ok(None),
-        }
-        .map(Some)
-    }
-
-    /// Angular velocities as they stand in the columns: (n, 3).
-    #[getter]
-    fn omega<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        vectors(py, self.rows.rates.as_deref())
-    }
-
-    /// Angular momenta as they stand in the columns: (n, 3).
-    #[getter]
-    fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        vectors(py, self.rows.momentum.as_deref())
-    }
-
-    /// Lines above the header that begin with #, without that.
-    #[getter]
-    fn comments(&self) -> Vec<String> {
-        self.comments.clone()
-    }
-
-    fn __len__(&self) -> usize {
-        self.rows.times.len()
-    }
-
-    fn __repr__(&self) -> String {
-        let of = self.id.as_ref().map_or(String::new(), |id| format!(", body {id}"));
-        let attitude = self.rows.attitude.as_ref().map(Attitudes::name);
-        let rates = self.rows.rates.as_ref().map(|_| "angular velocity");
-        let momentum = self.rows.momentum.as_ref().map(|_| "angular momentum");
-        let columns: Vec<&str> = [attitude, rates, momentum].into_iter().flatten().collect();
-        format!("Trajectory({}{of}: {} rows of {})", self.file, self.rows.times.len(), columns.join(", "))
-    }
-}
-
-fn vectors<'py>(py: Python<'py>, rows: Option<&[[f64; 3]]>) -> PyResult<Option<Bound<'py, PyAny>>> {
-    rows.map(|rows| array(py, rows.as_flattened().to_vec(), &[rows.len(), 3])).transpose()
-}
-
-/// A record of measured angular velocities, in segments without gaps: for `fit`.
-#[pyclass(frozen, module = "polhode", from_py_object)]
-#[derive(Clone)]
-pub(crate) struct Record(pub(crate) record::Record);
-
-#[pymethods]
-impl Record {
-    /// Number of segments without gaps.
-    #[getter]
-    fn segments(&self) -> usize {
-        self.0.segments.len()
-    }
-
-    /// Times of all segments, s.
-    #[getter]
-    fn t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let times: Vec<f64> = self.0.segments.iter().flat_map(|segment| segment.times()).copied().collect();
-        let n = times.len();
-        array(py, times, &[n])
-    }
-
-    /// Angular velocities of all segments in sensor axes, rad/s: (n, 3).
-    #[getter]
-    fn rates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let rates = self.0.segments.iter().flat_map(|segment| segment.rates());
-        let rates: Vec<f64> = rates.flat_map(|rate| rate.iter().copied().collect::<Vec<_>>()).collect();
-        let n = rates.len() / 3;
-        array(py, rates, &[n, 3])
-    }
-
-    fn __len__(&self) -> usize {
-        self.0.samples()
-    }
-
-    fn __repr__(&self) -> String {
-        let segments = self.0.segments.len();
-        format!(
-            "Record({} samples in {segments} segment{})",
-            self.0.samples(),
-            if segments == 1 { "" } else { "s" }
-        )
-    }
 }
 
 /// What is read of a file, which its ending tells.
@@ -372,87 +220,4 @@ fn mass_properties(py: Python<'_>, found: inertia::MassProperties) -> PyResult<B
 fn links(py: Python<'_>, found: Vec<Given>) -> PyResult<Bound<'_, PyAny>> {
     let found = found.into_iter().map(|given| Py::new(py, Link(Examined::link(given, None))));
     Ok(Bound::new(py, Links(found.collect::<PyResult<_>>()?))?.into_any())
-}
-
-fn record_of<'py>(py: Python<'py>, rows: &Rows, options: &ReadOptions) -> PyResult<Bound<'py, PyAny>> {
-    let found = heard(py, || rows.record(options))?;
-    if let Some(first) = found.skipped.first() {
-        let (count, samples) = (found.skipped.len(), found.record.samples());
-        warn(py, &format!("rows left out: {count}, beside {samples} that are read; the first: {first}"))?;
-    }
-    found.remarks.iter().try_for_each(|remark| warn(py, remark))?;
-    Ok(Bound::new(py, Record(found.record))?.into_any())
-}
-
-fn trajectories<'py>(
-    py: Python<'py>,
-    rows: &Rows,
-    found: trajectory::FoundTrajectory,
-) -> PyResult<Bound<'py, PyAny>> {
-    let mut remark = found.remark();
-    let trajectory::FoundTrajectory { bodies, claims, counts_steps, comments, .. } = found;
-    let file = rows.name();
-    let one = |(id, rows)| {
-        let comments = comments.clone();
-        let remark = remark.take();
-        Bound::new(py, Trajectory { file: file.clone(), id, rows, claims, counts_steps, remark, comments })
-    };
-    let several = bodies.len() > 1;
-    let mut all: Vec<Bound<'py, Trajectory>> = bodies.into_iter().map(one).collect::<PyResult<_>>()?;
-    match all.pop() {
-        Some(only) if !several => Ok(only.into_any()),
-        last => {
-            let named = PyDict::new(py);
-            for trajectory in all.into_iter().chain(last) {
-                let id = trajectory.get().id.clone();
-                named.set_item(id, trajectory)?;
-            }
-            Ok(named.into_any())
-        }
-    }
-}
-
-pub(crate) fn positive(name: &'static str, value: f64) -> PyResult<f64> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err(refused(format!("{name}: {value:?}; it must be a finite number above 0")))
-    }
-}
-
-fn share(value: f64) -> PyResult<f64> {
-    if (0.0..1.0).contains(&value) {
-        Ok(value)
-    } else {
-        Err(refused(format!("skip_rows: {value:?} is no share of the rows; give a number from 0 to below 1")))
-    }
-}
-
-pub(crate) fn named_rate(text: &str) -> PyResult<polhode::units::RateUnit> {
-    let unknown = || refused(format!("rate_unit: '{text}'; known: rad/s, deg/s, rpm"));
-    polhode::units::RateUnit::named(text).ok_or_else(unknown)
-}
-
-fn named_time(unit: &Bound<'_, PyAny>) -> PyResult<TimeUnit> {
-    match unit.cast::<PyString>() {
-        Ok(text) => {
-            let text = text.to_string_lossy();
-            let unknown = || {
-                refused(format!(
-                    "time_unit: '{text}'; known: s, ms, us, ns, min, h, d, or a number of seconds"
-                ))
-            };
-            TimeUnit::named(&text).ok_or_else(unknown)
-        }
-        Err(_) => positive("time_unit", unit.extract()?).map(TimeUnit::Multiple),
-    }
-}
-
-fn named_length(unit: &Bound<'_, PyAny>) -> PyResult<f64> {
-    match unit.cast::<PyString>() {
-        Ok(text) => {
-            length_unit(&text.to_string_lossy()).map_err(|error| refused(format!("length_unit: {error}")))
-        }
-        Err(_) => positive("length_unit", unit.extract()?),
-    }
 }

@@ -5,21 +5,29 @@
 
 mod advice;
 mod arrays;
+mod attitudes;
 mod audits;
 mod bodies;
 mod calm;
 mod columns;
 mod ensembles;
 mod error;
+mod estimates;
 mod files;
 mod fits;
 mod forces;
 mod json;
+mod links;
 mod masses;
 mod motions;
 mod runs;
+mod samples;
 mod shown;
 mod states;
+mod tables;
+mod through;
+mod tops;
+mod units;
 
 use pyo3::prelude::*;
 
@@ -31,6 +39,8 @@ mod _polhode {
     #[pymodule_export]
     use super::advice::{Advice, advise};
     #[pymodule_export]
+    use super::attitudes::{Attitudes, attitude};
+    #[pymodule_export]
     use super::audits::{Verdict, verdict_on};
     #[pymodule_export]
     use super::bodies::{Body, catalogue_names, named_body};
@@ -39,17 +49,29 @@ mod _polhode {
     #[pymodule_export]
     use super::error::{PolhodeError, PolhodeWarning};
     #[pymodule_export]
-    use super::files::{Record, Trajectory, read};
+    use super::estimates::Estimate;
     #[pymodule_export]
-    use super::fits::{Estimate, fitted};
+    use super::files::read;
+    #[pymodule_export]
+    use super::fits::fitted;
     #[pymodule_export]
     use super::forces::{Force, drag, force, gravity, gravity_gradient, torque_body, torque_space};
     #[pymodule_export]
-    use super::masses::{Link, Links, MassProperties, diagnose, mesh, solid};
+    use super::links::{Link, Links, diagnose};
     #[pymodule_export]
-    use super::motions::{FreeMotion, LagrangeTop};
+    use super::masses::{MassProperties, mesh, solid};
     #[pymodule_export]
-    use super::runs::{Samples, methods, run};
+    use super::motions::FreeMotion;
+    #[pymodule_export]
+    use super::runs::{methods, run};
+    #[pymodule_export]
+    use super::samples::Samples;
     #[pymodule_export]
     use super::states::States;
+    #[pymodule_export]
+    use super::tables::{Record, Trajectory};
+    #[pymodule_export]
+    use super::through::{FittedMotion, Interpolation, Passage};
+    #[pymodule_export]
+    use super::tops::LagrangeTop;
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use polhode::body::{Point, State};
-use polhode::flow::{self, TimeError};
-use polhode::num::Dd;
+use polhode::flow::{self, TimeError, TurnAxes};
+use polhode::num::{Covariance, Dd};
 use polhode_pages::character::quantities;
 use polhode_pages::table::{Cell, Column, Table, row};
 use pyo3::prelude::*;
@@ -11,15 +11,16 @@ use pyo3::types::{PyDict, PyFloat, PyInt};
 
 use crate::arrays::{Numbers, Order, array, room};
 use crate::bodies::{Body, Start};
-use crate::calm::Listener;
+use crate::calm::{Listener, aside};
 use crate::error::{of, refused};
 use crate::states::States;
+use crate::through::{self, FittedMotion, Passage};
 
 /// Times between two looks for Ctrl-C.
 const PART: usize = 1 << 12;
 
 /// What both motions answer.
-trait Motion: Sync {
+pub(crate) trait Motion: Sync {
     fn each_at(&self, times: &[f64], each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError>;
     /// At a time that is within reach.
     fn point_at(&self, t: f64) -> Point<f64>;
@@ -37,20 +38,20 @@ trait Motion: Sync {
             }
         }
         let Numbers { shape, values: times, .. } = Numbers::of("t", t)?;
-        let (mut attitudes, mut omegas) = (room(4 * times.len())?, room(3 * times.len())?);
+        let (mut attitudes, mut omegas) = (room::<[f64; 4]>(times.len())?, room::<[f64; 3]>(times.len())?);
         py.detach(|| {
             let mut listener = Listener::new();
             for part in times.chunks(PART) {
                 let each = |x: State, omega: Vector3<f64>| {
-                    attitudes.extend_from_slice(&order.write(x.attitude));
-                    omegas.extend_from_slice(omega.as_slice());
+                    attitudes.push(order.write(x.attitude));
+                    omegas.push(omega.into());
                 };
                 self.each_at(part, each).map_err(of("t"))?;
                 listener.listen(0.0)?;
             }
             Ok::<_, PyErr>(())
         })?;
-        States::many(py, &shape, times, attitudes, omegas, order)
+        States::many(py, &shape, times, attitudes.into_flattened(), omegas.into_flattened(), order)
     }
 }
 
@@ -108,12 +109,7 @@ impl FreeMotion {
     ) -> PyResult<Self> {
         let order = Order::of(order)?;
         let body = Body::of("inertia", inertia)?;
-        if let Some(force) = body.body.forces().first() {
-            let name = force.name();
-            return Err(refused(format!(
-                "inertia: {name} acts on the body; a free motion has no forces; take LagrangeTop, or run"
-            )));
-        }
+        through::unforced("inertia", &body)?;
         let start = body.start(&Start { omega, attitude, momentum, order })?;
         Ok(FreeMotion { motion: flow::FreeMotion::from_point(body.body.inertia(), start), start, order })
     }
@@ -122,6 +118,125 @@ impl FreeMotion {
     #[pyo3(signature = (t, *, order = None))]
     fn at(&self, t: &Bound<'_, PyAny>, order: Option<&str>) -> PyResult<States> {
         self.motion.states(t, order.map_or(Ok(self.order), Order::of)?)
+    }
+
+    /// The states at `t`, and their derivatives by the start and by the inertia tensor, in closed form: a pair of states and an array of
+    /// shape (..., 6, 12).
+    ///
+    /// Rows: the rotation vector of the attitude, rad, then the angular velocity (`by="omega"`) or the angular momentum (`by="momentum"`) in
+    /// body axes. Columns: the same at t = 0, then the entries xx, yy, zz, xy, xz, yz of the tensor. `axes`, `space` or `body`, are those
+    /// of the rotation vectors.
+    ///
+    /// >>> import polhode
+    /// >>> motion = polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3])
+    /// >>> states, derivative = motion.at_with_derivative([0, 100])
+    /// >>> derivative.shape
+    /// (2, 6, 12)
+    #[pyo3(signature = (t, *, by = "omega", axes = "space", order = None))]
+    fn at_with_derivative<'py>(
+        &self,
+        t: &Bound<'py, PyAny>,
+        by: &str,
+        axes: &str,
+        order: Option<&str>,
+    ) -> PyResult<(States, Bound<'py, PyAny>)> {
+        let axes = turn_axes(axes)?;
+        let is_omega = match by {
+            "omega" => true,
+            "momentum" => false,
+            _ => return Err(refused(format!("by: '{by}'; it must be 'omega' or 'momentum'"))),
+        };
+        let states = self.at(t, order)?;
+        let (shape, found) = self.at_each(t, |t| {
+            let there = self.motion.at_with_derivative(t).map_err(of("t"))?;
+            Ok(if is_omega { there.by_omega(axes) } else { there.by_momentum(axes) })
+        })?;
+        let entries = found.iter().flat_map(|matrix| matrix.transpose().as_slice().to_vec()).collect();
+        Ok((states, array(t.py(), entries, &[&shape[..], &[6, 12]].concat())?))
+    }
+
+    /// The covariance of the state at `t` from that of the start, by the derivative: a pair of an array (..., 6, 6), rows and columns the
+    /// rotation vector and the angular velocity, and of the nonlinearity (...): what the second order adds, in standard deviations.
+    /// Where that is not far below 1, the covariance says little.
+    ///
+    /// `covariance` is that of rotation vector, angular velocity and the entries xx, yy, zz, xy, xz, yz of the tensor at t = 0: (12, 12), or
+    /// (6, 6) where the tensor is known. `torque`: (3, 3), the spectral density of a white torque in body axes, (N m)^2 s.
+    ///
+    /// >>> import numpy, polhode
+    /// >>> motion = polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3])
+    /// >>> state, nonlinearity = motion.covariance(100, numpy.diag([1e-4] * 3 + [1e-5] * 3) ** 2)
+    /// >>> state.shape, bool(nonlinearity < 0.01)
+    /// ((6, 6), True)
+    #[pyo3(signature = (t, covariance, *, axes = "space", torque = None))]
+    fn covariance<'py>(
+        &self,
+        t: &Bound<'py, PyAny>,
+        covariance: &Bound<'py, PyAny>,
+        axes: &str,
+        torque: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let matrix = start_covariance(covariance)?;
+        let mut start = flow::StartCovariance::new(matrix, turn_axes(axes)?);
+        if let Some(torque) = torque {
+            let density: [[f64; 3]; 3] = Numbers::of("torque", torque)?.matrix()?.transpose().into();
+            start.torque = Covariance::new(density).map_err(of("torque"))?;
+        }
+        let (shape, found) = self.at_each(t, |t| self.motion.covariance(t, &start).map_err(of("t")))?;
+        let entries = found.iter().flat_map(|found| found.state.transpose().as_slice().to_vec()).collect();
+        let nonlinearity = found.iter().map(|found| found.nonlinearity).collect();
+        let state = array(t.py(), entries, &[&shape[..], &[6, 6]].concat())?;
+        Ok((state, array(t.py(), nonlinearity, &shape)?))
+    }
+
+    /// All free motions through two attitudes `attitude` (2, 4) at two times `t`, s, that turn at most `turns` times between them, in
+    /// ascending order of their turns.
+    ///
+    /// >>> import polhode
+    /// >>> t, motion = [10, 12], polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3])
+    /// >>> found = polhode.FreeMotion.through([1, 2, 3], t, motion.at(t).attitude, turns=1)
+    /// >>> any(abs(passage.omega - motion.at(10).omega).max() < 1e-12 for passage in found)
+    /// True
+    #[staticmethod]
+    #[pyo3(signature = (inertia, t, attitude, *, turns = 1.0, order = "wxyz"))]
+    fn through(
+        inertia: &Bound<'_, PyAny>,
+        t: &Bound<'_, PyAny>,
+        attitude: &Bound<'_, PyAny>,
+        turns: f64,
+        order: &str,
+    ) -> PyResult<Vec<Passage>> {
+        let (order, inertia) = (Order::of(order)?, through::free("inertia", inertia)?);
+        let &[first, second] = through::table(t, attitude, order)?.as_slice() else {
+            return Err(refused("t: two times with two attitudes are wanted; Interpolation takes more"));
+        };
+        let found = aside(t.py(), move |_| flow::FreeMotion::through(&inertia, first, second, turns))?;
+        let passages = found.map_err(refused)?.list.into_iter();
+        Ok(passages.map(|passage| Passage { passage, order }).collect())
+    }
+
+    /// The free motion that fits the attitudes `attitude` (n, 4) at the times `t`, s, best, from a `guess` near it whose t = 0 is the first
+    /// time. `noise`: standard deviation of each component of the error of an attitude, rad.
+    ///
+    /// >>> import numpy, polhode
+    /// >>> t, motion = numpy.arange(50) * 0.5, polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3])
+    /// >>> guess = polhode.FreeMotion([1, 2, 3], [0.41, 1, -0.3])
+    /// >>> fitted = polhode.FreeMotion.fitted([1, 2, 3], t, motion.at(t).attitude, noise=1e-3, guess=guess)
+    /// >>> bool(abs(fitted.motion.at(0).omega - [0.4, 1, -0.3]).max() < 1e-12)
+    /// True
+    #[staticmethod]
+    #[pyo3(signature = (inertia, t, attitude, *, noise, guess, order = "wxyz"))]
+    fn fitted(
+        inertia: &Bound<'_, PyAny>,
+        t: &Bound<'_, PyAny>,
+        attitude: &Bound<'_, PyAny>,
+        noise: f64,
+        guess: &Bound<'_, FreeMotion>,
+        order: &str,
+    ) -> PyResult<FittedMotion> {
+        let (order, inertia) = (Order::of(order)?, through::free("inertia", inertia)?);
+        let (table, guess) = (through::table(t, attitude, order)?, guess.get().motion.clone());
+        let found = aside(t.py(), move |_| flow::FreeMotion::fitted(&inertia, &table, noise, &guess))?;
+        Ok(FittedMotion { found: found.map_err(refused)?, order })
     }
 
     /// The largest |t| at which the phase still has digits, s.
@@ -173,75 +288,49 @@ impl FreeMotion {
     }
 }
 
-/// The motion of Lagrange's top from one start, a symmetric body with its weight on the axis: its exact attitude and angular velocity
-/// at any time.
-///
-/// `body` is one with the force `gravity`, or the name of a top of the catalogue; the start is that of `FreeMotion`.
-///
-/// >>> from polhode import Body, LagrangeTop, gravity
-/// >>> top = LagrangeTop(Body([1.25, 1.25, 0.75], [gravity([0, 0, 2])]), [0, 0, 20], [0.97, 0.24, 0, 0])
-/// >>> top.at(1e6).omega.shape
-/// (3,)
-#[pyclass(frozen, module = "polhode")]
-pub(crate) struct LagrangeTop {
-    top: flow::LagrangeTop,
-    order: Order,
+impl FreeMotion {
+    pub(crate) fn of(motion: flow::FreeMotion, order: Order) -> Self {
+        FreeMotion { start: motion.point_at_dd(Dd::ZERO), motion, order }
+    }
+
+    /// What `each` finds at the times `t`, with their shape.
+    fn at_each<T: Send>(
+        &self,
+        t: &Bound<'_, PyAny>,
+        each: impl Fn(f64) -> PyResult<T> + Sync,
+    ) -> PyResult<(Vec<usize>, Vec<T>)> {
+        let Numbers { shape, values, .. } = Numbers::of("t", t)?;
+        let found = t.py().detach(|| {
+            let mut listener = Listener::new();
+            let heard = |t: &f64| {
+                listener.listen(0.0)?;
+                each(*t)
+            };
+            values.iter().map(heard).collect::<PyResult<Vec<T>>>()
+        })?;
+        Ok((shape, found))
+    }
 }
 
-#[pymethods]
-impl LagrangeTop {
-    #[new]
-    #[pyo3(signature = (body, omega = None, attitude = None, *, momentum = None, order = "wxyz"))]
-    fn new(
-        body: &Bound<'_, PyAny>,
-        omega: Option<&Bound<'_, PyAny>>,
-        attitude: Option<&Bound<'_, PyAny>>,
-        momentum: Option<&Bound<'_, PyAny>>,
-        order: &str,
-    ) -> PyResult<Self> {
-        let order = Order::of(order)?;
-        let body = Body::of("body", body)?;
-        let start = body.start(&Start { omega, attitude, momentum, order })?;
-        let top = match flow::ExactMotion::from_point(&body.body, start).map_err(of("body"))? {
-            flow::ExactMotion::Lagrange(top) => *top,
-            _ => return Err(of("body")(flow::LagrangeError::Free)),
-        };
-        Ok(LagrangeTop { top, order })
+fn turn_axes(text: &str) -> PyResult<TurnAxes> {
+    match text {
+        "space" => Ok(TurnAxes::Space),
+        "body" => Ok(TurnAxes::Body),
+        _ => Err(refused(format!("axes: '{text}'; it must be 'space' or 'body'"))),
     }
+}
 
-    /// Attitudes and angular velocities at the time `t`, s, of either sign: a number, or an array of any shape.
-    #[pyo3(signature = (t, *, order = None))]
-    fn at(&self, t: &Bound<'_, PyAny>, order: Option<&str>) -> PyResult<States> {
-        self.top.states(t, order.map_or(Ok(self.order), Order::of)?)
+/// Of (12, 12), or of (6, 6) and a tensor that is known.
+fn start_covariance(value: &Bound<'_, PyAny>) -> PyResult<Covariance<12>> {
+    let numbers = Numbers::of("covariance", value)?;
+    let n = match numbers.shape.as_slice() {
+        [12, 12] => 12,
+        [6, 6] => 6,
+        _ => return Err(numbers.unexpected("(12, 12) or (6, 6)")),
+    };
+    let mut matrix = [[0.0; 12]; 12];
+    for (row, values) in matrix.iter_mut().zip(numbers.values.chunks(n)) {
+        row[..n].copy_from_slice(values);
     }
-
-    /// The largest |t| at which the phases still have digits, s.
-    #[getter]
-    fn reach(&self) -> f64 {
-        self.top.reach()
-    }
-
-    /// Smallest and largest tilt of the weight moment from the vertical, rad.
-    #[getter]
-    fn turning_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, self.top.turning_points().to_vec(), &[2])
-    }
-
-    /// Time from one largest tilt to the next, s; `None` where the axis does not come back.
-    #[getter]
-    fn nutation_period(&self) -> Option<f64> {
-        self.top.nutation_period()
-    }
-
-    /// Advance of the azimuth over one nutation, rad.
-    #[getter]
-    fn precession_per_nutation(&self) -> Option<f64> {
-        self.top.precession_per_nutation()
-    }
-
-    fn __repr__(&self) -> String {
-        let [least, most] = self.top.turning_points().map(polhode_files::text::short);
-        let period = self.nutation_period().map_or("none".into(), polhode_files::text::short);
-        format!("LagrangeTop(tilt {least} to {most} rad, nutation period {period} s)")
-    }
+    Covariance::new(matrix).map_err(of("covariance"))
 }

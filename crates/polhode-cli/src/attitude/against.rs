@@ -18,6 +18,8 @@ pub(super) struct Reference {
     pub(super) name: String,
     rows: Trajectory,
     reading: Reading,
+    /// Whether a time of the record is one of its own.
+    has_met: bool,
     /// Rows that were compared, and those whose error is inside the 95 % of its budget.
     compared: usize,
     inside: usize,
@@ -40,7 +42,7 @@ impl Reference {
         let mut reading = Reading::default();
         reading.quaternion = Some(found.claims.quaternion.unwrap_or(QuaternionOrder::ScalarFirst));
         reading.attitude = Some(found.claims.attitude.unwrap_or(Direction::BodyToSpace));
-        Ok(Self { name, rows, reading, compared: 0, inside: 0, largest: 0.0, at: 0.0 })
+        Ok(Self { name, rows, reading, has_met: false, compared: 0, inside: 0, largest: 0.0, at: 0.0 })
     }
 
     /// Its attitude at the time `t`, s.
@@ -65,9 +67,14 @@ impl Reference {
         Some(angle)
     }
 
-    /// Refuses a reference that has no row at any of `times`.
-    pub(super) fn check<'a>(&self, mut times: impl Iterator<Item = &'a f64>) -> Result<(), Error> {
-        if times.any(|t| self.at(*t).is_some()) {
+    /// Refuses a reference that had no row at the times so far, `times` the last of them, where there are no more.
+    pub(super) fn check<'a>(
+        &mut self,
+        mut times: impl Iterator<Item = &'a f64>,
+        has_more: bool,
+    ) -> Result<(), Error> {
+        self.has_met |= times.any(|t| self.at(*t).is_some());
+        if self.has_met || has_more {
             return Ok(());
         }
         let (rule, remedy) = ("no row at a time of the record", "name attitudes at the times of the record");

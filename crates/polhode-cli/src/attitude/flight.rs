@@ -4,7 +4,6 @@ use nalgebra::UnitQuaternion;
 use polhode::record::Segment;
 use polhode::strapdown::{Estimate, Flight, FlightError, Kind, Sensor};
 use polhode_files::error::{Error, tell, warn};
-use polhode_files::text::visible;
 
 use super::readings::Readings;
 use crate::flags::body::{Described, described};
@@ -32,10 +31,10 @@ pub(super) fn smoothed(
     let failed = |error: FlightError| match &error {
         FlightError::Contradicted { .. } => Error::Failed(format!(
             "{}: {error}; --window t0,t1 cuts out the flight, --rate-unit and --axes say how it was read",
-            visible(&readings.name)
+            readings.name()
         )),
-        FlightError::Samples(samples) => readings.refused(segment, samples),
-        _ => Error::Input(format!("{}: --body: {error}", visible(&readings.name))),
+        FlightError::Samples(samples) => readings.refused(segment, 0, samples),
+        _ => Error::Input(format!("{}: --body: {error}", readings.name())),
     };
     let flight = Flight::fit(&inertia, segment.times(), segment.rates(), start, sensor).map_err(failed)?;
     let chi2 = flight

@@ -1,7 +1,9 @@
 //! `polhode attitude`: attitudes from measured angular velocity.
 
 mod against;
+mod columns;
 mod flight;
+mod integration;
 mod readings;
 mod rule;
 mod sensor;
@@ -10,19 +12,20 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use nalgebra::UnitQuaternion;
-use polhode::record::Segment;
-use polhode::rotation::{EulerAngles, EulerSequence, Quat};
-use polhode::strapdown::{Estimate, Kind, Rule, attitudes};
-use polhode_files::error::{Error, tell, warn};
+use polhode::record::{Record, Segment};
+use polhode::rotation::EulerSequence;
+use polhode_files::error::Error;
 use polhode_files::numbers::{quaternion, turn};
+use polhode_files::record::Part;
 use polhode_files::text::rounded;
-use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
+use polhode_pages::table::{Format, RowWriter};
 
 use crate::flags::record::RecordArguments;
 use crate::flags::start::sequence;
 use crate::flags::table::Order;
 use crate::memory;
 use against::Reference;
+use integration::{Course, Found, Integration};
 use readings::{KindArguments, Readings};
 use rule::RuleArguments;
 use sensor::SensorArguments;
@@ -94,37 +97,40 @@ const LOST: f64 = 1.0;
 
 impl Attitude {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        memory::check_files(std::slice::from_ref(&self.record), 4)?;
-        let readings = self.kind.readings(&self.record, &self.reading)?;
+        if self.body.is_some() {
+            // a motion is fitted to all samples together
+            memory::check_files(std::slice::from_ref(&self.record), 4)?;
+        }
+        let mut readings = self.kind.readings(&self.record, &self.reading, self.body.is_some())?;
         let mut reference = self.against.as_deref().map(Reference::read).transpose()?;
-        if let Some(reference) = &reference {
-            reference.check(readings.segments().iter().flat_map(|segment| segment.times()))?;
-        }
-        let noise = self.sensor.noise(&readings);
-        let sensor = self.sensor.sensor(noise);
-        let rule = self.rule.rule(&readings, sensor)?;
-        let mut rows = RowWriter::new(self.table(), self.format, self.out.as_deref(), readings.samples())?;
+        let (mut course, mut integration): (Option<Course>, Option<Integration>) = (None, None);
+        let mut rows = RowWriter::new(self.table(), self.format, self.out.as_deref(), None)?;
         let mut lost: Option<f64> = None;
-        for segment in readings.segments() {
-            let start = self.start(segment, reference.as_ref())?;
-            let found = attitudes(segment.times(), segment.rates(), readings.kind, rule, start, sensor)
-                .map_err(|error| readings.refused(segment, &error))?;
-            let flight = match &self.body {
-                Some(body) => Some(flight::smoothed(body, &readings, segment, start, sensor)?),
-                None => None,
-            };
-            for (k, integrated) in found.iter().enumerate() {
-                let smoothed = flight.as_ref().and_then(|flight| flight.get(k));
-                let estimate = smoothed.unwrap_or(integrated);
-                if estimate.budget.sigma() > LOST {
-                    lost.get_or_insert(estimate.time);
-                }
-                let error = reference.as_mut().map(|reference| reference.error(estimate));
-                let apart = smoothed.map(|smoothed| smoothed.error(integrated.attitude).norm());
-                rows.push(self.cells(estimate, error.flatten(), apart))?;
+        let mut found = Vec::new();
+        while let Some(Part { record, continues, .. }) = readings.next()? {
+            if let Some(reference) = &mut reference {
+                let times = record.segments.iter().flat_map(|segment| segment.times());
+                reference.check(times, readings.has_more())?;
             }
-            self.tell(&readings, segment, rule, start, &found, noise.is_found);
+            for (k, segment) in record.segments.iter().enumerate() {
+                let course = match course {
+                    Some(course) => course,
+                    None => *course.insert(self.course(&readings, &record)?),
+                };
+                let mut current = match integration.take() {
+                    Some(integration) if k == 0 && continues => integration,
+                    before => {
+                        before.into_iter().for_each(|before| before.finish(&mut found));
+                        self.begin(&readings, segment, course, reference.as_ref())?
+                    }
+                };
+                current.push(&readings, segment, &mut found)?;
+                integration = Some(current);
+            }
+            self.write(&mut found, &mut rows, reference.as_mut(), &mut lost)?;
         }
+        integration.into_iter().for_each(|last| last.finish(&mut found));
+        self.write(&mut found, &mut rows, reference.as_mut(), &mut lost)?;
         if let Some(reference) = &reference {
             reference.tell();
         }
@@ -133,10 +139,54 @@ impl Attitude {
             None => Ok(()),
             Some(t) => Err(Error::Failed(format!(
                 "{}: the attitude is lost: from t = {} s on its standard deviation is above {LOST} rad",
-                readings.name,
+                readings.name(),
                 rounded(t)
             ))),
         }
+    }
+
+    /// Noise and rule, by the first samples.
+    fn course(&self, readings: &Readings, record: &Record) -> Result<Course, Error> {
+        let noise = self.sensor.noise(record);
+        let sensor = self.sensor.sensor(noise);
+        let rule = self.rule.rule(readings, record, sensor)?;
+        Ok(Course { rule, sensor, noise_is_found: noise.is_found })
+    }
+
+    fn begin(
+        &self,
+        readings: &Readings,
+        segment: &Segment,
+        course: Course,
+        reference: Option<&Reference>,
+    ) -> Result<Integration, Error> {
+        let start = self.start(segment, reference)?;
+        let smoothed = match &self.body {
+            Some(body) => flight::smoothed(body, readings, segment, start, course.sensor)?,
+            None => Vec::new(),
+        };
+        Integration::new(readings, course, start, smoothed)
+            .map_err(|error| readings.refused(segment, 0, &error))
+    }
+
+    /// Writes what was found, and notes when the attitude is `lost`.
+    fn write(
+        &self,
+        found: &mut Vec<Found>,
+        rows: &mut RowWriter,
+        mut reference: Option<&mut Reference>,
+        lost: &mut Option<f64>,
+    ) -> Result<(), Error> {
+        for Found { integrated, smoothed } in found.drain(..) {
+            let estimate = smoothed.unwrap_or(integrated);
+            if estimate.budget.sigma() > LOST {
+                lost.get_or_insert(estimate.time);
+            }
+            let error = reference.as_mut().map(|reference| reference.error(&estimate));
+            let apart = smoothed.map(|smoothed| smoothed.error(integrated.attitude).norm());
+            rows.push(self.cells(&estimate, error.flatten(), apart))?;
+        }
+        Ok(())
     }
 
     fn start(&self, segment: &Segment, reference: Option<&Reference>) -> Result<UnitQuaternion<f64>, Error> {
@@ -147,105 +197,6 @@ impl Attitude {
                 Error::input("--against", &reference.name, &rule, "give --start w,x,y,z")
             }),
             _ => Ok(UnitQuaternion::identity()),
-        }
-    }
-
-    fn table(&self) -> Table {
-        let mut parts = [
-            ("q_w", "attitude, scalar part"),
-            ("q_x", "attitude, x"),
-            ("q_y", "attitude, y"),
-            ("q_z", "attitude, z"),
-        ];
-        if self.quaternion == Order::Xyzw {
-            parts.rotate_left(1);
-        }
-        let mut columns = vec![Column::new("t", "s", "time").digits(6)];
-        columns.extend(parts.map(|(name, meaning)| Column::new(name, "", meaning).digits(6)));
-        columns.extend([
-            Column::new("attitude_sigma", "rad", "standard deviation of a component, all causes").digits(2),
-            Column::new("truncation", "rad", "estimated error of the method").digits(2),
-        ]);
-        if self.euler.is_some() {
-            columns.push(Column::new("phi", "rad", "first Euler angle").digits(6));
-            columns.push(Column::new("theta", "rad", "second Euler angle").digits(6));
-            columns.push(Column::new("psi", "rad", "third Euler angle").digits(6));
-        }
-        if self.against.is_some() {
-            columns.push(
-                Column::new("attitude_error", "rad", "angle to the attitude of the reference").digits(2),
-            );
-        }
-        if self.body.is_some() {
-            columns.push(
-                Column::new("integrated", "rad", "angle to the attitude by the readings alone").digits(2),
-            );
-        }
-        Table::new("attitude", "Attitudes from the readings of a gyroscope.", columns)
-    }
-
-    fn cells(&self, estimate: &Estimate, error: Option<f64>, apart: Option<f64>) -> Vec<Cell> {
-        let attitude = match self.direction {
-            Direction::BodyToSpace => estimate.attitude,
-            Direction::SpaceToBody => estimate.attitude.inverse(),
-        };
-        let budget = &estimate.budget;
-        let mut parts = Quat::from(attitude).components();
-        if self.quaternion == Order::Xyzw {
-            parts.rotate_left(1);
-        }
-        let [a, b, c, d] = parts;
-        let mut cells: Vec<Cell> =
-            [estimate.time, a, b, c, d, budget.sigma(), budget.truncation].map(Cell::from).to_vec();
-        if let Some(sequence) = self.euler {
-            let EulerAngles { angles, .. } = sequence.angles(estimate.attitude);
-            cells.extend(angles.map(Cell::from));
-        }
-        if self.against.is_some() {
-            cells.push(error.into());
-        }
-        if self.body.is_some() {
-            cells.push(apart.into());
-        }
-        cells
-    }
-
-    /// What was done and what it is worth, in a line.
-    fn tell(
-        &self,
-        readings: &Readings,
-        segment: &Segment,
-        rule: Rule,
-        start: UnitQuaternion<f64>,
-        found: &[Estimate],
-        noise_is_found: bool,
-    ) {
-        let Some(last) = found.last() else { return };
-        let budget = &last.budget;
-        let mut parts = vec![format!("truncation {:.1e} rad", budget.truncation)];
-        let source = if noise_is_found { " (noise found in the record)" } else { "" };
-        parts.push(format!("random walk {:.1e} rad{source}", budget.random_walk));
-        let others = [("bias", budget.bias), ("scale", budget.scale), ("stamps", budget.stamps)];
-        parts.extend(others.iter().filter(|(_, x)| *x > 0.0).map(|(name, x)| format!("{name} {x:.1e} rad")));
-        let line = rule::last(readings.kind, segment, Rule::Trapezoid, start)
-            .map(|other| last.attitude.angle_to(&other))
-            .filter(|_| rule != Rule::Trapezoid);
-        let line = line.map_or(String::new(), |angle| {
-            format!("; the trapezoid with coning would be off by {angle:.1e} rad from it")
-        });
-        tell(
-            "note",
-            &format!("{}; at t = {} s: {}{line}", rule::words(rule), rounded(last.time), parts.join(", ")),
-        );
-        if readings.is_assumed {
-            let mean = rule::last(Kind::Average, segment, rule, start);
-            if let Some(angle) = mean.map(|other| last.attitude.angle_to(&other)) {
-                let message = format!(
-                    "the readings are taken for rates at the times of their rows, as their unit allows; were they averages since the row \
-                     before, the attitude at the end would differ by {angle:.1e} rad; --kind says which they are"
-                );
-                if angle > 2.0 * budget.sigma() { warn(&message) } else { tell("note", &message) }
-            }
         }
     }
 }

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use polhode::record::{Record, Segment};
+use polhode::record::{Segment, Spike};
 use polhode::strapdown::{Kind, StrapdownError};
 use polhode_files::error::{Error, warn};
-use polhode_files::text::{rounded, short, visible};
+use polhode_files::record::{Part, Parts};
+use polhode_files::text::{rounded, short};
 
-use crate::flags::record::RecordArguments;
+use crate::flags::record::{RecordArguments, of_a_row, tell_skipped};
 
 /// What a reading is.
 #[derive(Args, Clone, Debug)]
@@ -41,118 +42,123 @@ impl From<KindName> for Kind {
     }
 }
 
-/// The readings of one record.
+/// The readings of one record, part by part.
 pub(super) struct Readings {
-    pub(super) name: String,
-    pub(super) record: Record,
+    parts: Parts,
     pub(super) kind: Kind,
     /// Whether averages are possible too.
     pub(super) is_assumed: bool,
+    restarts: bool,
+    segments: usize,
+    /// Time of the last sample, s.
+    last: Option<f64>,
+    found: Found,
+}
+
+/// What was found among the rows so far.
+#[derive(Default)]
+struct Found {
+    samples: usize,
+    merged: usize,
+    repeated: usize,
+    saturated: usize,
+    new_readings_rate: Option<f64>,
+    spikes: usize,
+    first_spike: Option<Spike>,
 }
 
 impl KindArguments {
-    /// Those of a file that can be integrated; what is lost or doubtful in it is refused by name.
-    pub(super) fn readings(&self, path: &Path, reading: &RecordArguments) -> Result<Readings, Error> {
-        let (record, are_increments, skipped) = reading.readings(path)?;
-        let name = record.segments.first().map_or(String::new(), |segment| segment.source().to_string());
-        let named = record.segments.first().is_some_and(|segment| segment.rate_unit().is_some());
-        let kind = match (self.kind.map(Kind::from), are_increments) {
+    /// Those of a file that can be integrated; what is lost or doubtful in it is refused by name. `whole`: all in one part.
+    pub(super) fn readings(
+        &self,
+        path: &Path,
+        reading: &RecordArguments,
+        whole: bool,
+    ) -> Result<Readings, Error> {
+        let parts = reading.parts(path)?;
+        let name = parts.name();
+        let kind = match (self.kind.map(Kind::from), parts.are_increments()) {
             (Some(kind @ (Kind::Rate | Kind::Average)), true) => {
                 let rule = format!("the unit of the columns of {name} is that of an angle: increments");
                 return Err(Error::input("--kind", kind.name(), &rule, "give --kind increment"));
             }
             (Some(kind), _) => kind,
             (None, true) => Kind::Increment,
-            (None, false) if named => Kind::Rate,
+            (None, false) if parts.rate_unit().is_some() => Kind::Rate,
             (None, false) => {
-                let rule = "cannot be told: the columns have no unit, and readings may be rates, increments or averages";
+                let rule = format!(
+                    "the kind of the readings of {name} cannot be told: the columns have no unit, and readings may be rates, \
+                     increments or averages"
+                );
                 let remedy = "give --kind rate (rad/s at the time of the row), increment (rad since the row before) or average \
                               (rad/s, mean since the row before)";
-                return Err(Error::input(
-                    "--kind",
-                    "",
-                    &format!("the kind of the readings of {name} {rule}"),
-                    remedy,
-                ));
+                return Err(Error::input("--kind", "", &rule, remedy));
             }
         };
-        let is_assumed = self.kind.is_none() && kind == Kind::Rate;
-        let readings = Readings { name, record, kind, is_assumed };
-        readings.check(skipped)?;
-        let readings = readings.without_spikes();
-        readings.check_gaps(self.restart)?;
-        Ok(readings)
+        let parts = if whole { parts.whole() } else { parts };
+        // an increment that stands out is none that may be left out, as its turn would be lost
+        let parts = if kind == Kind::Rate { parts.without_spikes() } else { parts };
+        Ok(Readings {
+            parts,
+            kind,
+            is_assumed: self.kind.is_none() && kind == Kind::Rate,
+            restarts: self.restart,
+            segments: 0,
+            last: None,
+            found: Found::default(),
+        })
     }
 }
 
 impl Readings {
-    pub(super) fn segments(&self) -> &[Segment] {
-        &self.record.segments
+    pub(super) fn name(&self) -> &str {
+        self.parts.name()
     }
 
-    pub(super) fn samples(&self) -> usize {
-        self.record.samples()
+    /// Whether there are further parts.
+    pub(super) fn has_more(&self) -> bool {
+        self.parts.has_more()
+    }
+
+    /// The next part; behind the last, what was left out is told.
+    pub(super) fn next(&mut self) -> Result<Option<Part>, Error> {
+        let Some(part) = self.parts.next().map_err(of_a_row)? else {
+            self.tell();
+            return Ok(None);
+        };
+        self.found.add(&part);
+        self.check()?;
+        for (k, segment) in part.record.segments.iter().enumerate() {
+            if !(k == 0 && part.continues) {
+                self.check_gap(segment)?;
+                self.segments += 1;
+            }
+            self.last = segment.times().last().copied().or(self.last);
+        }
+        Ok(Some(part))
     }
 
     /// Every increment and every average counts: none may be missing or merged.
-    fn check(&self, skipped: usize) -> Result<(), Error> {
-        let (merged, repeated) = (self.record.merged(), self.record.repeated());
+    fn check(&self) -> Result<(), Error> {
         let refused = |count: usize, what: &str| {
             let rule = format!("{count} {what}; of {}s each one counts", self.kind);
-            Err(Error::input(&self.name, "", &rule, "correct the record; rates alone may miss a row"))
+            Err(Error::input(self.name(), "", &rule, "correct the record; rates alone may miss a row"))
         };
-        if self.kind != Kind::Rate {
-            return match (skipped, merged, repeated) {
-                (0, 0, 0) => Ok(()),
-                (0, 0, count) => refused(count, "rows repeat the reading before"),
-                (0, count, _) => refused(count, "rows have the time of the row before"),
-                (count, ..) => refused(count, "rows cannot be read"),
-            };
+        match (self.parts.skipped().0, self.found.merged, self.found.repeated) {
+            _ if self.kind == Kind::Rate => Ok(()),
+            (0, 0, 0) => Ok(()),
+            (0, 0, count) => refused(count, "rows repeat the reading before"),
+            (0, count, _) => refused(count, "rows have the time of the row before"),
+            (count, ..) => refused(count, "rows cannot be read"),
         }
-        if merged > 0 {
-            warn(&format!("{merged} rows have the time of the row before: their rates are averaged"));
-        }
-        if repeated > 0 {
-            let rate = self
-                .record
-                .new_readings_rate()
-                .map_or(String::new(), |hz| format!(", {hz:.4} new ones a second"));
-            warn(&format!("{repeated} rows repeat the reading before and are left out{rate}"));
-        }
-        Ok(())
     }
 
-    /// Rates that stand out of their neighbours are left out; an increment is not, as its turn would be lost.
-    fn without_spikes(self) -> Self {
-        let cleaned = (self.kind == Kind::Rate).then(|| self.record.without_spikes()).flatten();
-        let Some((spikes, record)) = cleaned else { return self };
-        if let Some(first) = spikes.first() {
-            let count = spikes.len();
-            warn(&format!(
-                "{count} spikes are left out, the first at line {} ({} s)",
-                first.line,
-                short(first.time)
-            ));
-        }
-        Readings { record, ..self }
-    }
-
-    fn check_gaps(&self, restart: bool) -> Result<(), Error> {
-        let saturated = self.record.saturated();
-        let [first, second, ..] = self.segments() else {
-            if saturated > 0 {
-                warn(&format!(
-                    "{saturated} samples at the end of the sensor's range are left out, at an end of the record"
-                ));
-            }
+    /// Refuses a `segment` that does not go on where the samples before it end.
+    fn check_gap(&self, segment: &Segment) -> Result<(), Error> {
+        let (Some(end), Some(start), false) = (self.last, segment.times().first(), self.restarts) else {
             return Ok(());
         };
-        if restart {
-            return Ok(());
-        }
-        let (Some(end), Some(start)) = (first.times().last(), second.times().first()) else { return Ok(()) };
-        let line = second.lines().first().copied().unwrap_or(0);
-        let cause = match saturated {
+        let cause = match self.found.saturated {
             0 => "a gap".to_string(),
             count => {
                 format!("a part in which the sensor is at the end of its range ({count} samples in all)")
@@ -160,40 +166,73 @@ impl Readings {
         };
         let rule = format!(
             "{cause} from {} s to {} s: how the body turned in it is not known, and the attitude behind it neither",
-            short(*end),
+            short(end),
             short(*start)
         );
-        let place = format!("{}, line {line}", visible(&self.name));
         Err(Error::input(
-            &place,
+            &self.place(segment, 0),
             "",
             &rule,
             "give --window t0,t1 for one part, or --restart to begin again behind each gap",
         ))
     }
 
-    /// A refusal of the library, at its line.
-    pub(super) fn refused(&self, segment: &Segment, error: &StrapdownError) -> Error {
-        let at = |sample: &usize| segment.lines().get(*sample).copied().unwrap_or(0);
-        let place = |sample| format!("{}, line {}", visible(&self.name), at(sample));
+    /// What was left out or changed.
+    fn tell(&self) {
+        let Found { samples, merged, repeated, saturated, new_readings_rate, spikes, .. } = self.found;
+        tell_skipped(self.parts.skipped(), samples);
+        if merged > 0 {
+            warn(&format!("{merged} rows have the time of the row before: their rates are averaged"));
+        }
+        if repeated > 0 {
+            let rate = new_readings_rate.map_or(String::new(), |hz| format!(", {hz:.4} new ones a second"));
+            warn(&format!("{repeated} rows repeat the reading before and are left out{rate}"));
+        }
+        if let Some(first) = self.found.first_spike {
+            let (line, time) = (first.line, short(first.time));
+            warn(&format!("{spikes} spikes are left out, the first at line {line} ({time} s)"));
+        }
+        if saturated > 0 && self.segments < 2 {
+            warn(&format!(
+                "{saturated} samples at the end of the sensor's range are left out, at an end of the record"
+            ));
+        }
+    }
+
+    /// Name and line of a sample.
+    fn place(&self, segment: &Segment, sample: usize) -> String {
+        format!("{}, line {}", self.name(), segment.lines().get(sample).copied().unwrap_or(0))
+    }
+
+    /// A refusal of the library, at the line of the `sample` of a segment that it is of.
+    pub(super) fn refused(&self, segment: &Segment, sample: usize, error: &StrapdownError) -> Error {
+        let place = self.place(segment, sample);
         match error {
-            StrapdownError::HalfTurn { sample, angle, .. } => {
+            StrapdownError::HalfTurn { angle, .. } => {
                 let rule = format!(
                     "a turn by {} rad since the row before, more than half a turn (pi): samples so far apart cannot be told \
                      from those of another motion (aliasing)",
                     rounded(*angle)
                 );
-                Error::input(
-                    &place(sample),
-                    "",
-                    &rule,
-                    "check --rate-unit and --time-unit, or sample more often",
-                )
+                Error::input(&place, "", &rule, "check --rate-unit and --time-unit, or sample more often")
             }
-            StrapdownError::NotFinite { sample, .. } | StrapdownError::Order { sample, .. } => {
-                Error::Input(format!("{}: {error}", place(sample)))
+            StrapdownError::NotFinite { .. } | StrapdownError::Order { .. } => {
+                Error::Input(format!("{place}: {error}"))
             }
-            _ => Error::Input(format!("{}: {error}", visible(&self.name))),
+            _ => Error::Input(format!("{}: {error}", self.name())),
         }
+    }
+}
+
+impl Found {
+    fn add(&mut self, part: &Part) {
+        let record = &part.record;
+        self.samples += record.samples();
+        self.merged += record.merged();
+        self.repeated += record.repeated();
+        self.saturated += record.saturated();
+        self.new_readings_rate = self.new_readings_rate.or(record.new_readings_rate());
+        self.spikes += part.spikes.len();
+        self.first_spike = self.first_spike.or(part.spikes.first().copied());
     }
 }

@@ -1,9 +1,8 @@
 //! By which rule, and what another one would have said.
 
 use clap::{Args, ValueEnum};
-use nalgebra::UnitQuaternion;
-use polhode::record::Segment;
-use polhode::strapdown::{Kind, MOST_SAMPLES, Rule, Sensor, Strapdown, choose};
+use polhode::record::Record;
+use polhode::strapdown::{MOST_SAMPLES, Rule, Sensor, StrapdownError, choose};
 use polhode_files::error::Error;
 
 use super::readings::Readings;
@@ -47,20 +46,21 @@ enum RivalName {
 }
 
 impl RuleArguments {
-    pub(super) fn rule(&self, readings: &Readings, sensor: Sensor) -> Result<Rule, Error> {
+    /// As asked for, or chosen by the longest segment of the `record`.
+    pub(super) fn rule(&self, readings: &Readings, record: &Record, sensor: Sensor) -> Result<Rule, Error> {
         let rule = match self.rule {
             Some(RivalName::Hold) => Rule::Hold,
             Some(RivalName::Trapezoid) => Rule::Trapezoid,
             Some(RivalName::TwoSpeed) => Rule::TwoSpeed,
             Some(RivalName::RungeKutta) => Rule::RungeKutta,
-            None => return self.magnus(readings, sensor),
+            None => return self.magnus(readings, record, sensor),
         };
         rule.check(readings.kind)
             .map_err(|error| Error::Input(format!("--rule: {error}; name another rule")))?;
         Ok(rule)
     }
 
-    fn magnus(&self, readings: &Readings, sensor: Sensor) -> Result<Rule, Error> {
+    fn magnus(&self, readings: &Readings, record: &Record, sensor: Sensor) -> Result<Rule, Error> {
         let order = match self.order {
             Order::Auto => None,
             Order::Two => Some(2),
@@ -75,13 +75,19 @@ impl RuleArguments {
         if let (Some(order), Some(samples)) = (order, self.samples) {
             return Rule::magnus(order, samples).map_err(|error| Error::Input(format!("--samples: {error}")));
         }
-        let longest = readings.segments().iter().max_by_key(|segment| segment.times().len());
+        let longest = record.segments.iter().max_by_key(|segment| segment.times().len());
         let Some(segment) = longest else {
             return Rule::magnus(2, 2).map_err(polhode_files::error::unexpected);
         };
         let chosen = choose(segment.times(), segment.rates(), readings.kind, order, self.samples, sensor);
         chosen.map_err(|error| match error.downcast_ref() {
-            Some(refusal) => readings.refused(segment, refusal),
+            Some(refusal) => {
+                let sample = match refusal {
+                    StrapdownError::HalfTurn { sample, .. } => *sample,
+                    _ => 0,
+                };
+                readings.refused(segment, sample, refusal)
+            }
             None => Error::Input(error.to_string()),
         })
     }
@@ -93,19 +99,4 @@ pub(super) fn words(rule: Rule) -> String {
         Rule::Magnus(magnus) => format!("order {} through {} samples", magnus.order(), magnus.samples()),
         other => other.to_string(),
     }
-}
-
-/// The last attitude of a segment whose readings are of this `kind`, by a rule; `None` where it is not for such readings.
-pub(super) fn last(
-    kind: Kind,
-    segment: &Segment,
-    rule: Rule,
-    start: UnitQuaternion<f64>,
-) -> Option<UnitQuaternion<f64>> {
-    let mut strapdown = Strapdown::new(kind, rule, start.into()).ok()?;
-    for (t, w) in segment.times().iter().zip(segment.rates()) {
-        strapdown.push(*t, (*w).into()).ok()?;
-    }
-    strapdown.finish();
-    Some(strapdown.attitude().into())
 }

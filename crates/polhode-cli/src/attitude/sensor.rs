@@ -1,10 +1,9 @@
 //! What is wrong with the sensor.
 
 use clap::Args;
+use polhode::record::Record;
 use polhode::strapdown::{Sensor, noise};
 use polhode_files::numbers::not_negative;
-
-use super::readings::Readings;
 
 /// Standard deviations of the errors of the sensor.
 #[derive(Args, Clone, Debug)]
@@ -33,13 +32,13 @@ pub(super) struct Noise {
 
 impl SensorArguments {
     /// As given, or that of the longest segment; steps of digital readings count as noise.
-    pub(super) fn noise(&self, readings: &Readings) -> Noise {
+    pub(super) fn noise(&self, record: &Record) -> Noise {
         if let Some(sigma) = self.noise {
             return Noise { sigma, is_found: false };
         }
-        let longest = readings.segments().iter().max_by_key(|segment| segment.times().len());
+        let longest = record.segments.iter().max_by_key(|segment| segment.times().len());
         let found = longest.map_or(0.0, |segment| noise(segment.times(), segment.rates()));
-        let rounding = readings.record.rounding(&readings.record.quanta()).sqrt();
+        let rounding = record.rounding(&record.quanta()).sqrt();
         Noise { sigma: found.max(rounding), is_found: true }
     }
 

@@ -7,9 +7,9 @@ use nalgebra::Vector3;
 use polhode::record::Record;
 use polhode::units::RateUnit;
 use polhode_files::SignedAxes;
-use polhode_files::error::{Error, warn};
+use polhode_files::error::{Error, TableError, warn};
 use polhode_files::numbers::{number, numbers};
-use polhode_files::record::{self, FoundRecord};
+use polhode_files::record::{self, FoundRecord, Parts, ReadOptions};
 
 use super::table::{TableArguments, rate_unit};
 
@@ -75,7 +75,7 @@ impl RecordArguments {
         self.tell_axes();
         let mut all = Record::default();
         for (k, path) in data.iter().enumerate() {
-            let record = self.read(path, wheel, false)?.record;
+            let record = self.read(path, wheel)?.record;
             if let Some(cut) = self.cut(record, k)? {
                 all = all.join(cut);
             }
@@ -83,13 +83,11 @@ impl RecordArguments {
         Ok(all)
     }
 
-    /// One file and its windows, whether its columns are increments by their unit, and how many rows were left out.
-    pub(crate) fn readings(&self, path: &Path) -> Result<(Record, bool, usize), Error> {
+    /// One file and its windows, part by part.
+    pub(crate) fn parts(&self, path: &Path) -> Result<Parts, Error> {
         self.check_windows(1)?;
         self.tell_axes();
-        let found = self.read(path, None, true)?;
-        let record = self.cut(found.record, 0)?.unwrap_or_default();
-        Ok((record, found.are_increments, found.skipped.len()))
+        Parts::open(path, &self.options(true), &self.windows_of(0))
     }
 
     fn check_windows(&self, files: usize) -> Result<(), Error> {
@@ -115,10 +113,14 @@ impl RecordArguments {
         }
     }
 
+    /// The windows of the file with number `k`, s.
+    fn windows_of(&self, k: usize) -> Vec<(f64, f64)> {
+        self.window.iter().filter(|w| w.file.is_none_or(|n| n == k + 1)).map(|w| w.span).collect()
+    }
+
     /// The windows of the file with number `k`; `None` where other files alone have some.
     fn cut(&self, record: Record, k: usize) -> Result<Option<Record>, Error> {
-        let own = self.window.iter().filter(|w| w.file.is_none_or(|n| n == k + 1));
-        let own: Vec<(f64, f64)> = own.map(|w| w.span).collect();
+        let own = self.windows_of(k);
         match (self.window.is_empty(), own.is_empty()) {
             (true, _) => Ok(Some(record)),
             (false, true) => Ok(None),
@@ -126,27 +128,35 @@ impl RecordArguments {
         }
     }
 
-    fn read(&self, path: &Path, wheel: Option<Vector3<f64>>, increments: bool) -> Result<FoundRecord, Error> {
+    fn options(&self, increments: bool) -> ReadOptions {
         let reading = self.table.reading(self.rate_unit).with_most_skipped(self.skip_rows);
-        let reading = reading.with_axes(self.axes).with_increments(increments);
-        let found = record::open(path, &reading, wheel).map_err(|error| match error {
-            Error::Table(error) if error.is_of_a_row() => {
-                let remedy = format!("{}, or allow for more such rows by --skip-rows FRACTION", error.remedy);
-                Error::from(error.with_remedy(&remedy))
-            }
-            other => other,
-        })?;
-        if let Some(first) = found.skipped.first() {
-            let rows = match found.skipped.len() {
-                1 => "1 row is".to_string(),
-                count => format!("{count} rows are"),
-            };
-            let samples = found.record.samples();
-            warn(&format!("{rows} left out beside {samples} that are read; the first: {first}"));
-        }
+        reading.with_axes(self.axes).with_increments(increments)
+    }
+
+    fn read(&self, path: &Path, wheel: Option<Vector3<f64>>) -> Result<FoundRecord, Error> {
+        let found = record::open(path, &self.options(false), wheel).map_err(of_a_row)?;
+        tell_skipped((found.skipped.len(), found.skipped.first()), found.record.samples());
         found.remarks.iter().for_each(|remark| warn(remark));
         Ok(found)
     }
+}
+
+/// A refusal of a row, with the flag that allows for more such rows.
+pub(crate) fn of_a_row(error: Error) -> Error {
+    match error {
+        Error::Table(error) if error.is_of_a_row() => {
+            let remedy = format!("{}, or allow for more such rows by --skip-rows FRACTION", error.remedy);
+            Error::from(error.with_remedy(&remedy))
+        }
+        other => other,
+    }
+}
+
+/// Says how many rows were left out beside so many `samples`.
+pub(crate) fn tell_skipped((count, first): (usize, Option<&TableError>), samples: usize) {
+    let Some(first) = first else { return };
+    let rows = if count == 1 { "1 row is".to_string() } else { format!("{count} rows are") };
+    warn(&format!("{rows} left out beside {samples} that are read; the first: {first}"));
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 mod budgets;
 mod coning;
 mod cost;
-mod counted;
 mod motion;
 mod rules;
 

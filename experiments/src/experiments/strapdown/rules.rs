@@ -1,6 +1,7 @@
 //! The rules side by side: errors at equal samples and at equal arithmetic, and their orders.
 
 use nalgebra::Vector3;
+use polhode::laws::{Counted, operations};
 use polhode::num::Real;
 use polhode::rotation::{Quat, Vec3};
 use polhode::strapdown::{Kind, Rule, Strapdown};
@@ -8,7 +9,6 @@ use polhode_files::error::{Error, unexpected};
 use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Column, Table, row};
 
-use super::counted::{Counted, operations};
 use super::motion::{Known, even};
 use crate::experiment::{Context, Report};
 
@@ -32,6 +32,9 @@ fn rules(kind: Kind) -> Result<Vec<Rule>, Error> {
     Ok(rules)
 }
 
+/// What a sine with its cosine counts: about as many operations as its polynomials take.
+const SINE: u64 = 20;
+
 /// Operations of a rule for one sample: arithmetic on a double that counts.
 pub(super) fn cost(kind: Kind, rule: Rule) -> Result<u64, Error> {
     const SAMPLES: u32 = 400;
@@ -45,9 +48,9 @@ pub(super) fn cost(kind: Kind, rule: Rule) -> Result<u64, Error> {
     // the weights of even steps are worked out with the first
     (0..100).try_for_each(&mut push)?;
     let mut failed = Ok(());
-    let count = operations(|| failed = (100..100 + SAMPLES).try_for_each(&mut push));
+    let done = operations(|| failed = (100..100 + SAMPLES).try_for_each(&mut push));
     failed?;
-    Ok(count / u64::from(SAMPLES))
+    Ok((done.arithmetic + done.roots + SINE * (done.sines + done.others)) / u64::from(SAMPLES))
 }
 
 /// Error, or nothing where the attitude is lost.

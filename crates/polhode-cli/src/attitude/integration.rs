@@ -1,0 +1,115 @@
+//! One segment of a record on its way to attitudes.
+
+use std::vec::IntoIter;
+
+use nalgebra::UnitQuaternion;
+use polhode::record::Segment;
+use polhode::strapdown::{Budgeted, Estimate, Kind, Rule, Sensor, Strapdown, StrapdownError};
+use polhode_files::error::{Error, tell, warn};
+use polhode_files::text::rounded;
+
+use super::readings::Readings;
+use super::rule;
+
+/// How readings become attitudes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Course {
+    pub(super) rule: Rule,
+    pub(super) sensor: Sensor,
+    pub(super) noise_is_found: bool,
+}
+
+/// An attitude by the readings alone, and that of a known body, where there is one.
+pub(super) struct Found {
+    pub(super) integrated: Estimate,
+    pub(super) smoothed: Option<Estimate>,
+}
+
+/// The attitudes of one segment, with what others would have said of it.
+pub(super) struct Integration {
+    course: Course,
+    budgeted: Budgeted,
+    smoothed: IntoIter<Estimate>,
+    /// By the trapezoid with coning, where that is not the rule.
+    trapezoid: Option<Strapdown<f64>>,
+    /// With readings that are averages, where they are only taken for rates.
+    averages: Option<Strapdown<f64>>,
+    last: Option<Estimate>,
+}
+
+impl Integration {
+    /// From the attitude `start` at the first sample; `smoothed` are the attitudes of a known body.
+    pub(super) fn new(
+        readings: &Readings,
+        course: Course,
+        start: UnitQuaternion<f64>,
+        smoothed: Vec<Estimate>,
+    ) -> Result<Self, StrapdownError> {
+        let Course { rule, sensor, .. } = course;
+        let kind = readings.kind;
+        let other = |kind: Kind, rule: Rule, wanted: bool| {
+            wanted.then(|| Strapdown::new(kind, rule, start.into()).ok()).flatten()
+        };
+        Ok(Integration {
+            course,
+            budgeted: Budgeted::new(kind, rule, start, sensor)?,
+            smoothed: smoothed.into_iter(),
+            trapezoid: other(kind, Rule::Trapezoid, rule != Rule::Trapezoid),
+            averages: other(Kind::Average, rule, readings.is_assumed),
+            last: None,
+        })
+    }
+
+    /// Adds the samples of a segment, and to `found` the attitudes that they make known.
+    pub(super) fn push(
+        &mut self,
+        readings: &Readings,
+        segment: &Segment,
+        found: &mut Vec<Found>,
+    ) -> Result<(), Error> {
+        for (k, (t, reading)) in segment.times().iter().zip(segment.rates()).enumerate() {
+            let ready = self.budgeted.push(*t, *reading);
+            for integrated in ready.map_err(|error| readings.refused(segment, k, &error))? {
+                found.push(Found { integrated: *integrated, smoothed: self.smoothed.next() });
+            }
+            for other in [&mut self.trapezoid, &mut self.averages] {
+                if other.as_mut().is_some_and(|other| other.push(*t, (*reading).into()).is_err()) {
+                    *other = None;
+                }
+            }
+        }
+        self.last = found.last().map(|found| found.integrated).or(self.last);
+        Ok(())
+    }
+
+    /// Adds the last attitudes, and says what was done and what it is worth.
+    pub(super) fn finish(mut self, found: &mut Vec<Found>) {
+        for integrated in self.budgeted.finish() {
+            found.push(Found { integrated: *integrated, smoothed: self.smoothed.next() });
+        }
+        let Some(last) = found.last().map(|found| found.integrated).or(self.last) else { return };
+        let budget = &last.budget;
+        let mut parts = vec![format!("truncation {:.1e} rad", budget.truncation)];
+        let source = if self.course.noise_is_found { " (noise found in the record)" } else { "" };
+        parts.push(format!("random walk {:.1e} rad{source}", budget.random_walk));
+        let others = [("bias", budget.bias), ("scale", budget.scale), ("stamps", budget.stamps)];
+        parts.extend(others.iter().filter(|(_, x)| *x > 0.0).map(|(name, x)| format!("{name} {x:.1e} rad")));
+        let apart = |other: Option<Strapdown<f64>>| {
+            let mut other = other?;
+            other.finish();
+            Some(last.attitude.angle_to(&other.attitude().into()))
+        };
+        let line = apart(self.trapezoid).map_or(String::new(), |angle| {
+            format!("; the trapezoid with coning would be off by {angle:.1e} rad from it")
+        });
+        let (rule, time) = (rule::words(self.course.rule), rounded(last.time));
+        tell("note", &format!("{rule}; at t = {time} s: {}{line}", parts.join(", ")));
+        if let Some(angle) = apart(self.averages) {
+            let message = format!(
+                "the readings are taken for rates at the times of their rows, as their unit allows; were they averages since the row \
+                 before, the attitude at the end would differ by {angle:.1e} rad; --kind says which they are"
+            );
+            if angle > 2.0 * budget.sigma() { warn(&message) } else { tell("note", &message) }
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Fitted tensors.
+
+use nalgebra::SMatrix;
+use polhode_fit::{self as fits, Nuisance};
+use polhode_pages::figure::{Curve, Figure, Scale};
+use polhode_pages::table::{Column, Table, row};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{array, matrix};
+use crate::error::refused;
+use crate::shown;
+
+/// A fitted tensor and how far to trust it. Moments are shares of the trace, as free motion tells no size.
+#[pyclass(frozen, module = "polhode")]
+pub(crate) struct Estimate {
+    pub(crate) found: fits::Estimate,
+    pub(crate) flights: Vec<(f64, f64)>,
+    pub(crate) warnings: Vec<String>,
+}
+
+fn six<'py>(py: Python<'py>, m: &SMatrix<f64, 6, 6>) -> PyResult<Bound<'py, PyAny>> {
+    array(py, m.transpose().as_slice().to_vec(), &[6, 6])
+}
+
+fn named<'py>(py: Python<'py>, all: &[Nuisance]) -> PyResult<Bound<'py, PyDict>> {
+    let found = PyDict::new(py);
+    for one in all {
+        let entry = PyDict::new(py);
+        entry.set_item("value", one.value)?;
+        entry.set_item("sigma", one.sigma)?;
+        entry.set_item("unit", one.unit)?;
+        entry.set_item("prior", one.prior)?;
+        let name = one.segment.map_or(one.name.into(), |k| format!("segment_{}_{}", k + 1, one.name));
+        found.set_item(name, entry)?;
+    }
+    Ok(found)
+}
+
+#[pymethods]
+impl Estimate {
+    /// The tensor with trace 1, sensor axes.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        matrix(py, &self.found.shape.tensor())
+    }
+
+    /// Principal moments, ascending, as shares of the trace.
+    #[getter]
+    fn principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.found.principal.to_vec(), &[3])
+    }
+
+    /// Their standard deviations by the noise.
+    #[getter]
+    fn sigma_principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.found.sigma_principal.to_vec(), &[3])
+    }
+
+    /// The rotation from principal axes to those of the sensor, w, x, y, z.
+    #[getter]
+    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let q = self.found.axes.quaternion();
+        array(py, vec![q.w, q.i, q.j, q.k], &[4])
+    }
+
+    /// Standard deviations of the turn about each principal axis, rad; infinite where two moments agree.
+    #[getter]
+    fn sigma_axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.found.sigma_axes.to_vec(), &[3])
+    }
+
+    /// I1/I3 and I2/I3.
+    #[getter]
+    fn ratios<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.found.ratios.to_vec(), &[2])
+    }
+
+    /// Their standard deviations.
+    #[getter]
+    fn sigma_ratios<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.found.sigma_ratios.to_vec(), &[2])
+    }
+
+    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the shape.
+    #[getter]
+    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        six(py, &self.found.covariance)
+    }
+
+    /// The Cramer-Rao bound on it; `None` where there is none.
+    #[getter]
+    fn bound<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.found.bound.as_ref().map(|bound| six(py, bound)).transpose()
+    }
+
+    /// Absolute tensor, kg m^2, sensor axes; `None` where nothing gives its size.
+    #[getter]
+    fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.found.inertia.as_ref().map(|inertia| matrix(py, &inertia.tensor())).transpose()
+    }
+
+    /// Covariance of its entries, (kg m^2)^2.
+    #[getter]
+    fn inertia_covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.found.inertia_covariance.as_ref().map(|covariance| six(py, covariance)).transpose()
+    }
+
+    /// Noise of one component of the rates, rad/s.
+    #[getter]
+    fn noise_sigma(&self) -> f64 {
+        self.found.noise_sigma
+    }
+
+    /// Mean square of the residuals over the noise.
+    #[getter]
+    fn chi2_per_dof(&self) -> f64 {
+        self.found.chi2_per_dof
+    }
+
+    /// I1 + I2 - I3 as a share of the trace.
+    #[getter]
+    fn triangle_slack(&self) -> f64 {
+        self.found.triangle_slack
+    }
+
+    /// Number of samples of the segments that were long enough.
+    #[getter]
+    fn samples(&self) -> usize {
+        self.found.samples
+    }
+
+    /// Number of those segments.
+    #[getter]
+    fn segments(&self) -> usize {
+        self.found.segments
+    }
+
+    /// Half width of the test functions, s.
+    #[getter]
+    fn radius(&self) -> f64 {
+        self.found.radius
+    }
+
+    /// Whether everything but the scale is determined.
+    #[getter]
+    fn identifiable(&self) -> bool {
+        self.found.identifiability.complete()
+    }
+
+    /// What the record leaves undetermined, in words.
+    #[getter]
+    fn null_directions(&self) -> Vec<String> {
+        self.found.identifiability.null_directions.iter().map(ToString::to_string).collect()
+    }
+
+    /// Share of |dw/dt|^2 that the free motion of the answer leaves unexplained.
+    #[getter]
+    fn unexplained(&self) -> Option<f64> {
+        self.found.unexplained
+    }
+
+    /// The shape that explains the record as well if its axes are left-handed.
+    #[getter]
+    fn mirror<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.found.mirror.as_ref().map(|mirror| matrix(py, &mirror.tensor())).transpose()
+    }
+
+    /// The torque that the fit reckons with: a dict by coefficient of `value`, `sigma`, `unit`, `prior`.
+    #[getter]
+    fn torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        named(py, &self.found.torque.coefficients)
+    }
+
+    /// What was estimated of the sensor: a dict of the same kind.
+    #[getter]
+    fn nuisances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        named(py, &self.found.nuisances)
+    }
+
+    /// What errors of an uncalibrated sensor would do to the moments: a dict by error of `size`, `unit`, `principal`, `ratios`.
+    #[getter]
+    fn systematic<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = PyDict::new(py);
+        for line in &self.found.systematic {
+            let entry = PyDict::new(py);
+            entry.set_item("size", line.size)?;
+            entry.set_item("unit", line.unit)?;
+            entry.set_item("principal", array(py, line.principal.to_vec(), &[3])?)?;
+            entry.set_item("ratios", array(py, line.ratios.to_vec(), &[2])?)?;
+            found.set_item(line.name, entry)?;
+        }
+        Ok(found)
+    }
+
+    /// Start and end of each flight that was fitted, s; empty where windows were given.
+    #[getter]
+    fn flights(&self) -> Vec<(f64, f64)> {
+        self.flights.clone()
+    }
+
+    /// What limits the use of the estimate, a sentence each; Python warnings say the same.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
+    fn __repr__(&self) -> String {
+        let columns = vec![
+            Column::new("quantity", "", ""),
+            Column::new("value", "", "").digits(7),
+            Column::new("sigma", "", "").digits(2),
+        ];
+        let mut table = Table::new("fit", "Inertia from measured angular velocity.", columns);
+        for (k, name) in ["I1 / trace", "I2 / trace", "I3 / trace"].into_iter().enumerate() {
+            table.push(row![name, self.found.principal[k], self.found.sigma_principal[k]]);
+        }
+        table.push(row!["I1 / I3", self.found.ratios[0], self.found.sigma_ratios[0]]);
+        table.push(row!["I2 / I3", self.found.ratios[1], self.found.sigma_ratios[1]]);
+        for one in self.found.torque.coefficients.iter().chain(&self.found.nuisances) {
+            table.push(row![one.name, one.value, one.sigma]);
+        }
+        let mut text = table.terminal();
+        for warning in &self.warnings {
+            text += &format!("warning: {warning}\n");
+        }
+        text.trim_end().into()
+    }
+
+    /// The numbers with a figure of the residuals.
+    fn _repr_html_(&self) -> PyResult<String> {
+        let title = "Residuals of the fit";
+        let axes = (("time (s)", Scale::Linear), ("standard deviations", Scale::Linear));
+        let mut figure = Figure::new("residuals", title, axes.0, axes.1).scatter();
+        for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let of = |segment: &fits::Residuals| {
+                segment
+                    .times
+                    .iter()
+                    .copied()
+                    .zip(segment.values.iter().map(move |values| values[k]))
+                    .collect::<Vec<_>>()
+            };
+            figure.series.push(Curve::new(name, self.found.residuals.iter().flat_map(of).collect()).dots());
+        }
+        Ok(shown::page(&self.__repr__(), &figure.svg().map_err(refused)?))
+    }
+}

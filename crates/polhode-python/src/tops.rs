@@ -1,0 +1,83 @@
+//! Lagrange's top.
+
+use polhode::flow;
+use pyo3::prelude::*;
+
+use crate::arrays::{Order, array};
+use crate::bodies::{Body, Start};
+use crate::error::of;
+use crate::motions::Motion;
+use crate::states::States;
+
+/// The motion of Lagrange's top from one start, a symmetric body with its weight on the axis: its exact attitude and angular velocity
+/// at any time.
+///
+/// `body` is one with the force `gravity`, or the name of a top of the catalogue; the start is that of `FreeMotion`.
+///
+/// >>> from polhode import Body, LagrangeTop, gravity
+/// >>> top = LagrangeTop(Body([1.25, 1.25, 0.75], [gravity([0, 0, 2])]), [0, 0, 20], [0.97, 0.24, 0, 0])
+/// >>> top.at(1e6).omega.shape
+/// (3,)
+#[pyclass(frozen, module = "polhode")]
+pub(crate) struct LagrangeTop {
+    top: flow::LagrangeTop,
+    order: Order,
+}
+
+#[pymethods]
+impl LagrangeTop {
+    #[new]
+    #[pyo3(signature = (body, omega = None, attitude = None, *, momentum = None, order = "wxyz"))]
+    fn new(
+        body: &Bound<'_, PyAny>,
+        omega: Option<&Bound<'_, PyAny>>,
+        attitude: Option<&Bound<'_, PyAny>>,
+        momentum: Option<&Bound<'_, PyAny>>,
+        order: &str,
+    ) -> PyResult<Self> {
+        let order = Order::of(order)?;
+        let body = Body::of("body", body)?;
+        let start = body.start(&Start { omega, attitude, momentum, order })?;
+        let top = match flow::ExactMotion::from_point(&body.body, start).map_err(of("body"))? {
+            flow::ExactMotion::Lagrange(top) => *top,
+            _ => return Err(of("body")(flow::LagrangeError::Free)),
+        };
+        Ok(LagrangeTop { top, order })
+    }
+
+    /// Attitudes and angular velocities at the time `t`, s, of either sign: a number, or an array of any shape.
+    #[pyo3(signature = (t, *, order = None))]
+    fn at(&self, t: &Bound<'_, PyAny>, order: Option<&str>) -> PyResult<States> {
+        self.top.states(t, order.map_or(Ok(self.order), Order::of)?)
+    }
+
+    /// The largest |t| at which the phases still have digits, s.
+    #[getter]
+    fn reach(&self) -> f64 {
+        self.top.reach()
+    }
+
+    /// Smallest and largest tilt of the weight moment from the vertical, rad.
+    #[getter]
+    fn turning_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.top.turning_points().to_vec(), &[2])
+    }
+
+    /// Time from one largest tilt to the next, s; `None` where the axis does not come back.
+    #[getter]
+    fn nutation_period(&self) -> Option<f64> {
+        self.top.nutation_period()
+    }
+
+    /// Advance of the azimuth over one nutation, rad.
+    #[getter]
+    fn precession_per_nutation(&self) -> Option<f64> {
+        self.top.precession_per_nutation()
+    }
+
+    fn __repr__(&self) -> String {
+        let [least, most] = self.top.turning_points().map(polhode_files::text::short);
+        let period = self.nutation_period().map_or("none".into(), polhode_files::text::short);
+        format!("LagrangeTop(tilt {least} to {most} rad, nutation period {period} s)")
+    }
+}
