@@ -276,6 +276,9 @@ thresholds! {
         CHANGE: f64 = 10.0, "factor by which damping grows and falls", UNMEASURED;
         MOST_DAMPING: f64 = 1e9, "damping beyond which no step helps", UNMEASURED;
         PANEL: f64 = 0.2, "longest step of the integral of a torque, rad", UNMEASURED;
+        SMALL: f64 = 1e-3, "drag times time below which a series is nearer than the closed form", DERIVED;
+        LINEAR: f64 = 0.1,
+            "largest turn by a constant torque, rad, up to which it is reckoned with to first order", UNMEASURED;
         MIRRORED: f64 = 0.05,
             "share of the largest singular value that the smallest has where rates are the mirror image of attitudes", "a_turn_is_found_and_a_mirror_is_seen";
     }

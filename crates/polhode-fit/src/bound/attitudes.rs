@@ -49,8 +49,13 @@ pub fn foreseen_attitude_bound(
     };
     let start = Start { attitude: Quat::identity(), rate: omega_body / rate };
     let shape = inertia.shape().tensor();
-    let model =
-        Model { x: coordinates(&shape), alignment: Quat::identity(), is_aligned: false, starts: vec![start] };
+    let model = Model {
+        x: coordinates(&shape),
+        alignment: Quat::identity(),
+        is_aligned: false,
+        drag: None,
+        starts: vec![start],
+    };
     // what is left of the attitudes has no part in the information of small deviations
     let levels = Levels { attitude: 1e3, rate: 1.0 };
     let problem = Problem { tracks: &[track], levels, radius: f64::INFINITY, pull: None };

@@ -1,7 +1,7 @@
 //! What would explain the samples better: a torque, or axes of rates and attitudes that move against each other.
 //!
 //! To first order in its coefficients c a torque moves the motion by Φ(t) ∫ Φ(s)⁻¹ (0, J⁻¹ ∂τ/∂c) ds, with Φ the derivative by the
-//! start. Drag in proportion to the momentum is the free motion on a clock that slows down by c t²/2.
+//! start.
 
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 
@@ -26,6 +26,9 @@ type ByTorque = SMatrix<f64, 6, 3>;
 #[derive(Clone, Debug)]
 pub(crate) struct Found {
     pub(crate) values: Vec<f64>,
+    /// By how much they move what all stretches share, and a factor of what their covariance adds to its own.
+    pub(crate) moved: DVector<f64>,
+    pub(crate) spread: DMatrix<f64>,
     /// Their standard deviations.
     pub(crate) sigmas: Vec<f64>,
     /// Gain of log-likelihood.
@@ -34,8 +37,8 @@ pub(crate) struct Found {
 
 /// What each alternative would bring.
 pub(crate) struct Alternatives {
-    /// −c J ω, in units of the rate.
-    pub(crate) drag: Found,
+    /// −c J ω, in units of the rate; `None` where the model has it.
+    pub(crate) drag: Option<Found>,
     /// Over the trace and the squared unit of the rate, axes of the tensor.
     pub(crate) constant: Found,
     /// By how much the axes turn from the first sample of a stretch to its last, rad; without either kind of sample `None`.
@@ -60,7 +63,8 @@ impl Alternatives {
         // it may be the one or the other that moves on the body
         let moving = MOVING.into_iter().filter(|_| model.is_aligned).filter_map(of);
         let moving = moving.max_by(|a, b| a.gain.total_cmp(&b.gain));
-        Some(Alternatives { drag: of(DRAG)?, constant: of(CONSTANT)?, moving })
+        let drag = if model.drag.is_none() { Some(of(DRAG)?) } else { None };
+        Some(Alternatives { drag, constant: of(CONSTANT)?, moving })
     }
 }
 
@@ -78,7 +82,10 @@ fn found(
         gradient.rows(first, count) - mixed.tr_mul(&own.solve(&gradient.rows(0, COMMON).into_owned()));
     let covariance = left.cholesky()?.inverse();
     let values = &covariance * &right;
+    let response = -own.solve(&mixed);
     Some(Found {
+        moved: &response * &values,
+        spread: response * covariance.clone().cholesky()?.l(),
         gain: 0.5 * values.dot(&right),
         sigmas: (0..count).map(|k| covariance[(k, k)].sqrt()).collect(),
         values: values.as_slice().to_vec(),
@@ -94,9 +101,8 @@ fn add(
     information: &mut DMatrix<f64>,
     gradient: &mut DVector<f64>,
 ) -> Option<()> {
-    let motion = Motion::new(&model.x, start)?;
-    let j = tensor(&model.x);
-    let inverse = j.try_inverse()?;
+    let motion = model.motion(start)?;
+    let inverse = tensor(&model.x).try_inverse()?;
     let back = UnitQuaternion::from(model.alignment).to_rotation_matrix().matrix().transpose();
     let span = track.times.last()? - track.times.first()?;
     let both = track.has_attitudes() && track.has_rates();
@@ -108,14 +114,15 @@ fn add(
     };
     let mut sample = |k: usize, moved: &Moved, by_torque: &ByTorque| {
         let t = track.times[k];
-        let acceleration = inverse * (j * moved.rate).cross(&moved.rate);
-        let turn = moved.rate * (-0.5 * t * t);
-        let slowed = moved.rate * -t - acceleration * (0.5 * t * t);
+        let (turn, slowed) = (moved.by_drag.fixed_rows::<3>(0), moved.by_drag.fixed_rows::<3>(3));
         if let Some(attitude) = track.attitudes.get(k) {
             let mut rows = Rows::zeros();
             rows.fixed_view_mut::<3, 11>(0, 0).copy_from(&(back * moved.by.fixed_rows::<3>(0)));
             if model.is_aligned {
                 rows.fixed_view_mut::<3, 3>(0, OWN + 5).fill_with_identity();
+            }
+            if model.drag.is_some() {
+                rows.set_column(ALL - 1, &(back * turn));
             }
             rows.set_column(ALL, &(back * turn));
             rows.fixed_view_mut::<3, 3>(0, ALL + 1).copy_from(&(back * by_torque.fixed_rows::<3>(0)));
@@ -129,6 +136,9 @@ fn add(
         if let Some(rate) = track.rates.get(k) {
             let mut rows = Rows::zeros();
             rows.fixed_view_mut::<3, 11>(0, 0).copy_from(&moved.by.fixed_rows::<3>(3));
+            if model.drag.is_some() {
+                rows.set_column(ALL - 1, &slowed);
+            }
             rows.set_column(ALL, &slowed);
             rows.fixed_view_mut::<3, 3>(0, ALL + 1).copy_from(&by_torque.fixed_rows::<3>(3));
             if both {

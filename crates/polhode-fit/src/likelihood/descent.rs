@@ -36,7 +36,7 @@ pub(crate) struct Problem<'a> {
 impl Problem<'_> {
     /// The normal equations at `model`, and what is to be made least; `None` where there is no such motion.
     pub(crate) fn sums(&self, model: &Model) -> Option<(Vec<Sums>, f64)> {
-        let mut cost = self.pull.map_or(0.0, |pull| pull.squares(&model.x));
+        let mut cost = self.pull.map_or(0.0, |pull| pull.squares(model));
         let mut all = Vec::with_capacity(self.tracks.len());
         for (track, start) in self.tracks.iter().zip(&model.starts) {
             let mut sums = Sums::zero();
@@ -58,7 +58,7 @@ impl Problem<'_> {
         let (mut sums, mut cost) = self.sums(&model)?;
         let mut damping = 0.0;
         for _ in 0..STEPS {
-            let pull = self.pull.as_ref().map(|pull| (pull, &model.x));
+            let pull = self.pull.as_ref().map(|pull| (pull, &model));
             let step = Reduced::new(&sums, pull, damping).and_then(|reduced| reduced.step());
             let gain = step.as_ref().map(|step| step.gain);
             let next = step.map(|step| moved(&model, &step));
@@ -94,6 +94,7 @@ fn moved(model: &Model, step: &Step) -> Model {
         x: model.x + c.fixed_rows::<5>(0),
         alignment: turned(model.alignment, [c[5], c[6], c[7]]),
         is_aligned: model.is_aligned,
+        drag: model.drag.map(|drag| drag + c[8]),
         starts: starts.collect(),
     }
 }

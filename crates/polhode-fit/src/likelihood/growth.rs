@@ -40,24 +40,35 @@ pub(crate) fn follow(
     x: Coordinates,
     alignment: Quat<f64>,
     levels: Levels,
+    has_drag: bool,
 ) -> Option<Followed> {
-    let pull = Pull { information: Form::identity() / (PULL * PULL), centre: x };
-    let model = grow(tracks, alignment, levels, pull, false)?;
+    let weight = 1.0 / (PULL * PULL);
+    let pull = Pull { information: Form::identity() * weight, centre: x, drag: weight };
+    let first = Model {
+        x,
+        alignment,
+        is_aligned: has_both(tracks),
+        drag: has_drag.then_some(0.0),
+        starts: Vec::new(),
+    };
+    let model = grow(tracks, first, levels, pull, false)?;
     refine(tracks.to_vec(), model, levels)
 }
 
 /// The steady spins nearest to the samples: the motions of a sphere. With what they leave of the samples, as the sum that is made least,
 /// and their normal equations.
 pub(crate) fn steady(tracks: &[Track], alignment: Quat<f64>, levels: Levels) -> Option<(Vec<Sums>, f64)> {
-    let pull = Pull { information: Form::identity() * HELD, centre: Coordinates::zeros() };
-    let model = grow(tracks, alignment, levels, pull, true)?;
+    let pull = Pull { information: Form::identity() * HELD, centre: Coordinates::zeros(), drag: 0.0 };
+    let first =
+        Model { x: pull.centre, alignment, is_aligned: has_both(tracks), drag: None, starts: Vec::new() };
+    let model = grow(tracks, first, levels, pull, true)?;
     Problem { tracks, levels, radius: f64::INFINITY, pull: None }.sums(&model)
 }
 
 /// The model of the whole stretches, by windows that double; the pull of the tensor ends with the last window unless it `stays`.
-fn grow(tracks: &[Track], alignment: Quat<f64>, levels: Levels, pull: Pull, stays: bool) -> Option<Model> {
-    let starts = tracks.iter().map(|track| start(track, &alignment)).collect::<Option<Vec<_>>>()?;
-    let mut model = Model { x: pull.centre, alignment, is_aligned: has_both(tracks), starts };
+fn grow(tracks: &[Track], first: Model, levels: Levels, pull: Pull, stays: bool) -> Option<Model> {
+    let starts = tracks.iter().map(|track| start(track, &first.alignment)).collect::<Option<Vec<_>>>()?;
+    let mut model = Model { starts, ..first };
     let end = tracks.iter().map(Track::reach).fold(0.0, f64::max);
     let mut radius = FIRST;
     while tracks.iter().any(|track| track.within(radius) < SAMPLES.min(track.times.len())) {
@@ -83,7 +94,7 @@ fn refine(mut tracks: Vec<Track>, mut model: Model, mut levels: Levels) -> Optio
         let problem = Problem { tracks: &tracks, levels, radius: f64::INFINITY, pull: None };
         model = problem.settle(model)?;
         let (squares, counts) = squares(&tracks, &model)?;
-        let unknowns = unknowns(&tracks);
+        let unknowns = unknowns(&tracks, &model);
         let share = 1.0 - unknowns / (counts[0] + counts[1]);
         if share <= 0.0 {
             return None;
@@ -112,9 +123,9 @@ fn has_both(tracks: &[Track]) -> bool {
 }
 
 /// Numbers that the model has for these samples.
-fn unknowns(tracks: &[Track]) -> f64 {
+fn unknowns(tracks: &[Track], model: &Model) -> f64 {
     let own: usize = tracks.iter().map(|track| if track.has_attitudes() { 6 } else { 3 }).sum();
-    (own + 5 + if has_both(tracks) { 3 } else { 0 }) as f64
+    (own + 5 + if model.is_aligned { 3 } else { 0 } + usize::from(model.drag.is_some())) as f64
 }
 
 /// Sums of squares and numbers of components of attitudes and rates.

@@ -2,8 +2,11 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::likelihood::track::{ALL, COMMON, Left, OWN};
+use crate::likelihood::track::{ALL, COMMON, Left, Model, OWN};
 use crate::physical::coordinates::{Coordinates, Form};
+
+/// Alignment and drag.
+const REST: usize = COMMON - 5;
 
 /// Of all unknowns of one stretch.
 #[derive(Clone, Debug)]
@@ -48,23 +51,25 @@ impl Sums {
     }
 }
 
-/// Further equations of the coordinates: |root (x − centre)|².
+/// Further equations of the coordinates, |root (x − centre)|², and of the drag, which is drawn to 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pull {
     pub(crate) information: Form,
     pub(crate) centre: Coordinates,
+    /// Information on the drag.
+    pub(crate) drag: f64,
 }
 
 impl Pull {
-    pub(crate) fn squares(&self, x: &Coordinates) -> f64 {
-        let off = x - self.centre;
-        off.dot(&(self.information * off))
+    pub(crate) fn squares(&self, model: &Model) -> f64 {
+        let (off, drag) = (model.x - self.centre, model.drag.unwrap_or(0.0));
+        off.dot(&(self.information * off)) + self.drag * drag * drag
     }
 }
 
 impl Reduced {
     /// `None` where a start is not determined.
-    pub(crate) fn new(all: &[Sums], pull: Option<(&Pull, &Coordinates)>, damping: f64) -> Option<Reduced> {
+    pub(crate) fn new(all: &[Sums], pull: Option<(&Pull, &Model)>, damping: f64) -> Option<Reduced> {
         let mut information = SMatrix::<f64, COMMON, COMMON>::zeros();
         let mut gradient = SVector::<f64, COMMON>::zeros();
         let mut starts = Vec::with_capacity(all.len());
@@ -79,13 +84,17 @@ impl Reduced {
             gradient += sums.gradient.fixed_rows::<COMMON>(OWN) - mixed.tr_mul(&(inverse * of_start));
             starts.push((inverse, of_start, mixed));
         }
-        if let Some((pull, x)) = pull {
+        if let Some((pull, model)) = pull {
             let mut of_tensor = information.fixed_view_mut::<5, 5>(0, 0);
             of_tensor += pull.information;
             let mut of_tensor = gradient.fixed_rows_mut::<5>(0);
-            of_tensor += pull.information * (pull.centre - x);
+            of_tensor += pull.information * (pull.centre - model.x);
+            if let Some(drag) = model.drag {
+                information[(COMMON - 1, COMMON - 1)] += pull.drag;
+                gradient[COMMON - 1] -= pull.drag * drag;
+            }
         }
-        // without both attitudes and rates there is no alignment
+        // without both attitudes and rates there is no alignment, and not always drag
         for k in 5..COMMON {
             if all.iter().all(|sums| sums.matrix[(OWN + k, OWN + k)] == 0.0) {
                 information[(k, k)] = 1.0;
@@ -112,16 +121,16 @@ impl Reduced {
 
     /// The gradient of the coordinates, the alignment at its best for them.
     pub(crate) fn gradient_of_tensor(&self) -> Option<Coordinates> {
-        let own = self.information.fixed_view::<3, 3>(5, 5).into_owned().cholesky()?;
-        let mixed = self.information.fixed_view::<3, 5>(5, 0).into_owned();
-        let rest = self.gradient.fixed_rows::<3>(5).into_owned();
+        let own = self.information.fixed_view::<REST, REST>(5, 5).into_owned().cholesky()?;
+        let mixed = self.information.fixed_view::<REST, 5>(5, 0).into_owned();
+        let rest = self.gradient.fixed_rows::<REST>(5).into_owned();
         Some(self.gradient.fixed_rows::<5>(0) - mixed.tr_mul(&own.solve(&rest)))
     }
 
     /// The information about the coordinates alone.
     pub(crate) fn of_tensor(&self) -> Option<Form> {
-        let own = self.information.fixed_view::<3, 3>(5, 5).into_owned().cholesky()?;
-        let mixed = self.information.fixed_view::<3, 5>(5, 0).into_owned();
+        let own = self.information.fixed_view::<REST, REST>(5, 5).into_owned().cholesky()?;
+        let mixed = self.information.fixed_view::<REST, 5>(5, 0).into_owned();
         let form = self.information.fixed_view::<5, 5>(0, 0) - mixed.tr_mul(&own.solve(&mixed));
         Some((form + form.transpose()) * 0.5)
     }

@@ -8,7 +8,7 @@ use crate::physical::coordinates::Coordinates;
 
 /// Numbers of a start, those that all stretches share, and both.
 pub(crate) const OWN: usize = 6;
-pub(crate) const COMMON: usize = 8;
+pub(crate) const COMMON: usize = 9;
 pub(crate) const ALL: usize = OWN + COMMON;
 
 /// One stretch, in units of a rate and its inverse; time 0 is its middle.
@@ -32,6 +32,8 @@ pub(crate) struct Model {
     pub(crate) alignment: Quat<f64>,
     /// Whether it is unknown: without rates beside the attitudes it would turn tensor and starts alone.
     pub(crate) is_aligned: bool,
+    /// k of −k J ω, where drag is fitted.
+    pub(crate) drag: Option<f64>,
     /// One for each track.
     pub(crate) starts: Vec<Start>,
 }
@@ -43,13 +45,19 @@ pub(crate) enum Kind {
     Rate,
 }
 
-/// What a model leaves of one reading, and the derivative of the model by start, coordinates and alignment.
+/// What a model leaves of one reading, and the derivative of the model by start, coordinates, alignment and drag.
 pub(crate) struct Left {
     pub(crate) kind: Kind,
     /// Which sample.
     pub(crate) sample: usize,
     pub(crate) residual: Vector3<f64>,
     pub(crate) rows: SMatrix<f64, 3, ALL>,
+}
+
+impl Model {
+    pub(crate) fn motion(&self, start: &Start) -> Option<Motion> {
+        Motion::new(&self.x, start, self.drag.unwrap_or(0.0))
+    }
 }
 
 impl Track {
@@ -79,7 +87,7 @@ impl Track {
         radius: f64,
         mut each: impl FnMut(&Left),
     ) -> Option<()> {
-        let motion = Motion::new(&model.x, start)?;
+        let motion = model.motion(start)?;
         let turn = UnitQuaternion::from(model.alignment).to_rotation_matrix();
         let back = turn.matrix().transpose();
         for (sample, &t) in self.times.iter().enumerate().filter(|(k, t)| self.used[*k] && t.abs() <= radius)
@@ -92,12 +100,18 @@ impl Track {
                 if model.is_aligned {
                     rows.fixed_view_mut::<3, 3>(0, OWN + 5).fill_with_identity();
                 }
+                if model.drag.is_some() {
+                    rows.set_column(ALL - 1, &(back * moved.by_drag.fixed_rows::<3>(0)));
+                }
                 let left = (moved.attitude * model.alignment).conjugate() * *attitude;
                 each(&Left { kind: Kind::Attitude, sample, residual: left.logarithm().into(), rows });
             }
             if let Some(rate) = self.rates.get(sample) {
                 let mut rows = SMatrix::<f64, 3, ALL>::zeros();
                 rows.fixed_view_mut::<3, 11>(0, 0).copy_from(&moved.by.fixed_rows::<3>(3));
+                if model.drag.is_some() {
+                    rows.set_column(ALL - 1, &moved.by_drag.fixed_rows::<3>(3));
+                }
                 each(&Left { kind: Kind::Rate, sample, residual: rate - moved.rate, rows });
             }
         }

@@ -38,7 +38,7 @@ pub enum PoseFault {
     },
     /// No free motion of any body follows the attitudes.
     #[error(
-        "no free motion follows the attitudes: the nearest one misses them by {residual:.2e} rad (root mean square of a component){}; torques \
+        "no free motion follows the attitudes, nor one that drag or a small constant torque slows: the nearest one misses them by {residual:.2e} rad (root mean square of a component){}; torques \
          act, or a frame or a sequence of angles is read wrongly, or the body turns by more than half a turn between samples ({turn:.2} rad \
          as read)",
         noise.map_or(String::new(), |noise| format!(", where their noise is {noise:.2e} rad"))
@@ -67,8 +67,8 @@ pub enum PoseFault {
     },
     /// The inverse direction explains the attitudes, and that in which they were read does not.
     #[error(
-        "the attitudes look inverted: as space to body they are those of a free body with I1 : I2 : I3 = {} (log-likelihood higher by {gain:.0}), \
-         and as body to space of none; read them the other way round",
+        "the attitudes look inverted: their inverses are those of a free body with I1 : I2 : I3 = {} (log-likelihood higher by {gain:.0}), and \
+         as they were read they are those of none; read them the other way round",
         three(inverse)
     )]
     Inverted {
@@ -91,6 +91,12 @@ pub enum PoseFault {
         /// Root mean square of the rates over that of the attitudes.
         scale: f64,
     },
+    /// A torque that a fit of attitudes has no model of.
+    #[error(
+        "a fit of attitudes reckons with drag in proportion to the momentum and with a small constant torque, and with no other; ask for one \
+         of these, or fit the rates alone"
+    )]
+    Torque,
     /// A setting that only a fit of rates has.
     #[error(
         "{name} has no meaning where attitudes are fitted by the exact motion; leave it out, or fit the rates alone"

@@ -8,13 +8,14 @@ use crate::poses::record::Poses;
 use crate::report::estimate::Estimate;
 use crate::report::exact::{Told, report};
 use crate::settings::Settings;
-use crate::settings::torque::TorqueModel;
+use crate::settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
 use crate::thresholds::poses::OPEN;
 
 /// Fits one tensor to all segments of measured attitudes, and to the angular velocities beside them where there are any.
 ///
 /// The motion of a free body is known in closed form, and so is its derivative: the tensor is that of the largest likelihood, each
-/// segment with a start of its own. The tensor is in the body axes of the attitudes, or in those of the rates where there are rates.
+/// segment with a start of its own. Drag in proportion to the momentum is part of the closed form, a small constant torque is reckoned with to
+/// first order; where neither explains what the free motion leaves, there is no answer. The tensor is in the body axes of the attitudes, or in those of the rates where there are rates.
 /// Attitudes of a body that moves alone do not tell the size of the tensor, as rates do not.
 ///
 /// ```
@@ -125,6 +126,12 @@ fn only_of_rates(settings: &Settings) -> Result<(), FitError> {
         ("the quantum of the rates", settings.quantum),
         ("the walk of the offset", settings.offset_walk),
     ];
+    let is_other =
+        matches!(settings.torque, TorqueModel::Drag3 | TorqueModel::Drag6 | TorqueModel::Quadratic)
+            || settings.torque_scope != TorqueScope::Record;
+    if is_other || matches!(settings.torque_noise, TorqueNoise::Given(_)) {
+        return Err(PoseFault::Torque.into());
+    }
     let given = others.into_iter().chain(sensor).find(|(_, value)| value.is_some());
     given.map_or(Ok(()), |(name, _)| Err(PoseFault::OnlyRates { name }.into()))
 }

@@ -17,14 +17,31 @@ use crate::poses::clean::{jumps, turns};
 use crate::poses::fault::PoseFault;
 use crate::poses::record::{PoseSegment, Poses};
 use crate::settings::Settings;
+use crate::settings::torque::TorqueModel;
 use crate::thresholds::ladder;
+use crate::thresholds::likelihood::LINEAR;
 use crate::thresholds::noise::{DEVIATIONS, LEAST};
-use crate::thresholds::poses::{COARSE, FEWEST, HALF_TURN, SAME_SIZE, STILL};
+use crate::thresholds::poses::{COARSE, FEWEST, HALF_TURN, MOVING, SAME_SIZE, STILL};
 use crate::thresholds::rounds::SIGNIFICANT_GAIN;
 
-/// A free motion of one body through all segments.
+/// What acts on the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Acting {
+    Nothing,
+    /// In proportion to the momentum, exactly.
+    Drag,
+    /// Constant in the axes of the tensor, to first order.
+    Constant,
+}
+
+/// The motion of one body through all segments, free or slowed by drag.
 pub(crate) struct Free {
     pub(crate) followed: Followed,
+    pub(crate) torque: Acting,
+    /// Log-likelihood with the torque less that without, where both were tried.
+    pub(crate) gain: Option<f64>,
+    /// The coordinates without it.
+    pub(crate) without: Option<Coordinates>,
     /// What a torque or moving axes would bring; `None` where the samples do not determine the model.
     pub(crate) alternatives: Option<Alternatives>,
     /// Unit of rates and inverse of that of times, rad/s.
@@ -68,13 +85,24 @@ impl Free {
         let first = tensor_of(&scaled, noise * noise).unwrap_or_else(Coordinates::zeros);
         let levels = Levels { attitude: noise, rate: 0.0 };
         let not_free = |residual| PoseFault::NotFree { residual, noise: Some(noise), turn: largest_turn };
-        let followed = follow(&tracks, turned(&first, &turn), turn, levels).ok_or_else(|| not_free(1.0))?;
-        let alternatives = Alternatives::new(&followed.tracks, &followed.model, followed.levels);
+        let first = turned(&first, &turn);
+        let moved = |drag| Some(Moved::new(follow(&tracks, first, turn, levels, drag)?));
+        let Found { moved, torque, gain, without } = match settings.torque {
+            TorqueModel::None => Found::of(moved(false), Acting::Nothing),
+            TorqueModel::Drag => Found::of(moved(true), Acting::Drag),
+            TorqueModel::Constant => Found::of(moved(false), Acting::Constant),
+            _ => chosen(moved),
+        }
+        .ok_or_else(|| not_free(1.0))?;
+        let Moved { followed, alternatives } = moved;
         let steady = steady_within_noise(&followed);
         // a motion that moves far between neighbours is left among their noise
         let is_fine = largest_turn <= COARSE;
         Ok(Free {
             followed,
+            torque,
+            gain,
+            without,
             alternatives,
             unit,
             used,
@@ -98,10 +126,82 @@ impl Free {
         // differences of neighbours tell the noise from fewer numbers than all readings do
         let scatter = DEVIATIONS * (2.0 * STILL / self.followed.dof[0].max(1.0)).sqrt();
         let by_noise = self.misfit(settings).is_none_or(|misfit| misfit <= 1.0 + scatter);
-        let torque = self.alternatives.as_ref().is_some_and(|found| {
-            found.drag.gain > ladder::FIRST || found.constant.gain > ladder::FIRST + 2.0 * ladder::FURTHER
-        });
-        by_noise && !torque
+        let Some(found) = &self.alternatives else { return by_noise };
+        let constant = match self.torque {
+            Acting::Nothing => ladder::FIRST + 2.0 * ladder::FURTHER,
+            Acting::Drag => MOVING,
+            Acting::Constant => f64::INFINITY,
+        };
+        let drag = match self.torque {
+            Acting::Nothing => ladder::FIRST,
+            _ => MOVING,
+        };
+        by_noise
+            && found.constant.gain <= constant
+            && found.drag.as_ref().is_none_or(|found| found.gain <= drag)
+            && (self.torque != Acting::Constant || self.is_linear(&found.constant.values))
+    }
+
+    /// Whether a constant torque, in units of the fit, turns the body by little.
+    fn is_linear(&self, torque: &[f64]) -> bool {
+        let model = &self.followed.model;
+        let acceleration =
+            tensor(&model.x).try_inverse().map(|inverse| inverse * Vector3::from_column_slice(torque));
+        let half = self.followed.tracks.iter().map(Track::reach).fold(0.0, f64::max);
+        acceleration.is_some_and(|a| 0.5 * a.norm() * half * half <= LINEAR)
+    }
+}
+
+/// A model that follows the samples, and what would explain them better.
+struct Moved {
+    followed: Followed,
+    alternatives: Option<Alternatives>,
+}
+
+impl Moved {
+    fn new(followed: Followed) -> Moved {
+        let alternatives = Alternatives::new(&followed.tracks, &followed.model, followed.levels);
+        Moved { followed, alternatives }
+    }
+}
+
+/// A model with its torque.
+struct Found {
+    moved: Moved,
+    torque: Acting,
+    gain: Option<f64>,
+    without: Option<Coordinates>,
+}
+
+impl Found {
+    fn of(moved: Option<Moved>, torque: Acting) -> Option<Found> {
+        Some(Found { moved: moved?, torque, gain: None, without: None })
+    }
+}
+
+/// The torque that the samples ask for: none, or the one of drag and a constant torque that gains more.
+fn chosen(moved: impl Fn(bool) -> Option<Moved>) -> Option<Found> {
+    let Some(free) = moved(false) else { return Found::of(moved(true), Acting::Drag) };
+    let found = free.alternatives.as_ref();
+    let more = ladder::FIRST + 2.0 * ladder::FURTHER;
+    let drag = found.and_then(|found| found.drag.as_ref()).map_or(f64::INFINITY, |drag| drag.gain);
+    let constant = found.map_or(0.0, |found| found.constant.gain);
+    if drag <= ladder::FIRST && constant <= more {
+        return Found::of(Some(free), Acting::Nothing);
+    }
+    let without = Some(free.followed.model.x);
+    let slowed = moved(true).map(|slowed| {
+        let gain = 0.5 * (free.followed.cost() - slowed.followed.cost());
+        (slowed, gain)
+    });
+    match slowed {
+        Some((slowed, gain)) if gain > ladder::FIRST && gain - ladder::FIRST >= constant - more => {
+            Some(Found { moved: slowed, torque: Acting::Drag, gain: Some(gain), without })
+        }
+        _ if constant > more => {
+            Some(Found { moved: free, torque: Acting::Constant, gain: Some(constant), without })
+        }
+        _ => Found::of(Some(free), Acting::Nothing),
     }
 }
 

@@ -4,24 +4,24 @@ use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::rotation::Quat;
 
+use crate::columns::sets::torque_columns;
 use crate::error::FitError;
 use crate::likelihood::descent::{Levels, Problem};
-use crate::likelihood::motion::Motion;
 use crate::likelihood::sums::{Reduced, Sums};
-use crate::likelihood::track::{Kind, Track};
+use crate::likelihood::track::{COMMON, Kind, Track};
 use crate::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, tensor};
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
 use crate::physical::nearest::{Normal, nearest};
 use crate::physical::prior::Prior;
-use crate::poses::free::Free;
+use crate::poses::free::{Acting, Free};
 use crate::poses::record::Poses;
 use crate::report::answer::{Answer, of_entries, ratios, sigmas};
 use crate::report::attitudes::{AlignmentFit, AttitudeFit};
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
-use crate::report::nuisance::{Agreement, FittedTorque, SegmentSummary};
+use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::scale::{by_prior, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warnings::of_attitudes;
@@ -46,6 +46,9 @@ struct Information {
     all: Reduced,
     tensor: Form,
     levels: Levels,
+    /// What a constant torque moves the coordinates by.
+    moved: Coordinates,
+    torques: Vec<Nuisance>,
 }
 
 /// Everything that can be said of the tensor of a free motion.
@@ -55,8 +58,8 @@ pub(crate) fn report(
     free: &Free,
     told: Told,
 ) -> Result<Estimate, FitError> {
-    let model = &free.followed.model;
     let information = information(settings, free)?;
+    let x = free.followed.model.x + information.moved;
     let identifiability = identify(free, &free.steady.unwrap_or(information.tensor));
     let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
     if !identifiability.complete() {
@@ -65,7 +68,7 @@ pub(crate) fn report(
     let singular = || FitError::Solver(SolverFailure::Information);
     let root = information.tensor.cholesky().ok_or_else(singular)?.l().transpose();
     let own = Normal {
-        centre: DVector::from_column_slice(model.x.as_slice()),
+        centre: DVector::from_column_slice(x.as_slice()),
         root: DMatrix::from_column_slice(5, 5, root.as_slice()),
     };
     let (joined, agreed) = match &prior {
@@ -73,7 +76,7 @@ pub(crate) fn report(
         Some(prior) => {
             let (joined, chi2, dof) = prior.join(&own, None).ok_or_else(singular)?;
             let agreed = Agreement { chi2, dof };
-            check_agreement(prior, agreed, &model.x)?;
+            check_agreement(prior, agreed, &x)?;
             (joined, Some(agreed))
         }
     };
@@ -91,7 +94,10 @@ pub(crate) fn report(
     let excess = misfit.unwrap_or(1.0);
     let count: f64 = free.followed.dof.iter().sum();
     let pull = answer.pull;
-    let drag = free.alternatives.as_ref().map(|found| &found.drag);
+    let drag = free.alternatives.as_ref().and_then(|found| found.drag.as_ref());
+    let drag = drag.map(|drag| (drag.values[0] * free.unit, drag.sigmas[0] * free.unit));
+    let slowed = information.torques.first().filter(|_| free.torque == Acting::Drag);
+    let drag = slowed.map(|drag| (drag.value, drag.sigma)).or(drag);
     let mut estimate = Estimate {
         principal: moments.into(),
         sigma_principal,
@@ -118,18 +124,10 @@ pub(crate) fn report(
         triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
         active_constraints: answer.active,
         certificate: answer.certificate,
-        momentum_trend: drag.map(|drag| InvariantTrend {
-            rate: -drag.values[0] * free.unit,
-            sigma: drag.sigmas[0] * free.unit,
-        }),
+        momentum_trend: drag.map(|(drag, sigma)| InvariantTrend { rate: -drag, sigma }),
         energy_trend: None,
         whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
-        torque: FittedTorque {
-            model: TorqueModel::None,
-            coefficients: Vec::new(),
-            gain: None,
-            ratios_without: None,
-        },
+        torque: torque(free, information.torques.clone()),
         nuisances: Vec::new(),
         systematic: Vec::new(),
         prior: agreed,
@@ -146,6 +144,20 @@ pub(crate) fn report(
     Ok(estimate)
 }
 
+/// The torque that was reckoned with.
+fn torque(free: &Free, coefficients: Vec<Nuisance>) -> FittedTorque {
+    let model = match free.torque {
+        Acting::Nothing => TorqueModel::None,
+        Acting::Drag => TorqueModel::Drag,
+        Acting::Constant => TorqueModel::Constant,
+    };
+    let ratios_without = free.without.map(|x| {
+        let (moments, _) = eigen(tensor(&x));
+        [moments[0] / moments[2], moments[1] / moments[2]]
+    });
+    FittedTorque { model, coefficients, gain: free.gain, ratios_without }
+}
+
 /// At the noise that was given, or as much as is left where that is more.
 fn information(settings: &Settings, free: &Free) -> Result<Information, FitError> {
     let own = free.followed.levels;
@@ -158,8 +170,28 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
     let singular = || FitError::Solver(SolverFailure::Information);
     let (sums, _) = problem.sums(&free.followed.model).ok_or_else(singular)?;
     let all = Reduced::new(&sums, None, 0.0).ok_or_else(singular)?;
-    let tensor = all.of_tensor().ok_or_else(singular)?;
-    Ok(Information { sums, all, tensor, levels })
+    let mut tensor = all.of_tensor().ok_or_else(singular)?;
+    let (mut moved, mut torques) = (Coordinates::zeros(), Vec::new());
+    let constant = free.alternatives.as_ref().filter(|_| free.torque == Acting::Constant);
+    if let Some(constant) = constant.map(|found| &found.constant) {
+        moved = Coordinates::from_fn(|k, _| constant.moved[k]);
+        let spread = constant.spread.rows(0, 5);
+        let added = &spread * spread.transpose();
+        let covariance =
+            tensor.cholesky().ok_or_else(singular)?.inverse() + Form::from_fn(|i, k| added[(i, k)]);
+        tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
+        let each =
+            torque_columns(TorqueModel::Constant).into_iter().zip(&constant.values).zip(&constant.sigmas);
+        torques
+            .extend(each.map(|((column, value), sigma)| Nuisance::new(&column, *value, *sigma, free.unit)));
+    }
+    if let Some(drag) = free.followed.model.drag {
+        let sigma =
+            all.information.cholesky().map_or(f64::MAX, |c| c.inverse()[(COMMON - 1, COMMON - 1)].sqrt());
+        let each = torque_columns(TorqueModel::Drag).into_iter();
+        torques.extend(each.map(|column| Nuisance::new(&column, drag, sigma, free.unit)));
+    }
+    Ok(Information { sums, all, tensor, levels, moved, torques })
 }
 
 /// Which of the five numbers the information determines.
@@ -183,7 +215,7 @@ fn identify(free: &Free, information: &Form) -> Identifiability {
 fn fitted_rates(free: &Free) -> Vec<Stretch> {
     let model = &free.followed.model;
     let each = free.followed.tracks.iter().zip(&model.starts).map(|(track, start)| {
-        let motion = Motion::new(&model.x, start);
+        let motion = model.motion(start);
         let rate =
             |t: &f64| motion.as_ref().and_then(|motion| motion.at(*t)).map_or(Vector3::zeros(), |m| m.rate);
         Stretch::new(track.times.clone(), track.times.iter().map(rate).collect())

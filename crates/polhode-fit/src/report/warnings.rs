@@ -128,7 +128,11 @@ pub(super) fn of_attitudes(e: &Estimate, misfit: Option<f64>) -> Vec<Warning> {
     if e.whiteness.significant() {
         list.push(Warning::Correlated(e.whiteness));
     }
-    list.extend(e.momentum_trend.filter(|trend| trend.significant()).map(Warning::MomentumTrend));
+    if e.torque.model == TorqueModel::None {
+        list.extend(e.momentum_trend.filter(|trend| trend.significant()).map(Warning::MomentumTrend));
+    } else if e.torque.gain.is_some() {
+        list.push(Warning::Torque(e.torque.clone()));
+    }
     list.extend(of_answer(e));
     list
 }

@@ -6,7 +6,8 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3};
 use polhode_fit::{
-    FitError, Known, Method, PoseFault, Poses, Settings, Warning, fit_poses, foreseen_attitude_bound,
+    Disturbances, Estimate, FitError, Gyroscope, Known, Method, PoseFault, Poses, Settings, TorqueModel,
+    Warning, fit_poses, foreseen_attitude_bound, simulate_poses,
 };
 
 fn body(moments: [f64; 3], random: &mut Random) -> Inertia {
@@ -270,4 +271,45 @@ fn several_segments_share_the_tensor_and_the_noise_may_be_given() {
         tosses.iter().map(|t| t.body.momentum(t.motion.omega_at(0.0).unwrap()).norm_squared()).sum();
     let trace = 2.0 / (starts / 3.0_f64).sqrt();
     assert!((inertia.tensor().trace() / trace - 1.0).abs() < 1e-2, "{} {trace}", inertia.tensor().trace());
+}
+
+/// Torques of a body that also has a free motion: what the fit makes of each.
+#[test]
+fn drag_and_small_constant_torques_are_reckoned_with_and_others_are_refused() {
+    let body = Inertia::from_moments([0.2, 0.35, 0.45]).unwrap();
+    let times: Vec<f64> = (0..900).map(|i| f64::from(i) / 30.0).collect();
+    let poses = |acting: Disturbances, stream: u64| {
+        let (omega, mut random) = (Vector3::new(0.3, 1.0, 0.4), Random::new(8).stream(stream));
+        let gyroscope = Gyroscope::default();
+        let (_, measured) =
+            simulate_poses(&body, omega, &times, &acting, &gyroscope, 5e-3, &mut random).unwrap();
+        Poses::new("torque", &times, &measured).unwrap()
+    };
+    let distance = |e: &Estimate| square(&entries(&(e.shape.tensor() - body.tensor())), &e.free_covariance);
+    let settings = Settings::default();
+    for (k, drag) in [1e-4, 1e-2, 5e-2].into_iter().enumerate() {
+        let slowed = poses(Disturbances::default().with_relative_drag(drag), k as u64);
+        let e = fit_poses(&slowed, &settings).unwrap();
+        assert_eq!(e.torque.model, TorqueModel::Drag, "{drag}");
+        let found = &e.torque.coefficients[0];
+        assert!((found.value - drag).abs() < 4.0 * found.sigma && found.sigma < 5e-5, "{found:?}");
+        assert!(distance(&e) < 20.5 && e.warnings.iter().any(|w| matches!(w, Warning::Torque(_))));
+        // the direction is told with drag too
+        let PoseFault::Inverted { .. } = refused(&slowed.inverse()) else { panic!() };
+    }
+    let torque = Vector3::new(3e-5, -2e-5, 1e-5);
+    let e = fit_poses(&poses(Disturbances::default().with_torque(torque), 5), &settings).unwrap();
+    assert_eq!(e.torque.model, TorqueModel::Constant);
+    for (k, found) in e.torque.coefficients.iter().enumerate() {
+        assert!((found.value - torque[k]).abs() < 4.0 * found.sigma, "{found:?}");
+    }
+    assert!(distance(&e) < 20.5, "{}", distance(&e));
+    // too large for the first order, and torques at random
+    for acting in
+        [Disturbances::default().with_torque(torque * 300.0), Disturbances::default().with_torque_noise(3e-3)]
+    {
+        assert!(matches!(refused(&poses(acting, 6)), PoseFault::NotFree { .. }));
+    }
+    let other = fit_poses(&poses(Disturbances::default(), 7), &settings.with_torque(TorqueModel::Drag3));
+    assert!(matches!(other, Err(FitError::Poses(PoseFault::Torque))));
 }
