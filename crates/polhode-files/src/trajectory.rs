@@ -66,6 +66,29 @@ pub fn read(path: &Path, reading: &ReadOptions) -> Result<FoundTrajectory, Error
     Ok(found(Table::open(path, reading)?)?)
 }
 
+/// Whether the file at `path` has columns of attitudes and of angular velocities, by its header alone.
+///
+/// # Errors
+/// A file that cannot be read, or without a header.
+pub fn columns(path: &Path, reading: &ReadOptions) -> Result<FoundColumns, Error> {
+    let table = Table::open(path, reading)?;
+    let has = |of: fn(&Columns) -> bool| table.header.bodies.iter().any(of);
+    Ok(FoundColumns {
+        attitudes: has(|body| body.attitude.is_some()),
+        rates: has(|body| body.rates.is_some()),
+    })
+}
+
+/// Which columns a file has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FoundColumns {
+    /// Of attitudes.
+    pub attitudes: bool,
+    /// Of angular velocities.
+    pub rates: bool,
+}
+
 /// The same of a text of rows, which messages call `file`.
 ///
 /// # Errors

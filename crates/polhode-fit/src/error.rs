@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use crate::physical::constraint::Constraint;
 use crate::physical::failure::SolverFailure;
+use crate::poses::fault::PoseFault;
 use crate::report::averages::AverageAxis;
 use crate::report::identifiability::Identifiability;
 use crate::thresholds::test_functions::TESTS_PER_RADIUS;
@@ -98,6 +99,9 @@ pub enum FitError {
         /// Standard deviations by which the physical law moves the tensor.
         pull: f64,
     },
+    /// Attitudes that cannot be fitted.
+    #[error(transparent)]
+    Poses(#[from] PoseFault),
     /// Nowhere in the record does the body rotate freely.
     #[error(
         "the body rotates freely nowhere in the record: torques beyond 0.3 tr(J) |w|^2 act in {:.0} per cent of the time in \

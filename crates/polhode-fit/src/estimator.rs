@@ -126,7 +126,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         _ => (joint.told.clone(), completed),
     };
     if let Some((prior, agreed)) = prior.as_ref().zip(agreed) {
-        check_agreement(prior, agreed, weak)?;
+        check_agreement(prior, agreed, &weak.x())?;
     }
     let answer = nearest(&told, &settings.limits, &dissipation)?;
     let facts = Facts {

@@ -255,6 +255,46 @@ thresholds! {
         PARTS_OF_PLAN: f64 = 1000.0, "most such steps between two samples", UNMEASURED;
         OPEN: f64 = 1e-12, "relative eigenvalue of the information that is rounding", DERIVED;
     }
+    likelihood: "the likelihood on the exact motion" {
+        NODE: f64 = 1.0, "turn within the samples of a local rate, rad", UNMEASURED;
+        FEWEST: usize = 3, "fewest samples of a local rate: those of a parabola", DERIVED;
+        LEAST_SHARE: f64 = 0.1,
+            "share of the smallest eigenvalue of the equations of the momentum that stays where noise is taken off", UNMEASURED;
+        SMALLEST: f64 = 0.02, "smallest moment of a first tensor, as a share of the trace", UNMEASURED;
+        FIRST: f64 = 1.0, "first window, rad to either side of the middle of a stretch", UNMEASURED;
+        SAMPLES: usize = 4, "fewest samples of a stretch in it", UNMEASURED;
+        PULL: f64 = 0.1, "deviation of the first tensor, over the trace, in all windows but the last", UNMEASURED;
+        HELD: f64 = 1e16, "information on a tensor that is held", DERIVED;
+        BEYOND: f64 = 4.0, "deviations beyond which the size of a residual counts in place of its square", UNMEASURED;
+        OUTLIER: f64 = 6.0, "deviations beyond which a reading is left out: a chance of 7e-8", DERIVED;
+        SHARE_KEPT: f64 = 0.5, "share of the known noise below which the median of the residuals is not believed", UNMEASURED;
+        ROUNDS: usize = 6, "rounds of noise and outliers", UNMEASURED;
+        SAME: f64 = 0.01, "relative change of the noise that no longer matters", UNMEASURED;
+        STEPS: usize = 40, "most steps in one window", UNMEASURED;
+        STILL: f64 = 1e-4, "fall of chi squared that no longer matters", UNMEASURED;
+        DAMPING: f64 = 1e-3, "first damping of a step that does not help", UNMEASURED;
+        CHANGE: f64 = 10.0, "factor by which damping grows and falls", UNMEASURED;
+        MOST_DAMPING: f64 = 1e9, "damping beyond which no step helps", UNMEASURED;
+        PANEL: f64 = 0.2, "longest step of the integral of a torque, rad", UNMEASURED;
+        SMALL: f64 = 1e-3, "drag times time below which a series is nearer than the closed form", DERIVED;
+        LINEAR: f64 = 0.1,
+            "largest turn by a constant torque, rad, up to which it is reckoned with to first order", UNMEASURED;
+        MIRRORED: f64 = 0.05,
+            "share of the largest singular value that the smallest has where rates are the mirror image of attitudes", "a_turn_is_found_and_a_mirror_is_seen";
+    }
+    poses: "records of attitudes" {
+        GAP: f64 = 8.0, "median intervals that make a gap", UNMEASURED;
+        JUMP: f64 = 8.0, "median turns beyond which a single attitude lies off both neighbours", "a_bad_frame_is_a_jump_and_a_turn_is_none";
+        FEWEST: usize = 8, "fewest attitudes of a segment: 24 numbers for 11 unknowns", UNMEASURED;
+        HALF_TURN: f64 = 2.83, "largest turn from one attitude to the next, rad: nine tenths of half a turn", UNMEASURED;
+        COARSE: f64 = 0.3, "largest turn between neighbours up to which their differences tell the noise, rad", UNMEASURED;
+        DOUBTFUL: f64 = 1.571, "largest turn between neighbours from which on a warning says what it rests on, rad", UNMEASURED;
+        STILL: f64 = 5.0,
+            "deviations of the noise that the turn of the whole record must exceed; the same number of times the scatter of all readings is that of differences of neighbours", UNMEASURED;
+        SAME_SIZE: f64 = 1.25, "factor within which rates and those of the attitudes are the same", UNMEASURED;
+        OPEN: f64 = 10.0, "difference of log-likelihood up to which both directions explain a record", UNMEASURED;
+        MOVING: f64 = 15.0, "gain of log-likelihood from which axes are said to move against each other: a chance of 1e-6", DERIVED;
+    }
     flights: "flights in a recording" {
         ALMOST_ALL: f64 = 0.9, "share of the turning tests that a record in a wrong unit contradicts", UNMEASURED;
         SLOW: f64 = 0.1, "rate below which the body counts as held, over the rate of its motion", UNMEASURED;
@@ -300,103 +340,4 @@ thresholds! {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::path::Path;
-
-    /// Constants that are no thresholds: sizes of arrays, coefficients and counts of a formula, the law itself.
-    const NO_THRESHOLDS: &[&str] = &[
-        "banded REGISTER",
-        "banded WIDEST",
-        "coordinates HALF_ROOT",
-        "coordinates SIXTH_ROOT",
-        "covariance BLOCKS",
-        "equations LOCAL",
-        "equations OTHERS",
-        "equations UNKNOWNS",
-        "free_body UNKNOWNS",
-        "law LARGEST_SHARE",
-        "levels SHARE",
-        "moments WITH_SLOPE",
-        "moments WITH_VALUE",
-        "product DEGREE",
-        "sums FEATURES",
-        "test_functions LANES",
-        "test_functions MOST",
-        "test_functions PARTS",
-        "test_functions SUMS",
-    ];
-
-    fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() { sources(&path, found) } else { found.push(path) }
-        }
-    }
-
-    fn root() -> &'static Path {
-        Path::new(env!("CARGO_MANIFEST_DIR"))
-    }
-
-    #[test]
-    fn no_threshold_stands_outside_of_the_table() {
-        let mut files = Vec::new();
-        sources(&root().join("src"), &mut files);
-        let mut found = Vec::new();
-        for file in files.iter().filter(|f| !f.ends_with("thresholds.rs")) {
-            let text = std::fs::read_to_string(file).unwrap();
-            let code = text.split("#[cfg(test)]\nmod tests").next().unwrap();
-            for line in code.lines().map(str::trim_start) {
-                let Some((before, after)) = line.split_once("const ") else { continue };
-                let Some((name, kind)) = after.split_once(": ") else { continue };
-                let number = ["f64", "usize", "[f64", "[(f64"].iter().any(|k| kind.starts_with(k));
-                let number = number && name.len() > 1 && !name.contains(char::is_lowercase);
-                if number && (before.is_empty() || before.starts_with("pub")) {
-                    found.push(format!("{} {name}", file.file_stem().unwrap().to_string_lossy()));
-                }
-            }
-        }
-        found.sort();
-        assert_eq!(found, NO_THRESHOLDS, "a threshold belongs into the table of thresholds.rs");
-    }
-
-    #[test]
-    fn sources_of_thresholds_are_tests_of_this_crate() {
-        let mut files = Vec::new();
-        sources(&root().join("src"), &mut files);
-        sources(&root().join("tests"), &mut files);
-        let text: String = files
-            .iter()
-            .filter(|f| f.extension().is_some_and(|e| e == "rs") && !f.ends_with("thresholds.rs"))
-            .map(|f| std::fs::read_to_string(f).unwrap())
-            .collect();
-        for row in TABLE.iter().filter(|row| ![UNMEASURED, DERIVED].contains(&row.source)) {
-            assert!(
-                text.contains(&format!("fn {}(", row.source)),
-                "{}::{}: {}",
-                row.place,
-                row.name,
-                row.source
-            );
-        }
-    }
-
-    /// The page thresholds.md is this table; `POLHODE_BLESS=1` writes it anew.
-    #[test]
-    fn the_page_of_thresholds_is_the_table() {
-        let mut page = String::from(
-            "# Thresholds\n\n`unmeasured`: no test or experiment of the repository has set it. `derived`: it follows from a \
-             distribution or from rounding.\n\n| threshold | value | meaning | shown by |\n|---|---|---|---|\n",
-        );
-        for row in TABLE {
-            let Threshold { place, name, value, meaning, source } = row;
-            page +=
-                &format!("| `{place}::{name}` | `{value}` | {} | {source} |\n", meaning.replace('|', "\\|"));
-        }
-        let path = root().join("thresholds.md");
-        if std::env::var_os("POLHODE_BLESS").is_some() {
-            std::fs::write(&path, &page).unwrap();
-        }
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), page, "POLHODE_BLESS=1 writes the page anew");
-    }
-}
+mod tests;

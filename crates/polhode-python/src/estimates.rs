@@ -136,9 +136,9 @@ impl Estimate {
         self.found.segments
     }
 
-    /// Half width of the test functions, s.
+    /// Half width of the test functions, s; `None` of a likelihood on the exact motion.
     #[getter]
-    fn radius(&self) -> f64 {
+    fn radius(&self) -> Option<f64> {
         self.found.radius
     }
 

@@ -8,6 +8,7 @@ mod contestants;
 mod derivative;
 mod drift;
 mod exact;
+mod fit_attitudes;
 mod fit_efficiency;
 mod fit_field;
 mod followed;
@@ -75,6 +76,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "fit-efficiency",
         question: "how close a fitted tensor comes to the Cramer-Rao bound, and what other formulations lose",
         run: fit_efficiency::run,
+    },
+    Experiment {
+        name: "fit-attitudes",
+        question: "how close a tensor from measured attitudes comes to the Cramer-Rao bound, and what differencing them loses",
+        run: fit_attitudes::run,
     },
     Experiment {
         name: "fit-field",

@@ -1,6 +1,7 @@
 //! `polhode fit`: inertia from measured angular velocity.
 
 mod arguments;
+mod attitudes;
 mod calibrate;
 mod flights;
 mod inputs;
@@ -16,7 +17,7 @@ use nalgebra::Vector3;
 use polhode_files::error::{Error, warn};
 use polhode_files::inputs as opened;
 use polhode_files::numbers::{numbers, positive};
-use polhode_fit::{FitError, Limit, Settings, fit};
+use polhode_fit::{FitError, Limit, PoseFault, Settings, fit, fit_poses};
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
@@ -25,6 +26,7 @@ use crate::flags::record::RecordArguments;
 use crate::memory;
 use crate::plot::Picture;
 use arguments::{KnownArguments, PriorArguments, Scope, SensorArguments, Torque};
+use attitudes::{PoseArguments, Read};
 use flights::Spans;
 use inputs::WheelArguments;
 use report::Facts;
@@ -36,21 +38,28 @@ const EXAMPLES: &str = "Examples:
   polhode fit record.csv --window 0,2.5 --trace 0.0007
   polhode fit record.csv --report fit.html --residuals residuals.csv
   polhode fit record.csv --residuals residuals.svg --format json
-  polhode fit record.csv --figure fit.svg";
+  polhode fit record.csv --figure fit.svg
+  polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
+    --attitude-noise 0.005 --out poses.csv
+  polhode fit poses.csv";
 
-/// Inertia tensor of a torque-free body from its measured angular velocity
+/// Inertia tensor of a torque-free body from its measured angular velocity or attitude
 ///
 /// The axes of the sensor are taken to be right-handed: the rates cannot tell, and left-handed axes give another tensor, which the
-/// report names; --axes undoes a mirrored axis. Without one of --trace, --momentum, --twice-energy, --moment or --prior-inertia the tensor is known up to a factor, and its trace is
+/// report names; --axes undoes a mirrored axis. Attitudes (quaternions, matrices, Euler angles, modified Rodrigues parameters) are fitted
+/// where a file has no rates, or as --from says: by maximum likelihood on the exact motion, which also tells body to space from space to
+/// body; rates beside them may have axes of their own. Without one of --trace, --momentum, --twice-energy, --moment or --prior-inertia the tensor is known up to a factor, and its trace is
 /// set to 1; columns `hx (N m s)`, hy, hz (momentum of wheels, with this unit in the header) and tx, ty, tz (known torque, N m) make it absolute, too. Exit code 1: the record does not determine the tensor; what it does determine is printed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Fit {
-    /// Records with a header: t, wx, wy, wz, or the names of phone apps
+    /// Records with a header: t, wx, wy, wz, or the names of phone apps; or attitudes in any columns that audit reads
     #[arg(required = true, value_name = "DATA.csv")]
     data: Vec<PathBuf>,
     #[command(flatten)]
     reading: RecordArguments,
+    #[command(flatten)]
+    poses: PoseArguments,
     /// Half width of the window that smooths the equations, s; rarely needed [default: that of the smallest uncertainty]
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     radius: Option<f64>,
@@ -118,7 +127,14 @@ impl Fit {
         });
         let figure = figure.transpose()?;
         memory::check_files(&self.data, 3)?;
-        let mut record = self.reading.record(&self.data, self.wheel.momentum())?;
+        let read = match self.poses.are_read(&self.data, &self.reading)? {
+            true => Some(self.attitudes()?),
+            false => None,
+        };
+        let mut record = match &read {
+            Some(read) => read.poses.rates(),
+            None => self.reading.record(&self.data, self.wheel.momentum())?,
+        };
         let limit = |axis: &[f64; 4]| Limit {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
             at_least: None,
@@ -129,6 +145,7 @@ impl Fit {
         let settings = Settings::default()
             .with_radius(self.radius)
             .with_noise(self.noise)
+            .with_attitude_noise(self.poses.noise())
             .with_limits(least.chain(most).collect())
             .with_prior(self.prior.prior())
             .with_known(self.known.known()?)
@@ -155,12 +172,13 @@ impl Fit {
             )?);
         }
         let mut spans = Spans::default();
-        let fitted = match self.reading.is_whole() {
-            true => Spans::find(&mut record, &settings).and_then(|found| {
+        let fitted = match (&read, self.reading.is_whole()) {
+            (Some(read), _) => fit_poses(&read.poses, &settings),
+            (None, true) => Spans::find(&mut record, &settings).and_then(|found| {
                 spans = found;
                 fit(&record, &settings)
             }),
-            false => fit(&record, &settings),
+            (None, false) => fit(&record, &settings),
         };
         spans.remark().into_iter().for_each(warn);
         let estimate = match fitted {
@@ -170,6 +188,10 @@ impl Fit {
                     FitError::NoFlight { .. } => format!("{error} (--window t0,t1)"),
                     FitError::Driven { .. } => format!("{error} (--window t0,t1)"),
                     FitError::Units { .. } => format!("{error} (--rate-unit, --time-unit; --trust-units)"),
+                    FitError::Poses(PoseFault::Direction { .. } | PoseFault::Inverted { .. }) => {
+                        format!("{error} (--attitude body-to-space or space-to-body)")
+                    }
+                    FitError::Poses(PoseFault::NotFree { .. }) => format!("{error} (--window t0,t1)"),
                     FitError::Undersampled { .. } => format!("{error} (--rate-unit, --time-unit)"),
                     _ => error.to_string(),
                 };
@@ -178,7 +200,11 @@ impl Fit {
                     FitError::Unsettled { axes, .. } => (Some(Facts::unsettled(axes)), true),
                     FitError::NoFlight { .. } => (Some(Facts::not_free()), true),
                     FitError::Driven { .. } => (Some(Facts::driven()), true),
-                    FitError::NoRotation { .. } | FitError::Solver(_) => (None, true),
+                    FitError::Poses(PoseFault::Direction { .. }) => (Some(Facts::direction_open()), true),
+                    FitError::Poses(PoseFault::NotFree { .. }) => (Some(Facts::driven()), true),
+                    FitError::NoRotation { .. }
+                    | FitError::Solver(_)
+                    | FitError::Poses(PoseFault::NoTurn { .. } | PoseFault::HalfTurn { .. }) => (None, true),
                     _ => (None, false),
                 };
                 if let Some((file, form)) = page {
@@ -200,14 +226,20 @@ impl Fit {
         };
         // as long a computation as the fit itself, for those outputs alone that show it
         let shown = residuals.is_some() || page.is_some() || figure.is_some();
+        if let Some(read) =
+            read.as_ref().filter(|_| estimate.attitudes.as_ref().is_some_and(|a| a.is_inverse))
+        {
+            record = read.poses.inverse().rates();
+        }
         let motion = if shown { estimate.fitted(&record) } else { Vec::new() };
         let page = match page {
-            Some((file, form)) => {
-                Some((file, page::estimated(&estimate, &record, &motion, &spans, &self.names(), form)?))
-            }
+            Some((file, form)) => Some((
+                file,
+                page::estimated(&estimate, &record, &motion, (&spans, read.as_ref()), &self.names(), form)?,
+            )),
             None => None,
         };
-        output.write_whole(&report::identified(&estimate, &record, &spans, format))?;
+        output.write_whole(&report::identified(&estimate, &record, &spans, read.as_ref(), format))?;
         if let Some(remark) = self.known.other_hand(&estimate)? {
             warn(&remark);
         }
@@ -219,7 +251,11 @@ impl Fit {
         if let Some((file, path)) = residuals.zip(self.residuals.as_deref()) {
             let picture = if ends_in(path, &["png"]) { Picture::Png } else { Picture::Svg };
             match ends_in(path, &["csv"]) {
-                true => file.write_whole(&residuals::rows(&record, &motion).csv())?,
+                true => {
+                    let turns =
+                        estimate.attitudes.as_ref().map(|a| residuals::turns(&estimate, a.noise_sigma));
+                    file.write_whole(&turns.unwrap_or_else(|| residuals::rows(&record, &motion)).csv())?;
+                }
                 false => crate::plot::write(file, picture, &plot::residuals(&estimate).page())?,
             }
         }
@@ -227,6 +263,15 @@ impl Fit {
             crate::plot::write(file, picture, &page::figures::overview(&estimate, &motion, &record))?;
         }
         Ok(())
+    }
+
+    /// The attitudes of the files, which go with no wheel.
+    fn attitudes(&self) -> Result<Read, Error> {
+        if self.wheel.momentum().is_some() {
+            let rule = "a wheel goes with rates";
+            return Err(Error::input("--wheel", "", rule, "leave it out, or fit the rates: --from rates"));
+        }
+        self.poses.read(&self.data, &self.reading)
     }
 
     /// No sample is read twice, and no measurement is written over.

@@ -1,6 +1,6 @@
 //! Plots of a fit against time.
 
-use polhode_fit::Estimate;
+use polhode_fit::{Estimate, Method};
 use polhode_pages::figure::{Curve, Figure, Scale};
 
 /// Names of the axes.
@@ -28,6 +28,14 @@ pub(super) fn without_gaps<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Vec
         .collect()
 }
 
+/// What the residuals are of.
+pub(super) fn what(estimate: &Estimate) -> &'static str {
+    match estimate.method {
+        Method::ExactMotion => "the attitudes, rotation vectors in body axes,",
+        _ => "the weak equations",
+    }
+}
+
 /// Whitened residuals of each component over time; a band marks two standard deviations.
 pub(super) fn residuals(estimate: &Estimate) -> Figure {
     let single = estimate.residuals.len() == 1;
@@ -37,7 +45,10 @@ pub(super) fn residuals(estimate: &Estimate) -> Figure {
         without_gaps(estimate.residuals.iter().map(|r| r.times.as_slice()))
     };
     let values = || times.iter().flatten().zip(estimate.residuals.iter().flat_map(|r| &r.values));
-    let title = "Whitened residuals of the weak equations; grey: two standard deviations to each side";
+    let title = match estimate.method {
+        Method::ExactMotion => "Residuals of the attitudes; grey: two standard deviations to each side",
+        _ => "Whitened residuals of the weak equations; grey: two standard deviations to each side",
+    };
     let mut figure = over_time(title, "residual (std. deviations)", single, 380.0);
     figure.band(2.0);
     figure.series = (0..3)

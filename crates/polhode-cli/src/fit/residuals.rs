@@ -1,6 +1,6 @@
 //! The rows of `--residuals FILE.csv`.
 
-use polhode_fit::{FittedMotion, Record};
+use polhode_fit::{Estimate, FittedMotion, Record};
 use polhode_pages::table::{Cell, Column, Table};
 
 /// Measured and fitted rates, and their difference.
@@ -30,6 +30,30 @@ pub(super) fn rows(record: &Record, motion: &[FittedMotion]) -> Table {
             for of in [fitted, left] {
                 cells.extend((0..3).map(|k| Cell::from(of.map(|v| v[k]))));
             }
+            table.push(cells);
+        }
+    }
+    table
+}
+
+/// What the fitted motion leaves of attitudes.
+pub(super) fn turns(e: &Estimate, noise: f64) -> Table {
+    let turn = |name, meaning| Column::new(name, "rad", meaning);
+    let columns = vec![
+        Column::new("segment", "", "number of the segment"),
+        Column::new("t", "s", "time"),
+        turn(
+            "turn_x",
+            "rotation vector from the fitted attitude to the measured one about the x axis of the body",
+        ),
+        turn("turn_y", "the same about y"),
+        turn("turn_z", "the same about z"),
+    ];
+    let mut table = Table::new("residuals", "Measured less fitted attitudes.", columns);
+    for of in &e.residuals {
+        for (t, values) in of.times.iter().zip(&of.values) {
+            let mut cells = vec![Cell::from(of.segment as u64 + 1), Cell::from(*t)];
+            cells.extend(values.iter().map(|value| Cell::from(value * noise)));
             table.push(cells);
         }
     }

@@ -1,5 +1,6 @@
 //! Flags that several commands share.
 
+pub(crate) mod attitude;
 pub(crate) mod body;
 pub(crate) mod event;
 pub(crate) mod force;

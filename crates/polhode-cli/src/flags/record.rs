@@ -6,10 +6,10 @@ use clap::Args;
 use nalgebra::Vector3;
 use polhode::record::Record;
 use polhode::units::RateUnit;
-use polhode_files::SignedAxes;
 use polhode_files::error::{Error, TableError, warn};
 use polhode_files::numbers::{number, numbers};
-use polhode_files::record::{self, FoundRecord, Parts, ReadOptions};
+use polhode_files::record::{self, FoundRecord, Parts};
+use polhode_files::{ReadOptions, SignedAxes};
 
 use super::table::{TableArguments, rate_unit};
 
@@ -69,6 +69,23 @@ impl RecordArguments {
         self.window.is_empty()
     }
 
+    /// How tables are read.
+    pub(crate) fn table(&self) -> ReadOptions {
+        self.table.reading(self.rate_unit)
+    }
+
+    /// Which columns are the rates about x, y and z.
+    pub(crate) fn axes(&self) -> Option<SignedAxes> {
+        self.axes
+    }
+
+    /// The windows of the file with number `k`, from 0; `None` where other files alone have some, an empty list where none has.
+    pub(crate) fn windows(&self, k: usize) -> Option<Vec<(f64, f64)>> {
+        let own = self.window.iter().filter(|w| w.file.is_none_or(|n| n == k + 1));
+        let own: Vec<(f64, f64)> = own.map(|w| w.span).collect();
+        (self.window.is_empty() || !own.is_empty()).then_some(own)
+    }
+
     /// All files and windows as one record; `wheel` is the momentum of a wheel per rad/s of its speed.
     pub(crate) fn record(&self, data: &[PathBuf], wheel: Option<Vector3<f64>>) -> Result<Record, Error> {
         self.check_windows(data.len())?;
@@ -87,10 +104,10 @@ impl RecordArguments {
     pub(crate) fn parts(&self, path: &Path) -> Result<Parts, Error> {
         self.check_windows(1)?;
         self.tell_axes();
-        Parts::open(path, &self.options(true), &self.windows_of(0))
+        Parts::open(path, &self.options(true), &self.windows(0).unwrap_or_default())
     }
 
-    fn check_windows(&self, files: usize) -> Result<(), Error> {
+    pub(crate) fn check_windows(&self, files: usize) -> Result<(), Error> {
         if let Some((n, w)) = self.window.iter().find_map(|w| w.file.filter(|n| *n > files).map(|n| (n, w))) {
             let value = format!("{n}:{:?},{:?}", w.span.0, w.span.1);
             let rule = format!("there are {files} files");
@@ -99,7 +116,7 @@ impl RecordArguments {
         Ok(())
     }
 
-    fn tell_axes(&self) {
+    pub(crate) fn tell_axes(&self) {
         if let Some(axes) = self.axes {
             let [x, y, z] = axes.apply([1.0, 2.0, 3.0]).map(|k| {
                 format!("{}{}", if k < 0.0 { "-" } else { "" }, ["x", "y", "z"][k.abs() as usize - 1])
@@ -113,23 +130,17 @@ impl RecordArguments {
         }
     }
 
-    /// The windows of the file with number `k`, s.
-    fn windows_of(&self, k: usize) -> Vec<(f64, f64)> {
-        self.window.iter().filter(|w| w.file.is_none_or(|n| n == k + 1)).map(|w| w.span).collect()
-    }
-
     /// The windows of the file with number `k`; `None` where other files alone have some.
     fn cut(&self, record: Record, k: usize) -> Result<Option<Record>, Error> {
-        let own = self.windows_of(k);
-        match (self.window.is_empty(), own.is_empty()) {
-            (true, _) => Ok(Some(record)),
-            (false, true) => Ok(None),
-            (false, false) => record.windows(&own).map(Some).map_err(|error| Error::Input(error.to_string())),
+        match self.windows(k) {
+            None => Ok(None),
+            Some(own) if own.is_empty() => Ok(Some(record)),
+            Some(own) => record.windows(&own).map(Some).map_err(|error| Error::Input(error.to_string())),
         }
     }
 
     fn options(&self, increments: bool) -> ReadOptions {
-        let reading = self.table.reading(self.rate_unit).with_most_skipped(self.skip_rows);
+        let reading = self.table().with_most_skipped(self.skip_rows);
         reading.with_axes(self.axes).with_increments(increments)
     }
 

@@ -62,8 +62,12 @@ impl DisturbanceArguments {
 #[command(next_help_heading = "Sensor errors (sensor axes = body axes, none by default)")]
 pub(super) struct GyroscopeArguments {
     /// Standard deviation of the noise of each component, rad/s
-    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
-    noise: f64,
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true)]
+    noise: Option<f64>,
+    /// Write attitudes (q_w, q_x, q_y, q_z, body to space), each turned by a rotation vector whose components have this standard
+    /// deviation, rad: in place of the rates, or beside them where --noise is given
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true)]
+    attitude_noise: Option<f64>,
     /// Constant offset, rad/s
     #[arg(long, value_name = "bx,by,bz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     offset: Option<[f64; 3]>,
@@ -109,10 +113,20 @@ fn spikes(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl GyroscopeArguments {
+    /// The noise of attitudes, where they are written.
+    pub(super) fn attitude_noise(&self) -> Option<f64> {
+        self.attitude_noise
+    }
+
+    /// Whether rates are written.
+    pub(super) fn has_rates(&self) -> bool {
+        self.attitude_noise.is_none() || self.noise.is_some()
+    }
+
     pub(super) fn gyroscope(&self) -> Gyroscope {
         let [spikes, spike_size] = self.spikes.unwrap_or_default();
         Gyroscope::default()
-            .with_noise(self.noise)
+            .with_noise(self.noise.unwrap_or(0.0))
             .with_offset(vector(self.offset))
             .with_offset_walk(self.offset_walk)
             .with_scale(self.scale_error)

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use polhode::num::Random;
 use polhode_files::error::Error;
 use polhode_files::numbers::{not_negative, number, numbers, positive};
-use polhode_fit::simulate_with;
+use polhode_fit::simulate_poses;
 use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
 use crate::flags::body::BodyArguments;
@@ -27,7 +27,7 @@ const EXAMPLES: &str = "Examples:
     --tosses 10 --scatter 1 --relative-drag 0.2 --noise 0.01 \\
     --offset 0.01,0,0 --spikes 0.01,2 --out tosses.csv";
 
-/// Record of a rate sensor on a known body
+/// Record of a rate sensor, or of attitudes, of a known body
 ///
 /// `polhode fit` reads its CSV, so that a measurement can be planned and an instrument rehearsed. The same seed gives the
 /// same record on every machine.
@@ -120,12 +120,26 @@ impl Simulate {
             if toss > 0 {
                 omega += random.normal_vector() * self.scatter;
             }
-            let rates =
-                simulate_with(body.inertia(), omega, &sampled, &disturbances, &gyroscope, &mut random)
-                    .map_err(|error| Error::Input(error.to_string()))?;
+            let noise = self.gyroscope.attitude_noise();
+            let (rates, attitudes) = simulate_poses(
+                body.inertia(),
+                omega,
+                &sampled,
+                &disturbances,
+                &gyroscope,
+                noise.unwrap_or(0.0),
+                &mut random,
+            )
+            .map_err(|error| Error::Input(error.to_string()))?;
             let thrown = toss as f64 * (self.until + pause);
-            for (t, w) in written.iter().zip(&rates) {
-                let mut cells = vec![thrown + t, w.x, w.y, w.z];
+            for ((t, w), q) in written.iter().zip(&rates).zip(&attitudes) {
+                let mut cells = vec![thrown + t];
+                if noise.is_some() {
+                    cells.extend([q.w, q.i, q.j, q.k]);
+                }
+                if self.gyroscope.has_rates() {
+                    cells.extend(w.iter());
+                }
                 if self.disturbances.has_wheel() {
                     cells.extend(disturbances.wheel_at(*t).iter());
                 }
@@ -146,7 +160,14 @@ impl Simulate {
             "angular velocity about the second body axis",
             "angular velocity about the third body axis",
         ];
-        columns.extend(axes(["wx", "wy", "wz"], "rad/s", about));
+        if self.gyroscope.attitude_noise().is_some() {
+            columns.push(Column::new("q_w", "", "scalar of the attitude, body to space"));
+            let vector = "component of the vector of the quaternion";
+            columns.extend(axes(["q_x", "q_y", "q_z"], "", [vector; 3]));
+        }
+        if self.gyroscope.has_rates() {
+            columns.extend(axes(["wx", "wy", "wz"], "rad/s", about));
+        }
         if self.disturbances.has_wheel() {
             let meaning = "momentum of the wheel along this body axis";
             columns.extend(axes(["hx (N m s)", "hy (N m s)", "hz (N m s)"], "N m s", [meaning; 3]));

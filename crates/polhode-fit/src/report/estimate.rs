@@ -6,10 +6,21 @@ use polhode::record::Spike;
 
 use crate::physical::certificate::Certificate;
 use crate::physical::constraint::ActiveConstraint;
+use crate::report::attitudes::AttitudeFit;
 use crate::report::identifiability::Identifiability;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warning::Warning;
+
+/// How a tensor was estimated.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Weighted least squares of the weak form of Euler's equation, at samples that are moved onto it.
+    WeakForm,
+    /// Maximum likelihood on the exact motion of the free body.
+    ExactMotion,
+}
 
 /// Whitened residuals of one segment: standard normal where model and noise are right.
 #[non_exhaustive]
@@ -17,7 +28,7 @@ use crate::report::warning::Warning;
 pub struct Residuals {
     /// Index of the segment in the record.
     pub segment: usize,
-    /// Centres of the test functions, s.
+    /// Centres of the test functions, or times of the samples of a likelihood on the exact motion, s.
     pub times: Vec<f64>,
     /// The residuals of each, three components in standard deviations.
     pub values: Vec<[f64; 3]>,
@@ -77,7 +88,7 @@ pub struct Estimate {
     pub inertia_covariance: Option<SMatrix<f64, 6, 6>>,
     /// Step of each component of the readings, rad/s, as found or given; 0 where there is none.
     pub quanta: [f64; 3],
-    /// Noise of one component of the rates, rad/s.
+    /// Noise of one component of the rates, rad/s; 0 where attitudes alone were fitted.
     pub noise_sigma: f64,
     /// Mean square of the residuals over the noise; the covariance is multiplied by it, before law and limits are
     /// imposed, where it exceeds 1.
@@ -90,8 +101,10 @@ pub struct Estimate {
     pub samples: usize,
     /// Number of segments that were long enough.
     pub segments: usize,
-    /// Half width of the test functions, s.
-    pub radius: f64,
+    /// How it was estimated.
+    pub method: Method,
+    /// Half width of the test functions, s; `None` of a likelihood on the exact motion, which has none.
+    pub radius: Option<f64>,
     /// Which of the five numbers the record determines; without a prior tensor all.
     pub identifiability: Identifiability,
     /// I₁ + I₂ − I₃ as a share of the trace; never negative.
@@ -100,10 +113,10 @@ pub struct Estimate {
     pub active_constraints: Vec<ActiveConstraint>,
     /// Residuals of the conditions of optimality.
     pub certificate: Certificate,
-    /// Trend of |J ω|.
-    pub momentum_trend: InvariantTrend,
-    /// Trend of 2T = ω·J ω.
-    pub energy_trend: InvariantTrend,
+    /// Trend of |J ω|; of a likelihood on the exact motion that of drag, by one step of least squares.
+    pub momentum_trend: Option<InvariantTrend>,
+    /// Trend of 2T = ω·J ω; `None` of a likelihood on the exact motion.
+    pub energy_trend: Option<InvariantTrend>,
     /// Correlation of neighbouring residuals.
     pub whiteness: Whiteness,
     /// The torque that the fit reckons with.
@@ -119,8 +132,10 @@ pub struct Estimate {
     /// Share of |dω/dt|² that the free motion of the answer leaves unexplained, beyond the noise of the rates; `None` where
     /// wheels or known torques act, or the record is too short.
     pub unexplained: Option<f64>,
+    /// What was found of the attitudes, where they were fitted.
+    pub attitudes: Option<AttitudeFit>,
     /// The shape that explains the record as well if its axes are left-handed, as with one axis reversed or two exchanged;
-    /// `None` where wheels or known torques act.
+    /// `None` where wheels or known torques act, and of attitudes, which tell the hand.
     pub mirror: Option<InertiaShape>,
     /// Samples that were left out because they stand out of their neighbours.
     pub spikes: Vec<Spike>,

@@ -1,8 +1,8 @@
 //! The report, drawn from the record, its weak estimate and the nearest physical tensor.
 
-use crate::report::scale::scale_of;
-use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
-use polhode::inertia::{Inertia, InertiaShape};
+use crate::report::scale::{by_prior, scale_of};
+use nalgebra::{DMatrix, Matrix3, SMatrix};
+use polhode::inertia::Inertia;
 use polhode::record::{Record, Spike};
 
 use crate::bound::motions::Motions;
@@ -10,15 +10,16 @@ use crate::columns::column::Unknowns;
 use crate::columns::effect::Class;
 use crate::error::FitError;
 use crate::physical::constraint::{ActiveConstraint, Constraint};
-use crate::physical::coordinates::{Coordinates, ENTRIES, Form, eigen, entries_of_coordinates, pair, tensor};
+use crate::physical::coordinates::{ENTRIES, Form, eigen, entries_of_coordinates, tensor};
 use crate::physical::dissipation::Dissipation;
 use crate::physical::face::Nearest;
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
 use crate::physical::nearest::Normal;
-use crate::physical::prior::{Prior, Told};
-use crate::physical::truncated::spread;
-use crate::report::estimate::{Estimate, Residuals};
+use crate::physical::prior::Prior;
+use crate::report::answer::{Answer, of_entries, ratios, shape_of, sigmas};
+use crate::report::deviations::{Deviations, deviations};
+use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
 use crate::report::mirror::mirrored;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance};
@@ -55,18 +56,6 @@ pub(crate) struct Facts<'a> {
     pub(crate) dissipation: &'a [Dissipation],
 }
 
-/// How far an answer may be off: factors of covariances.
-struct Deviations {
-    /// Of the tensor before law and limits are imposed.
-    free: Form,
-    /// Of the answer.
-    on_face: Form,
-    /// Covariance of the columns that are kept and the tensor.
-    together: DMatrix<f64>,
-    /// Standard deviations of the columns that are kept, by number, where a constraint holds the answer.
-    held: Vec<(usize, f64)>,
-}
-
 impl Facts<'_> {
     /// Everything that can be said of the answer.
     pub(crate) fn report(
@@ -77,21 +66,14 @@ impl Facts<'_> {
         open: Option<&Others>,
     ) -> Result<Estimate, FitError> {
         let weak = &self.chosen.weak;
-        let Deviations { free, on_face, together, held } = self.deviations(&nearest)?;
-        let shape = shape_of(&tensor(&nearest.x))?;
+        let limits = &self.settings.limits;
+        let Deviations { free, on_face, together, held } =
+            deviations(self.told, &self.joint.kept, limits, self.dissipation, &nearest)?;
+        let Answer { shape, moments, axes, v, .. } = Answer::new(&nearest.x)?;
         let j = shape.tensor();
-        let (moments, _) = eigen(j);
-        let axes = Inertia::from_tensor(j).map_or(UnitQuaternion::identity(), |i| i.principal_axes());
-        let v: [Vector3<f64>; 3] = core::array::from_fn(|k| axes * Vector3::ith(k, 1.0));
-        let deviation = |g: Coordinates| (on_face.transpose() * g).norm();
         let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
-        let ratio = |k: usize| {
-            let slope = (pair(&v[k], &v[k]) - pair(&v[2], &v[2]) * (moments[k] / moments[2])) / moments[2];
-            (moments[k] / moments[2], deviation(slope))
-        };
+        let ratios = ratios(&on_face, &v, &moments);
         let entries = entries_of_coordinates();
-        // of a factor, so that no variance is negative
-        let of_entries = |factor: Form| (entries * factor) * (entries * factor).transpose();
         // a motion under torques, or of other rates than those of the record, is not that of a free body
         let free_body = weak.columns.is_empty();
         let motions =
@@ -114,10 +96,10 @@ impl Facts<'_> {
             sigma_principal,
             axes,
             sigma_axes,
-            ratios: [ratio(0).0, ratio(1).0],
-            sigma_ratios: [ratio(0).1, ratio(1).1],
-            covariance: of_entries(on_face),
-            free_covariance: of_entries(free),
+            ratios: ratios.map(|r| r.0),
+            sigma_ratios: ratios.map(|r| r.1),
+            covariance: of_entries(&on_face),
+            free_covariance: of_entries(&free),
             bound: bound.map(|b| entries * b * entries.transpose()),
             bound_ratio,
             inertia,
@@ -129,13 +111,15 @@ impl Facts<'_> {
             dof: weak.dof(),
             samples: residuals.iter().map(|r| self.record.segments[r.segment].times().len()).sum(),
             segments: residuals.len(),
-            radius: weak.radius / self.rms,
+            radius: Some(weak.radius / self.rms),
+            method: Method::WeakForm,
+            attitudes: None,
             identifiability,
             triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
             active_constraints: nearest.active.into_iter().map(|c| self.in_seconds(c)).collect(),
             certificate: nearest.certificate,
-            momentum_trend: per_second(momentum),
-            energy_trend: per_second(energy),
+            momentum_trend: Some(per_second(momentum)),
+            energy_trend: Some(per_second(energy)),
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
             torque: torques,
             nuisances: sensor,
@@ -168,31 +152,6 @@ impl Facts<'_> {
         }
     }
 
-    /// How far the answer and its columns may be off.
-    fn deviations(&self, nearest: &Nearest) -> Result<Deviations, FitError> {
-        let singular = || FitError::Solver(SolverFailure::Information);
-        let kept = self.joint.kept.len();
-        // R⁻¹, a factor of the covariance
-        let joint_factor = self.told.root.clone().try_inverse().ok_or_else(singular)?;
-        let free: Form = joint_factor.fixed_view::<5, 5>(kept, kept).into_owned();
-        // of an answer that is held, what the record tells inside the walls; far outside, what it tells without them
-        let answer = DVector::from_iterator(kept + 5, nearest.others.iter().chain(nearest.x.iter()).copied());
-        let cut = if nearest.active.is_empty() {
-            None
-        } else {
-            let limits = &self.settings.limits;
-            spread(&self.told.centre, &joint_factor, limits, self.dissipation, &answer)
-        };
-        let together = cut.clone().unwrap_or_else(|| &joint_factor * joint_factor.transpose());
-        let of_tensor = cut.as_ref().map(|m| m.fixed_view::<5, 5>(kept, kept).into_owned());
-        let on_face = of_tensor.and_then(|m| m.cholesky()).map_or(free, |factor| factor.l());
-        let held: Vec<(usize, f64)> = cut
-            .iter()
-            .flat_map(|m| self.joint.kept.iter().enumerate().map(|(place, &k)| (k, m[(place, place)].sqrt())))
-            .collect();
-        Ok(Deviations { free, on_face, together, held })
-    }
-
     /// The multiplier of a drag per unit of it in 1/s.
     fn in_seconds(&self, active: ActiveConstraint) -> ActiveConstraint {
         let unit = match active.constraint {
@@ -218,21 +177,9 @@ impl Facts<'_> {
             return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, &at.x));
         };
         let scale = scale_of(known, self.stretches, self.rms, j, self.variance);
-        let trace = scale.trace;
-        if let Some(prior) = prior {
-            let (expected, sigma) = (prior.trace, prior.size_deviation());
-            if libm::log(trace / expected).abs() > SURE * sigma {
-                return Err(FitError::PriorSize { prior: expected, sigma: expected * sigma, known: trace });
-            }
-        }
-        // its covariance goes with the square
-        if !(trace * trace).is_normal() {
-            return Err(FitError::Setting { name: "the known quantity", value: known.value() });
-        }
-        let inertia =
-            Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
         let excess = self.misfit.max(1.0);
-        Ok((Some(inertia), Some(scale.covariance(j, covariance, excess, motions))))
+        let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, excess, motions)?;
+        Ok((Some(inertia), Some(covariance)))
     }
 
     /// The absolute tensor J/u by wheel momenta and torques, where u stands out of its noise; `together` is the covariance
@@ -303,36 +250,4 @@ impl Facts<'_> {
         })
         .collect()
     }
-}
-
-/// The absolute tensor where only a prior gives its size.
-fn by_prior(
-    j: &Matrix3<f64>,
-    prior: &Told,
-    covariance: &Form,
-    x: &Coordinates,
-) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
-    let (trace, slope, variance) = prior.size(x);
-    let inertia =
-        Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
-    let shape = SVector::<f64, 6>::from_fn(|row, _| j[ENTRIES[row]]) * trace;
-    let map = entries_of_coordinates() * trace + shape * slope.transpose();
-    let covariance = map * covariance * map.transpose() + shape * shape.transpose() * variance;
-    Ok((Some(inertia), Some(covariance)))
-}
-
-/// A tensor as a checked shape.
-pub(crate) fn shape_of(j: &Matrix3<f64>) -> Result<InertiaShape, FitError> {
-    InertiaShape::from_tensor(*j).map_err(|error| FitError::Solver(SolverFailure::Shape(error)))
-}
-
-/// Standard deviations of the principal moments, and of the turn about each principal axis.
-fn sigmas(factor: &Form, v: &[Vector3<f64>; 3], moments: &Vector3<f64>) -> ([f64; 3], [f64; 3]) {
-    let deviation = |g: Coordinates| (factor.transpose() * g).norm();
-    let sigma_principal = core::array::from_fn(|k| deviation(pair(&v[k], &v[k])));
-    let sigma_axes = core::array::from_fn(|k| {
-        let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-        deviation(pair(&v[a], &v[b])) / (moments[a] - moments[b]).abs()
-    });
-    (sigma_principal, sigma_axes)
 }

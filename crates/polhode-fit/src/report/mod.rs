@@ -1,7 +1,11 @@
 //! The report: an estimate with its deviations, its scale, what the record leaves open, and what it contradicts.
 
+pub(crate) mod answer;
+pub(crate) mod attitudes;
 pub(crate) mod averages;
+pub(crate) mod deviations;
 pub(crate) mod estimate;
+pub(crate) mod exact;
 pub(crate) mod facts;
 pub(crate) mod identifiability;
 pub(crate) mod mirror;

@@ -1,7 +1,12 @@
 //! The absolute size of a tensor whose shape is known.
 
+use crate::error::FitError;
+use crate::physical::failure::SolverFailure;
+use crate::physical::prior::Told;
 use crate::settings::known::Known;
+use crate::thresholds::noise::SURE;
 use nalgebra::{Matrix3, SMatrix, SVector};
+use polhode::inertia::Inertia;
 
 use crate::bound::motions::Motions;
 use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis, entries_of_coordinates, pair};
@@ -86,6 +91,33 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
+    /// The absolute tensor of shape `j` and the covariance of its entries; `covariance` is that of the coordinates. A prior tensor must have
+    /// this size, where it has one.
+    pub(crate) fn sized(
+        &self,
+        known: Known,
+        prior: Option<&Told>,
+        j: &Matrix3<f64>,
+        covariance: &Form,
+        excess: f64,
+        motions: Option<&Motions<'_>>,
+    ) -> Result<(Inertia, SMatrix<f64, 6, 6>), FitError> {
+        let trace = self.trace;
+        if let Some(prior) = prior {
+            let (expected, sigma) = (prior.trace, prior.size_deviation());
+            if libm::log(trace / expected).abs() > SURE * sigma {
+                return Err(FitError::PriorSize { prior: expected, sigma: expected * sigma, known: trace });
+            }
+        }
+        // its covariance goes with the square
+        if !(trace * trace).is_normal() {
+            return Err(FitError::Setting { name: "the known quantity", value: known.value() });
+        }
+        let inertia =
+            Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
+        Ok((inertia, self.covariance(j, covariance, excess, motions)))
+    }
+
     /// Covariance of the entries of trace × J from that of the coordinates of J; what the noise does not explain has
     /// enlarged the latter by `excess`.
     ///
@@ -120,6 +152,22 @@ impl Scale {
             of_shape + of_mean
         }
     }
+}
+
+/// The absolute tensor where only a prior gives its size.
+pub(crate) fn by_prior(
+    j: &Matrix3<f64>,
+    prior: &Told,
+    covariance: &Form,
+    x: &Coordinates,
+) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+    let (trace, slope, variance) = prior.size(x);
+    let inertia =
+        Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;
+    let shape = SVector::<f64, 6>::from_fn(|row, _| j[ENTRIES[row]]) * trace;
+    let map = entries_of_coordinates() * trace + shape * slope.transpose();
+    let covariance = map * covariance * map.transpose() + shape * shape.transpose() * variance;
+    Ok((Some(inertia), Some(covariance)))
 }
 
 #[cfg(test)]

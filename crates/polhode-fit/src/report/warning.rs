@@ -121,6 +121,35 @@ pub enum Warning {
         /// The higher, from 1.
         high: usize,
     },
+    /// Attitudes were left out because they repeat the one before.
+    RepeatedAttitudes {
+        /// How many.
+        samples: usize,
+    },
+    /// Attitudes were left out because they jump or stand out of the noise.
+    Outliers {
+        /// How many.
+        samples: usize,
+    },
+    /// The body turns far between attitudes.
+    CoarseAttitudes {
+        /// Largest turn from one to the next, rad.
+        turn: f64,
+    },
+    /// What the motion leaves of the attitudes exceeds their noise.
+    AttitudeResiduals {
+        /// Over the noise.
+        times: f64,
+        /// The noise of a component, rad.
+        noise: f64,
+    },
+    /// The axes of rates and attitudes move against each other.
+    MovingAxes {
+        /// By how much from the first sample to the last, rad.
+        turn: f64,
+        /// Gain of log-likelihood with that.
+        gain: f64,
+    },
     /// Few equations beyond the unknowns.
     FewEquations {
         /// Degrees of freedom.
@@ -222,6 +251,27 @@ impl fmt::Display for Warning {
             Self::EqualMoments { low, high } => write!(
                 f,
                 "moments {low} and {high} agree within their errors: the directions of their axes are arbitrary"
+            ),
+            Self::RepeatedAttitudes { samples } => {
+                write!(f, "{} left out as repeating the attitude before", counted(*samples, "was", "were"))
+            }
+            Self::Outliers { samples } => write!(
+                f,
+                "{} left out as standing far out of the motion, in attitude or rate",
+                counted(*samples, "was", "were")
+            ),
+            Self::CoarseAttitudes { turn } => write!(
+                f,
+                "from one attitude to the next the body turns by up to {turn:.2} rad: one that turns the other way round by {:.2} rad would                  look the same; make sure that it is not that fast",
+                core::f64::consts::TAU - turn
+            ),
+            Self::AttitudeResiduals { times, noise } => write!(
+                f,
+                "the free motion leaves {times:.1} times what the noise of the attitudes of {noise:.2e} rad explains: torques, or errors                  that last over many attitudes; deviations are enlarged by that factor"
+            ),
+            Self::MovingAxes { turn, gain } => write!(
+                f,
+                "the axes of attitudes and rates move against each other, by {turn:.2e} rad from the first sample to the last (log-likelihood                  higher by {gain:.0}): fix both to the body, or compare their clocks"
             ),
             Self::FewEquations { dof } => {
                 write!(f, "only {dof} degrees of freedom: chi squared is no reliable check")

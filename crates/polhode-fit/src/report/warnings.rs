@@ -2,11 +2,14 @@
 
 use crate::solve::weak_estimate::Convergence;
 use crate::thresholds::noise::DEVIATIONS;
+use crate::thresholds::poses::{DOUBTFUL, MOVING};
 use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
 use polhode::record::Record;
 
+use crate::report::attitudes::AttitudeFit;
 use crate::report::estimate::Estimate;
 use crate::report::sensor::Suspect;
+use crate::report::torque_free::InvariantTrend;
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
 use crate::solve::weak_estimate::WeakEstimate;
@@ -71,12 +74,9 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
             list.push(Warning::NoScale);
         }
     } else if e.torque.model == TorqueModel::None {
-        if e.momentum_trend.significant() {
-            list.push(Warning::MomentumTrend(e.momentum_trend));
-        }
-        if e.energy_trend.significant() {
-            list.push(Warning::EnergyTrend(e.energy_trend));
-        }
+        let counts = |trend: &InvariantTrend| trend.significant();
+        list.extend(e.momentum_trend.filter(counts).map(Warning::MomentumTrend));
+        list.extend(e.energy_trend.filter(counts).map(Warning::EnergyTrend));
     }
     if found && e.torque.model != TorqueModel::None {
         list.push(Warning::Torque(e.torque.clone()));
@@ -99,7 +99,47 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
             }
         }));
     }
-    list.extend(e.active_constraints.iter().cloned().map(Warning::Held));
+    list.extend(of_answer(e));
+    list
+}
+
+/// What limits the use of a tensor that was fitted to attitudes; `misfit` is what is left over the noise, where that is known.
+pub(super) fn of_attitudes(e: &Estimate, misfit: Option<f64>) -> Vec<Warning> {
+    let mut list = Vec::new();
+    if let Some(attitudes) = &e.attitudes {
+        let AttitudeFit { repeated, left_out, largest_turn: turn, noise_sigma, .. } = *attitudes;
+        if repeated > 0 {
+            list.push(Warning::RepeatedAttitudes { samples: repeated });
+        }
+        if left_out > 0 {
+            list.push(Warning::Outliers { samples: left_out });
+        }
+        if turn > DOUBTFUL {
+            list.push(Warning::CoarseAttitudes { turn });
+        }
+        let times = misfit.map_or(1.0, f64::sqrt);
+        if times * times > RESIDUALS {
+            list.push(Warning::AttitudeResiduals { times, noise: noise_sigma / times });
+        }
+        if let Some(alignment) = attitudes.alignment.filter(|alignment| alignment.moving_gain > MOVING) {
+            list.push(Warning::MovingAxes { turn: alignment.moving, gain: alignment.moving_gain });
+        }
+    }
+    if e.whiteness.significant() {
+        list.push(Warning::Correlated(e.whiteness));
+    }
+    if e.torque.model == TorqueModel::None {
+        list.extend(e.momentum_trend.filter(|trend| trend.significant()).map(Warning::MomentumTrend));
+    } else if e.torque.gain.is_some() {
+        list.push(Warning::Torque(e.torque.clone()));
+    }
+    list.extend(of_answer(e));
+    list
+}
+
+/// What of the answer itself limits its use, however it was found.
+pub(super) fn of_answer(e: &Estimate) -> Vec<Warning> {
+    let mut list: Vec<Warning> = e.active_constraints.iter().cloned().map(Warning::Held).collect();
     if e.pull > FAR {
         list.push(Warning::Contradiction { pull: e.pull });
     }

@@ -30,6 +30,8 @@ pub struct Settings {
     /// Standard deviation of the noise of one component, rad/s, at least 1e-10 of the rates; read from the samples
     /// without it.
     pub noise: Option<f64>,
+    /// Standard deviation of the noise of one component of the rotation vector of an attitude, rad; without it what the motion leaves.
+    pub attitude_noise: Option<f64>,
     /// What is known of the moments beforehand.
     pub limits: Vec<Limit>,
     /// A tensor that is known beforehand: it is joined with the record, and supplies what the record leaves open.
@@ -60,6 +62,7 @@ impl Default for Settings {
         Settings {
             radius: None,
             noise: None,
+            attitude_noise: None,
             limits: Vec::new(),
             prior: None,
             known: None,
@@ -80,6 +83,7 @@ impl Settings {
         options {
             radius => with_radius(f64),
             noise => with_noise(f64),
+            attitude_noise => with_attitude_noise(f64),
             prior => with_prior(Prior),
             known => with_known(Known),
             quantum => with_quantum(f64),
@@ -106,6 +110,7 @@ impl Settings {
         let own = [
             ("the radius", self.radius),
             ("the noise", self.noise),
+            ("the noise of the attitudes", self.attitude_noise),
             ("the known quantity", known),
             ("the torque noise", density),
             ("the quantum", self.quantum),

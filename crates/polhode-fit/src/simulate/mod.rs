@@ -3,10 +3,11 @@
 mod gyroscope;
 mod motion;
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::StateError;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
+use polhode::rotation::{Quat, Vec3};
 
 pub use gyroscope::Gyroscope;
 pub use motion::Disturbances;
@@ -105,11 +106,65 @@ pub fn simulate_with(
     gyroscope: &Gyroscope,
     random: &mut Random,
 ) -> Result<Vec<Vector3<f64>>, SimulationError> {
+    Ok(read(inertia, omega_body, times, disturbances, gyroscope, random)?.0)
+}
+
+/// The same with what a sensor of attitudes reads at `times`: the attitudes, body axes → space and 1 at time 0, each turned by a rotation
+/// vector in body axes whose components have the standard deviation `attitude_noise` (rad). That noise is drawn last.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::{inertia::Inertia, num::Random};
+/// use polhode_fit::{Disturbances, Gyroscope, simulate_poses};
+/// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
+/// let (omega, drag) = (Vector3::new(0.1, 1.0, 0.2), Disturbances::default().with_relative_drag(0.1));
+/// let times: Vec<f64> = (0..100).map(|i| 0.1 * f64::from(i)).collect();
+/// let gyroscope = Gyroscope::default();
+/// let (rates, attitudes) = simulate_poses(&body, omega, &times, &drag, &gyroscope, 0.0, &mut Random::new(1))?;
+/// // drag along the momentum leaves its direction in space
+/// let momentum = |k: usize| attitudes[k] * body.momentum(rates[k]);
+/// assert!(momentum(0).normalize().cross(&momentum(99).normalize()).norm() < 1e-12);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`simulate_with`], and a noise that is negative or not finite.
+pub fn simulate_poses(
+    inertia: &Inertia,
+    omega_body: Vector3<f64>,
+    times: &[f64],
+    disturbances: &Disturbances,
+    gyroscope: &Gyroscope,
+    attitude_noise: f64,
+    random: &mut Random,
+) -> Result<(Vec<Vector3<f64>>, Vec<UnitQuaternion<f64>>), SimulationError> {
+    check("the noise of the attitudes", &[attitude_noise], false)?;
+    let (rates, exact) = read(inertia, omega_body, times, disturbances, gyroscope, random)?;
+    let mut read = |q: &Quat<f64>| {
+        if attitude_noise == 0.0 {
+            return UnitQuaternion::from(*q);
+        }
+        let off = Vec3::from(random.normal_vector() * attitude_noise);
+        UnitQuaternion::from(*q * Quat::exponential(off))
+    };
+    Ok((rates, exact.iter().map(&mut read).collect()))
+}
+
+/// What the gyroscope reads, and the true attitudes.
+fn read(
+    inertia: &Inertia,
+    omega_body: Vector3<f64>,
+    times: &[f64],
+    disturbances: &Disturbances,
+    gyroscope: &Gyroscope,
+    random: &mut Random,
+) -> Result<(Vec<Vector3<f64>>, Vec<Quat<f64>>), SimulationError> {
     disturbances.check()?;
     gyroscope.check()?;
     let errors = gyroscope.errors(times, random);
-    let true_rates = disturbances.rates(inertia, omega_body, times, gyroscope.skew, random)?;
-    Ok(true_rates.iter().zip(&errors).map(|(w, error)| gyroscope.reading(w, error)).collect())
+    let found = disturbances.motion(inertia, omega_body, times, gyroscope.skew, random)?;
+    let rates = found.rates.iter().zip(&errors).map(|(w, error)| gyroscope.reading(w, error));
+    Ok((rates.collect(), found.attitudes))
 }
 
 /// `value` if it is finite and, where asked, not negative.

@@ -7,6 +7,7 @@ use polhode::body::StateError;
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
+use polhode::rotation::Quat;
 
 use crate::simulate::{SimulationError, check};
 
@@ -58,30 +59,37 @@ impl Disturbances {
         self.wheel + self.wheel_rate * t
     }
 
-    /// True rates at `times`, the component k at times + skew_k.
-    pub(super) fn rates(
+    /// True rates at `times`, the component k at times + skew_k, and attitudes at `times`, 1 at time 0.
+    pub(super) fn motion(
         &self,
         inertia: &Inertia,
         omega: Vector3<f64>,
         times: &[f64],
         skew: Vector3<f64>,
         random: &mut Random,
-    ) -> Result<Vec<Vector3<f64>>, SimulationError> {
+    ) -> Result<True, SimulationError> {
         let mut reads: Vec<Read> = Vec::with_capacity(times.len());
         for (sample, &time) in times.iter().enumerate() {
             if skew == Vector3::zeros() {
-                reads.push(Read { time, sample, axis: None });
+                reads.push(Read { time, sample, of: Of::Everything });
             } else {
-                reads.extend((0..3).map(|k| Read { time: time + skew[k], sample, axis: Some(k) }));
+                reads.extend((0..3).map(|k| Read { time: time + skew[k], sample, of: Of::Axis(k) }));
+                reads.push(Read { time, sample, of: Of::Attitude });
             }
         }
         if let Some(read) = reads.iter().find(|read| !read.time.is_finite()) {
             return Err(StateError::NotFinite { quantity: "time", value: read.time }.into());
         }
-        let mut rates = vec![Vector3::zeros(); times.len()];
-        let mut store = |read: &Read, rate: Vector3<f64>| match read.axis {
-            Some(k) => rates[read.sample][k] = rate[k],
-            None => rates[read.sample] = rate,
+        let mut found = True {
+            rates: vec![Vector3::zeros(); times.len()],
+            attitudes: vec![Quat::identity(); times.len()],
+        };
+        let mut store = |read: &Read, (rate, attitude): (Vector3<f64>, Quat<f64>)| match read.of {
+            Of::Axis(k) => found.rates[read.sample][k] = rate[k],
+            Of::Attitude => found.attitudes[read.sample] = attitude,
+            Of::Everything => {
+                (found.rates[read.sample], found.attitudes[read.sample]) = (rate, attitude);
+            }
         };
         // also the door where the start is checked
         let free = FreeMotion::from_omega(inertia, UnitQuaternion::identity(), omega)?;
@@ -93,30 +101,45 @@ impl Disturbances {
                     .at(read.time)
                     .map_err(|_| StateError::NotFinite { quantity: "time", value: read.time })?;
                 let along = frame.inverse() * Vector3::from(state.momentum_body);
-                store(read, frame * along.component_div(&moments));
+                store(read, (frame * along.component_div(&moments), state.attitude));
             }
         } else {
             reads.sort_by(|a, b| a.time.total_cmp(&b.time));
             let split = reads.partition_point(|read| read.time < 0.0);
             let last = reads.last().map_or(0.0, |read| read.time);
-            let mut path = Path::new(self, inertia, omega, reads.len() - split, last, random);
+            let count = |reads: &[Read]| reads.iter().filter(|read| !matches!(read.of, Of::Attitude)).count();
+            let mut path = Path::new(self, inertia, omega, count(&reads[split..]), last, random);
             for read in &reads[split..] {
                 store(read, path.at(read.time)?);
             }
-            let mut path = Path::new(self, inertia, omega, split, 0.0, random);
+            let mut path = Path::new(self, inertia, omega, count(&reads[..split]), 0.0, random);
             for read in reads[..split].iter().rev() {
                 store(read, path.at(read.time)?);
             }
         }
-        Ok(rates)
+        Ok(found)
     }
 }
 
-/// A component of a sample, or all three, and when it is read.
+/// What a perfect sensor would read.
+pub(super) struct True {
+    pub(super) rates: Vec<Vector3<f64>>,
+    pub(super) attitudes: Vec<Quat<f64>>,
+}
+
+/// What is read of a sample.
+#[derive(Clone, Copy)]
+enum Of {
+    Everything,
+    Axis(usize),
+    Attitude,
+}
+
+/// A part of a sample, and when it is read.
 struct Read {
     time: f64,
     sample: usize,
-    axis: Option<usize>,
+    of: Of,
 }
 
 /// A motion followed from time 0, in units in which the trace of the tensor is of order 1.
@@ -132,11 +155,12 @@ struct Path<'a> {
     series: Series,
 }
 
-/// Power series of p and ω about a time.
+/// Power series of p, ω and the attitude about a time.
 struct Series {
     time: f64,
     momentum: Vec<Vector3<f64>>,
     rate: Vec<Vector3<f64>>,
+    attitude: Vec<Quat<f64>>,
 }
 
 impl<'a> Path<'a> {
@@ -172,14 +196,14 @@ impl<'a> Path<'a> {
             terms,
             steps: 0,
             most_steps: STEPS * (reads + 1),
-            series: Series { time: 0.0, momentum: Vec::new(), rate: Vec::new() },
+            series: Series { time: 0.0, momentum: Vec::new(), rate: Vec::new(), attitude: Vec::new() },
         };
-        path.expand(0.0, j * omega + acting.wheel / scale);
+        path.expand(0.0, j * omega + acting.wheel / scale, Quat::identity());
         path
     }
 
-    /// The series about `time`, where the momentum is `p`.
-    fn expand(&mut self, time: f64, p: Vector3<f64>) {
+    /// The series about `time`, where the momentum is `p` and the attitude `q`.
+    fn expand(&mut self, time: f64, p: Vector3<f64>, q: Quat<f64>) {
         let a = self.acting;
         let wheel = [a.wheel_at(time) / self.scale, a.wheel_rate / self.scale];
         let (mut momentum, mut rate) = (vec![p], Vec::with_capacity(self.terms));
@@ -196,7 +220,13 @@ impl<'a> Path<'a> {
             }
             momentum.push(sum / (n + 1) as f64);
         }
-        self.series = Series { time, momentum, rate };
+        // q' = q ω/2
+        let mut attitude = vec![q];
+        for n in 0..self.terms {
+            let sum = (0..=n).fold(Quat::zero(), |sum, i| sum + attitude[i].rate(rate[n - i].into()));
+            attitude.push(sum * (1.0 / (n + 1) as f64));
+        }
+        self.series = Series { time, momentum, rate, attitude };
         self.steps += 1;
     }
 
@@ -225,21 +255,29 @@ impl<'a> Path<'a> {
                 return Err(SimulationError::TooFast { time: self.series.time, steps: self.steps });
             }
             let p = horner(&self.series.momentum, next - self.series.time);
-            self.expand(next, p);
+            let q = self.attitude(next);
+            self.expand(next, p, q);
         }
     }
 
-    /// The rate at `time`; times must move away from 0.
-    fn at(&mut self, time: f64) -> Result<Vector3<f64>, SimulationError> {
+    /// The attitude at `time`, within reach.
+    fn attitude(&self, time: f64) -> Quat<f64> {
+        let s = time - self.series.time;
+        self.series.attitude.iter().rev().fold(Quat::zero(), |sum, c| sum * s + *c).normalized()
+    }
+
+    /// Rate and attitude at `time`; times must move away from 0.
+    fn at(&mut self, time: f64) -> Result<(Vector3<f64>, Quat<f64>), SimulationError> {
         while let Some((when, impulse)) = self.impulses.pop_if(|(when, _)| *when <= time) {
             self.advance(when)?;
             let p = horner(&self.series.momentum, when - self.series.time) + impulse;
-            self.expand(when, p);
+            let q = self.attitude(when);
+            self.expand(when, p, q);
         }
         self.advance(time)?;
         let rate = horner(&self.series.rate, time - self.series.time);
         if rate.iter().all(|w| w.is_finite()) {
-            Ok(rate)
+            Ok((rate, self.attitude(time)))
         } else {
             Err(SimulationError::TooFast { time, steps: self.steps })
         }

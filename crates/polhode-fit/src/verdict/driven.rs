@@ -3,6 +3,7 @@
 use crate::error::FitError;
 use crate::physical::constraint::Constraint;
 use crate::report::estimate::Estimate;
+use crate::report::torque_free::InvariantTrend;
 use crate::signal::stretch::Stretch;
 use crate::thresholds::judgement::{DRIVEN, GROWN, GROWN_BY_HALF, OUTSIDE_OF_LAW};
 use crate::units::Motion;
@@ -18,7 +19,8 @@ pub(crate) fn check_driven(
     rms: f64,
 ) -> Result<(), FitError> {
     let unexplained = motion.and_then(Motion::unexplained_by_torques);
-    let growth = e.momentum_trend.rate;
+    let trend = e.momentum_trend;
+    let growth = trend.map_or(0.0, |trend| trend.rate);
     let longest = stretches.iter().map(Stretch::duration).fold(0.0, f64::max) / rms;
     let is_at_bound = e
         .active_constraints
@@ -27,7 +29,7 @@ pub(crate) fn check_driven(
     let least = if e.pull > OUTSIDE_OF_LAW { GROWN } else { GROWN_BY_HALF };
     let grows = is_at_bound && growth * longest > least;
     let is_unexplained = unexplained.is_some_and(|share| share > DRIVEN);
-    match is_unexplained || (grows && e.momentum_trend.significant()) {
+    match is_unexplained || (grows && trend.is_some_and(InvariantTrend::significant)) {
         true => Err(FitError::Driven { unexplained, growth, pull: e.pull }),
         false => Ok(()),
     }

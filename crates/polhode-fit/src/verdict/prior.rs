@@ -43,7 +43,7 @@ pub(crate) fn with_prior(
 pub(crate) fn check_agreement(
     prior: &Told,
     Agreement { chi2, dof }: Agreement,
-    weak: &WeakEstimate,
+    x: &Coordinates,
 ) -> Result<(), FitError> {
     if chi2 <= EXCLUDED[dof.clamp(5, 6) - 5] {
         return Ok(());
@@ -51,7 +51,7 @@ pub(crate) fn check_agreement(
     let six = |x: &Coordinates| ENTRIES.map(|entry| tensor(x)[entry]);
     Err(FitError::PriorContradicted {
         prior: six(&prior.x),
-        record: Box::new(six(&weak.x())),
+        record: Box::new(six(x)),
         chi2,
         dof,
         mirror: None,

@@ -90,7 +90,7 @@ fn no_unit_and_no_rotation_of_the_sensor_changes_the_answer() {
             assert!(apart < 1e-8, "noise {sigma}, factor {factor}: {apart:.1e}");
             // residuals of 1e-6 carry the rounding of terms a million times as large
             assert!((other.chi2_per_dof / reference.chi2_per_dof - 1.0).abs() < 1e-13 / sigma + 1e-10);
-            assert!((other.radius * factor / reference.radius - 1.0).abs() < 1e-12);
+            assert!((other.radius.unwrap() * factor / reference.radius.unwrap() - 1.0).abs() < 1e-12);
             assert!((other.noise_sigma / factor / reference.noise_sigma - 1.0).abs() < 1e-9);
         }
     }

@@ -7,6 +7,7 @@ mod fit;
 mod flights;
 mod measured;
 mod models;
+mod poses;
 mod prior;
 mod simulate;
 mod torque;

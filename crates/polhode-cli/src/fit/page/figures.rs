@@ -78,9 +78,14 @@ fn rates(times: &[f64], rates: &[Vector3<f64>], named: bool) -> Vec<Curve> {
 /// Residuals: whitened against time, their spectrum and their Allan deviation.
 pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Vec<Block>, Error> {
     let mut parts = vec![Block::Heading("Residuals".into())];
-    let caption =
-        "Residuals of the weak equations in standard deviations; the band is two of them wide on each side.";
-    parts.push(Block::Figure(plot::residuals(e).svg()?, caption.into()));
+    let caption = format!(
+        "Residuals of {} in standard deviations; the band is two of them wide on each side.",
+        plot::what(e)
+    );
+    parts.push(Block::Figure(plot::residuals(e).svg()?, caption));
+    if e.attitudes.is_some() {
+        return Ok(parts);
+    }
     let left: Vec<_> = motion.iter().filter_map(FittedMotion::residuals).collect();
     let times = motion.iter().filter_map(|m| record.segments.get(m.segment)).map(|s| s.times());
     let Some(interval) = interval(times).filter(|_| !left.is_empty()) else { return Ok(parts) };

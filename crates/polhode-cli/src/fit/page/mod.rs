@@ -7,10 +7,11 @@ use polhode_files::error::Error;
 use polhode_fit::{Estimate, FittedMotion, Nuisance, Record};
 use polhode_pages::document::{Block, Form, Tone};
 
+use super::attitudes::Read;
 use super::flights::Spans;
 use super::report::{
-    Facts, SURE, coefficients, digits, mirror, sensor_lines, sizes, systematic, torque, unexplained, unused,
-    with_error,
+    Facts, SURE, attitudes, coefficients, digits, mirror, sensor_lines, sizes, systematic, torque,
+    unexplained, unused, with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -18,11 +19,16 @@ pub(super) fn estimated(
     e: &Estimate,
     record: &Record,
     motion: &[FittedMotion],
-    spans: &Spans,
+    (spans, read): (&Spans, Option<&Read>),
     names: &str,
     form: Form,
 ) -> Result<String, Error> {
     let mut parts = answer(e);
+    let sentences = attitudes::sentences(e, read);
+    if !sentences.is_empty() {
+        parts.push(Block::Heading("Attitudes".into()));
+        parts.push(Block::List(sentences));
+    }
     if !e.warnings.is_empty() {
         parts.push(Block::Heading("What speaks against it".into()));
         parts.push(Block::List(e.warnings.iter().map(ToString::to_string).collect()));

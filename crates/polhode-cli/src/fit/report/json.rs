@@ -1,11 +1,12 @@
 //! A fit as JSON.
 
 use nalgebra::{Matrix3, SMatrix};
-use polhode_fit::{Estimate, Nuisance, Record};
+use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
 use serde_json::{Map, Value, json};
 
+use super::super::attitudes::Read;
 use super::super::flights::Spans;
-use super::{METHOD, coefficients, torque, unused};
+use super::{attitudes, coefficients, method, torque, unused};
 
 fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
     (0..3).map(|i| (0..3).map(|j| m[(i, j)]).collect()).collect()
@@ -15,10 +16,11 @@ fn matrix(m: &SMatrix<f64, 6, 6>) -> Vec<Vec<f64>> {
     (0..6).map(|i| (0..6).map(|j| m[(i, j)]).collect()).collect()
 }
 
-pub(super) fn object(e: &Estimate, record: &Record, spans: &Spans) -> Value {
+pub(super) fn object(e: &Estimate, record: &Record, spans: &Spans, read: Option<&Read>) -> Value {
     let mut whole = answer(e);
     if let (Value::Object(all), Value::Object(more)) = (&mut whole, grounds(e, record, spans)) {
         all.extend(more);
+        all.insert("attitudes".into(), attitudes::json(e, read));
     }
     whole
 }
@@ -42,7 +44,7 @@ fn answer(e: &Estimate) -> Value {
         "samples": e.samples,
         "segments": e.segments,
         "radius": e.radius,
-        "method": METHOD,
+        "method": method(e),
         "identifiable": e.identifiability.complete(),
         "null_directions":
             e.identifiability.null_directions.iter().map(ToString::to_string).collect::<Vec<_>>(),
@@ -60,12 +62,16 @@ fn answer(e: &Estimate) -> Value {
         "chi2_per_dof": e.chi2_per_dof,
         "pull": e.pull,
         "dof": e.dof,
-        "momentum_drift": { "rate": e.momentum_trend.rate, "sigma": e.momentum_trend.sigma },
-        "energy_drift": { "rate": e.energy_trend.rate, "sigma": e.energy_trend.sigma },
+        "momentum_drift": e.momentum_trend.map(drift),
+        "energy_drift": e.energy_trend.map(drift),
         "unexplained": e.unexplained,
         "mirror": e.mirror.as_ref().map(|mirror| square(&mirror.tensor())),
         "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
     })
+}
+
+fn drift(of: InvariantTrend) -> Value {
+    json!({ "rate": of.rate, "sigma": of.sigma })
 }
 
 /// What it rests on.

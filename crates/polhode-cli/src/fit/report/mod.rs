@@ -1,25 +1,44 @@
 //! A fit as text, as rows and as JSON.
 
+pub(super) mod attitudes;
 mod json;
 mod rows;
 mod text;
 
-use polhode_fit::{AverageAxis, Estimate, Identifiability, Nuisance, Record, Systematic, TorqueModel};
+use polhode_fit::{
+    AverageAxis, Estimate, Identifiability, Method, Nuisance, Record, Systematic, TorqueModel,
+};
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
 
+use super::attitudes::Read;
 use super::flights::Spans;
 
-pub(super) const METHOD: &str = "weak form, generalised least squares on denoised samples";
+/// How a tensor was found, in words.
+pub(super) fn method(e: &Estimate) -> &'static str {
+    match e.method {
+        Method::ExactMotion => "maximum likelihood on the exact motion of the free body",
+        _ => METHOD,
+    }
+}
+
+/// How it is found from rates.
+const METHOD: &str = "weak form, generalised least squares on denoised samples";
 pub(super) const ENTRIES: [(&str, usize, usize); 6] =
     [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
 
 /// A tensor in full.
-pub(super) fn identified(e: &Estimate, record: &Record, spans: &Spans, format: Format) -> String {
+pub(super) fn identified(
+    e: &Estimate,
+    record: &Record,
+    spans: &Spans,
+    read: Option<&Read>,
+    format: Format,
+) -> String {
     match format {
-        Format::Table => text::text(e, record, spans),
+        Format::Table => text::text(e, record, spans, read),
         Format::Csv => rows::rows(e).csv(),
-        Format::Json => pretty(&json::object(e, record, spans)),
+        Format::Json => pretty(&json::object(e, record, spans, read)),
     }
 }
 
@@ -63,6 +82,12 @@ impl Facts {
 
     pub(super) fn not_free() -> Self {
         let open = "the tensor: nowhere in the record does the body rotate freely";
+        Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
+    }
+
+    pub(super) fn direction_open() -> Self {
+        let open =
+            "the tensor: the motion does not tell whether the attitudes are body to space or space to body";
         Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
     }
 

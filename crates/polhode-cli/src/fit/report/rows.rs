@@ -44,13 +44,19 @@ pub(super) fn rows(e: &Estimate) -> Table {
     }
     table.push(row!["triangle_slack", e.triangle_slack, 2.0 * e.sigma_principal[2]]);
     table.push(row!["noise_sigma", e.noise_sigma, None::<f64>]);
+    if let Some(attitudes) = &e.attitudes {
+        table.push(row!["attitude_noise_sigma", attitudes.noise_sigma, None::<f64>]);
+    }
     table.push(row!["chi2_per_dof", e.chi2_per_dof, (2.0 / e.dof.max(1) as f64).sqrt()]);
     if let Some(prior) = e.prior {
         table.push(row!["prior_chi2", prior.chi2, (2.0 * prior.dof as f64).sqrt()]);
     }
     table.push(row!["bound_ratio", e.bound_ratio, None::<f64>]);
-    table.push(row!["momentum_drift", e.momentum_trend.rate, e.momentum_trend.sigma]);
-    table.push(row!["energy_drift", e.energy_trend.rate, e.energy_trend.sigma]);
+    for (name, trend) in [("momentum_drift", e.momentum_trend), ("energy_drift", e.energy_trend)] {
+        if let Some(trend) = trend {
+            table.push(row![name, trend.rate, trend.sigma]);
+        }
+    }
     table.push(row!["whiteness", e.whiteness.correlation, e.whiteness.sigma]);
     table.push(row!["unexplained", e.unexplained, None::<f64>]);
     if let Some(mirror) = &e.mirror {

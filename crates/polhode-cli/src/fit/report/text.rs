@@ -3,14 +3,17 @@
 use nalgebra::Matrix3;
 use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
 
+use super::super::attitudes::Read;
 use super::super::flights::Spans;
 use super::{
-    METHOD, SURE, coefficients, digits, mirror, sizes, systematic, torque, unexplained, unused, with_error,
+    SURE, attitudes, coefficients, digits, method, mirror, sizes, systematic, torque, unexplained, unused,
+    with_error,
 };
 
 /// The answer first, then what it rests on.
-pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans) -> String {
+pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans, read: Option<&Read>) -> String {
     let mut lines = answer(e);
+    lines.extend(attitudes::sentences(e, read));
     lines.push(String::new());
     lines.extend(axes(e));
     lines.push(tensor("shape (trace 1)", &e.shape.tensor()));
@@ -58,11 +61,12 @@ fn answer(e: &Estimate) -> Vec<String> {
     if off.is_some() {
         lines.extend(["systematic: if the sensor is off by".into(), format!("  {}", sizes(e))]);
     }
+    let noise =
+        if e.noise_sigma > 0.0 { format!(", noise {:.3e} rad/s", e.noise_sigma) } else { String::new() };
     lines.push(format!(
-        "{} samples, segments: {}, noise {:.3e} rad/s{}",
+        "{} samples, segments: {}{noise}{}",
         e.samples,
         e.segments,
-        e.noise_sigma,
         if e.spikes.is_empty() { String::new() } else { format!(", spikes left out: {}", e.spikes.len()) }
     ));
     lines.extend(unexplained(e));
@@ -181,12 +185,15 @@ fn prior(e: &Estimate) -> Vec<String> {
 }
 
 fn quality(e: &Estimate) -> Vec<String> {
-    let percent = |drift: InvariantTrend| with_error(100.0 * drift.rate, 100.0 * drift.sigma);
+    let drift = |name: &str, of: Option<InvariantTrend>| {
+        let percent = |drift: InvariantTrend| with_error(100.0 * drift.rate, 100.0 * drift.sigma);
+        of.map(|trend| format!("drift of {name}: {} per cent per second", percent(trend)))
+    };
     let told = |d: f64| if d.is_finite() { format!("{d:.1e}") } else { "none".into() };
     let spectrum = e.identifiability.deviations.map(told).join(", ");
-    vec![
-        format!("method: {METHOD}"),
-        format!("half width of the test functions: {:.4} s", e.radius),
+    let mut lines = vec![format!("method: {}", method(e))];
+    lines.extend(e.radius.map(|radius| format!("half width of the test functions: {radius:.4} s")));
+    lines.extend([
         "standard deviations of the five determined combinations:".into(),
         format!("  {spectrum}"),
         e.bound_ratio.map_or("no Cramer-Rao bound for this tensor".into(), |r| {
@@ -197,12 +204,15 @@ fn quality(e: &Estimate) -> Vec<String> {
             "correlation of neighbouring residuals: {:.3} +- {:.3}",
             e.whiteness.correlation, e.whiteness.sigma
         ),
-        format!("drift of |J w|: {} per cent per second", percent(e.momentum_trend)),
-        format!("drift of w J w: {} per cent per second", percent(e.energy_trend)),
+    ]);
+    lines.extend(drift("|J w|", e.momentum_trend));
+    lines.extend(drift("w J w", e.energy_trend));
+    lines.extend([
         format!("I1 + I2 - I3: {}", with_error(e.triangle_slack, 2.0 * e.sigma_principal[2])),
         format!(
             "optimality: stationarity {:.1e}, violation {:.1e}, {} rounds of cuts",
             e.certificate.stationarity, e.certificate.violation, e.certificate.rounds
         ),
-    ]
+    ]);
+    lines
 }

@@ -1,0 +1,247 @@
+//! The attitudes of files: which columns are fitted, and in which convention they are read.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::audit::{Attitudes, Convention, Direction, Frame, Reading, Trajectory};
+use polhode_files::error::{Error, tell, warn};
+use polhode_files::numbers::positive;
+use polhode_files::text::visible;
+use polhode_files::trajectory::{self, FoundTrajectory};
+use polhode_fit::Poses;
+
+use crate::flags::attitude::AttitudeArguments;
+use crate::flags::record::RecordArguments;
+
+/// What of a file is fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum From {
+    /// Angular velocities
+    Rates,
+    /// Attitudes
+    Attitudes,
+    /// Attitudes and angular velocities of the same rows, whose errors are independent
+    Both,
+}
+
+/// What is fitted, and how attitudes are read.
+#[derive(Args, Clone, Debug)]
+pub(super) struct PoseArguments {
+    /// Which columns are fitted [default: the rates if there are any, else the attitudes]
+    #[arg(long, value_enum, help_heading = "Reading")]
+    from: Option<From>,
+    #[command(flatten)]
+    convention: AttitudeArguments,
+    /// Standard deviation of the noise of one component of the rotation vector of an attitude, rad [default: what the motion leaves]
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    attitude_noise: Option<f64>,
+}
+
+/// Attitudes and how they were read.
+pub(super) struct Read {
+    pub(super) poses: Poses,
+    /// The convention of the numbers, in words.
+    pub(super) form: String,
+    /// The direction that names or flags state.
+    pub(super) stated: Option<Direction>,
+}
+
+impl PoseArguments {
+    pub(super) fn noise(&self) -> Option<f64> {
+        self.attitude_noise
+    }
+
+    /// Whether the files are read for their attitudes.
+    pub(super) fn are_read(&self, data: &[PathBuf], reading: &RecordArguments) -> Result<bool, Error> {
+        match self.from {
+            Some(From::Rates) => return Ok(false),
+            Some(From::Attitudes | From::Both) => return Ok(true),
+            None => {}
+        }
+        let mut any = false;
+        // standard input is read once, and for its rates
+        for path in data.iter().filter(|path| path.as_os_str() != "-") {
+            // what is wrong with a file is said where it is read
+            let Ok(found) = trajectory::columns(path, &reading.table()) else { continue };
+            any |= found.attitudes && !found.rates;
+            if found.attitudes && found.rates {
+                let name = visible(&path.display().to_string()).into_owned();
+                let text = "the rates are fitted, and the attitudes beside them are not: --from both fits both where their errors \
+                            are independent, which those of attitudes that were computed from these rates are not";
+                tell("note", &format!("{name}: {text}"));
+            }
+        }
+        Ok(any)
+    }
+
+    /// The attitudes of all files and windows.
+    pub(super) fn read(&self, data: &[PathBuf], reading: &RecordArguments) -> Result<Read, Error> {
+        reading.check_windows(data.len())?;
+        if self.from == Some(From::Both) {
+            reading.tell_axes();
+        }
+        let mut all: Option<Read> = None;
+        for (k, path) in data.iter().enumerate() {
+            let mut one = self.of_file(path, reading)?;
+            match reading.windows(k) {
+                None => continue,
+                Some(windows) if windows.is_empty() => {}
+                Some(windows) => {
+                    let cut = one.poses.windows(&windows);
+                    one.poses = cut.map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
+                }
+            }
+            all = Some(match all {
+                None => one,
+                Some(before) => joined(before, one, path)?,
+            });
+        }
+        all.ok_or_else(|| Error::Input("--window: no file has samples in these windows".into()))
+    }
+
+    fn of_file(&self, path: &Path, reading: &RecordArguments) -> Result<Read, Error> {
+        let name = visible(&path.display().to_string()).into_owned();
+        let refused = |rule: &str, remedy: &str| Error::input(&name, "", rule, remedy);
+        let found = trajectory::read(path, &reading.table())?;
+        let remark = found.remark();
+        let claims = self.convention.claims(found.claims);
+        let FoundTrajectory { mut bodies, counts_steps, .. } = found;
+        let (1, Some((_, rows))) = (bodies.len(), bodies.pop()) else {
+            return Err(refused(
+                "it has several bodies, and a tensor is of one",
+                "name its columns by --columns",
+            ));
+        };
+        if counts_steps {
+            return Err(refused(
+                "it counts steps in place of times",
+                "give the length of a step, s, as --time-unit",
+            ));
+        }
+        if let Some(remark) = remark {
+            warn(&format!("{name}: {remark}"));
+        }
+        let convention = convention(&rows, &claims, &name)?;
+        if let Some(Attitudes::Matrices(matrices)) = &rows.attitude {
+            check_matrices(matrices, &rows.times, &name)?;
+        }
+        let attitudes =
+            (0..rows.times.len()).map(|row| convention.attitude(&rows, row).map(UnitQuaternion::from));
+        let Some(attitudes) = attitudes.collect::<Option<Vec<_>>>() else {
+            return Err(refused(
+                "it has no attitudes",
+                "name the columns of a quaternion, a matrix or Euler angles by --columns",
+            ));
+        };
+        let poses = match self.from {
+            Some(From::Both) => {
+                let rates = rates(&rows, &convention, &claims, reading, &name)?;
+                Poses::with_rates(&name, &rows.times, &attitudes, &rates)
+            }
+            _ => Poses::new(&name, &rows.times, &attitudes),
+        };
+        let poses = poses.map_err(|error| Error::Input(error.to_string()))?;
+        let poses = if claims.attitude.is_none() { poses.with_open_direction() } else { poses };
+        let mut words = convention;
+        (words.attitude, words.omega_frame, words.rate_unit) = (None, None, None);
+        let form = match words.to_string() {
+            plain if plain.is_empty() => rows.attitude.as_ref().map_or("", Attitudes::name).into(),
+            plain => plain,
+        };
+        Ok(Read { poses, form, stated: claims.attitude })
+    }
+}
+
+/// Files of one convention and one direction.
+fn joined(before: Read, next: Read, path: &Path) -> Result<Read, Error> {
+    if (before.stated.is_some(), before.poses.has_rates()) != (next.stated.is_some(), next.poses.has_rates())
+    {
+        let rule = "its attitudes state another direction, or other columns, than those of the files before";
+        return Err(Error::input(
+            &path.display().to_string(),
+            "",
+            rule,
+            "fit the files apart, or state --attitude",
+        ));
+    }
+    let form = if before.form == next.form { before.form } else { format!("{}; {}", before.form, next.form) };
+    Ok(Read { poses: before.poses.join(next.poses), form, stated: before.stated })
+}
+
+/// The convention of the attitudes. What the motion cannot tell must be stated: of a quaternion the place of the scalar, since the other
+/// place is the inverse attitude in turned axes, and of Euler angles their sequence and unit.
+fn convention(rows: &Trajectory, claims: &Convention, name: &str) -> Result<Reading, Error> {
+    let refused = |rule: &str, remedy: &str| Err(Error::input(name, "", rule, remedy));
+    let mut reading = Reading::default();
+    reading.attitude = Some(claims.attitude.unwrap_or(Direction::BodyToSpace));
+    match &rows.attitude {
+        Some(Attitudes::Quaternions(_)) if claims.quaternion.is_none() => {
+            return refused(
+                "the numbers of its quaternions do not tell which is the scalar, nor does the motion: read the other way they are the inverse attitudes in turned axes",
+                "state --quaternion wxyz or xyzw",
+            );
+        }
+        Some(Attitudes::Quaternions(_)) => reading.quaternion = claims.quaternion,
+        Some(Attitudes::Angles(_)) if claims.angles.is_none() => {
+            return refused(
+                "it has Euler angles of a sequence that it does not name",
+                "state --euler, as zyx, or zyx:extrinsic",
+            );
+        }
+        Some(Attitudes::Angles(_)) if claims.angle_unit.is_none() => {
+            return refused("it has Euler angles without a unit", "state --angle-unit rad or deg");
+        }
+        Some(Attitudes::Angles(_)) => reading.angles = claims.angles,
+        _ => {}
+    }
+    Ok(reading)
+}
+
+/// How far a rotation matrix may be from one.
+const ORTHOGONAL: f64 = 0.1;
+
+/// Refuses matrices that mirror, or are no rotations.
+fn check_matrices(matrices: &[[f64; 9]], times: &[f64], name: &str) -> Result<(), Error> {
+    for (m, t) in matrices.iter().zip(times) {
+        let m = Matrix3::from_row_slice(m);
+        let determinant = m.determinant();
+        let rule = if determinant < 0.0 {
+            format!(
+                "the matrix at {t} s has the determinant {determinant:.4}: it mirrors, one of its frames is left-handed"
+            )
+        } else {
+            let off = ((m.transpose() * m) / (m.norm_squared() / 3.0) - Matrix3::identity()).amax();
+            if off <= ORTHOGONAL {
+                continue;
+            }
+            format!("the matrix at {t} s is no rotation: M^T M differs from a multiple of 1 by {off:.2e}")
+        };
+        return Err(Error::input(name, "", &rule, "write rotation matrices with the determinant 1"));
+    }
+    Ok(())
+}
+
+/// The angular velocities beside the attitudes, rad/s, in body axes of their own.
+fn rates(
+    rows: &Trajectory,
+    convention: &Reading,
+    claims: &Convention,
+    reading: &RecordArguments,
+    name: &str,
+) -> Result<Vec<Vector3<f64>>, Error> {
+    if claims.omega_frame == Some(Frame::Space) {
+        let rule = "its angular velocity is in axes of space, and a sensor on the body reads it in those of the body";
+        return Err(Error::input(name, "", rule, "fit its attitudes alone: --from attitudes"));
+    }
+    let mut convention = *convention;
+    (convention.omega_frame, convention.rate_unit) = (Some(Frame::Body), claims.rate_unit);
+    let one = |row: usize| {
+        let [x, y, z] = convention.omega_body(rows, row)?.0;
+        Some(Vector3::from(reading.axes().map_or([x, y, z], |axes| axes.apply([x, y, z]))))
+    };
+    let all: Option<Vec<Vector3<f64>>> = (0..rows.times.len()).map(one).collect();
+    all.ok_or_else(|| {
+        Error::input(name, "", "it has no angular velocities", "name their columns, or fit --from attitudes")
+    })
+}

@@ -1,0 +1,204 @@
+//! What would explain the samples better: a torque, or axes of rates and attitudes that move against each other.
+//!
+//! To first order in its coefficients c a torque moves the motion by Φ(t) ∫ Φ(s)⁻¹ (0, J⁻¹ ∂τ/∂c) ds, with Φ the derivative by the
+//! start.
+
+use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
+
+use crate::likelihood::descent::Levels;
+use crate::likelihood::motion::{Motion, Moved, Start};
+use crate::likelihood::track::{ALL, COMMON, Model, OWN, Track};
+use crate::physical::coordinates::tensor;
+use crate::thresholds::likelihood::PANEL;
+
+/// Columns beside those of the model: drag, a constant torque, and turns over the time of the axes of attitudes and of rates.
+const FURTHER: usize = 10;
+const WIDTH: usize = ALL + FURTHER;
+const DRAG: core::ops::Range<usize> = 0..1;
+const CONSTANT: core::ops::Range<usize> = 1..4;
+const MOVING: [core::ops::Range<usize>; 2] = [4..7, 7..10];
+
+type Rows = SMatrix<f64, 3, WIDTH>;
+/// A rotation vector and a rate by the three components of a torque.
+type ByTorque = SMatrix<f64, 6, 3>;
+
+/// Coefficients that were left out of the model, as one step of least squares finds them.
+#[derive(Clone, Debug)]
+pub(crate) struct Found {
+    pub(crate) values: Vec<f64>,
+    /// By how much they move what all stretches share, and a factor of what their covariance adds to its own.
+    pub(crate) moved: DVector<f64>,
+    pub(crate) spread: DMatrix<f64>,
+    /// Their standard deviations.
+    pub(crate) sigmas: Vec<f64>,
+    /// Gain of log-likelihood.
+    pub(crate) gain: f64,
+}
+
+/// What each alternative would bring.
+pub(crate) struct Alternatives {
+    /// −c J ω, in units of the rate; `None` where the model has it.
+    pub(crate) drag: Option<Found>,
+    /// Over the trace and the squared unit of the rate, axes of the tensor.
+    pub(crate) constant: Found,
+    /// By how much the axes turn from the first sample of a stretch to its last, rad; without either kind of sample `None`.
+    pub(crate) moving: Option<Found>,
+}
+
+impl Alternatives {
+    /// `None` where the samples do not determine the model.
+    pub(crate) fn new(tracks: &[Track], model: &Model, levels: Levels) -> Option<Alternatives> {
+        let mut information = DMatrix::zeros(COMMON + FURTHER, COMMON + FURTHER);
+        let mut gradient = DVector::zeros(COMMON + FURTHER);
+        for (track, start) in tracks.iter().zip(&model.starts) {
+            add(track, model, start, levels, &mut information, &mut gradient)?;
+        }
+        for k in 0..COMMON {
+            // without both attitudes and rates there is no alignment
+            if information[(k, k)] == 0.0 {
+                information[(k, k)] = 1.0;
+            }
+        }
+        let of = |columns: core::ops::Range<usize>| found(&information, &gradient, columns);
+        // it may be the one or the other that moves on the body
+        let moving = MOVING.into_iter().filter(|_| model.is_aligned).filter_map(of);
+        let moving = moving.max_by(|a, b| a.gain.total_cmp(&b.gain));
+        let drag = if model.drag.is_none() { Some(of(DRAG)?) } else { None };
+        Some(Alternatives { drag, constant: of(CONSTANT)?, moving })
+    }
+}
+
+/// Some further columns beside those of the model.
+fn found(
+    information: &DMatrix<f64>,
+    gradient: &DVector<f64>,
+    columns: core::ops::Range<usize>,
+) -> Option<Found> {
+    let (first, count) = (COMMON + columns.start, columns.len());
+    let own = information.view((0, 0), (COMMON, COMMON)).into_owned().cholesky()?;
+    let mixed = information.view((0, first), (COMMON, count)).into_owned();
+    let left = information.view((first, first), (count, count)) - mixed.tr_mul(&own.solve(&mixed));
+    let right =
+        gradient.rows(first, count) - mixed.tr_mul(&own.solve(&gradient.rows(0, COMMON).into_owned()));
+    let covariance = left.cholesky()?.inverse();
+    let values = &covariance * &right;
+    let response = -own.solve(&mixed);
+    Some(Found {
+        moved: &response * &values,
+        spread: response * covariance.clone().cholesky()?.l(),
+        gain: 0.5 * values.dot(&right),
+        sigmas: (0..count).map(|k| covariance[(k, k)].sqrt()).collect(),
+        values: values.as_slice().to_vec(),
+    })
+}
+
+/// Adds the normal equations of a track, its start taken out.
+fn add(
+    track: &Track,
+    model: &Model,
+    start: &Start,
+    levels: Levels,
+    information: &mut DMatrix<f64>,
+    gradient: &mut DVector<f64>,
+) -> Option<()> {
+    let motion = model.motion(start)?;
+    let inverse = tensor(&model.x).try_inverse()?;
+    let back = UnitQuaternion::from(model.alignment).to_rotation_matrix().matrix().transpose();
+    let span = track.times.last()? - track.times.first()?;
+    let both = track.has_attitudes() && track.has_rates();
+    let mut matrix = SMatrix::<f64, WIDTH, WIDTH>::zeros();
+    let mut right = SVector::<f64, WIDTH>::zeros();
+    let mut put = |rows: Rows, residual: Vector3<f64>, level: f64| {
+        matrix += rows.tr_mul(&rows) / (level * level);
+        right += rows.tr_mul(&residual) / (level * level);
+    };
+    let mut sample = |k: usize, moved: &Moved, by_torque: &ByTorque| {
+        let t = track.times[k];
+        let (turn, slowed) = (moved.by_drag.fixed_rows::<3>(0), moved.by_drag.fixed_rows::<3>(3));
+        if let Some(attitude) = track.attitudes.get(k) {
+            let mut rows = Rows::zeros();
+            rows.fixed_view_mut::<3, 11>(0, 0).copy_from(&(back * moved.by.fixed_rows::<3>(0)));
+            if model.is_aligned {
+                rows.fixed_view_mut::<3, 3>(0, OWN + 5).fill_with_identity();
+            }
+            if model.drag.is_some() {
+                rows.set_column(ALL - 1, &(back * turn));
+            }
+            rows.set_column(ALL, &(back * turn));
+            rows.fixed_view_mut::<3, 3>(0, ALL + 1).copy_from(&(back * by_torque.fixed_rows::<3>(0)));
+            if both {
+                let share = Matrix3::identity() * (t / span);
+                rows.fixed_view_mut::<3, 3>(0, ALL + 4).copy_from(&share);
+            }
+            let left = (moved.attitude * model.alignment).conjugate() * *attitude;
+            put(rows, left.logarithm().into(), levels.attitude);
+        }
+        if let Some(rate) = track.rates.get(k) {
+            let mut rows = Rows::zeros();
+            rows.fixed_view_mut::<3, 11>(0, 0).copy_from(&moved.by.fixed_rows::<3>(3));
+            if model.drag.is_some() {
+                rows.set_column(ALL - 1, &slowed);
+            }
+            rows.set_column(ALL, &slowed);
+            rows.fixed_view_mut::<3, 3>(0, ALL + 1).copy_from(&by_torque.fixed_rows::<3>(3));
+            if both {
+                let turned = moved.rate.cross_matrix() * (t / span);
+                rows.fixed_view_mut::<3, 3>(0, ALL + 7).copy_from(&turned);
+            }
+            put(rows, rate - moved.rate, levels.rate);
+        }
+    };
+    let split = track.times.partition_point(|t| *t < 0.0);
+    let used = |k: &usize| track.used[*k];
+    outwards(&motion, &inverse, (split..track.times.len()).filter(used), &track.times, &mut sample)?;
+    outwards(&motion, &inverse, (0..split).rev().filter(used), &track.times, &mut sample)?;
+
+    let mut own = matrix.fixed_view::<OWN, OWN>(0, 0).into_owned();
+    for k in 0..OWN {
+        if own[(k, k)] == 0.0 {
+            own[(k, k)] = 1.0;
+        }
+    }
+    let own = own.cholesky()?;
+    let mixed = matrix.fixed_view::<OWN, { WIDTH - OWN }>(0, OWN).into_owned();
+    let rest =
+        matrix.fixed_view::<{ WIDTH - OWN }, { WIDTH - OWN }>(OWN, OWN) - mixed.tr_mul(&own.solve(&mixed));
+    let of_start = right.fixed_rows::<OWN>(0).into_owned();
+    let left = right.fixed_rows::<{ WIDTH - OWN }>(OWN) - mixed.tr_mul(&own.solve(&of_start));
+    *information += DMatrix::from_column_slice(WIDTH - OWN, WIDTH - OWN, rest.as_slice());
+    *gradient += DVector::from_column_slice(left.as_slice());
+    Some(())
+}
+
+/// Goes from time 0 through some samples, each further away than the one before, and integrates what a torque does by the trapezoidal
+/// rule in steps of a part of a radian.
+fn outwards(
+    motion: &Motion,
+    inverse: &Matrix3<f64>,
+    samples: impl Iterator<Item = usize>,
+    times: &[f64],
+    sample: &mut impl FnMut(usize, &Moved, &ByTorque),
+) -> Option<()> {
+    let drive = |moved: &Moved| -> Option<ByTorque> {
+        let mut torque = ByTorque::zeros();
+        torque.fixed_view_mut::<3, 3>(3, 0).copy_from(inverse);
+        Some(moved.by.fixed_columns::<6>(0).into_owned().try_inverse()? * torque)
+    };
+    let mut before = drive(&motion.at(0.0)?)?;
+    let (mut at, mut sum) = (0.0, ByTorque::zeros());
+    for k in samples {
+        let parts = ((times[k] - at).abs() / PANEL).ceil().max(1.0);
+        let (from, h) = (at, (times[k] - at) / parts);
+        for part in 1..=parts as usize {
+            at = if part as f64 == parts { times[k] } else { from + part as f64 * h };
+            let moved = motion.at(at)?;
+            let here = drive(&moved)?;
+            sum += (before + here) * (0.5 * h);
+            before = here;
+            if part as f64 == parts {
+                sample(k, &moved, &(moved.by.fixed_columns::<6>(0) * sum));
+            }
+        }
+    }
+    Some(())
+}

@@ -1,0 +1,100 @@
+//! Gauss and Newton's steps, damped, towards the model of the largest likelihood.
+
+use polhode::rotation::{Quat, Vec3};
+
+use crate::likelihood::motion::Start;
+use crate::likelihood::sums::{Pull, Reduced, Step, Sums};
+use crate::likelihood::track::{Kind, Model, Track};
+use crate::thresholds::likelihood::{BEYOND, CHANGE, DAMPING, MOST_DAMPING, STEPS, STILL};
+
+/// Standard deviations of a component of attitudes, rad, and of rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Levels {
+    pub(crate) attitude: f64,
+    pub(crate) rate: f64,
+}
+
+impl Levels {
+    pub(crate) fn of(self, kind: Kind) -> f64 {
+        match kind {
+            Kind::Attitude => self.attitude,
+            Kind::Rate => self.rate,
+        }
+    }
+}
+
+/// What is to be made least: samples within `radius` of the middles of their stretches, and the pull of a tensor.
+///
+/// Of residuals beyond [`BEYOND`] deviations the size counts in place of the square (Huber).
+pub(crate) struct Problem<'a> {
+    pub(crate) tracks: &'a [Track],
+    pub(crate) levels: Levels,
+    pub(crate) radius: f64,
+    pub(crate) pull: Option<Pull>,
+}
+
+impl Problem<'_> {
+    /// The normal equations at `model`, and what is to be made least; `None` where there is no such motion.
+    pub(crate) fn sums(&self, model: &Model) -> Option<(Vec<Sums>, f64)> {
+        let mut cost = self.pull.map_or(0.0, |pull| pull.squares(model));
+        let mut all = Vec::with_capacity(self.tracks.len());
+        for (track, start) in self.tracks.iter().zip(&model.starts) {
+            let mut sums = Sums::zero();
+            track.visit(model, start, self.radius, |left| {
+                let level = self.levels.of(left.kind);
+                let (per_square, size) = (1.0 / (level * level), left.residual.norm() / level);
+                let weight = if size <= BEYOND { 1.0 } else { BEYOND / size };
+                // x² up to the bend, 2 k x − k² beyond
+                cost += if size <= BEYOND { size * size } else { BEYOND * (2.0 * size - BEYOND) };
+                sums.add(left, weight * per_square);
+            })?;
+            all.push(sums);
+        }
+        cost.is_finite().then_some((all, cost))
+    }
+
+    /// The model nearest to the samples, from one near it; `None` where no motion is found.
+    pub(crate) fn settle(&self, mut model: Model) -> Option<Model> {
+        let (mut sums, mut cost) = self.sums(&model)?;
+        let mut damping = 0.0;
+        for _ in 0..STEPS {
+            let pull = self.pull.as_ref().map(|pull| (pull, &model));
+            let step = Reduced::new(&sums, pull, damping).and_then(|reduced| reduced.step());
+            let gain = step.as_ref().map(|step| step.gain);
+            let next = step.map(|step| moved(&model, &step));
+            let found = next.and_then(|next| self.sums(&next).map(|found| (next, found)));
+            match found {
+                Some((next, (there, less))) if less <= cost => {
+                    (model, sums, cost) = (next, there, less);
+                    if gain.is_some_and(|gain| gain < STILL) {
+                        break;
+                    }
+                    damping = if damping > DAMPING { damping / CHANGE } else { 0.0 };
+                }
+                // at the bottom rounding alone decides
+                Some(_) if gain.is_some_and(|gain| gain < STILL) => break,
+                _ => damping = f64::max(CHANGE * damping, DAMPING),
+            }
+            if damping > MOST_DAMPING {
+                break;
+            }
+        }
+        Some(model)
+    }
+}
+
+fn moved(model: &Model, step: &Step) -> Model {
+    let turned = |q: Quat<f64>, v: [f64; 3]| (q * Quat::exponential(Vec3(v))).normalized();
+    let starts = model.starts.iter().zip(&step.starts).map(|(start, step)| Start {
+        attitude: turned(start.attitude, [step[0], step[1], step[2]]),
+        rate: start.rate + step.fixed_rows::<3>(3),
+    });
+    let c = &step.common;
+    Model {
+        x: model.x + c.fixed_rows::<5>(0),
+        alignment: turned(model.alignment, [c[5], c[6], c[7]]),
+        is_aligned: model.is_aligned,
+        drag: model.drag.map(|drag| drag + c[8]),
+        starts: starts.collect(),
+    }
+}

@@ -1,0 +1,51 @@
+//! A first tensor from measured attitudes: the angular momentum Q J ω of a free body is the same vector in space at all times.
+//!
+//! min Σ |Q_i J ω_i − L|² over J of trace 1 and an L for each stretch is linear least squares. Noise of variance v of the rates adds
+//! v B_k·B_l to each square; this is taken off as far as the matrix stays positive.
+
+use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
+
+use crate::likelihood::local::Node;
+use crate::physical::coordinates::{Coordinates, Form, basis, eigen};
+use crate::thresholds::likelihood::{LEAST_SHARE, SMALLEST};
+
+type Columns = SMatrix<f64, 3, 5>;
+
+/// The coordinates of the tensor; `noise` is the variance of a component of an attitude. `None` where it is not determined.
+pub(crate) fn tensor_of(stretches: &[Vec<Node>], noise: f64) -> Option<Coordinates> {
+    let (mut matrix, mut right, mut excess) = (Form::zeros(), Coordinates::zeros(), 0.0);
+    let bases: [Matrix3<f64>; 5] = core::array::from_fn(basis);
+    for nodes in stretches {
+        let rows = nodes.iter().map(|node| {
+            let q = UnitQuaternion::from(node.attitude.normalized()).to_rotation_matrix();
+            let columns = bases.map(|b| q.matrix() * (b * node.rate));
+            (Columns::from_columns(&columns), q.matrix() * node.rate / 3.0)
+        });
+        let rows: Vec<(Columns, Vector3<f64>)> = rows.collect();
+        let count = rows.len().max(1) as f64;
+        let mean = rows.iter().fold((Columns::zeros(), Vector3::zeros()), |(a, b), (c, d)| (a + c, b + d));
+        let (mean_columns, mean_rate) = (mean.0 / count, mean.1 / count);
+        for (columns, rate) in &rows {
+            let columns = columns - mean_columns;
+            matrix += columns.tr_mul(&columns);
+            right -= columns.tr_mul(&(rate - mean_rate));
+        }
+        excess += nodes.iter().map(|node| node.variance * noise).sum::<f64>();
+    }
+    // B_k·B_l is 1 of each with itself, and each squared component of noise counts once
+    let (values, _) = eigen(matrix);
+    let taken = excess.min((1.0 - LEAST_SHARE) * values[0]).max(0.0);
+    let x = (matrix - Form::identity() * taken).cholesky()?.solve(&right);
+    physical(x)
+}
+
+/// Drawn towards the sphere until no moment is below a share of the trace.
+pub(crate) fn physical(x: Coordinates) -> Option<Coordinates> {
+    if x.iter().any(|v| !v.is_finite()) {
+        return None;
+    }
+    let (moments, _) = eigen(crate::physical::coordinates::tensor(&x));
+    let third = 1.0 / 3.0;
+    let share = if moments[0] < SMALLEST { (third - SMALLEST) / (third - moments[0]) } else { 1.0 };
+    Some(x * share)
+}

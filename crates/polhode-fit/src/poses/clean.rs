@@ -1,0 +1,86 @@
+//! Repeated attitudes, gaps, and single attitudes that jump.
+
+use core::ops::Range;
+
+use polhode::rotation::{Quat, rotation_angle};
+
+use crate::thresholds::poses::{GAP, JUMP};
+
+/// The attitudes that do not repeat the one before to the last digit; all of a body at rest.
+pub(super) fn new_readings(attitudes: &[Quat<f64>]) -> Vec<usize> {
+    let same = |k: usize| attitudes[k] == attitudes[k - 1] || attitudes[k] == -attitudes[k - 1];
+    let new: Vec<usize> = (0..attitudes.len()).filter(|&k| k == 0 || !same(k)).collect();
+    if new.len() == 1 { (0..attitudes.len()).collect() } else { new }
+}
+
+/// Where times have no gap: an interval of more than some medians.
+pub(super) fn split(times: &[f64]) -> Vec<Range<usize>> {
+    let mut intervals: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    intervals.sort_by(f64::total_cmp);
+    let median = intervals.get(intervals.len() / 2).copied().unwrap_or(0.0);
+    let mut ranges = Vec::new();
+    let mut start = 0;
+    for k in 1..=times.len() {
+        if k == times.len() || times[k] - times[k - 1] > GAP * median {
+            ranges.push(start..k);
+            start = k;
+        }
+    }
+    ranges
+}
+
+/// Angles between neighbouring attitudes, rad.
+pub(crate) fn turns(attitudes: &[Quat<f64>]) -> Vec<f64> {
+    attitudes.windows(2).map(|pair| rotation_angle(pair[0], pair[1])).collect()
+}
+
+/// Single attitudes that lie far off both neighbours, which lie near each other: swapped markers, a bad frame.
+pub(crate) fn jumps(attitudes: &[Quat<f64>]) -> Vec<usize> {
+    let turns = turns(attitudes);
+    let mut sorted = turns.clone();
+    sorted.sort_by(f64::total_cmp);
+    let usual = JUMP * sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let is_jump = |k: &usize| {
+        let past = rotation_angle(attitudes[*k - 1], attitudes[*k + 1]);
+        turns[*k - 1].min(turns[*k]) > usual && past < usual
+    };
+    (1..attitudes.len().saturating_sub(1)).filter(is_jump).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use polhode::rotation::Vec3;
+
+    fn spin(count: usize) -> Vec<Quat<f64>> {
+        (0..count).map(|k| Quat::exponential(Vec3([0.0, 0.0, 0.05 * k as f64]))).collect()
+    }
+
+    #[test]
+    fn repeated_attitudes_are_left_out_whatever_their_sign() {
+        let one = spin(3);
+        let held = [one[0], one[0], -one[0], one[1], one[1], one[2]];
+        assert_eq!(new_readings(&held), [0, 3, 5]);
+        assert_eq!(new_readings(&[one[0]; 4]), [0, 1, 2, 3]); // at rest
+    }
+
+    #[test]
+    fn a_bad_frame_is_a_jump_and_a_turn_is_none() {
+        let mut attitudes = spin(40);
+        assert!(jumps(&attitudes).is_empty());
+        attitudes[7] = attitudes[7] * Quat::exponential(Vec3([1.5, 0.0, 0.0]));
+        attitudes[20] = -attitudes[20];
+        assert_eq!(jumps(&attitudes), [7]);
+        // what stays turned is another motion, and no jump of one sample
+        for q in &mut attitudes[30..] {
+            *q = *q * Quat::exponential(Vec3([1.5, 0.0, 0.0]));
+        }
+        assert_eq!(jumps(&attitudes), [7]);
+    }
+
+    #[test]
+    fn gaps_part_segments() {
+        assert_eq!(split(&[0.0, 1.0, 2.0, 11.0, 12.0]), [0..3, 3..5]);
+        assert_eq!(split(&[0.0]).len(), 1);
+    }
+}

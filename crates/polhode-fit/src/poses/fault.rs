@@ -1,0 +1,116 @@
+//! Why a fit to attitudes is refused.
+
+use core::f64::consts::TAU;
+
+use polhode::num::Shown;
+use thiserror::Error;
+
+/// Why a fit to attitudes is refused.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PoseFault {
+    /// Nearly half a turn, or more, from one attitude to the next.
+    #[error(
+        "from sample {} of {source_name} to the next the attitude turns by {turn:.3} rad, or the other way round by {:.3} rad: beyond pi = \
+         3.14 no motion can be told from its samples, and these would be rates of {:.3e} and {:.3e} rad/s; record faster, or leave out \
+         the sample if it is a bad one",
+        sample, TAU - turn, turn / step, (TAU - turn) / step
+    )]
+    HalfTurn {
+        /// Where they come from.
+        source_name: String,
+        /// The first of the two, from 1.
+        sample: usize,
+        /// The shorter turn, rad.
+        turn: f64,
+        /// Time between the two, s.
+        step: f64,
+    },
+    /// The body does not turn.
+    #[error(
+        "the attitudes change by {turn:.2e} rad in all, and their noise is {noise:.2e} rad: the body does not turn; spin it"
+    )]
+    NoTurn {
+        /// Root mean square of the turn of an attitude from the first, rad.
+        turn: f64,
+        /// Noise of a component, rad.
+        noise: f64,
+    },
+    /// No free motion of any body follows the attitudes.
+    #[error(
+        "no free motion follows the attitudes, nor one that drag or a small constant torque slows: the nearest one misses them by {residual:.2e} rad (root mean square of a component){}; torques \
+         act, or a frame or a sequence of angles is read wrongly, or the body turns by more than half a turn between samples ({turn:.2} rad \
+         as read)",
+        noise.map_or(String::new(), |noise| format!(", where their noise is {noise:.2e} rad"))
+    )]
+    NotFree {
+        /// Root mean square of what is left of a component, rad; a radian or more where no motion was found.
+        residual: f64,
+        /// Noise of a component, where it is known, rad.
+        noise: Option<f64>,
+        /// Largest turn from one attitude to the next, rad.
+        turn: f64,
+    },
+    /// Both directions explain the attitudes.
+    #[error(
+        "the motion does not tell whether the attitudes are body to space or space to body, as that of an axisymmetric body: read body to \
+         space I1 : I2 : I3 = {}, read space to body {} (log-likelihood {} by {gain:.1}); name the direction",
+        three(as_read), three(inverse), if *gain >= 0.0 { "of the first higher" } else { "of the second higher" }, gain = gain.abs()
+    )]
+    Direction {
+        /// Principal moments as shares of the trace, read as body axes → space.
+        as_read: [f64; 3],
+        /// The same of the inverse.
+        inverse: [f64; 3],
+        /// Log-likelihood of the first less that of the second.
+        gain: f64,
+    },
+    /// The inverse direction explains the attitudes, and that in which they were read does not.
+    #[error(
+        "the attitudes look inverted: their inverses are those of a free body with I1 : I2 : I3 = {} (log-likelihood higher by {gain:.0}), and \
+         as they were read they are those of none; read them the other way round",
+        three(inverse)
+    )]
+    Inverted {
+        /// Principal moments of the inverse, as shares of the trace.
+        inverse: [f64; 3],
+        /// Its gain of log-likelihood.
+        gain: f64,
+    },
+    /// The rates beside the attitudes are their mirror image.
+    #[error(
+        "the rates turn the other way than the attitudes: a mirrored axis of the one or of the other, or attitudes that are read the wrong \
+         way round, would explain it"
+    )]
+    Mirrored,
+    /// The rates beside the attitudes have another size.
+    #[error(
+        "the rates are {scale:.4} times those of the attitudes: the units of rates, times or angles are probably mistaken"
+    )]
+    Scale {
+        /// Root mean square of the rates over that of the attitudes.
+        scale: f64,
+    },
+    /// A torque that a fit of attitudes has no model of.
+    #[error(
+        "a fit of attitudes reckons with drag in proportion to the momentum and with a small constant torque, and with no other; ask for one \
+         of these, or fit the rates alone"
+    )]
+    Torque,
+    /// A setting that only a fit of rates has.
+    #[error(
+        "{name} has no meaning where attitudes are fitted by the exact motion; leave it out, or fit the rates alone"
+    )]
+    OnlyRates {
+        /// Which one.
+        name: &'static str,
+    },
+}
+
+fn three([a, b, c]: &[f64; 3]) -> String {
+    format!("{} : {} : {}", four(*a), four(*b), four(*c))
+}
+
+fn four(x: f64) -> Shown {
+    Shown(format!("{x:.4}").parse().unwrap_or(x))
+}

@@ -1,0 +1,329 @@
+//! The free motion that follows attitudes, and what contradicts it.
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::rotation::{Quat, Vec3};
+
+use crate::error::FitError;
+use crate::likelihood::alignment::{Alignment, align, at_nodes};
+use crate::likelihood::alternatives::Alternatives;
+use crate::likelihood::descent::{Levels, Problem};
+use crate::likelihood::growth::{Followed, follow, steady};
+use crate::likelihood::local::{self, Node};
+use crate::likelihood::momentum::tensor_of;
+use crate::likelihood::sums::Reduced;
+use crate::likelihood::track::Track;
+use crate::physical::coordinates::{Coordinates, Form, coordinates, tensor};
+use crate::poses::clean::{jumps, turns};
+use crate::poses::fault::PoseFault;
+use crate::poses::record::{PoseSegment, Poses};
+use crate::settings::Settings;
+use crate::settings::torque::TorqueModel;
+use crate::thresholds::ladder;
+use crate::thresholds::likelihood::LINEAR;
+use crate::thresholds::noise::{DEVIATIONS, LEAST};
+use crate::thresholds::poses::{COARSE, FEWEST, HALF_TURN, MOVING, SAME_SIZE, STILL};
+use crate::thresholds::rounds::SIGNIFICANT_GAIN;
+
+/// What acts on the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Acting {
+    Nothing,
+    /// In proportion to the momentum, exactly.
+    Drag,
+    /// Constant in the axes of the tensor, to first order.
+    Constant,
+}
+
+/// The motion of one body through all segments, free or slowed by drag.
+pub(crate) struct Free {
+    pub(crate) followed: Followed,
+    pub(crate) torque: Acting,
+    /// Log-likelihood with the torque less that without, where both were tried.
+    pub(crate) gain: Option<f64>,
+    /// The coordinates without it.
+    pub(crate) without: Option<Coordinates>,
+    /// What a torque or moving axes would bring; `None` where the samples do not determine the model.
+    pub(crate) alternatives: Option<Alternatives>,
+    /// Unit of rates and inverse of that of times, rad/s.
+    pub(crate) unit: f64,
+    /// The segments that were long enough, each with the time of its middle, s.
+    pub(crate) used: Vec<(usize, f64)>,
+    /// What neighbouring attitudes say of the noise, where the body turns little between them, rad.
+    pub(crate) local_noise: Option<f64>,
+    /// Largest turn from one attitude to the next, rad.
+    pub(crate) largest_turn: f64,
+    /// Samples that jump.
+    pub(crate) jumps: usize,
+    pub(crate) has_rates: bool,
+    /// The information on the tensor at the steady spins that explain the samples nearly as well, if they do: a wobble within the noise
+    /// would pass for one that tells the tensor.
+    pub(crate) steady: Option<Form>,
+}
+
+impl Free {
+    /// The free motion nearest to `poses`.
+    pub(crate) fn new(poses: &Poses, settings: &Settings) -> Result<Free, FitError> {
+        let Looked { used, stretches, rates, largest_turn, jumps } = looked_at(poses, settings)?;
+        // the closed form itself is not without rounding
+        let local_noise = local::noise(&stretches).unwrap_or(0.0).max(LEAST.sqrt());
+        let noise = settings.attitude_noise.unwrap_or(local_noise);
+        let width = local::width(&stretches, noise).unwrap_or(0.0);
+        let nodes: Vec<Vec<Node>> =
+            stretches.iter().map(|(times, attitudes)| local::nodes(times, attitudes, width)).collect();
+        let unit = unit_of(&nodes, noise).filter(|_| does_turn(&stretches, noise).is_ok());
+        let Some(unit) = unit else {
+            return Err(does_turn(&stretches, noise)
+                .err()
+                .unwrap_or(FitError::NoRotation { rms: 0.0, noise }));
+        };
+        let alignment = alignment_of(&nodes, &stretches, &rates, width)?;
+        let turn = alignment.map_or(Quat::identity(), |alignment| alignment.turn);
+        let tracks: Vec<Track> =
+            stretches.iter().zip(&rates).map(|(s, rates)| track(s, rates, unit)).collect();
+        let scaled: Vec<Vec<Node>> =
+            nodes.iter().map(|nodes| nodes.iter().map(|n| in_units(n, unit)).collect()).collect();
+        let first = tensor_of(&scaled, noise * noise).unwrap_or_else(Coordinates::zeros);
+        let levels = Levels { attitude: noise, rate: 0.0 };
+        let not_free = |residual| PoseFault::NotFree { residual, noise: Some(noise), turn: largest_turn };
+        let first = turned(&first, &turn);
+        let moved = |drag| Some(Moved::new(follow(&tracks, first, turn, levels, drag)?));
+        let Found { moved, torque, gain, without } = match settings.torque {
+            TorqueModel::None => Found::of(moved(false), Acting::Nothing),
+            TorqueModel::Drag => Found::of(moved(true), Acting::Drag),
+            TorqueModel::Constant => Found::of(moved(false), Acting::Constant),
+            _ => chosen(moved),
+        }
+        .ok_or_else(|| not_free(1.0))?;
+        let Moved { followed, alternatives } = moved;
+        let steady = steady_within_noise(&followed);
+        // a motion that moves far between neighbours is left among their noise
+        let is_fine = largest_turn <= COARSE;
+        Ok(Free {
+            followed,
+            torque,
+            gain,
+            without,
+            alternatives,
+            unit,
+            used,
+            local_noise: is_fine.then_some(local_noise),
+            largest_turn,
+            jumps,
+            has_rates: poses.has_rates(),
+            steady,
+        })
+    }
+
+    /// Mean square of what is left of the attitudes over their noise, where that is known.
+    pub(crate) fn misfit(&self, settings: &Settings) -> Option<f64> {
+        let known = settings.attitude_noise.or(self.local_noise).filter(|noise| *noise > 0.0)?;
+        let ratio = self.followed.levels.attitude / known;
+        Some(ratio * ratio)
+    }
+
+    /// Whether the noise explains what the free motion leaves, and no torque explains it better.
+    pub(crate) fn is_explained(&self, settings: &Settings) -> bool {
+        // differences of neighbours tell the noise from fewer numbers than all readings do
+        let scatter = DEVIATIONS * (2.0 * STILL / self.followed.dof[0].max(1.0)).sqrt();
+        let by_noise = self.misfit(settings).is_none_or(|misfit| misfit <= 1.0 + scatter);
+        let Some(found) = &self.alternatives else { return by_noise };
+        let constant = match self.torque {
+            Acting::Nothing => ladder::FIRST + 2.0 * ladder::FURTHER,
+            Acting::Drag => MOVING,
+            Acting::Constant => f64::INFINITY,
+        };
+        let drag = match self.torque {
+            Acting::Nothing => ladder::FIRST,
+            _ => MOVING,
+        };
+        by_noise
+            && found.constant.gain <= constant
+            && found.drag.as_ref().is_none_or(|found| found.gain <= drag)
+            && (self.torque != Acting::Constant || self.is_linear(&found.constant.values))
+    }
+
+    /// Whether a constant torque, in units of the fit, turns the body by little.
+    fn is_linear(&self, torque: &[f64]) -> bool {
+        let model = &self.followed.model;
+        let acceleration =
+            tensor(&model.x).try_inverse().map(|inverse| inverse * Vector3::from_column_slice(torque));
+        let half = self.followed.tracks.iter().map(Track::reach).fold(0.0, f64::max);
+        acceleration.is_some_and(|a| 0.5 * a.norm() * half * half <= LINEAR)
+    }
+}
+
+/// A model that follows the samples, and what would explain them better.
+struct Moved {
+    followed: Followed,
+    alternatives: Option<Alternatives>,
+}
+
+impl Moved {
+    fn new(followed: Followed) -> Moved {
+        let alternatives = Alternatives::new(&followed.tracks, &followed.model, followed.levels);
+        Moved { followed, alternatives }
+    }
+}
+
+/// A model with its torque.
+struct Found {
+    moved: Moved,
+    torque: Acting,
+    gain: Option<f64>,
+    without: Option<Coordinates>,
+}
+
+impl Found {
+    fn of(moved: Option<Moved>, torque: Acting) -> Option<Found> {
+        Some(Found { moved: moved?, torque, gain: None, without: None })
+    }
+}
+
+/// The torque that the samples ask for: none, or the one of drag and a constant torque that gains more.
+fn chosen(moved: impl Fn(bool) -> Option<Moved>) -> Option<Found> {
+    let Some(free) = moved(false) else { return Found::of(moved(true), Acting::Drag) };
+    let found = free.alternatives.as_ref();
+    let more = ladder::FIRST + 2.0 * ladder::FURTHER;
+    let drag = found.and_then(|found| found.drag.as_ref()).map_or(f64::INFINITY, |drag| drag.gain);
+    let constant = found.map_or(0.0, |found| found.constant.gain);
+    if drag <= ladder::FIRST && constant <= more {
+        return Found::of(Some(free), Acting::Nothing);
+    }
+    let without = Some(free.followed.model.x);
+    let slowed = moved(true).map(|slowed| {
+        let gain = 0.5 * (free.followed.cost() - slowed.followed.cost());
+        (slowed, gain)
+    });
+    match slowed {
+        Some((slowed, gain)) if gain > ladder::FIRST && gain - ladder::FIRST >= constant - more => {
+            Some(Found { moved: slowed, torque: Acting::Drag, gain: Some(gain), without })
+        }
+        _ if constant > more => {
+            Some(Found { moved: free, torque: Acting::Constant, gain: Some(constant), without })
+        }
+        _ => Found::of(Some(free), Acting::Nothing),
+    }
+}
+
+/// What steady spins tell, where they leave hardly more of the samples.
+fn steady_within_noise(followed: &Followed) -> Option<Form> {
+    let Followed { model, tracks, levels, .. } = followed;
+    let (sums, cost) = steady(tracks, model.alignment, *levels)?;
+    let problem = Problem { tracks, levels: *levels, radius: f64::INFINITY, pull: None };
+    let (_, least) = problem.sums(model)?;
+    (cost - least <= SIGNIFICANT_GAIN).then(|| Reduced::new(&sums, None, 0.0)?.of_tensor()).flatten()
+}
+
+/// Segments that are long enough, without jumps.
+struct Looked {
+    used: Vec<(usize, f64)>,
+    stretches: Vec<(Vec<f64>, Vec<Quat<f64>>)>,
+    rates: Vec<Vec<Vector3<f64>>>,
+    largest_turn: f64,
+    jumps: usize,
+}
+
+fn looked_at(poses: &Poses, settings: &Settings) -> Result<Looked, FitError> {
+    let longest = poses.segments().iter().map(|s| s.times.len()).max().unwrap_or(0);
+    if longest < FEWEST {
+        let (samples, segments) = (poses.samples(), poses.segments().len());
+        return Err(FitError::TooFewSamples { samples, segments, longest, saturated: 0, needed: FEWEST });
+    }
+    let mut looked =
+        Looked { used: Vec::new(), stretches: Vec::new(), rates: Vec::new(), largest_turn: 0.0, jumps: 0 };
+    for (k, s) in poses.segments().iter().enumerate().filter(|(_, s)| s.times.len() >= FEWEST) {
+        let out = if settings.leave_out_spikes { jumps(&s.attitudes) } else { Vec::new() };
+        looked.jumps += out.len();
+        let kept: Vec<usize> = (0..s.times.len()).filter(|i| !out.contains(i)).collect();
+        let middle = 0.5 * (s.times[0] + s.times[s.times.len() - 1]);
+        let attitudes: Vec<Quat<f64>> = kept.iter().map(|&i| s.attitudes[i]).collect();
+        looked.largest_turn = looked.largest_turn.max(check_turns(s, &kept, &attitudes)?);
+        looked.used.push((k, middle));
+        looked.stretches.push((kept.iter().map(|&i| s.times[i] - middle).collect(), attitudes));
+        looked.rates.push(kept.iter().filter_map(|&i| s.rates.get(i).copied()).collect());
+    }
+    Ok(looked)
+}
+
+/// The largest turn from one attitude to the next, which must be less than half a turn.
+fn check_turns(s: &PoseSegment, kept: &[usize], attitudes: &[Quat<f64>]) -> Result<f64, FitError> {
+    let turns = turns(attitudes);
+    let far = turns.iter().position(|turn| *turn > HALF_TURN);
+    if let Some(k) = far {
+        let step = s.times[kept[k + 1]] - s.times[kept[k]];
+        let (source_name, sample) = (s.source().to_string(), s.samples[kept[k]]);
+        return Err(PoseFault::HalfTurn { source_name, sample, turn: turns[k], step }.into());
+    }
+    Ok(turns.into_iter().fold(0.0, f64::max))
+}
+
+/// Refuses attitudes that differ by their noise alone.
+fn does_turn(stretches: &[(Vec<f64>, Vec<Quat<f64>>)], noise: f64) -> Result<(), FitError> {
+    let (mut square, mut count) = (0.0, 0.0);
+    for (_, attitudes) in stretches {
+        for q in attitudes {
+            square += (attitudes[0].conjugate() * *q).logarithm().norm_squared();
+            count += 1.0;
+        }
+    }
+    let turn = (square / f64::max(count, 1.0)).sqrt();
+    if turn > STILL * noise { Ok(()) } else { Err(PoseFault::NoTurn { turn, noise }.into()) }
+}
+
+/// Root mean square of the rates of the nodes, rad/s, their noise taken off.
+fn unit_of(nodes: &[Vec<Node>], noise: f64) -> Option<f64> {
+    let (mut square, mut count) = (0.0, 0.0);
+    for node in nodes.iter().flatten() {
+        square += node.rate.norm_squared() - 3.0 * node.variance * noise * noise;
+        count += 1.0;
+    }
+    let unit = f64::sqrt(square / count);
+    (unit.is_normal() && unit > 0.0).then_some(unit)
+}
+
+/// The turn from the axes of the attitudes to those of the rates, where there are rates.
+fn alignment_of(
+    nodes: &[Vec<Node>],
+    stretches: &[(Vec<f64>, Vec<Quat<f64>>)],
+    rates: &[Vec<Vector3<f64>>],
+    width: f64,
+) -> Result<Option<Alignment>, FitError> {
+    let (mut all, mut beside) = (Vec::new(), Vec::new());
+    for ((nodes, (times, _)), rates) in
+        nodes.iter().zip(stretches).zip(rates).filter(|(_, rates)| !rates.is_empty())
+    {
+        all.extend_from_slice(nodes);
+        beside.extend(at_nodes(nodes, times, rates, width));
+    }
+    if all.is_empty() {
+        return Ok(None);
+    }
+    let alignment = align(&all, &beside).ok_or(FitError::NoRotation { rms: 0.0, noise: 0.0 })?;
+    match alignment {
+        Alignment { scale, .. } if !(1.0 / SAME_SIZE..=SAME_SIZE).contains(&scale) => {
+            Err(PoseFault::Scale { scale }.into())
+        }
+        Alignment { is_mirror: true, .. } => Err(PoseFault::Mirrored.into()),
+        alignment => Ok(Some(alignment)),
+    }
+}
+
+fn track((times, attitudes): &(Vec<f64>, Vec<Quat<f64>>), rates: &[Vector3<f64>], unit: f64) -> Track {
+    Track {
+        times: times.iter().map(|t| t * unit).collect(),
+        attitudes: attitudes.clone(),
+        rates: rates.iter().map(|w| w / unit).collect(),
+        used: vec![true; times.len()],
+    }
+}
+
+fn in_units(node: &Node, unit: f64) -> Node {
+    Node { time: node.time * unit, rate: node.rate / unit, variance: node.variance / (unit * unit), ..*node }
+}
+
+/// The same tensor along axes to which `turn` takes coordinates.
+fn turned(x: &Coordinates, turn: &Quat<f64>) -> Coordinates {
+    let columns = [0, 1, 2].map(|k| turn.rotate(Vec3::unit(k)).into());
+    let r = Matrix3::from_columns(&columns);
+    coordinates(&(r * tensor(x) * r.transpose()))
+}

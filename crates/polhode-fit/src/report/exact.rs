@@ -1,0 +1,328 @@
+//! The report on a likelihood on the exact motion.
+
+use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, Vector3};
+use polhode::inertia::Inertia;
+use polhode::rotation::Quat;
+
+use crate::columns::sets::torque_columns;
+use crate::error::FitError;
+use crate::likelihood::descent::{Levels, Problem};
+use crate::likelihood::sums::{Reduced, Sums};
+use crate::likelihood::track::{COMMON, Kind, Track};
+use crate::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, tensor};
+use crate::physical::failure::SolverFailure;
+use crate::physical::law::LARGEST_SHARE;
+use crate::physical::nearest::{Normal, nearest};
+use crate::physical::prior::Prior;
+use crate::poses::free::{Acting, Free};
+use crate::poses::record::Poses;
+use crate::report::answer::{Answer, of_entries, ratios, sigmas};
+use crate::report::attitudes::{AlignmentFit, AttitudeFit};
+use crate::report::deviations::{Deviations, deviations};
+use crate::report::estimate::{Estimate, Method, Residuals};
+use crate::report::identifiability::Identifiability;
+use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
+use crate::report::scale::{by_prior, scale_of};
+use crate::report::torque_free::{InvariantTrend, Whiteness};
+use crate::report::warnings::of_attitudes;
+use crate::settings::Settings;
+use crate::settings::torque::TorqueModel;
+use crate::signal::stretch::Stretch;
+use crate::thresholds::bound::OPEN;
+use crate::verdict::prior::{check_agreement, consistent};
+
+/// How the direction of attitudes was told.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Told {
+    /// Whether it is the other one than that in which they were read.
+    pub(crate) is_inverse: bool,
+    /// Log-likelihood of it less that of the other, where both were tried.
+    pub(crate) gain: Option<f64>,
+}
+
+/// What the samples say at one level of noise.
+struct Information {
+    sums: Vec<Sums>,
+    all: Reduced,
+    tensor: Form,
+    levels: Levels,
+    /// What a constant torque moves the coordinates by.
+    moved: Coordinates,
+    torques: Vec<Nuisance>,
+}
+
+/// Everything that can be said of the tensor of a free motion.
+pub(crate) fn report(
+    poses: &Poses,
+    settings: &Settings,
+    free: &Free,
+    told: Told,
+) -> Result<Estimate, FitError> {
+    let information = information(settings, free)?;
+    let x = free.followed.model.x + information.moved;
+    let identifiability = identify(free, &free.steady.unwrap_or(information.tensor));
+    let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
+    if !identifiability.complete() {
+        return Err(FitError::Unidentifiable(Box::new(identifiability)));
+    }
+    let singular = || FitError::Solver(SolverFailure::Information);
+    let root = information.tensor.cholesky().ok_or_else(singular)?.l().transpose();
+    let own = Normal {
+        centre: DVector::from_column_slice(x.as_slice()),
+        root: DMatrix::from_column_slice(5, 5, root.as_slice()),
+    };
+    let (joined, agreed) = match &prior {
+        None => (own, None),
+        Some(prior) => {
+            let (joined, chi2, dof) = prior.join(&own, None).ok_or_else(singular)?;
+            let agreed = Agreement { chi2, dof };
+            check_agreement(prior, agreed, &x)?;
+            (joined, Some(agreed))
+        }
+    };
+    let answer = nearest(&joined, &settings.limits, &[])?;
+    let Deviations { free: factor, on_face, .. } = deviations(&joined, &[], &settings.limits, &[], &answer)?;
+    let Answer { shape, moments, axes, v } = Answer::new(&answer.x)?;
+    let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
+    let ratios = ratios(&on_face, &v, &moments);
+    let (inertia, inertia_covariance) =
+        absolute(settings, free, &shape.tensor(), &(on_face * on_face.transpose()), &answer.x)?;
+    let residuals = residuals(free, information.levels)?;
+    let entries = entries_of_coordinates();
+    let bound = information.tensor.cholesky().map(|c| entries * c.inverse() * entries.transpose());
+    let misfit = free.misfit(settings);
+    let excess = misfit.unwrap_or(1.0);
+    let count: f64 = free.followed.dof.iter().sum();
+    let pull = answer.pull;
+    let drag = free.alternatives.as_ref().and_then(|found| found.drag.as_ref());
+    let drag = drag.map(|drag| (drag.values[0] * free.unit, drag.sigmas[0] * free.unit));
+    let slowed = information.torques.first().filter(|_| free.torque == Acting::Drag);
+    let drag = slowed.map(|drag| (drag.value, drag.sigma)).or(drag);
+    let mut estimate = Estimate {
+        principal: moments.into(),
+        sigma_principal,
+        axes,
+        sigma_axes,
+        ratios: ratios.map(|r| r.0),
+        sigma_ratios: ratios.map(|r| r.1),
+        covariance: of_entries(&on_face),
+        free_covariance: of_entries(&factor),
+        bound,
+        bound_ratio: prior.is_none().then_some(1.0),
+        inertia,
+        inertia_covariance,
+        quanta: [0.0; 3],
+        noise_sigma: if free.has_rates { information.levels.rate * free.unit } else { 0.0 },
+        chi2_per_dof: excess + pull * pull / f64::max(count, 1.0),
+        pull,
+        dof: count as usize,
+        samples: free.followed.tracks.iter().map(|t| t.used.iter().filter(|used| **used).count()).sum(),
+        segments: free.used.len(),
+        method: Method::ExactMotion,
+        radius: None,
+        identifiability,
+        triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
+        active_constraints: answer.active,
+        certificate: answer.certificate,
+        momentum_trend: drag.map(|(drag, sigma)| InvariantTrend { rate: -drag, sigma }),
+        energy_trend: None,
+        whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
+        torque: torque(free, information.torques.clone()),
+        nuisances: Vec::new(),
+        systematic: Vec::new(),
+        prior: agreed,
+        per_segment: summaries(free, &information),
+        unexplained: None,
+        attitudes: Some(attitudes(poses, settings, free, told, &information)),
+        mirror: None,
+        spikes: Vec::new(),
+        residuals,
+        warnings: Vec::new(),
+        shape,
+    };
+    estimate.warnings = of_attitudes(&estimate, misfit);
+    Ok(estimate)
+}
+
+/// The torque that was reckoned with.
+fn torque(free: &Free, coefficients: Vec<Nuisance>) -> FittedTorque {
+    let model = match free.torque {
+        Acting::Nothing => TorqueModel::None,
+        Acting::Drag => TorqueModel::Drag,
+        Acting::Constant => TorqueModel::Constant,
+    };
+    let ratios_without = free.without.map(|x| {
+        let (moments, _) = eigen(tensor(&x));
+        [moments[0] / moments[2], moments[1] / moments[2]]
+    });
+    FittedTorque { model, coefficients, gain: free.gain, ratios_without }
+}
+
+/// At the noise that was given, or as much as is left where that is more.
+fn information(settings: &Settings, free: &Free) -> Result<Information, FitError> {
+    let own = free.followed.levels;
+    let rate = settings.noise.map_or(own.rate, |noise| own.rate.max(noise / free.unit));
+    let levels = Levels {
+        attitude: settings.attitude_noise.map_or(own.attitude, |noise| own.attitude.max(noise)),
+        rate,
+    };
+    let problem = Problem { tracks: &free.followed.tracks, levels, radius: f64::INFINITY, pull: None };
+    let singular = || FitError::Solver(SolverFailure::Information);
+    let (sums, _) = problem.sums(&free.followed.model).ok_or_else(singular)?;
+    let all = Reduced::new(&sums, None, 0.0).ok_or_else(singular)?;
+    let mut tensor = all.of_tensor().ok_or_else(singular)?;
+    let (mut moved, mut torques) = (Coordinates::zeros(), Vec::new());
+    let constant = free.alternatives.as_ref().filter(|_| free.torque == Acting::Constant);
+    if let Some(constant) = constant.map(|found| &found.constant) {
+        moved = Coordinates::from_fn(|k, _| constant.moved[k]);
+        let spread = constant.spread.rows(0, 5);
+        let added = &spread * spread.transpose();
+        let covariance =
+            tensor.cholesky().ok_or_else(singular)?.inverse() + Form::from_fn(|i, k| added[(i, k)]);
+        tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
+        let each =
+            torque_columns(TorqueModel::Constant).into_iter().zip(&constant.values).zip(&constant.sigmas);
+        torques
+            .extend(each.map(|((column, value), sigma)| Nuisance::new(&column, *value, *sigma, free.unit)));
+    }
+    if let Some(drag) = free.followed.model.drag {
+        let sigma =
+            all.information.cholesky().map_or(f64::MAX, |c| c.inverse()[(COMMON - 1, COMMON - 1)].sqrt());
+        let each = torque_columns(TorqueModel::Drag).into_iter();
+        torques.extend(each.map(|column| Nuisance::new(&column, drag, sigma, free.unit)));
+    }
+    Ok(Information { sums, all, tensor, levels, moved, torques })
+}
+
+/// Which of the five numbers the information determines.
+fn identify(free: &Free, information: &Form) -> Identifiability {
+    let (values, directions) = eigen(*information);
+    let most = values[4];
+    // ascending values, and what is rounding tells nothing
+    let singular = Coordinates::from_fn(|k, _| {
+        let value = values[4 - k];
+        if value > OPEN * most { value.sqrt() } else { 0.0 }
+    });
+    let descending = Form::from_fn(|i, k| directions[(i, 4 - k)]);
+    let mut scatter = Matrix3::zeros();
+    for stretch in fitted_rates(free) {
+        stretch.rates.iter().for_each(|w| scatter += w * w.transpose());
+    }
+    Identifiability::new(&(singular, descending), &scatter, &tensor(&free.followed.model.x))
+}
+
+/// The rates of the motion at the samples, axes of the tensor, in units of the fit.
+fn fitted_rates(free: &Free) -> Vec<Stretch> {
+    let model = &free.followed.model;
+    let each = free.followed.tracks.iter().zip(&model.starts).map(|(track, start)| {
+        let motion = model.motion(start);
+        let rate =
+            |t: &f64| motion.as_ref().and_then(|motion| motion.at(*t)).map_or(Vector3::zeros(), |m| m.rate);
+        Stretch::new(track.times.clone(), track.times.iter().map(rate).collect())
+    });
+    each.collect()
+}
+
+/// The absolute tensor, where something gives its size, and its covariance.
+fn absolute(
+    settings: &Settings,
+    free: &Free,
+    j: &Matrix3<f64>,
+    covariance: &Form,
+    x: &Coordinates,
+) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
+    let prior = settings.prior.as_ref().map(Prior::told).transpose()?.filter(|prior| prior.sized);
+    let Some(known) = settings.known else {
+        return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, x));
+    };
+    let scale = scale_of(known, &fitted_rates(free), free.unit, j, 0.0);
+    let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, 1.0, None)?;
+    Ok((Some(inertia), Some(covariance)))
+}
+
+/// Residuals of attitudes, or of rates where there are no attitudes, in standard deviations.
+fn residuals(free: &Free, levels: Levels) -> Result<Vec<Residuals>, FitError> {
+    let model = &free.followed.model;
+    let each = free.followed.tracks.iter().zip(&model.starts).zip(&free.used);
+    each.map(|((track, start), &(segment, middle))| {
+        let shown = if track.has_attitudes() { Kind::Attitude } else { Kind::Rate };
+        let (mut times, mut values) = (Vec::new(), Vec::new());
+        let seen = track.visit(model, start, f64::INFINITY, |left| {
+            if left.kind == shown {
+                times.push(middle + track.times[left.sample] / free.unit);
+                values.push((left.residual / levels.of(left.kind)).into());
+            }
+        });
+        seen.ok_or(FitError::Solver(SolverFailure::Information))?;
+        let squares: f64 = values.iter().flatten().map(|v: &f64| v * v).sum();
+        let mean_square = squares / (3 * values.len().max(1)) as f64;
+        Ok(Residuals { segment, times, values, mean_square })
+    })
+    .collect()
+}
+
+/// Each segment: what it contributes, and where the tensor would be without it.
+fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
+    let total = information.tensor;
+    let inverse = total.cholesky().map(|c| c.inverse());
+    let each = free.used.iter().enumerate().map(|(k, &(segment, _))| {
+        let own = Reduced::new(&information.sums[k..=k], None, 0.0).and_then(|own| {
+            let gradient = own.gradient_of_tensor()?;
+            Some((own.of_tensor()?, gradient))
+        });
+        let weight = own.zip(inverse).map_or(0.0, |((own, _), inverse)| (inverse * own).trace() / 5.0);
+        let shift = own.and_then(|(own, gradient)| {
+            let step = (total - own).cholesky()?.solve(&gradient);
+            Some(step.dot(&(total * step)).sqrt())
+        });
+        let track: &Track = &free.followed.tracks[k];
+        SegmentSummary {
+            segment,
+            samples: track.used.iter().filter(|used| **used).count(),
+            noise_sigma: information.levels.rate * free.unit,
+            torque_noise: 0.0,
+            weight,
+            shift: shift.unwrap_or(0.0),
+        }
+    });
+    let mut each: Vec<SegmentSummary> = each.collect();
+    let sum: f64 = each.iter().map(|s| s.weight).sum();
+    if sum > 0.0 {
+        each.iter_mut().for_each(|s| s.weight /= sum);
+    }
+    each
+}
+
+fn attitudes(
+    poses: &Poses,
+    settings: &Settings,
+    free: &Free,
+    told: Told,
+    information: &Information,
+) -> AttitudeFit {
+    let out = free.followed.tracks.iter().map(|t| t.used.iter().filter(|used| !**used).count());
+    AttitudeFit {
+        noise_sigma: information.levels.attitude,
+        noise_is_given: settings.attitude_noise.is_some(),
+        residual: free.followed.levels.attitude,
+        local_noise: free.local_noise,
+        is_inverse: told.is_inverse,
+        direction_gain: told.gain,
+        largest_turn: free.largest_turn,
+        left_out: free.jumps + out.sum::<usize>(),
+        repeated: poses.repeated(),
+        alignment: free.has_rates.then(|| alignment(free, information)),
+    }
+}
+
+fn alignment(free: &Free, information: &Information) -> AlignmentFit {
+    let covariance = information.all.information.cholesky().map(|c| c.inverse());
+    let moving = free.alternatives.as_ref().and_then(|found| found.moving.as_ref());
+    let turn: Quat<f64> = free.followed.model.alignment;
+    AlignmentFit {
+        turn: turn.into(),
+        sigma: [5, 6, 7].map(|k| covariance.map_or(f64::INFINITY, |c| c[(k, k)].sqrt())),
+        moving: moving.map_or(0.0, |found| found.values.iter().map(|v| v * v).sum::<f64>().sqrt()),
+        moving_gain: moving.map_or(0.0, |found| found.gain),
+    }
+}

@@ -1,0 +1,315 @@
+//! Attitudes in, tensor out.
+
+use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
+use polhode::flow::FreeMotion;
+use polhode::inertia::Inertia;
+use polhode::num::Random;
+use polhode::rotation::{Quat, Vec3};
+use polhode_fit::{
+    Disturbances, Estimate, FitError, Gyroscope, Known, Method, PoseFault, Poses, Settings, TorqueModel,
+    Warning, fit_poses, foreseen_attitude_bound, simulate_poses,
+};
+
+fn body(moments: [f64; 3], random: &mut Random) -> Inertia {
+    let (w, v) = (random.normal(), random.normal_vector());
+    let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
+    let j = turn.matrix() * Matrix3::from_diagonal(&Vector3::from(moments)) * turn.matrix().transpose();
+    Inertia::from_tensor((j + j.transpose()) / (2.0 * j.trace())).unwrap()
+}
+
+fn attitudes(
+    motion: &FreeMotion,
+    times: &[f64],
+    noise: f64,
+    random: &mut Random,
+) -> Vec<UnitQuaternion<f64>> {
+    let middle = 0.5 * (times[0] + times[times.len() - 1]);
+    let one = |t: &f64, random: &mut Random| {
+        let off = Quat::exponential(Vec3::from(random.normal_vector() * noise));
+        (motion.at(t - middle).unwrap().attitude * off).into()
+    };
+    times.iter().map(|t| one(t, random)).collect()
+}
+
+fn entries(j: &Matrix3<f64>) -> SMatrix<f64, 6, 1> {
+    SMatrix::from([[j[(0, 0)], j[(1, 1)], j[(2, 2)], j[(0, 1)], j[(0, 2)], j[(1, 2)]]])
+}
+
+/// eᵀ C⁺ e, where C is singular along the trace alone.
+fn square(e: &SMatrix<f64, 6, 1>, c: &SMatrix<f64, 6, 6>) -> f64 {
+    let trace = SMatrix::<f64, 6, 1>::from([[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]]);
+    let regular = c + trace * trace.transpose() * c.trace();
+    e.dot(&regular.cholesky().unwrap().solve(e))
+}
+
+const ASYMMETRIC: [f64; 3] = [1.0, 2.0, 2.6];
+
+/// A body with random axes, its motion, and noisy attitudes of it, each from one stream of random numbers.
+struct Toss {
+    body: Inertia,
+    motion: FreeMotion,
+    omega: Vector3<f64>,
+    times: Vec<f64>,
+    measured: Vec<UnitQuaternion<f64>>,
+}
+
+fn toss(moments: [f64; 3], rate: f64, seconds: f64, noise: f64, stream: u64) -> Toss {
+    let mut random = Random::new(77).stream(stream);
+    let body = body(moments, &mut random);
+    let omega = random.normal_vector().normalize();
+    let times: Vec<f64> = (0..=(rate * seconds) as usize).map(|i| i as f64 / rate).collect();
+    let motion = FreeMotion::from_omega(&body, UnitQuaternion::identity(), omega).unwrap();
+    let measured = attitudes(&motion, &times, noise, &mut random);
+    Toss { body, motion, omega, times, measured }
+}
+
+impl Toss {
+    fn poses(&self) -> Poses {
+        Poses::new("toss", &self.times, &self.measured).unwrap()
+    }
+
+    /// Rates of the motion at the times, along axes to which `turn` takes coordinates of the body.
+    fn rates(&self, turn: impl Fn(f64) -> UnitQuaternion<f64>, noise: f64) -> Vec<Vector3<f64>> {
+        let (mut random, middle) = (Random::new(5), 0.5 * self.times[self.times.len() - 1]);
+        let rate = |t: &f64| self.motion.omega_at(t - middle).unwrap();
+        self.times.iter().map(|t| turn(*t) * rate(t) + random.normal_vector() * noise).collect()
+    }
+}
+
+fn refused(poses: &Poses) -> PoseFault {
+    match fit_poses(poses, &Settings::default()) {
+        Err(FitError::Poses(fault)) => fault,
+        Err(other) => panic!("{other}"),
+        Ok(estimate) => panic!("{:?} {:?}", estimate.principal, estimate.attitudes),
+    }
+}
+
+/// Over several bodies, noises from 0.05 to 2 degrees and sampling rates: the error is that of the bound, and the stated covariance holds it.
+#[test]
+fn errors_are_those_of_the_bound() {
+    let (mut squares, mut own, mut count) = (0.0, 0.0, 0.0);
+    for (k, noise) in [0.05_f64, 0.5, 2.0].into_iter().enumerate() {
+        for (n, moments) in
+            [ASYMMETRIC, [1.0, 2.0, 2.1], [1.0, 2.0, 3.0], [1.0, 3.0, 3.3]].into_iter().enumerate()
+        {
+            for trial in 0..3 {
+                let noise = noise.to_radians();
+                let rate = if trial == 0 { 60.0 } else { 6.0 };
+                let toss = toss(moments, rate, 30.0, noise, (100 * k + 10 * n + trial) as u64);
+                let bound = foreseen_attitude_bound(&toss.body, toss.omega, &toss.times, noise).unwrap();
+                let estimate = match fit_poses(&toss.poses(), &Settings::default()) {
+                    Ok(estimate) => estimate,
+                    // an estimate of the bound stands where the bound itself is near the limit
+                    Err(FitError::Unidentifiable(_)) if bound.trace() > 2.5e-3 => continue,
+                    Err(error) => panic!("{moments:?} {noise} {trial}: {error}"),
+                };
+                let off = entries(&(estimate.shape.tensor() - toss.body.tensor()));
+                squares += square(&off, &bound);
+                own += square(&off, &estimate.free_covariance);
+                count += 5.0;
+                assert_eq!(estimate.method, Method::ExactMotion);
+                let found = estimate.attitudes.unwrap();
+                assert!((found.noise_sigma / noise - 1.0).abs() < 0.2, "{found:?}");
+            }
+        }
+    }
+    // 180 numbers: the root scatters by 0.05
+    for over in [f64::sqrt(squares / count), f64::sqrt(own / count)] {
+        assert!((0.8..1.2).contains(&over), "{over}");
+    }
+}
+
+#[test]
+fn signs_of_quaternions_mean_nothing_and_bad_frames_are_left_out() {
+    let toss = toss(ASYMMETRIC, 20.0, 30.0, 1e-2, 1);
+    let plain = fit_poses(&toss.poses(), &Settings::default()).unwrap();
+    let mut flipped = toss.measured.clone();
+    flipped.iter_mut().step_by(3).for_each(|q| *q = UnitQuaternion::new_unchecked(-q.into_inner()));
+    let same = fit_poses(&Poses::new("toss", &toss.times, &flipped).unwrap(), &Settings::default()).unwrap();
+    assert!((plain.shape.tensor() - same.shape.tensor()).amax() < 1e-12);
+    let mut bad = toss.measured.clone();
+    for k in [50, 200, 201, 420] {
+        bad[k] *= UnitQuaternion::from_scaled_axis(Vector3::new(0.9, -0.7, 0.4));
+    }
+    let estimate = fit_poses(&Poses::new("toss", &toss.times, &bad).unwrap(), &Settings::default()).unwrap();
+    assert_eq!(estimate.attitudes.as_ref().unwrap().left_out, 4);
+    let distance = (plain.shape.tensor() - estimate.shape.tensor()).norm();
+    assert!(distance < plain.free_covariance.trace().sqrt(), "{distance:e}");
+}
+
+#[test]
+fn the_direction_is_told_by_the_motion_and_an_axisymmetric_body_leaves_it_open() {
+    let toss = toss(ASYMMETRIC, 20.0, 30.0, 1e-2, 2);
+    let expected = fit_poses(&toss.poses(), &Settings::default()).unwrap();
+    // claimed and wrong
+    let PoseFault::Inverted { inverse, gain } = refused(&toss.poses().inverse()) else { panic!() };
+    assert!((inverse[0] - expected.principal[0]).abs() < 1e-9 && gain > 100.0);
+    // open
+    for (poses, is_inverse) in [(toss.poses(), false), (toss.poses().inverse(), true)] {
+        let estimate = fit_poses(&poses.with_open_direction(), &Settings::default()).unwrap();
+        let found = estimate.attitudes.unwrap();
+        assert_eq!(found.is_inverse, is_inverse);
+        assert!(found.direction_gain.unwrap() > 100.0);
+        assert!((estimate.shape.tensor() - expected.shape.tensor()).amax() < 1e-9);
+    }
+    // the inverse motion of an elongated top is that of another one
+    let top = self::toss([1.0, 1.6, 1.6], 20.0, 30.0, 1e-2, 3);
+    assert!(fit_poses(&top.poses(), &Settings::default()).is_ok());
+    let PoseFault::Direction { as_read, inverse, .. } = refused(&top.poses().with_open_direction()) else {
+        panic!()
+    };
+    assert!((as_read[0] - 1.0 / 4.2).abs() < 1e-3, "{as_read:?}");
+    assert!((inverse[0] - as_read[0]).abs() > 1e-2, "{inverse:?}");
+}
+
+#[test]
+fn rates_beside_attitudes_are_aligned_and_both_tell() {
+    let toss = toss(ASYMMETRIC, 20.0, 30.0, 1e-2, 4);
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -1.2, 0.7));
+    let rates = toss.rates(|_| turn, 0.02);
+    let both = Poses::with_rates("toss", &toss.times, &toss.measured, &rates).unwrap();
+    let estimate = fit_poses(&both, &Settings::default()).unwrap();
+    let found = estimate.attitudes.as_ref().unwrap().alignment.unwrap();
+    let off = (turn.inverse() * found.turn).scaled_axis();
+    for k in 0..3 {
+        assert!(off[k].abs() < 4.0 * found.sigma[k] && found.sigma[k] < 3e-3, "{off} {found:?}");
+    }
+    assert!((estimate.noise_sigma / 0.02 - 1.0).abs() < 0.1);
+    // the tensor is in the axes of the rates
+    let r = turn.to_rotation_matrix();
+    let expected = r.matrix() * toss.body.tensor() * r.matrix().transpose();
+    assert!(square(&entries(&(estimate.shape.tensor() - expected)), &estimate.free_covariance) < 20.5);
+    assert!(found.moving_gain < 12.0 && estimate.warnings.is_empty(), "{:?}", estimate.warnings);
+    let alone = fit_poses(&both.without_rates(), &Settings::default()).unwrap();
+    assert!(estimate.sigma_principal[0] < alone.sigma_principal[0]);
+
+    let moving =
+        toss.rates(|t| turn * UnitQuaternion::from_scaled_axis(Vector3::y() * (0.05 * t / 30.0)), 0.02);
+    let moving = Poses::with_rates("toss", &toss.times, &toss.measured, &moving).unwrap();
+    let warnings = fit_poses(&moving, &Settings::default()).unwrap().warnings;
+    let size = warnings
+        .iter()
+        .find_map(|w| if let Warning::MovingAxes { turn, .. } = w { Some(*turn) } else { None });
+    assert!((size.unwrap() - 0.05).abs() < 0.01, "{size:?}");
+
+    let mirrored: Vec<Vector3<f64>> = rates.iter().map(|w| Vector3::new(-w.x, w.y, w.z)).collect();
+    let mirrored = Poses::with_rates("toss", &toss.times, &toss.measured, &mirrored).unwrap();
+    assert_eq!(refused(&mirrored), PoseFault::Mirrored);
+    let degrees: Vec<Vector3<f64>> = rates.iter().map(|w| w.map(f64::to_degrees)).collect();
+    let degrees = Poses::with_rates("toss", &toss.times, &toss.measured, &degrees).unwrap();
+    let PoseFault::Scale { scale } = refused(&degrees) else { panic!() };
+    assert!((scale / 1_f64.to_degrees() - 1.0).abs() < 0.05, "{scale}");
+}
+
+#[test]
+fn what_attitudes_do_not_tell_is_refused_with_its_numbers() {
+    // half a turn between samples
+    let fast: Vec<f64> = (0..40).map(f64::from).collect();
+    let spin = |t: &f64| UnitQuaternion::from_scaled_axis(Vector3::z() * 3.0 * *t);
+    let measured: Vec<UnitQuaternion<f64>> = fast.iter().map(spin).collect();
+    let fault = refused(&Poses::new("spin.csv", &fast, &measured).unwrap());
+    let text = fault.to_string();
+    assert!(matches!(fault, PoseFault::HalfTurn { sample: 1, .. }) && text.contains("3.000 rad"), "{text}");
+    assert!(text.contains("3.283 rad"), "{text}");
+    // no turn at all
+    let mut random = Random::new(1);
+    let still: Vec<UnitQuaternion<f64>> =
+        fast.iter().map(|_| Quat::exponential(Vec3::from(random.normal_vector() * 1e-2)).into()).collect();
+    assert!(matches!(refused(&Poses::new("still", &fast, &still).unwrap()), PoseFault::NoTurn { .. }));
+    // a steady spin tells its axis, whatever the noise makes of it
+    for noise in [0.0, 1e-9, 1e-4, 1e-2] {
+        let motion = FreeMotion::from_omega(
+            &Inertia::from_moments(ASYMMETRIC).unwrap(),
+            UnitQuaternion::identity(),
+            Vector3::new(0.0, 0.0, 1.0),
+        );
+        let times: Vec<f64> = (0..600).map(|i| 0.05 * f64::from(i)).collect();
+        let measured = attitudes(&motion.unwrap(), &times, noise, &mut random);
+        let poses = Poses::new("spin", &times, &measured).unwrap();
+        for poses in [poses.clone(), poses.with_open_direction()] {
+            let refused = fit_poses(&poses, &Settings::default());
+            let is_right = matches!(&refused, Err(FitError::Unidentifiable(what)) if what.rank == 2);
+            assert!(is_right, "{noise}: {:?}", refused.err().map(|error| error.to_string()));
+        }
+    }
+    // too few
+    let toss = toss(ASYMMETRIC, 1.0, 5.0, 1e-3, 5);
+    assert!(matches!(fit_poses(&toss.poses(), &Settings::default()), Err(FitError::TooFewSamples { .. })));
+}
+
+#[test]
+fn several_segments_share_the_tensor_and_the_noise_may_be_given() {
+    let tosses: Vec<Toss> = (0..3)
+        .map(|k| {
+            let mut one = toss(ASYMMETRIC, 50.0, 4.0, 5e-3, 60);
+            let mut random = Random::new(90 + k);
+            let omega = random.normal_vector() * 3.0;
+            one.motion = FreeMotion::from_omega(&one.body, UnitQuaternion::identity(), omega).unwrap();
+            one.measured = attitudes(&one.motion, &one.times, 5e-3, &mut random);
+            one
+        })
+        .collect();
+    let all = tosses.iter().map(Toss::poses).reduce(Poses::join).unwrap();
+    let estimate = fit_poses(&all, &Settings::default()).unwrap();
+    assert_eq!((estimate.segments, estimate.per_segment.len()), (3, 3));
+    assert!((estimate.per_segment.iter().map(|s| s.weight).sum::<f64>() - 1.0).abs() < 1e-12);
+    assert!(
+        estimate.per_segment.iter().all(|s| s.shift > 0.0 && s.shift < 20.0),
+        "{:?}",
+        estimate.per_segment
+    );
+    let off = entries(&(estimate.shape.tensor() - tosses[0].body.tensor()));
+    assert!(square(&off, &estimate.free_covariance) < 20.5);
+    // twice the noise that there is: twice the deviations
+    let given = fit_poses(&all, &Settings::default().with_attitude_noise(1e-2)).unwrap();
+    assert!((given.sigma_principal[0] / estimate.sigma_principal[0] - 2.0).abs() < 0.1);
+    assert!((given.chi2_per_dof - 0.25).abs() < 0.03, "{}", given.chi2_per_dof);
+    // a known size
+    let sized = fit_poses(&all, &Settings::default().with_known(Known::Momentum(2.0))).unwrap();
+    let inertia = sized.inertia.unwrap();
+    let starts: f64 =
+        tosses.iter().map(|t| t.body.momentum(t.motion.omega_at(0.0).unwrap()).norm_squared()).sum();
+    let trace = 2.0 / (starts / 3.0_f64).sqrt();
+    assert!((inertia.tensor().trace() / trace - 1.0).abs() < 1e-2, "{} {trace}", inertia.tensor().trace());
+}
+
+/// Torques of a body that also has a free motion: what the fit makes of each.
+#[test]
+fn drag_and_small_constant_torques_are_reckoned_with_and_others_are_refused() {
+    let body = Inertia::from_moments([0.2, 0.35, 0.45]).unwrap();
+    let times: Vec<f64> = (0..900).map(|i| f64::from(i) / 30.0).collect();
+    let poses = |acting: Disturbances, stream: u64| {
+        let (omega, mut random) = (Vector3::new(0.3, 1.0, 0.4), Random::new(8).stream(stream));
+        let gyroscope = Gyroscope::default();
+        let (_, measured) =
+            simulate_poses(&body, omega, &times, &acting, &gyroscope, 5e-3, &mut random).unwrap();
+        Poses::new("torque", &times, &measured).unwrap()
+    };
+    let distance = |e: &Estimate| square(&entries(&(e.shape.tensor() - body.tensor())), &e.free_covariance);
+    let settings = Settings::default();
+    for (k, drag) in [1e-4, 1e-2, 5e-2].into_iter().enumerate() {
+        let slowed = poses(Disturbances::default().with_relative_drag(drag), k as u64);
+        let e = fit_poses(&slowed, &settings).unwrap();
+        assert_eq!(e.torque.model, TorqueModel::Drag, "{drag}");
+        let found = &e.torque.coefficients[0];
+        assert!((found.value - drag).abs() < 4.0 * found.sigma && found.sigma < 5e-5, "{found:?}");
+        assert!(distance(&e) < 20.5 && e.warnings.iter().any(|w| matches!(w, Warning::Torque(_))));
+        // the direction is told with drag too
+        let PoseFault::Inverted { .. } = refused(&slowed.inverse()) else { panic!() };
+    }
+    let torque = Vector3::new(3e-5, -2e-5, 1e-5);
+    let e = fit_poses(&poses(Disturbances::default().with_torque(torque), 5), &settings).unwrap();
+    assert_eq!(e.torque.model, TorqueModel::Constant);
+    for (k, found) in e.torque.coefficients.iter().enumerate() {
+        assert!((found.value - torque[k]).abs() < 4.0 * found.sigma, "{found:?}");
+    }
+    assert!(distance(&e) < 20.5, "{}", distance(&e));
+    // too large for the first order, and torques at random
+    for acting in
+        [Disturbances::default().with_torque(torque * 300.0), Disturbances::default().with_torque_noise(3e-3)]
+    {
+        assert!(matches!(refused(&poses(acting, 6)), PoseFault::NotFree { .. }));
+    }
+    let other = fit_poses(&poses(Disturbances::default(), 7), &settings.with_torque(TorqueModel::Drag3));
+    assert!(matches!(other, Err(FitError::Poses(PoseFault::Torque))));
+}
