@@ -140,7 +140,7 @@ fn derivatives_are_continuous_where_two_moments_meet() {
     };
     for (omega, t) in [([0.6, -0.5, 0.7], 20.0), ([0.6, -0.5, 0.7], -3e3), ([0.5, 0.8, 0.0], 50.0)] {
         let symmetric = by(0.0, omega, t);
-        for power in [16, 15, 12, 9, 6] {
+        for power in 2..=16 {
             let split = libm::exp10(f64::from(-power));
             let change = (by(split, omega, t) - symmetric).amax() / symmetric.amax();
             let allowed = 10.0 * split * t * t + 1e-14;
@@ -148,6 +148,21 @@ fn derivatives_are_continuous_where_two_moments_meet() {
         }
         // and it does change
         assert!((by(1e-2, omega, t) - symmetric).amax() > 1e-3 * symmetric.amax());
+    }
+    // in proportion to the difference of the moments, from where rounding ends to where squares begin
+    for omega in [[0.6, -0.5, 0.7], [0.5, 0.8, 0.0], [0.1, -0.2, -0.9]] {
+        let symmetric = by(0.0, omega, 2.0);
+        let per_split = |power: i32| {
+            let split = libm::exp10(f64::from(-power));
+            (by(split, omega, 2.0) - symmetric) / split
+        };
+        let rate = per_split(6);
+        for power in [2, 3, 4, 5, 7, 8, 9, 10, 11] {
+            let off = (per_split(power) - rate).amax() / rate.amax();
+            let split = libm::exp10(f64::from(-power));
+            let allowed = 10.0 * (split + 1e-6) + 4e-14 / split;
+            assert!(off < allowed, "1e-{power}: {off:.1e} beyond {allowed:.1e}");
+        }
     }
 }
 

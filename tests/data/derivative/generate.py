@@ -144,4 +144,5 @@ def main():
     print(rows, "rows,", checked, "compared with Taylor integrations")
 
 
-main()
+if __name__ == "__main__":
+    main()
