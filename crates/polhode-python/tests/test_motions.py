@@ -245,10 +245,10 @@ def test_the_derivative_is_what_differences_say():
         change = (high.at(t).omega - low.at(t).omega) / 2e-6
         assert_allclose(derivative[..., 3:, 3 + axis], change, atol=1e-6 * abs(change).max())
     # per entry of the tensor at fixed momentum
-    _, by_momentum = motion.at_with_derivative(20.0, by="momentum", axes="body")
-    start = np.array([1, 2, 3]) * OMEGA
-    high, low = (FreeMotion([1 + sign * 1e-5, 2, 3], momentum=start) for sign in (1, -1))
-    change = (high.at(20.0).omega * [1 + 1e-5, 2, 3] - low.at(20.0).omega * [1 - 1e-5, 2, 3]) / 2e-5
+    start = np.array([1, 2, 2.5]) * OMEGA
+    _, by_momentum = FreeMotion([1, 2, 2.5], momentum=start).at_with_derivative(20.0, by="momentum", axes="body")
+    high, low = (FreeMotion([1 + sign * 1e-6, 2, 2.5], momentum=start) for sign in (1, -1))
+    change = (high.at(20.0).omega * [1 + 1e-6, 2, 2.5] - low.at(20.0).omega * [1 - 1e-6, 2, 2.5]) / 2e-6
     assert_allclose(by_momentum[3:, 6], change, atol=1e-6 * abs(change).max())
     for wrong in ({"by": "energy"}, {"axes": "sky"}):
         with pytest.raises(PolhodeError, match="it must be"):
@@ -264,7 +264,7 @@ def test_a_covariance_is_that_of_many_starts():
     for k in range(2):
         assert_allclose(np.cov(omegas[k].T), state[k, 3:, 3:], atol=0.1 * np.trace(state[k, 3:, 3:]))
     _, late = motion.covariance(1e7, np.diag(sigma**2))
-    assert late > 1
+    assert late > 0.9  # nothing is known of the phase any more
     with pytest.raises(PolhodeError, match="covariance: an array of shape \\(5, 5\\)"):
         motion.covariance(1, np.eye(5))
 
