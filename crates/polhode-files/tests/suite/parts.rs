@@ -52,9 +52,7 @@ fn segments(record: &Record) -> Vec<(Vec<f64>, Vec<usize>)> {
 
 #[test]
 fn parts_are_the_record_with_its_gaps_spikes_and_windows() {
-    for (count, at_the_end) in
-        [(ROWS + 30_000, false), (ROWS + 30_000, true), (2 * ROWS + 256, false), (ROWS + 100, true)]
-    {
+    for (count, at_the_end) in [(ROWS + 30_000, true), (ROWS + 256, false), (ROWS + 1500, false)] {
         let path = file(&format!("parts-{count}-{at_the_end}"), count, at_the_end);
         let reading = ReadOptions::default();
         let found = open(&path, &reading, None).unwrap();
