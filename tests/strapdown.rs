@@ -356,6 +356,25 @@ fn noise_is_found_and_the_rule_is_chosen_with_it() {
 }
 
 #[test]
+fn a_long_flight_has_the_covariance_that_its_time_needs() {
+    let body = Inertia::from_moments([1.0, 2.0, 3.0]).unwrap();
+    let omega = Vector3::new(0.4, 1.0, -0.3);
+    let truth = FreeMotion::from_omega(&body, UnitQuaternion::identity(), omega).unwrap();
+    let sensor = Sensor::default().with_noise(1e-3);
+    let sigma = |until: f64| {
+        let times: Vec<f64> = (0..1000).map(|k| until * f64::from(k) / 999.0).collect();
+        let rates: Vec<_> = times.iter().map(|t| truth.omega_at(*t).unwrap()).collect();
+        let flight = Flight::fit(&body, &times, &rates, UnitQuaternion::identity(), sensor).unwrap();
+        flight.at(&times).unwrap()[999].budget.sigma()
+    };
+    // the mean precession is known to 1/sqrt(n), and the angle is that times the time: JᵀJ has a condition of 1e10 and more here
+    let (short, long) = (sigma(1e3), sigma(1e6));
+    assert!((long / short / 1e3 - 1.0).abs() < 0.05, "{short} {long}");
+    // three thousand components of rates
+    assert!((0.3..3.0).contains(&(short / (1e3 * 1e-3 / 3000.0_f64.sqrt()))), "{short}");
+}
+
+#[test]
 fn a_flight_is_smoothed_on_its_exact_motion() {
     let inertia = Inertia::from_moments([1.0, 2.0, 3.0]).unwrap();
     let truth =

@@ -2,9 +2,12 @@
 """What calls from Python cost: import, one state, arrays, two threads. Least of several trials, as other work only adds; POSIX.
 
     python3 crates/polhode-python/measure.py
+
+With `--library` arrays are compared with the library itself, which cargo builds for it: the example `array_cost`, least of as many trials.
 """
 
 import os
+import pathlib
 import resource
 import subprocess
 import sys
@@ -35,6 +38,14 @@ def imported(modules):
     return least(lambda: subprocess.run([sys.executable, "-c", f"import {modules}"], check=True), 15, spent)
 
 
+def library():
+    """Time of a state by the library itself, s, of arrays of these lengths."""
+    root = pathlib.Path(__file__).parents[2]
+    command = ["cargo", "run", "--release", "--quiet", "--example", "array_cost"]
+    found = subprocess.run(command, cwd=root, check=True, capture_output=True, text=True).stdout
+    return {int(count): float(seconds) for count, seconds in (line.split() for line in found.splitlines())}
+
+
 def calls(work, threads, seconds=4.0):
     """How often so many threads do `work` in that time, all together."""
     counts, end = [0] * threads, time.perf_counter() + seconds
@@ -62,8 +73,12 @@ def main():
 
     print(f"one state: {1e9 * least(scalars, 300) / len(ten):.0f} ns")
     t = np.linspace(0, 1e4, 1_000_000)
-    few = t[:10_000].copy()
-    print(f"10000 states: {1e9 * least(lambda: at(few), 300) / few.size:.1f} ns a state")
+    alone = library() if "--library" in sys.argv else {}
+    for count, trials in ((1_000, 1000), (10_000, 300), (100_000, 50)):
+        few = t[:count].copy()
+        seconds = least(lambda: at(few), trials) / count
+        beside = f", {seconds / alone[count]:.2f} times the library's {1e9 * alone[count]:.1f}" if count in alone else ""
+        print(f"{count} states: {1e9 * seconds:.1f} ns a state{beside}")
     print(f"1000000 states: {1e9 * least(lambda: at(t), 15, time.process_time) / t.size:.1f} ns of processor time a state")
     part = t[:100_000]
     ratios = [calls(lambda: at(part), 2) / calls(lambda: at(part), 1) for _ in range(3)]

@@ -24,6 +24,8 @@ const START: usize = 3;
 /// | `two-speed` | four samples at a time: exp(α + β) with α = Σ δ, β += ½ (α + δ_last/6) × δ; δ by the trapezoid or the increment | 2; 3 |
 /// | `runge-kutta` | the classical step of order 4 of q̇ = ½ q ω, ω linear between the samples | 2 |
 ///
+/// For increments, the error of order 3 of the trapezoid oscillates and does not grow; what grows with the time is of order 4.
+///
 /// The last four are what flight controllers, loggers and textbooks run. For instantaneous rates their error is that of the
 /// straight line between samples, which no coning term mends.
 ///

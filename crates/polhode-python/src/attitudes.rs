@@ -37,7 +37,7 @@ pub(crate) struct Attitudes {
 /// >>> exact, rates = polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3]).at(t)
 /// >>> found = polhode.attitude(t, rates, kind="rate", noise=0)
 /// >>> found.rule, found.attitude.shape, bool(found.truncation[-1] < 1e-8)
-/// ('magnus:6,10', (2000, 4), True)
+/// ('magnus:6,8', (2000, 4), True)
 /// >>> polhode.attitude(t, 100 * rates, kind="rate")
 /// Traceback (most recent call last):
 ///     ...

@@ -156,8 +156,8 @@ impl FreeMotion {
     }
 
     /// The covariance of the state at `t` from that of the start, by the derivative: a pair of an array (..., 6, 6), rows and columns the
-    /// rotation vector and the angular velocity, and of the nonlinearity (...): what the second order adds, in standard deviations.
-    /// Where that is not far below 1, the covariance says little.
+    /// rotation vector and the angular velocity, and of the nonlinearity (...): what the first order leaves out, as a share of the angle.
+    /// Below 0.1 the covariance can be used; above, an `Ensemble` tells the truth.
     ///
     /// `covariance` is that of rotation vector, angular velocity and the entries xx, yy, zz, xy, xz, yz of the tensor at t = 0: (12, 12), or
     /// (6, 6) where the tensor is known. `torque`: (3, 3), the spectral density of a white torque in body axes, (N m)^2 s.

@@ -80,6 +80,15 @@ def test_a_record(command):
         assert found.systematic[line["name"]]["principal"].tolist() == line["principal"]
 
 
+def test_attitudes_of_a_gyroscope(command):
+    command("simulate", "--body", "spacecraft", "--omega", "0.3,1,0.4", "--until", "60", "--every", "0.05", "--noise", "1e-4", "--out", "gyro.csv", format=None)
+    told = rows(command("attitude", "gyro.csv", "--kind", "rate", "--bias", "1e-5", format="csv"))
+    found = polhode.attitude(polhode.read(command.folder / "gyro.csv", kind="record"), kind="rate", bias=1e-5)
+    assert_array_equal(found.attitude, np.column_stack([told[f"q_{axis}"] for axis in "wxyz"]))
+    assert_array_equal(found.sigma, told["attitude_sigma"])
+    assert_array_equal(found.truncation, told["truncation"])
+
+
 @pytest.mark.parametrize("method, flags", [("rk4", ["--step", "0.05"]), ("rattle", ["--step", "0.05"]), ("dop853", ["--tolerance", "1e-12", "--step", "0.1"]), ("exact", [])])
 def test_a_class(command, method, flags):
     told = rows(command("propagate", "--body", "racket", "--until", "10", "--every", "0.1", "--method", method, *flags, format="csv"))

@@ -145,6 +145,36 @@ def free(rng):
     return motion.at(rng.choice([scalar(rng), some(rng, (5,), (2, 3), ())]), order=words(rng, "wxyz", "xyzw", None))
 
 
+def linear(rng):
+    motion = polhode.FreeMotion(body(rng), **start(rng))
+    if rng.random() < 0.5:
+        return motion.at_with_derivative(some(rng, (5,), ()), by=words(rng, "omega", "momentum"), axes=words(rng, "space", "body"))[0]
+    return motion.covariance(some(rng, (3,), ()), some(rng, (6, 6), (12, 12)), axes=words(rng, "space", "body"), torque=maybe(rng, lambda: some(rng, (3, 3)), 0.2))
+
+
+def through(rng):
+    t, attitude, _ = rows(rng)
+    turns = rng.choice([0.5, 1.0, scalar(rng)])
+    if isinstance(turns, float) and turns > 3:
+        turns = 3.0
+    call = rng.randrange(3)
+    if call == 0:
+        return [passage.motion.at(1.0) for passage in polhode.FreeMotion.through(body(rng), t[:2], attitude[:2], turns=turns, order=words(rng, "wxyz", "xyzw"))]
+    if call == 1:
+        return polhode.Interpolation(body(rng), t, attitude, turns=turns).at(some(rng, (3,), ()))
+    guess = polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3])
+    return polhode.FreeMotion.fitted(body(rng), t, attitude, noise=scalar(rng), guess=rng.choice([guess, junk(rng)])).motion.at(0)
+
+
+def attitude(rng):
+    t, _, rates = rows(rng)
+    sensor = {name: scalar(rng) for name in ("noise", "bias", "scale_error", "stamps") if rng.random() < 0.2}
+    found = polhode.attitude(t, rates, kind=words(rng, "rate", "increment", "average"), start=maybe(rng, lambda: some(rng, (4,))),
+                             rule=words(rng, "auto", "magnus:4", "magnus:6,8", "hold", "two-speed"), body=maybe(rng, lambda: body(rng), 0.2), **sensor)
+    str(found), found._repr_html_(), found.budget
+    return found
+
+
 def top(rng):
     return polhode.LagrangeTop(body(rng), **start(rng)).at(rng.choice([scalar(rng), some(rng, (5,))]))
 
@@ -238,7 +268,7 @@ def finite(found):
 
 def test_hostile_calls_are_refused_in_words(tmp_path):
     rng = random.Random(SEED)
-    calls = [free, free, free, top, run, run, ensemble, audit, fit, masses, masses, lambda rng: read(rng, tmp_path)]
+    calls = [free, free, free, linear, through, attitude, top, run, run, ensemble, audit, fit, masses, masses, lambda rng: read(rng, tmp_path)]
     refused = answered = 0
     for k in range(CALLS):
         call = rng.choice(calls)

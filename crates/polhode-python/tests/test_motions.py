@@ -231,3 +231,78 @@ def test_the_interpreter_is_free_meanwhile(work):
     thread.join()
     # with the lock held there would be one or two
     assert ticks > 10
+
+
+def test_the_derivative_is_what_differences_say():
+    motion = FreeMotion([1, 2, 3], OMEGA)
+    t = np.array([[0.0, 3.0], [20.0, 100.0]])
+    states, derivative = motion.at_with_derivative(t)
+    assert derivative.shape == (2, 2, 6, 12)
+    assert_array_equal(states.omega, motion.at(t).omega)
+    assert_allclose(derivative[0, 0, :6, :6], np.eye(6), atol=1e-15)
+    for axis in range(3):
+        high, low = (FreeMotion([1, 2, 3], OMEGA + sign * 1e-6 * np.eye(3)[axis]) for sign in (1, -1))
+        change = (high.at(t).omega - low.at(t).omega) / 2e-6
+        assert_allclose(derivative[..., 3:, 3 + axis], change, atol=1e-6 * abs(change).max())
+    # per entry of the tensor at fixed momentum
+    start = np.array([1, 2, 2.5]) * OMEGA
+    _, by_momentum = FreeMotion([1, 2, 2.5], momentum=start).at_with_derivative(20.0, by="momentum", axes="body")
+    high, low = (FreeMotion([1 + sign * 1e-6, 2, 2.5], momentum=start) for sign in (1, -1))
+    change = (high.at(20.0).omega * [1 + 1e-6, 2, 2.5] - low.at(20.0).omega * [1 - 1e-6, 2, 2.5]) / 2e-6
+    assert_allclose(by_momentum[3:, 6], change, atol=1e-6 * abs(change).max())
+    for wrong in ({"by": "energy"}, {"axes": "sky"}):
+        with pytest.raises(PolhodeError, match="it must be"):
+            motion.at_with_derivative(0, **wrong)
+
+
+def test_a_covariance_is_that_of_many_starts():
+    motion, rng = FreeMotion([1, 2, 3], OMEGA), np.random.default_rng(3)
+    sigma = np.array([0, 0, 0, 1e-5, 2e-5, 1e-5])
+    state, nonlinearity = motion.covariance([10, 50], np.diag(sigma**2))
+    assert state.shape == (2, 6, 6) and (nonlinearity < 0.01).all()
+    omegas = Ensemble([1, 2, 3], OMEGA + rng.normal(0, sigma[3:], (4000, 3))).at([10, 50]).omega
+    for k in range(2):
+        assert_allclose(np.cov(omegas[k].T), state[k, 3:, 3:], atol=0.1 * np.trace(state[k, 3:, 3:]))
+    _, late = motion.covariance(1e7, np.diag(sigma**2))
+    assert late > 0.9  # nothing is known of the phase any more
+    with pytest.raises(PolhodeError, match="covariance: an array of shape \\(5, 5\\)"):
+        motion.covariance(1, np.eye(5))
+
+
+def test_motions_through_attitudes_and_fitted_to_them_are_the_motion():
+    motion, t = FreeMotion([1, 2, 3], OMEGA, [0.5, 0.1, -0.3, 0.9]), np.arange(0, 20.0)
+    attitude, omega = motion.at(t)
+    passages = FreeMotion.through([1, 2, 3], t[:2], attitude[:2], turns=0.5)
+    assert all(passage.miss < 1e-12 for passage in passages)
+    nearest = min(passages, key=lambda passage: abs(passage.omega - omega[0]).max())
+    assert_allclose(nearest.motion.at(1).omega, omega[1], atol=1e-11)
+    last = polhode.Interpolation([1, 2, 3], t, np.roll(attitude, -1, axis=1), turns=0.5, order="xyzw")
+    between = np.array([[0.25, 7.5], [12.125, 19.0]])
+    found = last.at(between, order="wxyz")
+    distance = np.minimum(abs(found.attitude - motion.at(between).attitude), abs(found.attitude + motion.at(between).attitude))
+    assert distance.max() < 1e-11 and found.omega.shape == (2, 2, 3)
+    assert last.beside_slerp(between).shape == (2, 2) and last.beside_slerp(7.5) > 1e-3 and last.span == (0, 19)
+    with pytest.raises(PolhodeError, match="t: 20"):
+        last.at(20)
+    guess = FreeMotion([1, 2, 3], [0.41, 1, -0.3], [0.5, 0.1, -0.3, 0.9])
+    fitted = FreeMotion.fitted([1, 2, 3], t, attitude, noise=1e-3, guess=guess)
+    assert_allclose(fitted.motion.at(0).omega, OMEGA, atol=1e-11)
+    assert fitted.covariance.shape == (6, 6) and fitted.chi2_per_dof < 1e-15
+    with pytest.raises(PolhodeError, match="gravity acts on the body"):
+        FreeMotion.through(Body([1, 1, 2], [polhode.gravity([0, 0, 1])]), t[:2], attitude[:2])
+    with pytest.raises(PolhodeError, match="attitude: an array of shape"):
+        FreeMotion.through([1, 2, 3], t[:2], attitude[:3])
+
+
+def test_an_ensemble_tells_its_progress_and_ends_where_that_raises():
+    told = []
+    many = Ensemble([1, 2, 3], np.tile(OMEGA, (3000, 1)), threads=1)
+    many.run("rk4", times=np.arange(1, 20), step=0.01, progress=lambda *done: told.append(done))
+    assert told and all(stage == "ensemble" and 0 <= done <= 1 for stage, done, _ in told)
+    assert told == sorted(told, key=lambda one: one[1])
+
+    def enough(stage, done, seconds):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        many.run("rk4", times=np.arange(1, 200), step=0.01, progress=enough)

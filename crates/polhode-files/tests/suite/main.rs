@@ -4,5 +4,6 @@
 
 mod logs;
 mod meshes;
+mod parts;
 mod record;
 mod trajectory;

@@ -1,0 +1,77 @@
+"""Attitudes from rates."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import polhode
+from polhode import FreeMotion, PolhodeError
+
+T = np.arange(2000) * 0.05
+EXACT, RATES = FreeMotion([1, 2, 3], [0.4, 1, -0.3]).at(T)
+
+
+def angles(found, exact):
+    return 2 * np.arccos(np.clip(abs((found * exact).sum(1)), 0, 1))
+
+
+def test_errors_are_those_of_the_budget():
+    noisy = RATES + np.random.default_rng(1).normal(0, 1e-3, RATES.shape)
+    found = polhode.attitude(T, noisy, kind="rate")
+    assert_allclose(found.noise, 1e-3, rtol=0.1)
+    error = angles(found.attitude, EXACT)
+    assert 0.1 < error[-1] / (found.sigma[-1] * 3**0.5) < 3
+    assert_allclose(found.sigma, np.sqrt(np.trace(found.covariance, axis1=1, axis2=2) / 3))
+    assert set(found.budget) == {"truncation", "random_walk", "bias", "scale", "stamps"} and len(found) == 2000
+    smooth = polhode.attitude(T, noisy, kind="rate", body=[1, 2, 3])
+    assert smooth.rule == "exact motion" and smooth.sigma[-1] < found.sigma[-1] and (smooth.truncation == 0).all()
+    assert "magnus:" in repr(found) and found._repr_html_().count("<svg") == 1
+
+
+def test_orders_of_rules_and_of_quaternions():
+    half = polhode.attitude(T, RATES, kind="rate", rule="hold", noise=0, start=EXACT[0])
+    fine = polhode.attitude(T, RATES, kind="rate", rule="magnus:6,8", noise=0, start=EXACT[0])
+    assert fine.rule == "magnus:6,8" and polhode.attitude(T, RATES, kind="rate", rule="magnus:4", noise=0).rule.startswith("magnus:4,")
+    assert angles(half.attitude, EXACT)[-1] > 1e-3 > 1e-7 > angles(fine.attitude, EXACT)[-1]
+    last = polhode.attitude(T, RATES, kind="rate", rule="magnus:6,8", noise=0, order="xyzw")
+    assert_allclose(np.roll(last.attitude, 1, axis=1), fine.attitude, atol=1e-15)
+    # what a reading is makes a difference of half an interval
+    mean = polhode.attitude(T, RATES, kind="average", rule="magnus:6,8", noise=0)
+    assert angles(mean.attitude, fine.attitude)[-1] > 1e-3
+    angle = polhode.attitude(T, RATES * 0.05, kind="increment", rule="magnus:6,8", noise=0)
+    assert_allclose(angle.attitude, mean.attitude, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "call, says",
+    [
+        (lambda: polhode.attitude(T, RATES, kind="speed"), "kind: 'speed' is no kind of reading"),
+        (lambda: polhode.attitude(T, RATES[1:], kind="rate"), r"rates: an array of shape \(1999, 3\)"),
+        (lambda: polhode.attitude(T, RATES, kind="rate", rule="euler"), "rule: 'euler'; it must be auto"),
+        (lambda: polhode.attitude(T, RATES, kind="rate", rule="magnus:6,7"), "7 samples"),
+        (lambda: polhode.attitude(T, RATES, kind="average", rule="runge-kutta"), "needs instantaneous rates"),
+        (lambda: polhode.attitude(T * 0, RATES, kind="rate"), "times must ascend"),
+        (lambda: polhode.attitude(T, RATES * np.nan, kind="rate", noise=0), "rates: sample 0"),
+        (lambda: polhode.attitude(T, RATES * 100, kind="rate"), "more than half a turn"),
+        (lambda: polhode.attitude(T, RATES, kind="rate", bias=-1.0), "the bias of the sensor is -1"),
+        (lambda: polhode.attitude(T, RATES, kind="rate", start=[0, 0, 0, 0]), "start: .* is no rotation"),
+        (lambda: polhode.attitude(T, RATES, kind="rate", body=[1, 1, 1.9]), "the body contradicts the record"),
+        (lambda: polhode.attitude(T, RATES, kind="increment", body=[1, 2, 3]), "a flight is fitted to rates"),
+        (lambda: polhode.attitude(T, kind="rate"), "rates: missing"),
+    ],
+)
+def test_what_tells_no_attitude_is_refused(call, says):
+    with pytest.raises(PolhodeError, match=says):
+        call()
+
+
+def test_a_record_of_a_file_and_one_with_a_gap():
+    table = {"t": T, "wx (rad/s)": RATES[:, 0], "wy (rad/s)": RATES[:, 1], "wz (rad/s)": RATES[:, 2]}
+    record = polhode.read(table, kind="record")
+    found = polhode.attitude(record, kind="rate", noise=0)
+    assert_allclose(found.attitude, polhode.attitude(T, RATES, kind="rate", noise=0).attitude, atol=1e-15)
+    with pytest.raises(PolhodeError, match="the record has its own"):
+        polhode.attitude(record, RATES, kind="rate")
+    table["t"] = np.where(T > 50, T + 100, T)
+    with pytest.raises(PolhodeError, match="2 segments with gaps"):
+        polhode.attitude(polhode.read(table, kind="record"), kind="rate")
