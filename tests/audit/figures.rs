@@ -33,8 +33,10 @@ fn verdict(states: &[Written]) -> Verdict {
     audit(&plain(states, Writing::EXACT), &Question::new(Some(body()))).unwrap()
 }
 
-/// The motion with each row changed: a turn of the attitude in space, rad, and a factor of ω.
-fn changed(of: &dyn Fn(usize, &Written) -> (Vec3<f64>, f64)) -> Vec<Written> {
+/// How a row is changed: a turn of the attitude in space, rad, and a factor of ω.
+type Change<'a> = &'a dyn Fn(usize, &Written) -> (Vec3<f64>, f64);
+
+fn changed(of: Change) -> Vec<Written> {
     let rows = motion([0.4, 1.0, -0.3]);
     let change = |(row, state): (usize, &Written)| {
         let (turn, factor) = of(row, state);

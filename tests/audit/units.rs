@@ -136,6 +136,9 @@ fn said(verdict: &Verdict, Units { time, moment }: Units, has_body: bool) -> Str
 /// A body that is told, and the record of one.
 type Case = (&'static str, Option<([f64; 3], Acting)>, Noise, Trajectory);
 
+/// A change of quaternions, rates and times.
+type Change<'a> = &'a dyn Fn(&mut Vec<[f64; 4]>, &mut Vec<[f64; 3]>, &mut Vec<f64>);
+
 fn cases() -> Vec<Case> {
     const MOMENTS: [f64; 3] = [1.0, 2.0, 2.5];
     let (nothing, none) = (Acting::Nothing, Noise::default());
@@ -147,7 +150,7 @@ fn cases() -> Vec<Case> {
     let free = of(MOMENTS, nothing, "rk8", 2);
     let noisy = Writing { noise: 1e-3, ..Writing::EXACT };
     let exact = |states: &[Written]| plain(states, Form::Quaternion, Writing::EXACT);
-    let changed = |change: &dyn Fn(&mut Vec<[f64; 4]>, &mut Vec<[f64; 3]>, &mut Vec<f64>)| {
+    let changed = |change: Change| {
         let mut record = exact(&free);
         let (Some(Attitudes::Quaternions(q)), Some(w)) = (&mut record.attitude, &mut record.rates) else {
             panic!("{record:?}")
