@@ -48,6 +48,7 @@ mod settings;
 mod signal;
 mod simulate;
 mod solve;
+mod sparse;
 mod thresholds;
 mod units;
 mod verdict;
@@ -83,7 +84,9 @@ pub use settings::Settings;
 pub use settings::known::Known;
 pub use settings::sensor::SensorPriors;
 pub use settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
-pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_poses, simulate_with};
+pub use simulate::{
+    Disturbances, Gyroscope, SimulatedPoses, SimulationError, simulate, simulate_poses, simulate_with,
+};
 pub use units::product::UnitProduct;
 pub use wheel::{WheelCalibration, calibrate_wheel};
 

@@ -114,7 +114,8 @@ fn a_direction_that_is_stated_wrongly_and_one_that_nobody_can_tell_are_refused()
     let inverse = scratch.file("inverse.csv", &table("t,q_w,q_x,q_y,q_z", inverse));
     let found = json(&format!("fit {inverse}"));
     assert_eq!(found["attitudes"]["direction"], "space-to-body");
-    let top = "simulate --moments 1,1.6,1.6 --omega 0.5,0.8,0.4 --until 20 --every 0.05 --attitude-noise 0.01";
+    let top =
+        "simulate --moments 1,1.6,1.6 --omega 0.5,0.8,0.4 --until 20 --every 0.05 --attitude-noise 0.01";
     let top = scratch.file("top.csv", &output(top));
     refused(1, &format!("fit {top}"), &["axisymmetric", "--attitude body-to-space or space-to-body"]);
     let stated = json(&format!("fit {top} --attitude body-to-space"));
@@ -132,7 +133,9 @@ fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
     let (page, residuals) = (scratch.file("fit.html", ""), scratch.file("residuals.csv", ""));
     let both = json(&format!("fit {file} --from both --report {page} --residuals {residuals}"));
     let alignment = &both["attitudes"]["alignment"];
-    assert!(alignment["turn"][0].as_f64().unwrap() > 0.999_99 && alignment["moving_gain"].as_f64() < Some(12.0));
+    assert!(
+        alignment["turn"][0].as_f64().unwrap() > 0.999_99 && alignment["moving_gain"].as_f64() < Some(12.0)
+    );
     assert!(both["sigma_principal"][0].as_f64() < rates["sigma_principal"][0].as_f64());
     let page = fs::read_to_string(page).unwrap();
     assert!(page.contains("Attitudes") && page.contains("body to space (told by the motion"), "{page}");
@@ -140,12 +143,18 @@ fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
     assert!(residuals.starts_with("segment,t,turn_x,turn_y,turn_z\n1,0"), "{residuals}");
     assert_eq!(residuals.lines().count(), 402);
     let text = output(&format!("fit {file} --from attitudes --format table"));
-    for line in ["attitudes read as quaternion w,x,y,z, body to space", "noise of a component of the rotation vector"] {
+    for line in
+        ["attitudes read as quaternion w,x,y,z, body to space", "noise of a component of the rotation vector"]
+    {
         assert!(text.contains(line), "{text}");
     }
     refused(2, &format!("fit {file} --from attitudes --wheel 0,0,1,1e-3"), &["--wheel", "--from rates"]);
     refused(2, &format!("fit {file} --from attitudes --gyro-bias 0.1"), &["offset", "no meaning"]);
-    refused(2, &format!("fit {file} --from attitudes --torque drag3"), &["drag in proportion to the momentum"]);
+    refused(
+        2,
+        &format!("fit {file} --from attitudes --torque drag3"),
+        &["drag in proportion to the momentum"],
+    );
 }
 
 #[test]
