@@ -10,7 +10,8 @@ const SIMULATE: &str = "simulate --moments 1,2,2.6 --omega 0.3,1,0.4 --until 20 
 
 fn json(line: &str) -> Value {
     let answer = run(&format!("{line} --format json"));
-    serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{line}: {}", answer.err))
+    assert!(answer.out.starts_with('{'), "{line}: {}", answer.err);
+    serde_json::from_str(&answer.out).unwrap()
 }
 
 /// What a refusal says, with its code.
@@ -41,7 +42,7 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
     let scratch = Scratch::new("fit-attitudes");
     let text = output(&format!("{SIMULATE} --attitude-noise 0.01"));
     assert!(text.starts_with("t,q_w,q_x,q_y,q_z\n0.0,"));
-    let file = scratch.file("poses.csv", &text);
+    let file = scratch.file("poses.csv", text);
     let whole = json(&format!("fit {file}"));
     let of = |value: &Value| value["principal"][0].as_f64().unwrap();
     let sigma = whole["sigma_principal"][0].as_f64().unwrap();
@@ -68,7 +69,7 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
         ]
     };
     let header = "t,r11,r12,r13,r21,r22,r23,r31,r32,r33";
-    let matrices = scratch.file("matrices.csv", &table(header, quaternions.iter().map(|q| matrix(*q))));
+    let matrices = scratch.file("matrices.csv", table(header, quaternions.iter().map(|q| matrix(*q))));
     assert!((of(&json(&format!("fit {matrices}"))) - of(&whole)).abs() < 1e-9);
     // a frame of the other hand has the determinant -1
     let mirrored = quaternions.iter().map(|q| {
@@ -76,12 +77,12 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
         m[1..4].iter_mut().for_each(|entry| *entry = -*entry);
         m
     });
-    let mirrored = scratch.file("mirrored.csv", &table(header, mirrored));
+    let mirrored = scratch.file("mirrored.csv", table(header, mirrored));
     refused(2, &format!("fit {mirrored}"), &["determinant -1.0000", "left-handed"]);
 
     // numbers without names leave the scalar open, and so does the motion
     let last = quaternions.iter().map(|[t, w, x, y, z]| vec![*t, *x, *y, *z, *w]);
-    let last = scratch.file("last.csv", &table("t,q0,q1,q2,q3", last));
+    let last = scratch.file("last.csv", table("t,q0,q1,q2,q3", last));
     refused(2, &format!("fit {last}"), &["--quaternion wxyz or xyzw", "nor does the motion"]);
     let stated = json(&format!("fit {last} --quaternion xyzw"));
     assert!((of(&stated) - of(&whole)).abs() < 1e-9);
@@ -97,7 +98,7 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
             degrees(libm::atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))),
         ]
     });
-    let angles = scratch.file("angles.csv", &table("t,euler_1,euler_2,euler_3", angles));
+    let angles = scratch.file("angles.csv", table("t,euler_1,euler_2,euler_3", angles));
     refused(2, &format!("fit {angles}"), &["--euler, as zyx"]);
     refused(2, &format!("fit {angles} --euler zyx"), &["--angle-unit rad or deg"]);
     let by_angles = json(&format!("fit {angles} --euler zyx --angle-unit deg"));
@@ -108,15 +109,15 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
 fn a_direction_that_is_stated_wrongly_and_one_that_nobody_can_tell_are_refused() {
     let scratch = Scratch::new("fit-attitudes-direction");
     let text = output(&format!("{SIMULATE} --attitude-noise 0.01"));
-    let file = scratch.file("poses.csv", &text);
+    let file = scratch.file("poses.csv", text);
     refused(2, &format!("fit {file} --attitude space-to-body"), &["look inverted", "0.1786", "--attitude"]);
     let inverse = rows(&text).into_iter().map(|[t, w, x, y, z]| vec![t, w, -x, -y, -z]);
-    let inverse = scratch.file("inverse.csv", &table("t,q_w,q_x,q_y,q_z", inverse));
+    let inverse = scratch.file("inverse.csv", table("t,q_w,q_x,q_y,q_z", inverse));
     let found = json(&format!("fit {inverse}"));
     assert_eq!(found["attitudes"]["direction"], "space-to-body");
     let top =
         "simulate --moments 1,1.6,1.6 --omega 0.5,0.8,0.4 --until 20 --every 0.05 --attitude-noise 0.01";
-    let top = scratch.file("top.csv", &output(top));
+    let top = scratch.file("top.csv", output(top));
     refused(1, &format!("fit {top}"), &["axisymmetric", "--attitude body-to-space or space-to-body"]);
     let stated = json(&format!("fit {top} --attitude body-to-space"));
     assert!((stated["principal"][0].as_f64().unwrap() - 1.0 / 4.2).abs() < 1e-2);
@@ -125,7 +126,7 @@ fn a_direction_that_is_stated_wrongly_and_one_that_nobody_can_tell_are_refused()
 #[test]
 fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
     let scratch = Scratch::new("fit-attitudes-both");
-    let file = scratch.file("both.csv", &output(&format!("{SIMULATE} --attitude-noise 0.01 --noise 0.02")));
+    let file = scratch.file("both.csv", output(&format!("{SIMULATE} --attitude-noise 0.01 --noise 0.02")));
     let rates = run(&format!("fit {file} --format json"));
     assert!(rates.err.contains("--from both"), "{}", rates.err);
     let rates: Value = serde_json::from_str(&rates.out).unwrap();
@@ -161,14 +162,14 @@ fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
 fn torques_on_attitudes_are_found_or_refused() {
     let scratch = Scratch::new("fit-attitudes-torque");
     let drag = output(&format!("{SIMULATE} --attitude-noise 0.01 --relative-drag 0.02"));
-    let drag = json(&format!("fit {}", scratch.file("drag.csv", &drag)));
+    let drag = json(&format!("fit {}", scratch.file("drag.csv", drag)));
     assert_eq!(drag["torque"]["model"], "drag");
     let found = &drag["torque"]["coefficients"]["drag"];
     assert!((found["value"].as_f64().unwrap() - 0.02).abs() < 5.0 * found["sigma"].as_f64().unwrap());
     let noise = output(&format!("{SIMULATE} --attitude-noise 0.01 --torque-noise 0.3"));
-    let noise = scratch.file("noise.csv", &noise);
+    let noise = scratch.file("noise.csv", noise);
     refused(1, &format!("fit {noise}"), &["no free motion follows the attitudes", "--window"]);
     let fast = "simulate --moments 1,2,2.6 --omega 3,10,4 --until 20 --every 0.3 --attitude-noise 0.01";
-    let fast = scratch.file("fast.csv", &output(fast));
+    let fast = scratch.file("fast.csv", output(fast));
     refused(1, &format!("fit {fast}"), &["beyond pi = 3.14", "rad/s"]);
 }
