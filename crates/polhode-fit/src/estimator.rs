@@ -29,6 +29,7 @@ use crate::solve::joint::Joint;
 use crate::solve::ladder::{Demand, climb};
 use crate::solve::radius::Failure;
 use crate::solve::rounds::Noise;
+use crate::sparse::{is_sparse, likeliest};
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 use crate::units::Motion;
 use crate::verdict::driven::check_driven;
@@ -38,7 +39,9 @@ use crate::verdict::units::open_units;
 ///
 /// The estimator solves the weak form of Euler's equation by least squares, weighted with the covariance of its noise.
 /// Each round corrects the samples by the noise that the round before estimated, and linearises again. A quadratic
-/// program then finds the nearest physically valid tensor within the limits, in the metric of the information.
+/// program then finds the nearest physically valid tensor within the limits, in the metric of the information. Of rates so sparse
+/// that the body turns by a tenth of a turn from one to the next, the tensor is that of the largest likelihood on the exact motion, where a
+/// motion explains them.
 /// Neither the units of rate and time nor a rotation of the sensor change the result beyond rounding.
 ///
 /// ```
@@ -84,7 +87,12 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     if input.is_some() && settings.known.is_some() {
         return Err(FitError::TwoScales);
     }
-    let variance = read_variance(settings, record, &stretches, rms)?;
+    // of samples that are far apart their differences tell no noise
+    let (variance, hidden) = match read_variance(settings, record, &stretches, rms) {
+        Ok(variance) => (variance, None),
+        Err(error) if is_sparse(record) => (MOST / 3.0, Some(error)),
+        Err(error) => return Err(error),
+    };
     let columns = columns_of(settings, &stretches, rms, input);
     let alone = alone(settings, &stretches);
     let demand = Demand {
@@ -97,6 +105,14 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     // wheels and torques of the record are in units of their own
     let motion = if input.is_none() { Motion::new(&stretches, variance) } else { None };
     let open = open_units(record, &stretches, motion.as_ref().filter(|_| settings.check_units), rms)?;
+    // a quadrature over samples that are far apart is off by more than their noise
+    let sparse = if open.is_none() { likeliest(record, settings) } else { None };
+    if let Some(estimate) = sparse {
+        return Ok(estimate);
+    }
+    if let Some(error) = hidden {
+        return Err(error);
+    }
     let mut chosen = climb(&stretches, demand, variance)
         .map_err(|failure| without_estimate(failure, record, settings, &stretches, rms))?;
     let case = Case { stretches: &stretches, settings, variance, rms, is_sized: input.is_some() };

@@ -1,4 +1,4 @@
-//! Inertia from measured angular velocity.
+//! Inertia from measured angular velocities and attitudes.
 //!
 //! The angular velocity of a torque-free body determines its inertia tensor up to scale: five numbers. [`fit`]
 //! estimates them from a [`Record`] of rates: the weak form of Euler's equation (nothing is differentiated), weighted
@@ -30,8 +30,9 @@
 //!
 //! [`flights()`] finds the spans of free rotation in a recording that also shows how the body was held and caught.
 //!
-//! The tensor comes from rounds of linear least squares with one small semidefinite program at their end, which is solved
-//! by outer approximation; it is not refined by maximum likelihood.
+//! The tensor of a record of rates comes from rounds of linear least squares with one small semidefinite program at their end, which is
+//! solved by outer approximation; it is not refined by maximum likelihood. [`fit_poses`] fits measured attitudes ([`Poses`]) by maximum
+//! likelihood on the exact motion.
 
 mod bound;
 mod columns;
@@ -47,6 +48,7 @@ mod settings;
 mod signal;
 mod simulate;
 mod solve;
+mod sparse;
 mod thresholds;
 mod units;
 mod verdict;
@@ -82,7 +84,9 @@ pub use settings::Settings;
 pub use settings::known::Known;
 pub use settings::sensor::SensorPriors;
 pub use settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
-pub use simulate::{Disturbances, Gyroscope, SimulationError, simulate, simulate_poses, simulate_with};
+pub use simulate::{
+    Disturbances, Gyroscope, SimulatedPoses, SimulationError, simulate, simulate_poses, simulate_with,
+};
 pub use units::product::UnitProduct;
 pub use wheel::{WheelCalibration, calibrate_wheel};
 

@@ -277,6 +277,8 @@ thresholds! {
         MOST_DAMPING: f64 = 1e9, "damping beyond which no step helps", UNMEASURED;
         PANEL: f64 = 0.2, "longest step of the integral of a torque, rad", UNMEASURED;
         SMALL: f64 = 1e-3, "drag times time below which a series is nearer than the closed form", DERIVED;
+        SPARSE: f64 = 0.628_318_530_717_958_6,
+            "median turn from one sample to the next, rad, from which on rates are sparse: a tenth of a turn", "sparse_telemetry_goes_to_the_likelihood";
         LINEAR: f64 = 0.1,
             "largest turn by a constant torque, rad, up to which it is reckoned with to first order", UNMEASURED;
         MIRRORED: f64 = 0.05,

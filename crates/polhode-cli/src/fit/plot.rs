@@ -31,6 +31,7 @@ pub(super) fn without_gaps<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Vec
 /// What the residuals are of.
 pub(super) fn what(estimate: &Estimate) -> &'static str {
     match estimate.method {
+        Method::ExactMotion if estimate.attitudes.is_none() => "the rates",
         Method::ExactMotion => "the attitudes, rotation vectors in body axes,",
         _ => "the weak equations",
     }
@@ -46,6 +47,9 @@ pub(super) fn residuals(estimate: &Estimate) -> Figure {
     };
     let values = || times.iter().flatten().zip(estimate.residuals.iter().flat_map(|r| &r.values));
     let title = match estimate.method {
+        Method::ExactMotion if estimate.attitudes.is_none() => {
+            "Residuals of the rates; grey: two standard deviations to each side"
+        }
         Method::ExactMotion => "Residuals of the attitudes; grey: two standard deviations to each side",
         _ => "Whitened residuals of the weak equations; grey: two standard deviations to each side",
     };

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use polhode::num::Random;
 use polhode_files::error::Error;
 use polhode_files::numbers::{not_negative, number, numbers, positive};
-use polhode_fit::simulate_poses;
+use polhode_fit::{SimulatedPoses, simulate_poses};
 use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
 use crate::flags::body::BodyArguments;
@@ -121,7 +121,7 @@ impl Simulate {
                 omega += random.normal_vector() * self.scatter;
             }
             let noise = self.gyroscope.attitude_noise();
-            let (rates, attitudes) = simulate_poses(
+            let SimulatedPoses { rates, attitudes, .. } = simulate_poses(
                 body.inertia(),
                 omega,
                 &sampled,

@@ -16,6 +16,7 @@ mod ensemble;
 mod events;
 mod experiment;
 mod fit;
+mod fit_attitudes;
 mod fit_inputs;
 mod flights;
 mod forces;

@@ -20,8 +20,10 @@
 
 pub(crate) mod alignment;
 pub(crate) mod alternatives;
+pub(crate) mod choice;
 pub(crate) mod descent;
 pub(crate) mod growth;
+pub(crate) mod invariants;
 pub(crate) mod local;
 pub(crate) mod momentum;
 pub(crate) mod motion;

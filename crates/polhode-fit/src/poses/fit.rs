@@ -115,7 +115,7 @@ fn finished(poses: &Poses, settings: &Settings, free: &Free, told: Told) -> Resu
         let (residual, turn) = (free.followed.levels.attitude, free.largest_turn);
         return Err(PoseFault::NotFree { residual, noise, turn }.into());
     }
-    report(poses, settings, free, told)
+    report(poses.repeated(), settings, free, told)
 }
 
 /// Refuses settings that have no meaning here.

@@ -6,33 +6,21 @@ use polhode::rotation::{Quat, Vec3};
 use crate::error::FitError;
 use crate::likelihood::alignment::{Alignment, align, at_nodes};
 use crate::likelihood::alternatives::Alternatives;
-use crate::likelihood::descent::{Levels, Problem};
-use crate::likelihood::growth::{Followed, follow, steady};
+use crate::likelihood::choice::{Acting, Found, Moved, steady_within_noise, with_torque};
+use crate::likelihood::descent::Levels;
+use crate::likelihood::growth::{Followed, follow};
 use crate::likelihood::local::{self, Node};
 use crate::likelihood::momentum::tensor_of;
-use crate::likelihood::sums::Reduced;
 use crate::likelihood::track::Track;
 use crate::physical::coordinates::{Coordinates, Form, coordinates, tensor};
 use crate::poses::clean::{jumps, turns};
 use crate::poses::fault::PoseFault;
 use crate::poses::record::{PoseSegment, Poses};
 use crate::settings::Settings;
-use crate::settings::torque::TorqueModel;
 use crate::thresholds::ladder;
 use crate::thresholds::likelihood::LINEAR;
 use crate::thresholds::noise::{DEVIATIONS, LEAST};
 use crate::thresholds::poses::{COARSE, FEWEST, HALF_TURN, MOVING, SAME_SIZE, STILL};
-use crate::thresholds::rounds::SIGNIFICANT_GAIN;
-
-/// What acts on the body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Acting {
-    Nothing,
-    /// In proportion to the momentum, exactly.
-    Drag,
-    /// Constant in the axes of the tensor, to first order.
-    Constant,
-}
 
 /// The motion of one body through all segments, free or slowed by drag.
 pub(crate) struct Free {
@@ -87,13 +75,8 @@ impl Free {
         let not_free = |residual| PoseFault::NotFree { residual, noise: Some(noise), turn: largest_turn };
         let first = turned(&first, &turn);
         let moved = |drag| Some(Moved::new(follow(&tracks, first, turn, levels, drag)?));
-        let Found { moved, torque, gain, without } = match settings.torque {
-            TorqueModel::None => Found::of(moved(false), Acting::Nothing),
-            TorqueModel::Drag => Found::of(moved(true), Acting::Drag),
-            TorqueModel::Constant => Found::of(moved(false), Acting::Constant),
-            _ => chosen(moved),
-        }
-        .ok_or_else(|| not_free(1.0))?;
+        let Found { moved, torque, gain, without } =
+            with_torque(settings.torque, moved).ok_or_else(|| not_free(1.0))?;
         let Moved { followed, alternatives } = moved;
         let steady = steady_within_noise(&followed);
         // a motion that moves far between neighbours is left among their noise
@@ -114,17 +97,22 @@ impl Free {
         })
     }
 
-    /// Mean square of what is left of the attitudes over their noise, where that is known.
+    /// Mean square of what is left of the attitudes, or of rates alone, over their noise, where that is known.
     pub(crate) fn misfit(&self, settings: &Settings) -> Option<f64> {
-        let known = settings.attitude_noise.or(self.local_noise).filter(|noise| *noise > 0.0)?;
-        let ratio = self.followed.levels.attitude / known;
+        let levels = self.followed.levels;
+        let has_attitudes = self.followed.tracks.iter().any(Track::has_attitudes);
+        let (left, known) = match has_attitudes {
+            true => (levels.attitude, settings.attitude_noise.or(self.local_noise)),
+            false => (levels.rate, settings.noise.map(|noise| noise / self.unit)),
+        };
+        let ratio = left / known.filter(|noise| *noise > 0.0)?;
         Some(ratio * ratio)
     }
 
     /// Whether the noise explains what the free motion leaves, and no torque explains it better.
     pub(crate) fn is_explained(&self, settings: &Settings) -> bool {
         // differences of neighbours tell the noise from fewer numbers than all readings do
-        let scatter = DEVIATIONS * (2.0 * STILL / self.followed.dof[0].max(1.0)).sqrt();
+        let scatter = DEVIATIONS * (2.0 * STILL / self.followed.dof.iter().sum::<f64>().max(1.0)).sqrt();
         let by_noise = self.misfit(settings).is_none_or(|misfit| misfit <= 1.0 + scatter);
         let Some(found) = &self.alternatives else { return by_noise };
         let constant = match self.torque {
@@ -150,68 +138,6 @@ impl Free {
         let half = self.followed.tracks.iter().map(Track::reach).fold(0.0, f64::max);
         acceleration.is_some_and(|a| 0.5 * a.norm() * half * half <= LINEAR)
     }
-}
-
-/// A model that follows the samples, and what would explain them better.
-struct Moved {
-    followed: Followed,
-    alternatives: Option<Alternatives>,
-}
-
-impl Moved {
-    fn new(followed: Followed) -> Moved {
-        let alternatives = Alternatives::new(&followed.tracks, &followed.model, followed.levels);
-        Moved { followed, alternatives }
-    }
-}
-
-/// A model with its torque.
-struct Found {
-    moved: Moved,
-    torque: Acting,
-    gain: Option<f64>,
-    without: Option<Coordinates>,
-}
-
-impl Found {
-    fn of(moved: Option<Moved>, torque: Acting) -> Option<Found> {
-        Some(Found { moved: moved?, torque, gain: None, without: None })
-    }
-}
-
-/// The torque that the samples ask for: none, or the one of drag and a constant torque that gains more.
-fn chosen(moved: impl Fn(bool) -> Option<Moved>) -> Option<Found> {
-    let Some(free) = moved(false) else { return Found::of(moved(true), Acting::Drag) };
-    let found = free.alternatives.as_ref();
-    let more = ladder::FIRST + 2.0 * ladder::FURTHER;
-    let drag = found.and_then(|found| found.drag.as_ref()).map_or(f64::INFINITY, |drag| drag.gain);
-    let constant = found.map_or(0.0, |found| found.constant.gain);
-    if drag <= ladder::FIRST && constant <= more {
-        return Found::of(Some(free), Acting::Nothing);
-    }
-    let without = Some(free.followed.model.x);
-    let slowed = moved(true).map(|slowed| {
-        let gain = 0.5 * (free.followed.cost() - slowed.followed.cost());
-        (slowed, gain)
-    });
-    match slowed {
-        Some((slowed, gain)) if gain > ladder::FIRST && gain - ladder::FIRST >= constant - more => {
-            Some(Found { moved: slowed, torque: Acting::Drag, gain: Some(gain), without })
-        }
-        _ if constant > more => {
-            Some(Found { moved: free, torque: Acting::Constant, gain: Some(constant), without })
-        }
-        _ => Found::of(Some(free), Acting::Nothing),
-    }
-}
-
-/// What steady spins tell, where they leave hardly more of the samples.
-fn steady_within_noise(followed: &Followed) -> Option<Form> {
-    let Followed { model, tracks, levels, .. } = followed;
-    let (sums, cost) = steady(tracks, model.alignment, *levels)?;
-    let problem = Problem { tracks, levels: *levels, radius: f64::INFINITY, pull: None };
-    let (_, least) = problem.sums(model)?;
-    (cost - least <= SIGNIFICANT_GAIN).then(|| Reduced::new(&sums, None, 0.0)?.of_tensor()).flatten()
 }
 
 /// Segments that are long enough, without jumps.

@@ -6,6 +6,7 @@ use polhode::rotation::Quat;
 
 use crate::columns::sets::torque_columns;
 use crate::error::FitError;
+use crate::likelihood::choice::Acting;
 use crate::likelihood::descent::{Levels, Problem};
 use crate::likelihood::sums::{Reduced, Sums};
 use crate::likelihood::track::{COMMON, Kind, Track};
@@ -14,17 +15,17 @@ use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
 use crate::physical::nearest::{Normal, nearest};
 use crate::physical::prior::Prior;
-use crate::poses::free::{Acting, Free};
-use crate::poses::record::Poses;
-use crate::report::answer::{Answer, of_entries, ratios, sigmas};
+use crate::poses::free::Free;
+use crate::report::answer::{Answer, of_entries, ratios, shape_of, sigmas};
 use crate::report::attitudes::{AlignmentFit, AttitudeFit};
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
+use crate::report::mirror::mirrored;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::scale::{by_prior, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
-use crate::report::warnings::of_attitudes;
+use crate::report::warnings::of_likelihood;
 use crate::settings::Settings;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
@@ -53,7 +54,7 @@ struct Information {
 
 /// Everything that can be said of the tensor of a free motion.
 pub(crate) fn report(
-    poses: &Poses,
+    repeated: usize,
     settings: &Settings,
     free: &Free,
     told: Told,
@@ -91,6 +92,7 @@ pub(crate) fn report(
     let entries = entries_of_coordinates();
     let bound = information.tensor.cholesky().map(|c| entries * c.inverse() * entries.transpose());
     let misfit = free.misfit(settings);
+    let has_attitudes = free.followed.tracks.iter().any(Track::has_attitudes);
     let excess = misfit.unwrap_or(1.0);
     let count: f64 = free.followed.dof.iter().sum();
     let pull = answer.pull;
@@ -133,14 +135,14 @@ pub(crate) fn report(
         prior: agreed,
         per_segment: summaries(free, &information),
         unexplained: None,
-        attitudes: Some(attitudes(poses, settings, free, told, &information)),
-        mirror: None,
+        attitudes: has_attitudes.then(|| attitudes(repeated, settings, free, told, &information)),
+        mirror: if has_attitudes { None } else { shape_of(&mirrored(&shape.tensor())).ok() },
         spikes: Vec::new(),
         residuals,
         warnings: Vec::new(),
         shape,
     };
-    estimate.warnings = of_attitudes(&estimate, misfit);
+    estimate.warnings = of_likelihood(&estimate, misfit);
     Ok(estimate)
 }
 
@@ -176,7 +178,7 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
     if let Some(constant) = constant.map(|found| &found.constant) {
         moved = Coordinates::from_fn(|k, _| constant.moved[k]);
         let spread = constant.spread.rows(0, 5);
-        let added = &spread * spread.transpose();
+        let added = spread * spread.transpose();
         let covariance =
             tensor.cholesky().ok_or_else(singular)?.inverse() + Form::from_fn(|i, k| added[(i, k)]);
         tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
@@ -294,7 +296,7 @@ fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
 }
 
 fn attitudes(
-    poses: &Poses,
+    repeated: usize,
     settings: &Settings,
     free: &Free,
     told: Told,
@@ -310,7 +312,7 @@ fn attitudes(
         direction_gain: told.gain,
         largest_turn: free.largest_turn,
         left_out: free.jumps + out.sum::<usize>(),
-        repeated: poses.repeated(),
+        repeated,
         alignment: free.has_rates.then(|| alignment(free, information)),
     }
 }

@@ -103,8 +103,8 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     list
 }
 
-/// What limits the use of a tensor that was fitted to attitudes; `misfit` is what is left over the noise, where that is known.
-pub(super) fn of_attitudes(e: &Estimate, misfit: Option<f64>) -> Vec<Warning> {
+/// What limits the use of a tensor of the largest likelihood; `misfit` is what is left over the noise, where that is known.
+pub(super) fn of_likelihood(e: &Estimate, misfit: Option<f64>) -> Vec<Warning> {
     let mut list = Vec::new();
     if let Some(attitudes) = &e.attitudes {
         let AttitudeFit { repeated, left_out, largest_turn: turn, noise_sigma, .. } = *attitudes;

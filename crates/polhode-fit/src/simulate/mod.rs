@@ -106,7 +106,17 @@ pub fn simulate_with(
     gyroscope: &Gyroscope,
     random: &mut Random,
 ) -> Result<Vec<Vector3<f64>>, SimulationError> {
-    Ok(read(inertia, omega_body, times, disturbances, gyroscope, random)?.0)
+    Ok(read(inertia, omega_body, times, disturbances, gyroscope, random)?.rates)
+}
+
+/// What a gyroscope and a sensor of attitudes read at the same times.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulatedPoses {
+    /// Angular velocities, sensor axes, rad/s.
+    pub rates: Vec<Vector3<f64>>,
+    /// Attitudes, body axes → space.
+    pub attitudes: Vec<UnitQuaternion<f64>>,
 }
 
 /// The same with what a sensor of attitudes reads at `times`: the attitudes, body axes → space and 1 at time 0, each turned by a rotation
@@ -120,9 +130,9 @@ pub fn simulate_with(
 /// let (omega, drag) = (Vector3::new(0.1, 1.0, 0.2), Disturbances::default().with_relative_drag(0.1));
 /// let times: Vec<f64> = (0..100).map(|i| 0.1 * f64::from(i)).collect();
 /// let gyroscope = Gyroscope::default();
-/// let (rates, attitudes) = simulate_poses(&body, omega, &times, &drag, &gyroscope, 0.0, &mut Random::new(1))?;
+/// let read = simulate_poses(&body, omega, &times, &drag, &gyroscope, 0.0, &mut Random::new(1))?;
 /// // drag along the momentum leaves its direction in space
-/// let momentum = |k: usize| attitudes[k] * body.momentum(rates[k]);
+/// let momentum = |k: usize| read.attitudes[k] * body.momentum(read.rates[k]);
 /// assert!(momentum(0).normalize().cross(&momentum(99).normalize()).norm() < 1e-12);
 /// # Ok::<(), polhode::Error>(())
 /// ```
@@ -137,9 +147,9 @@ pub fn simulate_poses(
     gyroscope: &Gyroscope,
     attitude_noise: f64,
     random: &mut Random,
-) -> Result<(Vec<Vector3<f64>>, Vec<UnitQuaternion<f64>>), SimulationError> {
+) -> Result<SimulatedPoses, SimulationError> {
     check("the noise of the attitudes", &[attitude_noise], false)?;
-    let (rates, exact) = read(inertia, omega_body, times, disturbances, gyroscope, random)?;
+    let Read { rates, exact } = self::read(inertia, omega_body, times, disturbances, gyroscope, random)?;
     let mut read = |q: &Quat<f64>| {
         if attitude_noise == 0.0 {
             return UnitQuaternion::from(*q);
@@ -147,10 +157,15 @@ pub fn simulate_poses(
         let off = Vec3::from(random.normal_vector() * attitude_noise);
         UnitQuaternion::from(*q * Quat::exponential(off))
     };
-    Ok((rates, exact.iter().map(&mut read).collect()))
+    Ok(SimulatedPoses { rates, attitudes: exact.iter().map(&mut read).collect() })
 }
 
 /// What the gyroscope reads, and the true attitudes.
+struct Read {
+    rates: Vec<Vector3<f64>>,
+    exact: Vec<Quat<f64>>,
+}
+
 fn read(
     inertia: &Inertia,
     omega_body: Vector3<f64>,
@@ -158,13 +173,13 @@ fn read(
     disturbances: &Disturbances,
     gyroscope: &Gyroscope,
     random: &mut Random,
-) -> Result<(Vec<Vector3<f64>>, Vec<Quat<f64>>), SimulationError> {
+) -> Result<Read, SimulationError> {
     disturbances.check()?;
     gyroscope.check()?;
     let errors = gyroscope.errors(times, random);
     let found = disturbances.motion(inertia, omega_body, times, gyroscope.skew, random)?;
     let rates = found.rates.iter().zip(&errors).map(|(w, error)| gyroscope.reading(w, error));
-    Ok((rates.collect(), found.attitudes))
+    Ok(Read { rates: rates.collect(), exact: found.attitudes })
 }
 
 /// `value` if it is finite and, where asked, not negative.

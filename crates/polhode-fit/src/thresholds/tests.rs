@@ -17,6 +17,7 @@ const NO_THRESHOLDS: &[&str] = &[
     "equations UNKNOWNS",
     "free_body UNKNOWNS",
     "growth MEDIAN",
+    "invariants ROOT",
     "law LARGEST_SHARE",
     "levels SHARE",
     "moments WITH_SLOPE",

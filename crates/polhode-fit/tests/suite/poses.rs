@@ -281,9 +281,8 @@ fn drag_and_small_constant_torques_are_reckoned_with_and_others_are_refused() {
     let poses = |acting: Disturbances, stream: u64| {
         let (omega, mut random) = (Vector3::new(0.3, 1.0, 0.4), Random::new(8).stream(stream));
         let gyroscope = Gyroscope::default();
-        let (_, measured) =
-            simulate_poses(&body, omega, &times, &acting, &gyroscope, 5e-3, &mut random).unwrap();
-        Poses::new("torque", &times, &measured).unwrap()
+        let read = simulate_poses(&body, omega, &times, &acting, &gyroscope, 5e-3, &mut random).unwrap();
+        Poses::new("torque", &times, &read.attitudes).unwrap()
     };
     let distance = |e: &Estimate| square(&entries(&(e.shape.tensor() - body.tensor())), &e.free_covariance);
     let settings = Settings::default();

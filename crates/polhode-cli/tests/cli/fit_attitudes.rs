@@ -1,0 +1,175 @@
+//! `polhode simulate --attitude-noise` and `polhode fit` of attitudes, as their users meet them.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::harness::{Scratch, output, run};
+
+const SIMULATE: &str = "simulate --moments 1,2,2.6 --omega 0.3,1,0.4 --until 20 --every 0.05 --seed 4";
+
+fn json(line: &str) -> Value {
+    let answer = run(&format!("{line} --format json"));
+    assert!(answer.out.starts_with('{'), "{line}: {}", answer.err);
+    serde_json::from_str(&answer.out).unwrap()
+}
+
+/// What a refusal says, with its code.
+fn refused(code: i32, line: &str, says: &[&str]) {
+    let answer = run(line);
+    assert_eq!(answer.code, code, "{line}: {}", answer.err);
+    for part in says {
+        assert!(answer.err.contains(part), "{line}: '{part}' is not in: {}", answer.err);
+    }
+}
+
+/// The components of the quaternions of a simulated record, with its times.
+fn rows(text: &str) -> Vec<[f64; 5]> {
+    let row = |line: &str| {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        [cells[0], cells[1], cells[2], cells[3], cells[4]]
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+fn table(header: &str, rows: impl Iterator<Item = Vec<f64>>) -> String {
+    let line = |cells: Vec<f64>| cells.iter().map(f64::to_string).collect::<Vec<_>>().join(",") + "\n";
+    format!("{header}\n{}", rows.map(line).collect::<String>())
+}
+
+#[test]
+fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
+    let scratch = Scratch::new("fit-attitudes");
+    let text = output(&format!("{SIMULATE} --attitude-noise 0.01"));
+    assert!(text.starts_with("t,q_w,q_x,q_y,q_z\n0.0,"));
+    let file = scratch.file("poses.csv", text);
+    let whole = json(&format!("fit {file}"));
+    let of = |value: &Value| value["principal"][0].as_f64().unwrap();
+    let sigma = whole["sigma_principal"][0].as_f64().unwrap();
+    assert!((of(&whole) - 1.0 / 5.6).abs() < 4.0 * sigma && sigma < 1e-3, "{whole}");
+    let attitudes = &whole["attitudes"];
+    assert_eq!(attitudes["direction"], "body-to-space");
+    assert!(attitudes["direction_stated"] == false && attitudes["direction_gain"].as_f64() > Some(100.0));
+    assert!((attitudes["noise_sigma"].as_f64().unwrap() / 0.01 - 1.0).abs() < 0.1);
+    assert_eq!(whole["method"], "maximum likelihood on the exact motion of the free body");
+
+    let quaternions = rows(&text);
+    let matrix = |[t, w, x, y, z]: [f64; 5]| {
+        vec![
+            t,
+            1.0 - 2.0 * (y * y + z * z),
+            2.0 * (x * y - w * z),
+            2.0 * (x * z + w * y),
+            2.0 * (x * y + w * z),
+            1.0 - 2.0 * (x * x + z * z),
+            2.0 * (y * z - w * x),
+            2.0 * (x * z - w * y),
+            2.0 * (y * z + w * x),
+            1.0 - 2.0 * (x * x + y * y),
+        ]
+    };
+    let header = "t,r11,r12,r13,r21,r22,r23,r31,r32,r33";
+    let matrices = scratch.file("matrices.csv", table(header, quaternions.iter().map(|q| matrix(*q))));
+    assert!((of(&json(&format!("fit {matrices}"))) - of(&whole)).abs() < 1e-9);
+    // a frame of the other hand has the determinant -1
+    let mirrored = quaternions.iter().map(|q| {
+        let mut m = matrix(*q);
+        m[1..4].iter_mut().for_each(|entry| *entry = -*entry);
+        m
+    });
+    let mirrored = scratch.file("mirrored.csv", table(header, mirrored));
+    refused(2, &format!("fit {mirrored}"), &["determinant -1.0000", "left-handed"]);
+
+    // numbers without names leave the scalar open, and so does the motion
+    let last = quaternions.iter().map(|[t, w, x, y, z]| vec![*t, *x, *y, *z, *w]);
+    let last = scratch.file("last.csv", table("t,q0,q1,q2,q3", last));
+    refused(2, &format!("fit {last}"), &["--quaternion wxyz or xyzw", "nor does the motion"]);
+    let stated = json(&format!("fit {last} --quaternion xyzw"));
+    assert!((of(&stated) - of(&whole)).abs() < 1e-9);
+    assert_eq!(stated["attitudes"]["reading"], "quaternion x,y,z,w");
+
+    // yaw, pitch and roll of turns about z, y and x, in degrees
+    let angles = quaternions.iter().map(|[t, w, x, y, z]| {
+        let degrees = |x: f64| x.to_degrees();
+        vec![
+            *t,
+            degrees(libm::atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))),
+            degrees(libm::asin((2.0 * (w * y - x * z)).clamp(-1.0, 1.0))),
+            degrees(libm::atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))),
+        ]
+    });
+    let angles = scratch.file("angles.csv", table("t,euler_1,euler_2,euler_3", angles));
+    refused(2, &format!("fit {angles}"), &["--euler, as zyx"]);
+    refused(2, &format!("fit {angles} --euler zyx"), &["--angle-unit rad or deg"]);
+    let by_angles = json(&format!("fit {angles} --euler zyx --angle-unit deg"));
+    assert!((of(&by_angles) - of(&whole)).abs() < 1e-9, "{by_angles}");
+}
+
+#[test]
+fn a_direction_that_is_stated_wrongly_and_one_that_nobody_can_tell_are_refused() {
+    let scratch = Scratch::new("fit-attitudes-direction");
+    let text = output(&format!("{SIMULATE} --attitude-noise 0.01"));
+    let file = scratch.file("poses.csv", text);
+    refused(2, &format!("fit {file} --attitude space-to-body"), &["look inverted", "0.1786", "--attitude"]);
+    let inverse = rows(&text).into_iter().map(|[t, w, x, y, z]| vec![t, w, -x, -y, -z]);
+    let inverse = scratch.file("inverse.csv", table("t,q_w,q_x,q_y,q_z", inverse));
+    let found = json(&format!("fit {inverse}"));
+    assert_eq!(found["attitudes"]["direction"], "space-to-body");
+    let top =
+        "simulate --moments 1,1.6,1.6 --omega 0.5,0.8,0.4 --until 20 --every 0.05 --attitude-noise 0.01";
+    let top = scratch.file("top.csv", output(top));
+    refused(1, &format!("fit {top}"), &["axisymmetric", "--attitude body-to-space or space-to-body"]);
+    let stated = json(&format!("fit {top} --attitude body-to-space"));
+    assert!((stated["principal"][0].as_f64().unwrap() - 1.0 / 4.2).abs() < 1e-2);
+}
+
+#[test]
+fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
+    let scratch = Scratch::new("fit-attitudes-both");
+    let file = scratch.file("both.csv", output(&format!("{SIMULATE} --attitude-noise 0.01 --noise 0.02")));
+    let rates = run(&format!("fit {file} --format json"));
+    assert!(rates.err.contains("--from both"), "{}", rates.err);
+    let rates: Value = serde_json::from_str(&rates.out).unwrap();
+    assert!(rates["attitudes"].is_null() && rates["radius"].is_f64());
+    let (page, residuals) = (scratch.file("fit.html", ""), scratch.file("residuals.csv", ""));
+    let both = json(&format!("fit {file} --from both --report {page} --residuals {residuals}"));
+    let alignment = &both["attitudes"]["alignment"];
+    assert!(
+        alignment["turn"][0].as_f64().unwrap() > 0.999_99 && alignment["moving_gain"].as_f64() < Some(12.0)
+    );
+    assert!(both["sigma_principal"][0].as_f64() < rates["sigma_principal"][0].as_f64());
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.contains("Attitudes") && page.contains("body to space (told by the motion"), "{page}");
+    let residuals = fs::read_to_string(residuals).unwrap();
+    assert!(residuals.starts_with("segment,t,turn_x,turn_y,turn_z\n1,0"), "{residuals}");
+    assert_eq!(residuals.lines().count(), 402);
+    let text = output(&format!("fit {file} --from attitudes --format table"));
+    for line in
+        ["attitudes read as quaternion w,x,y,z, body to space", "noise of a component of the rotation vector"]
+    {
+        assert!(text.contains(line), "{text}");
+    }
+    refused(2, &format!("fit {file} --from attitudes --wheel 0,0,1,1e-3"), &["--wheel", "--from rates"]);
+    refused(2, &format!("fit {file} --from attitudes --gyro-bias 0.1"), &["offset", "no meaning"]);
+    refused(
+        2,
+        &format!("fit {file} --from attitudes --torque drag3"),
+        &["drag in proportion to the momentum"],
+    );
+}
+
+#[test]
+fn torques_on_attitudes_are_found_or_refused() {
+    let scratch = Scratch::new("fit-attitudes-torque");
+    let drag = output(&format!("{SIMULATE} --attitude-noise 0.01 --relative-drag 0.02"));
+    let drag = json(&format!("fit {}", scratch.file("drag.csv", drag)));
+    assert_eq!(drag["torque"]["model"], "drag");
+    let found = &drag["torque"]["coefficients"]["drag"];
+    assert!((found["value"].as_f64().unwrap() - 0.02).abs() < 5.0 * found["sigma"].as_f64().unwrap());
+    let noise = output(&format!("{SIMULATE} --attitude-noise 0.01 --torque-noise 0.3"));
+    let noise = scratch.file("noise.csv", noise);
+    refused(1, &format!("fit {noise}"), &["no free motion follows the attitudes", "--window"]);
+    let fast = "simulate --moments 1,2,2.6 --omega 3,10,4 --until 20 --every 0.3 --attitude-noise 0.01";
+    let fast = scratch.file("fast.csv", output(fast));
+    refused(1, &format!("fit {fast}"), &["beyond pi = 3.14", "rad/s"]);
+}

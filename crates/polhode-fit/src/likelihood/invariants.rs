@@ -1,0 +1,102 @@
+//! First tensors from rates alone, however sparse: ω·J ω and |J ω|² are the same at all samples of a stretch.
+//!
+//! Every S of span{J, J²} has a constant ω·S ω. The two symmetric S whose ω·S ω vary least give the axes, in which all of them are
+//! diagonal, and a plane of moments and squared moments: two tensors lie in it, one the mirror image of the other.
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+use crate::likelihood::momentum::physical;
+use crate::physical::coordinates::{Coordinates, ENTRIES, coordinates, eigen};
+
+/// Twice the off-diagonal entries in a norm that counts them once.
+const ROOT: f64 = core::f64::consts::SQRT_2;
+
+/// Coordinates of both; fewer where moments would not be positive.
+pub(crate) fn tensors_of(stretches: &[&[Vector3<f64>]]) -> Vec<Coordinates> {
+    let mut scatter = SMatrix::<f64, 6, 6>::zeros();
+    for rates in stretches {
+        let features: Vec<SVector<f64, 6>> = rates.iter().map(features).collect();
+        let mean = features.iter().sum::<SVector<f64, 6>>() / features.len().max(1) as f64;
+        features.iter().for_each(|f| scatter += (f - mean) * (f - mean).transpose());
+    }
+    let (_, vectors) = eigen(scatter);
+    let [first, second] = [0, 1].map(|k| symmetric(&vectors.column(k).into_owned()));
+    let gap = |m: &Matrix3<f64>| {
+        let (values, _) = eigen(*m);
+        (values[1] - values[0]).min(values[2] - values[1]) / m.norm()
+    };
+    let mixtures = [first, second, first + second, first - second];
+    let Some(best) = mixtures.into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b))) else { return Vec::new() };
+    let (_, axes) = eigen(best);
+    let along = |m: &Matrix3<f64>| (axes.transpose() * m * axes).diagonal();
+    let normal = along(&first).cross(&along(&second));
+    moments(&normal)
+        .into_iter()
+        .filter_map(|moments| {
+            let tensor = axes * Matrix3::from_diagonal(&moments) * axes.transpose();
+            physical(coordinates(&tensor))
+        })
+        .collect()
+}
+
+/// xx, yy, zz, √2 xy, √2 xz, √2 yz of ω ωᵀ.
+fn features(w: &Vector3<f64>) -> SVector<f64, 6> {
+    SVector::from_fn(|k, _| {
+        let (i, j) = ENTRIES[k];
+        w[i] * w[j] * if i == j { 1.0 } else { ROOT }
+    })
+}
+
+fn symmetric(of: &SVector<f64, 6>) -> Matrix3<f64> {
+    let mut m = Matrix3::zeros();
+    for (k, (i, j)) in ENTRIES.into_iter().enumerate() {
+        let entry = of[k] / if i == j { 1.0 } else { ROOT };
+        (m[(i, j)], m[(j, i)]) = (entry, entry);
+    }
+    m
+}
+
+/// Moments with Σ n_k J_k = 0, Σ n_k J_k² = 0 and Σ J_k = 1: the ends of a chord, or its middle where the line misses the quadric.
+fn moments(n: &Vector3<f64>) -> Vec<Vector3<f64>> {
+    let ones = Vector3::repeat(1.0);
+    let along = n.cross(&ones);
+    if along.norm_squared() <= f64::EPSILON * n.norm_squared() {
+        return Vec::new();
+    }
+    // a point of the line of both linear equations
+    let across = ones - n * (n.sum() / n.norm_squared());
+    let from = across / across.sum();
+    let weighted = |a: &Vector3<f64>, b: &Vector3<f64>| n.component_mul(a).dot(b);
+    let (a, b, c) = (weighted(&along, &along), weighted(&along, &from), weighted(&from, &from));
+    let root = (b * b - a * c).max(0.0).sqrt();
+    let at = |s: f64| from + along * s;
+    // the form that loses no digits where the sum cancels
+    let q = -(b + root.copysign(b));
+    [q / a, if q == 0.0 { q / a } else { c / q }].into_iter().filter(|s| s.is_finite()).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::tensor;
+    use nalgebra::UnitQuaternion;
+    use polhode::flow::FreeMotion;
+    use polhode::inertia::Inertia;
+
+    #[test]
+    fn a_few_rates_far_apart_tell_the_tensor_and_its_mirror_image() {
+        let j = Matrix3::new(2.0, 0.3, -0.1, 0.3, 1.7, 0.2, -0.1, 0.2, 1.1) / 4.8;
+        let body = Inertia::from_tensor(j).unwrap();
+        let motion =
+            FreeMotion::from_omega(&body, UnitQuaternion::identity(), Vector3::new(0.3, -0.8, 0.6)).unwrap();
+        let rates: Vec<Vector3<f64>> =
+            (0..20).map(|k| motion.omega_at(7.0 * f64::from(k)).unwrap()).collect();
+        let found = tensors_of(&[&rates]);
+        assert_eq!(found.len(), 2);
+        assert!(found.iter().any(|x| (tensor(x) - j).norm() < 1e-9), "{found:?}");
+        assert!(
+            found.iter().any(|x| (tensor(x) - crate::report::mirror::mirrored(&j)).norm() < 1e-9),
+            "{found:?}"
+        );
+    }
+}
