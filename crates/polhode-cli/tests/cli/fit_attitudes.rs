@@ -42,7 +42,7 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
     let scratch = Scratch::new("fit-attitudes");
     let text = output(&format!("{SIMULATE} --attitude-noise 0.01"));
     assert!(text.starts_with("t,q_w,q_x,q_y,q_z\n0.0,"));
-    let file = scratch.file("poses.csv", text);
+    let file = scratch.file("poses.csv", &text);
     let whole = json(&format!("fit {file}"));
     let of = |value: &Value| value["principal"][0].as_f64().unwrap();
     let sigma = whole["sigma_principal"][0].as_f64().unwrap();
@@ -109,7 +109,7 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
 fn a_direction_that_is_stated_wrongly_and_one_that_nobody_can_tell_are_refused() {
     let scratch = Scratch::new("fit-attitudes-direction");
     let text = output(&format!("{SIMULATE} --attitude-noise 0.01"));
-    let file = scratch.file("poses.csv", text);
+    let file = scratch.file("poses.csv", &text);
     refused(2, &format!("fit {file} --attitude space-to-body"), &["look inverted", "0.1786", "--attitude"]);
     let inverse = rows(&text).into_iter().map(|[t, w, x, y, z]| vec![t, w, -x, -y, -z]);
     let inverse = scratch.file("inverse.csv", table("t,q_w,q_x,q_y,q_z", inverse));
