@@ -53,6 +53,10 @@ pub(crate) fn named(flag: &str, name: &str) -> Result<Box<dyn AnyMethod>, Error>
 /// Why what `flag` names is no method.
 pub(crate) fn unknown(flag: &str, error: UnknownMethod) -> Error {
     match error {
+        // where it is one of the answers, the caller has taken it
+        UnknownMethod::Name { name } if name == "exact" => {
+            Error::input(flag, &name, "the exact motion takes no steps", "name a method of `polhode methods`")
+        }
         UnknownMethod::Name { name } => {
             let mut known: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
             known.insert(0, "exact".into());

@@ -30,6 +30,7 @@ fn the_page_of_a_method_fits_a_terminal() {
 #[test]
 fn what_cannot_be_checked_is_refused() {
     refused("methods --check ratle", &["--check: 'ratle'", "did you mean 'rattle'?"]);
+    refused("methods --check exact", &["--check: 'exact'", "takes no steps"]);
     refused("methods --check rk4 --motion falling", &["--motion", "'falling'", "free, gravity"]);
     refused("methods --motion free", &["--check"]);
     refused("methods --check rk4 --schemes", &["--schemes"]);
