@@ -29,11 +29,11 @@ fn file(name: &str, count: usize, at_the_end: bool) -> std::path::PathBuf {
 }
 
 /// Times and lines of a segment.
-type Read = (Vec<f64>, Vec<usize>);
+type Samples = (Vec<f64>, Vec<usize>);
 
-/// The segments of all parts, put together, and the parts.
-fn together(mut parts: Parts) -> (Vec<Read>, Vec<Part>) {
-    let (mut all, mut each): (Vec<Read>, _) = (Vec::new(), Vec::new());
+/// The segments of all parts, put together, and how many parts there are.
+fn together(mut parts: Parts) -> (Vec<Samples>, Vec<Part>) {
+    let (mut all, mut each): (Vec<Samples>, Vec<Part>) = (Vec::new(), Vec::new());
     while let Some(part) = parts.next().unwrap() {
         for (k, segment) in part.record.segments.iter().enumerate() {
             match all.last_mut() {
@@ -49,7 +49,7 @@ fn together(mut parts: Parts) -> (Vec<Read>, Vec<Part>) {
     (all, each)
 }
 
-fn segments(record: &Record) -> Vec<Read> {
+fn segments(record: &Record) -> Vec<Samples> {
     record.segments.iter().map(|s: &Segment| (s.times().to_vec(), s.lines().to_vec())).collect()
 }
 
