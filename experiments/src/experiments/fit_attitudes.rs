@@ -45,8 +45,8 @@ struct Trial {
 }
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let trials: u64 = context.scale.pick(2, 8, 300);
-    let seconds = context.scale.pick(12, 20, 30);
+    let trials: u64 = context.scale.pick(2, 3, 300);
+    let seconds = context.scale.pick(12, 12, 30);
     let rates = context.scale.pick(&RATES[..2], &RATES[..], &RATES[..]);
     let cells: Vec<(usize, usize, usize)> = (0..BODIES.len())
         .flat_map(|body| {

@@ -1,12 +1,17 @@
 //! The torque that samples of a motion ask for, and whether a steady spin explains them as well.
 
-use crate::likelihood::alternatives::Alternatives;
+use nalgebra::Vector3;
+
+use crate::likelihood::alternatives::{self, Alternatives};
 use crate::likelihood::descent::Problem;
 use crate::likelihood::growth::{Followed, steady};
 use crate::likelihood::sums::Reduced;
-use crate::physical::coordinates::{Coordinates, Form};
+use crate::likelihood::track::Track;
+use crate::physical::coordinates::{Coordinates, Form, tensor};
 use crate::settings::torque::TorqueModel;
 use crate::thresholds::ladder;
+use crate::thresholds::likelihood::LINEAR;
+use crate::thresholds::poses::MOVING;
 use crate::thresholds::rounds::SIGNIFICANT_GAIN;
 
 /// What acts on the body.
@@ -76,11 +81,24 @@ fn chosen(moved: impl Fn(bool) -> Option<Moved>) -> Option<Found> {
         Some((slowed, gain)) if gain > ladder::FIRST && gain - ladder::FIRST >= constant - more => {
             Some(Found { moved: slowed, torque: Acting::Drag, gain: Some(gain), without })
         }
-        _ if constant > more => {
+        // one that is too large for the first order is reckoned with only where noise cannot be it, and then refused
+        _ if constant > more && (constant > MOVING || is_linear_of(&free)) => {
             Some(Found { moved: free, torque: Acting::Constant, gain: Some(constant), without })
         }
         _ => Found::of(Some(free), Acting::Nothing),
     }
+}
+
+fn is_linear_of(moved: &Moved) -> bool {
+    moved.alternatives.as_ref().is_some_and(|found| is_linear(&moved.followed, &found.constant))
+}
+
+/// Whether a constant torque turns the body by little.
+pub(crate) fn is_linear(followed: &Followed, torque: &alternatives::Found) -> bool {
+    let inverse = tensor(&followed.model.x).try_inverse();
+    let acceleration = inverse.map(|inverse| inverse * Vector3::from_column_slice(&torque.values));
+    let half = followed.tracks.iter().map(Track::reach).fold(0.0, f64::max);
+    acceleration.is_some_and(|a| 0.5 * a.norm() * half * half <= LINEAR)
 }
 
 /// What steady spins tell, where they leave hardly more of the samples.

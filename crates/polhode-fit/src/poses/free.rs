@@ -6,7 +6,7 @@ use polhode::rotation::{Quat, Vec3};
 use crate::error::FitError;
 use crate::likelihood::alignment::{Alignment, align, at_nodes};
 use crate::likelihood::alternatives::Alternatives;
-use crate::likelihood::choice::{Acting, Found, Moved, steady_within_noise, with_torque};
+use crate::likelihood::choice::{Acting, Found, Moved, is_linear, steady_within_noise, with_torque};
 use crate::likelihood::descent::Levels;
 use crate::likelihood::growth::{Followed, follow};
 use crate::likelihood::local::{self, Node};
@@ -17,8 +17,6 @@ use crate::poses::clean::{jumps, turns};
 use crate::poses::fault::PoseFault;
 use crate::poses::record::{PoseSegment, Poses};
 use crate::settings::Settings;
-use crate::thresholds::ladder;
-use crate::thresholds::likelihood::LINEAR;
 use crate::thresholds::noise::{DEVIATIONS, LEAST};
 use crate::thresholds::poses::{COARSE, FEWEST, HALF_TURN, MOVING, SAME_SIZE, STILL};
 
@@ -116,27 +114,13 @@ impl Free {
         let by_noise = self.misfit(settings).is_none_or(|misfit| misfit <= 1.0 + scatter);
         let Some(found) = &self.alternatives else { return by_noise };
         let constant = match self.torque {
-            Acting::Nothing => ladder::FIRST + 2.0 * ladder::FURTHER,
-            Acting::Drag => MOVING,
+            Acting::Nothing | Acting::Drag => MOVING,
             Acting::Constant => f64::INFINITY,
-        };
-        let drag = match self.torque {
-            Acting::Nothing => ladder::FIRST,
-            _ => MOVING,
         };
         by_noise
             && found.constant.gain <= constant
-            && found.drag.as_ref().is_none_or(|found| found.gain <= drag)
-            && (self.torque != Acting::Constant || self.is_linear(&found.constant.values))
-    }
-
-    /// Whether a constant torque, in units of the fit, turns the body by little.
-    fn is_linear(&self, torque: &[f64]) -> bool {
-        let model = &self.followed.model;
-        let acceleration =
-            tensor(&model.x).try_inverse().map(|inverse| inverse * Vector3::from_column_slice(torque));
-        let half = self.followed.tracks.iter().map(Track::reach).fold(0.0, f64::max);
-        acceleration.is_some_and(|a| 0.5 * a.norm() * half * half <= LINEAR)
+            && found.drag.as_ref().is_none_or(|found| found.gain <= MOVING)
+            && (self.torque != Acting::Constant || is_linear(&self.followed, &found.constant))
     }
 }
 

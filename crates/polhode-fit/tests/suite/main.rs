@@ -10,6 +10,7 @@ mod models;
 mod poses;
 mod prior;
 mod simulate;
+mod sparse;
 mod torque;
 mod units;
 mod wheel;
