@@ -38,6 +38,27 @@ pub(super) struct PoseArguments {
     attitude_noise: Option<f64>,
 }
 
+/// What is fitted.
+pub(super) enum Chosen {
+    /// Angular velocities; `beside` are the files whose attitudes are not.
+    Rates { beside: Vec<PathBuf> },
+    /// Attitudes, alone or with angular velocities.
+    Attitudes,
+}
+
+impl Chosen {
+    /// Says which attitudes are not fitted.
+    pub(super) fn tell(&self) {
+        let Self::Rates { beside } = self else { return };
+        for path in beside {
+            let name = visible(&path.display().to_string()).into_owned();
+            let text = "the rates are fitted, and the attitudes beside them are not: --from both fits both where their errors \
+                        are independent, which those of attitudes that were computed from these rates are not";
+            tell("note", &format!("{name}: {text}"));
+        }
+    }
+}
+
 /// Attitudes and how they were read.
 pub(super) struct Read {
     pub(super) poses: Poses,
@@ -52,27 +73,25 @@ impl PoseArguments {
         self.attitude_noise
     }
 
-    /// Whether the files are read for their attitudes.
-    pub(super) fn are_read(&self, data: &[PathBuf], reading: &RecordArguments) -> Result<bool, Error> {
-        match self.from {
-            Some(From::Rates) => return Ok(false),
-            Some(From::Attitudes | From::Both) => return Ok(true),
-            None => {}
-        }
-        let mut any = false;
-        // standard input is read once, and for its rates
-        for path in data.iter().filter(|path| path.as_os_str() != "-") {
-            // what is wrong with a file is said where it is read
-            let Ok(found) = trajectory::columns(path, &reading.table()) else { continue };
-            any |= found.attitudes && !found.rates;
-            if found.attitudes && found.rates {
-                let name = visible(&path.display().to_string()).into_owned();
-                let text = "the rates are fitted, and the attitudes beside them are not: --from both fits both where their errors \
-                            are independent, which those of attitudes that were computed from these rates are not";
-                tell("note", &format!("{name}: {text}"));
+    /// What of the files is fitted.
+    pub(super) fn chosen(&self, data: &[PathBuf], reading: &RecordArguments) -> Chosen {
+        let beside = match self.from {
+            Some(From::Rates) => Vec::new(),
+            Some(From::Attitudes | From::Both) => return Chosen::Attitudes,
+            None => {
+                // standard input and pipes are read once, and for their rates
+                let files = data.iter().filter(|path| path.is_file());
+                // what is wrong with a file is said where it is read
+                let found =
+                    files.filter_map(|path| Some((path, trajectory::columns(path, &reading.table()).ok()?)));
+                let found: Vec<_> = found.filter(|(_, found)| found.attitudes).collect();
+                if found.iter().any(|(_, found)| !found.rates) {
+                    return Chosen::Attitudes;
+                }
+                found.into_iter().map(|(path, _)| path.clone()).collect()
             }
-        }
-        Ok(any)
+        };
+        Chosen::Rates { beside }
     }
 
     /// The attitudes of all files and windows.

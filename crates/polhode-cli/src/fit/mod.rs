@@ -26,7 +26,7 @@ use crate::flags::record::RecordArguments;
 use crate::memory;
 use crate::plot::Picture;
 use arguments::{KnownArguments, PriorArguments, Scope, SensorArguments, Torque};
-use attitudes::{PoseArguments, Read};
+use attitudes::{Chosen, PoseArguments, Read};
 use flights::Spans;
 use inputs::WheelArguments;
 use report::Facts;
@@ -127,14 +127,16 @@ impl Fit {
         });
         let figure = figure.transpose()?;
         memory::check_files(&self.data, 3)?;
-        let read = match self.poses.are_read(&self.data, &self.reading)? {
-            true => Some(self.attitudes()?),
-            false => None,
+        let chosen = self.poses.chosen(&self.data, &self.reading);
+        let read = match chosen {
+            Chosen::Attitudes => Some(self.attitudes()?),
+            Chosen::Rates { .. } => None,
         };
         let mut record = match &read {
             Some(read) => read.poses.rates(),
             None => self.reading.record(&self.data, self.wheel.momentum())?,
         };
+        chosen.tell();
         let limit = |axis: &[f64; 4]| Limit {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
             at_least: None,
