@@ -20,13 +20,14 @@ use crate::thresholds::bound::OPEN;
 /// ```
 /// use nalgebra::Vector3;
 /// use polhode::inertia::Inertia;
-/// use polhode_fit::{foreseen_attitude_bound, foreseen_bound};
+/// use polhode_fit::foreseen_attitude_bound;
 /// let body = Inertia::from_moments([1.0, 2.0, 2.6])?;
 /// let times: Vec<f64> = (0..600).map(|i| f64::from(i) / 20.0).collect();
 /// let omega = Vector3::new(0.3, 1.0, 0.4);
-/// let attitudes = foreseen_attitude_bound(&body, omega, &times, 0.01).ok_or("tumbles")?;
-/// let rates = foreseen_bound(&body, omega, &times, 0.01).ok_or("tumbles")?;
-/// assert!(attitudes.trace() < 0.1 * rates.trace()); // the phase adds up
+/// let bound = foreseen_attitude_bound(&body, omega, &times, 0.01).ok_or("tumbles")?;
+/// assert!(bound[(0, 0)].sqrt() < 0.01); // one deviation, of a trace of 1
+/// let twice = foreseen_attitude_bound(&body, omega, &times, 0.02).ok_or("tumbles")?;
+/// assert!((twice.trace() / bound.trace() - 4.0).abs() < 1e-9); // twice the noise
 /// assert!(foreseen_attitude_bound(&body, Vector3::z(), &times, 0.01).is_none()); // a pure spin
 /// # Ok::<(), polhode::Error>(())
 /// ```
