@@ -101,7 +101,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         Interval::new(pooled.covered, pooled.answered),
     ) {
         (Some(over), Some((low, high)), Some(c)) => {
-            if !(0.93..=1.07).contains(&over) && high - low < 0.1 {
+            if !(0.95..=1.05).contains(&over) && high - low < 0.1 {
                 failures.push(format!("pooled: {over} of the bound"));
             }
             if c.high < 0.93 || c.low > 0.97 {
