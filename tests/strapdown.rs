@@ -394,6 +394,17 @@ fn a_flight_is_smoothed_on_its_exact_motion() {
     let error = last(&smoothed).error(truth.at(60.0).unwrap().rotation()).norm();
     assert!(error < 4.0 * 3_f64.sqrt() * last(&smoothed).budget.sigma(), "{error:e}");
     assert!((flight.chi2_per_dof().unwrap() - 1.0).abs() < 0.1);
+    let apart = |smoothed: &[Estimate]| {
+        let pairs = smoothed.iter().zip(&plain);
+        pairs.map(|(one, other)| one.deviations_from(other)).fold(0.0, f64::max)
+    };
+    assert!(apart(&smoothed) < Estimate::CONTRADICTION, "{}", apart(&smoothed));
+    // a body that is one percent another one leaves little in the residuals, and has another attitude
+    let near = Inertia::from_moments([1.0, 2.02, 3.0]).unwrap();
+    let flight = Flight::fit(&near, &times, &rates, UnitQuaternion::identity(), sensor).unwrap();
+    let smoothed = flight.at(&times).unwrap();
+    assert!(flight.chi2_per_dof().unwrap() < 1.25, "{flight:?}");
+    assert!(apart(&smoothed) > Estimate::CONTRADICTION, "{}", apart(&smoothed));
     // another body
     let other = Inertia::from_moments([1.0, 1.2, 2.0]).unwrap();
     let refused = Flight::fit(&other, &times, &rates, UnitQuaternion::identity(), sensor);

@@ -91,6 +91,21 @@ impl Estimate {
         let inverse = self.budget.covariance.try_inverse();
         inverse.map_or(error.norm() == 0.0, |inverse| error.dot(&(inverse * error)) <= CHI_SQUARED_95)
     }
+
+    /// How far another estimate of the same attitude is from this one, in standard deviations of their difference, as if their errors were
+    /// independent: beyond [`CONTRADICTION`](Self::CONTRADICTION) one of both budgets leaves out what matters.
+    #[must_use]
+    pub fn deviations_from(&self, other: &Estimate) -> f64 {
+        let error = self.error(other.attitude);
+        match (self.budget.covariance + other.budget.covariance).try_inverse() {
+            Some(inverse) => error.dot(&(inverse * error)).max(0.0).sqrt(),
+            None if error.norm() == 0.0 => 0.0,
+            None => f64::INFINITY,
+        }
+    }
+
+    /// Deviations that one estimate in ten thousand exceeds by chance: the root of that quantile of χ² of three degrees of freedom.
+    pub const CONTRADICTION: f64 = 4.594;
 }
 
 /// χ² of three degrees of freedom that 95 % stay below.

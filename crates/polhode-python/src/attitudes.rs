@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Numbers, Order, array, rotation, scipy_rotation};
 use crate::calm::aside;
-use crate::error::{of, refused};
+use crate::error::{of, refused, warn};
 use crate::shown;
 use crate::tables::Record;
 use crate::through::free;
@@ -30,7 +30,7 @@ pub(crate) struct Attitudes {
 /// `rule` is `auto` (order and samples chosen with the noise), `magnus:ORDER`, `magnus:ORDER,SAMPLES`, or what others run: `hold`,
 /// `trapezoid`, `two-speed`, `runge-kutta`. Standard deviations of the sensor: `noise` of a reading (found in the record where it
 /// is not given), `bias`, rad/s, `scale_error`, a ratio, `stamps`, s. With a free `body` the attitudes are those of its exact motion that fits
-/// all rates best.
+/// all rates best; a warning says where they contradict those of the readings alone.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(2000) * 0.05
@@ -74,22 +74,31 @@ pub(crate) fn attitude(
         let sensor =
             Sensor::default().with_noise(noise).with_bias(bias).with_scale(scale_error).with_stamps(stamps);
         let text = |error: &dyn std::fmt::Display| error.to_string();
-        if let Some(inertia) = inertia {
-            let flight =
-                Flight::fit(&inertia, &times, &rates, start, sensor).map_err(|error| text(&error))?;
-            let estimates = flight.at(&times).map_err(|error| text(&error))?;
-            return Ok((estimates, "exact motion".to_string(), noise));
-        }
         let rule = match asked {
             Asked::Rule(rule) => rule,
             Asked::Magnus(order, samples) => strapdown::choose(&times, &rates, kind, order, samples, sensor)
                 .map_err(|error| text(&error))?,
         };
-        let estimates =
+        let integrated =
             strapdown::attitudes(&times, &rates, kind, rule, start, sensor).map_err(|error| text(&error))?;
-        Ok::<_, String>((estimates, rule.to_string(), noise))
+        let Some(inertia) = inertia else { return Ok((integrated, rule.to_string(), noise, None)) };
+        let flight = Flight::fit(&inertia, &times, &rates, start, sensor).map_err(|error| text(&error))?;
+        let estimates = flight.at(&times).map_err(|error| text(&error))?;
+        let pairs = estimates.iter().zip(&integrated);
+        let apart = pairs.map(|(one, other)| (one.deviations_from(other), one.time)).max_by(|a, b| a.0.total_cmp(&b.0));
+        Ok::<_, String>((estimates, "exact motion".to_string(), noise, apart))
     })?;
-    let (estimates, rule, noise) = found.map_err(of("rates"))?;
+    let (estimates, rule, noise, apart) = found.map_err(of("rates"))?;
+    if let Some((deviations, time)) = apart.filter(|(deviations, _)| *deviations > Estimate::CONTRADICTION) {
+        warn(
+            t.py(),
+            &format!(
+                "at t = {time} s the exact motion of the body and the integrated readings are {deviations:.1} standard deviations apart: a \
+                 torque such as drag, a body that is not quite this one, or an error of the sensor that is not stated; sigma does not \
+                 contain it"
+            ),
+        )?;
+    }
     Ok(Attitudes { estimates, rule, noise, order })
 }
 

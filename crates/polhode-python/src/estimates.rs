@@ -193,6 +193,26 @@ impl Estimate {
         Ok(found)
     }
 
+    /// What was found of measured attitudes: a dict of `noise_sigma`, `residual` and `local_noise` (of one component of the rotation vector,
+    /// rad), `largest_turn`, rad, `left_out` and `repeated` (numbers of samples), and, with rates beside them, `alignment`, the rotation vector
+    /// from the axes of the attitudes to those of the rates, rad, with `alignment_sigma`; `None` of a fit to rates alone.
+    #[getter]
+    fn attitudes<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(of) = &self.found.attitudes else { return Ok(None) };
+        let found = PyDict::new(py);
+        found.set_item("noise_sigma", of.noise_sigma)?;
+        found.set_item("residual", of.residual)?;
+        found.set_item("local_noise", of.local_noise)?;
+        found.set_item("largest_turn", of.largest_turn)?;
+        found.set_item("left_out", of.left_out)?;
+        found.set_item("repeated", of.repeated)?;
+        if let Some(alignment) = of.alignment {
+            found.set_item("alignment", array(py, alignment.turn.scaled_axis().as_slice().to_vec(), &[3])?)?;
+            found.set_item("alignment_sigma", array(py, alignment.sigma.to_vec(), &[3])?)?;
+        }
+        Ok(Some(found))
+    }
+
     /// Start and end of each flight that was fitted, s; empty where windows were given.
     #[getter]
     fn flights(&self) -> Vec<(f64, f64)> {

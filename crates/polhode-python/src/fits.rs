@@ -1,14 +1,14 @@
-//! Inertia from measured angular velocities.
+//! Inertia from measured angular velocities or attitudes.
 
 use nalgebra::Vector3;
 use polhode::record::{self, Segment};
 use polhode_fit::{
-    self as fits, FitError, Flights, Known, Prior, SensorPriors, Settings, TorqueModel, TorqueScope, during,
-    flights,
+    self as fits, FitError, Flights, Known, Poses, Prior, SensorPriors, Settings, TorqueModel, TorqueScope,
+    during, flights,
 };
 use pyo3::prelude::*;
 
-use crate::arrays::Numbers;
+use crate::arrays::{Numbers, Order, quaternions, unit};
 use crate::bodies::inertia;
 use crate::calm::aside;
 use crate::error::{of, refused, warn};
@@ -16,7 +16,7 @@ use crate::estimates::Estimate;
 use crate::tables::Record;
 use crate::units::positive;
 
-/// The inertia tensor, up to its size, of a body that rotates freely: from measured angular velocities in sensor axes.
+/// The inertia tensor, up to its size, of a body that rotates freely: from measured angular velocities in sensor axes, or from attitudes.
 ///
 /// `t`: times, s, and `rates` (n, 3), rad/s; or in place of `t` a `Record` of `read`, or a list of records of one body. Without `windows`,
 /// pairs of times, the flights of a record that is not free as a whole are found. `wheel` (n, 3), N m s, and `applied_torque` (n, 3),
@@ -29,14 +29,22 @@ use crate::units::positive;
 /// deviation of its entries; `prior_shape`: only its shape is known. `trust_units`: fit even if other units explain the record
 /// better.
 ///
+/// `attitude`: measured attitudes at the times, body to space: quaternions (n, 4) in this `order`, or scipy rotations. They are fitted by
+/// maximum likelihood on the exact motion, alone or with `rates` at the same times, whose axes may be turned against those of the attitudes;
+/// `attitude_noise`, rad, is the standard deviation of one component of their rotation vector, found where it is not given.
+///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(4000) * 0.01
 /// >>> rates = polhode.FreeMotion([1, 2, 2.5], [0.4, 1, -0.3]).at(t).omega + numpy.random.default_rng(1).normal(0, 0.01, (4000, 3))
 /// >>> estimate = polhode.fit(t, rates)
 /// >>> bool(numpy.all(abs(estimate.ratios - [0.4, 0.8]) < 5 * estimate.sigma_ratios))
 /// True
+/// >>> few = t[::10]
+/// >>> estimate = polhode.fit(few, attitude=polhode.FreeMotion([1, 2, 2.5], [0.4, 1, -0.3]).at(few).attitude, attitude_noise=1e-3)
+/// >>> bool(abs(estimate.ratios - [0.4, 0.8]).max() < 1e-6)
+/// True
 #[pyfunction(name = "fit")]
-#[pyo3(signature = (t, rates = None, *, windows = None, wheel = None, applied_torque = None, torque = "auto", torque_per = "record",
+#[pyo3(signature = (t, rates = None, *, attitude = None, attitude_noise = None, order = "wxyz", windows = None, wheel = None, applied_torque = None, torque = "auto", torque_per = "record",
                     radius = None, noise = None, trace = None, momentum = None, twice_energy = None, gyro_bias = None,
                     gyro_scale = None, gyro_axis_scales = None, gyro_misalignment = None, gyro_skew = None, gyro_walk = None,
                     quantum = None, prior = None, prior_sigma = None, prior_shape = false, trust_units = false))]
@@ -45,6 +53,9 @@ pub(crate) fn fitted(
     py: Python<'_>,
     t: &Bound<'_, PyAny>,
     rates: Option<&Bound<'_, PyAny>>,
+    attitude: Option<&Bound<'_, PyAny>>,
+    attitude_noise: Option<f64>,
+    order: &str,
     windows: Option<&Bound<'_, PyAny>>,
     wheel: Option<&Bound<'_, PyAny>>,
     applied_torque: Option<&Bound<'_, PyAny>>,
@@ -67,12 +78,18 @@ pub(crate) fn fitted(
     prior_shape: bool,
     trust_units: bool,
 ) -> PyResult<Estimate> {
-    let mut record = recorded(t, rates, wheel, applied_torque)?;
-    let whole = windows.is_none();
-    if let Some(windows) = Numbers::maybe("windows", windows)? {
-        let windows: Vec<(f64, f64)> = windows.rows::<2>(None)?.into_iter().map(|[a, b]| (a, b)).collect();
-        record = record.windows(&windows).map_err(of("windows"))?;
-    }
+    let windows = Numbers::maybe("windows", windows)?
+        .map(|windows| Ok::<_, PyErr>(windows.rows::<2>(None)?.into_iter().map(|[a, b]| (a, b)).collect()))
+        .transpose()?;
+    let order = Order::of(order)?;
+    let measured = match attitude {
+        None if attitude_noise.is_some() => return Err(refused("attitude_noise: given without attitude")),
+        None => Measured::rates(recorded(t, rates, wheel, applied_torque)?, windows)?,
+        Some(_) if wheel.is_some() || applied_torque.is_some() => {
+            return Err(refused("wheel, applied_torque: a fit of attitudes does not reckon with them; leave them out"));
+        }
+        Some(attitude) => Measured::attitudes(t, attitude, order, rates, windows)?,
+    };
     let sigma = |name, value: Option<f64>| value.map(|value| positive(name, value)).transpose();
     let known = match (trace, momentum, twice_energy) {
         (None, None, None) => None,
@@ -92,6 +109,7 @@ pub(crate) fn fitted(
     let settings = Settings::default()
         .with_radius(radius)
         .with_noise(noise)
+        .with_attitude_noise(sigma("attitude_noise", attitude_noise)?)
         .with_prior(prior)
         .with_known(known)
         .with_check_units(!trust_units)
@@ -113,19 +131,7 @@ pub(crate) fn fitted(
                 .with_misalignment(sigma("gyro_misalignment", gyro_misalignment)?)
                 .with_skew(sigma("gyro_skew", gyro_skew)?),
         );
-    let (found, spans, is_part) = aside(py, move |_| {
-        let (mut spans, mut is_part) = (Vec::new(), false);
-        if whole {
-            let Flights { list, whole, .. } = flights(&record, &settings)?;
-            spans.extend(list.iter().map(|flight| (flight.start, flight.end)));
-            is_part = !whole;
-            if is_part {
-                record = during(&record, &list);
-            }
-        }
-        Ok::<_, FitError>((fits::fit(&record, &settings)?, spans, is_part))
-    })?
-    .map_err(refused)?;
+    let (found, spans, is_part) = aside(py, move |_| measured.fitted(&settings))?.map_err(refused)?;
     let mut warnings: Vec<String> = found.warnings.iter().map(ToString::to_string).collect();
     if is_part {
         warnings.push(format!(
@@ -136,6 +142,72 @@ pub(crate) fn fitted(
     }
     warnings.iter().try_for_each(|warning| warn(py, warning))?;
     Ok(Estimate { found, flights: spans, warnings })
+}
+
+/// What was measured.
+enum Measured {
+    Rates {
+        record: record::Record,
+        /// Whether its flights are to be found.
+        whole: bool,
+    },
+    Attitudes(Poses),
+}
+
+impl Measured {
+    fn rates(record: record::Record, windows: Option<Vec<(f64, f64)>>) -> PyResult<Self> {
+        let whole = windows.is_none();
+        let record = match windows {
+            Some(windows) => record.windows(&windows).map_err(of("windows"))?,
+            None => record,
+        };
+        Ok(Measured::Rates { record, whole })
+    }
+
+    fn attitudes(
+        t: &Bound<'_, PyAny>,
+        attitude: &Bound<'_, PyAny>,
+        order: Order,
+        rates: Option<&Bound<'_, PyAny>>,
+        windows: Option<Vec<(f64, f64)>>,
+    ) -> PyResult<Self> {
+        let times = Numbers::of("t", t)?.list()?;
+        let n = Some(times.len());
+        let (rows, order) = quaternions(attitude, order)?;
+        let rows = rows.rows::<4>(n)?.into_iter();
+        let attitudes: Vec<_> = rows.map(|q| unit("attitude", order.read(q))).collect::<PyResult<_>>()?;
+        let poses = match Numbers::maybe("rates", rates)? {
+            Some(rates) => {
+                let rates: Vec<_> = rates.rows::<3>(n)?.into_iter().map(Vector3::from).collect();
+                Poses::with_rates("record", &times, &attitudes, &rates)
+            }
+            None => Poses::new("record", &times, &attitudes),
+        };
+        let poses = poses.map_err(refused)?;
+        Ok(Measured::Attitudes(match windows {
+            Some(windows) => poses.windows(&windows).map_err(of("windows"))?,
+            None => poses,
+        }))
+    }
+
+    /// The estimate; start and end of each flight that was found, and whether these are only part of the record.
+    #[allow(clippy::type_complexity, reason = "it is taken apart at once")]
+    fn fitted(self, settings: &Settings) -> Result<(fits::Estimate, Vec<(f64, f64)>, bool), FitError> {
+        let (mut record, whole) = match self {
+            Measured::Attitudes(poses) => return Ok((fits::fit_poses(&poses, settings)?, Vec::new(), false)),
+            Measured::Rates { record, whole } => (record, whole),
+        };
+        let (mut spans, mut is_part) = (Vec::new(), false);
+        if whole {
+            let Flights { list, whole, .. } = flights(&record, settings)?;
+            spans.extend(list.iter().map(|flight| (flight.start, flight.end)));
+            is_part = !whole;
+            if is_part {
+                record = during(&record, &list);
+            }
+        }
+        Ok((fits::fit(&record, settings)?, spans, is_part))
+    }
 }
 
 fn model(torque: &str) -> PyResult<TorqueModel> {

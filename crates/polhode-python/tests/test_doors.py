@@ -80,6 +80,25 @@ def test_a_record(command):
         assert found.systematic[line["name"]]["principal"].tolist() == line["principal"]
 
 
+@pytest.mark.parametrize("rates", [[], ["--noise", "0.01"]])
+def test_a_record_of_attitudes(command, rates):
+    start = ["--body", "phone", "--omega", "1,9,2", "--until", "5", "--every", "0.02"]
+    command("simulate", *start, "--attitude-noise", "0.005", *rates, "--out", "poses.csv", format=None)
+    told = command("fit", "poses.csv", "--from", "both" if rates else "attitudes", "--attitude", "body-to-space")
+    measured = polhode.read(command.folder / "poses.csv")
+    found = polhode.fit(measured.t, measured.omega if rates else None, attitude=measured.attitude)
+    for name in ("shape", "principal", "sigma_principal", "axes", "covariance", "ratios", "sigma_ratios"):
+        assert_array_equal(getattr(found, name), told[name], err_msg=name)
+    assert found.attitudes["noise_sigma"] == told["attitudes"]["noise_sigma"]
+    assert ("alignment" in found.attitudes) == bool(rates)
+    # space to body is said to be so
+    inverse = measured.attitude * [1, -1, -1, -1]
+    with pytest.raises(polhode.PolhodeError, match="space"):
+        polhode.fit(measured.t, attitude=inverse)
+    with pytest.raises(polhode.PolhodeError, match="attitude_noise: given without attitude"):
+        polhode.fit(measured.t, measured.attitude[:, 1:], attitude_noise=0.01)
+
+
 def test_attitudes_of_a_gyroscope(command):
     command("simulate", "--body", "spacecraft", "--omega", "0.3,1,0.4", "--until", "60", "--every", "0.05", "--noise", "1e-4", "--out", "gyro.csv", format=None)
     told = rows(command("attitude", "gyro.csv", "--kind", "rate", "--bias", "1e-5", format="csv"))

@@ -4,12 +4,43 @@ use nalgebra::UnitQuaternion;
 use polhode::record::Segment;
 use polhode::strapdown::{Estimate, Flight, FlightError, Kind, Sensor};
 use polhode_files::error::{Error, tell, warn};
+use polhode_files::text::rounded;
 
 use super::readings::Readings;
 use crate::flags::body::{Described, described};
 
-/// χ² per degree of freedom above which a remark is made.
-const EXCESS: f64 = 2.0;
+/// Where the exact motion of the body and the readings part most, in terms of their budgets.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Apart {
+    deviations: f64,
+    time: f64,
+    angle: f64,
+}
+
+impl Apart {
+    /// One more pair of attitudes of the same time; the angle between both, rad.
+    pub(super) fn push(&mut self, smoothed: &Estimate, integrated: &Estimate) -> f64 {
+        let (angle, deviations) =
+            (smoothed.error(integrated.attitude).norm(), smoothed.deviations_from(integrated));
+        if deviations > self.deviations {
+            *self = Apart { deviations, time: smoothed.time, angle };
+        }
+        angle
+    }
+
+    /// Says where both contradict each other.
+    pub(super) fn tell(self) {
+        let Apart { deviations, time, angle } = self;
+        if deviations > Estimate::CONTRADICTION {
+            warn(&format!(
+                "at t = {} s the exact motion of the body and the integrated readings are {angle:.2e} rad apart, {deviations:.1} standard \
+                 deviations: a torque such as drag, a body that is not quite this one, or an error of the sensor that is not stated \
+                 (--bias, --scale-error); attitude_sigma does not contain it",
+                rounded(time)
+            ));
+        }
+    }
+}
 
 /// The attitudes of the body that `--body` names in one segment, on its exact motion.
 pub(super) fn smoothed(
@@ -44,11 +75,5 @@ pub(super) fn smoothed(
         "note",
         &format!("exact motion of the body: {:.1e} rad/s left of the rates{chi2}", flight.residual()),
     );
-    if flight.chi2_per_dof().is_some_and(|chi2| chi2 > EXCESS) {
-        warn(
-            "the residuals exceed the noise of the sensor: a torque such as drag, or a body that is not quite this one; attitude_sigma takes \
-             them for white noise, which such errors are not: the column integrated says how far the attitudes are apart",
-        );
-    }
     flight.at(segment.times()).map_err(failed)
 }

@@ -25,6 +25,7 @@ use crate::flags::start::sequence;
 use crate::flags::table::Order;
 use crate::memory;
 use against::Reference;
+use flight::Apart;
 use integration::{Course, Found, Integration};
 use readings::{KindArguments, Readings};
 use rule::RuleArguments;
@@ -105,7 +106,7 @@ impl Attitude {
         let mut reference = self.against.as_deref().map(Reference::read).transpose()?;
         let (mut course, mut integration): (Option<Course>, Option<Integration>) = (None, None);
         let mut rows = RowWriter::new(self.table(), self.format, self.out.as_deref(), None)?;
-        let mut lost: Option<f64> = None;
+        let (mut lost, mut apart): (Option<f64>, Apart) = (None, Apart::default());
         let mut found = Vec::new();
         while let Some(Part { record, continues, .. }) = readings.next()? {
             if let Some(reference) = &mut reference {
@@ -127,13 +128,14 @@ impl Attitude {
                 current.push(&readings, segment, &mut found)?;
                 integration = Some(current);
             }
-            self.write(&mut found, &mut rows, reference.as_mut(), &mut lost)?;
+            self.write(&mut found, &mut rows, reference.as_mut(), (&mut lost, &mut apart))?;
         }
         integration.into_iter().for_each(|last| last.finish(&mut found));
-        self.write(&mut found, &mut rows, reference.as_mut(), &mut lost)?;
+        self.write(&mut found, &mut rows, reference.as_mut(), (&mut lost, &mut apart))?;
         if let Some(reference) = &reference {
             reference.tell();
         }
+        apart.tell();
         rows.finish()?;
         match lost {
             None => Ok(()),
@@ -169,13 +171,13 @@ impl Attitude {
             .map_err(|error| readings.refused(segment, 0, &error))
     }
 
-    /// Writes what was found, and notes when the attitude is `lost`.
+    /// Writes what was found, and notes when the attitude is `lost` and where both attitudes are most `apart`.
     fn write(
         &self,
         found: &mut Vec<Found>,
         rows: &mut RowWriter,
         mut reference: Option<&mut Reference>,
-        lost: &mut Option<f64>,
+        (lost, apart): (&mut Option<f64>, &mut Apart),
     ) -> Result<(), Error> {
         for Found { integrated, smoothed } in found.drain(..) {
             let estimate = smoothed.unwrap_or(integrated);
@@ -183,8 +185,8 @@ impl Attitude {
                 lost.get_or_insert(estimate.time);
             }
             let error = reference.as_mut().map(|reference| reference.error(&estimate));
-            let apart = smoothed.map(|smoothed| smoothed.error(integrated.attitude).norm());
-            rows.push(self.cells(&estimate, error.flatten(), apart))?;
+            let angle = smoothed.map(|smoothed| apart.push(&smoothed, &integrated));
+            rows.push(self.cells(&estimate, error.flatten(), angle))?;
         }
         Ok(())
     }

@@ -348,14 +348,24 @@ mod tests {
     }
 
     #[test]
+    fn further_programs_with_a_lower_limit_end_certified() {
+        with_limits(9, |axis, s| Limit { axis, at_least: Some(0.4 + 0.05 * s), at_most: None });
+    }
+
+    #[test]
     fn random_programs_with_an_upper_limit_end_certified() {
         with_limits(8, |axis, s| Limit { axis, at_least: None, at_most: Some(0.2 + 0.05 * s) });
+    }
+
+    #[test]
+    fn further_programs_with_an_upper_limit_end_certified() {
+        with_limits(10, |axis, s| Limit { axis, at_least: None, at_most: Some(0.2 + 0.05 * s) });
     }
 
     fn with_limits(seed: u64, limit: impl Fn(Vector3<f64>, f64) -> Limit) {
         let mut next = numbers(seed);
         let (mut of_law, mut of_limits) = (0, 0);
-        for trial in 0..150 {
+        for trial in 0..75 {
             let mut root = Form::from_fn(|i, k| if i < k { 50.0 * next() } else { 0.0 });
             for k in 0..5 {
                 root[(k, k)] = libm::pow(10.0, 2.0 + next());
@@ -374,6 +384,6 @@ mod tests {
             of_law += usize::from(answer.active.iter().any(|a| is_law(a.constraint)));
             of_limits += usize::from(answer.active.iter().any(|a| !is_law(a.constraint)));
         }
-        assert!(of_law > 25 && of_limits > 25, "{of_law}, {of_limits}");
+        assert!(of_law > 12 && of_limits > 12, "{of_law}, {of_limits}");
     }
 }

@@ -413,13 +413,15 @@ class Estimate:
     @property
     def segments(self) -> int: ...
     @property
-    def radius(self) -> float: ...
+    def radius(self) -> float | None: ...
     @property
     def identifiable(self) -> bool: ...
     @property
     def null_directions(self) -> list[str]: ...
     @property
     def unexplained(self) -> float | None: ...
+    @property
+    def attitudes(self) -> dict[str, Any] | None: ...
     @property
     def mirror(self) -> Floats | None: ...
     @property
@@ -438,6 +440,9 @@ def fit(
     t: ArrayLike | Record | Sequence[Record],
     rates: ArrayLike | None = None,
     *,
+    attitude: Turn | None = None,
+    attitude_noise: float | None = None,
+    order: Order = "wxyz",
     windows: ArrayLike | None = None,
     wheel: ArrayLike | None = None,
     applied_torque: ArrayLike | None = None,
