@@ -1,6 +1,7 @@
 //! Attitude from measured angular velocities.
 
 use nalgebra::Vector3;
+use polhode::record;
 use polhode::strapdown::{self, Estimate, Flight, Kind, Rule, Sensor};
 use polhode_pages::figure::{Curve, Figure, Scale, sheet};
 use polhode_pages::table::{Cell, Column, Table};
@@ -70,7 +71,12 @@ pub(crate) fn attitude(
         return Err(refused(format!("body: a flight is fitted to rates, and the readings are {kind}s")));
     }
     let found = aside(t.py(), move |_| {
-        let noise = noise.unwrap_or_else(|| strapdown::noise(&times, &rates));
+        let noise = noise.unwrap_or_else(|| {
+            // steps of digital readings count as noise
+            let rounding = record::Record::from_samples(&times, &rates)
+                .map_or(0.0, |record| record.rounding(&record.quanta()).sqrt());
+            strapdown::noise(&times, &rates).max(rounding)
+        });
         let sensor =
             Sensor::default().with_noise(noise).with_bias(bias).with_scale(scale_error).with_stamps(stamps);
         let text = |error: &dyn std::fmt::Display| error.to_string();
@@ -85,7 +91,9 @@ pub(crate) fn attitude(
         let flight = Flight::fit(&inertia, &times, &rates, start, sensor).map_err(|error| text(&error))?;
         let estimates = flight.at(&times).map_err(|error| text(&error))?;
         let pairs = estimates.iter().zip(&integrated);
-        let apart = pairs.map(|(one, other)| (one.deviations_from(other), one.time)).max_by(|a, b| a.0.total_cmp(&b.0));
+        let apart = pairs
+            .map(|(one, other)| (one.deviations_from(other), one.time))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
         Ok::<_, String>((estimates, "exact motion".to_string(), noise, apart))
     })?;
     let (estimates, rule, noise, apart) = found.map_err(of("rates"))?;

@@ -207,7 +207,8 @@ impl Estimate {
         found.set_item("left_out", of.left_out)?;
         found.set_item("repeated", of.repeated)?;
         if let Some(alignment) = of.alignment {
-            found.set_item("alignment", array(py, alignment.turn.scaled_axis().as_slice().to_vec(), &[3])?)?;
+            found
+                .set_item("alignment", array(py, alignment.turn.scaled_axis().as_slice().to_vec(), &[3])?)?;
             found.set_item("alignment_sigma", array(py, alignment.sigma.to_vec(), &[3])?)?;
         }
         Ok(Some(found))

@@ -86,7 +86,9 @@ pub(crate) fn fitted(
         None if attitude_noise.is_some() => return Err(refused("attitude_noise: given without attitude")),
         None => Measured::rates(recorded(t, rates, wheel, applied_torque)?, windows)?,
         Some(_) if wheel.is_some() || applied_torque.is_some() => {
-            return Err(refused("wheel, applied_torque: a fit of attitudes does not reckon with them; leave them out"));
+            return Err(refused(
+                "wheel, applied_torque: a fit of attitudes does not reckon with them; leave them out",
+            ));
         }
         Some(attitude) => Measured::attitudes(t, attitude, order, rates, windows)?,
     };

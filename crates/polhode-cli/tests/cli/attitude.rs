@@ -82,7 +82,11 @@ fn a_noisy_record_has_its_random_walk() {
     let near = scratch.file("near.json", r#"{"inertia": [[1, 0, 0], [0, 2.02, 0], [0, 0, 3]]}"#);
     let near = run(&format!("attitude {record} --kind rate --body {near}"));
     assert_eq!(near.code, 0, "{}", near.err);
-    assert!(near.err.contains("warning: at t = ") && near.err.contains(" standard deviations: "), "{}", near.err);
+    assert!(
+        near.err.contains("warning: at t = ") && near.err.contains(" standard deviations: "),
+        "{}",
+        near.err
+    );
     let other = run(&format!("attitude {record} --kind rate --body racket"));
     assert_eq!((other.code, other.out.as_str()), (1, ""));
     assert!(other.err.contains("the body contradicts the record"), "{}", other.err);
