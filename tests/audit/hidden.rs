@@ -1,7 +1,7 @@
 //! Faults that hide in what is declared, beside other columns, or in what a record leaves open.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::audit::{Fault, Frame, Judgement, Noise, Question, RateUnit, Reading, Trajectory, audit};
+use polhode::audit::{Attitudes, Fault, Frame, Judgement, Noise, Question, RateUnit, Reading, Trajectory, audit};
 use polhode::body::{Body, Force};
 use polhode::inertia::Inertia;
 use polhode::rotation::{Quat, Vec3};
@@ -84,6 +84,27 @@ fn momenta_beside_rates_are_judged_in_their_axes() {
         assert_eq!(judged(&of(frame, 7.0, None), None), Judgement::Right, "{frame}");
         assert_ne!(judged(&of(frame, 7.0, Some(123)), None), Judgement::Right, "{frame}");
         assert_ne!(judged(&of(frame, -7.0, None), None), Judgement::Right, "{frame}");
+    }
+}
+
+/// Momenta in space have their own digits, whatever those of the attitudes are and whatever unit they are in.
+#[test]
+fn momenta_in_space_are_held_to_their_own_digits() {
+    let rows = motion(400);
+    let of = |factor: f64, off: f64| {
+        let mut both = plain(&rows);
+        let momentum = |(_, q, w): &Written| q.rotate(w.times(Vec3(MOMENTS)) * factor).0;
+        both.momentum = Some(rows.iter().map(momentum).collect());
+        both.momentum.as_mut().unwrap()[123][1] += off * factor;
+        let Some(Attitudes::Quaternions(rounded)) = &mut both.attitude else { panic!() };
+        rounded.iter_mut().flatten().for_each(|x| *x = (*x * 1e4).round() / 1e4);
+        both.rates = None;
+        judged(&both, None)
+    };
+    for factor in [1e-3, 1.0, 1e3] {
+        assert_eq!(of(factor, 0.0), Judgement::Right, "{factor}");
+        // a third of a unit of the attitudes
+        assert_ne!(of(factor, 1e-4), Judgement::Right, "{factor}");
     }
 }
 

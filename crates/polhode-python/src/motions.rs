@@ -19,6 +19,14 @@ use crate::through::{self, FittedMotion, Passage};
 /// Times between two looks for Ctrl-C.
 const PART: usize = 1 << 12;
 
+/// Rows that are reserved beyond those of a large array of attitudes, and not touched.
+///
+/// An allocator that hands memory back at twice its largest block, as glibc's does, would hand back times, attitudes and angular
+/// velocities together after each call, and the system's clearing of new pages would cost as much as the motion.
+fn spare(rows: usize) -> usize {
+    if rows > PART { rows / 4 + PART } else { 0 }
+}
+
 /// What both motions answer.
 pub(crate) trait Motion: Sync {
     fn each_at(&self, times: &[f64], each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError>;
@@ -38,7 +46,8 @@ pub(crate) trait Motion: Sync {
             }
         }
         let Numbers { shape, values: times, .. } = Numbers::of("t", t)?;
-        let (mut attitudes, mut omegas) = (room::<[f64; 4]>(times.len())?, room::<[f64; 3]>(times.len())?);
+        let (mut attitudes, mut omegas) =
+            (room::<[f64; 4]>(times.len() + spare(times.len()))?, room::<[f64; 3]>(times.len())?);
         py.detach(|| {
             let mut listener = Listener::new();
             for part in times.chunks(PART) {
