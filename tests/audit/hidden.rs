@@ -1,7 +1,9 @@
 //! Faults that hide in what is declared, beside other columns, or in what a record leaves open.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::audit::{Attitudes, Fault, Frame, Judgement, Noise, Question, RateUnit, Reading, Trajectory, audit};
+use polhode::audit::{
+    Attitudes, Fault, Frame, Judgement, Noise, Question, RateUnit, Reading, Trajectory, audit,
+};
 use polhode::body::{Body, Force};
 use polhode::inertia::Inertia;
 use polhode::rotation::{Quat, Vec3};

@@ -2,7 +2,6 @@
 
 use crate::solve::completed::Completed;
 use crate::thresholds::noise::{LEAST, MOST};
-use crate::thresholds::walk::STEPS;
 use crate::verdict::judgement::{Case, Supported, Verdict};
 use crate::verdict::prior::{check_agreement, with_prior};
 use nalgebra::Vector3;
@@ -12,7 +11,7 @@ use crate::columns::column::Column;
 use crate::columns::dissipation::dissipation;
 use crate::columns::effect::Class;
 use crate::columns::input::Input;
-use crate::columns::sets::{sensor_columns, walk_columns};
+use crate::columns::sets::sensor_columns;
 use crate::error::FitError;
 use crate::physical::failure::SolverFailure;
 use crate::physical::nearest::nearest;
@@ -21,7 +20,7 @@ use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::settings::Settings;
-use crate::settings::torque::{TorqueNoise, TorqueScope};
+use crate::settings::torque::TorqueNoise;
 use crate::signal::noise;
 use crate::signal::normalised::{Normalised, normalised};
 use crate::signal::stretch::Stretch;
@@ -93,14 +92,15 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
         Err(error) if is_sparse(record) => (MOST / 3.0, Some(error)),
         Err(error) => return Err(error),
     };
-    let columns = columns_of(settings, &stretches, rms, input);
-    let alone = alone(settings, &stretches);
+    let columns: Vec<Column> = sensor_columns(&settings.sensor, rms)
+        .into_iter()
+        .chain(input.map(|_| Column::new(Input, None)))
+        .collect();
     let demand = Demand {
         radius: settings.radius.map(|r| r * rms),
         torque: settings.torque,
         noise: noise_of(settings, rms, variance),
         columns: &columns,
-        alone: &alone,
     };
     // wheels and torques of the record are in units of their own
     let motion = if input.is_none() { Motion::new(&stretches, variance) } else { None };
@@ -163,26 +163,6 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     let estimate = facts.report(answer, identifiability, motion.as_ref(), open.as_ref())?;
     check_driven(&estimate, motion.as_ref(), &stretches, rms)?;
     Ok(estimate)
-}
-
-/// The columns that every model of the torque has beside its own.
-fn columns_of(settings: &Settings, stretches: &[Stretch], rms: f64, input: Option<f64>) -> Vec<Column> {
-    let mut columns = sensor_columns(&settings.sensor, rms);
-    columns.extend(input.map(|_| Column::new(Input, None)));
-    if let Some(walk) = settings.offset_walk {
-        // per √(unit of time), which is one over the unit of rate
-        columns.extend(walk_columns(stretches, walk / rms / rms.sqrt(), STEPS));
-    }
-    columns
-}
-
-/// The stretches that have torques of their own.
-fn alone(settings: &Settings, stretches: &[Stretch]) -> Vec<usize> {
-    let long = |s: &&Stretch| s.times.len() >= 2 * SAMPLES_PER_TEST as usize;
-    match settings.torque_scope {
-        TorqueScope::Segment => stretches.iter().filter(long).map(|s| s.index).collect(),
-        TorqueScope::Record => Vec::new(),
-    }
 }
 
 /// Why there is no weak estimate, in the words of the record.

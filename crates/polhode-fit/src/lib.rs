@@ -83,7 +83,7 @@ pub use report::warning::Warning;
 pub use settings::Settings;
 pub use settings::known::Known;
 pub use settings::sensor::SensorPriors;
-pub use settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
+pub use settings::torque::{TorqueModel, TorqueNoise};
 pub use simulate::{
     Disturbances, Gyroscope, SimulatedPoses, SimulationError, simulate, simulate_poses, simulate_with,
 };

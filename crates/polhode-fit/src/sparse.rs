@@ -13,7 +13,7 @@ use crate::poses::free::Free;
 use crate::report::estimate::Estimate;
 use crate::report::exact::{Told, report};
 use crate::settings::Settings;
-use crate::settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
+use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::thresholds::bound::LEFT;
 use crate::thresholds::identifiability::VAGUE;
 use crate::thresholds::likelihood::SPARSE;
@@ -37,10 +37,8 @@ pub(crate) fn is_sparse(record: &Record) -> bool {
 fn is_plain(record: &Record, settings: &Settings) -> bool {
     let torque = [TorqueModel::Auto, TorqueModel::None, TorqueModel::Drag, TorqueModel::Constant];
     settings.radius.is_none()
-        && settings.offset_walk.is_none()
         && settings.sensor.named().iter().all(|(_, value)| value.is_none())
         && torque.contains(&settings.torque)
-        && settings.torque_scope == TorqueScope::Record
         && !matches!(settings.torque_noise, TorqueNoise::Given(_))
         && record.segments.iter().all(|s| s.inputs().is_none())
 }

@@ -134,7 +134,6 @@ thresholds! {
         PILOT_SAMPLES: usize = 8_000, "samples on which the radius is chosen: more would not change it", UNMEASURED;
     }
     walk: "columns of a random walk of the offsets" {
-        STEPS: usize = 20, "steps of the walk in one stretch", UNMEASURED;
         SHORTEST: f64 = 0.5, "shortest of them, rad of the motion", UNMEASURED;
     }
     judgement: "refusals" {

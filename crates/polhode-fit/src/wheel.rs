@@ -4,9 +4,8 @@ use polhode::inertia::Inertia;
 use polhode::record::{Record, Segment};
 
 use crate::columns::column::Column;
-use crate::columns::effect::Class;
 use crate::columns::input::Input;
-use crate::columns::sets::{sensor_columns, torque_columns, walk_columns};
+use crate::columns::sets::{sensor_columns, torque_columns};
 use crate::error::FitError;
 use crate::estimator::{noise_of, read_variance};
 use crate::physical::coordinates::coordinates;
@@ -16,7 +15,6 @@ use crate::settings::Settings;
 use crate::settings::torque::TorqueModel;
 use crate::signal::normalised::{Normalised, normalised};
 use crate::solve::held::held;
-use crate::thresholds::walk::STEPS;
 
 /// The moment of inertia of a wheel about its axis, and what it was found from.
 #[non_exhaustive]
@@ -92,12 +90,6 @@ pub fn calibrate_wheel(
         columns.extend(torque_columns(settings.torque));
     }
     columns.extend(sensor_columns(&settings.sensor, rms));
-    columns.extend(
-        settings
-            .offset_walk
-            .map(|walk| walk_columns(&stretches, walk / rms / rms.sqrt(), STEPS))
-            .unwrap_or_default(),
-    );
     let trace = inertia.tensor().trace();
     let x = coordinates(&(inertia.tensor() / trace));
     let noise = noise_of(settings, rms, variance);
@@ -106,9 +98,8 @@ pub fn calibrate_wheel(
         .ok_or(FitError::Solver(SolverFailure::Covariance))?;
     let deviation = found.misfit.max(1.0).sqrt();
     let per_unit = trace / scale;
-    let listed = (1..columns.len()).filter(|&k| columns[k].class() != Class::Step);
-    let nuisances =
-        listed.map(|k| Nuisance::new(&columns[k], found.values[k], found.sigmas[k] * deviation, rms));
+    let nuisances = (1..columns.len())
+        .map(|k| Nuisance::new(&columns[k], found.values[k], found.sigmas[k] * deviation, rms));
     let used = |k: usize| rest.segments.get(k).map_or(0, |s: &Segment| s.times().len());
     Ok(WheelCalibration {
         inertia: found.values[0] * per_unit,

@@ -31,8 +31,7 @@ fn named<'py>(py: Python<'py>, all: &[Nuisance]) -> PyResult<Bound<'py, PyDict>>
         entry.set_item("sigma", one.sigma)?;
         entry.set_item("unit", one.unit)?;
         entry.set_item("prior", one.prior)?;
-        let name = one.segment.map_or(one.name.into(), |k| format!("segment_{}_{}", k + 1, one.name));
-        found.set_item(name, entry)?;
+        found.set_item(one.name, entry)?;
     }
     Ok(found)
 }

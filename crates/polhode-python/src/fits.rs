@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use polhode::record::{self, Segment};
 use polhode_fit::{
-    self as fits, FitError, Flights, Known, Poses, Prior, SensorPriors, Settings, TorqueModel, TorqueScope,
-    during, flights,
+    self as fits, FitError, Flights, Known, Poses, Prior, SensorPriors, Settings, TorqueModel, during,
+    flights,
 };
 use pyo3::prelude::*;
 
@@ -21,10 +21,10 @@ use crate::units::positive;
 /// `t`: times, s, and `rates` (n, 3), rad/s; or in place of `t` a `Record` of `read`, or a list of records of one body. Without `windows`,
 /// pairs of times, the flights of a record that is not free as a whole are found. `wheel` (n, 3), N m s, and `applied_torque` (n, 3),
 /// N m: angular momentum of wheels and torque at the times, which give the tensor its size, as does one of `trace`, kg m^2,
-/// `momentum`, kg m^2/s, and `twice_energy`, kg m^2/s^2. `torque`: what acts besides: `none`, `drag`, `drag3`, `drag6`, `quadratic`,
-/// `constant`, or `auto`, the simplest that the record does not contradict; `torque_per`: `record` or `segment`. `noise`, rad/s, and
+/// `momentum`, kg m^2/s, and `twice_energy`, kg m^2/s^2. `torque`: what acts besides: `none`, `drag`, `drag3`, `quadratic`,
+/// `constant`, or `auto`, the simplest that the record does not contradict. `noise`, rad/s, and
 /// `radius`, s, are found where they are not given. `gyro_bias`, rad/s, `gyro_scale`, `gyro_axis_scales`, `gyro_misalignment`, rad,
-/// `gyro_skew`, s: standard deviations of errors of the sensor, estimated with these priors; `gyro_walk`, rad/s after 1 s; `quantum`,
+/// `gyro_skew`, s: standard deviations of errors of the sensor, estimated with these priors; `quantum`,
 /// rad/s, step of the readings. `prior`: a tensor that is known beforehand, or its moments, with `prior_sigma`, the relative standard
 /// deviation of its entries; `prior_shape`: only its shape is known. `trust_units`: fit even if other units explain the record
 /// better.
@@ -44,9 +44,9 @@ use crate::units::positive;
 /// >>> bool(abs(estimate.ratios - [0.4, 0.8]).max() < 1e-6)
 /// True
 #[pyfunction(name = "fit")]
-#[pyo3(signature = (t, rates = None, *, attitude = None, attitude_noise = None, order = "wxyz", windows = None, wheel = None, applied_torque = None, torque = "auto", torque_per = "record",
+#[pyo3(signature = (t, rates = None, *, attitude = None, attitude_noise = None, order = "wxyz", windows = None, wheel = None, applied_torque = None, torque = "auto",
                     radius = None, noise = None, trace = None, momentum = None, twice_energy = None, gyro_bias = None,
-                    gyro_scale = None, gyro_axis_scales = None, gyro_misalignment = None, gyro_skew = None, gyro_walk = None,
+                    gyro_scale = None, gyro_axis_scales = None, gyro_misalignment = None, gyro_skew = None,
                     quantum = None, prior = None, prior_sigma = None, prior_shape = false, trust_units = false))]
 #[allow(clippy::too_many_arguments, reason = "they are keywords")]
 pub(crate) fn fitted(
@@ -60,7 +60,6 @@ pub(crate) fn fitted(
     wheel: Option<&Bound<'_, PyAny>>,
     applied_torque: Option<&Bound<'_, PyAny>>,
     torque: &str,
-    torque_per: &str,
     radius: Option<f64>,
     noise: Option<f64>,
     trace: Option<f64>,
@@ -71,7 +70,6 @@ pub(crate) fn fitted(
     gyro_axis_scales: Option<f64>,
     gyro_misalignment: Option<f64>,
     gyro_skew: Option<f64>,
-    gyro_walk: Option<f64>,
     quantum: Option<f64>,
     prior: Option<&Bound<'_, PyAny>>,
     prior_sigma: Option<f64>,
@@ -116,15 +114,7 @@ pub(crate) fn fitted(
         .with_known(known)
         .with_check_units(!trust_units)
         .with_torque(model(torque)?)
-        .with_torque_scope(match torque_per {
-            "record" => TorqueScope::Record,
-            "segment" => TorqueScope::Segment,
-            _ => {
-                return Err(refused(format!("torque_per: '{torque_per}'; it must be 'record' or 'segment'")));
-            }
-        })
         .with_quantum(sigma("quantum", quantum)?)
-        .with_offset_walk(sigma("gyro_walk", gyro_walk)?)
         .with_sensor(
             SensorPriors::default()
                 .with_offset(sigma("gyro_bias", gyro_bias)?)
@@ -217,13 +207,12 @@ fn model(torque: &str) -> PyResult<TorqueModel> {
         "none" => TorqueModel::None,
         "drag" => TorqueModel::Drag,
         "drag3" => TorqueModel::Drag3,
-        "drag6" => TorqueModel::Drag6,
         "quadratic" => TorqueModel::Quadratic,
         "constant" => TorqueModel::Constant,
         "auto" => TorqueModel::Auto,
         other => {
             return Err(refused(format!(
-                "torque: '{other}'; it must be none, drag, drag3, drag6, quadratic, constant or auto"
+                "torque: '{other}'; it must be none, drag, drag3, quadratic, constant or auto"
             )));
         }
     })

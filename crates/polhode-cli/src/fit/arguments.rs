@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;
 use polhode_files::error::Error;
 use polhode_files::numbers::{list, number, numbers, positive};
-use polhode_fit::{Estimate, Known, Prior, SensorPriors, TorqueModel, TorqueScope};
+use polhode_fit::{Estimate, Known, Prior, SensorPriors, TorqueModel};
 
 use crate::flags::body::described;
 
@@ -18,8 +18,6 @@ pub(super) enum Torque {
     Drag,
     /// -D w, D diagonal in sensor axes
     Drag3,
-    /// -D w, D symmetric
-    Drag6,
     /// -c |w| J w
     Quadratic,
     /// Constant in body axes
@@ -34,28 +32,9 @@ impl From<Torque> for TorqueModel {
             Torque::None => TorqueModel::None,
             Torque::Drag => TorqueModel::Drag,
             Torque::Drag3 => TorqueModel::Drag3,
-            Torque::Drag6 => TorqueModel::Drag6,
             Torque::Quadratic => TorqueModel::Quadratic,
             Torque::Constant => TorqueModel::Constant,
             Torque::Auto => TorqueModel::Auto,
-        }
-    }
-}
-
-/// What shares the coefficients of a torque.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Scope {
-    /// One set for all segments
-    Record,
-    /// One set for each segment
-    Segment,
-}
-
-impl From<Scope> for TorqueScope {
-    fn from(scope: Scope) -> Self {
-        match scope {
-            Scope::Record => TorqueScope::Record,
-            Scope::Segment => TorqueScope::Segment,
         }
     }
 }
@@ -78,19 +57,12 @@ pub(super) struct SensorArguments {
     /// Standard deviation of the delays of y and z behind x, s: estimated with this prior
     #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
     gyro_skew: Option<f64>,
-    /// Random walk of the offset of each axis: standard deviation after 1 s, rad/s per sqrt(s)
-    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
-    gyro_walk: Option<f64>,
     /// Step of the digital readings, rad/s: its rounding is noise of variance Q^2/12 [default: found in the readings]
     #[arg(long, value_name = "Q", value_parser = positive, allow_hyphen_values = true)]
     quantum: Option<f64>,
 }
 
 impl SensorArguments {
-    pub(super) fn walk(&self) -> Option<f64> {
-        self.gyro_walk
-    }
-
     pub(super) fn quantum(&self) -> Option<f64> {
         self.quantum
     }

@@ -25,7 +25,7 @@ use polhode_pages::table::Format;
 use crate::flags::record::RecordArguments;
 use crate::memory;
 use crate::plot::Picture;
-use arguments::{KnownArguments, PriorArguments, Scope, SensorArguments, Torque};
+use arguments::{KnownArguments, PriorArguments, SensorArguments, Torque};
 use attitudes::{Chosen, PoseArguments, Read};
 use flights::Spans;
 use inputs::WheelArguments;
@@ -81,9 +81,6 @@ pub(crate) struct Fit {
     /// Torque on the body besides those of the record; a model, whose values are estimated: relative drag, drag along each sensor axis, drag that grows with the square of the rate, constant in body axes
     #[arg(long, value_enum, default_value_t = Torque::Auto)]
     torque: Torque,
-    /// Whether the coefficients of the torque are those of the whole record, or each segment has its own
-    #[arg(long, value_enum, default_value_t = Scope::Record)]
-    torque_per: Scope,
     #[command(flatten)]
     sensor: SensorArguments,
     /// Fit even if the record agrees far better with other units than those named
@@ -153,9 +150,7 @@ impl Fit {
             .with_known(self.known.known()?)
             .with_check_units(!self.trust_units)
             .with_torque(self.torque.into())
-            .with_torque_scope(self.torque_per.into())
             .with_quantum(self.sensor.quantum())
-            .with_offset_walk(self.sensor.walk())
             .with_sensor(self.sensor.priors());
         let format = Format::of(self.format, self.out.as_deref())?;
         let names = report::unused(&record);

@@ -113,37 +113,30 @@ fn columns_that_are_not_used_are_named() {
     assert_eq!(answer["unused_columns"], serde_json::json!(["temperature", "mark"]));
 }
 
-/// Two tosses under drag, written as steps of 0.01 rad/s.
+/// Two tosses under one drag, written as steps of 0.01 rad/s.
 #[test]
-fn torques_of_segments_and_steps_of_readings_are_reported() {
+fn torques_and_steps_of_readings_are_reported() {
     let scratch = Scratch::new("fit-models");
     let path = |name: &str| scratch.0.join(name).display().to_string();
-    let (slow, fast) = (path("slow.csv"), path("fast.csv"));
-    let line = format!("{SIMULATE} --until 20 --noise 1e-3 --quantum 0.01");
-    output(&format!("{line} --relative-drag 0.02 --out {slow}"));
-    output(&format!("{line} --relative-drag 0.1 --seed 5 --out {fast}"));
-    let apart = format!("fit {slow} {fast} --torque drag --torque-per segment");
-    let answer = json(&apart);
-    assert_eq!(answer["torque"]["coefficients"], serde_json::json!({}));
-    for (k, drag) in [(0, 0.02), (1, 0.1)] {
-        let (value, sigma) = (
-            number(&answer, &format!("/per_segment/{k}/torque/drag/value")),
-            number(&answer, &format!("/per_segment/{k}/torque/drag/sigma")),
-        );
-        assert!((value - drag).abs() < 4.0 * sigma, "{k}: {value} +- {sigma}");
-    }
+    let (one, two) = (path("one.csv"), path("two.csv"));
+    let line = format!("{SIMULATE} --until 20 --noise 1e-3 --quantum 0.01 --relative-drag 0.1");
+    output(&format!("{line} --out {one}"));
+    output(&format!("{line} --seed 5 --out {two}"));
+    let fit = format!("fit {one} {two} --torque drag");
+    let answer = json(&fit);
+    let drag = |of: &str| number(&answer, &format!("/torque/coefficients/drag/{of}"));
+    assert!((drag("value") - 0.1).abs() < 4.0 * drag("sigma"), "{}", answer["torque"]);
     assert!((number(&answer, "/quanta/0") - 0.01).abs() < 1e-9, "{}", answer["quanta"]);
     let page = path("fit.html");
-    let told = run(&format!("{apart} --format table --report {page}"));
-    assert!(told.out.contains("\nsegment  torque\n      1  drag 0.0"), "{}", told.out);
+    let told = run(&format!("{fit} --format table --report {page}"));
+    assert!(told.out.contains("drag") && told.out.contains("\nsegment  samples"), "{}", told.out);
     assert!(told.out.contains("steps of the readings: 1.000e-2"), "{}", told.out);
-    assert!(std::fs::read_to_string(page).unwrap().contains("<th>drag</th>"));
-    assert!(run(&format!("{apart} --format csv")).out.contains("\nsegment_2_drag,0."));
+    assert!(std::fs::read_to_string(page).unwrap().contains("drag"));
+    assert!(run(&format!("{fit} --format csv")).out.contains("\ndrag,0."));
 
-    let quadratic = json(&format!("fit {slow} --torque quadratic --gyro-walk 1e-4 --quantum 0.01"));
+    let quadratic = json(&format!("fit {one} --torque quadratic --quantum 0.01"));
     assert!(number(&quadratic, "/torque/coefficients/quadratic_drag/value") > 0.0);
-    refused(&format!("fit {slow} --quantum 0"), &["--quantum", "not positive"]);
-    refused(&format!("fit {slow} --gyro-walk -1"), &["--gyro-walk", "not positive"]);
+    refused(&format!("fit {one} --quantum 0"), &["--quantum", "not positive"]);
 }
 
 #[test]

@@ -1,12 +1,11 @@
 //! The Cramér–Rao bound of a record that is planned, with torques and errors of the sensor among the unknowns.
 
 use crate::thresholds::bound::{OPEN, PARTS_OF_PLAN, STEP_OF_PLAN};
-use crate::thresholds::walk::STEPS;
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 
 use crate::columns::column::{Column, Unknowns, terms_of};
-use crate::columns::sets::{sensor_columns, torque_columns, walk_columns};
+use crate::columns::sets::{sensor_columns, torque_columns};
 use crate::physical::coordinates::{Form, basis, coordinates, eigen, entries_of_coordinates};
 use crate::settings::Settings;
 use crate::signal::stretch::Stretch;
@@ -54,9 +53,6 @@ pub fn foreseen_bound_with(
     let mut values: Vec<f64> =
         columns.iter().zip(coefficients).map(|(c, v)| v / c.label().factor(rate)).collect();
     columns.extend(sensor_columns(&settings.sensor, rate));
-    if let Some(walk) = settings.offset_walk {
-        columns.extend(walk_columns(core::slice::from_ref(&stretch), walk / rate / rate.sqrt(), STEPS));
-    }
     values.resize(columns.len(), 0.0);
     let shape = inertia.tensor() / inertia.tensor().trace();
     let at = Unknowns { x: coordinates(&shape), c: values };

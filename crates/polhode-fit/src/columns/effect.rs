@@ -42,8 +42,6 @@ pub(crate) enum Class {
     Torque,
     /// An error of the sensor.
     Sensor,
-    /// A step of a random walk: there are many, and none of them matters by itself.
-    Step,
     /// A momentum inside the body that nobody measures.
     Momentum,
     /// The factor of wheel momenta and known torques.

@@ -22,7 +22,6 @@ pub(crate) fn torque_columns(model: TorqueModel) -> Vec<Column> {
         TorqueModel::None | TorqueModel::Auto => Vec::new(),
         TorqueModel::Drag => vec![Column::new(Drag, None)],
         TorqueModel::Drag3 => (0..3).map(|k| Column::new(Viscous(k), None)).collect(),
-        TorqueModel::Drag6 => (0..6).map(|k| Column::new(Viscous(k), None)).collect(),
         TorqueModel::Quadratic => vec![Column::new(Quadratic, None)],
         TorqueModel::Constant => (0..3).map(|k| Column::new(Constant(k), None)).collect(),
     }

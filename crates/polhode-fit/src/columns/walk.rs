@@ -28,7 +28,7 @@ impl Effect for Walk {
     }
 
     fn class(&self) -> Class {
-        Class::Step
+        Class::Sensor
     }
 
     fn derivative(&self, _equation: &Equation<'_>) -> Vector3<f64> {

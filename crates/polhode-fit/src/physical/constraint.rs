@@ -34,13 +34,6 @@ pub enum Constraint {
     Drag {
         /// Its name, as `drag`.
         name: &'static str,
-        /// The segment that it is of, from 0, where each has its own.
-        segment: Option<usize>,
-    },
-    /// The matrix of viscous drag has no negative eigenvalue: drag takes energy.
-    DragMatrix {
-        /// The segment that it is of, from 0, where each has its own.
-        segment: Option<usize>,
     },
 }
 
@@ -49,25 +42,12 @@ impl fmt::Display for Constraint {
         let (limit, n, relation, share) = match self {
             Self::Triangle => return f.write_str("I1 + I2 >= I3"),
             Self::Rod => return f.write_str("I1 + I2 >= I3 and I1 + I3 >= I2 (a rod)"),
-            Self::Drag { name, segment } => {
-                return write!(f, "{name} >= 0{} (drag takes energy)", of(*segment));
-            }
-            Self::DragMatrix { segment } => {
-                return write!(
-                    f,
-                    "no negative eigenvalue of the drag matrix{} (drag takes energy)",
-                    of(*segment)
-                );
-            }
+            Self::Drag { name } => return write!(f, "{name} >= 0 (drag takes energy)"),
             Self::AtLeast { limit, axis, share } => (limit, axis, ">=", share),
             Self::AtMost { limit, axis, share } => (limit, axis, "<=", share),
         };
         write!(f, "limit {limit}: moment about ({}, {}, {}) {relation} {share} of the trace", n.x, n.y, n.z)
     }
-}
-
-fn of(segment: Option<usize>) -> String {
-    segment.map_or(String::new(), |segment| format!(" of segment {}", segment + 1))
 }
 
 /// A constraint that holds the answer.

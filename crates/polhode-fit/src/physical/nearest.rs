@@ -273,42 +273,6 @@ mod tests {
         assert!(outside.contains("limit 1 is 5000"), "{outside}");
     }
 
-    /// With the Frobenius norm as metric the nearest matrix of drag has the negative eigenvalues set to zero; also where
-    /// all are negative, and beside a tensor that the law holds.
-    #[test]
-    fn a_matrix_of_drag_loses_its_negative_eigenvalues() {
-        use crate::physical::coordinates::ENTRIES;
-        let mut next = numbers(17);
-        let mut counts = [0; 4];
-        for trial in 0..200 {
-            let drag = {
-                let m = Matrix3::from_fn(|_, _| next());
-                m + m.transpose() + Matrix3::identity() * (2.0 * next())
-            };
-            let flat = trial % 2 == 0;
-            let largest = if flat { 0.6 } else { 0.45 };
-            let moments = Matrix3::from_diagonal(&Vector3::new(0.2, 0.8 - largest, largest));
-            let x = coordinates(&moments);
-            let centre: Vec<f64> = ENTRIES.iter().map(|e| drag[*e]).chain(x.iter().copied()).collect();
-            let two = core::f64::consts::SQRT_2;
-            let weights = [1.0, 1.0, 1.0, two, two, two, 1.0, 1.0, 1.0, 1.0, 1.0];
-            let root = DMatrix::from_diagonal(&DVector::from_row_slice(&weights)) * 100.0;
-            let told = Normal { centre: DVector::from_vec(centre), root };
-            let of = [Dissipation::Matrix { places: [0, 1, 2, 3, 4, 5], segment: None }];
-            let answer = nearest(&told, &[], &of).unwrap_or_else(|error| panic!("{trial}: {error}"));
-            let (values, axes) = eigen(drag);
-            let clipped =
-                axes * Matrix3::from_diagonal(&values.map(|value| value.max(0.0))) * axes.transpose();
-            for (k, entry) in ENTRIES.into_iter().enumerate() {
-                assert!((answer.others[k] - clipped[entry]).abs() < 1e-12, "{trial}: {}", answer.others[k]);
-            }
-            let negative = values.iter().filter(|value| **value < 0.0).count();
-            counts[negative] += 1;
-            assert_eq!(answer.active.len(), usize::from(flat) + usize::from(negative > 0), "{trial}");
-        }
-        assert!(counts.iter().all(|count| *count > 5), "{counts:?}");
-    }
-
     /// Random metrics, where nothing is known beforehand but the conditions of optimality.
     #[test]
     fn random_programs_with_drag_end_certified() {
@@ -321,12 +285,7 @@ mod tests {
                 root[(k, k)] = libm::pow(10.0, 3.0 + next());
             }
             let centre = DVector::from_fn(size, |k, _| if k < 6 { 1e-3 * next() } else { 0.2 * next() });
-            let of = if trial % 2 == 0 {
-                vec![Dissipation::Matrix { places: [0, 1, 2, 3, 4, 5], segment: None }]
-            } else {
-                let alone = |place| Dissipation::Coefficient { place, name: "drag", segment: None };
-                (0..6).map(alone).collect()
-            };
+            let of: Vec<_> = (0..6).map(|place| Dissipation { place, name: "drag" }).collect();
             let answer = nearest(&Normal { centre, root }, &[], &of)
                 .unwrap_or_else(|error| panic!("{trial}: {error}"));
             active += answer.active.len();

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use crate::physical::conic::Conditions;
 use crate::physical::constraint::Constraint;
-use crate::physical::coordinates::{basis, eigen, symmetric};
+use crate::physical::coordinates::{basis, eigen};
 use crate::physical::dissipation::Dissipation;
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
@@ -72,28 +72,11 @@ impl Program {
         let law = Wall::law(centre.len() - 5);
         let mut program = Program { centre, root, walls: vec![law], rows: Vec::new() };
         for of in dissipation {
-            match of {
-                Dissipation::Coefficient { place, .. } => {
-                    let unit = program.deviation(*place) / SHARE;
-                    let mut p = DVector::zeros(program.centre.len());
-                    p[*place] = -1.0 / unit;
-                    let row = Row { base: p.dot(&program.centre), g: program.gradient(&p) };
-                    program.rows.push((row, of.constraint(), unit));
-                }
-                Dissipation::Matrix { places, .. } => {
-                    let deviations = places.iter().map(|&place| program.deviation(place));
-                    let unit = deviations.fold(f64::INFINITY, f64::min) / SHARE;
-                    let entries = places.iter().enumerate();
-                    program.walls.push(Wall {
-                        base: Matrix3::zeros(),
-                        terms: entries.map(|(k, &place)| (place, symmetric(k) / -unit)).collect(),
-                        most: 0.0,
-                        rank: 3,
-                        unit,
-                        says: [of.constraint(), of.constraint()],
-                    });
-                }
-            }
+            let unit = program.deviation(of.place) / SHARE;
+            let mut p = DVector::zeros(program.centre.len());
+            p[of.place] = -1.0 / unit;
+            let row = Row { base: p.dot(&program.centre), g: program.gradient(&p) };
+            program.rows.push((row, of.constraint(), unit));
         }
         program
     }

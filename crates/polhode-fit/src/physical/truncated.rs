@@ -76,7 +76,7 @@ mod tests {
         free[(0, 0)] = 1.0;
         let mut answer = centre.clone();
         answer[0] = 0.0;
-        let of = [Dissipation::Coefficient { place: 0, name: "drag", segment: None }];
+        let of = [Dissipation { place: 0, name: "drag" }];
         let moments = spread(&centre, &free, &[], &of, &answer).unwrap();
         // φ(1) = 0.24197072, 1 − Φ(1) = 0.15865525
         let h = 0.241_970_72 / 0.158_655_25;

@@ -8,7 +8,7 @@ use crate::poses::record::Poses;
 use crate::report::estimate::Estimate;
 use crate::report::exact::{Told, report};
 use crate::settings::Settings;
-use crate::settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
+use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::thresholds::poses::OPEN;
 
 /// Fits one tensor to all segments of measured attitudes, and to the angular velocities beside them where there are any.
@@ -121,14 +121,9 @@ fn finished(poses: &Poses, settings: &Settings, free: &Free, told: Told) -> Resu
 /// Refuses settings that have no meaning here.
 fn only_of_rates(settings: &Settings) -> Result<(), FitError> {
     let sensor = settings.sensor.named().into_iter();
-    let others = [
-        ("the radius of test functions", settings.radius),
-        ("the quantum of the rates", settings.quantum),
-        ("the walk of the offset", settings.offset_walk),
-    ];
-    let is_other =
-        matches!(settings.torque, TorqueModel::Drag3 | TorqueModel::Drag6 | TorqueModel::Quadratic)
-            || settings.torque_scope != TorqueScope::Record;
+    let others =
+        [("the radius of test functions", settings.radius), ("the quantum of the rates", settings.quantum)];
+    let is_other = matches!(settings.torque, TorqueModel::Drag3 | TorqueModel::Quadratic);
     if is_other || matches!(settings.torque_noise, TorqueNoise::Given(_)) {
         return Err(PoseFault::Torque.into());
     }

@@ -155,7 +155,7 @@ impl Facts<'_> {
     /// The multiplier of a drag per unit of it in 1/s.
     fn in_seconds(&self, active: ActiveConstraint) -> ActiveConstraint {
         let unit = match active.constraint {
-            Constraint::Drag { .. } | Constraint::DragMatrix { .. } => self.rms,
+            Constraint::Drag { .. } => self.rms,
             _ => 1.0,
         };
         ActiveConstraint { multiplier: active.multiplier / unit, ..active }

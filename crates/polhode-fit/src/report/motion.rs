@@ -71,7 +71,7 @@ impl Estimate {
                         *used = false;
                     }
                 }
-                let law = Law::new(self, segment);
+                let law = Law::new(self);
                 let fitted = law.and_then(|law| law.nearest(s, &measured, &used));
                 FittedMotion { segment, used, measured, fitted }
             })
@@ -119,10 +119,10 @@ impl Inputs {
 
 impl Law {
     /// `None` where the tensor has no inverse.
-    fn new(e: &Estimate, segment: usize) -> Option<Self> {
+    fn new(e: &Estimate) -> Option<Self> {
         let j = e.shape.tensor();
         let mut terms = Terms::at(j);
-        add(e.torque.coefficients.iter().filter(|c| c.segment.is_none_or(|own| own == segment)), &mut terms);
+        add(&e.torque.coefficients, &mut terms);
         Some(Law {
             j,
             inverse: j.try_inverse()?,

@@ -17,8 +17,6 @@ pub struct Nuisance {
     pub sigma: f64,
     /// The standard deviation of its prior, where it has one.
     pub prior: Option<f64>,
-    /// The segment that it is of, from 0, where each has its own.
-    pub segment: Option<usize>,
     pub(crate) column: Column,
 }
 
@@ -33,7 +31,6 @@ impl Nuisance {
             value: value * unit,
             sigma: sigma * unit,
             prior: column.prior.map(|prior| prior * unit),
-            segment: column.segment,
             column: *column,
         }
     }

@@ -1,6 +1,5 @@
 //! Names, units and values of what was estimated beside the tensor.
 
-use crate::columns::effect::Class;
 use crate::report::nuisance::Nuisance;
 use crate::solve::weak_estimate::WeakEstimate;
 
@@ -15,16 +14,11 @@ pub(crate) fn nuisances(
     let Some(factor) = weak.stacked.as_ref().and_then(|stacked| stacked.joint_factor()) else {
         return Vec::new();
     };
-    let fitted = |segment: usize| weak.parts.iter().any(|part| part.stretch == segment);
     let each = weak.columns.iter().zip(values).enumerate();
-    // steps of a walk are many, and none of them matters
-    let listed =
-        each.filter(|(_, (column, _))| column.segment.is_none_or(fitted) && column.class() != Class::Step);
-    listed
-        .map(|(k, (column, value))| {
-            let own = held.iter().find(|(place, _)| *place == k).map(|(_, sigma)| *sigma);
-            let sigma = own.unwrap_or_else(|| factor.row(k).norm() * variance.sqrt());
-            Nuisance::new(column, *value, sigma, rms)
-        })
-        .collect()
+    each.map(|(k, (column, value))| {
+        let own = held.iter().find(|(place, _)| *place == k).map(|(_, sigma)| *sigma);
+        let sigma = own.unwrap_or_else(|| factor.row(k).norm() * variance.sqrt());
+        Nuisance::new(column, *value, sigma, rms)
+    })
+    .collect()
 }

@@ -4,7 +4,6 @@ use crate::thresholds::errors::{MOST, WALK, WALK_STEPS, WHEEL};
 use nalgebra::Vector3;
 
 use crate::columns::column::Column;
-use crate::columns::effect::Class;
 use crate::columns::rotor::Rotor;
 use crate::columns::sets::{reported_errors, walk_columns};
 use crate::physical::coordinates::{pair, tensor};
@@ -43,8 +42,7 @@ fn lines(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Line> {
     let momentum = (squares / f64::max(count, 1.0)).sqrt();
     lines.extend([0, 1, 2].map(|axis| alone(Column::new(Rotor(axis), None), WHEEL, momentum)));
     let walk = walk_columns(stretches, WALK / rms / rms.sqrt(), WALK_STEPS);
-    let fitted = weak.columns.iter().any(|column| column.class() == Class::Step);
-    if walk.len() <= MOST && !fitted {
+    if walk.len() <= MOST {
         let step = |column: Column| column.prior.map(|size| (column.with_prior(None), size));
         let columns = walk.into_iter().filter_map(step).collect();
         lines.push(Line { name: "walk", unit: "rad/s/sqrt(s)", size: WALK, columns });

@@ -286,11 +286,10 @@ fn torque(f: &mut fmt::Formatter<'_>, name: &str, trend: &InvariantTrend) -> fmt
 }
 
 fn reckoned(f: &mut fmt::Formatter<'_>, torque: &FittedTorque) -> fmt::Result {
-    let values = torque.coefficients.iter().filter(|c| c.segment.is_none());
-    let values = values.map(|c| format!("{} {} {}", c.name, with_sigma(c.value, c.sigma), c.unit));
+    let values =
+        torque.coefficients.iter().map(|c| format!("{} {} {}", c.name, with_sigma(c.value, c.sigma), c.unit));
     let values: Vec<String> = values.collect();
-    let values = if values.is_empty() { "coefficients for each segment".into() } else { values.join(", ") };
-    write!(f, "not free of torques: the fit reckons with {values}")?;
+    write!(f, "not free of torques: the fit reckons with {}", values.join(", "))?;
     match torque.ratios_without {
         Some([first, second]) => write!(f, "; without it I1/I3 would be {first:.4} and I2/I3 {second:.4}"),
         None => Ok(()),

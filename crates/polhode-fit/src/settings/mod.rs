@@ -10,7 +10,7 @@ use crate::physical::prior::Prior;
 use crate::setters::setters;
 use crate::settings::known::Known;
 use crate::settings::sensor::SensorPriors;
-use crate::settings::torque::{TorqueModel, TorqueNoise, TorqueScope};
+use crate::settings::torque::{TorqueModel, TorqueNoise};
 
 /// What the user may set; the default leaves everything to the record.
 ///
@@ -42,13 +42,9 @@ pub struct Settings {
     pub check_units: bool,
     /// The torque that acts.
     pub torque: TorqueModel,
-    /// What shares its coefficients.
-    pub torque_scope: TorqueScope,
     /// Step of the readings, rad/s; found in the readings without it. Its rounding is noise of variance
     /// q²/12, times the number of equal readings in a row.
     pub quantum: Option<f64>,
-    /// Random walk of the offset of each axis: standard deviation after 1 s, rad/s per √s; none without it.
-    pub offset_walk: Option<f64>,
     /// The torque noise.
     pub torque_noise: TorqueNoise,
     /// What may be wrong with the sensor.
@@ -68,9 +64,7 @@ impl Default for Settings {
             known: None,
             check_units: true,
             torque: TorqueModel::default(),
-            torque_scope: TorqueScope::default(),
             quantum: None,
-            offset_walk: None,
             torque_noise: TorqueNoise::default(),
             sensor: SensorPriors::default(),
             leave_out_spikes: true,
@@ -87,13 +81,11 @@ impl Settings {
             prior => with_prior(Prior),
             known => with_known(Known),
             quantum => with_quantum(f64),
-            offset_walk => with_offset_walk(f64),
         }
         values {
             limits => with_limits(Vec<Limit>),
             check_units => with_check_units(bool),
             torque => with_torque(TorqueModel),
-            torque_scope => with_torque_scope(TorqueScope),
             torque_noise => with_torque_noise(TorqueNoise),
             sensor => with_sensor(SensorPriors),
             leave_out_spikes => with_leave_out_spikes(bool),
@@ -114,7 +106,6 @@ impl Settings {
             ("the known quantity", known),
             ("the torque noise", density),
             ("the quantum", self.quantum),
-            ("the walk of the offset", self.offset_walk),
         ];
         for (name, value) in own.into_iter().chain(self.sensor.named()) {
             if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {

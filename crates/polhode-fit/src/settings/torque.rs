@@ -11,8 +11,6 @@ pub enum TorqueModel {
     Drag,
     /// Viscous drag with a coefficient for each sensor axis: τ = −D ω, D diagonal.
     Drag3,
-    /// Viscous drag with a symmetric matrix: τ = −D ω, six coefficients.
-    Drag6,
     /// Drag that grows with the square of the rate: τ = −c |ω| J ω, c ≥ 0, per radian.
     Quadratic,
     /// A torque that is constant in body axes.
@@ -21,17 +19,6 @@ pub enum TorqueModel {
     /// the next one does not surpass in restricted likelihood.
     #[default]
     Auto,
-}
-
-/// What shares the coefficients of a torque.
-#[non_exhaustive]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TorqueScope {
-    /// All segments of a record.
-    #[default]
-    Record,
-    /// Each segment has its own.
-    Segment,
 }
 
 /// White torque noise: what acts on the body at random, as turbulence does.

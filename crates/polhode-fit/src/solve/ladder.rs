@@ -31,25 +31,11 @@ pub(crate) struct Demand<'a> {
     pub(crate) noise: Noise,
     /// Columns that every model has.
     pub(crate) columns: &'a [Column],
-    /// The stretches that have torques of their own; none where all share theirs.
-    pub(crate) alone: &'a [usize],
 }
 
 impl Demand<'_> {
     fn columns(&self, model: TorqueModel) -> Vec<Column> {
-        self.torques(model).into_iter().chain(self.columns.iter().copied()).collect()
-    }
-
-    /// The columns of a torque, for each stretch where it has its own.
-    fn torques(&self, model: TorqueModel) -> Vec<Column> {
-        let shared = torque_columns(model);
-        if self.alone.is_empty() {
-            return shared;
-        }
-        let of = |&segment: &usize| {
-            shared.iter().map(move |column| column.of_segment(segment)).collect::<Vec<_>>()
-        };
-        self.alone.iter().flat_map(of).collect()
+        torque_columns(model).into_iter().chain(self.columns.iter().copied()).collect()
     }
 }
 
@@ -99,9 +85,8 @@ impl Ladder<'_> {
     /// Whether an estimate that noise explains asks for neither torque nor torque noise.
     fn is_enough(&self, first: &WeakEstimate) -> bool {
         let demand = &self.demand;
-        let asks = |model| {
-            gain_of(self.stretches, first, &demand.columns(model), self.variance) > needed(demand, model)
-        };
+        let asks =
+            |model| gain_of(self.stretches, first, &demand.columns(model), self.variance) > needed(model);
         match demand.noise {
             Noise::Given(_) => return false,
             Noise::Fitted if has_torque_noise(self.stretches, first, self.variance) => return false,
@@ -120,13 +105,13 @@ impl Ladder<'_> {
         let none = self.descent(TorqueModel::None, radius)?;
         let floor = likelihood(stretches, &none, variance);
         let gain = gain_of(stretches, &none, &demand.columns(TorqueModel::Constant), variance);
-        let may_be_constant = !none.has_settled() || gain > HOPE * needed(demand, TorqueModel::Constant);
+        let may_be_constant = !none.has_settled() || gain > HOPE * needed(TorqueModel::Constant);
         let without = none.has_settled().then(|| none.x());
         let mut best = plain(none, TorqueModel::None);
         let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
             let gain = likelihood(stretches, &weak, variance) - floor;
-            let more = demand.torques(model).len().saturating_sub(demand.torques(best.model).len()).max(1);
-            let asked = if best.model == TorqueModel::None { needed(demand, model) } else { threshold(more) };
+            let more = torque_columns(model).len().saturating_sub(torque_columns(best.model).len()).max(1);
+            let asked = if best.model == TorqueModel::None { needed(model) } else { threshold(more) };
             let before = likelihood(stretches, &best.weak, variance) - floor;
             let better = weak.has_settled() && (!best.weak.has_settled() || gain - before > asked);
             let gain = Some(gain).filter(|gain| gain.is_finite());
@@ -153,8 +138,8 @@ fn threshold(coefficients: usize) -> f64 {
     FIRST + FURTHER * (coefficients.max(1) - 1) as f64
 }
 
-fn needed(demand: &Demand<'_>, model: TorqueModel) -> f64 {
-    threshold(demand.torques(model).len())
+fn needed(model: TorqueModel) -> f64 {
+    threshold(torque_columns(model).len())
 }
 
 /// Log-likelihood of an estimate, the unknowns at their best; estimates at one radius can be compared.
@@ -190,8 +175,8 @@ fn gain_of(stretches: &[Stretch], weak: &WeakEstimate, columns: &[Column], varia
 
 /// Whether drag about three axes may be worth a fit beside the drag of an estimate.
 fn may_be_drag3(stretches: &[Stretch], weak: &WeakEstimate, demand: &Demand<'_>, variance: f64) -> bool {
-    let three = demand.torques(TorqueModel::Drag3);
-    let more = three.len().saturating_sub(demand.torques(TorqueModel::Drag).len());
+    let three = torque_columns(TorqueModel::Drag3);
+    let more = three.len().saturating_sub(torque_columns(TorqueModel::Drag).len());
     let both: Vec<Column> = three.into_iter().chain(demand.columns(TorqueModel::Drag)).collect();
     !weak.has_settled() || gain_of(stretches, weak, &both, variance) > HOPE * threshold(more)
 }

@@ -22,10 +22,8 @@ pub(crate) fn check_driven(
     let trend = e.momentum_trend;
     let growth = trend.map_or(0.0, |trend| trend.rate);
     let longest = stretches.iter().map(Stretch::duration).fold(0.0, f64::max) / rms;
-    let is_at_bound = e
-        .active_constraints
-        .iter()
-        .any(|active| matches!(active.constraint, Constraint::Drag { .. } | Constraint::DragMatrix { .. }));
+    let is_at_bound =
+        e.active_constraints.iter().any(|active| matches!(active.constraint, Constraint::Drag { .. }));
     let least = if e.pull > OUTSIDE_OF_LAW { GROWN } else { GROWN_BY_HALF };
     let grows = is_at_bound && growth * longest > least;
     let is_unexplained = unexplained.is_some_and(|share| share > DRIVEN);

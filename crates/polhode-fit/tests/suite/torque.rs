@@ -106,7 +106,7 @@ fn drag_is_found_and_fitted_at_its_bound() {
 fn drag_takes_energy() {
     let mut random = Random::new(61);
     let times = sampled(20, 20);
-    for (model, most) in [(TorqueModel::Drag, 1), (TorqueModel::Drag3, 3), (TorqueModel::Drag6, 1)] {
+    for (model, most) in [(TorqueModel::Drag, 1), (TorqueModel::Drag3, 3)] {
         let (mut active, mut coefficients, mut told, mut covered) = (0, 0, 0, 0);
         let count = 16;
         for _ in 0..count {
@@ -121,13 +121,7 @@ fn drag_takes_energy() {
             assert!(held <= most);
             active += held;
             let of: Vec<f64> = e.torque.coefficients.iter().map(|c| c.value).collect();
-            let lowest = match of[..] {
-                [xx, yy, zz, xy, xz, yz] => {
-                    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).symmetric_eigenvalues().min()
-                }
-                _ => of.iter().copied().fold(f64::INFINITY, f64::min),
-            };
-            assert!(lowest >= -1e-16, "{lowest:e}");
+            assert!(of.iter().all(|drag| *drag >= 0.0), "{of:?}");
             assert!(e.torque.coefficients.iter().all(|c| c.sigma > 0.0), "{:?}", e.torque);
             coefficients += of.len();
             told += e.torque.coefficients.iter().filter(|c| c.value.abs() < 1.96 * c.sigma).count();

@@ -10,8 +10,8 @@ use polhode_pages::document::{Block, Form, Tone};
 use super::attitudes::Read;
 use super::flights::Spans;
 use super::report::{
-    Facts, SURE, attitudes, coefficients, digits, mirror, sensor_lines, sizes, systematic, torque,
-    unexplained, unused, with_error,
+    Facts, SURE, attitudes, digits, mirror, sensor_lines, sizes, systematic, torque, unexplained, unused,
+    with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -142,9 +142,9 @@ fn answer(e: &Estimate) -> Vec<Block> {
     parts
 }
 
-fn numbers(of: &[&Nuisance]) -> Block {
+fn numbers(of: &[Nuisance]) -> Block {
     let head = ["", "value", "unit", "prior"].map(String::from).to_vec();
-    let row = |n: &&Nuisance| {
+    let row = |n: &Nuisance| {
         let prior = n.prior.map_or("–".into(), |prior| format!("± {prior}"));
         vec![n.name.into(), with_error(n.value, n.sigma).replace("+-", "±"), n.unit.into(), prior]
     };
@@ -161,10 +161,7 @@ fn torques(e: &Estimate) -> Vec<Block> {
         Some(gain) => format!("Model: {model}. It gains {gain:.1} in log-likelihood over none."),
         None => format!("Model: {model}."),
     }));
-    let shared = coefficients(e, None);
-    if !shared.is_empty() {
-        parts.push(numbers(&shared));
-    }
+    parts.push(numbers(&e.torque.coefficients));
     if let Some(without) = e.torque.ratios_without {
         let head = ["", "with the torque", "without it"].map(String::from).to_vec();
         let row = |k: usize, name: &str| {
@@ -182,7 +179,7 @@ fn sensor(e: &Estimate) -> Vec<Block> {
         parts.push(Block::Heading("Sensor".into()));
     }
     if !e.nuisances.is_empty() {
-        parts.push(numbers(&e.nuisances.iter().collect::<Vec<_>>()));
+        parts.push(numbers(&e.nuisances));
     }
     if !e.systematic.is_empty() {
         parts.push(Block::Paragraph(
@@ -211,20 +208,12 @@ fn segments(e: &Estimate, record: &Record, motion: &[FittedMotion]) -> Block {
         "weight",
         "shift",
     ];
-    let own: Vec<&str> = e
-        .per_segment
-        .first()
-        .map_or(Vec::new(), |first| coefficients(e, Some(first.segment)).iter().map(|n| n.name).collect());
     let rows = motion.iter().filter_map(|m| {
         let s = record.segments.get(m.segment)?;
         let summary = e.per_segment.iter().find(|p| p.segment == m.segment);
         let shown = |x: Option<f64>, places: usize| x.map_or("–".into(), |x| format!("{x:.places$e}"));
         let fixed = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.3}"));
-        let torques = own.iter().map(|name| {
-            let of = coefficients(e, Some(m.segment)).into_iter().find(|n| n.name == *name);
-            of.map_or("–".into(), |n| with_error(n.value, n.sigma).replace("+-", "±"))
-        });
-        let mut cells = vec![
+        Some(vec![
             format!("{} {}", m.segment + 1, s.source()),
             s.times().first().map_or(String::new(), |t| format!("{t:.3}")),
             s.times().last().map_or(String::new(), |t| format!("{t:.3}")),
@@ -234,11 +223,9 @@ fn segments(e: &Estimate, record: &Record, motion: &[FittedMotion]) -> Block {
             shown(summary.map(|p| p.torque_noise), 1),
             fixed(summary.map(|p| p.weight)),
             fixed(summary.map(|p| p.shift)),
-        ];
-        cells.extend(torques);
-        Some(cells)
+        ])
     });
-    Block::Table(names.into_iter().chain(own.iter().copied()).map(String::from).collect(), rows.collect())
+    Block::Table(names.map(String::from).to_vec(), rows.collect())
 }
 
 fn spikes(e: &Estimate, record: &Record) -> Vec<Block> {

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::attitudes::Read;
 use super::super::flights::Spans;
-use super::{attitudes, coefficients, method, torque, unused};
+use super::{attitudes, method, torque, unused};
 
 fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
     (0..3).map(|i| (0..3).map(|j| m[(i, j)]).collect()).collect()
@@ -79,11 +79,11 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
     json!({
         "torque": {
             "model": torque(e.torque.model),
-            "coefficients": nuisances(&coefficients(e, None)),
+            "coefficients": nuisances(&e.torque.coefficients),
             "gain": e.torque.gain,
             "ratios_without": e.torque.ratios_without,
         },
-        "nuisances": nuisances(&e.nuisances.iter().collect::<Vec<_>>()),
+        "nuisances": nuisances(&e.nuisances),
         "prior": e.prior.map(|p| json!({ "chi2": p.chi2, "dof": p.dof })),
         "systematic": e.systematic.iter().map(|line| json!({
             "name": line.name, "size": line.size, "unit": line.unit,
@@ -93,7 +93,6 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
         "per_segment": e.per_segment.iter().map(|s| json!({
             "segment": s.segment + 1, "samples": s.samples, "noise_sigma": s.noise_sigma,
             "torque_noise": s.torque_noise, "weight": s.weight, "shift": s.shift,
-            "torque": nuisances(&coefficients(e, Some(s.segment))),
         })).collect::<Vec<_>>(),
         "spikes": e.spikes.iter().map(|s| json!({
             "segment": s.segment + 1, "line": s.line, "time": s.time,
@@ -107,8 +106,8 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
 }
 
 /// By name: value, standard deviation, unit, and the deviation of the prior where there is one.
-fn nuisances(of: &[&Nuisance]) -> Map<String, Value> {
-    let entry = |n: &&Nuisance| {
+fn nuisances(of: &[Nuisance]) -> Map<String, Value> {
+    let entry = |n: &Nuisance| {
         let value = json!({ "value": n.value, "sigma": n.sigma, "unit": n.unit, "prior": n.prior });
         (n.name.to_string(), value)
     };

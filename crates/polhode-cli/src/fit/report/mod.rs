@@ -5,9 +5,7 @@ mod json;
 mod rows;
 mod text;
 
-use polhode_fit::{
-    AverageAxis, Estimate, Identifiability, Method, Nuisance, Record, Systematic, TorqueModel,
-};
+use polhode_fit::{AverageAxis, Estimate, Identifiability, Method, Record, Systematic, TorqueModel};
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
 
@@ -183,11 +181,6 @@ pub(super) fn sizes(e: &Estimate) -> String {
     words.join(", ")
 }
 
-/// The coefficients of the torque of one segment, or without it those that all share.
-pub(super) fn coefficients(e: &Estimate, segment: Option<usize>) -> Vec<&Nuisance> {
-    e.torque.coefficients.iter().filter(|c| c.segment == segment).collect()
-}
-
 /// How much of the motion is not free, in one sentence.
 pub(super) fn unexplained(e: &Estimate) -> Option<String> {
     let share = 100.0 * e.unexplained?;
@@ -207,7 +200,6 @@ pub(super) fn torque(model: TorqueModel) -> &'static str {
         TorqueModel::None => "none",
         TorqueModel::Drag => "drag",
         TorqueModel::Drag3 => "drag3",
-        TorqueModel::Drag6 => "drag6",
         TorqueModel::Quadratic => "quadratic",
         TorqueModel::Constant => "constant",
         _ => "auto",

@@ -30,8 +30,7 @@ pub(super) fn rows(e: &Estimate) -> Table {
         }
     }
     for n in e.torque.coefficients.iter().chain(&e.nuisances) {
-        let name = n.segment.map_or(n.name.into(), |k| format!("segment_{}_{}", k + 1, n.name));
-        table.push(row![name, n.value, n.sigma]);
+        table.push(row![n.name, n.value, n.sigma]);
     }
     for line in &e.systematic {
         for k in 0..3 {

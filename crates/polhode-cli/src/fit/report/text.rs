@@ -6,8 +6,7 @@ use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
 use super::super::attitudes::Read;
 use super::super::flights::Spans;
 use super::{
-    SURE, attitudes, coefficients, digits, method, mirror, sizes, systematic, torque, unexplained, unused,
-    with_error,
+    SURE, attitudes, digits, method, mirror, sizes, systematic, torque, unexplained, unused, with_error,
 };
 
 /// The answer first, then what it rests on.
@@ -112,7 +111,7 @@ fn torques(e: &Estimate) -> Vec<String> {
             None => format!("torque: {}", torque(e.torque.model)),
         },
     ];
-    lines.extend(coefficients(e, None).into_iter().map(number));
+    lines.extend(e.torque.coefficients.iter().map(number));
     if let Some([a, b]) = e.torque.ratios_without {
         lines.push(format!("  without it I1/I3 would be {a:.4} and I2/I3 {b:.4}"));
     }
@@ -158,15 +157,6 @@ fn segments(e: &Estimate) -> Vec<String> {
             s.weight,
             s.shift
         ));
-    }
-    if e.torque.coefficients.iter().any(|c| c.segment.is_some()) {
-        lines.extend([String::new(), "segment  torque".into()]);
-        for s in &e.per_segment {
-            let own = coefficients(e, Some(s.segment));
-            let values =
-                own.iter().map(|n| format!("{} {} {}", n.name, with_error(n.value, n.sigma), n.unit));
-            lines.push(format!("{:>7}  {}", s.segment + 1, values.collect::<Vec<_>>().join(", ")));
-        }
     }
     lines
 }
