@@ -1,6 +1,7 @@
 //! Inertia from measured angular velocities or attitudes.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
+use polhode::audit::{Attitudes, Direction, QuaternionOrder, Reading, Trajectory};
 use polhode::record::{self, Segment};
 use polhode_fit::{
     self as fits, FitError, Flights, Known, Poses, Prior, SensorPriors, Settings, TorqueModel, during,
@@ -8,7 +9,7 @@ use polhode_fit::{
 };
 use pyo3::prelude::*;
 
-use crate::arrays::{Numbers, Order, quaternions, unit};
+use crate::arrays::{Numbers, Order, quaternions};
 use crate::bodies::inertia;
 use crate::calm::aside;
 use crate::error::{of, refused, warn};
@@ -166,8 +167,17 @@ impl Measured {
         let times = Numbers::of("t", t)?.list()?;
         let n = Some(times.len());
         let (rows, order) = quaternions(attitude, order)?;
-        let rows = rows.rows::<4>(n)?.into_iter();
-        let attitudes: Vec<_> = rows.map(|q| unit("attitude", order.read(q))).collect::<PyResult<_>>()?;
+        let mut reading = Reading::default();
+        reading.attitude = Some(Direction::BodyToSpace);
+        reading.quaternion = Some(match order {
+            Order::First => QuaternionOrder::ScalarFirst,
+            Order::Last => QuaternionOrder::ScalarLast,
+        });
+        // normalised as those of a file are
+        let table = Trajectory::new(times.clone()).with_attitude(Attitudes::Quaternions(rows.rows(n)?));
+        let attitudes =
+            (0..times.len()).filter_map(|row| reading.attitude(&table, row).map(UnitQuaternion::from));
+        let attitudes: Vec<_> = attitudes.collect();
         let poses = match Numbers::maybe("rates", rates)? {
             Some(rates) => {
                 let rates: Vec<_> = rates.rows::<3>(n)?.into_iter().map(Vector3::from).collect();
