@@ -93,7 +93,7 @@ def test_a_record_of_attitudes(command, rates):
     assert ("alignment" in found.attitudes) == bool(rates)
     # space to body is said to be so
     inverse = measured.attitude * [1, -1, -1, -1]
-    with pytest.raises(polhode.PolhodeError, match="space"):
+    with pytest.raises(polhode.PolhodeError, match="look inverted"):
         polhode.fit(measured.t, attitude=inverse)
     with pytest.raises(polhode.PolhodeError, match="attitude_noise: given without attitude"):
         polhode.fit(measured.t, measured.attitude[:, 1:], attitude_noise=0.01)
