@@ -5,10 +5,11 @@ use std::sync::OnceLock;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::character::{AtRest, Character, Mode};
-use super::derivative::{Derivative, DerivativeError, StateDerivative};
+use super::derivative::{Derivative, StateDerivative};
 use super::orbit::FreeOrbit;
 use super::pure_spin::PureSpin;
 use crate::body::{Body, Exit, Phase, Point, State, StateError};
+use crate::flow::DerivativeError;
 use crate::flow::reach::{MOST_RADIANS, TimeError};
 use crate::inertia::Inertia;
 use crate::num::{Dd, Instructions, Precise};
@@ -125,7 +126,7 @@ impl FreeMotion {
         self.derivative().inverse_inertia()
     }
 
-    fn derivative(&self) -> &Derivative {
+    pub(super) fn derivative(&self) -> &Derivative {
         self.derivative
             .get_or_init(|| Box::new(Derivative::new(&self.body, self.orbit.variation(), self.orbit.start())))
     }
