@@ -104,7 +104,8 @@ impl FreeMotion {
     /// ```
     ///
     /// # Errors
-    /// As [`at`](Self::at), and a derivative that has grown beyond the range of a double, next to the unstable axis.
+    /// As [`at`](Self::at), and a derivative that leaves the range of a double: on the separatrix alone, where it grows for ever, after some
+    /// 355 e-folds. There [`at_with_scaled_derivative`](Self::at_with_scaled_derivative) gives it.
     pub fn at_with_derivative(&self, t: f64) -> Result<StateDerivative, DerivativeError> {
         self.check_time(t)?;
         self.derivative().at(&self.body, t, &self.point_at(t)).ok_or(DerivativeError::OutOfRange { t })
