@@ -139,7 +139,7 @@ def main():
         out = csv.writer(file, lineterminator="\n")
         out.writerow(["program", "version", "t", "steps", "error", "milliseconds", "set_up_seconds"])
         out.writerows(rows)
-    table = "| program | t [s] | steps | error | time [ms] | set-up [s] |\n| :--- | ---: | ---: | ---: | ---: | ---: |\n"
+    table = "| program | t (s) | steps | error | time (ms) | set-up (s) |\n| :--- | ---: | ---: | ---: | ---: | ---: |\n"
     for name, version, t, steps, off, milliseconds, seconds in rows:
         table += f"| {name} {version} | {t} | {steps} | {off} | {milliseconds} | {seconds} |\n"
     page = ROOT / "docs/exact-motion.md"
