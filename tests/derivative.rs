@@ -8,7 +8,7 @@ use polhode::flow::{DerivativeError, FreeMotion, StateDerivative, TurnAxes};
 use polhode::inertia::Inertia;
 use polhode::rotation::{Quat, Vec3};
 
-type Six = SMatrix<f64, 6, 6>;
+pub(crate) type Six = SMatrix<f64, 6, 6>;
 
 fn motion(case: &DerivativeCase) -> FreeMotion {
     let body = Body::free(Inertia::from_moments(case.moments).unwrap());
@@ -74,7 +74,7 @@ fn several() -> Vec<FreeMotion> {
 }
 
 /// The canonical form on attitudes and momenta, in body axes: `δm₁·θ₂ − θ₁·δm₂ − m·(θ₁ × θ₂)`.
-fn form(m: Vector3<f64>) -> Six {
+pub(crate) fn form(m: Vector3<f64>) -> Six {
     let mut form = Six::zeros();
     form.fixed_view_mut::<3, 3>(0, 0).copy_from(&m.cross_matrix());
     form.fixed_view_mut::<3, 3>(0, 3).copy_from(&-Matrix3::identity());
@@ -254,4 +254,71 @@ fn where_it_grows_beyond_a_double_the_derivative_is_refused() {
     assert!(error.to_string().contains("unstable axis"));
     assert!(matches!(racket().at_with_derivative(f64::NAN), Err(DerivativeError::Time(_))));
     assert!(matches!(racket().at_with_derivative(1e300), Err(DerivativeError::Time(_))));
+}
+
+#[test]
+fn where_it_grows_beyond_a_double_the_scaled_derivative_has_a_power_of_two_beside_it() {
+    let spin = |omega: f64| started([1.0, 2.0, 3.0], [0.0, omega, 0.0]);
+    let scaled = |motion: &FreeMotion, t: f64| {
+        let found = motion.at_with_scaled_derivative(t).unwrap();
+        (
+            found.exponent(),
+            [TurnAxes::Space, TurnAxes::Body].map(|axes| [found.by_momentum(axes), found.by_omega(axes)]),
+        )
+    };
+    // where both exist, and where the powers are two and three
+    for (omega, t) in [(1.0, 300.0), (-1.0, 600.0), (1.0, -600.0), (3.0, 0.1)] {
+        let motion = spin(omega);
+        let plain = motion.at_with_derivative(t).unwrap();
+        let (exponent, found) = scaled(&motion, t);
+        for (found, axes) in found.iter().zip([TurnAxes::Space, TurnAxes::Body]) {
+            for (found, plain) in found.iter().zip([plain.by_momentum(axes), plain.by_omega(axes)]) {
+                let found = found * libm::scalbn(1.0, exponent);
+                assert!((found - plain).amax() < 1e-12 * plain.amax(), "{omega} rad/s, {t} s");
+            }
+        }
+    }
+    // it composes: D(2t) = D(t) D(t) in axes of the body, of which the steady spin has always the same
+    let (motion, t) = (spin(1.0), 2e4);
+    let (once, twice) = (scaled(&motion, t), scaled(&motion, 2.0 * t));
+    let d = once.1[1][0];
+    let square = d.fixed_columns::<6>(0) * d;
+    let e = 2 * once.0 - twice.0;
+    let square = square * libm::scalbn(1.0, e);
+    assert!((square - twice.1[1][0]).amax() < 1e-10 * square.amax(), "2^{e}");
+    let folds = f64::from(twice.0) * core::f64::consts::LN_2 + libm::log(twice.1[1][0].amax());
+    let growth = motion.pure_spin().unwrap().growth_rate;
+    assert!((folds / (growth * 2.0 * t) - 1.0).abs() < 1e-3, "{folds}");
+    // elsewhere there is none
+    let racket = racket();
+    let (found, plain) =
+        (racket.at_with_scaled_derivative(1e6).unwrap(), racket.at_with_derivative(1e6).unwrap());
+    assert_eq!(found.exponent(), 0);
+    assert_eq!(found.by_omega(TurnAxes::Space), plain.by_omega(TurnAxes::Space));
+    let far = spin(1.0).at_with_scaled_derivative(1e10);
+    assert_eq!(far.unwrap_err(), DerivativeError::OutOfRange { t: 1e10 });
+}
+
+#[test]
+fn on_the_separatrix_the_scaled_derivative_follows_the_motion_to_its_final_spin() {
+    // I₁ (I₂ − I₁) ω₁² = I₃ (I₃ − I₂) ω₃² in doubles
+    let motion = started([1.0, 2.0, 2.25], [0.75, 0.5, 1.0]);
+    assert!(
+        motion.character().unwrap().polhode_period.is_none_or(f64::is_infinite),
+        "{:?}",
+        motion.character()
+    );
+    let short = motion.at_with_derivative(200.0).unwrap().by_momentum(TurnAxes::Body);
+    let long = motion.at_with_scaled_derivative(2000.0).unwrap();
+    let back = motion.at_with_scaled_derivative(-2000.0).unwrap();
+    assert!(long.exponent() > 500 && back.exponent() > 500);
+    // one direction of the start is all that grows: the rows of both span it
+    let unstable = |d: &SMatrix<f64, 6, 12>| {
+        let row = (3..6).max_by(|&a, &b| d.row(a).amax().total_cmp(&d.row(b).amax())).unwrap();
+        let row = d.row(row).into_owned();
+        row / row.amax()
+    };
+    let (a, b) = (unstable(&short), unstable(&long.by_momentum(TurnAxes::Body)));
+    let off = (a - b).amax().min((a + b).amax());
+    assert!(off < 1e-12, "{off:.1e}");
 }

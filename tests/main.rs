@@ -44,6 +44,11 @@ mod switched;
 mod taylor;
 #[allow(clippy::disallowed_methods)] // sizes of cases and tolerances
 mod through;
+#[allow(clippy::disallowed_methods)] // sizes of cases and tolerances
+mod top_derivative;
+#[cfg(feature = "random")]
+#[allow(clippy::disallowed_methods)] // sizes of cases and tolerances
+mod top_differences;
 mod tops;
 mod truth;
 mod tumbling;

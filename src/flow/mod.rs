@@ -12,6 +12,7 @@
 //! method of one's own of them.
 
 mod casimir;
+mod derivative;
 mod exact_motion;
 mod free;
 mod kick;
@@ -20,15 +21,16 @@ mod reach;
 mod turn;
 
 pub use casimir::Casimir;
+pub use derivative::{DerivativeError, TurnAxes};
 pub use exact_motion::{ExactMotion, NoClosedForm};
 pub(crate) use free::{Addition, Curve, FreeOrbit};
 pub use free::{
-    AtRest, Character, CovarianceError, DerivativeError, FittedMotion, FreeBody, FreeFlow, FreeMotion,
-    Interpolation, Mode, Passage, Passages, PureSpin, Stability, StartCovariance, StateCovariance,
-    StateDerivative, SymmetricTop, ThroughError, TumblingElements, TumblingError, TurnAxes,
+    AtRest, Character, CovarianceError, FittedMotion, FreeBody, FreeFlow, FreeMotion, Interpolation, Mode,
+    Passage, Passages, PureSpin, Stability, StartCovariance, StateCovariance, StateDerivative, SymmetricTop,
+    ThroughError, TumblingElements, TumblingError,
 };
 pub use kick::Kick;
-pub use lagrange::{LagrangeError, LagrangeTop};
+pub use lagrange::{LagrangeError, LagrangeTop, TopDerivative};
 pub use reach::TimeError;
 pub use turn::Turn;
 pub(crate) use turn::{turn_a_little_about, turn_about, turn_about_axis, turn_by};

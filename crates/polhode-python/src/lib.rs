@@ -10,6 +10,7 @@ mod audits;
 mod bodies;
 mod calm;
 mod columns;
+mod derivatives;
 mod ensembles;
 mod error;
 mod estimates;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use polhode::body::{Point, State};
-use polhode::flow::{self, TimeError, TurnAxes};
+use polhode::flow::{self, TimeError};
 use polhode::num::{Covariance, Dd};
 use polhode_pages::character::quantities;
 use polhode_pages::table::{Cell, Column, Table, row};
@@ -12,6 +12,7 @@ use pyo3::types::{PyDict, PyFloat, PyInt};
 use crate::arrays::{Numbers, Order, array, room};
 use crate::bodies::{Body, Start};
 use crate::calm::{Listener, aside};
+use crate::derivatives::{Asked, at_each, matrices, turn_axes};
 use crate::error::{of, refused};
 use crate::states::States;
 use crate::through::{self, FittedMotion, Passage};
@@ -149,19 +150,13 @@ impl FreeMotion {
         axes: &str,
         order: Option<&str>,
     ) -> PyResult<(States, Bound<'py, PyAny>)> {
-        let axes = turn_axes(axes)?;
-        let is_omega = match by {
-            "omega" => true,
-            "momentum" => false,
-            _ => return Err(refused(format!("by: '{by}'; it must be 'omega' or 'momentum'"))),
-        };
+        let Asked { axes, by_omega } = Asked::of(by, axes)?;
         let states = self.at(t, order)?;
-        let (shape, found) = self.at_each(t, |t| {
+        let derivative = matrices(t, |t| {
             let there = self.motion.at_with_derivative(t).map_err(of("t"))?;
-            Ok(if is_omega { there.by_omega(axes) } else { there.by_momentum(axes) })
+            Ok(if by_omega { there.by_omega(axes) } else { there.by_momentum(axes) })
         })?;
-        let entries = found.iter().flat_map(|matrix| matrix.transpose().as_slice().to_vec()).collect();
-        Ok((states, array(t.py(), entries, &[&shape[..], &[6, 12]].concat())?))
+        Ok((states, derivative))
     }
 
     /// The covariance of the state at `t` from that of the start, by the derivative: a pair of an array (..., 6, 6), rows and columns the
@@ -190,7 +185,7 @@ impl FreeMotion {
             let density: [[f64; 3]; 3] = Numbers::of("torque", torque)?.matrix()?.transpose().into();
             start.torque = Covariance::new(density).map_err(of("torque"))?;
         }
-        let (shape, found) = self.at_each(t, |t| self.motion.covariance(t, &start).map_err(of("t")))?;
+        let (shape, found) = at_each(t, |t| self.motion.covariance(t, &start).map_err(of("t")))?;
         let entries = found.iter().flat_map(|found| found.state.transpose().as_slice().to_vec()).collect();
         let nonlinearity = found.iter().map(|found| found.nonlinearity).collect();
         let state = array(t.py(), entries, &[&shape[..], &[6, 6]].concat())?;
@@ -300,32 +295,6 @@ impl FreeMotion {
 impl FreeMotion {
     pub(crate) fn of(motion: flow::FreeMotion, order: Order) -> Self {
         FreeMotion { start: motion.point_at_dd(Dd::ZERO), motion, order }
-    }
-
-    /// What `each` finds at the times `t`, with their shape.
-    fn at_each<T: Send>(
-        &self,
-        t: &Bound<'_, PyAny>,
-        each: impl Fn(f64) -> PyResult<T> + Sync,
-    ) -> PyResult<(Vec<usize>, Vec<T>)> {
-        let Numbers { shape, values, .. } = Numbers::of("t", t)?;
-        let found = t.py().detach(|| {
-            let mut listener = Listener::new();
-            let heard = |t: &f64| {
-                listener.listen(0.0)?;
-                each(*t)
-            };
-            values.iter().map(heard).collect::<PyResult<Vec<T>>>()
-        })?;
-        Ok((shape, found))
-    }
-}
-
-fn turn_axes(text: &str) -> PyResult<TurnAxes> {
-    match text {
-        "space" => Ok(TurnAxes::Space),
-        "body" => Ok(TurnAxes::Body),
-        _ => Err(refused(format!("axes: '{text}'; it must be 'space' or 'body'"))),
     }
 }
 

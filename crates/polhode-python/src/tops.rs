@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Order, array};
 use crate::bodies::{Body, Start};
+use crate::derivatives::{Asked, matrices};
 use crate::error::of;
 use crate::motions::Motion;
 use crate::states::States;
@@ -49,6 +50,34 @@ impl LagrangeTop {
     #[pyo3(signature = (t, *, order = None))]
     fn at(&self, t: &Bound<'_, PyAny>, order: Option<&str>) -> PyResult<States> {
         self.top.states(t, order.map_or(Ok(self.order), Order::of)?)
+    }
+
+    /// The states at `t`, and their derivatives by the start and by the constants of the top: a pair of states and an array of shape
+    /// (..., 6, 9).
+    ///
+    /// Rows: the rotation vector of the attitude, rad, then the angular velocity (`by="omega"`) or the angular momentum (`by="momentum"`) in
+    /// body axes. Columns: the same at t = 0, then the transverse moment, the axial moment, kg m^2, and the weight moment, N m. `axes`,
+    /// `space` or `body`, are those of the rotation vectors.
+    ///
+    /// >>> import polhode
+    /// >>> states, derivative = polhode.LagrangeTop("gyroscope").at_with_derivative([0, 100])
+    /// >>> derivative.shape
+    /// (2, 6, 9)
+    #[pyo3(signature = (t, *, by = "omega", axes = "space", order = None))]
+    fn at_with_derivative<'py>(
+        &self,
+        t: &Bound<'py, PyAny>,
+        by: &str,
+        axes: &str,
+        order: Option<&str>,
+    ) -> PyResult<(States, Bound<'py, PyAny>)> {
+        let Asked { axes, by_omega } = Asked::of(by, axes)?;
+        let states = self.at(t, order)?;
+        let derivative = matrices(t, |t| {
+            let there = self.top.at_with_derivative(t).map_err(of("t"))?;
+            Ok(if by_omega { there.by_omega(axes) } else { there.by_momentum(axes) })
+        })?;
+        Ok((states, derivative))
     }
 
     /// The largest |t| at which the phases still have digits, s.

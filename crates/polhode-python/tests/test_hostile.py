@@ -176,7 +176,9 @@ def attitude(rng):
 
 
 def top(rng):
-    return polhode.LagrangeTop(body(rng), **start(rng)).at(rng.choice([scalar(rng), some(rng, (5,))]))
+    motion = polhode.LagrangeTop(body(rng), **start(rng))
+    times = rng.choice([scalar(rng), some(rng, (5,))])
+    return motion.at(times) if rng.random() < 0.5 else motion.at_with_derivative(times, by=words(rng, "omega", "momentum"))[0]
 
 
 def run(rng):

@@ -255,6 +255,24 @@ def test_the_derivative_is_what_differences_say():
             motion.at_with_derivative(0, **wrong)
 
 
+def test_the_derivative_of_a_top_is_what_differences_say():
+    def top(spin=20, transverse=1.25, weight=2):
+        body = Body([transverse, transverse, 0.75], [polhode.gravity([0, 0, weight])])
+        return LagrangeTop(body, [0.5, 0, spin], [0.97, 0.24, 0, 0])
+
+    t = np.array([0.0, 3.0, 20.0])
+    states, derivative = top().at_with_derivative(t)
+    assert derivative.shape == (3, 6, 9)
+    assert_array_equal(states.omega, top().at(t).omega)
+    assert_allclose(derivative[0, :, :6], np.eye(6), atol=1e-15)
+    for column, name, value in ((5, "spin", 20), (6, "transverse", 1.25), (8, "weight", 2)):
+        high, low = (top(**{name: value + sign * 1e-6}) for sign in (1, -1))
+        change = (high.at(t).omega - low.at(t).omega) / 2e-6
+        assert_allclose(derivative[..., 3:, column], change, atol=1e-5 * abs(change).max())
+    with pytest.raises(PolhodeError, match="it must be"):
+        top().at_with_derivative(0, by="energy")
+
+
 def test_a_covariance_is_that_of_many_starts():
     motion, rng = FreeMotion([1, 2, 3], OMEGA), np.random.default_rng(3)
     sigma = np.array([0, 0, 0, 1e-5, 2e-5, 1e-5])

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector3};
 use thiserror::Error;
 
-use super::derivative::{DerivativeError, TurnAxes};
 use super::motion::FreeMotion;
 use crate::body::Body;
+use crate::flow::{DerivativeError, TurnAxes};
 use crate::inertia::Inertia;
 use crate::num::Covariance;
 use crate::rotation::{Quat, rotation_angle, turn_by};

@@ -21,7 +21,7 @@ mod tumbling;
 pub(crate) use addition::{Addition, Curve};
 pub use character::{AtRest, Character, Mode};
 pub use covariance::{CovarianceError, StartCovariance, StateCovariance};
-pub use derivative::{DerivativeError, StateDerivative, TurnAxes};
+pub use derivative::StateDerivative;
 pub use free_body::FreeBody;
 pub use free_flow::FreeFlow;
 pub use motion::FreeMotion;

@@ -5,10 +5,11 @@ use std::sync::OnceLock;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::character::{AtRest, Character, Mode};
-use super::derivative::{Derivative, DerivativeError, StateDerivative};
+use super::derivative::{Derivative, StateDerivative};
 use super::orbit::FreeOrbit;
 use super::pure_spin::PureSpin;
 use crate::body::{Body, Exit, Phase, Point, State, StateError};
+use crate::flow::DerivativeError;
 use crate::flow::reach::{MOST_RADIANS, TimeError};
 use crate::inertia::Inertia;
 use crate::num::{Dd, Instructions, Precise};
@@ -103,7 +104,8 @@ impl FreeMotion {
     /// ```
     ///
     /// # Errors
-    /// As [`at`](Self::at), and a derivative that has grown beyond the range of a double, next to the unstable axis.
+    /// As [`at`](Self::at), and a derivative that leaves the range of a double: on the separatrix alone, where it grows for ever, after some
+    /// 355 e-folds. There [`at_with_scaled_derivative`](Self::at_with_scaled_derivative) gives it.
     pub fn at_with_derivative(&self, t: f64) -> Result<StateDerivative, DerivativeError> {
         self.check_time(t)?;
         self.derivative().at(&self.body, t, &self.point_at(t)).ok_or(DerivativeError::OutOfRange { t })
@@ -125,7 +127,7 @@ impl FreeMotion {
         self.derivative().inverse_inertia()
     }
 
-    fn derivative(&self) -> &Derivative {
+    pub(super) fn derivative(&self) -> &Derivative {
         self.derivative
             .get_or_init(|| Box::new(Derivative::new(&self.body, self.orbit.variation(), self.orbit.start())))
     }

@@ -1,8 +1,11 @@
 //! Lagrange's top: a symmetric heavy body, its motion at any time.
 
+use std::sync::OnceLock;
+
 use nalgebra::{UnitQuaternion, Vector3};
 use thiserror::Error;
 
+use super::derivative::Derivative;
 use super::nutation::Nutation;
 use super::theta::Theta;
 use crate::body::{Body, Point, State, StateError};
@@ -100,19 +103,21 @@ pub enum LagrangeError {
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct LagrangeTop {
-    body: Body,
+    pub(super) body: Body,
     /// Takes coordinates with e₃ along the weight moment to the solver frame.
-    frame: Quat<Dd>,
-    transverse: Dd, // A
-    axial: Dd,      // C
-    weight: Dd,     // |c|
-    start: Point<Dd>,
-    motion: Motion,
+    pub(super) frame: Quat<Dd>,
+    pub(super) transverse: Dd, // A
+    pub(super) axial: Dd,      // C
+    pub(super) weight: Dd,     // |c|
+    /// With e₃ along the weight moment.
+    pub(super) start: Point<Dd>,
+    pub(super) motion: Motion,
     reach: f64,
+    pub(super) derivative: OnceLock<Box<Derivative>>,
 }
 
 #[derive(Clone, Debug)]
-enum Motion {
+pub(super) enum Motion {
     /// The axis rests on the vertical: upright, asleep or about to fall, or hanging.
     Vertical,
     /// In units of time of 2^`unit` s, in which the fastest rate is near 1; the quick form but on the separatrix of the
@@ -189,7 +194,18 @@ impl LagrangeTop {
         let omega = Vec3([m1 / transverse, m2 / transverse, momentum_body[2] / smaller]);
         let fastest = omega.norm_of_any_size().hi() + (weight / transverse).sqrt().hi();
         let reach = MOST_RADIANS / fastest;
-        Ok(LagrangeTop { body: body.clone(), frame, transverse, axial, weight, start, motion, reach })
+        let derivative = OnceLock::new();
+        Ok(LagrangeTop {
+            body: body.clone(),
+            frame,
+            transverse,
+            axial,
+            weight,
+            start,
+            motion,
+            reach,
+            derivative,
+        })
     }
 
     /// The body that moves.

@@ -149,6 +149,14 @@ class LagrangeTop:
         order: Order = "wxyz",
     ) -> LagrangeTop: ...
     def at(self, t: ArrayLike, *, order: Order | None = None) -> States: ...
+    def at_with_derivative(
+        self,
+        t: ArrayLike,
+        *,
+        by: Literal["omega", "momentum"] = "omega",
+        axes: TurnAxes = "space",
+        order: Order | None = None,
+    ) -> tuple[States, Floats]: ...
     @property
     def reach(self) -> float: ...
     @property

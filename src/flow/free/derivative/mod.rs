@@ -39,10 +39,11 @@
 mod differences;
 mod functions;
 mod momentum;
+mod scaled;
 mod tangent;
 mod transition;
 mod variation;
 
 pub(super) use transition::Derivative;
-pub use transition::{DerivativeError, StateDerivative, TurnAxes};
+pub use transition::StateDerivative;
 pub(super) use variation::Variation;

@@ -1,39 +1,12 @@
 //! The derivative of a free motion in the axes and units of its body.
 
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
-use thiserror::Error;
 
 use super::variation::{Columns, Variation};
 use crate::body::{Body, Point, State};
-use crate::flow::TimeError;
+use crate::flow::derivative::{TurnAxes, in_axes, rotation};
 use crate::num::Dd;
 use crate::rotation::Vec3;
-
-/// In which axes the rotation vector of a small turn is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TurnAxes {
-    /// Axes of space: δQ = \[δθ\]× Q, the turn is multiplied on the left.
-    Space,
-    /// Axes of the body: δQ = Q \[δθ\]×, the turn is multiplied on the right.
-    Body,
-}
-
-/// Why there is no derivative at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum DerivativeError {
-    /// There is no state either.
-    #[error(transparent)]
-    Time(#[from] TimeError),
-    /// Next to the separatrix a derivative grows exponentially.
-    #[error(
-        "after {t:e} s the derivative by the start has left the range of a double: next to the unstable axis it grows exponentially"
-    )]
-    OutOfRange {
-        /// The time, s.
-        t: f64,
-    },
-}
 
 /// The state of a free body at one time, with its derivative by the state at t = 0 and by the inertia tensor.
 ///
@@ -48,6 +21,7 @@ pub struct StateDerivative {
     attitude_at_start: Matrix3<f64>,
     /// By the momentum and the tensor, rotation vectors in space.
     columns: SMatrix<f64, 6, 9>,
+    exponent: i32,
     inertia: Matrix3<f64>,
     inverse_inertia: Matrix3<f64>,
     omega: Vector3<f64>,
@@ -66,13 +40,20 @@ impl StateDerivative {
         self.omega
     }
 
+    /// The power of two that the matrices are to be multiplied by: 0 but for
+    /// [`at_with_scaled_derivative`](crate::flow::FreeMotion::at_with_scaled_derivative).
+    #[must_use]
+    pub fn exponent(&self) -> i32 {
+        self.exponent
+    }
+
     /// The derivative of (δθ, δm) by (δθ, δm, tensor) at the start.
     #[must_use]
     pub fn by_momentum(&self, axes: TurnAxes) -> SMatrix<f64, 6, 12> {
         let mut whole = SMatrix::<f64, 6, 12>::zeros();
-        whole.fixed_view_mut::<3, 3>(0, 0).copy_from(&Matrix3::identity());
+        whole.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(self.one());
         whole.fixed_view_mut::<6, 9>(0, 3).copy_from(&self.columns);
-        self.in_axes(whole, axes)
+        in_axes(axes, whole, self.attitude_at_start, self.attitude)
     }
 
     /// The derivative of (δθ, δω) by (δθ, δω, tensor) at the start.
@@ -81,25 +62,20 @@ impl StateDerivative {
         let by_momentum = self.columns.fixed_columns::<3>(0);
         // δm = I δω + δI ω at the start, δω = I⁻¹ (δm − δI ω) at the time
         let mut whole = SMatrix::<f64, 6, 12>::zeros();
-        whole.fixed_view_mut::<3, 3>(0, 0).copy_from(&Matrix3::identity());
+        whole.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(self.one());
         whole.fixed_view_mut::<6, 3>(0, 3).copy_from(&(by_momentum * self.inertia));
         let by_tensor = self.columns.fixed_columns::<6>(3) + by_momentum * tensor_times(self.omega_at_start);
         whole.fixed_view_mut::<6, 6>(0, 6).copy_from(&by_tensor);
         let mut rates = whole.fixed_rows::<3>(3).into_owned();
         let mut last = rates.fixed_columns_mut::<6>(6);
-        last -= tensor_times(self.omega);
+        last -= tensor_times(self.omega) * self.one();
         whole.fixed_rows_mut::<3>(3).copy_from(&(self.inverse_inertia * rates));
-        self.in_axes(whole, axes)
+        in_axes(axes, whole, self.attitude_at_start, self.attitude)
     }
 
-    fn in_axes(&self, mut whole: SMatrix<f64, 6, 12>, axes: TurnAxes) -> SMatrix<f64, 6, 12> {
-        if axes == TurnAxes::Body {
-            let turned = self.attitude.transpose() * whole.fixed_rows::<3>(0);
-            whole.fixed_rows_mut::<3>(0).copy_from(&turned);
-            let turned = whole.fixed_view::<3, 3>(0, 0) * self.attitude_at_start;
-            whole.fixed_view_mut::<3, 3>(0, 0).copy_from(&turned);
-        }
-        whole
+    /// 1 beside the exponent.
+    fn one(&self) -> f64 {
+        libm::scalbn(1.0, -self.exponent)
     }
 }
 
@@ -156,6 +132,11 @@ impl Derivative {
         self.inverse_inertia
     }
 
+    /// e-folds by which the derivative has grown after the time `t` on the separatrix; 0 elsewhere.
+    pub(super) fn folds(&self, t: f64) -> f64 {
+        self.variation.folds(t)
+    }
+
     /// The columns along the axes of the solver frame, at the time `t`, where the motion is at `now`.
     pub(in crate::flow::free) fn columns(&self, t: f64, now: &Point<f64>) -> Columns {
         if self.start.momentum_body.magnitude() == 0.0 {
@@ -167,13 +148,36 @@ impl Derivative {
 
     /// At the time `t`, where the motion is at `now`.
     pub(in crate::flow::free) fn at(&self, body: &Body, t: f64, now: &Point<f64>) -> Option<StateDerivative> {
+        self.found(body, now, self.in_body_axes(&self.columns(t, now)), 0)
+    }
+
+    /// Where the motion is at `now`, from the columns with rotation vectors in the body, times 2^`exponent`.
+    pub(super) fn scaled(
+        &self,
+        body: &Body,
+        now: &Point<f64>,
+        mut columns: SMatrix<f64, 6, 9>,
+        exponent: i32,
+    ) -> Option<StateDerivative> {
+        let turned = rotation(body.leave(now)) * columns.fixed_rows::<3>(0);
+        columns.fixed_rows_mut::<3>(0).copy_from(&turned);
+        self.found(body, now, columns, exponent)
+    }
+
+    fn found(
+        &self,
+        body: &Body,
+        now: &Point<f64>,
+        columns: SMatrix<f64, 6, 9>,
+        exponent: i32,
+    ) -> Option<StateDerivative> {
         let state = body.leave(now);
-        let columns = self.in_body_axes(&self.columns(t, now));
         columns.iter().all(|x| x.is_finite()).then(|| StateDerivative {
             attitude: rotation(state),
             state,
             attitude_at_start: self.attitude_at_start,
             columns,
+            exponent,
             inertia: self.inertia,
             inverse_inertia: self.inverse_inertia,
             omega: body.omega_of(now),
@@ -212,10 +216,6 @@ impl Derivative {
         }
         whole
     }
-}
-
-fn rotation(state: State) -> Matrix3<f64> {
-    state.rotation().to_rotation_matrix().into_inner()
 }
 
 /// The entries xx, yy, zz, xy, xz, yz of RᵀTR as a matrix times those of T.

@@ -92,6 +92,11 @@ impl Variation {
         }
     }
 
+    /// e-folds by which they have grown after the time `t` on the separatrix; 0 elsewhere.
+    pub(super) fn folds(&self, t: f64) -> f64 {
+        if self.clock.complement > 0.0 { 0.0 } else { self.clock.p.sqrt() * scaled(t.abs(), self.unit) }
+    }
+
     /// The derivatives at the time `t`, where the point is `now`; the attitude at the start is `attitude`.
     pub(super) fn at(&self, t: Dd, attitude: Quat<f64>, now: Quat<f64>) -> Columns {
         let values = self.clock.at(scaled(t, self.unit));

@@ -6,8 +6,8 @@ use nalgebra::{Matrix3x6, Matrix6, UnitQuaternion, Vector3, Vector6};
 
 use super::passages::ThroughError;
 use crate::body::{Point, State};
+use crate::flow::TurnAxes;
 use crate::flow::free::FreeMotion;
-use crate::flow::free::derivative::TurnAxes;
 use crate::inertia::Inertia;
 use crate::num::Dd;
 use crate::rotation::{Quat, rotation_vector, turn_by};
