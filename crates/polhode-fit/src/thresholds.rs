@@ -269,7 +269,9 @@ thresholds! {
         SHARE_KEPT: f64 = 0.5, "share of the known noise below which the median of the residuals is not believed", UNMEASURED;
         ROUNDS: usize = 6, "rounds of noise and outliers", UNMEASURED;
         SAME: f64 = 0.01, "relative change of the noise that no longer matters", UNMEASURED;
-        STEPS: usize = 40, "most steps in one window", UNMEASURED;
+        STEPS: usize = 400, "most steps in one window: near steady spins it takes a hundred, elsewhere some four", "near_steady_spins_are_answered_rightly_or_refused";
+        LOOK: usize = 20, "steps after which it is asked whether they lead anywhere", UNMEASURED;
+        CREEP: f64 = 0.5, "fall of chi squared in so many steps from which on they do", UNMEASURED;
         STILL: f64 = 1e-4, "fall of chi squared that no longer matters", UNMEASURED;
         DAMPING: f64 = 1e-3, "first damping of a step that does not help", UNMEASURED;
         CHANGE: f64 = 10.0, "factor by which damping grows and falls", UNMEASURED;
@@ -280,6 +282,18 @@ thresholds! {
             "median turn from one sample to the next, rad, from which on rates are sparse: a tenth of a turn", "sparse_telemetry_goes_to_the_likelihood";
         LINEAR: f64 = 0.1,
             "largest turn by a constant torque, rad, up to which it is reckoned with to first order", UNMEASURED;
+        SURE: f64 = 5e-3, "deviation of the tensor, over the trace, from which on a second search starts from the sphere", UNMEASURED;
+        NARROW: f64 = 2e-3, "deviation along an axis of the ellipsoid, over the trace, up to which the likelihood is taken for quadratic", UNMEASURED;
+        END: f64 = 4.529_349_363_035_798,
+            "deviations at which the likelihood is compared with its quadratic form: where the 99.9 % ellipsoid of five numbers ends", DERIVED;
+        QUADRATIC: f64 = 0.75, "share of the fall of the quadratic form there up to which deviations are those of the likelihood itself", UNMEASURED;
+        STRAIGHT: f64 = 1.0, "fall of twice the log-likelihood, by the quadratic form, that the bend of a profile makes up to where it counts as straight", "near_steady_spins_are_answered_rightly_or_refused";
+        PARTED: f64 = 4.0,
+            "difference of the fall of twice the log-likelihood to a tensor within the law, and half of it, from that of the quadratic form, from which on there is no answer", UNMEASURED;
+        HIGHER: f64 = 0.1, "rise of twice the log-likelihood that is another maximum", UNMEASURED;
+        STRIDE: f64 = 1.5, "factor from one point of a profile to the next", UNMEASURED;
+        FARTHEST: f64 = 0.5, "displacement of the tensor, over the trace, beyond which no profile is walked: tensors differ by 0.4 at most", DERIVED;
+        FIXED: f64 = 1e8, "information on a number that is fixed, over its own", DERIVED;
         MIRRORED: f64 = 0.05,
             "share of the largest singular value that the smallest has where rates are the mirror image of attitudes", "a_turn_is_found_and_a_mirror_is_seen";
     }

@@ -42,18 +42,27 @@ pub(super) struct PoseArguments {
 pub(super) enum Chosen {
     /// Angular velocities; `beside` are the files whose attitudes are not.
     Rates { beside: Vec<PathBuf> },
-    /// Attitudes, alone or with angular velocities.
-    Attitudes,
+    /// Attitudes, alone or with angular velocities; `beside` are the files whose rates are not, because others have none.
+    Attitudes { beside: Vec<PathBuf> },
 }
 
 impl Chosen {
-    /// Says which attitudes are not fitted.
+    /// Says which attitudes, or which rates, are not fitted.
     pub(super) fn tell(&self) {
-        let Self::Rates { beside } = self else { return };
+        let (beside, text) = match self {
+            Self::Rates { beside } => (
+                beside,
+                "the rates are fitted, and the attitudes beside them are not: --from both fits both where their errors \
+                 are independent, which those of attitudes that were computed from these rates are not",
+            ),
+            Self::Attitudes { beside } => (
+                beside,
+                "its attitudes are fitted, and the rates beside them are not, since another file has attitudes alone: fit \
+                 the files apart, or state --from attitudes",
+            ),
+        };
         for path in beside {
             let name = visible(&path.display().to_string()).into_owned();
-            let text = "the rates are fitted, and the attitudes beside them are not: --from both fits both where their errors \
-                        are independent, which those of attitudes that were computed from these rates are not";
             tell("note", &format!("{name}: {text}"));
         }
     }
@@ -77,7 +86,7 @@ impl PoseArguments {
     pub(super) fn chosen(&self, data: &[PathBuf], reading: &RecordArguments) -> Chosen {
         let beside = match self.from {
             Some(From::Rates) => Vec::new(),
-            Some(From::Attitudes | From::Both) => return Chosen::Attitudes,
+            Some(From::Attitudes | From::Both) => return Chosen::Attitudes { beside: Vec::new() },
             None => {
                 // standard input and pipes are read once, and for their rates
                 let files = data.iter().filter(|path| path.is_file());
@@ -85,10 +94,13 @@ impl PoseArguments {
                 let found =
                     files.filter_map(|path| Some((path, trajectory::columns(path, &reading.table()).ok()?)));
                 let found: Vec<_> = found.filter(|(_, found)| found.attitudes).collect();
-                if found.iter().any(|(_, found)| !found.rates) {
-                    return Chosen::Attitudes;
+                let is_bare = found.iter().any(|(_, found)| !found.rates);
+                let with_rates = found.into_iter().filter(|(_, found)| found.rates);
+                let beside = with_rates.map(|(path, _)| path.clone()).collect();
+                if is_bare {
+                    return Chosen::Attitudes { beside };
                 }
-                found.into_iter().map(|(path, _)| path.clone()).collect()
+                beside
             }
         };
         Chosen::Rates { beside }

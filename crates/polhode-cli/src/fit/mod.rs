@@ -126,7 +126,7 @@ impl Fit {
         memory::check_files(&self.data, 3)?;
         let chosen = self.poses.chosen(&self.data, &self.reading);
         let read = match chosen {
-            Chosen::Attitudes => Some(self.attitudes()?),
+            Chosen::Attitudes { .. } => Some(self.attitudes()?),
             Chosen::Rates { .. } => None,
         };
         let mut record = match &read {

@@ -159,6 +159,21 @@ fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
 }
 
 #[test]
+fn rates_that_are_left_out_because_another_file_has_none_are_named() {
+    let scratch = Scratch::new("fit-attitudes-mixed");
+    let both = scratch.file("both.csv", output(&format!("{SIMULATE} --attitude-noise 0.01 --noise 0.02")));
+    let bare = scratch.file("bare.csv", output(&format!("{SIMULATE} --attitude-noise 0.01")));
+    for files in [format!("{both} {bare}"), format!("{bare} {both}")] {
+        let answer = run(&format!("fit {files} --format json"));
+        let note = "both.csv: its attitudes are fitted, and the rates beside them are not";
+        assert!(answer.code == 0 && answer.err.contains(note), "{}", answer.err);
+        assert_eq!(answer.err.lines().count(), 1, "{}", answer.err);
+        let stated = run(&format!("fit {files} --format json --from attitudes"));
+        assert_eq!((stated.err.as_str(), stated.out), ("", answer.out));
+    }
+}
+
+#[test]
 fn torques_on_attitudes_are_found_or_refused() {
     let scratch = Scratch::new("fit-attitudes-torque");
     let drag = output(&format!("{SIMULATE} --attitude-noise 0.01 --relative-drag 0.02"));

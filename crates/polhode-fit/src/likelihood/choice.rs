@@ -66,7 +66,7 @@ pub(crate) fn with_torque(model: TorqueModel, moved: impl Fn(bool) -> Option<Mov
 fn chosen(moved: impl Fn(bool) -> Option<Moved>) -> Option<Found> {
     let Some(free) = moved(false) else { return Found::of(moved(true), Acting::Drag) };
     let found = free.alternatives.as_ref();
-    let more = ladder::FIRST + 2.0 * ladder::FURTHER;
+    let more = of_three();
     let drag = found.and_then(|found| found.drag.as_ref()).map_or(f64::INFINITY, |drag| drag.gain);
     let constant = found.map_or(0.0, |found| found.constant.gain);
     if drag <= ladder::FIRST && constant <= more {
@@ -95,10 +95,25 @@ fn is_linear_of(moved: &Moved) -> bool {
 
 /// Whether a constant torque turns the body by little.
 pub(crate) fn is_linear(followed: &Followed, torque: &alternatives::Found) -> bool {
+    turned(followed, torque) <= LINEAR
+}
+
+/// By how much a constant torque turns the body within half of the longest stretch, rad.
+fn turned(followed: &Followed, torque: &alternatives::Found) -> f64 {
     let inverse = tensor(&followed.model.x).try_inverse();
     let acceleration = inverse.map(|inverse| inverse * Vector3::from_column_slice(&torque.values));
     let half = followed.tracks.iter().map(Track::reach).fold(0.0, f64::max);
-    acceleration.is_some_and(|a| 0.5 * a.norm() * half * half <= LINEAR)
+    acceleration.map_or(f64::INFINITY, |a| 0.5 * a.norm() * half * half)
+}
+
+/// A constant torque that the samples ask for and the model leaves out: its gain of log-likelihood, and by how much it turns the body, rad.
+pub(crate) fn left_out(followed: &Followed, torque: &alternatives::Found) -> Option<(f64, f64)> {
+    (torque.gain > of_three()).then(|| (torque.gain, turned(followed, torque)))
+}
+
+/// Gain of log-likelihood from which a constant torque is reckoned with.
+fn of_three() -> f64 {
+    ladder::FIRST + 2.0 * ladder::FURTHER
 }
 
 /// What steady spins tell, where they leave hardly more of the samples.

@@ -5,7 +5,7 @@ use polhode::rotation::{Quat, Vec3};
 use crate::likelihood::motion::Start;
 use crate::likelihood::sums::{Pull, Reduced, Step, Sums};
 use crate::likelihood::track::{Kind, Model, Track};
-use crate::thresholds::likelihood::{BEYOND, CHANGE, DAMPING, MOST_DAMPING, STEPS, STILL};
+use crate::thresholds::likelihood::{BEYOND, CHANGE, CREEP, DAMPING, LOOK, MOST_DAMPING, STEPS, STILL};
 
 /// Standard deviations of a component of attitudes, rad, and of rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,36 +54,48 @@ impl Problem<'_> {
     }
 
     /// The model nearest to the samples, from one near it; `None` where no motion is found.
-    pub(crate) fn settle(&self, mut model: Model) -> Option<Model> {
+    pub(crate) fn settle(&self, mut model: Model) -> Option<Settled> {
         let (mut sums, mut cost) = self.sums(&model)?;
-        let mut damping = 0.0;
-        for _ in 0..STEPS {
+        let (mut damping, mut is_still, mut before) = (0.0, false, cost);
+        for count in 1..=STEPS {
             let pull = self.pull.as_ref().map(|pull| (pull, &model));
             let step = Reduced::new(&sums, pull, damping).and_then(|reduced| reduced.step());
-            let gain = step.as_ref().map(|step| step.gain);
+            // a short step that is damped tells of no bottom
+            is_still = damping == 0.0 && step.as_ref().is_some_and(|step| step.gain < STILL);
             let next = step.map(|step| moved(&model, &step));
             let found = next.and_then(|next| self.sums(&next).map(|found| (next, found)));
             match found {
                 Some((next, (there, less))) if less <= cost => {
                     (model, sums, cost) = (next, there, less);
-                    if gain.is_some_and(|gain| gain < STILL) {
-                        break;
-                    }
                     damping = if damping > DAMPING { damping / CHANGE } else { 0.0 };
                 }
                 // at the bottom rounding alone decides
-                Some(_) if gain.is_some_and(|gain| gain < STILL) => break,
+                Some(_) if is_still => {}
                 _ => damping = f64::max(CHANGE * damping, DAMPING),
             }
-            if damping > MOST_DAMPING {
+            if is_still || damping > MOST_DAMPING {
                 break;
             }
+            if count % LOOK == 0 {
+                if before - cost < CREEP {
+                    break;
+                }
+                before = cost;
+            }
         }
-        Some(model)
+        Some(Settled { model, is_still })
     }
 }
 
-fn moved(model: &Model, step: &Step) -> Model {
+/// Where a descent has ended.
+pub(crate) struct Settled {
+    pub(crate) model: Model,
+    /// Whether it is the bottom.
+    pub(crate) is_still: bool,
+}
+
+/// A model after a step.
+pub(crate) fn moved(model: &Model, step: &Step) -> Model {
     let turned = |q: Quat<f64>, v: [f64; 3]| (q * Quat::exponential(Vec3(v))).normalized();
     let starts = model.starts.iter().zip(&step.starts).map(|(start, step)| Start {
         attitude: turned(start.attitude, [step[0], step[1], step[2]]),

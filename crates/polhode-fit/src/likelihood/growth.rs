@@ -3,13 +3,14 @@
 use nalgebra::Vector3;
 use polhode::rotation::{Quat, Vec3};
 
-use crate::likelihood::descent::{Levels, Problem};
+use crate::likelihood::descent::{Levels, Problem, Settled};
 use crate::likelihood::local::node;
 use crate::likelihood::motion::Start;
+use crate::likelihood::profile::{Profile, profile};
 use crate::likelihood::sums::{Pull, Sums};
 use crate::likelihood::track::{Kind, Model, Track};
 use crate::physical::coordinates::{Coordinates, Form};
-use crate::thresholds::likelihood::{FIRST, HELD, OUTLIER, PULL, ROUNDS, SAME, SAMPLES, SHARE_KEPT};
+use crate::thresholds::likelihood::{FIRST, HELD, OUTLIER, PULL, ROUNDS, SAME, SAMPLES, SHARE_KEPT, SURE};
 use crate::thresholds::noise::LEAST;
 
 /// The median of |r| of three normal components, in their standard deviations.
@@ -18,12 +19,18 @@ const MEDIAN: f64 = 1.538_172_254_455_036;
 /// A model of the largest likelihood.
 pub(crate) struct Followed {
     pub(crate) model: Model,
+    /// Whether the search ended at it.
+    pub(crate) is_still: bool,
     /// The samples that were used in the end.
     pub(crate) tracks: Vec<Track>,
     /// Noise that is left: standard deviations of a component.
     pub(crate) levels: Levels,
     /// Components of attitudes and of rates that were used, less the unknowns they pay for.
     pub(crate) dof: [f64; 2],
+    /// The largest deviation of the tensor, over the trace.
+    pub(crate) deviation: f64,
+    /// Displacements of the tensor by which the ellipsoid of the second derivative is too small, as one deviation each.
+    pub(crate) beyond: Vec<Coordinates>,
 }
 
 impl Followed {
@@ -35,7 +42,27 @@ impl Followed {
 }
 
 /// The likeliest model from a first tensor, alignment and levels of noise; `None` where no motion is found.
+///
+/// The first tensor of a motion near a steady spin may lie anywhere: unless what it leads to is the bottom, and narrow, another search
+/// starts from the sphere, and the likelier of the two counts.
 pub(crate) fn follow(
+    tracks: &[Track],
+    x: Coordinates,
+    alignment: Quat<f64>,
+    levels: Levels,
+    has_drag: bool,
+) -> Option<Followed> {
+    let search = |x| search(tracks, x, alignment, levels, has_drag);
+    let first = search(x);
+    if first.as_ref().is_some_and(|found| found.is_still && found.deviation < SURE) {
+        return first;
+    }
+    let of_both = [first, search(Coordinates::zeros())].into_iter().flatten();
+    of_both.min_by(|a, b| b.is_still.cmp(&a.is_still).then(a.cost().total_cmp(&b.cost())))
+}
+
+/// The same from that tensor alone.
+fn search(
     tracks: &[Track],
     x: Coordinates,
     alignment: Quat<f64>,
@@ -52,7 +79,21 @@ pub(crate) fn follow(
         starts: Vec::new(),
     };
     let model = grow(tracks, first, levels, pull, false)?;
-    refine(tracks.to_vec(), model, levels)
+    let mut found = refine(tracks.to_vec(), model, levels)?;
+    for _ in 0..ROUNDS {
+        let Followed { model, tracks, levels, .. } = &found;
+        let problem = Problem { tracks, levels: *levels, radius: f64::INFINITY, pull: None };
+        let profile = if found.is_still { profile(&problem, model) } else { None };
+        match profile {
+            Some(Profile::Higher(model)) => found = refine(tracks.clone(), *model, *levels)?,
+            Some(Profile::Beyond { deviation, each }) => {
+                return Some(Followed { deviation, beyond: each, ..found });
+            }
+            None => return Some(found),
+        }
+    }
+    // one rise after the other
+    Some(Followed { is_still: false, ..found })
 }
 
 /// The steady spins nearest to the samples: the motions of a sphere. With what they leave of the samples, as the sum that is made least,
@@ -78,7 +119,7 @@ fn grow(tracks: &[Track], first: Model, levels: Levels, pull: Pull, stays: bool)
         let levels = scales(tracks, &model, radius, levels)?;
         let last = radius >= end;
         let problem = Problem { tracks, levels, radius, pull: (stays || !last).then_some(pull) };
-        model = problem.settle(model)?;
+        model = problem.settle(model)?.model;
         if last {
             return Some(model);
         }
@@ -88,11 +129,12 @@ fn grow(tracks: &[Track], first: Model, levels: Levels, pull: Pull, stays: bool)
 
 /// Levels of noise by what is left, and outliers left out, until both stand still.
 fn refine(mut tracks: Vec<Track>, mut model: Model, mut levels: Levels) -> Option<Followed> {
-    let mut found = None;
+    let (mut found, mut is_still) = (None, false);
     for _ in 0..ROUNDS {
         levels = scales(&tracks, &model, f64::INFINITY, levels)?;
         let problem = Problem { tracks: &tracks, levels, radius: f64::INFINITY, pull: None };
-        model = problem.settle(model)?;
+        let settled = problem.settle(model)?;
+        (model, is_still) = (settled.model, settled.is_still);
         let (squares, counts) = squares(&tracks, &model)?;
         let unknowns = unknowns(&tracks, &model);
         let share = 1.0 - unknowns / (counts[0] + counts[1]);
@@ -107,14 +149,17 @@ fn refine(mut tracks: Vec<Track>, mut model: Model, mut levels: Levels) -> Optio
         let still = same(new.attitude, levels.attitude) && same(new.rate, levels.rate);
         levels = new;
         found = Some(dof);
-        if still && !left_out {
+        if !is_still || still && !left_out {
             break;
         }
     }
     let dof = found?;
-    // at the levels that were found, so that its information is that of the noise
-    let model = Problem { tracks: &tracks, levels, radius: f64::INFINITY, pull: None }.settle(model)?;
-    Some(Followed { model, tracks, levels, dof })
+    if is_still {
+        // at the levels that were found, so that its information is that of the noise
+        let problem = Problem { tracks: &tracks, levels, radius: f64::INFINITY, pull: None };
+        Settled { model, is_still } = problem.settle(model)?;
+    }
+    Some(Followed { model, is_still, tracks, levels, dof, deviation: f64::INFINITY, beyond: Vec::new() })
 }
 
 /// Whether there are both attitudes and rates.

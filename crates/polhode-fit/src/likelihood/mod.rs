@@ -27,5 +27,6 @@ pub(crate) mod invariants;
 pub(crate) mod local;
 pub(crate) mod momentum;
 pub(crate) mod motion;
+pub(crate) mod profile;
 pub(crate) mod sums;
 pub(crate) mod track;

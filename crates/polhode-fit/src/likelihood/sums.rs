@@ -119,6 +119,17 @@ impl Reduced {
         })
     }
 
+    /// The step that takes the coordinates by `x`, and all else to its best for them.
+    pub(crate) fn following(&self, x: &Coordinates) -> Option<Step> {
+        let own = self.information.fixed_view::<REST, REST>(5, 5).into_owned().cholesky()?;
+        let mixed = self.information.fixed_view::<REST, 5>(5, 0).into_owned();
+        let mut common = SVector::<f64, COMMON>::zeros();
+        common.fixed_rows_mut::<5>(0).copy_from(x);
+        common.fixed_rows_mut::<REST>(5).copy_from(&own.solve(&(-mixed * x)));
+        let starts = self.starts.iter().map(|(inverse, _, mixed)| -(inverse * (mixed * common)));
+        Some(Step { common, starts: starts.collect(), gain: 0.0 })
+    }
+
     /// The gradient of the coordinates, the alignment at its best for them.
     pub(crate) fn gradient_of_tensor(&self) -> Option<Coordinates> {
         let own = self.information.fixed_view::<REST, REST>(5, 5).into_owned().cholesky()?;

@@ -51,6 +51,13 @@ pub enum PoseFault {
         /// Largest turn from one attitude to the next, rad.
         turn: f64,
     },
+    /// The likelihood tells no tensor: the search for its maximum did not end, or ended so far from all bodies that their likelihood is
+    /// not foreseen.
+    #[error(
+        "bodies of very different moments follow the samples nearly as well, as near a steady spin, and the likeliest of them is not found; \
+         throw the body with a larger wobble, or record longer"
+    )]
+    Unsettled,
     /// Both directions explain the attitudes.
     #[error(
         "the motion does not tell whether the attitudes are body to space or space to body, as that of an axisymmetric body: read body to \

@@ -6,15 +6,19 @@ use polhode::rotation::Quat;
 
 use crate::columns::sets::torque_columns;
 use crate::error::FitError;
-use crate::likelihood::choice::Acting;
+use crate::likelihood::choice::{Acting, left_out};
 use crate::likelihood::descent::{Levels, Problem};
+use crate::likelihood::growth::Followed;
+use crate::likelihood::profile::fall;
 use crate::likelihood::sums::{Reduced, Sums};
 use crate::likelihood::track::{COMMON, Kind, Track};
 use crate::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, tensor};
+use crate::physical::face::Nearest;
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
 use crate::physical::nearest::{Normal, nearest};
 use crate::physical::prior::Prior;
+use crate::poses::fault::PoseFault;
 use crate::poses::free::Free;
 use crate::report::answer::{Answer, of_entries, ratios, shape_of, sigmas};
 use crate::report::attitudes::{AlignmentFit, AttitudeFit};
@@ -25,11 +29,12 @@ use crate::report::mirror::mirrored;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::scale::{by_prior, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
-use crate::report::warnings::of_likelihood;
+use crate::report::warnings::{Doubts, of_likelihood};
 use crate::settings::Settings;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::thresholds::bound::OPEN;
+use crate::thresholds::likelihood::{NARROW, PARTED};
 use crate::verdict::prior::{check_agreement, consistent};
 
 /// How the direction of attitudes was told.
@@ -46,6 +51,8 @@ struct Information {
     sums: Vec<Sums>,
     all: Reduced,
     tensor: Form,
+    /// The same by the second derivative of the likelihood alone.
+    curvature: Form,
     levels: Levels,
     /// What a constant torque moves the coordinates by.
     moved: Coordinates,
@@ -66,6 +73,9 @@ pub(crate) fn report(
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
     }
+    if !free.followed.is_still {
+        return Err(PoseFault::Unsettled.into());
+    }
     let singular = || FitError::Solver(SolverFailure::Information);
     let root = information.tensor.cholesky().ok_or_else(singular)?.l().transpose();
     let own = Normal {
@@ -82,6 +92,9 @@ pub(crate) fn report(
         }
     };
     let answer = nearest(&joined, &settings.limits, &[])?;
+    if prior.is_none() && !holds_at(free, &answer) {
+        return Err(PoseFault::Unsettled.into());
+    }
     let Deviations { free: factor, on_face, .. } = deviations(&joined, &[], &settings.limits, &[], &answer)?;
     let Answer { shape, moments, axes, v } = Answer::new(&answer.x)?;
     let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
@@ -90,7 +103,9 @@ pub(crate) fn report(
         absolute(settings, free, &shape.tensor(), &(on_face * on_face.transpose()), &answer.x)?;
     let residuals = residuals(free, information.levels)?;
     let entries = entries_of_coordinates();
-    let bound = information.tensor.cholesky().map(|c| entries * c.inverse() * entries.transpose());
+    let bound = information.curvature.cholesky().map(|c| c.inverse());
+    let widened =
+        information.tensor.cholesky().zip(bound).map(|(c, b)| (c.inverse().trace() / b.trace()).sqrt());
     let misfit = free.misfit(settings);
     let has_attitudes = free.followed.tracks.iter().any(Track::has_attitudes);
     let excess = misfit.unwrap_or(1.0);
@@ -109,8 +124,8 @@ pub(crate) fn report(
         sigma_ratios: ratios.map(|r| r.1),
         covariance: of_entries(&on_face),
         free_covariance: of_entries(&factor),
-        bound,
-        bound_ratio: prior.is_none().then_some(1.0),
+        bound: bound.map(|bound| entries * bound * entries.transpose()),
+        bound_ratio: widened.filter(|_| prior.is_none()),
         inertia,
         inertia_covariance,
         quanta: [0.0; 3],
@@ -142,7 +157,13 @@ pub(crate) fn report(
         warnings: Vec::new(),
         shape,
     };
-    estimate.warnings = of_likelihood(&estimate, misfit);
+    let alternatives = free.alternatives.as_ref().filter(|_| free.torque != Acting::Constant);
+    let doubts = Doubts {
+        misfit,
+        widened: widened.filter(|_| !free.followed.beyond.is_empty()),
+        constant: alternatives.and_then(|found| left_out(&free.followed, &found.constant)),
+    };
+    estimate.warnings = of_likelihood(&estimate, &doubts);
     Ok(estimate)
 }
 
@@ -193,7 +214,26 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
         let each = torque_columns(TorqueModel::Drag).into_iter();
         torques.extend(each.map(|column| Nuisance::new(&column, drag, sigma, free.unit)));
     }
-    Ok(Information { sums, all, tensor, levels, moved, torques })
+    let curvature = tensor;
+    if !free.followed.beyond.is_empty() {
+        // as far as the noise of the levels is that of the walk
+        let enlarged = (levels.attitude / own.attitude).max(levels.rate / own.rate);
+        let added = free.followed.beyond.iter().fold(Form::zeros(), |sum, d| sum + d * d.transpose());
+        let covariance = tensor.cholesky().ok_or_else(singular)?.inverse() + added * (enlarged * enlarged);
+        tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
+    }
+    Ok(Information { sums, all, tensor, curvature, levels, moved, torques })
+}
+
+/// Whether the likelihood falls to an answer that the law or a limit holds as its quadratic form says.
+fn holds_at(free: &Free, answer: &Nearest) -> bool {
+    if answer.active.is_empty() || free.followed.deviation < NARROW {
+        return true;
+    }
+    let Followed { model, tracks, levels, .. } = &free.followed;
+    let problem = Problem { tracks, levels: *levels, radius: f64::INFINITY, pull: None };
+    let (foreseen, found) = (answer.pull * answer.pull, fall(&problem, model, &answer.x));
+    found.is_some_and(|found| (found - foreseen).abs() <= PARTED.max(0.5 * found.max(foreseen)))
 }
 
 /// Which of the five numbers the information determines.

@@ -6,6 +6,7 @@ use crate::error::per_cent;
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::nuisance::FittedTorque;
 use crate::report::torque_free::{InvariantTrend, Whiteness};
+use crate::thresholds::likelihood::LINEAR;
 use crate::units::product::{UnitProduct, alternatives};
 use polhode::num::Shown;
 
@@ -82,6 +83,13 @@ pub enum Warning {
     NoScale,
     /// A torque was found and reckoned with.
     Torque(FittedTorque),
+    /// A constant torque that is no part of the fit would explain the record better.
+    ConstantTorque {
+        /// Gain of log-likelihood with it, to first order.
+        gain: f64,
+        /// By how much it would turn the body within half of the longest segment, rad.
+        turn: f64,
+    },
     /// Errors of the sensor, which the fit takes to be zero, explain the record better than torques do.
     Sensor {
         /// What they are, in words.
@@ -149,6 +157,11 @@ pub enum Warning {
         turn: f64,
         /// Gain of log-likelihood with that.
         gain: f64,
+    },
+    /// The likelihood falls less than a normal distribution would: the deviations are those at which it falls as far.
+    Profile {
+        /// The deviation of the tensor over that of the second derivative of the likelihood.
+        times: f64,
     },
     /// Few equations beyond the unknowns.
     FewEquations {
@@ -220,6 +233,12 @@ impl fmt::Display for Warning {
                 "the wheel momenta and torques do not stand out of the noise: the size of the tensor is unknown",
             ),
             Self::Torque(torque) => reckoned(f, torque),
+            Self::ConstantTorque { gain, turn } => write!(
+                f,
+                "a constant torque, which is no part of the fit, would explain the record better (log-likelihood higher by {gain:.1}); it would \
+                 turn the body by {turn:.2} rad within half of the longest segment: fit shorter windows, in which it turns the body by less than \
+                 {LINEAR} rad, with a constant torque, or the rates"
+            ),
             Self::Sensor { what, size, unit, gain } => {
                 let size = format!("{size:.1e} {unit}");
                 write!(
@@ -272,6 +291,11 @@ impl fmt::Display for Warning {
             Self::MovingAxes { turn, gain } => write!(
                 f,
                 "the axes of attitudes and rates move against each other, by {turn:.2e} rad from the first sample to the last (log-likelihood                  higher by {gain:.0}): fix both to the body, or compare their clocks"
+            ),
+            Self::Profile { times } => write!(
+                f,
+                "tensors far from this one explain the record nearly as well: the deviations are {times:.1} times those of the second derivative \
+                 of the likelihood, so that they reach these; a motion that wobbles more, or a longer record, would tell them apart"
             ),
             Self::FewEquations { dof } => {
                 write!(f, "only {dof} degrees of freedom: chi squared is no reliable check")

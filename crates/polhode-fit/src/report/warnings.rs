@@ -103,9 +103,21 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     list
 }
 
-/// What limits the use of a tensor of the largest likelihood; `misfit` is what is left over the noise, where that is known.
-pub(super) fn of_likelihood(e: &Estimate, misfit: Option<f64>) -> Vec<Warning> {
-    let mut list = Vec::new();
+/// What speaks against a likelihood on the exact motion, beside the estimate.
+pub(super) struct Doubts {
+    /// What is left over the noise, where that is known.
+    pub(super) misfit: Option<f64>,
+    /// By how much the profile of the likelihood widens the deviations, where it does.
+    pub(super) widened: Option<f64>,
+    /// Gain of log-likelihood by a constant torque that is left out, and by how much that turns the body, rad.
+    pub(super) constant: Option<(f64, f64)>,
+}
+
+/// What limits the use of a tensor of the largest likelihood.
+pub(super) fn of_likelihood(e: &Estimate, doubts: &Doubts) -> Vec<Warning> {
+    let Doubts { misfit, widened, constant } = *doubts;
+    let mut list: Vec<Warning> = widened.map(|times| Warning::Profile { times }).into_iter().collect();
+    list.extend(constant.map(|(gain, turn)| Warning::ConstantTorque { gain, turn }));
     if let Some(attitudes) = &e.attitudes {
         let AttitudeFit { repeated, left_out, largest_turn: turn, noise_sigma, .. } = *attitudes;
         if repeated > 0 {

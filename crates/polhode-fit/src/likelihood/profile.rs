@@ -1,0 +1,115 @@
+//! The profile of the likelihood along the wide axes of the ellipsoid of the tensor, walked to both ends.
+//!
+//! With x at s deviations along that direction and all else at its best, twice the log-likelihood falls by s² where it is quadratic. Near
+//! a steady spin bodies of other moments may follow the samples nearly as well, along a path that bends: the likelihood falls by less, and
+//! the ellipsoid of its second derivative is too small.
+//!
+//! Source: D. J. Venzon, S. H. Moolgavkar, Applied Statistics 37 (1988) 87.
+
+use crate::likelihood::descent::{Problem, moved};
+use crate::likelihood::sums::{Pull, Reduced};
+use crate::likelihood::track::Model;
+use crate::physical::coordinates::{Coordinates, Form, eigen};
+use crate::thresholds::identifiability::VAGUE;
+use crate::thresholds::likelihood::{END, FARTHEST, FIXED, HIGHER, NARROW, QUADRATIC, STRAIGHT, STRIDE};
+
+/// What a walk found.
+pub(crate) enum Profile {
+    /// A model of higher likelihood.
+    Higher(Box<Model>),
+    /// The largest deviation by the second derivative, and displacements of x by which that ellipsoid is too small, as one deviation each.
+    Beyond { deviation: f64, each: Vec<Coordinates> },
+}
+
+/// The profile about `model`, at which `problem` is least; `None` where the samples do not determine it.
+pub(crate) fn profile(problem: &Problem<'_>, model: &Model) -> Option<Profile> {
+    let (sums, least) = problem.sums(model)?;
+    let form = Reduced::new(&sums, None, 0.0)?.of_tensor()?;
+    let (values, directions) = eigen(form);
+    let deviation = |k: usize| 1.0 / values[k].sqrt();
+    let mut each = Vec::new();
+    if deviation(0) > VAGUE {
+        // refused as it is
+        return Some(Profile::Beyond { deviation: deviation(0), each });
+    }
+    for k in (0..5).filter(|&k| deviation(k) > NARROW) {
+        let along = directions.column(k) * deviation(k);
+        for direction in [along, -along] {
+            let walk = Walk { problem, model, direction, least, form, information: values[k] };
+            match walk.to_its_end() {
+                Ok(beyond) => each.extend(beyond),
+                Err(higher) => return Some(Profile::Higher(Box::new(higher))),
+            }
+        }
+    }
+    Some(Profile::Beyond { deviation: deviation(0), each })
+}
+
+/// The fall of twice the log-likelihood from `model` to the tensor `x`, all else at its best; `None` where there is no motion.
+pub(crate) fn fall(problem: &Problem<'_>, model: &Model, x: &Coordinates) -> Option<f64> {
+    let (sums, least) = problem.sums(model)?;
+    let reduced = Reduced::new(&sums, None, 0.0)?;
+    let information = Form::identity() * (FIXED * eigen(reduced.of_tensor()?).0[4]);
+    let pull = Some(Pull { information, centre: *x, drag: 0.0 });
+    let held = Problem { pull, ..*problem }.settle(moved(model, &reduced.following(&(x - model.x))?))?;
+    Some(problem.sums(&held.model)?.1 - least)
+}
+
+/// A walk from the most likely model.
+struct Walk<'a> {
+    problem: &'a Problem<'a>,
+    model: &'a Model,
+    /// Its length is one deviation.
+    direction: Coordinates,
+    /// The information along it, and on all.
+    information: f64,
+    form: Form,
+    least: f64,
+}
+
+impl Walk<'_> {
+    /// What lies beyond the ellipsoid, or a model of higher likelihood.
+    fn to_its_end(&self) -> Result<Vec<Coordinates>, Model> {
+        let (mut distance, mut end) = (END, None);
+        let mut from = self.model.clone();
+        while let Some((model, fall)) = self.settled(&from, distance) {
+            if fall < -HIGHER {
+                return Err(model);
+            }
+            if distance == END && fall >= QUADRATIC * END * END {
+                return Ok(self.bend(&model.x).into_iter().collect());
+            }
+            from = model;
+            end = Some(distance);
+            if fall >= END * END || distance * self.direction.norm() > FARTHEST {
+                break;
+            }
+            distance *= STRIDE;
+        }
+        let Some(distance) = end else { return Ok(Vec::new()) };
+        // the path bends: its middle lies off the chord
+        let middle = self.settled(self.model, 0.5 * distance).map(|(model, _)| model.x);
+        let each = [Some(from.x), middle].into_iter().flatten();
+        Ok(each.map(|x| (x - self.model.x) / END).collect())
+    }
+
+    /// The way off the axis at the end of a walk, so much of it that the ellipsoid reaches the path.
+    fn bend(&self, end: &Coordinates) -> Option<Coordinates> {
+        let (unit, way) = (self.direction.normalize(), end - self.model.x);
+        let off = way - unit * unit.dot(&way);
+        (off.dot(&(self.form * off)) > STRAIGHT).then(|| off * (2.0 / END))
+    }
+
+    /// The model at `distance`, all else at its best, from one nearby; and by how much twice the log-likelihood has fallen.
+    fn settled(&self, from: &Model, distance: f64) -> Option<(Model, f64)> {
+        let at = self.model.x + self.direction * distance;
+        let unit = self.direction.normalize();
+        let (sums, _) = self.problem.sums(from)?;
+        let step = Reduced::new(&sums, None, 0.0)?.following(&(unit * unit.dot(&(at - from.x))))?;
+        let information = unit * unit.transpose() * (FIXED * self.information);
+        let pull = Some(Pull { information, centre: at, drag: 0.0 });
+        let model = Problem { pull, ..*self.problem }.settle(moved(from, &step))?.model;
+        let (_, cost) = self.problem.sums(&model)?;
+        Some((model, cost - self.least))
+    }
+}
