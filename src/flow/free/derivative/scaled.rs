@@ -21,6 +21,9 @@ struct Scaled {
     exponent: i64,
 }
 
+/// Angle from the middle axis, as a share, below which no digit of a double-double tells the motion from the spin about it.
+const SETTLED: f64 = 1e-40;
+
 impl Scaled {
     fn of(derivative: &StateDerivative) -> Self {
         let mut matrix = SMatrix::<f64, 12, 12>::identity();
@@ -99,7 +102,7 @@ impl FreeMotion {
         };
         let (start, there) = (self.point_at_dd(Dd::ZERO).momentum_body, self.point_at(t).momentum_body);
         let (before, after) = (off(start.map(Dd::hi)), off(there));
-        if after > 1e-40 || after > before {
+        if after > SETTLED || after > before {
             return None;
         }
         let size = if there[middle] < 0.0 { -start.norm() } else { start.norm() };
