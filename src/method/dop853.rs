@@ -320,8 +320,8 @@ mod tests {
     }
 
     fn assert_near(found: Phase<Dd>, expected: Dd, what: &str) {
-        let apart = (found.momentum_body[0] - expected).magnitude();
-        assert!(apart < 1e-27, "{what}: {found:?}, {expected}");
+        let found = found.momentum_body[0];
+        assert!((found - expected).magnitude() < 1e-27, "{what}: {found}, {expected}");
     }
 
     #[test]
