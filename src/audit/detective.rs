@@ -369,11 +369,13 @@ mod tests {
 
     #[test]
     fn every_claim_that_holds_counts_by_itself() {
-        let mut reading = Reading::default();
-        reading.attitude = Some(Direction::SpaceToBody);
-        reading.omega_frame = Some(Frame::Space);
-        reading.rate_unit = Some(RateUnit::DegreesPerSecond);
-        reading.momentum_frame = Some(Frame::Body);
+        let reading = Reading {
+            attitude: Some(Direction::SpaceToBody),
+            omega_frame: Some(Frame::Space),
+            rate_unit: Some(RateUnit::DegreesPerSecond),
+            momentum_frame: Some(Frame::Body),
+            ..Reading::default()
+        };
         let holding = |claims: &dyn Fn(&mut Convention)| {
             let mut claimed = Convention { moments: None, ..Convention::default() };
             claims(&mut claimed);

@@ -333,10 +333,13 @@ mod tests {
         let samples: Vec<_> = (0..60).map(|row| run.advance_to(2 * row).unwrap()).collect();
         let times: Vec<f64> = (0..60).map(|row| 0.05 * f64::from(row)).collect();
         let exact = motion(&body, &first, times.iter().copied(), true).unwrap();
-        let mut reading = Reading::default();
-        (reading.quaternion, reading.attitude) =
-            (Some(QuaternionOrder::ScalarFirst), Some(Direction::BodyToSpace));
-        (reading.omega_frame, reading.rate_unit) = (Some(Frame::Body), Some(RateUnit::RadiansPerSecond));
+        let reading = Reading {
+            quaternion: Some(QuaternionOrder::ScalarFirst),
+            attitude: Some(Direction::BodyToSpace),
+            omega_frame: Some(Frame::Body),
+            rate_unit: Some(RateUnit::RadiansPerSecond),
+            ..Reading::default()
+        };
         let named = |of_turns: f64, of_rates: f64| {
             let rows = samples.iter().zip(&exact);
             let (attitudes, rates) = rows
