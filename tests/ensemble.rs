@@ -1,5 +1,10 @@
 //! Ensembles against their members alone, bit for bit: in lanes of every width, in parts, on threads.
 
+#[cfg(feature = "parallel")]
+use std::collections::HashSet;
+#[cfg(feature = "parallel")]
+use std::sync::{Arc, Mutex};
+
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Conserved, Force, State, StateError};
 use polhode::events::Event;
@@ -127,6 +132,28 @@ fn a_member_has_the_bits_of_its_own_run() {
     }
 }
 
+/// As the documentation of [`Ensemble::advance`] says.
+#[test]
+fn splittings_by_turns_and_rk4_move_free_bodies_in_lanes() {
+    let in_lanes = |name: &str, body: &Body| {
+        let mut step = method(name).unwrap().prepare_f64(Clock::new(0.01), body).unwrap();
+        step.open(&mut body.enter_omega(attitude(0).into(), omega(0).into()).unwrap().to_f64());
+        step.side_by_side().is_some()
+    };
+    let (free, heavy) =
+        (Body::free(inertia(0)), Body::heavy(inertia(0), Vector3::new(0.0, 0.0, 1.0)).unwrap());
+    for name in ["two-turn", "two-turn:31", "two-turn@suzuki-4", "lie-poisson", "lie-poisson@suzuki-4", "rk4"]
+    {
+        assert!(in_lanes(name, &free), "{name}");
+    }
+    for name in ["lie-poisson", "rk4"] {
+        assert!(!in_lanes(name, &heavy), "{name}");
+    }
+    for name in ["implicit-midpoint", "kick-drift", "dop853"] {
+        assert!(!in_lanes(name, &free), "{name}");
+    }
+}
+
 #[test]
 fn every_set_of_instructions_gives_the_same_bits() {
     let clock = Clock::new(0.02);
@@ -193,6 +220,27 @@ fn any_number_of_threads_gives_the_same_rows() {
     let one = rows(1);
     for threads in [2, 5] {
         assert!(rows(threads) == one, "{threads} threads");
+    }
+}
+
+/// The thread that asks reads what others have done; on one thread it does all.
+#[cfg(feature = "parallel")]
+#[test]
+fn threads_that_are_asked_for_do_the_work() {
+    let here = std::thread::current().id();
+    for threads in [1, 2] {
+        let seen = Arc::new(Mutex::new(HashSet::new()));
+        let noted = Arc::clone(&seen);
+        let mut ensemble = Ensemble::new().threads(threads).acted_on(move |inertia| {
+            noted.lock().unwrap().insert(std::thread::current().id());
+            Ok(Body::free(inertia))
+        });
+        (0..130).for_each(|k| ensemble.push_omega(&inertia(k), attitude(k), omega(k)));
+        // several parts
+        moved(&ensemble, &[1.0; 512]);
+        let seen = seen.lock().unwrap();
+        assert_eq!(seen.contains(&here), threads == 1);
+        assert!((1..=threads).contains(&seen.len()));
     }
 }
 
@@ -267,6 +315,24 @@ fn the_failure_of_one_is_a_row_of_its_own() {
     done.unwrap();
     assert!(tally.errors(2, Conserved::Energy).unwrap().members() > numbers.count());
     assert_eq!(tally.errors(0, Conserved::Energy).unwrap().largest(), 0.0);
+}
+
+#[test]
+fn a_failure_has_the_number_of_its_member_in_every_part() {
+    let mut ensemble = members(0..70);
+    ensemble.push_failed(Inertia::from_moments([1.0, 2.0, 4.0]).unwrap_err());
+    ensemble.push_omega(&inertia(0), attitude(0), omega(0));
+    let (mut failed, mut parts) = (Vec::new(), 0);
+    let done = ensemble.at(&[1.0; 512], |rows| {
+        parts += 1;
+        failed.extend(rows.failures().map(|(member, time, _)| (member, time)));
+        let mut numbers = rows.first()..rows.first() + rows.members();
+        assert!(numbers.all(|member| rows.has(member, 0) == (member != 70)));
+        Ok::<(), EnsembleError>(())
+    });
+    done.unwrap();
+    assert!(parts > 1);
+    assert_eq!(failed, [(70, 0)]);
 }
 
 #[test]

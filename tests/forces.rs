@@ -470,6 +470,16 @@ fn a_run_that_diverges_is_not_blamed_on_its_force() {
     }
 }
 
+/// A drag that would stop the body twice over in a step.
+#[test]
+fn an_implicit_step_that_a_torque_leaves_unsolved_is_refused() {
+    let body = Body::free(inertia([1.0, 2.0, 2.5])).with(Force::drag(1.0, 0.0).unwrap());
+    let after = |h| run("implicit-midpoint", &body, [1.0, 0.1, 0.1], h).advance_to(1);
+    assert!(after(0.2).is_ok());
+    let error = after(1.9).unwrap_err();
+    assert!(matches!(error, RunError::Unsolved { residual, .. } if residual > 1e-6), "{error}");
+}
+
 #[test]
 fn a_potential_whose_energy_alone_is_not_finite_is_named() {
     let hole = Force::potential_fn("hole", |q| (0.5 - q.w.abs()).sqrt(), |_| Vector3::zeros());

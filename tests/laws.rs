@@ -230,6 +230,14 @@ fn each_scheme_has_its_order_over_the_bases_that_it_fits() {
     }
 }
 
+/// Its errors come within a few powers of ten of the rounding of double-double.
+#[test]
+fn an_order_that_is_measured_near_rounding_is_not_called_false() {
+    let method = method("two-turn@sofroniou-spaletta-10").unwrap();
+    let report = check_only(method.as_ref(), &[Problem::Free], &[Law::Order]).unwrap();
+    assert_eq!((report.findings.len(), report.false_claims().count()), (2, 0), "{report}");
+}
+
 fn assert_order(method: &dyn AnyMethod, scheme: &Scheme, exponents: core::ops::Range<u32>) {
     assert_eq!(free_claims(method).order, Some(scheme.order()));
     let report = check_order(method, Problem::Free, exponents).unwrap();

@@ -1,6 +1,6 @@
 //! What the choice of axes does to splittings of free motion: the predicted leading error against runs, over random bodies.
 
-use polhode::body::{Body, Clock, State};
+use polhode::body::{Body, Clock, Problem, State};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::method::{AxisOrder, PhaseErrorRates, TwoAxes, method};
@@ -182,6 +182,13 @@ fn the_oscillation_of_the_energy_is_what_no_constant_explains_of_the_modified_en
         assert!((smallest / least - 1.0).abs() < 0.05 && (largest / most - 1.0).abs() < 0.05, "{found:?}");
         assert_eq!(AxisOrder::best(Vec3(moments)).energy_oscillation(Vec3(moments)), smallest);
     }
+}
+
+#[test]
+fn a_splitting_names_the_papers_of_its_turns_and_one_of_higher_order_that_of_its_scheme() {
+    let source = |name: &str| method(name).unwrap().claims(Problem::Free).unwrap().source;
+    assert!(source("two-turn").starts_with("Fasso, J. Comput. Phys. 189 (2003)"), "{}", source("two-turn"));
+    assert!(source("two-turn@suzuki-4").starts_with("Suzuki"), "{}", source("two-turn@suzuki-4"));
 }
 
 #[test]

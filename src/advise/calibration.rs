@@ -435,4 +435,69 @@ mod tests {
         let Predicted { value, factor } = search.expected(candidate, 1e-8, &whole, &run).attitude_error;
         assert!(apart > 0.0 && value * factor >= 2.0 * apart, "{value:e} by {factor}, known to {apart:e}");
     }
+
+    /// What `look` finds of the candidate `name` for a free body that turns by 1 rad/s, for `until` s and to 1e-6 rad; `heed` is
+    /// told how long runs are expected to take.
+    fn of<T>(
+        name: &str,
+        until: f64,
+        heed: &mut dyn FnMut(f64),
+        look: impl FnOnce(&mut Calibration<'_>, &Candidate, &Span) -> T,
+    ) -> T {
+        let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap());
+        let start = body.state(Default::default(), [0.6, 0.0, 0.8].into()).unwrap();
+        let start = body.enter(&start).unwrap().to_f64();
+        let demand = Demand::new(until, 1e-6);
+        let reference = Reference::new(&body, start, &demand, &mut |_| {}).unwrap();
+        let mut heed = |progress: &Progress| progress.seconds.into_iter().for_each(&mut *heed);
+        let mut search = Calibration::new(&body, &demand, reference, (Instant::now(), &mut heed)).unwrap();
+        let short = search.reference.short().unwrap();
+        let candidates = Candidate::all(&body, &demand);
+        let candidate = candidates.iter().find(|candidate| candidate.name == name).unwrap();
+        look(&mut search, candidate, &short)
+    }
+
+    #[test]
+    fn the_whole_time_takes_as_many_times_the_steps_of_a_part_as_it_is_longer() {
+        of("rk4", 1024.0, &mut |_| {}, |search, rk4, short| {
+            let run = search.run(rk4, 0.25, short, None).unwrap();
+            let choice = search.expected(rk4, 0.25, short, &run);
+            assert_eq!((short.horizon, choice.whole_time), (512.0, false));
+            assert_eq!((choice.steps, choice.setting), (Some(4096), Setting::Step(0.25)));
+        });
+    }
+
+    #[test]
+    fn short_runs_find_a_step_that_meets_the_demand_and_tell_its_error() {
+        of("rk4", 64.0, &mut |_| {}, |search, rk4, short| {
+            let found = search.first(rk4, short).unwrap();
+            let run = search.run(rk4, found.value, short, None).unwrap();
+            let (told, seen) = (found.choice.attitude_error.value, run.attitude);
+            assert!(seen < 1e-6 && seen > 1e-7, "{seen:e} at {}", found.value);
+            assert!(told < 2.0 * seen && told > 0.5 * seen, "{told:e}, {seen:e}");
+        });
+    }
+
+    #[test]
+    fn a_step_that_is_too_long_is_shortened_until_the_demand_is_met() {
+        of("rk4", 64.0, &mut |_| {}, |search, rk4, short| {
+            let choice = search.first(rk4, short).unwrap().choice;
+            let met = search.refined(rk4, Found { value: 0.1, choice }, Some(1e3)).unwrap();
+            let error = met.attitude_error.value;
+            assert!(error < 1e-6 && error > 1e-7, "{error:e}");
+        });
+    }
+
+    #[test]
+    fn half_the_step_is_expected_to_take_twice_the_time_where_the_attitude_was_lost() {
+        let mut told = Vec::new();
+        of("explicit-euler", 64.0, &mut |seconds| told.push(seconds), |search, euler, short| {
+            let run = search.run(euler, 1e-3, short, None).unwrap();
+            let mut choice = search.expected(euler, 1e-3, short, &run);
+            choice.seconds.value = 1.0;
+            assert!(search.refined(euler, Found { value: 0.5, choice }, Some(1e3)).is_err());
+        });
+        told.dedup();
+        assert_eq!(told[..2], [1.0, 2.0]);
+    }
 }

@@ -140,7 +140,11 @@ fn growth(before: f64, after: f64, fastest: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Demand;
+    use super::super::reference::Reference;
     use super::*;
+    use crate::inertia::Inertia;
+    use crate::method::method;
 
     fn seen(times_longer: f64, [before, attitude]: [f64; 2], energy: Option<[f64; 2]>) -> Trial {
         Trial {
@@ -174,5 +178,21 @@ mod tests {
         near(drifting.attitude_at(1e3, 2.0, true).value, 16e-6);
         near(drifting.attitude_at(1e3, 2.0, false).value, 8e-6);
         assert_eq!(drifting.energy_at(false), Some(1e-9));
+    }
+
+    #[test]
+    fn a_run_tells_at_every_look_what_part_of_it_is_done() {
+        let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap());
+        let start = body.state(Default::default(), [0.4, 1.0, -0.3].into()).unwrap();
+        let start = body.enter(&start).unwrap().to_f64();
+        let mut reference = Reference::new(&body, start, &Demand::new(10.0, 1e-6), &mut |_| {}).unwrap();
+        let span = reference.short().unwrap();
+        let mut told = Vec::new();
+        let mut heed = |done| told.push(done);
+        let found = trial(&method("rk4").unwrap(), &body, &span, (1.0, f64::INFINITY), &mut heed);
+        assert!(found.is_some());
+        let looks = span.points.len();
+        let parts: Vec<f64> = (1..=looks).map(|k| k as f64 / looks as f64).collect();
+        assert_eq!(told, parts);
     }
 }

@@ -125,3 +125,29 @@ pub(super) fn conservation(
     };
     (found, traces)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inertia::Inertia;
+
+    /// Down to rates whose energy is below the smallest double, and those whose momentum is as well.
+    #[test]
+    fn no_motion_is_too_slow_for_errors_that_are_numbers() {
+        let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap());
+        let times: Vec<f64> = (0..20).map(f64::from).collect();
+        let mut seen = [false; 2];
+        for axis in 0..3 {
+            let slower = |rate: &f64| Some(0.95 * rate);
+            for rate in core::iter::successors(Some(1e-160), slower).take_while(|rate| *rate > 1e-163) {
+                let mut omega = [0.0; 3];
+                omega[axis] = rate;
+                let record = Trajectory::new(times.clone()).with_rates(vec![omega; 20]);
+                let (found, _) = conservation(&record, &Reading::default(), &body, [1e-6; 2]);
+                assert!(found.iter().all(|kept| kept.error == 0.0 && kept.conserved), "{rate:e}: {found:?}");
+                seen[usize::from(found.is_empty())] = true;
+            }
+        }
+        assert_eq!(seen, [true; 2]);
+    }
+}

@@ -337,4 +337,60 @@ mod tests {
         assert!(convicts(&left(1e-2, Some(1e-2)), &left(5e-3, Some(3e-3))));
         assert!(!convicts(&left(1e-2, Some(1e-2)), &left(5e-3, Some(5e-3))));
     }
+
+    /// What `look` finds in a case of a slow spin for which `claims` are made.
+    fn with_case<T>(claims: Convention, look: impl FnOnce(&Case<'_>) -> T) -> T {
+        let record = Trajectory::new((0..20).map(f64::from).collect()).with_rates(vec![[0.1, 0.2, 0.3]; 20]);
+        let columns = Columns::new(&record);
+        let windows = columns.windows();
+        look(&Case { columns, windows, claims, bodies: Vec::new() })
+    }
+
+    #[test]
+    fn readings_are_tied_that_leave_nearly_the_same_or_only_rounding() {
+        let found = |[attitude, rates]: [f64; 2]| Hypothesis {
+            reading: Reading::default(),
+            program: Program::right(Frame::Body),
+            body: Body::free(crate::inertia::Inertia::from_moments([1.0, 2.0, 2.5]).unwrap()),
+            suspect: Suspect::None,
+            defects: Defects { attitude: Some(attitude), rates: Some(rates) },
+        };
+        let are_tied = |best: [f64; 2], other: [f64; 2]| {
+            with_case(Convention::default(), |case| case.tied(&[best, other].map(found))) == 2
+        };
+        for (best, alike, other) in [(1e-3, 1.4e-3, 1.6e-3), (1e-8, 4e-7, 8e-7)] {
+            assert!(are_tied([best; 2], [alike; 2]), "{best} {alike}");
+            assert!(
+                !are_tied([best; 2], [other, best]) && !are_tied([best; 2], [best, other]),
+                "{best} {other}"
+            );
+        }
+    }
+
+    #[test]
+    fn every_claim_that_holds_counts_by_itself() {
+        let reading = Reading {
+            attitude: Some(Direction::SpaceToBody),
+            omega_frame: Some(Frame::Space),
+            rate_unit: Some(RateUnit::DegreesPerSecond),
+            momentum_frame: Some(Frame::Body),
+            ..Reading::default()
+        };
+        let holding = |claims: &dyn Fn(&mut Convention)| {
+            let mut claimed = Convention { moments: None, ..Convention::default() };
+            claims(&mut claimed);
+            with_case(claimed, |case| case.preference(&reading)[0])
+        };
+        let single: [&dyn Fn(&mut Convention); 5] = [
+            &|claims| claims.attitude = reading.attitude,
+            &|claims| claims.omega_frame = reading.omega_frame,
+            &|claims| claims.rate_unit = reading.rate_unit,
+            &|claims| claims.momentum_frame = reading.momentum_frame,
+            &|claims| claims.moments = Some(reading.moments),
+        ];
+        assert_eq!(single.map(holding), [1; 5]);
+        assert_eq!(holding(&|_| ()), 0);
+        assert_eq!(holding(&|claims| single.iter().for_each(|claim| claim(claims))), 5);
+        assert_eq!(holding(&|claims| claims.omega_frame = Some(Frame::Body)), 0);
+    }
 }

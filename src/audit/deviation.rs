@@ -321,3 +321,28 @@ pub(super) fn trace(record: &Trajectory, reading: &Reading, start: &Start, times
     });
     signed.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Residuals of 1.4 times the noise between neighbours: an error that swings hides in it where rows are far apart.
+    #[test]
+    fn more_than_the_noise_between_neighbours_is_no_noise_unless_rows_are_far_apart() {
+        let allowance = Allowance::of(1e-9, 1e-16, 0.0);
+        let mut tally = Tally::new(200, allowance);
+        for row in 0..200 {
+            tally.add(row, Vec3([1e-3, 1e-3, if row % 2 == 0 { 1e-3 } else { -1e-3 }]));
+        }
+        let judged = |spread: f64, interval: f64| {
+            let record = Trajectory::new((0..200).map(|k| interval * f64::from(k)).collect());
+            of_column(&tally, &allowance, 1e-3 / spread, 1.0, &record)
+        };
+        assert_eq!([0.1, 1.0].map(|interval| judged(1.2, interval)), [Judgement::Undecided; 2]);
+        assert_eq!(
+            [0.1, 1.0].map(|interval| judged(1.4, interval)),
+            [Judgement::Wrong, Judgement::Undecided]
+        );
+        assert_eq!([0.1, 1.0].map(|interval| judged(1.7, interval)), [Judgement::Wrong; 2]);
+    }
+}

@@ -117,3 +117,21 @@ impl Attitudes {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_over_a_slow_body_take_a_quarter_of_the_record() {
+        let record =
+            Trajectory::new((0..401).map(f64::from).collect()).with_rates(vec![[0.0, 0.0, 1e-6]; 401]);
+        for pieces in [1, 2, 3] {
+            let windows = Windows::of(&record, pieces);
+            let rows = pieces * windows.stride;
+            assert!(rows <= 100 && rows > 85, "{pieces} of {}", windows.stride);
+            assert_eq!(windows.stride % windows.node, 0);
+            assert!(windows.starts.iter().all(|first| first + rows <= 400) && windows.starts.len() > 50);
+        }
+    }
+}

@@ -111,3 +111,26 @@ fn body_of(gram: [[f64; 6]; 6]) -> Option<Body> {
     let inertia = ROUNDER.into_iter().find_map(|part| Inertia::from_tensor(rounder(part)).ok())?;
     Some(Body::free(inertia))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding may leave the largest moment of a lamina above the sum of the others: a part of 1e-4 of a ball of the same trace
+    /// makes it a body again.
+    #[test]
+    fn a_tensor_just_beyond_the_law_is_made_rounder_at_the_same_trace() {
+        let beyond = [1.0, 2.0, 3.000_03].map(|moment| moment / 6.000_03);
+        let length = beyond.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let entries = [beyond[0] / length, beyond[1] / length, beyond[2] / length, 0.0, 0.0, 0.0];
+        // what no entries but these make vanish
+        let gram: [[f64; 6]; 6] = core::array::from_fn(|i| {
+            core::array::from_fn(|j| if i == j { 1.0 } else { 0.0 } - entries[i] * entries[j])
+        });
+        let tensor = body_of(gram).unwrap().inertia().tensor();
+        for (axis, moment) in beyond.into_iter().enumerate() {
+            let expected = moment * (1.0 - 1e-4) + 1e-4 / 3.0;
+            assert!((tensor[(axis, axis)] - expected).abs() < 1e-12, "{tensor}, {expected}");
+        }
+    }
+}

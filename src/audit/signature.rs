@@ -271,3 +271,92 @@ impl Flips {
         self.positive = Some(along > 0.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Attitudes, Direction, Frame, QuaternionOrder, RateUnit};
+    use super::*;
+    use crate::inertia::Inertia;
+    use crate::rotation::turn_by;
+
+    /// A free body, and its state at the start, body axes, `speed` times as fast as usual.
+    fn tumbling(speed: f64) -> (Body, Row) {
+        let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap());
+        let omega = Vec3([0.4, 1.0, -0.3]) * speed;
+        (body, Row { row: 0, time: 0.0, attitude: Some(Quat::identity()), omega })
+    }
+
+    /// A part of the turn from `a` to `b`.
+    fn between(a: Quat<f64>, b: Quat<f64>, part: f64) -> Quat<f64> {
+        a * turn_by(rotation_vector(a.conjugate() * b) * part)
+    }
+
+    /// Of errors of which parts are those of a clock, what is across them: by the projection in attitude and relative ω.
+    #[test]
+    fn a_clock_explains_what_it_leaves_and_no_more_in_any_unit_of_time() {
+        for speed in [1.0, 0.01, 100.0] {
+            let (body, first) = tumbling(speed);
+            let times = || (1..=12).map(|k| 0.5 * f64::from(k) / speed);
+            let exact = motion(&body, &first, times(), true).unwrap();
+            let fast = motion(&body, &first, times().map(|t| t * (1.0 + 3e-6)), true).unwrap();
+            let across = |of_turns: f64, of_rates: f64| {
+                let rows: Vec<Row> = (times().zip(&exact).zip(&fast))
+                    .map(|((time, a), b)| {
+                        let attitude = Some(between(a.0, b.0, of_turns));
+                        Row { row: 0, time, attitude, omega: a.1 + (b.1 - a.1) * of_rates }
+                    })
+                    .collect();
+                clock(&body, &first, &rows.iter().zip(exact.iter().copied()).collect::<Vec<_>>()).unwrap()
+            };
+            let (mut turns, mut rates) = (0.0, 0.0);
+            for (a, b) in exact.iter().zip(&fast) {
+                turns += rotation_vector(a.0.conjugate() * b.0).norm_squared();
+                rates += (b.1 - a.1).norm_squared() / first.omega.norm_squared();
+            }
+            assert!(across(1.0, 1.0) < 1e-3, "{}", across(1.0, 1.0));
+            for (p, q) in [(1.0, 0.0), (0.0, 1.0), (1.0, -1.0), (2.0, 3.0)] {
+                let along = p * turns + q * rates;
+                let squares = (turns + rates) * (p * p * turns + q * q * rates);
+                let expected = (1.0 - along * along / squares).sqrt();
+                assert!((across(p, q) - expected).abs() < 1e-4, "{p} {q}: {} {expected}", across(p, q));
+            }
+        }
+    }
+
+    /// Programs turn their attitudes by the same angular velocities in other ways.
+    #[test]
+    fn a_method_that_explains_the_rates_is_named_although_attitudes_are_a_little_off() {
+        let (body, first) = tumbling(1.0);
+        let start = body.enter_omega(Quat::identity(), first.omega).unwrap().to_f64();
+        let explicit = method("explicit-euler").unwrap();
+        let mut run = Run::from_point(&explicit, &body, start, Clock::new(0.025)).unwrap();
+        let samples: Vec<_> = (0..60).map(|row| run.advance_to(2 * row).unwrap()).collect();
+        let times: Vec<f64> = (0..60).map(|row| 0.05 * f64::from(row)).collect();
+        let exact = motion(&body, &first, times.iter().copied(), true).unwrap();
+        let reading = Reading {
+            quaternion: Some(QuaternionOrder::ScalarFirst),
+            attitude: Some(Direction::BodyToSpace),
+            omega_frame: Some(Frame::Body),
+            rate_unit: Some(RateUnit::RadiansPerSecond),
+            ..Reading::default()
+        };
+        let named = |of_turns: f64, of_rates: f64| {
+            let rows = samples.iter().zip(&exact);
+            let (attitudes, rates) = rows
+                .map(|(sample, (q, omega))| {
+                    let off = Vec3::from(sample.omega_body) - *omega;
+                    let attitude = between(*q, sample.state.attitude.normalized(), of_turns);
+                    (attitude.components(), (*omega + off * of_rates).0)
+                })
+                .unzip();
+            let record = Trajectory::new(times.clone()).with_attitude(Attitudes::Quaternions(attitudes));
+            let found = signature(&record.with_rates(rates), &reading, &body, 0.0);
+            found.map(|found| (found.method, found.steps_per_row))
+        };
+        let explicit = Some(("explicit-euler".to_owned(), 2));
+        assert_eq!(named(1.0, 1.0), explicit);
+        assert_eq!(named(1.05, 1.0), explicit);
+        assert_eq!(named(1.3, 1.0), None, "attitudes are far off");
+        assert_eq!(named(1.05, 1.05), None, "neither is explained");
+    }
+}

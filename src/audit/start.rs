@@ -172,3 +172,26 @@ fn changed(start: &Start, change: [f64; UNKNOWNS], size: f64) -> Option<Start> {
     let inertia = Inertia::from_tensor(new / new.trace()).ok()?;
     Some(Start { row, body: Body::free(inertia) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rotation::Quat;
+
+    #[test]
+    fn a_motion_is_lost_that_more_than_half_of_the_rows_are_far_from() {
+        let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5]).unwrap());
+        let row =
+            |k: usize, attitude, omega| Row { row: k, time: 0.1 * k as f64, attitude: Some(attitude), omega };
+        let first = row(0, Quat::identity(), Vec3([0.4, 1.0, -0.3]));
+        let exact = motion(&body, &first, (0..10).map(|k| 0.1 * f64::from(k)), true).unwrap();
+        let start = Start { row: first, body };
+        let weights = Weights { attitude: 1.0, rates: 1.0, size: 1.1 };
+        let is_lost = |far: usize| {
+            let off = |k: usize| turn_by(Vec3([if k < far { 0.6 } else { 0.4 }, 0.0, 0.0]));
+            let rows = exact.iter().enumerate().map(|(k, (q, omega))| row(k, *q * off(k), *omega));
+            is_lost(&start, &rows.collect::<Vec<_>>(), weights).unwrap()
+        };
+        assert_eq!([0, 1, 5, 6, 10].map(is_lost), [false, false, false, true, true]);
+    }
+}

@@ -302,3 +302,49 @@ const DENSE: [&Terms; 4] = [
         (15, Dd::sum(-149.72683625798564, 1.2853156972603791e-14)),
     ],
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rotation::{Quat, Vec3};
+
+    /// What the rate t^power is at every stage of a step of 1 s from t = 0.
+    fn rates(power: u32) -> [Phase<Dd>; 16] {
+        let behind = STAGES.iter().map(|stage| stage.0).chain([Dd::ONE]);
+        let nodes = [Dd::ZERO].into_iter().chain(behind).chain(DENSE_STAGES.iter().map(|stage| stage.0));
+        let mut rates = nodes.map(|node| {
+            let rate = (0..power).fold(Dd::ONE, |product, _| product * node);
+            Phase { attitude: Quat::zero(), momentum_body: Vec3([rate, Dd::ZERO, Dd::ZERO]) }
+        });
+        core::array::from_fn(|_| rates.next().unwrap())
+    }
+
+    fn assert_near(found: Phase<Dd>, expected: Dd, what: &str) {
+        let found = found.momentum_body[0];
+        assert!((found - expected).magnitude() < 1e-27, "{what}: {found}, {expected}");
+    }
+
+    #[test]
+    fn the_tables_hold_thirty_digits() {
+        for (node, terms) in STAGES.iter().chain(DENSE_STAGES) {
+            assert_near(sum(&rates(0), terms), *node, "node");
+        }
+        for power in 0..8 {
+            let (rates, theta) = (rates(power), Dd::of(0.3));
+            let grown =
+                |t: Dd| (0..=power).fold(Dd::ONE / Dd::of(f64::from(power + 1)), |product, _| product * t);
+            let change = sum(&rates, WEIGHTS);
+            assert_near(change, grown(Dd::ONE), "order 8");
+            if power < 7 {
+                let dense = DormandPrince853::dense(&rates, change, Dd::ONE);
+                assert_near(DormandPrince853::at(&dense, theta), grown(theta), "dense output of order 7");
+            }
+            if power < 5 {
+                assert_near(sum(&rates, FIFTH), Dd::ZERO, "estimate of order 5");
+            }
+            if power < 3 {
+                assert_near(sum(&rates, THIRD), grown(Dd::ONE), "order 3");
+            }
+        }
+    }
+}

@@ -186,6 +186,21 @@ fn faults_of_sampling_are_seen() {
         "{verdict:?}"
     );
     assert_eq!(verdict.judgement, Judgement::Wrong);
+    // with one row of so many left out; where intervals differ often, none of them is a jump
+    for (every, jumps) in [(100, 4), (10, 0)] {
+        let Some(Attitudes::Quaternions(rows)) = &clean.attitude else { panic!() };
+        let rates = clean.rates.as_ref().unwrap();
+        let kept = || (0..400).filter(|row| row % every != 5);
+        let file = Trajectory::new(kept().map(|row| clean.times[row]).collect())
+            .with_attitude(Attitudes::Quaternions(kept().map(|row| rows[row]).collect()))
+            .with_rates(kept().map(|row| rates[row]).collect());
+        let verdict = found(&file);
+        let counts: Vec<usize> = (verdict.faults.iter())
+            .map(|fault| if let Fault::TimeJump { count, .. } = fault { *count } else { panic!("{fault}") })
+            .collect();
+        assert_eq!(counts.iter().sum::<usize>(), jumps);
+        assert_eq!(verdict.judgement, Judgement::Right);
+    }
     let mut file = clean;
     file.times.iter_mut().skip(100).for_each(|t| *t += 3.0);
     let faults = found(&file).faults;
@@ -212,6 +227,13 @@ fn what_cannot_be_audited_is_refused_with_the_numbers() {
     let mut short = file.clone();
     short.rates.as_mut().unwrap().pop();
     assert!(matches!(refused(&short), AuditError::Lengths { found: 399, rows: 400, .. }));
+    let mut nowhere = file.clone();
+    let Some(Attitudes::Quaternions(rows)) = &mut nowhere.attitude else { panic!() };
+    rows[7] = [0.0; 4];
+    assert_eq!(refused(&nowhere), AuditError::NoAttitude { row: 7 });
+    // three angles of zero are an attitude
+    nowhere.attitude = Some(Attitudes::Angles(vec![[0.0; 3]; 400]));
+    assert_eq!(nowhere.check(), Ok(()));
     let mut question = Question::new(None);
     // within half a radian nearly any attitude is right
     for value in [-1.0, 0.5, f64::INFINITY] {

@@ -29,6 +29,16 @@ pub enum PosesError {
         /// What it is of.
         what: &'static str,
     },
+    /// A quaternion that is no rotation; one that was normalised at norm zero is not finite.
+    #[error(
+        "{source_name}, sample {sample}: a quaternion of norm zero, or one that is not finite, is no attitude; leave the sample out"
+    )]
+    NoAttitude {
+        /// Where it comes from.
+        source_name: String,
+        /// Which sample.
+        sample: usize,
+    },
     /// Times that do not ascend.
     #[error(
         "{source_name}, sample {sample}: time {} s comes after {} s; times must ascend. Sort the samples, or give the files apart",

@@ -83,7 +83,7 @@ impl Poses {
     /// Attitudes that repeat the one before to the last digit are left out: a log that is written faster than it measures.
     ///
     /// # Errors
-    /// Lists of different lengths, numbers that are not finite, times that do not ascend, no samples.
+    /// Lists of different lengths, numbers that are not finite, quaternions of norm zero, times that do not ascend, no samples.
     pub fn new(source: &str, times: &[f64], attitudes: &[UnitQuaternion<f64>]) -> Result<Poses, PosesError> {
         Poses::of(source, times, attitudes, None)
     }
@@ -122,11 +122,14 @@ impl Poses {
         for k in 0..count {
             let finite = [
                 ("time", times[k].is_finite()),
-                ("attitude", attitudes[k].coords.iter().all(|v| v.is_finite())),
                 ("angular velocity", rates.is_none_or(|rates| rates[k].iter().all(|v| v.is_finite()))),
             ];
             if let Some((what, _)) = finite.into_iter().find(|(_, finite)| !finite) {
                 return Err(PosesError::Value { source_name: name(), sample: k + 1, what });
+            }
+            let q = attitudes[k].coords;
+            if q.iter().any(|x| !x.is_finite()) || q.iter().all(|x| *x == 0.0) {
+                return Err(PosesError::NoAttitude { source_name: name(), sample: k + 1 });
             }
             if k > 0 && times[k] <= times[k - 1] {
                 let (time, before) = (times[k], times[k - 1]);

@@ -6,8 +6,8 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3};
 use polhode_fit::{
-    Disturbances, Estimate, FitError, Gyroscope, Known, Method, PoseFault, Poses, Settings, TorqueModel,
-    Warning, fit_poses, foreseen_attitude_bound, simulate_poses,
+    Disturbances, Estimate, FitError, Gyroscope, Known, Method, PoseFault, Poses, PosesError, Settings,
+    TorqueModel, Warning, fit_poses, foreseen_attitude_bound, simulate_poses,
 };
 
 fn body(moments: [f64; 3], random: &mut Random) -> Inertia {
@@ -211,6 +211,16 @@ fn what_attitudes_do_not_tell_is_refused_with_its_numbers() {
     let text = fault.to_string();
     assert!(matches!(fault, PoseFault::HalfTurn { sample: 1, .. }) && text.contains("3.000 rad"), "{text}");
     assert!(text.contains("3.283 rad"), "{text}");
+    // a quaternion of norm zero, as a tracker writes one that sees nothing: normalised it is not finite
+    for nothing in [
+        UnitQuaternion::from_quaternion(Quaternion::new(0.0, 0.0, 0.0, 0.0)),
+        UnitQuaternion::new_unchecked(Quaternion::new(0.0, 0.0, 0.0, 0.0)),
+    ] {
+        let mut blind = measured.clone();
+        blind[4] = nothing;
+        let error = Poses::new("spin.csv", &fast, &blind).unwrap_err();
+        assert!(matches!(error, PosesError::NoAttitude { sample: 5, .. }), "{error}");
+    }
     // no turn at all
     let mut random = Random::new(1);
     let still: Vec<UnitQuaternion<f64>> =
