@@ -30,19 +30,6 @@ pub enum DerivativeError {
         /// The time, s.
         t: f64,
     },
-    /// Next to the sleeping top of critical spin the axis nods too slowly beside the spin to be followed.
-    #[error(
-        "the axis nods so slowly beside its spin that the derivative after {t:e} s takes more than {most} steps; it can be had up to \
-         {reach:e} s"
-    )]
-    Slow {
-        /// The time, s.
-        t: f64,
-        /// The most steps that are taken.
-        most: f64,
-        /// The largest time that has an answer, s.
-        reach: f64,
-    },
 }
 
 /// Small turns in space, in the first rows and first columns, in other axes: with the rotations of the attitudes before and after.

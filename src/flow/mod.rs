@@ -18,6 +18,7 @@ mod free;
 mod kick;
 mod lagrange;
 mod reach;
+mod scaled;
 mod turn;
 
 pub use casimir::Casimir;

@@ -1,6 +1,6 @@
 //! Complex numbers, as far as the Cayley–Klein parameters of a top need them.
 
-use core::ops::{Add, Mul};
+use core::ops::{Add, Mul, Sub};
 
 use super::Real;
 
@@ -44,6 +44,13 @@ impl<S: Real> Add for Complex<S> {
     type Output = Self;
     fn add(self, b: Self) -> Self {
         Complex::new(self.re + b.re, self.im + b.im)
+    }
+}
+
+impl<S: Real> Sub for Complex<S> {
+    type Output = Self;
+    fn sub(self, b: Self) -> Self {
+        Complex::new(self.re - b.re, self.im - b.im)
     }
 }
 

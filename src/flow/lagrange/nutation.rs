@@ -154,6 +154,22 @@ impl Nutation {
         ]
     }
 
+    /// m·Γ/A − a u_ζ, u_ζ the value of u where the transverse angular velocity would vanish.
+    pub(super) fn apex_product(&self) -> Dd {
+        let [x, y] = self.apex;
+        (self.e * y + self.d * x) * 0.5
+    }
+
+    /// u_ζ − u₂ and u₃ − u_ζ: of the two only the larger is a difference.
+    pub(super) fn apex_apart(&self) -> [Dd; 2] {
+        let ([x1, x2, x3], y2, [x, y]) = (self.x, self.y[1], self.apex);
+        let off = self.apex_product();
+        let product = off * off * (x3 - x1) / (self.rate * self.rate * 4.0 * (x - x1));
+        let above = if x < Dd::ONE { x3 - x } else { self.w3 + y };
+        let below = if x < Dd::ONE { x - x2 } else { y2 - y };
+        if above > below { [product / above, above] } else { [below, product / below] }
+    }
+
     /// q and q' at time `t`.
     pub(super) fn at<T: Precise>(&self, t: Dd) -> (Quat<T>, Quat<T>) {
         let (alpha, beta) = self.parameters::<T>(t);

@@ -287,13 +287,9 @@ fn functions<S: Precise>(nutation: &Nutation, t: Dd) -> [Complex<Dd>; 3] {
 fn sums(nutation: &Nutation, quarter: Dd, dual: Option<Dd>) -> [Sums; 3] {
     let ([x1, x2, x3], [y1, y2], w3) = (nutation.x, nutation.y, nutation.w3);
     let (between, span) = (x3 - x1, nutation.span);
-    let [x, y] = nutation.apex;
-    let off = (nutation.e * y + nutation.d * x) * 0.5; // m·Γ/A − a u_ζ
-    // (u_ζ − u₂)(u₃ − u_ζ): of the two only the larger is a difference
-    let product = off * off * between / (nutation.rate * nutation.rate * 4.0 * (x - x1));
-    let above = if x < Dd::ONE { x3 - x } else { w3 + y };
-    let below = if x < Dd::ONE { x - x2 } else { y2 - y };
-    let (above, below) = if above > below { (above, product / above) } else { (product / below, below) };
+    let x = nutation.apex[0];
+    let off = nutation.apex_product();
+    let [below, above] = nutation.apex_apart();
     // of each zero: sn², cn², dn² of η, and the same of K' − η, which for k = 0 is the one that is finite
     let second = |y1: Dd, y2: Dd, w3: Dd| {
         let top = y2 + w3;

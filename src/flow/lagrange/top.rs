@@ -256,32 +256,45 @@ impl LagrangeTop {
     /// Carlson's integrals. The quaternion is the continuous lift from the start.
     #[inline]
     pub fn point_at(&self, t: f64) -> Point<f64> {
+        self.placed(self.along_axis(t))
+    }
+
+    /// Attitude and momentum of [`point_at`](Self::point_at) in coordinates with e₃ along the weight moment.
+    #[inline]
+    pub(super) fn along_axis(&self, t: f64) -> (Quat<f64>, Vec3<f64>) {
         let quick = match &self.motion {
             Motion::Nutating { quick: Some(quick), .. } => quick.at(t),
             _ => None,
         };
-        let Some((attitude, [m1, m2])) = quick else { return self.evaluate(Dd::from(t)) };
-        let (frame, m3) = (self.frame.map(Dd::hi), self.start.momentum_body[2].hi());
-        Point::new(attitude * frame.conjugate(), frame.rotate(Vec3([m1, m2, m3])))
+        match quick {
+            Some((attitude, [m1, m2])) => (attitude, Vec3([m1, m2, self.start.momentum_body[2].hi()])),
+            None => self.evaluate(Dd::from(t)),
+        }
     }
 
     /// The same at a time in double-double.
     pub(crate) fn point_after(&self, t: Dd) -> Point<f64> {
-        if t.lo() == 0.0 { self.point_at(t.hi()) } else { self.evaluate(t) }
+        if t.lo() == 0.0 { self.point_at(t.hi()) } else { self.placed(self.evaluate(t)) }
     }
 
     /// The same in double-double, by Carlson's integrals.
     pub fn point_at_dd(&self, t: Dd) -> Point<Dd> {
-        self.evaluate(t)
+        self.placed(self.evaluate(t))
     }
 
-    fn evaluate<S: Precise>(&self, t: Dd) -> Point<S> {
+    #[inline]
+    pub(super) fn placed<S: Precise>(&self, (attitude, momentum): (Quat<S>, Vec3<S>)) -> Point<S> {
+        let frame = self.frame.map(S::from_dd);
+        Point::new(attitude * frame.conjugate(), frame.rotate(momentum))
+    }
+
+    fn evaluate<S: Precise>(&self, t: Dd) -> (Quat<S>, Vec3<S>) {
         let m3 = self.start.momentum_body[2];
         let turn = |rate: Dd| {
             let (sin, cos) = S::from_dd(reduce(rate * t, Dd::TAU * 2.0) * Dd::of(0.5)).sin_cos();
             Quat::new(cos, Vec3::unit(2) * sin)
         };
-        let (attitude, momentum) = match &self.motion {
+        match &self.motion {
             Motion::Vertical => {
                 let q = self.start.attitude.map(S::from_dd);
                 (q * turn(m3 / self.axial), self.start.momentum_body.map(S::from_dd))
@@ -293,9 +306,7 @@ impl LagrangeTop {
                 m[2] = S::from_dd(m3);
                 (q * spin, spin.rotate_back(m))
             }
-        };
-        let frame = self.frame.map(S::from_dd);
-        Point::new(attitude * frame.conjugate(), frame.rotate(momentum))
+        }
     }
 
     /// Smallest and largest tilt of the weight moment from the vertical, rad.

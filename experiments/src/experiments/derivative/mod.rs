@@ -1,7 +1,8 @@
-//! The derivative of the exact motion and the motion through two attitudes: accuracy by regime, beside an integration of the
+//! The derivative of the exact motion, of free bodies and of tops, and the motion through two attitudes: accuracy by regime, beside an integration of the
 //! variational equations, completeness of the solutions, and what a covariance says beside an ensemble.
 
 mod taylor;
+mod tops;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -38,6 +39,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let worst = fixtures(&mut report)?;
     let mut timing = timing_table();
     beside_taylor(context, &mut report, &mut timing)?;
+    tops::run(context, &mut report, &mut timing)?;
     let solutions = through(context, &mut report, &mut timing)?;
     covariance(context, &mut report)?;
     report.timing = Some(timing);

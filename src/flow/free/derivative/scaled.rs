@@ -1,57 +1,11 @@
-//! The derivative on the separatrix at any time, with a power of two beside it.
-//!
-//! On the separatrix a motion ends as a steady spin about the middle axis. From there the derivative over a time is the same each time, in axes of
-//! the body: over n times it is the n-th power, which repeated squares give.
-
-use nalgebra::SMatrix;
+//! The derivative on the separatrix at any time: a motion ends there as a steady spin about the middle axis.
 
 use super::transition::StateDerivative;
 use crate::body::Point;
+use crate::flow::scaled::{FOLDS, SETTLED, Scaled};
 use crate::flow::{DerivativeError, FreeMotion, TurnAxes};
 use crate::num::Dd;
 use crate::rotation::{Quat, Vec3};
-
-/// Most e-folds of growth in one time; half of them bring the motion to the spin.
-const FOLDS: f64 = 256.0;
-
-/// Of rotation vector, momentum and tensor, times 2^exponent.
-#[derive(Clone, Copy)]
-struct Scaled {
-    matrix: SMatrix<f64, 12, 12>,
-    exponent: i64,
-}
-
-/// Angle from the middle axis, as a share, below which no digit of a double-double tells the motion from the spin about it.
-const SETTLED: f64 = 1e-40;
-
-impl Scaled {
-    fn of(derivative: &StateDerivative) -> Self {
-        let mut matrix = SMatrix::<f64, 12, 12>::identity();
-        matrix.fixed_view_mut::<6, 12>(0, 0).copy_from(&derivative.by_momentum(TurnAxes::Body));
-        Scaled { matrix, exponent: 0 }
-    }
-
-    fn times(&self, first: &Scaled) -> Self {
-        let product = self.matrix * first.matrix;
-        let by = libm::ilogb(product.amax());
-        Scaled {
-            matrix: product.map(|x| libm::scalbn(x, -by)),
-            exponent: self.exponent + first.exponent + i64::from(by),
-        }
-    }
-
-    /// `self` to the `n`-th times `first`.
-    fn power_times(mut self, mut n: u64, mut first: Scaled) -> Self {
-        while n > 0 {
-            if n % 2 == 1 {
-                first = self.times(&first);
-            }
-            self = self.times(&self);
-            n /= 2;
-        }
-        first
-    }
-}
 
 impl FreeMotion {
     /// As [`at_with_derivative`](Self::at_with_derivative), but on the separatrix at times too at which the derivative has left the range of
@@ -83,12 +37,11 @@ impl FreeMotion {
         }
         let step = t / times;
         let spin = self.final_spin(step).ok_or(out_of_range)?;
-        let first = Scaled::of(&self.at_with_derivative(step)?);
-        let each = Scaled::of(&spin.at_with_derivative(step)?);
-        let all = each.power_times(times as u64 - 1, first);
-        let exponent = i32::try_from(all.exponent).map_err(|_| out_of_range)?;
-        let matrix = all.matrix.fixed_view::<6, 9>(0, 3).into_owned();
-        let found = self.derivative().scaled(self.body(), &self.point_at(t), matrix, exponent);
+        let first = Scaled::of(self.at_with_derivative(step)?.by_momentum(TurnAxes::Body));
+        let each = Scaled::of(spin.at_with_derivative(step)?.by_momentum(TurnAxes::Body));
+        let (rows, exponent) = each.power_times(times as u64 - 1, first).rows().ok_or(out_of_range)?;
+        let columns = rows.fixed_columns::<9>(3).into_owned();
+        let found = self.derivative().scaled(self.body(), &self.point_at(t), columns, exponent);
         found.ok_or(out_of_range)
     }
 

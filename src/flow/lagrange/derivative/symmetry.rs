@@ -6,7 +6,9 @@
 
 use nalgebra::{RowSVector, SMatrix, SVector};
 
-use super::series::{Node, Response};
+use super::ball::Ball;
+use super::curve::Curve;
+use super::step::Response;
 use crate::rotation::Vec3;
 
 /// Size from which a response is split.
@@ -26,20 +28,20 @@ pub(super) struct Symmetry {
 }
 
 impl Symmetry {
-    /// At the `node`, for the constant `g`.
-    pub(super) fn of(node: &Node, g: f64) -> Self {
-        let Vec3([g1, g2, _]) = node.up;
-        let Vec3([o1, o2, a]) = node.omega;
-        let tilt = [g1, g2, -node.below];
+    /// Of the `ball`.
+    pub(super) fn of(ball: &Ball, &Curve { g, a, .. }: &Curve) -> Self {
+        let (up, [_, below]) = (ball.up(), ball.tilt());
+        let ([g1, g2], [o1, o2]) = ([up.re, up.im], [ball.zeta.re, ball.zeta.im]);
+        let tilt = [g1, g2, -below];
         let flows = SMatrix::from_columns(&[
             [0.0, 0.0, 1.0, o2, -o1, 0.0].into(),
             [o1, o2, 0.0, g * g2 - a * o2, a * o1 - g * g1, 0.0].into(),
             [tilt[0], tilt[1], tilt[2], -o2, o1, 0.0].into(),
         ]);
-        let Vec3(turned) = node.omega.cross(node.up);
+        let Vec3(turned) = Vec3([o1, o2, a]).cross(Vec3([g1, g2, 1.0 - below]));
         let gradients = Three::from_rows(&[
             [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0].into(),
-            [-g * g2, g * g1, 0.0, o1, o2, 0.0, -node.below].into(),
+            [-g * g2, g * g1, 0.0, o1, o2, 0.0, -below].into(),
             [turned[0], turned[1], turned[2], tilt[0], tilt[1], tilt[2], 0.0].into(),
         ]);
         Symmetry { flows, gradients }
@@ -48,7 +50,7 @@ impl Symmetry {
     /// Splits off what is along the flows of the last two constants, once the response is large; gives its coefficients.
     pub(super) fn split(&self, response: &mut Response) -> Three {
         let mut found = Three::zeros();
-        if response.amax() < LARGE {
+        if response.norm_squared() < LARGE * LARGE {
             return found;
         }
         // the turn about e₃ is left to the response: the flow of m₃ is that and never small
@@ -56,7 +58,10 @@ impl Symmetry {
             (column[2], column[5]) = (0.0, 0.0);
             column
         };
-        let [second, third] = [1, 2].map(|k| across(self.flows.column(k).into_owned()));
+        let both = [1, 2].map(|k| across(self.flows.column(k).into_owned()));
+        // squares of what is small leave the range of a double
+        let size = both[0].amax().max(both[1].amax());
+        let [second, third] = both.map(|flow| flow / size);
         let common = second.dot(&third) / second.norm_squared();
         let rest = third - second * common;
         // no number where the second vanishes
@@ -66,8 +71,8 @@ impl Symmetry {
         }
         let along_third = rest.transpose() * *response / rest.norm_squared();
         let along_second = second.transpose() * *response / second.norm_squared() - along_third * common;
-        found.set_row(1, &along_second);
-        found.set_row(2, &along_third);
+        found.set_row(1, &(along_second / size));
+        found.set_row(2, &(along_third / size));
         *response -= self.flows * found;
         found
     }
@@ -80,13 +85,15 @@ impl Symmetry {
         let (mut units, mut parts) = (SMatrix::<f64, 6, 3>::zeros(), Three::zeros());
         for k in 0..3 {
             let gradient: SVector<f64, 6> = self.gradients.fixed_view::<1, 6>(k, 0).transpose();
+            let largest = gradient.amax();
+            let gradient = gradient / largest;
             let along = units.transpose() * gradient;
             let rest = gradient - units * along;
             let size = rest.norm();
-            if size < INDEPENDENT * gradient.norm() || size == 0.0 {
+            if size.is_nan() || size < INDEPENDENT * gradient.norm() {
                 continue;
             }
-            let part: RowSVector<f64, 7> = (off.row(k) - along.transpose() * parts) / size;
+            let part: RowSVector<f64, 7> = (off.row(k) / largest - along.transpose() * parts) / size;
             units.set_column(k, &(rest / size));
             parts.set_row(k, &part);
         }

@@ -2,15 +2,16 @@
 
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
-use super::passage::{MOST_STEPS, Moved, Passages, turned};
+use super::ball::Ball;
+use super::passage::Passages;
 use super::vertical;
 use crate::body::{Point, State};
 use crate::flow::TimeError;
 use crate::flow::derivative::{DerivativeError, TurnAxes, in_axes, rotation};
 use crate::flow::lagrange::LagrangeTop;
 use crate::flow::lagrange::top::Motion;
-use crate::num::{Dd, Real};
-use crate::rotation::Vec3;
+use crate::num::Dd;
+use crate::rotation::{Quat, Vec3};
 
 /// The state of Lagrange's top at one time, with its derivative by the state at t = 0 and by the constants of the top.
 ///
@@ -24,6 +25,7 @@ pub struct TopDerivative {
     attitude_at_start: Matrix3<f64>,
     /// By rotation vector, momentum and constants, rotation vectors in space.
     columns: SMatrix<f64, 6, 9>,
+    exponent: i32,
     /// Projections across and along the symmetry axis.
     across: Matrix3<f64>,
     along: Matrix3<f64>,
@@ -42,6 +44,20 @@ impl TopDerivative {
     #[must_use]
     pub fn omega_body(&self) -> Vector3<f64> {
         self.omega
+    }
+
+    /// The power of two that the matrices are to be multiplied by: 0 but for
+    /// [`at_with_scaled_derivative`](LagrangeTop::at_with_scaled_derivative).
+    #[must_use]
+    pub fn exponent(&self) -> i32 {
+        self.exponent
+    }
+
+    /// With the exponent 0.
+    fn unscaled(mut self) -> Self {
+        self.columns.apply(|x| *x = libm::scalbn(*x, self.exponent));
+        self.exponent = 0;
+        self
     }
 
     /// The derivative of (δθ, δm) by (δθ, δm, transverse moment, axial moment, weight moment) at the start.
@@ -63,7 +79,7 @@ impl TopDerivative {
             let mut by_moment = whole.fixed_columns_mut::<1>(column);
             by_moment += by_momentum * (part * self.omega_at_start);
             let mut momentum = by_moment.fixed_rows_mut::<3>(3);
-            momentum -= part * self.omega;
+            momentum -= part * self.omega * libm::scalbn(1.0, -self.exponent);
         }
         let inverse = self.across / transverse + self.along / axial;
         let rates = inverse * whole.fixed_rows::<3>(3);
@@ -79,33 +95,75 @@ pub(in crate::flow::lagrange) struct Derivative {
     axes: Matrix3<f64>,
     attitude_at_start: Matrix3<f64>,
     omega_at_start: Vector3<f64>,
+    /// 1/A in the units of the solver frame.
+    inverse_transverse: f64,
+    inverse_inertia: Matrix3<f64>,
+    /// Projections across and along the symmetry axis.
+    across: Matrix3<f64>,
+    along: Matrix3<f64>,
     passages: Option<Passages>,
+    /// The changes of the ball in the units of time of the nutation by the nine of the top: δθ by δθ, then δω by δm, then
+    /// δω and δg by the constants.
+    turns: Matrix3<f64>,
+    rates: Matrix3<f64>,
+    by_transverse: [f64; 4],
+    by_weight: f64,
+    /// ω₁ and ω₂ per momentum, and back in the units of the body.
+    per_momentum: f64,
+    per_rate: f64,
+    /// Turns of the top beside those of the ball, and their changes by m₃ and the two moments, rad/s.
+    beside: Dd,
+    further: [f64; 3],
 }
 
 impl Derivative {
     fn of(top: &LagrangeTop) -> Self {
         let axes: UnitQuaternion<f64> = (top.body.inertia().frame() * top.frame).map(Dd::hi).into();
         let start = top.point_at_dd(Dd::ZERO);
-        let passages = match &top.motion {
-            Motion::Vertical => None,
+        let (passages, unit) = match &top.motion {
+            Motion::Vertical => (None, 0),
             Motion::Nutating { nutation, unit, .. } => {
                 let g = (top.weight / top.transverse).scaled(2 * unit).hi();
                 let spin = (top.start.momentum_body[2] / top.transverse).scaled(*unit).hi();
-                Some(Passages::new(nutation, g, spin))
+                (Some(Passages::new(nutation, g, spin)), *unit)
             }
         };
+        // ω = m/A and g = c/A in units of time of 2^unit
+        let power = |n: i32| libm::scalbn(1.0, n * unit);
+        let (a, c, m3) = (top.transverse, top.axial, top.start.momentum_body[2]);
+        let (moment, scale) = (a.hi(), top.body.scale());
+        let Vec3([m1, m2, m3_start]) = top.start.momentum_body.map(|m| -(m.hi() / moment) * power(1));
+        let g = (top.weight / a).hi() * power(2);
+        let by_transverse = [m1, m2, m3_start, -g].map(|x| x / moment / scale);
+        let more = (a - c) / (a * c);
+        let axes = axes.to_rotation_matrix().into_inner();
+        let along = axes.column(2) * axes.column(2).transpose();
+        let across = Matrix3::identity() - along;
+        let attitude_at_start = rotation(top.body.leave(&start));
         Derivative {
-            axes: axes.to_rotation_matrix().into_inner(),
-            attitude_at_start: rotation(top.body.leave(&start)),
+            axes,
+            attitude_at_start,
             omega_at_start: top.body.omega_of(&start),
+            inverse_transverse: 1.0 / moment,
+            inverse_inertia: across / (moment * scale) + along / (c.hi() * scale),
+            across,
+            along,
             passages,
+            turns: (attitude_at_start * axes).transpose(),
+            rates: axes.transpose() * (power(1) / moment / scale),
+            by_transverse,
+            by_weight: power(2) / moment / scale,
+            per_momentum: power(1) / moment,
+            per_rate: moment * power(-1) * scale,
+            beside: m3 * more,
+            further: [more, m3 / (a * a), -(m3 / (c * c))].map(|rate| rate.hi() / scale),
         }
     }
 }
 
 impl LagrangeTop {
     /// The state at time `t` (s, of either sign) with its derivative by the state at t = 0, by the transverse and the axial moment
-    /// and by the weight moment. The first call works out one nutation; each takes the same time at any `t`.
+    /// and by the weight moment, in closed form. The first call works out one nutation; each takes the same time at any `t`.
     ///
     /// Both transverse moments change together and the weight moment stays on the axis, so that the body remains a Lagrange top; of a
     /// spherical body the axis is that of the weight moment. For a body without weight there is
@@ -131,108 +189,109 @@ impl LagrangeTop {
     /// ```
     ///
     /// # Errors
-    /// As [`at`](Self::at); a derivative that has grown beyond the range of a double, next to the upright axis; and an axis that nods
-    /// so slowly beside the spin, next to the sleeping top of critical spin, that one nutation takes more than 20 000 steps.
+    /// As [`at`](Self::at), and a derivative that has grown beyond the range of a double, next to the upright axis.
     pub fn at_with_derivative(&self, t: f64) -> Result<TopDerivative, DerivativeError> {
         TimeError::check(t, self.reach())?;
-        let constants = self.derivative.get_or_init(|| Box::new(Derivative::of(self)));
-        let now = self.point_at(t);
+        let constants = self.constants();
+        let inside = self.along_axis(t);
+        let now = self.placed(inside);
         let state = self.body.leave(&now);
-        let mut columns = self.columns(constants, t, &now)?;
-        let attitude = rotation(state);
-        // along e₃ and across it → body axes; small turns → space
-        let scale = self.body.scale();
-        for n in 0..9 {
-            for k in 0..3 {
-                if n < 3 {
-                    columns[(3 + k, n)] *= scale;
-                } else {
-                    columns[(k, n)] /= scale;
-                }
-            }
-        }
-        for (first, axes) in [(0, attitude * constants.axes), (3, constants.axes)] {
-            let rows = axes * columns.fixed_rows::<3>(first);
-            columns.fixed_rows_mut::<3>(first).copy_from(&rows);
-        }
-        for (first, axes) in [(0, constants.attitude_at_start * constants.axes), (3, constants.axes)] {
-            let by_start = columns.fixed_columns::<3>(first) * axes.transpose();
-            columns.fixed_columns_mut::<3>(first).copy_from(&by_start);
-        }
-        if !columns.iter().all(|x| x.is_finite()) {
-            return Err(DerivativeError::OutOfRange { t });
-        }
-        let axis = constants.axes.column(2);
-        let along = axis * axis.transpose();
-        Ok(TopDerivative {
-            state,
-            attitude,
-            attitude_at_start: constants.attitude_at_start,
-            columns,
-            across: Matrix3::identity() - along,
-            along,
-            moments: [self.transverse, self.axial].map(|moment| moment.hi() * scale),
-            omega: self.body.omega_of(&now),
-            omega_at_start: constants.omega_at_start,
-        })
+        let found = match self.columns(constants, t, inside, rotation(state)) {
+            Some(columns) => self.found(constants, state, columns, 0),
+            None => self.at_with_scaled_derivative(t)?.unscaled(),
+        };
+        let is_finite = found.columns.as_slice().iter().all(|x| x.is_finite());
+        is_finite.then_some(found).ok_or(DerivativeError::OutOfRange { t })
     }
 
-    /// The columns of a [`TopDerivative`] in axes with e₃ along the weight moment, all of the body, in the units of the solver frame.
+    /// Where the motion is at `now`, from the rows by momentum with rotation vectors in the body, times 2^`exponent`.
+    pub(super) fn scaled(&self, now: &Point<f64>, rows: SMatrix<f64, 6, 9>, exponent: i32) -> TopDerivative {
+        let constants = self.constants();
+        let state = self.body.leave(now);
+        let (before, after) = (constants.attitude_at_start.transpose(), rotation(state).transpose());
+        let columns = in_axes(TurnAxes::Body, rows, before, after);
+        self.found(constants, state, columns, exponent)
+    }
+
+    fn constants(&self) -> &Derivative {
+        self.derivative.get_or_init(|| Box::new(Derivative::of(self)))
+    }
+
+    fn found(
+        &self,
+        constants: &Derivative,
+        state: State,
+        columns: SMatrix<f64, 6, 9>,
+        exponent: i32,
+    ) -> TopDerivative {
+        TopDerivative {
+            attitude: rotation(state),
+            omega: constants.inverse_inertia * state.momentum(),
+            state,
+            attitude_at_start: constants.attitude_at_start,
+            columns,
+            exponent,
+            across: constants.across,
+            along: constants.along,
+            moments: [self.transverse, self.axial].map(|moment| moment.hi() * self.body.scale()),
+            omega_at_start: constants.omega_at_start,
+        }
+    }
+
+    /// The columns of a [`TopDerivative`], by attitude and momentum at the time `t` in coordinates with e₃ along the weight moment and
+    /// by the rotation of the body; `None` where they grow too far to be followed.
     fn columns(
         &self,
         constants: &Derivative,
         t: f64,
-        now: &Point<f64>,
-    ) -> Result<SMatrix<f64, 6, 9>, DerivativeError> {
-        let (a, c, m3) = (self.transverse, self.axial, self.start.momentum_body[2]);
+        (along, now): (Quat<f64>, Vec3<f64>),
+        attitude: Matrix3<f64>,
+    ) -> Option<SMatrix<f64, 6, 9>> {
+        let Derivative { axes, turns, rates, by_transverse, by_weight, .. } = constants;
         let t_dd = Dd::from(t);
-        let (moved, unit) = match (&self.motion, &constants.passages) {
-            (Motion::Nutating { nutation, unit, .. }, Some(passages)) => {
-                let moved = passages.at(nutation, t_dd.scaled(-unit));
-                let reach = Dd::of(passages.reach()).scaled(*unit).hi();
-                (moved.ok_or(DerivativeError::Slow { t, most: MOST_STEPS, reach })?, *unit)
+        let response = match (&self.motion, &constants.passages) {
+            (Motion::Nutating { unit, .. }, Some(passages)) => {
+                let ball = |(attitude, m): (Quat<f64>, Vec3<f64>)| {
+                    Ball::new(attitude, [m[0], m[1]].map(|m| m * constants.per_momentum))
+                };
+                let place = |t: f64| ball(self.along_axis(libm::scalbn(t, *unit)));
+                passages.at(t_dd.scaled(-unit), &ball((along, now)), place)?
             }
             _ => {
                 let up = self.start.attitude.rotate_back(Vec3::unit(2))[2];
                 let sign = if up < Dd::ZERO { -Dd::ONE } else { Dd::ONE };
-                (vertical::at(t_dd, self.weight / a * sign, m3 / a), 0)
+                let (a, m3) = (self.transverse, self.start.momentum_body[2]);
+                vertical::at(t_dd, self.weight / a * sign, m3 / a, constants.beside * t_dd)
             }
         };
-        let Moved { response, turn } = moved;
-        let more = (a - c) / (a * c); // turns of the top beside those of the ball, per momentum
-        let response = turned(response, -(turn + m3 * more * t_dd));
-
-        // ω = m/A and g = c/A in units of time of 2^unit
-        let power = |n: i32| libm::scalbn(1.0, n * unit);
-        let moment = a.hi();
-        let start = self.start.momentum_body.map(|m| m.hi() / moment * power(1));
-        let g = (self.weight / a).hi() * power(2);
-        let mut inner = SMatrix::<f64, 7, 9>::zeros();
-        inner.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
-        inner.fixed_view_mut::<3, 3>(3, 3).fill_diagonal(power(1) / moment);
-        for k in 0..3 {
-            inner[(3 + k, 6)] = -start[k] / moment;
-        }
-        inner[(6, 6)] = -g / moment;
-        inner[(6, 8)] = power(2) / moment;
-        let mut columns = response * inner;
-
-        let now = self.frame.map(Dd::hi).rotate_back(now.momentum_body);
-        let by_rate = moment * power(-1);
-        for n in 0..9 {
-            for k in 0..3 {
-                columns[(3 + k, n)] *= by_rate;
+        let mut inside = SMatrix::<f64, 6, 9>::zeros();
+        inside.fixed_columns_mut::<3>(0).copy_from(&(response.fixed_columns::<3>(0) * turns));
+        inside.fixed_columns_mut::<3>(3).copy_from(&(response.fixed_columns::<3>(3) * rates));
+        for row in 0..6 {
+            for (column, by) in by_transverse.iter().enumerate() {
+                inside[(row, 6)] += response[(row, 3 + column)] * by;
             }
+            inside[(row, 8)] = response[(row, 6)] * by_weight;
         }
+        // momenta are rates times the moment
+        let momentum = now * self.body.scale();
+        let [by_m3, by_transverse, by_axial] = constants.further.map(|rate| rate * t);
+        let axis = axes.column(2) * by_m3;
+        let angles = [axis.x, axis.y, axis.z, by_transverse, by_axial, 0.0];
         for k in 0..3 {
-            columns[(3 + k, 6)] += now[k] / moment;
+            for column in 0..9 {
+                inside[(3 + k, column)] *= constants.per_rate;
+            }
+            inside[(3 + k, 6)] += now[k] * constants.inverse_transverse;
         }
-        let further = [(5, more.hi() * t), (6, (m3 / (a * a)).hi() * t), (7, -(m3 / (c * c)).hi() * t)];
-        for (column, angle) in further {
-            columns[(2, column)] += angle;
-            columns[(3, column)] += now[1] * angle;
-            columns[(4, column)] -= now[0] * angle;
+        for (column, angle) in angles.into_iter().enumerate() {
+            inside[(2, 3 + column)] += angle;
+            inside[(3, 3 + column)] += momentum[1] * angle;
+            inside[(4, 3 + column)] -= momentum[0] * angle;
         }
-        Ok(columns)
+        let mut columns = SMatrix::<f64, 6, 9>::zeros();
+        columns.fixed_rows_mut::<3>(0).copy_from(&(attitude * axes * inside.fixed_rows::<3>(0)));
+        columns.fixed_rows_mut::<3>(3).copy_from(&(axes * inside.fixed_rows::<3>(3)));
+        Some(columns)
     }
 }
