@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::error::RecordError;
-use super::held::repeats;
+use super::held::{Repeats, repeats};
 use super::rows::RawRows;
 use super::segment::Segment;
 
@@ -15,6 +15,8 @@ pub(super) enum Finding {
     Repeated {
         interval: f64,
     },
+    /// The reading before, again, of a sensor that otherwise reads each time.
+    Stale,
     Saturated,
     Gap,
 }
@@ -69,7 +71,7 @@ pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError>
         return Err(RecordError::Empty { file: file.into(), window: None, span: (0.0, 0.0) });
     }
     let all: Vec<[f64; 4]> = merged.iter().map(|(row, ..)| *row).collect();
-    let repeated = repeats(&all);
+    let Repeats { samples: repeated, evenly } = repeats(&all);
     let new = |i: &usize| !repeated[*i];
     let lines: Vec<usize> = (0..all.len()).filter(new).map(|i| merged[i].2).collect();
     let samples: Vec<[f64; 4]> = (0..all.len()).filter(new).map(|i| all[i]).collect();
@@ -79,7 +81,8 @@ pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError>
     let median = intervals.get(intervals.len() / 2).copied().unwrap_or(0.0);
     let repeated = all.iter().zip(&repeated).filter(|(_, repeated)| **repeated);
     let interval = mean(intervals.iter().copied().take_while(|interval| *interval <= GAP * median));
-    findings.extend(repeated.map(|(row, _)| (row[0], Finding::Repeated { interval })));
+    let finding = if evenly { Finding::Repeated { interval } } else { Finding::Stale };
+    findings.extend(repeated.map(|(row, _)| (row[0], finding)));
     let mut last: Option<f64> = None;
     for ((row, flat), line) in samples.iter().zip(flat).zip(lines) {
         if flat {

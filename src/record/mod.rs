@@ -172,6 +172,24 @@ impl Record {
         intervals.max_by(f64::total_cmp).map(|interval| 1.0 / interval)
     }
 
+    /// Number of samples left out because they repeat the reading before, in all three components, more often than chance brings: the sensor
+    /// stood still, or the log repeated what it had.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::record::Record;
+    /// let times: Vec<f64> = (0..400).map(|i| f64::from(i) / 100.0).collect();
+    /// let reading = |i: u32| Vector3::new(f64::from(i * i), 1.0, 0.0);
+    /// // eight rows in which nothing new was read
+    /// let rates: Vec<_> = (0..400).map(|i| reading(if (200..209).contains(&i) { 200 } else { i })).collect();
+    /// let record = Record::from_samples(&times, &rates)?;
+    /// assert_eq!((record.samples(), record.stale(), record.repeated()), (392, 8, 0));
+    /// # Ok::<(), polhode::record::RecordError>(())
+    /// ```
+    pub fn stale(&self) -> usize {
+        self.count(|finding| *finding == Finding::Stale)
+    }
+
     /// Number of samples left out because a component stood at the end of the sensor's range.
     pub fn saturated(&self) -> usize {
         self.count(|finding| *finding == Finding::Saturated)

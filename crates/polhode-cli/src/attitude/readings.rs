@@ -229,7 +229,7 @@ impl Found {
         let record = &part.record;
         self.samples += record.samples();
         self.merged += record.merged();
-        self.repeated += record.repeated();
+        self.repeated += record.repeated() + record.stale();
         self.saturated += record.saturated();
         self.new_readings_rate = self.new_readings_rate.or(record.new_readings_rate());
         self.spikes += part.spikes.len();
