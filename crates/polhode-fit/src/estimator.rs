@@ -13,6 +13,7 @@ use crate::columns::effect::Class;
 use crate::columns::input::Input;
 use crate::columns::sets::sensor_columns;
 use crate::error::FitError;
+use crate::models::weighed::spread;
 use crate::physical::failure::SolverFailure;
 use crate::physical::nearest::nearest;
 use crate::report::estimate::Estimate;
@@ -20,7 +21,7 @@ use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::settings::Settings;
-use crate::settings::torque::TorqueNoise;
+use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::noise;
 use crate::signal::normalised::{Normalised, normalised};
 use crate::signal::stretch::Stretch;
@@ -135,7 +136,10 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     let misfit = weak.misfit(variance);
     let information = || FitError::Solver(SolverFailure::Information);
     let kept = |column: &Column| matches!(column.class(), Class::Drag | Class::Input);
-    let joint = Joint::new(weak, kept, (variance * misfit.max(1.0)).sqrt()).ok_or_else(information)?;
+    let mut joint = Joint::new(weak, kept, (variance * misfit.max(1.0)).sqrt()).ok_or_else(information)?;
+    if settings.torque == TorqueModel::Auto {
+        joint = joint.widened(&spread(&chosen.models, chosen.model)).ok_or_else(information)?;
+    }
     let dissipation = dissipation(&weak.columns, &joint.kept);
     let (told, agreed) = match &prior {
         Some(prior) if completed.is_none() => with_prior(&joint, weak, prior, input)?,

@@ -156,6 +156,8 @@ thresholds! {
         FAR: f64 = 6.0,
             "standard deviations by which noise alone does not carry five numbers off the physical tensors", "limits_that_contradict_the_record_are_seen_in_the_misfit";
         RESIDUALS: f64 = 1.2, "misfit that is worth a warning", UNMEASURED;
+        HALVES: f64 = 35.888_186_879_672_87,
+            "chi squared of 5 degrees of freedom with a chance of 1e-6: both halves of a record contradict each other", DERIVED;
         NOISY: f64 = 4.0,
             "mean square residual of a segment over that of the median segment that is worth one", UNMEASURED;
         UNCERTAIN: f64 = 5e-3,

@@ -171,6 +171,24 @@ impl Estimate {
         named(py, &self.found.torque.coefficients)
     }
 
+    /// What each model of the torque makes of the record: a dict by model of `gain` (log-likelihood less that without a torque), `share`,
+    /// `principal`, `sigma_principal`, `unexplained` and `held_out`; empty of a fit to attitudes.
+    #[getter]
+    fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = PyDict::new(py);
+        for one in &self.found.models {
+            let entry = PyDict::new(py);
+            entry.set_item("gain", one.gain)?;
+            entry.set_item("share", one.share)?;
+            entry.set_item("principal", array(py, one.principal.to_vec(), &[3])?)?;
+            entry.set_item("sigma_principal", array(py, one.sigma_principal.to_vec(), &[3])?)?;
+            entry.set_item("unexplained", one.unexplained)?;
+            entry.set_item("held_out", one.held_out)?;
+            found.set_item(one.model.to_string(), entry)?;
+        }
+        Ok(found)
+    }
+
     /// What was estimated of the sensor: a dict of the same kind.
     #[getter]
     fn nuisances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

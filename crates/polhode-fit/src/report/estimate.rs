@@ -8,6 +8,7 @@ use crate::physical::certificate::Certificate;
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::attitudes::AttitudeFit;
 use crate::report::identifiability::Identifiability;
+use crate::report::model::ModelFit;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warning::Warning;
@@ -79,7 +80,7 @@ pub struct Estimate {
     pub free_covariance: SMatrix<f64, 6, 6>,
     /// The Cramér–Rao bound on it, shares² of the trace; `None` where the tensor has no inverse, or no free motion of it explains the samples.
     pub bound: Option<SMatrix<f64, 6, 6>>,
-    /// Root of the trace of [`free_covariance`](Self::free_covariance) over that of the bound; 1 is efficient.
+    /// Root of the trace of the covariance under the chosen model alone, before the physical law is imposed, over that of the bound; 1 is efficient.
     pub bound_ratio: Option<f64>,
     /// Absolute tensor, kg m², sensor axes; `None` where nothing gives its size, as [`Settings::known`](crate::Settings::known)
     /// does, or wheels and torques of the record.
@@ -121,6 +122,9 @@ pub struct Estimate {
     pub whiteness: Whiteness,
     /// The torque that the fit reckons with.
     pub torque: FittedTorque,
+    /// Each model of the torque beside it; empty of a likelihood on the exact motion. Where the fit has chosen the model, the deviations
+    /// of the answer include how far apart these are, in proportion to their shares.
+    pub models: Vec<ModelFit>,
     /// What was estimated of the sensor, each with its prior.
     pub nuisances: Vec<Nuisance>,
     /// What errors of the sensor that the fit takes to be zero would do to the moments.

@@ -144,7 +144,8 @@ pub(crate) fn report(
         momentum_trend: drag.map(|(drag, sigma)| InvariantTrend { rate: -drag, sigma }),
         energy_trend: None,
         whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
-        torque: torque(free, information.torques.clone()),
+        torque: torque(free, information.torques.clone(), settings.torque == TorqueModel::Auto),
+        models: Vec::new(),
         nuisances: Vec::new(),
         systematic: Vec::new(),
         prior: agreed,
@@ -168,7 +169,7 @@ pub(crate) fn report(
 }
 
 /// The torque that was reckoned with.
-fn torque(free: &Free, coefficients: Vec<Nuisance>) -> FittedTorque {
+fn torque(free: &Free, coefficients: Vec<Nuisance>, is_chosen: bool) -> FittedTorque {
     let model = match free.torque {
         Acting::Nothing => TorqueModel::None,
         Acting::Drag => TorqueModel::Drag,
@@ -178,7 +179,7 @@ fn torque(free: &Free, coefficients: Vec<Nuisance>) -> FittedTorque {
         let (moments, _) = eigen(tensor(&x));
         [moments[0] / moments[2], moments[1] / moments[2]]
     });
-    FittedTorque { model, coefficients, gain: free.gain, ratios_without }
+    FittedTorque { model, is_chosen, coefficients, gain: free.gain, ratios_without }
 }
 
 /// At the noise that was given, or as much as is left where that is more.

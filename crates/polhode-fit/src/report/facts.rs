@@ -22,6 +22,7 @@ use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
 use crate::report::mirror::mirrored;
+use crate::report::model::models;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance};
 use crate::report::nuisances::nuisances;
 use crate::report::segments::summaries;
@@ -31,6 +32,7 @@ use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
 use crate::report::warnings::{Grounds, warnings};
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
+use crate::signal::covariance::{Levels, torque_shape};
 use crate::signal::stretch::Stretch;
 use crate::solve::joint::Joint;
 use crate::solve::ladder::Chosen;
@@ -79,12 +81,20 @@ impl Facts<'_> {
         let motions =
             free_body.then(|| Motions::nearest(self.stretches, &nearest.x, self.variance)).flatten();
         let bound = motions.as_ref().and_then(|m| m.bound(self.variance));
-        let bound_ratio = bound.filter(|_| self.prior.is_none()).map(|b| free.norm() / b.trace().sqrt());
+        let statistical = self.statistical();
+        let bound_ratio =
+            bound.zip(statistical).filter(|_| self.prior.is_none()).map(|(b, own)| own / b.trace().sqrt());
         let covariance = on_face * on_face.transpose();
         let at = self.joint.unknowns(&nearest.others, nearest.x);
         let (inertia, inertia_covariance) =
             self.absolute(&j, &covariance, &together, motions.as_ref(), &at)?;
-        let (momentum, energy) = trends(self.stretches, &j, self.variance * self.misfit.max(1.0));
+        let part = |k| weak.parts.iter().find(|part| part.stretch == k);
+        let torque_noise = |k| {
+            let levels = part(k).map_or(Levels::WHITE, |part| part.levels);
+            torque_shape(levels.shape, &j) * (levels.torque * self.variance)
+        };
+        let excess = self.variance * self.misfit.max(1.0);
+        let (momentum, energy) = trends(self.stretches, &j, excess, torque_noise);
         let per_second =
             |d: InvariantTrend| InvariantTrend { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
         let residuals = self.residuals(&at);
@@ -122,6 +132,7 @@ impl Facts<'_> {
             energy_trend: Some(per_second(energy)),
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
             torque: torques,
+            models: models(&self.chosen.models, self.chosen.model, motion),
             nuisances: sensor,
             systematic: lines,
             prior: self.prior,
@@ -138,12 +149,19 @@ impl Facts<'_> {
         Ok(estimate)
     }
 
+    /// Root of the trace of the covariance under the chosen model alone.
+    fn statistical(&self) -> Option<f64> {
+        let deviation = (self.variance * self.misfit.max(1.0)).sqrt();
+        self.chosen.weak.root.try_inverse().map(|factor| factor.norm() * deviation)
+    }
+
     /// What warnings are drawn from.
     fn grounds<'b>(&'b self, open: Option<&'b Others>, suspect: Option<Suspect>) -> Grounds<'b> {
         Grounds {
             record: self.record,
             weak: &self.chosen.weak,
             misfit: self.misfit,
+            variance: self.variance,
             open,
             suspect,
             found: self.settings.torque == TorqueModel::Auto,
@@ -226,6 +244,7 @@ impl Facts<'_> {
         });
         let torque = FittedTorque {
             model: self.chosen.model,
+            is_chosen: self.settings.torque == TorqueModel::Auto,
             coefficients: torques,
             gain: self.chosen.gain,
             ratios_without,

@@ -42,6 +42,8 @@ impl Nuisance {
 pub struct FittedTorque {
     /// The model; never [`TorqueModel::Auto`].
     pub model: TorqueModel,
+    /// Whether the fit has chosen it.
+    pub is_chosen: bool,
     /// Its coefficients.
     pub coefficients: Vec<Nuisance>,
     /// Gain of log-likelihood over no torque, where both were fitted.

@@ -1,7 +1,7 @@
 //! Whether the motion is torque-free, and the noise white.
 
 use crate::thresholds::trend::SIGNIFICANT;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::signal::stretch::Stretch;
 
@@ -51,39 +51,73 @@ impl Whiteness {
     }
 }
 
-/// Trends of |J ω| and of ω·J ω: slopes of their squares against time about each stretch's own mean.
+/// Trends of |J ω| and of ω·J ω: slopes of their squares against time about each stretch's own mean. `torque` is the
+/// spectral density of the torque noise of each stretch, by its number.
 ///
 /// Each sample of |J ω|² has the variance 4 σ² |J² ω|², of ω·J ω the variance 4 σ² |J ω|²; the noise adds a constant to
-/// both means, which no slope sees.
+/// both means, which no slope sees. White torque noise of density S lets them walk at random, by 4 (J ω)·S J ω and 4 ω·S ω a unit
+/// of time.
 pub(crate) fn trends(
     stretches: &[Stretch],
     j: &Matrix3<f64>,
     variance: f64,
+    torque: impl Fn(usize) -> Matrix3<f64>,
 ) -> (InvariantTrend, InvariantTrend) {
     let jj = j * j;
-    let momentum = slope(stretches, |w| (w.dot(&(jj * w)), 4.0 * variance * (jj * w).norm_squared()));
-    let energy = slope(stretches, |w| (w.dot(&(j * w)), 4.0 * variance * (j * w).norm_squared()));
+    let momentum = slope(stretches, &torque, |w, s| Reading {
+        value: w.dot(&(jj * w)),
+        variance: 4.0 * variance * (jj * w).norm_squared(),
+        walk: 4.0 * (j * w).dot(&(s * j * w)),
+    });
+    let energy = slope(stretches, &torque, |w, s| Reading {
+        value: w.dot(&(j * w)),
+        variance: 4.0 * variance * (j * w).norm_squared(),
+        walk: 4.0 * w.dot(&(s * w)),
+    });
     // |Jω| changes half as fast as its square
     (InvariantTrend { rate: 0.5 * momentum.rate, sigma: 0.5 * momentum.sigma }, energy)
 }
 
-fn slope(stretches: &[Stretch], reading: impl Fn(&nalgebra::Vector3<f64>) -> (f64, f64)) -> InvariantTrend {
+/// A quantity at one sample.
+struct Reading {
+    value: f64,
+    /// Its variance by the noise of the rates.
+    variance: f64,
+    /// By how much the variance of the quantity itself grows a unit of time.
+    walk: f64,
+}
+
+fn slope(
+    stretches: &[Stretch],
+    torque: impl Fn(usize) -> Matrix3<f64>,
+    reading: impl Fn(&Vector3<f64>, &Matrix3<f64>) -> Reading,
+) -> InvariantTrend {
     let (mut numerator, mut denominator, mut noise) = (0.0, 0.0, 0.0);
-    for s in stretches.iter().filter(|s| s.times.len() > 2) {
+    for (k, s) in stretches.iter().enumerate().filter(|(_, s)| s.times.len() > 2) {
         let n = s.times.len() as f64;
+        let density = torque(k);
         let middle = s.times.iter().sum::<f64>() / n;
-        let values: Vec<(f64, f64)> = s.rates.iter().map(&reading).collect();
-        let mean = values.iter().map(|v| v.0).sum::<f64>() / n;
-        let spread = values.iter().map(|v| v.1).sum::<f64>() / n;
+        let values: Vec<Reading> = s.rates.iter().map(|w| reading(w, &density)).collect();
+        let mean = values.iter().map(|v| v.value).sum::<f64>() / n;
+        let spread = values.iter().map(|v| v.variance).sum::<f64>() / n;
+        let walk = values.iter().map(|v| v.walk).sum::<f64>() / n;
         if !(mean > 0.0 && spread > 0.0) {
             continue;
         }
-        let weight = mean / spread;
-        for (t, (value, variance)) in s.times.iter().zip(&values) {
+        // a straight line through a walk of rate D over a time T has a slope of variance 6 D/(5 T), through noise 12 σ²/(n T²)
+        let by_walk = walk * s.duration() * n / 10.0;
+        let weight = mean / (spread + by_walk);
+        let mut later: f64 = s.times.iter().map(|t| weight * (t - middle)).sum();
+        let mut before = middle;
+        for (t, v) in s.times.iter().zip(&values) {
             let u = t - middle;
-            numerator += weight * u * (value - mean);
+            // what the walk gains from one sample to the next stays in all later ones
+            noise += later * later * walk * (t - before).max(0.0);
+            before = *t;
+            later -= weight * u;
+            numerator += weight * u * (v.value - mean);
             denominator += weight * mean * u * u;
-            noise += weight * weight * u * u * variance;
+            noise += weight * weight * u * u * v.variance;
         }
     }
     if denominator > 0.0 {

@@ -4,6 +4,7 @@ use core::fmt;
 
 use crate::error::per_cent;
 use crate::physical::constraint::ActiveConstraint;
+use crate::report::halves::Halves;
 use crate::report::nuisance::FittedTorque;
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::thresholds::likelihood::LINEAR;
@@ -25,6 +26,11 @@ pub enum Warning {
         samples: usize,
         /// The rate at which new readings come, 1/s.
         rate: f64,
+    },
+    /// Samples in which a sensor repeated its reading before were left out.
+    Stale {
+        /// Samples that were left out.
+        samples: usize,
     },
     /// Samples at the end of the sensor's range were left out.
     Saturated {
@@ -101,6 +107,8 @@ pub enum Warning {
         /// Gain of log-likelihood with them, the torque noise as it was fitted without them.
         gain: f64,
     },
+    /// Both halves of the record contradict each other.
+    Halves(Halves),
     /// The residuals of one segment exceed those of the median segment.
     NoisySegment {
         /// Which segment of the record, from 0.
@@ -182,6 +190,11 @@ impl fmt::Display for Warning {
                 counted(*samples, "was", "were"),
                 four_digits(*rate)
             ),
+            Self::Stale { samples } => write!(
+                f,
+                "{} left out as repeating the reading before: the sensor stood still there, or the log lost what it read",
+                counted(*samples, "was", "were")
+            ),
             Self::Saturated { samples } => {
                 let (subject, verb) = if *samples == 1 { ("sample", "was") } else { ("samples", "were") };
                 write!(f, "{samples} {subject} at the end of the sensor's range (flat tops) {verb} left out")
@@ -248,6 +261,13 @@ impl fmt::Display for Warning {
                     size.trim_end()
                 )
             }
+            Self::Halves(Halves { first, second, chi2 }) => write!(
+                f,
+                "the first half of the record says I1 : I2 : I3 = {}, the second {} (chi squared {chi2:.0} of 5): a tensor that changes, as \
+                 where something moves in the body, or a torque or error of the sensor that is no part of the fit",
+                moments(first),
+                moments(second)
+            ),
             Self::NoisySegment { segment, start, times } => write!(
                 f,
                 "segment {} (from {start} s) has {times:.1} times the residuals of the median segment: check it",
@@ -281,16 +301,19 @@ impl fmt::Display for Warning {
             ),
             Self::CoarseAttitudes { turn } => write!(
                 f,
-                "from one attitude to the next the body turns by up to {turn:.2} rad: one that turns the other way round by {:.2} rad would                  look the same; make sure that it is not that fast",
+                "from one attitude to the next the body turns by up to {turn:.2} rad: one that turns the other way round by {:.2} rad would \
+                 look the same; make sure that it is not that fast",
                 core::f64::consts::TAU - turn
             ),
             Self::AttitudeResiduals { times, noise } => write!(
                 f,
-                "the free motion leaves {times:.1} times what the noise of the attitudes of {noise:.2e} rad explains: torques, or errors                  that last over many attitudes; deviations are enlarged by that factor"
+                "the free motion leaves {times:.1} times what the noise of the attitudes of {noise:.2e} rad explains: torques, or errors \
+                 that last over many attitudes; deviations are enlarged by that factor"
             ),
             Self::MovingAxes { turn, gain } => write!(
                 f,
-                "the axes of attitudes and rates move against each other, by {turn:.2e} rad from the first sample to the last (log-likelihood                  higher by {gain:.0}): fix both to the body, or compare their clocks"
+                "the axes of attitudes and rates move against each other, by {turn:.2e} rad from the first sample to the last (log-likelihood \
+                 higher by {gain:.0}): fix both to the body, or compare their clocks"
             ),
             Self::Profile { times } => write!(
                 f,
@@ -302,6 +325,11 @@ impl fmt::Display for Warning {
             }
         }
     }
+}
+
+/// As shares of the trace.
+fn moments([a, b, c]: &[f64; 3]) -> String {
+    format!("{a:.4} : {b:.4} : {c:.4}")
 }
 
 fn torque(f: &mut fmt::Formatter<'_>, name: &str, trend: &InvariantTrend) -> fmt::Result {

@@ -8,6 +8,7 @@ use polhode::record::Record;
 
 use crate::report::attitudes::AttitudeFit;
 use crate::report::estimate::Estimate;
+use crate::report::halves::halves;
 use crate::report::sensor::Suspect;
 use crate::report::torque_free::InvariantTrend;
 use crate::report::warning::Warning;
@@ -21,6 +22,8 @@ pub(super) struct Grounds<'a> {
     pub(super) weak: &'a WeakEstimate,
     /// Mean square of the residuals over the noise.
     pub(super) misfit: f64,
+    /// Variance of the noise, in units of the mean square rate.
+    pub(super) variance: f64,
     /// Units that explain the record as well.
     pub(super) open: Option<&'a Others>,
     /// Errors of the sensor that explain the record better.
@@ -36,7 +39,7 @@ pub(super) struct Grounds<'a> {
 /// What of the record, the residuals and the answer limits the use of `e`.
 pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     let mut list = Vec::new();
-    let Grounds { record, weak, misfit, open, suspect, found, noise_found, driven } = *grounds;
+    let Grounds { record, weak, misfit, open, suspect, found, noise_found, driven, .. } = *grounds;
     if let Some(others) = open {
         list.push(Warning::Units {
             products: others.products.clone(),
@@ -49,6 +52,9 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     }
     if let Some(rate) = record.new_readings_rate() {
         list.push(Warning::Repeated { samples: record.repeated(), rate });
+    }
+    if record.stale() > 0 {
+        list.push(Warning::Stale { samples: record.stale() });
     }
     if record.saturated() > 0 {
         list.push(Warning::Saturated { samples: record.saturated() });
@@ -88,6 +94,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if let Some(Suspect { what, size, unit, gain }) = suspect {
         list.push(Warning::Sensor { what, size, unit, gain });
     }
+    list.extend(halves(weak, grounds.variance * misfit.max(1.0)).map(Warning::Halves));
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);
     if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {

@@ -1,5 +1,7 @@
 //! The torque that a fit reckons with.
 
+use core::fmt;
+
 /// A torque that acts on the body besides what the record measures. Coefficients are per trace of the tensor, so that
 /// they need no absolute scale.
 #[non_exhaustive]
@@ -19,6 +21,19 @@ pub enum TorqueModel {
     /// the next one does not surpass in restricted likelihood.
     #[default]
     Auto,
+}
+
+impl fmt::Display for TorqueModel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::None => "none",
+            Self::Drag => "drag",
+            Self::Drag3 => "drag3",
+            Self::Quadratic => "quadratic",
+            Self::Constant => "constant",
+            Self::Auto => "auto",
+        })
+    }
 }
 
 /// White torque noise: what acts on the body at random, as turbulence does.

@@ -1,9 +1,9 @@
 //! What all stretches say of some columns and the tensor together, the other columns each at its best for them.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::columns::column::{Column, Unknowns};
-use crate::physical::coordinates::Coordinates;
+use crate::physical::coordinates::{Coordinates, Form};
 use crate::physical::nearest::Normal;
 use crate::solve::weak_estimate::WeakEstimate;
 
@@ -53,6 +53,24 @@ impl Joint {
         let own = triangle.view((0, 0), (first, first)).into_owned();
         let finite = root.iter().chain(&centre).all(|v| v.is_finite());
         finite.then_some(Joint { kept, told: Normal { centre, root }, rest, own, shared, best })
+    }
+
+    /// With the covariance of the tensor enlarged by `spread`.
+    pub(crate) fn widened(mut self, spread: &Form) -> Option<Joint> {
+        if *spread == Form::zeros() {
+            return Some(self);
+        }
+        let SymmetricEigen { eigenvectors: v, eigenvalues } = SymmetricEigen::new(*spread);
+        let more = v * Form::from_diagonal(&eigenvalues.map(|value| value.max(0.0).sqrt()));
+        // C + S = F Fᵀ with F = (R⁻¹, √S), and Fᵀ = Q T: a root of its inverse is T⁻ᵀ
+        let size = self.told.root.ncols();
+        let mut factors = DMatrix::zeros(size + 5, size);
+        let own = self.told.root.clone().try_inverse()?;
+        factors.view_mut((0, 0), (size, size)).copy_from(&own.transpose());
+        factors.view_mut((size, size - 5), (5, 5)).copy_from(&more.transpose());
+        let inverse = factors.qr().r().try_inverse()?;
+        self.told.root = inverse.transpose().qr().r();
+        self.told.root.iter().all(|v| v.is_finite()).then_some(self)
     }
 
     /// All unknowns where those that are kept are `others`, and the tensor is `x`.

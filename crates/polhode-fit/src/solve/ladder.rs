@@ -2,6 +2,9 @@
 
 use crate::columns::column::Column;
 use crate::columns::sets::torque_columns;
+use crate::models::MODELS;
+use crate::models::equations::Equations;
+use crate::models::weighed::{Weighed, asked};
 use crate::physical::coordinates::Coordinates;
 use crate::settings::torque::TorqueModel;
 use crate::signal::covariance::Levels;
@@ -21,6 +24,8 @@ pub(crate) struct Chosen {
     pub(crate) gain: Option<f64>,
     /// Coordinates without the torque.
     pub(crate) without: Option<Coordinates>,
+    /// What every model makes of the record; empty where the rounds did not settle.
+    pub(crate) models: Vec<Weighed>,
 }
 
 /// What a fit is asked to reckon with.
@@ -41,12 +46,15 @@ impl Demand<'_> {
 
 /// The weak estimate that the demand asks for.
 pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) -> Result<Chosen, Failure> {
-    Ladder { stretches, demand, variance }.choose()
+    let ladder = Ladder { stretches, demand, variance };
+    let mut chosen = ladder.choose()?;
+    chosen.models = ladder.weigh(&chosen);
+    Ok(chosen)
 }
 
 /// A weak estimate of one model, compared with no other.
 fn plain(weak: WeakEstimate, model: TorqueModel) -> Chosen {
-    Chosen { weak, model, gain: None, without: None }
+    Chosen { weak, model, gain: None, without: None, models: Vec::new() }
 }
 
 struct Ladder<'a> {
@@ -86,7 +94,7 @@ impl Ladder<'_> {
     fn is_enough(&self, first: &WeakEstimate) -> bool {
         let demand = &self.demand;
         let asks =
-            |model| gain_of(self.stretches, first, &demand.columns(model), self.variance) > needed(model);
+            |model| gain_of(self.stretches, first, &demand.columns(model), self.variance) > asked(model);
         match demand.noise {
             Noise::Given(_) => return false,
             Noise::Fitted if has_torque_noise(self.stretches, first, self.variance) => return false,
@@ -105,41 +113,79 @@ impl Ladder<'_> {
         let none = self.descent(TorqueModel::None, radius)?;
         let floor = likelihood(stretches, &none, variance);
         let gain = gain_of(stretches, &none, &demand.columns(TorqueModel::Constant), variance);
-        let may_be_constant = !none.has_settled() || gain > HOPE * needed(TorqueModel::Constant);
+        let may_be_constant = !none.has_settled() || gain > HOPE * asked(TorqueModel::Constant);
         let without = none.has_settled().then(|| none.x());
         let mut best = plain(none, TorqueModel::None);
         let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
             let gain = likelihood(stretches, &weak, variance) - floor;
             let more = torque_columns(model).len().saturating_sub(torque_columns(best.model).len()).max(1);
-            let asked = if best.model == TorqueModel::None { needed(model) } else { threshold(more) };
+            let asked = if best.model == TorqueModel::None { asked(model) } else { threshold(more) };
             let before = likelihood(stretches, &best.weak, variance) - floor;
             let better = weak.has_settled() && (!best.weak.has_settled() || gain - before > asked);
             let gain = Some(gain).filter(|gain| gain.is_finite());
-            if better { Chosen { weak, model, gain, without } } else { best }
+            if better { Chosen { weak, model, gain, without, models: Vec::new() } } else { best }
         };
+        let mut fitted = vec![self.fitted(&best.weak, TorqueModel::None, floor)];
+        fitted.push(self.fitted(&drag, TorqueModel::Drag, floor));
         best = climb(best, TorqueModel::Drag, drag);
         if may_be_constant && let Ok(constant) = self.descent(TorqueModel::Constant, radius) {
+            fitted.push(self.fitted(&constant, TorqueModel::Constant, floor));
             best = climb(best, TorqueModel::Constant, constant);
         }
         if best.model == TorqueModel::Drag
             && may_be_drag3(stretches, &best.weak, demand, variance)
             && let Ok(drag) = self.descent(TorqueModel::Drag3, radius)
         {
+            fitted.push(self.fitted(&drag, TorqueModel::Drag3, floor));
             best = climb(best, TorqueModel::Drag3, drag);
         }
         // what a descent did not settle, plain rounds may have
         let is_plain = explained && best.model == TorqueModel::None && !best.weak.has_torque_noise();
         let keep = first.has_settled() && (!best.weak.has_settled() || is_plain);
-        Ok(if keep { plain(first, TorqueModel::None) } else { best })
+        if keep {
+            return Ok(plain(first, TorqueModel::None));
+        }
+        best.models = fitted.into_iter().flatten().collect();
+        Ok(best)
+    }
+
+    /// A model that was fitted by itself, `floor` being the likelihood without a torque.
+    fn fitted(&self, weak: &WeakEstimate, model: TorqueModel, floor: f64) -> Option<Weighed> {
+        let gain = likelihood(self.stretches, weak, self.variance) - floor;
+        let deviation = (self.variance * weak.misfit(self.variance).max(1.0)).sqrt();
+        let factor = weak.root.try_inverse()? * deviation;
+        let is_fit = weak.has_settled() && gain.is_finite();
+        is_fit.then_some(Weighed { model, gain, x: weak.x(), factor, held_out: None })
+    }
+
+    /// What every model makes of the record. Of one that was not fitted by itself the equations of the chosen one say it, to first
+    /// order, as they say what each predicts of a segment from the others.
+    fn weigh(&self, chosen: &Chosen) -> Vec<Weighed> {
+        let (weak, variance, common) = (&chosen.weak, self.variance, self.demand.columns);
+        let equations = weak.has_settled().then(|| Equations::new(self.stretches, weak, common, variance));
+        let Some(equations) = equations.flatten() else { return Vec::new() };
+        let fitted = |model| chosen.models.iter().find(|one| one.model == model).cloned();
+        let own = equations.of(chosen.model).stacked().squares;
+        let none = equations.of(TorqueModel::None).stacked().squares;
+        let base = fitted(chosen.model).map_or(0.5 * (none - own) / variance, |one| one.gain);
+        let deviation = (variance * weak.misfit(variance).max(1.0)).sqrt();
+        let each = MODELS.into_iter().filter_map(|model| {
+            let equations = equations.of(model);
+            let linear = || {
+                let stacked = equations.stacked();
+                let gain = base + 0.5 * (own - stacked.squares) / variance;
+                let factor = stacked.root.try_inverse()? * deviation;
+                Some(Weighed { model, gain, x: stacked.minimiser()?.x, factor, held_out: None })
+            };
+            Some(Weighed { held_out: equations.held_out(), ..fitted(model).or_else(linear)? })
+        });
+        each.filter(|one| one.factor.iter().chain(&one.x).all(|v| v.is_finite())).collect()
     }
 }
 
-fn threshold(coefficients: usize) -> f64 {
+/// The gain that is asked of so many coefficients.
+pub(crate) fn threshold(coefficients: usize) -> f64 {
     FIRST + FURTHER * (coefficients.max(1) - 1) as f64
-}
-
-fn needed(model: TorqueModel) -> f64 {
-    threshold(torque_columns(model).len())
 }
 
 /// Log-likelihood of an estimate, the unknowns at their best; estimates at one radius can be compared.

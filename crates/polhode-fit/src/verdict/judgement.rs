@@ -93,7 +93,8 @@ impl Case<'_> {
         let Case { stretches, settings, variance, rms, .. } = *self;
         let misfit = weak.misfit(variance);
         let axes = averages::axes(stretches, variance);
-        let (fall, _) = trends(stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0));
+        let (fall, _) =
+            trends(stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0), |_| Matrix3::zeros());
         let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
             .then_some(-fall.rate * rms);
         FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall, mirror: None }

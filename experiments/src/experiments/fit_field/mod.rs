@@ -2,6 +2,7 @@
 
 mod bound;
 mod cases;
+mod choice;
 pub(super) mod tally;
 mod trial;
 mod units;
@@ -79,8 +80,11 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let (units, failed) = units::table(context)?;
     views.push(units.clone());
     failures.extend(failed);
+    let (choice, failed) = choice::table(context)?;
+    views.push(choice.clone());
+    failures.extend(failed);
     Ok(Report {
-        tables: vec![table, totals, units],
+        tables: vec![table, totals, units, choice],
         views,
         timing: Some(timing),
         seed: Some(SEED),

@@ -4,7 +4,7 @@ use super::cases::{Case, Model};
 use super::trial::{Trial, Verdict};
 
 /// The 95 % points of χ² with five and six degrees of freedom, and the 99.9 % points.
-const ELLIPSOIDS: [(f64, f64); 2] =
+pub(super) const ELLIPSOIDS: [(f64, f64); 2] =
     [(11.070_497_693_516_35, 20.515_005_652_432_87), (12.591_587_243_743_98, 22.457_744_484_825_326)];
 /// The normal deviate that one in twenty exceeds, either sign.
 const ONE_IN_TWENTY: f64 = 1.959_963_984_540_054;
@@ -47,7 +47,7 @@ impl Interval {
     }
 
     /// Of another number of standard deviations.
-    fn wide(count: u64, of: u64, z: f64) -> Option<Self> {
+    pub(super) fn wide(count: u64, of: u64, z: f64) -> Option<Self> {
         if of == 0 {
             return None;
         }

@@ -37,14 +37,14 @@ pub(super) struct Answer {
     pub(super) lines_cover: bool,
 }
 
-type Entries = SMatrix<f64, 6, 1>;
+pub(super) type Entries = SMatrix<f64, 6, 1>;
 
-fn entries(j: &Matrix3<f64>) -> Entries {
+pub(super) fn entries(j: &Matrix3<f64>) -> Entries {
     SMatrix::from([[j[(0, 0)], j[(1, 1)], j[(2, 2)], j[(0, 1)], j[(0, 2)], j[(1, 2)]]])
 }
 
 /// eᵀ C⁻¹ e; with `shape`, C is singular along the trace.
-fn square(e: &Entries, c: &SMatrix<f64, 6, 6>, shape: bool) -> Option<f64> {
+pub(super) fn square(e: &Entries, c: &SMatrix<f64, 6, 6>, shape: bool) -> Option<f64> {
     let trace = SMatrix::<f64, 6, 1>::from([[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]]);
     let regular = if shape { c + trace * trace.transpose() * c.trace() } else { *c };
     Some(e.dot(&regular.cholesky()?.solve(e)))

@@ -10,8 +10,8 @@ use polhode_pages::document::{Block, Form, Tone};
 use super::attitudes::Read;
 use super::flights::Spans;
 use super::report::{
-    Facts, SURE, attitudes, digits, mirror, sensor_lines, sizes, systematic, torque, unexplained, unused,
-    with_error,
+    Facts, MODELS, SURE, about_models, attitudes, digits, mirror, models, sensor_lines, sizes, systematic,
+    unexplained, unused, with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -35,6 +35,7 @@ pub(super) fn estimated(
     }
     parts.extend(spans.parts());
     parts.extend(torques(e));
+    parts.extend(of_models(e));
     parts.extend(sensor(e));
     parts.push(Block::Heading("Segments".into()));
     parts.push(segments(e, record, motion));
@@ -156,7 +157,7 @@ fn torques(e: &Estimate) -> Vec<Block> {
         return Vec::new();
     }
     let mut parts = vec![Block::Heading("Torque".into())];
-    let model = torque(e.torque.model);
+    let model = e.torque.model;
     parts.push(Block::Paragraph(match e.torque.gain {
         Some(gain) => format!("Model: {model}. It gains {gain:.1} in log-likelihood over none."),
         None => format!("Model: {model}."),
@@ -171,6 +172,19 @@ fn torques(e: &Estimate) -> Vec<Block> {
         parts.push(Block::Table(head, vec![row(0, "I1/I3"), row(1, "I2/I3")]));
     }
     parts
+}
+
+fn of_models(e: &Estimate) -> Vec<Block> {
+    let rows = models(e);
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let cell = |cell: &String| cell.replace("+-", "±").replace('-', "\u{2212}");
+    let rows = rows.iter().map(|row| row.iter().map(cell).collect()).collect();
+    let about = about_models(e);
+    let about = format!("{}{}:", about[..1].to_uppercase(), &about[1..]);
+    let heads = MODELS.map(String::from).to_vec();
+    vec![Block::Heading("Models of the torque".into()), Block::Paragraph(about), Block::Table(heads, rows)]
 }
 
 fn sensor(e: &Estimate) -> Vec<Block> {

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::attitudes::Read;
 use super::super::flights::Spans;
-use super::{attitudes, method, torque, unused};
+use super::{attitudes, method, unused};
 
 fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
     (0..3).map(|i| (0..3).map(|j| m[(i, j)]).collect()).collect()
@@ -78,11 +78,17 @@ fn drift(of: InvariantTrend) -> Value {
 fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
     json!({
         "torque": {
-            "model": torque(e.torque.model),
+            "model": e.torque.model.to_string(),
             "coefficients": nuisances(&e.torque.coefficients),
             "gain": e.torque.gain,
             "ratios_without": e.torque.ratios_without,
         },
+        "models": e.models.iter().map(|one| json!({
+            "torque": one.model.to_string(), "log_likelihood": one.gain, "share": one.share,
+            "principal": one.principal, "sigma_principal": one.sigma_principal,
+            "ratios": one.ratios, "sigma_ratios": one.sigma_ratios,
+            "unexplained_share": one.unexplained, "held_out": one.held_out,
+        })).collect::<Vec<_>>(),
         "nuisances": nuisances(&e.nuisances),
         "prior": e.prior.map(|p| json!({ "chi2": p.chi2, "dof": p.dof })),
         "systematic": e.systematic.iter().map(|line| json!({

@@ -5,7 +5,7 @@ mod json;
 mod rows;
 mod text;
 
-use polhode_fit::{AverageAxis, Estimate, Identifiability, Method, Record, Systematic, TorqueModel};
+use polhode_fit::{AverageAxis, Estimate, Identifiability, Method, ModelFit, Record, Systematic};
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
 
@@ -143,6 +143,16 @@ pub(super) fn with_error(value: f64, sigma: f64) -> String {
     format!("{value:.digits$} +- {sigma:.digits$}")
 }
 
+/// A value with two digits of its deviation in brackets, in units of the last place: 0.2130(14) is 0.2130 ± 0.0014.
+fn concise(value: f64, sigma: f64) -> String {
+    let digits = digits(sigma);
+    let in_places = sigma * libm::pow(10.0, digits as f64);
+    match in_places.is_finite() {
+        true => format!("{value:.digits$}({in_places:.0})"),
+        false => format!("{value:.6}"),
+    }
+}
+
 /// Decimals that show two digits of a deviation.
 pub(super) fn digits(sigma: f64) -> usize {
     let place = if sigma > 0.0 && sigma.is_finite() { 1.0 - libm::floor(libm::log10(sigma)) } else { 6.0 };
@@ -194,14 +204,33 @@ pub(super) fn mirror(e: &Estimate) -> Option<String> {
     Some(format!("if the axes are left-handed: I1 : I2 : I3 = {a} : {b} : {c} (--axes)"))
 }
 
-/// The model of a torque in words.
-pub(super) fn torque(model: TorqueModel) -> &'static str {
-    match model {
-        TorqueModel::None => "none",
-        TorqueModel::Drag => "drag",
-        TorqueModel::Drag3 => "drag3",
-        TorqueModel::Quadratic => "quadratic",
-        TorqueModel::Constant => "constant",
-        _ => "auto",
-    }
+/// The models of the torque beside each other: name, gain of log-likelihood, share, both ratios with their deviations, what free
+/// motion leaves, what they make of a segment that is held out.
+pub(super) fn models(e: &Estimate) -> Vec<[String; 7]> {
+    let ratio = |one: &ModelFit, k: usize| concise(one.ratios[k], one.sigma_ratios[k]);
+    let percent = |share: f64| format!("{:.*} %", digits(100.0 * share).min(4), 100.0 * share);
+    let row = |one: &ModelFit| {
+        [
+            one.model.to_string(),
+            format!("{:.1}", one.gain),
+            format!("{:.3}", one.share),
+            ratio(one, 0),
+            ratio(one, 1),
+            one.unexplained.map_or("-".into(), percent),
+            one.held_out.map_or("-".into(), |square| format!("{square:.3}")),
+        ]
+    };
+    e.models.iter().map(row).collect()
+}
+
+/// The heads of its columns.
+pub(super) const MODELS: [&str; 7] = ["torque", "gain", "share", "I1/I3", "I2/I3", "unexplained", "held out"];
+
+/// What they say, in words.
+pub(super) fn about_models(e: &Estimate) -> String {
+    let deviations = match e.torque.is_chosen {
+        true => "the answer's deviations include their spread, in proportion to their shares",
+        false => "the answer's deviations are those of the torque that was asked for",
+    };
+    format!("models of the torque, each with its own deviation in brackets; {deviations}")
 }

@@ -6,7 +6,8 @@ use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
 use super::super::attitudes::Read;
 use super::super::flights::Spans;
 use super::{
-    SURE, attitudes, digits, method, mirror, sizes, systematic, torque, unexplained, unused, with_error,
+    MODELS, SURE, about_models, attitudes, digits, method, mirror, models, sizes, systematic, unexplained,
+    unused, with_error,
 };
 
 /// The answer first, then what it rests on.
@@ -20,6 +21,7 @@ pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans, read: Option<&R
         lines.push(tensor("inertia (kg m^2)", &inertia.tensor()));
     }
     lines.extend(torques(e));
+    lines.extend(of_models(e));
     lines.extend(sensor(e));
     lines.extend(spans.lines());
     lines.extend(segments(e));
@@ -107,14 +109,34 @@ fn torques(e: &Estimate) -> Vec<String> {
     let mut lines = vec![
         String::new(),
         match e.torque.gain {
-            Some(gain) => format!("torque: {}, gain of log-likelihood {gain:.1}", torque(e.torque.model)),
-            None => format!("torque: {}", torque(e.torque.model)),
+            Some(gain) => format!("torque: {}, gain of log-likelihood {gain:.1}", e.torque.model),
+            None => format!("torque: {}", e.torque.model),
         },
     ];
     lines.extend(e.torque.coefficients.iter().map(number));
     if let Some([a, b]) = e.torque.ratios_without {
         lines.push(format!("  without it I1/I3 would be {a:.4} and I2/I3 {b:.4}"));
     }
+    lines
+}
+
+fn of_models(e: &Estimate) -> Vec<String> {
+    let rows = models(e);
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let heads = MODELS.map(String::from);
+    let all = || core::iter::once(&heads).chain(&rows);
+    let width = |k: usize| all().map(|row| row[k].len()).max().unwrap_or(0);
+    let widths: [usize; 7] = core::array::from_fn(width);
+    let line = |row: &[String; 7]| {
+        let cells = row.iter().zip(widths).skip(1).map(|(cell, width)| format!("  {cell:>width$}"));
+        format!("  {:<width$}{}", row[0], cells.collect::<String>(), width = widths[0])
+    };
+    let about = about_models(e);
+    let (what, deviations) = about.split_once("; ").unwrap_or((&about, ""));
+    let mut lines = vec![String::new(), format!("{what};"), format!("{deviations}:")];
+    lines.extend(all().map(line));
     lines
 }
 

@@ -1,0 +1,133 @@
+//! The equations of a weak estimate with the columns of every torque: a triangle for each segment, in which each model is a choice of
+//! columns.
+
+use crate::columns::column::{Column, Unknowns};
+use crate::columns::sets::torque_columns;
+use crate::models::MODELS;
+use crate::settings::torque::TorqueModel;
+use crate::signal::stretch::Stretch;
+use crate::solve::linearised::residuals;
+use crate::solve::stacked::Stacked;
+use crate::solve::triangle::Triangle;
+use crate::solve::weak_estimate::WeakEstimate;
+
+/// The equations of an estimate, linearised where it stands, with its noise as it was estimated.
+pub(crate) struct Equations {
+    /// Those of every torque, then those that every model has.
+    columns: Vec<Column>,
+    torques: usize,
+    origin: Unknowns,
+    segments: Vec<Segment>,
+    deviation: f64,
+}
+
+/// The equations of a segment.
+struct Segment {
+    /// How many they are.
+    equations: usize,
+    /// Their triangle row by row.
+    rows: Vec<f64>,
+}
+
+/// The equations of one model.
+pub(crate) struct OfModel {
+    columns: Vec<Column>,
+    origin: Unknowns,
+    segments: Vec<Segment>,
+    deviation: f64,
+}
+
+impl Equations {
+    /// Of an estimate whose last columns are `common`, which every model has; `variance` is that of the noise.
+    pub(crate) fn new(
+        stretches: &[Stretch],
+        weak: &WeakEstimate,
+        common: &[Column],
+        variance: f64,
+    ) -> Option<Self> {
+        let torques = MODELS.into_iter().flat_map(torque_columns);
+        let columns: Vec<Column> = torques.chain(common.iter().copied()).collect();
+        let value = |column: &Column| {
+            let own = weak.columns.iter().position(|own| own.is_alike(column));
+            own.map_or(0.0, |k| weak.at.c[k])
+        };
+        let origin = Unknowns { x: weak.at.x, c: columns.iter().map(value).collect() };
+        let width = columns.len() + 6;
+        let each = weak.parts.iter().map(|part| {
+            let rows = part.with_columns(&stretches[part.stretch], &columns, &origin)?;
+            Some(Segment { equations: rows.len() / width, rows: triangle(&[&rows], width) })
+        });
+        let segments = each.collect::<Option<Vec<Segment>>>()?;
+        let torques = columns.len() - common.len();
+        Some(Equations { columns, torques, origin, segments, deviation: variance.sqrt() })
+    }
+
+    /// Those of one model: the torques that it has not are zero.
+    pub(crate) fn of(&self, model: TorqueModel) -> OfModel {
+        let own = torque_columns(model);
+        let is_own = |k: usize| own.iter().any(|column| column.is_alike(&self.columns[k]));
+        let (kept, left): (Vec<usize>, Vec<usize>) =
+            (0..self.columns.len()).partition(|&k| k >= self.torques || is_own(k));
+        let width = self.columns.len() + 6;
+        let row = |row: &[f64]| {
+            let gone: f64 = left.iter().map(|&k| row[k] * self.origin.c[k]).sum();
+            let unknowns = kept.iter().copied().chain(self.columns.len()..width - 1).map(|k| row[k]);
+            unknowns.chain([row[width - 1] - gone]).collect::<Vec<f64>>()
+        };
+        let of_segment = |segment: &Segment| Segment {
+            rows: segment.rows.chunks_exact(width).flat_map(row).collect(),
+            ..*segment
+        };
+        OfModel {
+            columns: kept.iter().map(|&k| self.columns[k]).collect(),
+            origin: Unknowns { x: self.origin.x, c: kept.iter().map(|&k| self.origin.c[k]).collect() },
+            segments: self.segments.iter().map(of_segment).collect(),
+            deviation: self.deviation,
+        }
+    }
+}
+
+impl OfModel {
+    /// All segments together, the unknowns at their best.
+    pub(crate) fn stacked(&self) -> Stacked {
+        let rows: Vec<&[f64]> = self.segments.iter().map(|segment| segment.rows.as_slice()).collect();
+        self.of_rows(&rows)
+    }
+
+    fn of_rows(&self, rows: &[&[f64]]) -> Stacked {
+        Stacked::new(rows, &self.columns, &self.origin, self.deviation)
+    }
+
+    /// Mean square of the equations of each segment, over their noise, at what the others say; `None` of one segment.
+    pub(crate) fn held_out(&self) -> Option<f64> {
+        if self.segments.len() < 2 {
+            return None;
+        }
+        let width = self.columns.len() + 6;
+        // triangles of all segments before each one, and of all after it
+        let grown = |rows: &Vec<f64>, segment: &Segment| triangle(&[rows, &segment.rows], width);
+        let mut before = vec![Vec::new()];
+        for segment in &self.segments[..self.segments.len() - 1] {
+            before.extend(before.last().map(|rows| grown(rows, segment)));
+        }
+        let (mut after, mut squares, mut equations) = (Vec::new(), 0.0, 0);
+        for (segment, before) in self.segments.iter().zip(&before).rev() {
+            let at = self.of_rows(&[before, &after]).minimiser()?;
+            let left = residuals(&segment.rows, width, &self.origin, &at);
+            squares += left.iter().map(|r| r * r).sum::<f64>();
+            equations += segment.equations;
+            after = grown(&after, segment);
+        }
+        Some(squares / equations as f64 / (self.deviation * self.deviation)).filter(|mean| mean.is_finite())
+    }
+}
+
+/// The triangle of rows of `width` numbers, row by row.
+fn triangle(rows: &[&[f64]], width: usize) -> Vec<f64> {
+    let mut triangle = Triangle::new(width);
+    for row in rows.iter().flat_map(|rows| rows.chunks_exact(width)) {
+        triangle.push(row.iter().copied());
+    }
+    let r = triangle.finished();
+    (0..width).flat_map(|i| (0..width).map(move |k| (i, k))).map(|at| r[at]).collect()
+}

@@ -1,0 +1,91 @@
+//! What each model of the torque makes of a record, and how far the answer rests on the choice of one.
+
+use nalgebra::SymmetricEigen;
+
+use crate::columns::sets::torque_columns;
+use crate::physical::coordinates::{Coordinates, Form};
+use crate::settings::torque::TorqueModel;
+use crate::solve::ladder::threshold;
+
+/// What a model makes of a record.
+#[derive(Clone, Debug)]
+pub(crate) struct Weighed {
+    pub(crate) model: TorqueModel,
+    /// Log-likelihood less that without a torque.
+    pub(crate) gain: f64,
+    pub(crate) x: Coordinates,
+    /// A factor F of the covariance F Fᵀ of x.
+    pub(crate) factor: Form,
+    /// Mean square of the equations of each segment, over their noise, at what the other segments say; of several segments.
+    pub(crate) held_out: Option<f64>,
+}
+
+/// The gain of log-likelihood that is asked of a model before it is chosen instead of none.
+pub(crate) fn asked(model: TorqueModel) -> f64 {
+    match torque_columns(model).len() {
+        0 => 0.0,
+        coefficients => threshold(coefficients),
+    }
+}
+
+/// The share of each model: its likelihood beside that of the others, each less the gain that the choice asks of it. Drag about the
+/// axes of the sensor has one where a drag was chosen, as only then the choice asks for it: else a turn of the sensor would change what
+/// is said of a free body.
+pub(crate) fn shares(models: &[Weighed], chosen: TorqueModel) -> Vec<f64> {
+    let is_asked = |one: &Weighed| {
+        let drags = [TorqueModel::Drag, TorqueModel::Quadratic, TorqueModel::Drag3];
+        one.model != TorqueModel::Drag3 || drags.contains(&chosen)
+    };
+    let score = |one: &Weighed| if is_asked(one) { one.gain - asked(one.model) } else { f64::NEG_INFINITY };
+    let best = models.iter().map(score).fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<f64> = models.iter().map(|one| libm::exp(score(one) - best)).collect();
+    let sum: f64 = weights.iter().sum();
+    weights.into_iter().map(|weight| weight / sum).collect()
+}
+
+/// What the choice adds to the covariance of x: of each other model, in proportion to its share, the square of its distance and
+/// what it is less certain of.
+///
+/// That is the covariance of the mixture of all models about the chosen one, but for models that are surer than that one:
+/// J. A. Hoeting et al., Statistical Science 14 (1999) 382, equation (3).
+pub(crate) fn spread(models: &[Weighed], chosen: TorqueModel) -> Form {
+    let mut sum = Form::zeros();
+    let Some(own) = models.iter().find(|one| one.model == chosen) else { return sum };
+    for (other, share) in models.iter().zip(shares(models, chosen)).filter(|(other, _)| other.model != chosen)
+    {
+        let apart = other.x - own.x;
+        let wider = other.factor * other.factor.transpose() - own.factor * own.factor.transpose();
+        let SymmetricEigen { eigenvectors: v, eigenvalues } = SymmetricEigen::new(wider);
+        let wider = v * Form::from_diagonal(&eigenvalues.map(|value| value.max(0.0))) * v.transpose();
+        sum += (wider + apart * apart.transpose()) * share;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(model: TorqueModel, gain: f64, x: f64, deviation: f64) -> Weighed {
+        let x = Coordinates::new(x, 0.0, 0.0, 0.0, 0.0);
+        Weighed { model, gain, x, factor: Form::identity() * deviation, held_out: None }
+    }
+
+    /// Where the choice is as near as can be, both weigh the same.
+    #[test]
+    fn models_weigh_what_the_choice_makes_of_them() {
+        let gain = asked(TorqueModel::Drag);
+        let both = [of(TorqueModel::None, 0.0, 0.0, 1.0), of(TorqueModel::Drag, gain, 3.0, 2.0)];
+        assert_eq!(shares(&both, TorqueModel::None), [0.5, 0.5]);
+        let added = spread(&both, TorqueModel::None);
+        // half of 2² − 1² in each direction, and half of 3² along the first
+        let expected = Coordinates::new(6.0, 1.5, 1.5, 1.5, 1.5);
+        assert!((added - Form::from_diagonal(&expected)).norm() < 1e-14, "{added}");
+        // a model that is surer narrows nothing
+        let added = spread(&both, TorqueModel::Drag);
+        assert!((added - Form::from_diagonal(&Coordinates::new(4.5, 0.0, 0.0, 0.0, 0.0))).norm() < 1e-14);
+        // one that the record refutes adds nothing
+        let refuted = [of(TorqueModel::None, 0.0, 0.0, 1.0), of(TorqueModel::Drag, gain + 800.0, 3.0, 1.0)];
+        assert_eq!(spread(&refuted, TorqueModel::Drag), Form::zeros());
+    }
+}

@@ -1,0 +1,114 @@
+//! What a report names as the cause: a tensor that changes, a sensor that stands still, torques at random.
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::inertia::Inertia;
+use polhode::num::Random;
+use polhode_fit::{Disturbances, Gyroscope, Record, Settings, TorqueModel, Warning, fit, simulate_with};
+
+use crate::measured::sampled;
+use crate::measured::torques::motion;
+
+const SHAPE: [f64; 3] = [1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6];
+
+fn noisy(rates: &[Vector3<f64>], sigma: f64, random: &mut Random) -> Vec<Vector3<f64>> {
+    rates.iter().map(|w| w + random.normal_vector() * sigma).collect()
+}
+
+/// A moment grows by 3 % midway, without a torque.
+#[test]
+fn a_tensor_that_changes_midway_is_named_with_both() {
+    let mut random = Random::new(641);
+    let half = sampled(50, 30);
+    for _ in 0..3 {
+        let before = Matrix3::from_diagonal(&Vector3::from(SHAPE));
+        let mut after = before;
+        after[(0, 0)] *= 1.03;
+        let none = |_: f64, _: &Vector3<f64>| Vector3::zeros();
+        let mut rates = motion(&before, random.normal_vector().normalize(), &half, &none);
+        let last = rates.pop().unwrap();
+        let next = after.try_inverse().unwrap() * (before * last);
+        rates.extend(motion(&after, next, &half, &none));
+        let times: Vec<f64> = (0..rates.len()).map(|k| k as f64 / 50.0).collect();
+        let record = Record::from_samples(&times, &noisy(&rates, 1e-2, &mut random)).unwrap();
+        let e = fit(&record, &Settings::default()).unwrap();
+        let halves =
+            e.warnings.iter().find_map(|w| if let Warning::Halves(halves) = w { Some(halves) } else { None });
+        let halves = halves.unwrap_or_else(|| panic!("{:?}", e.warnings));
+        let changed = after.trace();
+        assert!((halves.first[0] - SHAPE[0]).abs() < 1e-3, "{halves:?}");
+        assert!((halves.second[0] - after[(0, 0)] / changed).abs() < 1e-3, "{halves:?}");
+    }
+}
+
+#[test]
+fn a_sensor_that_stands_still_is_named() {
+    let body = Inertia::from_moments(SHAPE).unwrap();
+    let mut random = Random::new(642);
+    let times = sampled(50, 30);
+    let gyroscope = Gyroscope::default().with_noise(1e-3);
+    let omega = Vector3::new(0.3, 1.0, 0.4);
+    let mut rates =
+        simulate_with(&body, omega, &times, &Disturbances::default(), &gyroscope, &mut random).unwrap();
+    for k in 701..709 {
+        rates[k] = rates[700];
+    }
+    let record = Record::from_samples(&times, &rates).unwrap();
+    let e = fit(&record, &Settings::default()).unwrap();
+    assert_eq!((record.stale(), record.repeated()), (8, 0));
+    assert_eq!(e.warnings, [Warning::Stale { samples: 8 }]);
+}
+
+/// Torque noise lets |J ω| and ω·J ω walk: their trends scatter as their deviations say.
+#[test]
+fn drifts_under_torque_noise_are_no_surer_than_the_walk_allows() {
+    let body = Inertia::from_moments(SHAPE).unwrap();
+    let mut random = Random::new(643);
+    let times = sampled(50, 30);
+    let acting = Disturbances::default().with_torque_noise(3e-3);
+    let gyroscope = Gyroscope::default().with_noise(1e-3);
+    let (mut squares, count) = ([0.0; 2], 20);
+    for _ in 0..count {
+        let omega = random.normal_vector().normalize();
+        let rates = simulate_with(&body, omega, &times, &acting, &gyroscope, &mut random).unwrap();
+        let settings = Settings::default().with_torque(TorqueModel::None);
+        let e = fit(&Record::from_samples(&times, &rates).unwrap(), &settings).unwrap();
+        for (sum, trend) in squares.iter_mut().zip([e.momentum_trend, e.energy_trend]) {
+            let trend = trend.unwrap();
+            *sum += trend.rate * trend.rate / (trend.sigma * trend.sigma) / f64::from(count);
+        }
+    }
+    // the mean of 20 squares scatters by a third
+    assert!(squares.iter().all(|square| (0.3..2.2).contains(square)), "{squares:?}");
+}
+
+/// Each model beside the chosen one: what the record refutes has no share, and the deviations of a chosen model include the others.
+#[test]
+fn every_model_of_the_torque_is_weighed() {
+    let body = Inertia::from_moments(SHAPE).unwrap();
+    let mut random = Random::new(644);
+    let times = sampled(50, 60);
+    let gyroscope = Gyroscope::default().with_noise(1e-2);
+    let acting = Disturbances::default().with_torque(Vector3::new(1.0, -1.0, 1.0) * 1e-4);
+    let omega = Vector3::new(0.5, 0.8, 0.4);
+    let rates = simulate_with(&body, omega, &times, &acting, &gyroscope, &mut random).unwrap();
+    // two segments, so that one can be foretold from the other
+    let (first, second) = (0..1500, 1501..3001);
+    let part = |of: core::ops::Range<usize>| Record::from_samples(&times[of.clone()], &rates[of]).unwrap();
+    let record = part(first).join(part(second));
+    let e = fit(&record, &Settings::default()).unwrap();
+    assert_eq!(e.torque.model, TorqueModel::Constant, "{:?}", e.models);
+    assert_eq!(e.models.len(), 5);
+    let of = |model| e.models.iter().find(|one| one.model == model).unwrap();
+    assert!((e.models.iter().map(|one| one.share).sum::<f64>() - 1.0).abs() < 1e-12);
+    assert!(of(TorqueModel::Constant).share > 0.99 && of(TorqueModel::None).gain == 0.0);
+    let held = |model| of(model).held_out.unwrap();
+    assert!((0.8..1.25).contains(&held(TorqueModel::Constant)), "{}", held(TorqueModel::Constant));
+    assert!(held(TorqueModel::None) > held(TorqueModel::Constant), "{}", held(TorqueModel::None));
+    for k in 0..3 {
+        let alone = of(TorqueModel::Constant).sigma_principal[k];
+        assert!(e.sigma_principal[k] >= alone * (1.0 - 1e-9) && e.sigma_principal[k] < 2.0 * alone);
+    }
+    // of a torque that was asked for, the deviations are its own
+    let named = fit(&record, &Settings::default().with_torque(TorqueModel::Constant)).unwrap();
+    assert!(!named.torque.is_chosen && named.models.len() == 5);
+}
