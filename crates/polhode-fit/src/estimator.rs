@@ -14,6 +14,7 @@ use crate::columns::input::Input;
 use crate::columns::sets::sensor_columns;
 use crate::error::FitError;
 use crate::models::weighed::spread;
+use crate::physical::coordinates::Form;
 use crate::physical::failure::SolverFailure;
 use crate::physical::nearest::nearest;
 use crate::report::estimate::Estimate;
@@ -29,6 +30,7 @@ use crate::solve::joint::Joint;
 use crate::solve::ladder::{Demand, climb};
 use crate::solve::radius::Failure;
 use crate::solve::rounds::Noise;
+use crate::solve::weak_estimate::WeakEstimate;
 use crate::sparse::{is_sparse, likeliest};
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 use crate::units::Motion;
@@ -67,6 +69,31 @@ use crate::verdict::units::open_units;
 /// Too few samples; no rotation; a record that does not determine the tensor, with what it does determine; units that
 /// look mistaken; limits that contradict each other or the physical law; a program without a certified answer.
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
+    Ok(fitted(record, settings)?.estimate)
+}
+
+/// An estimate, and what it was drawn from.
+pub(crate) struct Fitted {
+    pub(crate) estimate: Estimate,
+    /// `None` of a likelihood on the exact motion.
+    pub(crate) drawn: Option<Drawn>,
+}
+
+/// The equations behind an estimate.
+pub(crate) struct Drawn {
+    pub(crate) weak: WeakEstimate,
+    /// Standard deviation of the noise with what it does not explain.
+    pub(crate) deviation: f64,
+    /// What the choice of a torque adds to the covariance of the tensor.
+    pub(crate) spread: Form,
+    /// Unit of the rates, rad/s.
+    pub(crate) rms: f64,
+    /// Unit of the column of wheel momenta and torques, kg m².
+    pub(crate) input: Option<f64>,
+}
+
+/// The estimate of a record with the equations behind it.
+pub(crate) fn fitted(record: &Record, settings: &Settings) -> Result<Fitted, FitError> {
     settings.check()?;
     let fitted =
         |record: &Record| match if settings.leave_out_spikes { record.without_spikes() } else { None } {
@@ -75,14 +102,15 @@ pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
         };
     fitted(record).map_err(|mut error| {
         if let FitError::Unsettled { mirror, .. } | FitError::PriorContradicted { mirror, .. } = &mut error {
-            *mirror = reversed(record).and_then(|other| Some(Box::new(fitted(&other).ok()?.principal)));
+            *mirror =
+                reversed(record).and_then(|other| Some(Box::new(fitted(&other).ok()?.estimate.principal)));
         }
         error
     })
 }
 
 /// The same of a record whose spikes were left out.
-fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Estimate, FitError> {
+fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fitted, FitError> {
     let Normalised { stretches, rms, input } = normalised(record)?;
     if input.is_some() && settings.known.is_some() {
         return Err(FitError::TwoScales);
@@ -109,7 +137,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     // a quadrature over samples that are far apart is off by more than their noise
     let sparse = if open.is_none() { likeliest(record, settings) } else { None };
     if let Some(estimate) = sparse {
-        return Ok(estimate);
+        return Ok(Fitted { estimate, drawn: None });
     }
     if let Some(error) = hidden {
         return Err(error);
@@ -136,10 +164,13 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     let misfit = weak.misfit(variance);
     let information = || FitError::Solver(SolverFailure::Information);
     let kept = |column: &Column| matches!(column.class(), Class::Drag | Class::Input);
-    let mut joint = Joint::new(weak, kept, (variance * misfit.max(1.0)).sqrt()).ok_or_else(information)?;
-    if settings.torque == TorqueModel::Auto {
-        joint = joint.widened(&spread(&chosen.models, chosen.model)).ok_or_else(information)?;
-    }
+    let deviation = (variance * misfit.max(1.0)).sqrt();
+    let spread = match settings.torque {
+        TorqueModel::Auto => spread(&chosen.models, chosen.model),
+        _ => Form::zeros(),
+    };
+    let joint = Joint::new(weak, kept, deviation).ok_or_else(information)?;
+    let joint = joint.widened(&spread).ok_or_else(information)?;
     let dissipation = dissipation(&weak.columns, &joint.kept);
     let (told, agreed) = match &prior {
         Some(prior) if completed.is_none() => with_prior(&joint, weak, prior, input)?,
@@ -166,7 +197,8 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Es
     };
     let estimate = facts.report(answer, identifiability, motion.as_ref(), open.as_ref())?;
     check_driven(&estimate, motion.as_ref(), &stretches, rms)?;
-    Ok(estimate)
+    let drawn = Drawn { weak: chosen.weak, deviation, spread, rms, input };
+    Ok(Fitted { estimate, drawn: Some(drawn) })
 }
 
 /// Why there is no weak estimate, in the words of the record.

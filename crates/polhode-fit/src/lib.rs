@@ -33,8 +33,11 @@
 //! The tensor of a record of rates comes from rounds of linear least squares with one small semidefinite program at their end, which is
 //! solved by outer approximation; it is not refined by maximum likelihood. [`fit_poses`] fits measured attitudes ([`Poses`]) by maximum
 //! likelihood on the exact motion.
+//!
+//! [`fit_carrier`] fits a carrier, alone and with a proof body, and an object on it to several records at once: absolute tensors.
 
 mod bound;
+mod carrier;
 mod columns;
 mod error;
 mod estimator;
@@ -58,6 +61,12 @@ mod wheel;
 pub use bound::attitudes::foreseen_attitude_bound;
 pub use bound::motions::foreseen_bound;
 pub use bound::planned::foreseen_bound_with;
+pub use carrier::error::CarrierError;
+pub use carrier::estimate::{CarrierEstimate, MeasuredBody, MeasuredWheel, Size, SizeSource};
+pub use carrier::fit_carrier;
+pub use carrier::proof::ProofBody;
+pub use carrier::records::{Attached, CarrierRecords};
+pub use carrier::warning::CarrierWarning;
 pub use error::{Clash, FitError};
 pub use estimator::fit;
 pub use flights::flight::{Flight, FlightLimit};

@@ -237,6 +237,18 @@ thresholds! {
         DRAWN: usize = 10_000, "points that are drawn", "half_a_normal_distribution_keeps_its_mean_square";
         INSIDE: usize = 200, "fewest of them inside the walls that tell the spread", "far_outside_nothing_is_said";
     }
+    carrier: "the joint fit of a carrier" {
+        INVERSES: usize = 8, "rounds of the closed-form start, each with the weights of the one before", UNMEASURED;
+        LEAST: f64 = 1e-3, "least share of carrier and proof body that the carrier starts with", UNMEASURED;
+        ROUNDS: usize = 60, "rounds of Gauss's and Newton's method; three to six do", UNMEASURED;
+        HALVINGS: usize = 30, "halvings of a step that does not lower the squares", UNMEASURED;
+        NEAR: f64 = 0.1, "standard deviations of a step that is taken as it is", UNMEASURED;
+        STILL: f64 = 1e-6, "standard deviations by which a further round may still move the answer", UNMEASURED;
+        HELD: f64 = 1e-6, "share of the trace by which a triangle inequality is open that holds the answer", UNMEASURED;
+        PARALLEL: f64 = 1e-9, "angle between two axes of one wheel that rounding makes, rad", DERIVED;
+        CONTRADICTED: f64 = 4.753_424_308_822_899,
+            "deviations of a normal number with a chance of 1e-6: records contradict each other", DERIVED;
+    }
     bound: "the Cramér–Rao bound" {
         STEPS: usize = 12, "steps towards the motion nearest to one window", UNMEASURED;
         STILL: f64 = 0.01, "fall of the sum of squares, over the variance, that no longer matters", UNMEASURED;

@@ -13,7 +13,7 @@ use crate::thresholds::program::{CERTIFIED, STATIONARY};
 
 /// The answer of the program.
 pub(crate) struct Nearest {
-    /// Coordinates of the tensor.
+    /// The last five unknowns: the coordinates of the tensor, where there is one.
     pub(crate) x: Coordinates,
     /// The unknowns before them.
     pub(crate) others: Vec<f64>,
@@ -225,7 +225,7 @@ impl Program {
         let unknowns = self.unknowns(y);
         let first = unknowns.len() - 5;
         let mut x = Coordinates::from_column_slice(&unknowns.as_slice()[first..]);
-        if faces.first().is_some_and(|face| *face > 0) {
+        if self.has_shape && faces.first().is_some_and(|face| *face > 0) {
             // the last rounding goes towards the sphere: the tensor handed out is physical, not nearly so
             x *= ((LARGEST_SHARE - 1.0 / 3.0) / (largest_moment - 1.0 / 3.0)).min(1.0) * (1.0 - INWARDS);
         }

@@ -1,12 +1,13 @@
 //! The nearest physical tensor within limits.
 
 use crate::thresholds::limits::PARALLEL;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix3};
 
 use crate::error::FitError;
 use crate::physical::coordinates::pair;
 use crate::physical::dissipation::Dissipation;
 use crate::physical::face::Nearest;
+use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
 use crate::physical::limits::{Limit, check_limits, feasible, side};
 use crate::physical::program::{Program, Row};
@@ -79,6 +80,19 @@ pub(crate) fn nearest(
     dissipation.iter().for_each(|of| of.clip(&mut others));
     answer.others = others.as_slice().to_vec();
     Ok(answer)
+}
+
+/// The unknowns nearest to the centre of `told` at which every body has a physical tensor, their distance in standard deviations; of each
+/// body the place of its first entry, and what is added to them.
+pub(crate) fn nearest_bodies(
+    told: &Normal,
+    bodies: &[(usize, Matrix3<f64>)],
+) -> Result<(DVector<f64>, f64), SolverFailure> {
+    let program = Program::of_bodies(told.centre.clone(), told.root.clone(), bodies);
+    let (y, rounds) = program.cut()?;
+    let answer = program.polish(y, rounds)?;
+    let unknowns = answer.others.iter().chain(answer.x.iter()).copied();
+    Ok((DVector::from_iterator(told.centre.len(), unknowns), answer.pull))
 }
 
 #[cfg(test)]

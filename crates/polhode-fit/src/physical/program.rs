@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use crate::physical::conic::Conditions;
 use crate::physical::constraint::Constraint;
-use crate::physical::coordinates::{basis, eigen};
+use crate::physical::coordinates::{basis, eigen, symmetric};
 use crate::physical::dissipation::Dissipation;
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
@@ -50,18 +50,34 @@ impl Wall {
         }
     }
 
+    /// No moment of a body exceeds the sum of the others: M = T − ½ tr T of T = `base` + Σ z_k E_k, whose six entries
+    /// xx, yy, zz, xy, xz, yz begin at `first`.
+    pub(super) fn body(first: usize, base: &Matrix3<f64>) -> Wall {
+        let less = |t: Matrix3<f64>| t - Matrix3::identity() * (0.5 * t.trace());
+        Wall {
+            base: less(*base),
+            terms: (0..6).map(|k| (first + k, less(symmetric(k)))).collect(),
+            most: 0.0,
+            rank: 2,
+            unit: 1.0,
+            says: [Constraint::Triangle, Constraint::Rod],
+        }
+    }
+
     fn value(&self, z: &DVector<f64>) -> Matrix3<f64> {
         self.terms.iter().fold(self.base, |sum, (k, b)| sum + b * z[*k])
     }
 }
 
-/// min ½|y|² over the unknowns ẑ + R⁻¹ y, the last five of them a physical tensor, that obey rows and walls.
+/// min ½|y|² over the unknowns ẑ + R⁻¹ y that obey rows and walls.
 pub(super) struct Program {
     pub(super) centre: DVector<f64>,
     /// Upper triangular.
     pub(super) root: DMatrix<f64>,
     /// The physical law first.
     pub(super) walls: Vec<Wall>,
+    /// Whether the last five unknowns are the coordinates of a shape, whose law is the first wall.
+    pub(super) has_shape: bool,
     /// Each with what it says, and the units of that in one of the row.
     pub(super) rows: Vec<(Row, Constraint, f64)>,
 }
@@ -70,7 +86,7 @@ impl Program {
     /// Without rows but those by which drag takes energy.
     pub(super) fn new(centre: DVector<f64>, root: DMatrix<f64>, dissipation: &[Dissipation]) -> Program {
         let law = Wall::law(centre.len() - 5);
-        let mut program = Program { centre, root, walls: vec![law], rows: Vec::new() };
+        let mut program = Program { centre, root, walls: vec![law], has_shape: true, rows: Vec::new() };
         for of in dissipation {
             let unit = program.deviation(of.place) / SHARE;
             let mut p = DVector::zeros(program.centre.len());
@@ -79,6 +95,16 @@ impl Program {
             program.rows.push((row, of.constraint(), unit));
         }
         program
+    }
+
+    /// Of bodies in kg m², or any unit: the places of their first entries, and what is added to them.
+    pub(super) fn of_bodies(
+        centre: DVector<f64>,
+        root: DMatrix<f64>,
+        bodies: &[(usize, Matrix3<f64>)],
+    ) -> Program {
+        let walls = bodies.iter().map(|(first, base)| Wall::body(*first, base)).collect();
+        Program { centre, root, walls, has_shape: false, rows: Vec::new() }
     }
 
     /// The standard deviation of an unknown.

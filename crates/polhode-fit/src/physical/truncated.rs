@@ -14,7 +14,7 @@ use crate::physical::law::LARGEST_SHARE;
 use crate::physical::limits::Limit;
 
 /// The mean of (z − answer)(z − answer)ᵀ over unknowns z that are allowed, z normal about `centre` with the factor `free`;
-/// `None` where hardly any of them is.
+/// `None` where hardly any of them is. The last five unknowns are the coordinates of a tensor.
 pub(crate) fn spread(
     centre: &DVector<f64>,
     free: &DMatrix<f64>,
@@ -23,12 +23,9 @@ pub(crate) fn spread(
     answer: &DVector<f64>,
 ) -> Option<DMatrix<f64>> {
     let size = centre.len();
-    let mut random = Random::new(1);
-    let (mut sum, mut inside) = (DMatrix::zeros(size, size), 0.0);
-    for _ in 0..DRAWN {
-        let z = centre + free * DVector::from_fn(size, |_, _| random.normal());
-        if !dissipation.iter().all(|of| of.allows(&z)) {
-            continue;
+    spread_within(centre, free, answer, |z| {
+        if !dissipation.iter().all(|of| of.allows(z)) {
+            return false;
         }
         let j = tensor(&Coordinates::from_column_slice(&z.as_slice()[size - 5..]));
         let allowed = |limit: &Limit| {
@@ -36,7 +33,23 @@ pub(crate) fn spread(
             let share = n.dot(&(j * n));
             limit.at_least.is_none_or(|low| share >= low) && limit.at_most.is_none_or(|high| share <= high)
         };
-        if eigen(j).0[2] <= LARGEST_SHARE && limits.iter().all(allowed) {
+        eigen(j).0[2] <= LARGEST_SHARE && limits.iter().all(allowed)
+    })
+}
+
+/// The same of unknowns that `allows` picks.
+pub(crate) fn spread_within(
+    centre: &DVector<f64>,
+    free: &DMatrix<f64>,
+    answer: &DVector<f64>,
+    allows: impl Fn(&DVector<f64>) -> bool,
+) -> Option<DMatrix<f64>> {
+    let size = centre.len();
+    let mut random = Random::new(1);
+    let (mut sum, mut inside) = (DMatrix::zeros(size, size), 0.0);
+    for _ in 0..DRAWN {
+        let z = centre + free * DVector::from_fn(size, |_, _| random.normal());
+        if allows(&z) {
             let apart = z - answer;
             sum.ger(1.0, &apart, &apart, 1.0);
             inside += 1.0;

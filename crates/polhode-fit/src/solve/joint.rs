@@ -60,8 +60,7 @@ impl Joint {
         if *spread == Form::zeros() {
             return Some(self);
         }
-        let SymmetricEigen { eigenvectors: v, eigenvalues } = SymmetricEigen::new(*spread);
-        let more = v * Form::from_diagonal(&eigenvalues.map(|value| value.max(0.0).sqrt()));
+        let more = factor(spread);
         // C + S = F Fᵀ with F = (R⁻¹, √S), and Fᵀ = Q T: a root of its inverse is T⁻ᵀ
         let size = self.told.root.ncols();
         let mut factors = DMatrix::zeros(size + 5, size);
@@ -87,4 +86,10 @@ impl Joint {
         }
         at
     }
+}
+
+/// F of a form F Fᵀ.
+pub(crate) fn factor(form: &Form) -> Form {
+    let SymmetricEigen { eigenvectors: v, eigenvalues } = SymmetricEigen::new(*form);
+    v * Form::from_diagonal(&eigenvalues.map(|value| value.max(0.0).sqrt()))
 }

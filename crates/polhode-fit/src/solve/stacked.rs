@@ -108,14 +108,27 @@ impl Stacked {
         (x.iter().chain(&c).all(|v| v.is_finite())).then_some(Unknowns { x, c })
     }
 
-    /// A factor F of the covariance F Fᵀ of (c, x), per variance of the noise.
-    pub(crate) fn joint_factor(&self) -> Option<DMatrix<f64>> {
+    /// The triangle R of (c, x).
+    pub(crate) fn whole(&self) -> DMatrix<f64> {
         let count = self.own.nrows();
         let mut r = DMatrix::zeros(count + 5, count + 5);
         r.view_mut((0, 0), (count, count)).copy_from(&self.own);
         r.view_mut((0, count), (count, 5)).copy_from(&self.shared);
         r.view_mut((count, count), (5, 5)).copy_from(&self.root);
-        r.try_inverse()
+        r
+    }
+
+    /// r of |R (c, x) + r|² with that triangle.
+    pub(crate) fn at_zero(&self) -> DVector<f64> {
+        let at_origin = self.right.iter().chain(&self.z).copied();
+        let origin = self.origin.c.iter().chain(&self.origin.x).copied();
+        let size = self.own.nrows() + 5;
+        DVector::from_iterator(size, at_origin) - self.whole() * DVector::from_iterator(size, origin)
+    }
+
+    /// A factor F of the covariance F Fᵀ of (c, x), per variance of the noise.
+    pub(crate) fn joint_factor(&self) -> Option<DMatrix<f64>> {
+        self.whole().try_inverse()
     }
 
     /// |R (x − origin) + z|² + squares at `x`, the columns at their best.

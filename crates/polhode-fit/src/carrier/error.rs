@@ -1,0 +1,144 @@
+//! Why a joint fit was refused.
+
+use thiserror::Error;
+
+use polhode::inertia::MassError;
+
+use crate::carrier::records::Attached;
+use crate::error::FitError;
+use crate::physical::failure::SolverFailure;
+
+impl From<CarrierError> for polhode::Error {
+    fn from(error: CarrierError) -> Self {
+        polhode::Error::new(error)
+    }
+}
+
+/// Why a joint fit of a carrier was refused.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum CarrierError {
+    /// One of the records cannot be fitted.
+    #[error("the record of {attached}: {error}")]
+    Record {
+        /// What tumbled.
+        attached: Attached,
+        /// Why.
+        error: Box<FitError>,
+    },
+    /// The body turns by so much between samples that a record has no weak equations.
+    #[error("the samples of the record of {attached} are too far apart for a joint fit: record faster")]
+    Sparse {
+        /// What tumbled.
+        attached: Attached,
+    },
+    /// A value that cannot be used.
+    #[error("{name} is {value:?}; {rule}")]
+    Setting {
+        /// Which one.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        rule: &'static str,
+    },
+    /// Something is known of the tensors that a joint fit does not take.
+    #[error("a joint fit takes no {name}: its sizes come from the proof body, from wheels or from torques")]
+    Beforehand {
+        /// What.
+        name: &'static str,
+    },
+    /// The proof body has a tensor that no body has.
+    #[error("the proof body: {0}")]
+    Proof(MassError),
+    /// Nothing gives the size of the tensors.
+    #[error(
+        "nothing gives the size of the carrier{}: give a record with a proof body, known wheel momenta or known torques",
+        told.map_or(String::new(), |(value, sigma)| format!(
+            ": wheels and torques tell one over its trace to {value:.2e} +- {sigma:.2e} 1/(kg m^2), too little"
+        ))
+    )]
+    NoSize {
+        /// One over the trace of the carrier by wheels and torques and its standard deviation, 1/(kg m²), where there are any.
+        told: Option<(f64, f64)>,
+    },
+    /// The proof body changes the motion by no more than the deviation of the records.
+    #[error(
+        "the proof body is too light: it adds a trace of {trace:.3e} kg m^2, and one over that of carrier and proof body is \
+         {inverse:.2e} +- {sigma:.2e} 1/(kg m^2) by the two shapes, {:.1} standard deviations where {needed} are needed; this one \
+         tells carriers with a trace below {bound:.3e} kg m^2 with it; take one at least {:.1} times as heavy, or of another shape, \
+         or record longer", inverse / sigma, needed / (inverse / sigma).max(1.0)
+    )]
+    TooLight {
+        /// Trace of what it adds, kg m².
+        trace: f64,
+        /// One over the trace of carrier and proof body, 1/(kg m²).
+        inverse: f64,
+        /// Its standard deviation, 1/(kg m²).
+        sigma: f64,
+        /// Standard deviations that are needed.
+        needed: f64,
+        /// The largest trace of carrier and proof body that it would tell, kg m².
+        bound: f64,
+    },
+    /// The proof body changes the shape the other way.
+    #[error(
+        "the two shapes differ the other way than the proof body changes them: one over the trace of carrier and proof body would be \
+         {inverse:.2e} +- {sigma:.2e} 1/(kg m^2); check which record is which, that the axes are right-handed, and the axes, the signs of \
+         the products and the place of the proof body"
+    )]
+    Opposite {
+        /// One over the trace of carrier and proof body, 1/(kg m²).
+        inverse: f64,
+        /// Its standard deviation, 1/(kg m²).
+        sigma: f64,
+    },
+    /// The size of the object is not told.
+    #[error(
+        "the record of the object tells five of the six numbers of its tensor, and nothing its size: record carrier, object and proof \
+         body together, or let a wheel turn{}",
+        moved.map_or(String::new(), |(value, sigma)| format!(
+            "; with the proof body one over the trace is {value:.2e} +- {sigma:.2e} 1/(kg m^2)"
+        ))
+    )]
+    ObjectSize {
+        /// One over the trace of carrier, object and proof body and its standard deviation, 1/(kg m²), where they tumbled together.
+        moved: Option<(f64, f64)>,
+    },
+    /// Records of which only some have a wheel.
+    #[error(
+        "the record of {with} has wheel momenta and that of {without} has none: all must be of the same wheel; give zeros where it \
+         stands still"
+    )]
+    Wheels {
+        /// The first that has.
+        with: Attached,
+        /// The first that has not.
+        without: Attached,
+    },
+    /// The axis of the wheel whose inertia is to be found differs between records.
+    #[error(
+        "the wheel of the record of {attached} has an axis {angle:.2e} rad from that of the first record: its one unknown moment of \
+         inertia is about one axis"
+    )]
+    WheelAxis {
+        /// What tumbled.
+        attached: Attached,
+        /// Angle between the two axes, rad.
+        angle: f64,
+    },
+    /// Gauss's and Newton's method did not come to rest.
+    #[error(
+        "the joint fit did not come to rest in {rounds} rounds: the last would move the answer by {moved:.1e} standard deviations; the \
+         records may contradict each other: check axes, places and masses"
+    )]
+    Unsettled {
+        /// Rounds that were made.
+        rounds: usize,
+        /// Standard deviations by which a further round would move the answer.
+        moved: f64,
+    },
+    /// The equations have no solution.
+    #[error("the joint fit has no certified answer: {0}")]
+    Solver(#[from] SolverFailure),
+}

@@ -1,0 +1,76 @@
+//! What one record tells, its torques and the choice of a torque each at their best.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::columns::column::Column;
+use crate::columns::effect::Class;
+use crate::estimator::Drawn;
+use crate::physical::coordinates::Form;
+use crate::physical::nearest::Normal;
+use crate::solve::joint::factor;
+use crate::solve::stacked::Stacked;
+use crate::solve::triangle::Triangle;
+
+/// |R m + r|² of readings m: the errors of the sensor in SI units, without their priors; one over the trace, where wheels or
+/// torques tell it, 1/(kg m²); five coordinates of the shape.
+pub(super) struct Told {
+    pub(super) root: DMatrix<f64>,
+    pub(super) right: DVector<f64>,
+    pub(super) has_input: bool,
+}
+
+impl Told {
+    pub(super) fn new(drawn: &Drawn) -> Option<Told> {
+        let Drawn { weak, deviation, spread, rms, input } = drawn;
+        let origin = &weak.stacked.as_ref()?.origin;
+        // priors of what records share would count once for each
+        let columns: Vec<Column> = weak.columns.iter().map(|column| column.with_prior(None)).collect();
+        let rows: Vec<&[f64]> = weak.parts.iter().map(|part| part.rows.as_slice()).collect();
+        let stacked = Stacked::new(&rows, &columns, origin, *deviation);
+        let (triangle, right) = (stacked.whole() / *deviation, stacked.at_zero() / *deviation);
+        let of_class = |wanted: fn(Class) -> bool| -> Vec<usize> {
+            (0..columns.len()).filter(|&k| wanted(columns[k].class())).collect()
+        };
+        let shared = of_class(|class| class == Class::Sensor);
+        let inputs = of_class(|class| class == Class::Input);
+        let own = of_class(|class| !matches!(class, Class::Sensor | Class::Input));
+        // x of the record is off by F e, e standard normal, F Fᵀ being what the choice of a torque adds
+        let wider = if *spread == Form::zeros() { 0 } else { 5 };
+        let (more, first) = (factor(spread), columns.len());
+        let width = own.len() + wider + shared.len() + inputs.len() + 6;
+        let mut all = Triangle::new(width);
+        for (row, right) in triangle.row_iter().zip(&right) {
+            let of_shape = |e: usize| (0..5).map(|k| row[first + k] * more[(k, e)]).sum::<f64>();
+            let each = own.iter().map(|&k| row[k]).chain((0..wider).map(of_shape));
+            let each = each.chain(shared.iter().map(|&k| row[k] / columns[k].label().factor(*rms)));
+            let each = each.chain(inputs.iter().map(|&k| row[k] * input.unwrap_or(1.0)));
+            all.push(each.chain((0..5).map(|k| row[first + k])).chain([*right]));
+        }
+        for e in 0..wider {
+            all.push((0..width).map(|k| f64::from(u8::from(k == own.len() + e))));
+        }
+        let (behind, size) = (own.len() + wider, shared.len() + inputs.len() + 5);
+        let r = all.finished();
+        let root = r.view((behind, behind), (size, size)).into_owned();
+        let right = r.view((behind, width - 1), (size, 1)).column(0).into_owned();
+        let finite = root.iter().chain(&right).all(|v| v.is_finite());
+        finite.then_some(Told { root, right, has_input: !inputs.is_empty() })
+    }
+
+    /// What it tells by itself of one over the trace and the shape, the errors of the sensor having these priors.
+    pub(super) fn alone(&self, priors: &[f64]) -> Option<Normal> {
+        let (first, size) = (priors.len(), self.right.len());
+        let mut all = Triangle::new(size + 1);
+        for (row, right) in self.root.row_iter().zip(&self.right) {
+            all.push(row.iter().copied().chain([*right]));
+        }
+        for (k, prior) in priors.iter().enumerate() {
+            all.push((0..=size).map(|i| if i == k { 1.0 / prior } else { 0.0 }));
+        }
+        let r = all.finished();
+        let root = r.view((first, first), (size - first, size - first)).into_owned();
+        let right = r.view((first, size), (size - first, 1)).column(0).into_owned();
+        let centre = root.solve_upper_triangular(&-right)?;
+        centre.iter().all(|v| v.is_finite()).then_some(Normal { centre, root })
+    }
+}
