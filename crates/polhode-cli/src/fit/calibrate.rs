@@ -3,11 +3,11 @@
 use nalgebra::Vector3;
 use polhode::inertia::Inertia;
 use polhode_files::error::Error;
-use polhode_fit::{FitError, Nuisance, Record, Settings, WheelCalibration, calibrate_wheel};
+use polhode_fit::{FitError, Record, Settings, WheelCalibration, calibrate_wheel};
 use polhode_pages::table::{Column, Format, Table, row};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use super::report::{SURE, digits, with_error};
+use super::report::{SURE, nuisances, scaled, with_error};
 
 /// The answer as text, rows or JSON; `names` are those of the files.
 pub(super) fn report(
@@ -30,14 +30,6 @@ pub(super) fn report(
         Format::Csv => rows(&wheel).csv(),
         Format::Json => format!("{:#}\n", object(&wheel, axis, record)),
     })
-}
-
-/// In scientific notation, with the digits that the deviation leaves.
-fn scaled(value: f64, sigma: f64) -> String {
-    let power = if value == 0.0 { 0 } else { libm::floor(libm::log10(value.abs())) as i32 };
-    let unit = libm::pow(10.0, f64::from(power));
-    let places = digits(sigma / unit);
-    format!("({:.places$} +- {:.places$})e{power}", value / unit, sigma / unit)
 }
 
 fn text(wheel: &WheelCalibration, axis: &Vector3<f64>) -> String {
@@ -72,15 +64,11 @@ fn rows(wheel: &WheelCalibration) -> Table {
 }
 
 fn object(wheel: &WheelCalibration, axis: &Vector3<f64>, record: &Record) -> Value {
-    let entry = |n: &Nuisance| {
-        let value = json!({ "value": n.value, "sigma": n.sigma, "unit": n.unit, "prior": n.prior });
-        (n.name.to_string(), value)
-    };
     json!({
         "wheel_inertia": wheel.inertia,
         "sigma": wheel.sigma,
         "axis": [axis.x, axis.y, axis.z],
-        "nuisances": wheel.nuisances.iter().map(entry).collect::<Map<_, _>>(),
+        "nuisances": nuisances(&wheel.nuisances),
         "noise_sigma": wheel.noise_sigma,
         "samples": wheel.samples,
         "segments": wheel.segments,

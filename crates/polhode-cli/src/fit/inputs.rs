@@ -12,8 +12,9 @@ pub(super) struct WheelArguments {
     #[arg(long, value_name = "nx,ny,nz,I", value_parser = wheel, allow_hyphen_values = true)]
     wheel: Option<Wheel>,
     /// Find the moment of inertia of a wheel with this axis instead, sensor axes: the body is that of --body, in sensor
-    /// axes, with the wheel at rest; the speed of the wheel relative to it is the column `wheel`, with its unit
-    #[arg(long, value_name = "nx,ny,nz", value_parser = axis, conflicts_with = "wheel", requires = "body", allow_hyphen_values = true)]
+    /// axes, with the wheel at rest; the speed of the wheel relative to it is the column `wheel`, with its unit. With --carrier: find
+    /// it with carrier and object
+    #[arg(long, value_name = "nx,ny,nz", value_parser = axis, conflicts_with = "wheel", allow_hyphen_values = true)]
     calibrate_wheel: Option<Vector3<f64>>,
 }
 

@@ -3,10 +3,12 @@
 mod arguments;
 mod attitudes;
 mod calibrate;
+mod carrier;
 mod flights;
 mod inputs;
 mod page;
 mod plot;
+mod refusal;
 mod report;
 mod residuals;
 
@@ -17,7 +19,7 @@ use nalgebra::Vector3;
 use polhode_files::error::{Error, warn};
 use polhode_files::inputs as opened;
 use polhode_files::numbers::{numbers, positive};
-use polhode_fit::{FitError, Limit, PoseFault, Settings, fit, fit_poses};
+use polhode_fit::{Limit, Settings, fit, fit_poses};
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
@@ -27,9 +29,9 @@ use crate::memory;
 use crate::plot::Picture;
 use arguments::{KnownArguments, PriorArguments, SensorArguments, Torque};
 use attitudes::{Chosen, PoseArguments, Read};
+use carrier::CarrierArguments;
 use flights::Spans;
 use inputs::WheelArguments;
-use report::Facts;
 
 const EXAMPLES: &str = "Examples:
   polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
@@ -54,7 +56,7 @@ const EXAMPLES: &str = "Examples:
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Fit {
     /// Records with a header: t, wx, wy, wz, or the names of phone apps; or attitudes in any columns that audit reads
-    #[arg(required = true, value_name = "DATA.csv")]
+    #[arg(required_unless_present = "carrier", value_name = "DATA.csv")]
     data: Vec<PathBuf>,
     #[command(flatten)]
     reading: RecordArguments,
@@ -78,6 +80,8 @@ pub(crate) struct Fit {
     prior: PriorArguments,
     #[command(flatten)]
     wheel: WheelArguments,
+    #[command(flatten)]
+    carrier: CarrierArguments,
     /// Torque on the body besides those of the record; a model, whose values are estimated: relative drag, drag along each sensor axis, drag that grows with the square of the rate, constant in body axes
     #[arg(long, value_enum, default_value_t = Torque::Auto)]
     torque: Torque,
@@ -112,6 +116,7 @@ fn ends_in(path: &Path, endings: &[&str]) -> bool {
 impl Fit {
     pub(crate) fn run(&self) -> Result<(), Error> {
         self.check_paths()?;
+        self.check_wheel()?;
         let form = self.report.as_deref().map(|path| Form::of("--report", path)).transpose()?;
         let output = Output::new(self.out.as_deref())?;
         let residuals = self.residuals.as_deref().map(|path| Output::to_file("--residuals", path));
@@ -123,7 +128,10 @@ impl Fit {
             Ok::<_, Error>((Output::to_file("--figure", path)?, picture))
         });
         let figure = figure.transpose()?;
-        memory::check_files(&self.data, 3)?;
+        memory::check_files(&self.files(), 3)?;
+        if self.carrier.is_given() {
+            return output.write_whole(&self.joint()?);
+        }
         let chosen = self.poses.chosen(&self.data, &self.reading);
         let read = match chosen {
             Chosen::Attitudes { .. } => Some(self.attitudes()?),
@@ -134,24 +142,7 @@ impl Fit {
             None => self.reading.record(&self.data, self.wheel.momentum())?,
         };
         chosen.tell();
-        let limit = |axis: &[f64; 4]| Limit {
-            axis: Vector3::new(axis[0], axis[1], axis[2]),
-            at_least: None,
-            at_most: None,
-        };
-        let least = self.at_least.iter().map(|b| Limit { at_least: Some(b[3]), ..limit(b) });
-        let most = self.at_most.iter().map(|b| Limit { at_most: Some(b[3]), ..limit(b) });
-        let settings = Settings::default()
-            .with_radius(self.radius)
-            .with_noise(self.noise)
-            .with_attitude_noise(self.poses.noise())
-            .with_limits(least.chain(most).collect())
-            .with_prior(self.prior.prior())
-            .with_known(self.known.known()?)
-            .with_check_units(!self.trust_units)
-            .with_torque(self.torque.into())
-            .with_quantum(self.sensor.quantum())
-            .with_sensor(self.sensor.priors());
+        let settings = self.settings()?;
         let format = Format::of(self.format, self.out.as_deref())?;
         let names = report::unused(&record);
         if !names.is_empty() {
@@ -181,29 +172,8 @@ impl Fit {
         let estimate = match fitted {
             Ok(estimate) => estimate,
             Err(error) => {
-                let reason = match &error {
-                    FitError::NoFlight { .. } => format!("{error} (--window t0,t1)"),
-                    FitError::Driven { .. } => format!("{error} (--window t0,t1)"),
-                    FitError::Units { .. } => format!("{error} (--rate-unit, --time-unit; --trust-units)"),
-                    FitError::Poses(PoseFault::Direction { .. } | PoseFault::Inverted { .. }) => {
-                        format!("{error} (--attitude body-to-space or space-to-body)")
-                    }
-                    FitError::Poses(PoseFault::NotFree { .. }) => format!("{error} (--window t0,t1)"),
-                    FitError::Undersampled { .. } => format!("{error} (--rate-unit, --time-unit)"),
-                    _ => error.to_string(),
-                };
-                let (facts, failed) = match &error {
-                    FitError::Unidentifiable(what) => (Some(Facts::unidentified(what)), true),
-                    FitError::Unsettled { axes, .. } => (Some(Facts::unsettled(axes)), true),
-                    FitError::NoFlight { .. } => (Some(Facts::not_free()), true),
-                    FitError::Driven { .. } => (Some(Facts::driven()), true),
-                    FitError::Poses(PoseFault::Direction { .. }) => (Some(Facts::direction_open()), true),
-                    FitError::Poses(PoseFault::NotFree { .. }) => (Some(Facts::driven()), true),
-                    FitError::NoRotation { .. }
-                    | FitError::Solver(_)
-                    | FitError::Poses(PoseFault::NoTurn { .. } | PoseFault::HalfTurn { .. }) => (None, true),
-                    _ => (None, false),
-                };
+                let reason = refusal::reason(&error);
+                let (facts, failed) = refusal::facts(&error);
                 if let Some((file, form)) = page {
                     file.write_whole(&page::refused(
                         &reason,
@@ -262,6 +232,39 @@ impl Fit {
         Ok(())
     }
 
+    fn settings(&self) -> Result<Settings, Error> {
+        let limit = |axis: &[f64; 4]| Limit {
+            axis: Vector3::new(axis[0], axis[1], axis[2]),
+            at_least: None,
+            at_most: None,
+        };
+        let least = self.at_least.iter().map(|b| Limit { at_least: Some(b[3]), ..limit(b) });
+        let most = self.at_most.iter().map(|b| Limit { at_most: Some(b[3]), ..limit(b) });
+        Ok(Settings::default()
+            .with_radius(self.radius)
+            .with_noise(self.noise)
+            .with_attitude_noise(self.poses.noise())
+            .with_limits(least.chain(most).collect())
+            .with_prior(self.prior.prior())
+            .with_known(self.known.known()?)
+            .with_check_units(!self.trust_units)
+            .with_torque(self.torque.into())
+            .with_quantum(self.sensor.quantum())
+            .with_sensor(self.sensor.priors()))
+    }
+
+    /// Carrier, proof body and object as one fit.
+    fn joint(&self) -> Result<String, Error> {
+        let format = Format::of(self.format, self.out.as_deref())?;
+        let wheel = (self.wheel.momentum(), self.wheel.calibrated().is_some());
+        carrier::report(&self.carrier, &self.data, &self.reading, wheel, &self.settings()?, format)
+    }
+
+    /// Every file that is read, in the order in which --window counts them.
+    fn files(&self) -> Vec<PathBuf> {
+        self.carrier.files(&self.data).into_iter().flatten().cloned().collect()
+    }
+
     /// The attitudes of the files, which go with no wheel.
     fn attitudes(&self) -> Result<Read, Error> {
         if self.wheel.momentum().is_some() {
@@ -271,14 +274,24 @@ impl Fit {
         self.poses.read(&self.data, &self.reading)
     }
 
+    /// The inertia of a wheel is found from a body that is known, or from a joint fit.
+    fn check_wheel(&self) -> Result<(), Error> {
+        if self.wheel.calibrated().is_none() || self.carrier.is_given() || self.known.body()?.is_some() {
+            return Ok(());
+        }
+        let rule = "the inertia of a wheel is found from a body that is known, or from a joint fit";
+        Err(Error::input("--calibrate-wheel", "", rule, "name the body by --body, or give --carrier"))
+    }
+
     /// No sample is read twice, and no measurement is written over.
     fn check_paths(&self) -> Result<(), Error> {
         let same = |a: &Path, b: &Path| {
             let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
             whole(a) == whole(b)
         };
-        for (k, path) in self.data.iter().enumerate() {
-            if self.data[..k].iter().any(|before| same(before, path)) {
+        let files = self.files();
+        for (k, path) in files.iter().enumerate() {
+            if files[..k].iter().any(|before| same(before, path)) {
                 let value = path.display().to_string();
                 return Err(Error::input(
                     "DATA",
@@ -308,7 +321,7 @@ impl Fit {
             }
         }
         // refused before the work rather than at its end
-        self.data.iter().for_each(|path| opened::register(path));
+        files.iter().for_each(|path| opened::register(path));
         if let Some(path) = self
             .residuals
             .as_deref()

@@ -53,19 +53,24 @@ impl Described {
 
 /// The body that `--body` names: of the catalogue, or of a file.
 pub(crate) fn described(text: &str) -> Result<Described, Error> {
+    named("--body", text)
+}
+
+/// The same of another flag.
+pub(crate) fn named(flag: &str, text: &str) -> Result<Described, Error> {
     if let Some(found) = catalogue::body(text).or_else(|| catalogue::top(text)) {
         return Ok(Described { inertia: found.inertia, weight_moment: found.weight_moment });
     }
-    if let Some(inertia) = bodies::inertia("--body", text)? {
+    if let Some(inertia) = bodies::inertia(flag, text)? {
         return Ok(Described::alone(inertia));
     }
     let known: Vec<&str> =
         catalogue::bodies().iter().chain(&catalogue::tops()).map(|body| body.name).collect();
     if text.contains(['.', '/']) {
         let rule = "no such file, and no such body in the catalogue";
-        return Err(Error::input("--body", text, rule, "`polhode bodies` lists the catalogue"));
+        return Err(Error::input(flag, text, rule, "`polhode bodies` lists the catalogue"));
     }
-    Err(Error::unknown_name("--body", "body", text, known.iter().copied()))
+    Err(Error::unknown_name(flag, "body", text, known.iter().copied()))
 }
 
 impl BodyArguments {

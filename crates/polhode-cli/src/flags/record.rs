@@ -88,13 +88,24 @@ impl RecordArguments {
 
     /// All files and windows as one record; `wheel` is the momentum of a wheel per rad/s of its speed.
     pub(crate) fn record(&self, data: &[PathBuf], wheel: Option<Vector3<f64>>) -> Result<Record, Error> {
-        self.check_windows(data.len())?;
+        let [all] = self.records([data], wheel)?;
+        Ok(all)
+    }
+
+    /// The same of several records, their files counted through.
+    pub(crate) fn records<const N: usize>(
+        &self,
+        data: [&[PathBuf]; N],
+        wheel: Option<Vector3<f64>>,
+    ) -> Result<[Record; N], Error> {
+        self.check_windows(data.iter().map(|files| files.len()).sum())?;
         self.tell_axes();
-        let mut all = Record::default();
-        for (k, path) in data.iter().enumerate() {
+        let mut all = core::array::from_fn(|_| Record::default());
+        let each = data.iter().enumerate().flat_map(|(of, files)| files.iter().map(move |path| (of, path)));
+        for (k, (of, path)) in each.enumerate() {
             let record = self.read(path, wheel)?.record;
             if let Some(cut) = self.cut(record, k)? {
-                all = all.join(cut);
+                all[of] = core::mem::take(&mut all[of]).join(cut);
             }
         }
         Ok(all)

@@ -17,6 +17,7 @@ mod events;
 mod experiment;
 mod fit;
 mod fit_attitudes;
+mod fit_carrier;
 mod fit_inputs;
 mod flights;
 mod forces;

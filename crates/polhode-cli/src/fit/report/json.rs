@@ -112,7 +112,7 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
 }
 
 /// By name: value, standard deviation, unit, and the deviation of the prior where there is one.
-fn nuisances(of: &[Nuisance]) -> Map<String, Value> {
+pub(in crate::fit) fn nuisances(of: &[Nuisance]) -> Map<String, Value> {
     let entry = |n: &Nuisance| {
         let value = json!({ "value": n.value, "sigma": n.sigma, "unit": n.unit, "prior": n.prior });
         (n.name.to_string(), value)

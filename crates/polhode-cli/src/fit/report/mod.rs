@@ -9,6 +9,8 @@ use polhode_fit::{AverageAxis, Estimate, Identifiability, Method, ModelFit, Reco
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
 
+pub(super) use self::json::nuisances;
+pub(super) use self::text::tensor;
 use super::attitudes::Read;
 use super::flights::Spans;
 
@@ -141,6 +143,14 @@ pub(super) fn with_error(value: f64, sigma: f64) -> String {
     }
     let digits = digits(sigma);
     format!("{value:.digits$} +- {sigma:.digits$}")
+}
+
+/// In scientific notation, with the digits that the deviation leaves.
+pub(super) fn scaled(value: f64, sigma: f64) -> String {
+    let power = if value == 0.0 { 0 } else { libm::floor(libm::log10(value.abs())) as i32 };
+    let unit = libm::pow(10.0, f64::from(power));
+    let places = digits(sigma / unit);
+    format!("({:.places$} +- {:.places$})e{power}", value / unit, sigma / unit)
 }
 
 /// A value with two digits of its deviation in brackets, in units of the last place: 0.2130(14) is 0.2130 ± 0.0014.

@@ -91,7 +91,8 @@ fn axes(e: &Estimate) -> Vec<String> {
     lines
 }
 
-fn tensor(name: &str, m: &Matrix3<f64>) -> String {
+/// A matrix under its name.
+pub(in crate::fit) fn tensor(name: &str, m: &Matrix3<f64>) -> String {
     let row = |i: usize| format!("  {:13.6e} {:13.6e} {:13.6e}", m[(i, 0)], m[(i, 1)], m[(i, 2)]);
     format!("\n{name}:\n{}\n{}\n{}", row(0), row(1), row(2))
 }

@@ -1,0 +1,144 @@
+//! The flags of a carrier, a proof body and an object on it.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use nalgebra::{Matrix3, Vector3};
+use polhode::inertia::MassProperties;
+use polhode_files::error::Error;
+use polhode_files::numbers::{list, numbers, positive};
+use polhode_fit::ProofBody;
+
+use crate::flags::body::named;
+
+/// Records of a carrier and of what was attached to it.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct CarrierArguments {
+    /// Record of the carrier alone, which DATA.csv, if any, holds with the object on it: one joint fit of all records gives the
+    /// absolute tensors of carrier and object. All records are of one sensor, in its axes; --window N: counts the files of --carrier, --proof,
+    /// DATA and --object-proof, in this order
+    #[arg(long, value_name = "FILE.csv", help_heading = "Carrier", conflicts_with_all = [
+        "at_least", "at_most", "body", "trace", "momentum", "twice_energy", "moment", "prior_inertia", "prior_shape",
+        "residuals", "figure", "report",
+    ])]
+    carrier: Vec<PathBuf>,
+    /// Record of carrier and proof body: it gives the size
+    #[arg(
+        long,
+        value_name = "FILE.csv",
+        help_heading = "Carrier",
+        requires = "carrier",
+        requires = "proof_body"
+    )]
+    proof: Vec<PathBuf>,
+    /// Record of carrier, object and proof body together: it gives the size of the object where no wheel turns and no torque is known
+    #[arg(
+        long,
+        value_name = "FILE.csv",
+        help_heading = "Carrier",
+        requires = "carrier",
+        requires = "proof_body"
+    )]
+    object_proof: Vec<PathBuf>,
+    /// Tensor of the proof body about its centre of mass, kg m^2, sensor axes: three moments or six entries, a body of the catalogue,
+    /// or a file as of `polhode inertia`. Without --proof-at it is what the proof body adds to the carrier
+    #[arg(
+        long,
+        value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz]|NAME|FILE",
+        help_heading = "Carrier",
+        requires = "carrier",
+        allow_hyphen_values = true
+    )]
+    proof_body: Option<String>,
+    /// Relative standard deviation s of what the proof body adds: its entries are known to s sqrt(Dii Djj) [default: exact]
+    #[arg(long, value_name = "SIGMA", value_parser = positive, help_heading = "Carrier", requires = "proof_body", allow_hyphen_values = true)]
+    proof_sigma: Option<f64>,
+    /// Centre of mass of the proof body from that of the carrier, m, sensor axes, and its mass, kg: adds the parallel-axis term
+    #[arg(long, value_name = "x,y,z,MASS", value_parser = numbers::<4>, help_heading = "Carrier", requires = "proof_body", requires = "carrier_mass", allow_hyphen_values = true)]
+    proof_at: Option<[f64; 4]>,
+    /// The same of the object: gives its tensor about its own centre of mass, too
+    #[arg(long, value_name = "x,y,z,MASS", value_parser = numbers::<4>, help_heading = "Carrier", requires = "carrier_mass", allow_hyphen_values = true)]
+    object_at: Option<[f64; 4]>,
+    /// Mass of the carrier, kg
+    #[arg(long, value_name = "MASS", value_parser = positive, help_heading = "Carrier", requires = "carrier", allow_hyphen_values = true)]
+    carrier_mass: Option<f64>,
+}
+
+impl CarrierArguments {
+    /// Whether a joint fit is asked for.
+    pub(crate) fn is_given(&self) -> bool {
+        !self.carrier.is_empty()
+    }
+
+    /// Files of carrier, carrier and proof body, carrier and object, and all three.
+    pub(crate) fn files<'a>(&'a self, data: &'a [PathBuf]) -> [&'a [PathBuf]; 4] {
+        [&self.carrier, &self.proof, data, &self.object_proof]
+    }
+
+    /// The proof body on the carrier.
+    pub(super) fn proof_body(&self) -> Result<Option<ProofBody>, Error> {
+        self.proof_at_centre(Vector3::zeros(), 0.0)
+    }
+
+    /// The same on carrier and object, counted from their common centre of mass.
+    pub(super) fn proof_body_beside_object(&self) -> Result<Option<ProofBody>, Error> {
+        match (self.object_proof.is_empty(), self.proof_at, self.object_at, self.carrier_mass) {
+            (false, Some(_), None, _) => Err(Error::input(
+                "--object-proof",
+                "",
+                "the proof body is counted from the common centre of mass of carrier and object, which nothing gives",
+                "give place and mass of the object by --object-at",
+            )),
+            (false, Some(_), Some([x, y, z, mass]), Some(carrier)) => {
+                let share = mass / (mass + carrier);
+                self.proof_at_centre(Vector3::new(x, y, z) * share, mass)
+            }
+            _ => self.proof_body(),
+        }
+    }
+
+    /// Mass and place of the object, and the mass of the carrier.
+    pub(super) fn object_place(&self) -> Result<Option<(f64, Vector3<f64>, f64)>, Error> {
+        let given = self.object_at.zip(self.carrier_mass);
+        given
+            .map(|([x, y, z, m], carrier)| Ok((mass("--object-at", m)?, Vector3::new(x, y, z), carrier)))
+            .transpose()
+    }
+
+    /// The proof body on a carrier with further mass, whose common centre of mass is at `centre`.
+    fn proof_at_centre(&self, centre: Vector3<f64>, further: f64) -> Result<Option<ProofBody>, Error> {
+        let Some(text) = &self.proof_body else { return Ok(None) };
+        let tensor = own(text)?;
+        let refused = |error: String| Error::Input(format!("--proof-body: {error}"));
+        let body = match self.proof_at.zip(self.carrier_mass) {
+            None => ProofBody::adding(tensor),
+            Some(([x, y, z, m], carrier)) => {
+                let place = Vector3::new(x, y, z) - centre;
+                let body = MassProperties::new(mass("--proof-at", m)?, place, tensor);
+                ProofBody::attached(&body.map_err(|error| refused(error.to_string()))?, carrier + further)
+            }
+        };
+        Ok(Some(body.map_err(|error| refused(error.to_string()))?.with_deviation(self.proof_sigma)))
+    }
+}
+
+/// The tensor of the proof body about its centre of mass.
+fn own(text: &str) -> Result<Matrix3<f64>, Error> {
+    match list(text).as_deref() {
+        Ok(&[x, y, z]) => Ok(Matrix3::from_diagonal(&Vector3::new(x, y, z))),
+        Ok(&[xx, yy, zz, xy, xz, yz]) => Ok(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)),
+        Ok(found) => {
+            let rule = format!("{} numbers, and 3 moments or 6 entries are needed", found.len());
+            Err(Error::input("--proof-body", text, &rule, "separate them by commas"))
+        }
+        Err(_) => Ok(named("--proof-body", text)?.inertia.tensor()),
+    }
+}
+
+fn mass(flag: &str, value: f64) -> Result<f64, Error> {
+    if value > 0.0 {
+        return Ok(value);
+    }
+    let rule = "the mass is not positive";
+    Err(Error::input(flag, &value.to_string(), rule, "give the place, then the mass in kg"))
+}

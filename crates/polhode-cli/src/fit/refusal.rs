@@ -1,0 +1,36 @@
+//! Why a fit was refused, with the flags that help, and what it tells all the same.
+
+use polhode_fit::{FitError, PoseFault};
+
+use super::report::Facts;
+
+/// The reason, with the flags that help.
+pub(super) fn reason(error: &FitError) -> String {
+    match error {
+        FitError::NoFlight { .. } => format!("{error} (--window t0,t1)"),
+        FitError::Driven { .. } => format!("{error} (--window t0,t1)"),
+        FitError::Units { .. } => format!("{error} (--rate-unit, --time-unit; --trust-units)"),
+        FitError::Poses(PoseFault::Direction { .. } | PoseFault::Inverted { .. }) => {
+            format!("{error} (--attitude body-to-space or space-to-body)")
+        }
+        FitError::Poses(PoseFault::NotFree { .. }) => format!("{error} (--window t0,t1)"),
+        FitError::Undersampled { .. } => format!("{error} (--rate-unit, --time-unit)"),
+        _ => error.to_string(),
+    }
+}
+
+/// What it tells of the record, and whether the fit failed rather than its input.
+pub(super) fn facts(error: &FitError) -> (Option<Facts>, bool) {
+    match error {
+        FitError::Unidentifiable(what) => (Some(Facts::unidentified(what)), true),
+        FitError::Unsettled { axes, .. } => (Some(Facts::unsettled(axes)), true),
+        FitError::NoFlight { .. } => (Some(Facts::not_free()), true),
+        FitError::Driven { .. } => (Some(Facts::driven()), true),
+        FitError::Poses(PoseFault::Direction { .. }) => (Some(Facts::direction_open()), true),
+        FitError::Poses(PoseFault::NotFree { .. }) => (Some(Facts::driven()), true),
+        FitError::NoRotation { .. }
+        | FitError::Solver(_)
+        | FitError::Poses(PoseFault::NoTurn { .. } | PoseFault::HalfTurn { .. }) => (None, true),
+        _ => (None, false),
+    }
+}
