@@ -94,7 +94,7 @@ fn errors_are_those_of_the_bound() {
         {
             for trial in 0..3 {
                 let noise = noise.to_radians();
-                let rate = if trial == 0 { 60.0 } else { 6.0 };
+                let rate = if trial == 0 { 24.0 } else { 6.0 };
                 let toss = toss(moments, rate, 30.0, noise, (100 * k + 10 * n + trial) as u64);
                 let bound = foreseen_attitude_bound(&toss.body, toss.omega, &toss.times, noise).unwrap();
                 let estimate = match fit_poses(&toss.poses(), &Settings::default()) {
