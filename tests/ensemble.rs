@@ -198,9 +198,9 @@ fn parts_of_an_ensemble_have_the_bits_of_the_whole() {
 #[cfg(feature = "parallel")]
 #[test]
 fn any_number_of_threads_gives_the_same_rows() {
-    // several parts
-    let times: Vec<f64> = (0..512).map(|n| 3.0 * f64::from(n)).collect();
-    let steps: Vec<u64> = (0..2048).map(|n| n / 8).collect();
+    // six parts and three
+    let times: Vec<f64> = (0..128).map(|n| 12.0 * f64::from(n)).collect();
+    let steps: Vec<u64> = (0..1024).map(|n| n / 4).collect();
     let rows = |threads| {
         let ensemble = members(0..700).threads(threads);
         let observed = members(0..700)

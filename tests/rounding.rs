@@ -66,7 +66,7 @@ fn rounding_moves_tops_of_an_ensemble_either_way() {
     const MEMBERS: u32 = 64;
     let method = method("kick-drift").unwrap();
     for top in [BRULS_CARDONA, SIMO_WONG, SLENDER] {
-        let errors: Vec<[f64; 2]> = (0..MEMBERS).map(|n| top.rounding(&method, n, 20_000)).collect();
+        let errors: Vec<[f64; 2]> = (0..MEMBERS).map(|n| top.rounding(&method, n, 10_000)).collect();
         for (k, what) in ["energy", "L_z"].into_iter().enumerate() {
             let average =
                 |f: fn(f64) -> f64| errors.iter().map(|e| f(e[k])).sum::<f64>() / f64::from(MEMBERS);

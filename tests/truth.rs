@@ -72,11 +72,11 @@ fn a_chaotic_motion_is_known_only_so_far_and_less_far_to_more_digits() {
     let (body, start) = chaotic_top();
     let point = body.enter(&start).unwrap().to_f64();
     let times = evenly(600.0, 300);
-    let known = |agreement| Truth::from_point(&body, point, 0.0, &times, agreement).unwrap().known_until();
-    let [strict, usual, loose] = [1e-25, AGREEMENT, 1e-7].map(known);
+    let truths = [1e-25, AGREEMENT, 1e-7].map(|a| Truth::from_point(&body, point, 0.0, &times, a).unwrap());
+    let [strict, usual, loose] = truths.each_ref().map(Truth::known_until);
     assert!(20.0 < strict && strict < usual && usual < loose && loose < 600.0, "{strict} {usual} {loose}");
     // beyond, the run goes on and is not judged
-    let truth = Truth::new(&body, &start, &times).unwrap();
+    let truth = &truths[1];
     let run = truth.judge(&method("kick-drift@srkn-11b").unwrap(), 1.0 / 64.0, Care::default()).unwrap();
     assert_eq!(run.last.elapsed.hi(), 600.0);
     assert!(run.looks.last().unwrap().elapsed <= truth.known_until());

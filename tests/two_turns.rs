@@ -100,7 +100,7 @@ fn spread(n: u32) -> [f64; 6] {
 
 #[test]
 fn two_turns_are_far_more_accurate_than_three_and_their_axes_well_chosen() {
-    const BODIES: u32 = 600;
+    const BODIES: u32 = 300;
     let (mut ratios, mut ratios_to_energy, mut chosen_well, mut three_well) = (Vec::new(), Vec::new(), 0, 0);
     for n in 0..BODIES {
         let [d1, d2, d3, z, turn, size] = spread(n);
@@ -133,7 +133,7 @@ fn two_turns_are_far_more_accurate_than_three_and_their_axes_well_chosen() {
     println!("median ratio {median_now:.1}, to the order best for the energy {median_energy:.1}");
     println!("within 1.5 of the best: {chosen_well} of {BODIES} two-turn, {three_well} lie-poisson");
     assert!(median_now > 50.0 && median_energy > 100.0, "{median_now:.1}, {median_energy:.1}");
-    assert!(chosen_well > 480 && three_well > 480, "{chosen_well}, {three_well} of {BODIES}");
+    assert!(chosen_well > 240 && three_well > 240, "{chosen_well}, {three_well} of {BODIES}");
 }
 
 /// Nodes and weights of Gauss and Legendre on (−1, 1), exact to degree 9.

@@ -39,8 +39,8 @@ const PUBLISH_EXAMPLES: &str = "Examples:
 
 const EXAMPLES: &str = "Examples:
   polhode experiment run --scale smoke
-  polhode experiment run order drift --scale smoke
-  polhode experiment run order drift --scale smoke --report results.html";
+  polhode experiment run order exact --scale smoke
+  polhode experiment run order exact --scale smoke --report results.html";
 
 /// The subcommands of `polhode experiment`; what is said of each is its help on the command line.
 #[allow(rustdoc::invalid_html_tags)]
@@ -158,4 +158,15 @@ fn chosen(command: &str, names: &[String]) -> Result<Vec<&'static Experiment>, E
     }
     let asked = |name: &str| names.iter().any(|asked| asked == name || asked == "all");
     Ok(experiments::ALL.iter().filter(|experiment| asked(experiment.name)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::main;
+    use crate::experiments::MAIN;
+
+    #[test]
+    fn what_runs_without_a_name_are_experiments() {
+        assert!(main().iter().map(|experiment| experiment.name).eq(MAIN));
+    }
 }

@@ -340,7 +340,6 @@ fn a_torque_that_is_told_and_does_not_act_is_named() {
     let file = scratch.file("free.csv", table(columns, rows("").iter().map(|r| r.to_vec())));
     for torque in [
         "--torque-body 3e-1,0,0",
-        "--torque-space 1e-2,0,0",
         "--torque-body 3e-3,1e-3,-2e-3",
         "--torque-space 1e-4,0,0",
         "--torque-body 3e-6,-3e-6,3e-6",

@@ -1,6 +1,6 @@
 """Largest distance of each GOLDEN.csv from its own start integrated in 26 digits: python3 golden_motion.py GOLDEN.csv ...
 
-Gragg's modified midpoint rule with Richardson extrapolation (Bulirsch and Stoer 1966), two steps a row, in decimal arithmetic:
+Gragg's modified midpoint rule with Richardson extrapolation (Bulirsch and Stoer 1966), a step a row, in decimal arithmetic:
 nothing is shared with the program that writes the files. Prints name, largest angle (rad) and largest difference of omega (rad/s).
 """
 import sys
@@ -63,8 +63,7 @@ for name in sys.argv[1:]:
     y = [x / norm for x in rows[0][1:5]] + rows[0][5:]
     angle, omega = 0.0, 0.0
     for before, row in zip(rows, rows[1:]):
-        for _ in range(2):
-            y = step(y, (row[0] - before[0]) / 2, *body)
+        y = step(y, row[0] - before[0], *body)
         apart = product([row[1], -row[2], -row[3], -row[4]], y[:4])
         angle = max(angle, 2 * float(sum(x * x for x in apart[1:]).sqrt()))
         omega = max(omega, max(abs(float(a - b)) for a, b in zip(row[5:], y[4:])))

@@ -84,5 +84,5 @@ fn the_page_holds_every_result_and_needs_nothing_else() {
 #[test]
 fn a_page_that_cannot_be_written_is_refused_before_the_work() {
     refused("experiment run all --report results.pdf", &["--report", "'results.pdf'", ".html"]);
-    refused("experiment run all --report /no/such/folder/results.html", &["--report", "/no/such/folder"]);
+    refused("experiment run --report /no/such/folder/results.html", &["--report", "/no/such/folder"]);
 }

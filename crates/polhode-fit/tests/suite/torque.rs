@@ -66,22 +66,20 @@ impl Trials {
     }
 }
 
-/// Drag of `drag` 1/s on J = (1, 2, 2.6), 60 s, about 1 rad/s at the start.
-fn with_drag(count: usize, rate: usize, drag: f64, sigma: f64, model: TorqueModel, seed: u64) -> Trials {
+/// Drag of `drag` 1/s on J = (1, 2, 2.6), 1 rad/s at the start.
+fn with_drag(count: usize, times: &[f64], drag: f64, sigma: f64, model: TorqueModel, seed: u64) -> Trials {
     let mut random = Random::new(seed);
-    let times = sampled(rate, 60);
     let mut trials = Trials::default();
     for _ in 0..count {
         let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &random_rotation(&mut random));
         let omega = random.normal_vector().normalize();
-        let rates = |j: &Matrix3<f64>, k: &[f64], omega: Vector3<f64>| {
-            motion(j, omega, &times, &|_, w| j * w * -k[0])
-        };
+        let rates =
+            |j: &Matrix3<f64>, k: &[f64], omega: Vector3<f64>| motion(j, omega, times, &|_, w| j * w * -k[0]);
         let bound = bound(&j, omega, &[drag], &[None], sigma, &rates);
         let noisy: Vec<_> =
             rates(&j, &[drag], omega).iter().map(|w| w + random.normal_vector() * sigma).collect();
         let settings = Settings::default().with_torque(model);
-        trials.add(fit(&Record::from_samples(&times, &noisy).unwrap(), &settings), &j, &bound);
+        trials.add(fit(&Record::from_samples(times, &noisy).unwrap(), &settings), &j, &bound);
     }
     trials
 }
@@ -91,7 +89,7 @@ fn with_drag(count: usize, rate: usize, drag: f64, sigma: f64, model: TorqueMode
 #[test]
 fn drag_is_found_and_fitted_at_its_bound() {
     for (drag, sigma) in [(1e-3, 1e-3), (1e-2, 1e-2), (0.1, 1e-3)] {
-        let trials = with_drag(24, 20, drag, sigma, TorqueModel::Auto, 5);
+        let trials = with_drag(24, &sampled(20, 30), drag, sigma, TorqueModel::Auto, 5);
         trials.print(&format!("drag {drag}, noise {sigma}"));
         assert_eq!(trials.refused, 0);
         assert!(trials.over_bound() < 1.26, "{:.3}", trials.over_bound());
@@ -164,9 +162,9 @@ fn a_body_that_a_motor_drives_contradicts_drag() {
 #[test]
 fn torque_noise_does_not_bias_the_moments() {
     let mut random = Random::new(66);
-    let times = sampled(50, 60);
+    let times = sampled(25, 60);
     let acting = Disturbances::default().with_torque_noise(3e-3);
-    let sensor = Gyroscope::default().with_noise(1e-2);
+    let sensor = Gyroscope::default().with_noise(7e-3);
     let (mut deviates, mut of_shape, count) = (Vector3::zeros(), 0.0, 40);
     for _ in 0..count {
         let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &random_rotation(&mut random));
@@ -350,7 +348,7 @@ fn drag_over_many_trials() {
         for drag in [1e-3, 1e-2, 0.1] {
             for model in [TorqueModel::Drag, TorqueModel::Auto] {
                 let start = std::time::Instant::now();
-                let trials = with_drag(30, 100, drag, sigma, model, 11);
+                let trials = with_drag(30, &sampled(100, 60), drag, sigma, model, 11);
                 trials.print(&format!("{model:?}, drag {drag}, noise {sigma}"));
                 println!("   {:.3} s a trial", start.elapsed().as_secs_f64() / 30.0);
             }
