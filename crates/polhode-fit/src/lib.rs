@@ -89,6 +89,7 @@ pub use report::halves::Halves;
 pub use report::identifiability::{Identifiability, PrincipalAxis, Undetermined};
 pub use report::model::ModelFit;
 pub use report::motion::FittedMotion;
+pub use report::next_step::NextStep;
 pub use report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic};
 pub use report::torque_free::{InvariantTrend, Whiteness};
 pub use report::warning::Warning;

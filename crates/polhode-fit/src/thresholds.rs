@@ -69,6 +69,7 @@ thresholds! {
         STILL: f64 = 0.01, "standard deviations by which the last round may still move the tensor", UNMEASURED;
         RESTLESS: f64 = 0.5, "the same beyond which there is no answer", UNMEASURED;
         TORQUES: f64 = 4.0, "misfit that noise does not explain", "torque_is_seen_in_the_drifts";
+        STANDS: f64 = 0.1, "relative change of a misfit from one round to the next that no longer matters", UNMEASURED;
         SIGNIFICANT_GAIN: f64 = 50.0,
             "fall of chi squared that no wobble of noise brings: a chance of exp(-25) for each frequency", DERIVED;
         FALL: f64 = 0.03, "share of its torque noise that a round of a descent leaves at least", UNMEASURED;
@@ -136,6 +137,10 @@ thresholds! {
     walk: "columns of a random walk of the offsets" {
         SHORTEST: f64 = 0.5, "shortest of them, rad of the motion", UNMEASURED;
     }
+    next_step: "what to do next" {
+        SURE: f64 = 1.959_963_984_540_054, "deviations of half a 95 % interval", DERIVED;
+        UNEVEN: f64 = 10.0, "deviation of the weakest combination over that of the best from which on it is named", UNMEASURED;
+    }
     judgement: "refusals" {
         EXCLUDED: [f64; 2] = [35.888_186_879_672_87, 38.258_336_377_209_69],
             "chi squared of 5 and 6 degrees of freedom with a chance of 1e-6: prior and record exclude each other", DERIVED;
@@ -157,7 +162,8 @@ thresholds! {
             "standard deviations by which noise alone does not carry five numbers off the physical tensors", "limits_that_contradict_the_record_are_seen_in_the_misfit";
         RESIDUALS: f64 = 1.2, "misfit that is worth a warning", UNMEASURED;
         HALVES: f64 = 35.888_186_879_672_87,
-            "chi squared of 5 degrees of freedom with a chance of 1e-6: both halves of a record contradict each other", DERIVED;
+            "chi squared of 5 degrees of freedom with a chance of 1e-6: two parts of a record contradict each other", DERIVED;
+        CUTS: usize = 8, "parts of a record at whose borders it is cut in two", UNMEASURED;
         NOISY: f64 = 4.0,
             "mean square residual of a segment over that of the median segment that is worth one", UNMEASURED;
         UNCERTAIN: f64 = 5e-3,

@@ -7,6 +7,9 @@ use crate::physical::coordinates::{Coordinates, Form};
 use crate::settings::torque::TorqueModel;
 use crate::solve::ladder::threshold;
 
+/// Distance of the tensor of a needle from that of a sphere, shares of the trace: no other body's is larger.
+const FARTHEST: f64 = 0.408_248_290_463_863; // 1/√6
+
 /// What a model makes of a record.
 #[derive(Clone, Debug)]
 pub(crate) struct Weighed {
@@ -43,6 +46,15 @@ pub(crate) fn shares(models: &[Weighed], chosen: TorqueModel) -> Vec<f64> {
     weights.into_iter().map(|weight| weight / sum).collect()
 }
 
+/// Mean and covariance of x by a model, and by that no tensor of a body lies further than `FARTHEST` from that of a sphere: a normal
+/// distribution of this width beside what the record says. Only where the model leaves the tensor all but open that matters.
+fn of_bodies(one: &Weighed) -> Option<(Coordinates, Form)> {
+    let (all, own) = (FARTHEST * FARTHEST, one.factor * one.factor.transpose());
+    let kept = (own + Form::identity() * all).cholesky()?.inverse() * all;
+    let covariance = kept * own;
+    Some((kept * one.x, (covariance + covariance.transpose()) * 0.5))
+}
+
 /// What the choice adds to the covariance of x: of each other model, in proportion to its share, the square of its distance and
 /// what it is less certain of.
 ///
@@ -50,12 +62,12 @@ pub(crate) fn shares(models: &[Weighed], chosen: TorqueModel) -> Vec<f64> {
 /// J. A. Hoeting et al., Statistical Science 14 (1999) 382, equation (3).
 pub(crate) fn spread(models: &[Weighed], chosen: TorqueModel) -> Form {
     let mut sum = Form::zeros();
-    let Some(own) = models.iter().find(|one| one.model == chosen) else { return sum };
+    let Some(own) = models.iter().find(|one| one.model == chosen).and_then(of_bodies) else { return sum };
     for (other, share) in models.iter().zip(shares(models, chosen)).filter(|(other, _)| other.model != chosen)
     {
-        let apart = other.x - own.x;
-        let wider = other.factor * other.factor.transpose() - own.factor * own.factor.transpose();
-        let SymmetricEigen { eigenvectors: v, eigenvalues } = SymmetricEigen::new(wider);
+        let Some(other) = of_bodies(other) else { continue };
+        let apart = other.0 - own.0;
+        let SymmetricEigen { eigenvectors: v, eigenvalues } = SymmetricEigen::new(other.1 - own.1);
         let wider = v * Form::from_diagonal(&eigenvalues.map(|value| value.max(0.0))) * v.transpose();
         sum += (wider + apart * apart.transpose()) * share;
     }
@@ -74,18 +86,31 @@ mod tests {
     /// Where the choice is as near as can be, both weigh the same.
     #[test]
     fn models_weigh_what_the_choice_makes_of_them() {
-        let gain = asked(TorqueModel::Drag);
-        let both = [of(TorqueModel::None, 0.0, 0.0, 1.0), of(TorqueModel::Drag, gain, 3.0, 2.0)];
+        let (gain, unit) = (asked(TorqueModel::Drag), 1e-6);
+        let alike = |added: Form, expected: [f64; 5]| {
+            let expected = Form::from_diagonal(&Coordinates::from(expected));
+            assert!((added / (unit * unit) - expected).norm() < 1e-6, "{added}");
+        };
+        let both =
+            [of(TorqueModel::None, 0.0, 0.0, unit), of(TorqueModel::Drag, gain, 3.0 * unit, 2.0 * unit)];
         assert_eq!(shares(&both, TorqueModel::None), [0.5, 0.5]);
-        let added = spread(&both, TorqueModel::None);
         // half of 2² − 1² in each direction, and half of 3² along the first
-        let expected = Coordinates::new(6.0, 1.5, 1.5, 1.5, 1.5);
-        assert!((added - Form::from_diagonal(&expected)).norm() < 1e-14, "{added}");
+        alike(spread(&both, TorqueModel::None), [6.0, 1.5, 1.5, 1.5, 1.5]);
         // a model that is surer narrows nothing
-        let added = spread(&both, TorqueModel::Drag);
-        assert!((added - Form::from_diagonal(&Coordinates::new(4.5, 0.0, 0.0, 0.0, 0.0))).norm() < 1e-14);
+        alike(spread(&both, TorqueModel::Drag), [4.5, 0.0, 0.0, 0.0, 0.0]);
         // one that the record refutes adds nothing
-        let refuted = [of(TorqueModel::None, 0.0, 0.0, 1.0), of(TorqueModel::Drag, gain + 800.0, 3.0, 1.0)];
+        let refuted =
+            [of(TorqueModel::None, 0.0, 0.0, unit), of(TorqueModel::Drag, gain + 800.0, 1e-3, unit)];
         assert_eq!(spread(&refuted, TorqueModel::Drag), Form::zeros());
+    }
+
+    /// A model under which the record tells nothing of the tensor adds no more than the tensors of all bodies differ.
+    #[test]
+    fn a_model_that_leaves_the_tensor_open_adds_what_the_law_leaves() {
+        let gain = asked(TorqueModel::Constant);
+        let models = [of(TorqueModel::None, 0.0, 0.0, 1e-3), of(TorqueModel::Constant, gain, 50.0, 30.0)];
+        let added = spread(&models, TorqueModel::None).symmetric_eigenvalues();
+        // half of 1/6, the square of the largest distance from the sphere
+        assert!(added.iter().all(|variance| (0.99..1.01).contains(&(12.0 * variance))), "{added}");
     }
 }

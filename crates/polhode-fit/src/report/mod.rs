@@ -12,6 +12,7 @@ pub(crate) mod identifiability;
 pub(crate) mod mirror;
 pub(crate) mod model;
 pub(crate) mod motion;
+pub(crate) mod next_step;
 pub(crate) mod nuisance;
 pub(crate) mod nuisances;
 pub(crate) mod scale;

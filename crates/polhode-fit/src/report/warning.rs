@@ -107,7 +107,7 @@ pub enum Warning {
         /// Gain of log-likelihood with them, the torque noise as it was fitted without them.
         gain: f64,
     },
-    /// Both halves of the record contradict each other.
+    /// Two parts of the record contradict each other.
     Halves(Halves),
     /// The residuals of one segment exceed those of the median segment.
     NoisySegment {
@@ -261,10 +261,11 @@ impl fmt::Display for Warning {
                     size.trim_end()
                 )
             }
-            Self::Halves(Halves { first, second, chi2 }) => write!(
+            Self::Halves(Halves { share, first, second, chi2 }) => write!(
                 f,
-                "the first half of the record says I1 : I2 : I3 = {}, the second {} (chi squared {chi2:.0} of 5): a tensor that changes, as \
+                "the first {:.0} % of the record say I1 : I2 : I3 = {}, the rest {} (chi squared {chi2:.0} of 5): a tensor that changes, as \
                  where something moves in the body, or a torque or error of the sensor that is no part of the fit",
+                100.0 * share,
                 moments(first),
                 moments(second)
             ),

@@ -52,6 +52,38 @@ impl Gyroscope {
         }
     }
 
+    /// What it reads of true `rates` (rad/s) at `times` (s), as another simulation has them.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::num::Random;
+    /// use polhode_fit::Gyroscope;
+    /// let read = Gyroscope::default().with_offset(Vector3::x() * 0.1).read(&[0.0], &[Vector3::y()], &mut Random::new(1))?;
+    /// assert_eq!(read, [Vector3::new(0.1, 1.0, 0.0)]);
+    /// # Ok::<(), polhode_fit::SimulationError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Numbers that are not finite or have a wrong sign; a skew, for which rates at other times are needed; as many rates as times
+    /// are needed.
+    pub fn read(
+        &self,
+        times: &[f64],
+        rates: &[Vector3<f64>],
+        random: &mut Random,
+    ) -> Result<Vec<Vector3<f64>>, SimulationError> {
+        self.check()?;
+        let setting = |name, value, rule| Err(SimulationError::Setting { name, value, rule });
+        if let Some(value) = self.skew.iter().copied().find(|skew| *skew != 0.0) {
+            return setting("a time skew", value, "give none: it asks for rates at other times");
+        }
+        if times.len() != rates.len() {
+            return setting("the number of rates", rates.len() as f64, "give as many as times");
+        }
+        let errors = self.errors(times, random);
+        Ok(rates.iter().zip(&errors).map(|(rate, error)| self.reading(rate, error)).collect())
+    }
+
     pub(super) fn check(&self) -> Result<(), SimulationError> {
         check("the noise", &[self.noise], false)?;
         check("the offset", self.offset.as_slice(), true)?;

@@ -10,7 +10,7 @@ use crate::settings::torque::TorqueModel;
 use crate::signal::covariance::Levels;
 use crate::signal::stretch::Stretch;
 use crate::solve::levels::{Choice, likeliest};
-use crate::solve::radius::{Failure, descended, estimate};
+use crate::solve::radius::{Ends, Failure, descended, estimate};
 use crate::solve::rounds::Noise;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::{Convergence, WeakEstimate};
@@ -57,6 +57,25 @@ fn plain(weak: WeakEstimate, model: TorqueModel) -> Chosen {
     Chosen { weak, model, gain: None, without: None, models: Vec::new() }
 }
 
+/// A model that was fitted by itself.
+struct Rung {
+    model: TorqueModel,
+    weak: WeakEstimate,
+    /// Its log-likelihood.
+    likelihood: f64,
+}
+
+impl Rung {
+    /// What it makes of the record, `floor` being the likelihood without a torque.
+    fn fitted(&self, floor: f64, variance: f64) -> Option<Weighed> {
+        let gain = self.likelihood - floor;
+        let deviation = (variance * self.weak.misfit(variance).max(1.0)).sqrt();
+        let factor = self.weak.root.try_inverse()? * deviation;
+        let is_fit = self.weak.has_settled() && gain.is_finite();
+        is_fit.then_some(Weighed { model: self.model, gain, x: self.weak.x(), factor, held_out: None })
+    }
+}
+
 struct Ladder<'a> {
     stretches: &'a [Stretch],
     demand: Demand<'a>,
@@ -66,28 +85,48 @@ struct Ladder<'a> {
 impl Ladder<'_> {
     fn choose(&self) -> Result<Chosen, Failure> {
         let demand = &self.demand;
+        let is_auto = demand.torque == TorqueModel::Auto;
         if let Noise::Given(_) = demand.noise
-            && demand.torque != TorqueModel::Auto
+            && !is_auto
         {
-            return Ok(plain(self.descent(demand.torque, demand.radius)?, demand.torque));
+            return Ok(plain(self.descent(demand.torque, demand.radius, None)?, demand.torque));
         }
         // most records need neither torque nor torque noise
-        let base = if demand.torque == TorqueModel::Auto { TorqueModel::None } else { demand.torque };
-        let first = estimate(self.stretches, demand.radius, &demand.columns(base), self.variance)?;
-        let explained = first.misfit(self.variance) <= first.expected_misfit();
-        Ok(if explained && (!first.has_settled() || self.is_enough(&first)) {
-            plain(first, base)
-        } else if demand.torque == TorqueModel::Auto {
-            self.highest(first, explained)?
-        } else {
-            let weak = self.descent(base, demand.radius)?;
-            let keep = first.convergence() == Convergence::Still && !weak.has_settled();
-            plain(if keep { first } else { weak }, base)
-        })
+        let base = if is_auto { TorqueModel::None } else { demand.torque };
+        let columns = demand.columns(base);
+        let first = |ends| estimate(self.stretches, demand.radius, &columns, self.variance, ends);
+        let mut quick = first(Ends::Torques)?;
+        let explained = |weak: &WeakEstimate| weak.misfit(self.variance) <= weak.expected_misfit();
+        let is_explained = quick.as_ref().is_some_and(explained);
+        if let Some(weak) =
+            quick.take_if(|weak| is_explained && (!weak.has_settled() || self.is_enough(weak)))
+        {
+            return Ok(plain(weak, base));
+        }
+        let best =
+            if is_auto { self.highest()? } else { plain(self.descent(base, demand.radius, None)?, base) };
+        // what a descent did not settle, plain rounds may have
+        let is_plain =
+            is_auto && is_explained && best.model == TorqueModel::None && !best.weak.has_torque_noise();
+        if best.weak.has_settled() && !is_plain {
+            return Ok(best);
+        }
+        let settled = |weak: &WeakEstimate| match is_auto {
+            true => weak.has_settled(),
+            false => weak.convergence() == Convergence::Still,
+        };
+        let first = if quick.is_some() { quick } else { first(Ends::Rest)? };
+        Ok(first.filter(settled).map_or(best, |weak| plain(weak, base)))
     }
 
-    fn descent(&self, model: TorqueModel, radius: Option<f64>) -> Result<WeakEstimate, Failure> {
-        descended(self.stretches, radius, &self.demand.columns(model), self.variance, self.demand.noise)
+    fn descent(
+        &self,
+        model: TorqueModel,
+        radius: Option<f64>,
+        near: Option<&WeakEstimate>,
+    ) -> Result<WeakEstimate, Failure> {
+        let columns = self.demand.columns(model);
+        descended(self.stretches, radius, &columns, self.variance, self.demand.noise, near)
     }
 
     /// Whether an estimate that noise explains asks for neither torque nor torque noise.
@@ -105,57 +144,48 @@ impl Ladder<'_> {
     }
 
     /// The first rung that the next one does not surpass.
-    fn highest(&self, first: WeakEstimate, explained: bool) -> Result<Chosen, Failure> {
+    fn highest(&self) -> Result<Chosen, Failure> {
         let (stretches, demand, variance) = (self.stretches, &self.demand, self.variance);
         // one radius for all, so that their likelihoods are those of the same equations
-        let drag = self.descent(TorqueModel::Drag, demand.radius)?;
+        let drag = self.descent(TorqueModel::Drag, demand.radius, None)?;
         let radius = Some(drag.radius);
-        let none = self.descent(TorqueModel::None, radius)?;
-        let floor = likelihood(stretches, &none, variance);
-        let gain = gain_of(stretches, &none, &demand.columns(TorqueModel::Constant), variance);
-        let may_be_constant = !none.has_settled() || gain > HOPE * asked(TorqueModel::Constant);
-        let without = none.has_settled().then(|| none.x());
-        let mut best = plain(none, TorqueModel::None);
-        let climb = |best: Chosen, model: TorqueModel, weak: WeakEstimate| {
-            let gain = likelihood(stretches, &weak, variance) - floor;
-            let more = torque_columns(model).len().saturating_sub(torque_columns(best.model).len()).max(1);
-            let asked = if best.model == TorqueModel::None { asked(model) } else { threshold(more) };
-            let before = likelihood(stretches, &best.weak, variance) - floor;
-            let better = weak.has_settled() && (!best.weak.has_settled() || gain - before > asked);
-            let gain = Some(gain).filter(|gain| gain.is_finite());
-            if better { Chosen { weak, model, gain, without, models: Vec::new() } } else { best }
+        let none = self.rung(TorqueModel::None, self.descent(TorqueModel::None, radius, None)?);
+        let gain = gain_of(stretches, &none.weak, &demand.columns(TorqueModel::Constant), variance);
+        let may_be_constant = !none.weak.has_settled() || gain > HOPE * asked(TorqueModel::Constant);
+        let constant = may_be_constant.then(|| self.descent(TorqueModel::Constant, radius, Some(&none.weak)));
+        let without = none.weak.has_settled().then(|| none.weak.x());
+        let floor = none.likelihood;
+        let mut fitted = vec![none.fitted(floor, variance)];
+        let mut climb = |best: Rung, next: Rung| {
+            fitted.push(next.fitted(floor, variance));
+            let coefficients = |rung: &Rung| torque_columns(rung.model).len();
+            let more = coefficients(&next).saturating_sub(coefficients(&best)).max(1);
+            let asked = if best.model == TorqueModel::None { asked(next.model) } else { threshold(more) };
+            let surpasses = !best.weak.has_settled() || next.likelihood - best.likelihood > asked;
+            if next.weak.has_settled() && surpasses { next } else { best }
         };
-        let mut fitted = vec![self.fitted(&best.weak, TorqueModel::None, floor)];
-        fitted.push(self.fitted(&drag, TorqueModel::Drag, floor));
-        best = climb(best, TorqueModel::Drag, drag);
-        if may_be_constant && let Ok(constant) = self.descent(TorqueModel::Constant, radius) {
-            fitted.push(self.fitted(&constant, TorqueModel::Constant, floor));
-            best = climb(best, TorqueModel::Constant, constant);
+        let mut best = climb(none, self.rung(TorqueModel::Drag, drag));
+        if let Some(Ok(constant)) = constant {
+            best = climb(best, self.rung(TorqueModel::Constant, constant));
         }
         if best.model == TorqueModel::Drag
             && may_be_drag3(stretches, &best.weak, demand, variance)
-            && let Ok(drag) = self.descent(TorqueModel::Drag3, radius)
+            && let Ok(drag3) = self.descent(TorqueModel::Drag3, radius, Some(&best.weak))
         {
-            fitted.push(self.fitted(&drag, TorqueModel::Drag3, floor));
-            best = climb(best, TorqueModel::Drag3, drag);
+            best = climb(best, self.rung(TorqueModel::Drag3, drag3));
         }
-        // what a descent did not settle, plain rounds may have
-        let is_plain = explained && best.model == TorqueModel::None && !best.weak.has_torque_noise();
-        let keep = first.has_settled() && (!best.weak.has_settled() || is_plain);
-        if keep {
-            return Ok(plain(first, TorqueModel::None));
-        }
-        best.models = fitted.into_iter().flatten().collect();
-        Ok(best)
+        let is_none = best.model == TorqueModel::None;
+        Ok(Chosen {
+            gain: Some(best.likelihood - floor).filter(|gain| !is_none && gain.is_finite()),
+            without: without.filter(|_| !is_none),
+            models: fitted.into_iter().flatten().collect(),
+            ..plain(best.weak, best.model)
+        })
     }
 
-    /// A model that was fitted by itself, `floor` being the likelihood without a torque.
-    fn fitted(&self, weak: &WeakEstimate, model: TorqueModel, floor: f64) -> Option<Weighed> {
-        let gain = likelihood(self.stretches, weak, self.variance) - floor;
-        let deviation = (self.variance * weak.misfit(self.variance).max(1.0)).sqrt();
-        let factor = weak.root.try_inverse()? * deviation;
-        let is_fit = weak.has_settled() && gain.is_finite();
-        is_fit.then_some(Weighed { model, gain, x: weak.x(), factor, held_out: None })
+    fn rung(&self, model: TorqueModel, weak: WeakEstimate) -> Rung {
+        let likelihood = likelihood(self.stretches, &weak, self.variance);
+        Rung { model, weak, likelihood }
     }
 
     /// What every model makes of the record. Of one that was not fitted by itself the equations of the chosen one say it, to first

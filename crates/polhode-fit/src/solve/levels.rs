@@ -58,34 +58,31 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The likeliest torque noise of this shape; within a decade of `near`, where that is given, and else `None` where it
-    /// does not bring the gain over `none` that is asked for.
+    /// The likeliest torque noise of this shape; where `near` is given one step towards it, and else `None` where it does
+    /// not bring the gain over `none` that is asked for.
     fn most_likely(&self, near: Option<Levels>, none: Option<&Found>) -> Option<Found> {
         let (noise, torque) = self.part.mean_variances();
         // per level of the noise of the rates
         let unit = noise / torque;
         let at = |exponent: f64| self.at(unit * libm::pow(10.0, exponent));
         let cost = |exponent: f64| at(exponent).map_or(f64::INFINITY, |found| found.cost);
-        let middle = match near {
-            Some(near) => libm::log10(near.torque / near.white / unit),
-            None => {
-                let mut best = (f64::INFINITY, 0.0);
-                for exponent in (0..=DECADES).map(|k| k as f64 - FIRST_DECADE) {
-                    let Some(found) = at(exponent) else { continue };
-                    if found.cost < best.0 {
-                        best = (found.cost, exponent);
-                    }
-                    if found.floor > best.0 {
-                        break;
-                    }
-                }
-                if none.is_some_and(|none| none.cost - best.0 <= BETWEEN * GAIN) {
-                    return None;
-                }
-                best.1
+        if let Some(near) = near {
+            return at(newton(cost, libm::log10(near.torque / near.white / unit)));
+        }
+        let mut best = (f64::INFINITY, 0.0);
+        for exponent in (0..=DECADES).map(|k| k as f64 - FIRST_DECADE) {
+            let Some(found) = at(exponent) else { continue };
+            if found.cost < best.0 {
+                best = (found.cost, exponent);
             }
-        };
-        at(vertex(cost, golden(cost, middle - 1.0, middle + 1.0)))
+            if found.floor > best.0 {
+                break;
+            }
+        }
+        if none.is_some_and(|none| none.cost - best.0 <= BETWEEN * GAIN) {
+            return None;
+        }
+        at(vertex(cost, golden(cost, best.1 - 1.0, best.1 + 1.0)))
     }
 
     /// The likeliest noise of the rates with torque noise of `ratio` times its level.
@@ -122,6 +119,15 @@ fn golden(cost: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
         }
     }
     0.5 * (low + high)
+}
+
+/// One step of Newton's method towards the least of a function from `middle`, by no more than a decade: from one round to the next
+/// the minimum itself moves.
+fn newton(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
+    let [below, least, above] = [-STEP, 0.0, STEP].map(|step| cost(middle + step));
+    let (slope, curvature) = (below - above, below - 2.0 * least + above);
+    let step = if curvature > 0.0 { STEP * (0.5 * slope / curvature) } else { slope };
+    if step.is_finite() { middle + step.clamp(-1.0, 1.0) } else { middle }
 }
 
 /// The vertex of the parabola about `middle`, where that is a minimum: a golden section alone ends at one of a few places, and

@@ -5,10 +5,10 @@ use crate::physical::coordinates::{Coordinates, Form};
 use crate::signal::stretch::Stretch;
 use crate::signal::test_functions::TestFunctions;
 use crate::solve::linearised::{Linearised, Whitened};
-use crate::solve::rounds::{Noise, Rounds};
+use crate::solve::rounds::{Noise, Reached, Rounds};
 use crate::solve::weak_estimate::{Convergence, WeakEstimate};
 use crate::thresholds::radius::{CANDIDATES, COMPARED, DENSE, OF_SHORT, PILOT_SAMPLES, ROOM, SHORTEST};
-use crate::thresholds::rounds::{RESTLESS, TORQUES};
+use crate::thresholds::rounds::{RESTLESS, STANDS, TORQUES};
 use crate::thresholds::test_functions::{ROUNDED, SAMPLES_PER_TEST};
 
 /// Why there is no weak estimate.
@@ -145,7 +145,8 @@ fn choose_radius(
 ) -> Option<(f64, Unknowns)> {
     let radii = candidates(stretches);
     let compared = compared_at(stretches, &radii, columns, variance, noise)?;
-    Some((least_covariance(stretches, &radii, columns, variance, &compared), compared.at))
+    let radius = least_covariance(stretches, &radii, columns, variance, &compared);
+    Some((radius, compared.at))
 }
 
 /// Refuses a radius whose equations are nearly as many as the samples.
@@ -157,13 +158,24 @@ fn check_radius(stretches: &[Stretch], radius: f64) -> Result<(), Failure> {
     if stretches.iter().any(dense) { Err(Failure::Dense) } else { Ok(()) }
 }
 
-/// The weak estimate without torque noise; `variance` is that of the noise in units of the mean square rate.
+/// What ends the rounds of an estimate without torque noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ends {
+    /// That they settled, or cannot.
+    Rest,
+    /// That too, or a misfit that stands and that only torques explain.
+    Torques,
+}
+
+/// The weak estimate without torque noise; `variance` is that of the noise in units of the mean square rate. `None` where
+/// torques ended it.
 pub(crate) fn estimate(
     stretches: &[Stretch],
     radius: Option<f64>,
     columns: &[Column],
     variance: f64,
-) -> Result<WeakEstimate, Failure> {
+    ends: Ends,
+) -> Result<Option<WeakEstimate>, Failure> {
     let (first, start, largest) = match radius {
         Some(radius) => {
             check_radius(stretches, radius)?;
@@ -180,11 +192,19 @@ pub(crate) fn estimate(
     let mut best: Option<WeakEstimate> = None;
     while radius <= largest * (1.0 + ROUNDED) {
         let mut rounds = Rounds::new(stretches, radius, columns, start.clone()).ok_or(Failure::TooShort)?;
-        let moved = rounds.settle(variance).filter(|&moved| moved <= RESTLESS);
+        let are_torques = |before: f64, now: f64| now > TORQUES && (now / before - 1.0).abs() < STANDS;
+        let settled = match ends {
+            Ends::Rest => rounds.settle(variance),
+            Ends::Torques => rounds.settle_unless(variance, are_torques),
+        };
+        if settled == Some(f64::INFINITY) {
+            return Ok(None);
+        }
+        let moved = settled.filter(|&moved| moved <= RESTLESS);
         let weak = moved.and_then(|moved| rounds.finish(variance, moved));
         if let Some(weak) = weak.filter(|weak| weak.possible(variance)) {
             if weak.convergence() == Convergence::Still {
-                return Ok(weak);
+                return Ok(Some(weak));
             }
             // mere noise comes to rest on a motion, if there is one; torques may not let it
             let torques = weak.misfit(variance) > TORQUES;
@@ -195,21 +215,23 @@ pub(crate) fn estimate(
         radius *= 2.0;
     }
     let sphere = || Rounds::new(stretches, first, columns, start)?.at_sphere(variance);
-    best.or_else(sphere).ok_or(Failure::Singular)
+    best.or_else(sphere).map(Some).ok_or(Failure::Singular)
 }
 
-/// The weak estimate with torque noise, from the convex least squares downwards.
+/// The weak estimate with torque noise, from the convex least squares downwards; at a given radius first from where a simpler
+/// estimate ended, `near`.
 pub(crate) fn descended(
     stretches: &[Stretch],
     radius: Option<f64>,
     columns: &[Column],
     variance: f64,
     noise: Noise,
+    near: Option<&WeakEstimate>,
 ) -> Result<WeakEstimate, Failure> {
-    let radii = match radius {
+    let (radii, near) = match radius {
         Some(radius) => {
             check_radius(stretches, radius)?;
-            vec![radius]
+            (vec![radius], near.map(Reached::of))
         }
         None => {
             let pilot = pilot(stretches);
@@ -218,13 +240,16 @@ pub(crate) fn descended(
             let all = candidates(&pilot);
             let longer = all.iter().copied().filter(|r| *r > first * (1.0 + ROUNDED));
             let shorter = all.iter().rev().copied().filter(|r| *r < first * (1.0 - ROUNDED));
-            core::iter::once(first).chain(longer).chain(shorter).collect()
+            (core::iter::once(first).chain(longer).chain(shorter).collect(), None)
         }
     };
     let origin = Unknowns::at(Coordinates::zeros(), columns);
+    let new = |radius: f64| Rounds::new(stretches, radius, columns, origin.clone());
+    // from near by where that settles, and else as if nothing were known
+    let resumed = || radii.first().copied().and_then(new)?.resumed(near.as_ref()?);
+    let each = core::iter::once_with(resumed).flatten().chain(radii.iter().filter_map(|radius| new(*radius)));
     let mut best: Option<WeakEstimate> = None;
-    for &radius in &radii {
-        let Some(mut rounds) = Rounds::new(stretches, radius, columns, origin.clone()) else { continue };
+    for mut rounds in each {
         let moved = rounds.descend(variance, noise).filter(|&moved| moved <= RESTLESS);
         let weak = moved.and_then(|moved| rounds.finish(variance, moved));
         if let Some(weak) = weak.filter(|weak| weak.possible(variance)) {
@@ -236,7 +261,7 @@ pub(crate) fn descended(
             }
         }
     }
-    let sphere = || Rounds::new(stretches, *radii.first()?, columns, origin.clone())?.at_sphere(variance);
+    let sphere = || new(*radii.first()?)?.at_sphere(variance);
     best.or_else(sphere).ok_or(Failure::Singular)
 }
 

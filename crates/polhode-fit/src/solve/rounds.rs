@@ -41,6 +41,22 @@ fn whitened_rows(
     Some(rows)
 }
 
+/// Where rounds have ended, from where others of the same stretches may go on.
+pub(crate) struct Reached {
+    columns: Vec<Column>,
+    at: Unknowns,
+    /// Stretches with the levels of their noise, and the noise of their samples.
+    stretches: Vec<(usize, Levels, Vec<Vector3<f64>>)>,
+}
+
+impl Reached {
+    /// Where an estimate of `weak` ended.
+    pub(crate) fn of(weak: &WeakEstimate) -> Self {
+        let each = weak.parts.iter().map(|part| (part.stretch, part.levels, part.noise.clone()));
+        Reached { columns: weak.columns.clone(), at: weak.at.clone(), stretches: each.collect() }
+    }
+}
+
 pub(crate) struct Rounds<'a> {
     used: Vec<(usize, &'a Stretch, TestFunctions)>,
     columns: &'a [Column],
@@ -50,6 +66,8 @@ pub(crate) struct Rounds<'a> {
     pull: Option<Pull>,
     /// Whether the effect of torque noise is taken out of the derivatives.
     driven: bool,
+    /// Whether a descent goes on from where another has ended.
+    resumed: bool,
 }
 
 impl<'a> Rounds<'a> {
@@ -70,12 +88,33 @@ impl<'a> Rounds<'a> {
         }
         let noise = used.iter().map(|(_, s, _)| vec![Vector3::zeros(); s.times.len()]).collect();
         let levels = vec![Levels::WHITE; used.len()];
-        Some(Rounds { used, columns, noise, levels, at, pull: None, driven: false })
+        Some(Rounds { used, columns, noise, levels, at, pull: None, driven: false, resumed: false })
     }
 
     /// With what is known of the tensor beforehand, in units of the noise of the rates.
     pub(crate) fn with_pull(self, pull: Pull) -> Self {
         Rounds { pull: Some(pull), ..self }
+    }
+
+    /// From where others of the same stretches have ended; `None` where they had not all of these. Columns that those had not
+    /// are zero.
+    pub(crate) fn resumed(mut self, from: &Reached) -> Option<Self> {
+        for ((k, stretch, _), (levels, noise)) in
+            self.used.iter().zip(self.levels.iter_mut().zip(&mut self.noise))
+        {
+            let (_, own, of_samples) = from.stretches.iter().find(|(other, ..)| other == k)?;
+            if of_samples.len() != stretch.times.len() {
+                return None;
+            }
+            (*levels, *noise) = (*own, of_samples.clone());
+        }
+        self.at.x = from.at.x;
+        for (c, column) in self.at.c.iter_mut().zip(self.columns) {
+            let alike = from.columns.iter().position(|other| other.is_alike(column));
+            *c = alike.map_or(*c, |k| from.at.c[k]);
+        }
+        self.resumed = true;
+        Some(self)
     }
 
     /// The equations of each stretch at the samples so far.
@@ -106,10 +145,11 @@ impl<'a> Rounds<'a> {
         Stacked::new(&rows, self.columns, &self.at, variance.sqrt())
     }
 
-    /// One round, and by how many standard deviations it would move the tensor if it took its whole step.
+    /// One round: by how many standard deviations it would move the tensor if it took its whole step, and the misfit of the
+    /// equations.
     ///
     /// A ridge as weak as one reading keeps x finite before it is known that the record determines it.
-    pub(crate) fn round(&mut self, variance: f64, full: bool) -> Option<f64> {
+    pub(crate) fn round(&mut self, variance: f64, full: bool) -> Option<(f64, f64)> {
         let parts = self.linearise();
         let whitened = self.whiten(&parts)?;
         let stacked = self.stack(&whitened, variance);
@@ -118,8 +158,9 @@ impl<'a> Rounds<'a> {
             None => stacked.ridge(variance)?,
         };
         // where torques act, full steps may end in going to and fro
-        let relax = if full || stacked.excess(variance) < TORQUES { 1.0 } else { RELAXED };
-        Some(self.advance(&parts, &whitened, &stacked, &next, relax, variance))
+        let misfit = stacked.excess(variance);
+        let relax = if full || misfit < TORQUES { 1.0 } else { RELAXED };
+        Some((self.advance(&parts, &whitened, &stacked, &next, relax, variance), misfit))
     }
 
     fn advance(
@@ -158,24 +199,35 @@ impl<'a> Rounds<'a> {
 
     /// Rounds until the tensor stands still, and by how many standard deviations the last would have moved it.
     pub(crate) fn settle(&mut self, variance: f64) -> Option<f64> {
-        let mut moved = f64::INFINITY;
+        self.settle_unless(variance, |_, _| false)
+    }
+
+    /// The same, ended where the misfits of two rounds one after the other say so; it has then not settled.
+    pub(crate) fn settle_unless(&mut self, variance: f64, ends: impl Fn(f64, f64) -> bool) -> Option<f64> {
+        let (mut moved, mut before) = (f64::INFINITY, f64::INFINITY);
         for round in 0..ROUNDS {
-            moved = self.round(variance, round < FULL_ROUNDS)?;
+            let misfit;
+            (moved, misfit) = self.round(variance, round < FULL_ROUNDS)?;
             if moved <= STILL {
                 break;
             }
+            if ends(before, misfit) {
+                return Some(f64::INFINITY);
+            }
+            before = misfit;
         }
         Some(moved)
     }
 
-    /// Rounds from boundless torque noise, where the equations are those of convex least squares, down to the likeliest.
+    /// Rounds from boundless torque noise, where the equations are those of convex least squares, down to the likeliest; or from
+    /// where others ended.
     pub(crate) fn descend(&mut self, variance: f64, noise: Noise) -> Option<f64> {
         let several = self.used.len() > 1;
         let mut moved = f64::INFINITY;
         for round in 0..DESCENT {
             let parts = self.linearise();
             let covariances = self.covariances(&parts);
-            if round == 0 {
+            if round == 0 && !self.resumed {
                 let boundless = |part: &Covariance| {
                     let (noise, torque) = part.mean_variances();
                     Levels { torque: BOUNDLESS * noise / torque, ..Levels::WHITE }
@@ -201,7 +253,7 @@ impl<'a> Rounds<'a> {
                     Noise::Given(torque) => Levels { torque, ..Levels::WHITE },
                     Noise::Fitted => {
                         let choice = Choice { white: several };
-                        let last = (round > 0).then_some(*levels);
+                        let last = (round > 0 || self.resumed).then_some(*levels);
                         likeliest(covariance, &part.residuals(&next), variance, fitted, choice, last)?
                     }
                 };

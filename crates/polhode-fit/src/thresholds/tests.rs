@@ -32,6 +32,7 @@ const NO_THRESHOLDS: &[&str] = &[
     "track ALL",
     "track COMMON",
     "track OWN",
+    "weighed FARTHEST",
 ];
 
 fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {

@@ -9,6 +9,7 @@ mod fit;
 mod flights;
 mod measured;
 mod models;
+mod next_step;
 mod poses;
 mod prior;
 mod simulate;

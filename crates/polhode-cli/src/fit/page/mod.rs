@@ -10,8 +10,8 @@ use polhode_pages::document::{Block, Form, Tone};
 use super::attitudes::Read;
 use super::flights::Spans;
 use super::report::{
-    Facts, MODELS, SURE, about_models, attitudes, digits, mirror, models, sensor_lines, sizes, systematic,
-    unexplained, unused, with_error,
+    ENTRIES, Facts, MODELS, SURE, about_models, attitudes, correlation, digits, mirror, models, sensor_lines,
+    sizes, systematic, two_places, unexplained, unused, with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -33,6 +33,7 @@ pub(super) fn estimated(
         parts.push(Block::Heading("What speaks against it".into()));
         parts.push(Block::List(e.warnings.iter().map(ToString::to_string).collect()));
     }
+    parts.extend(next(e));
     parts.extend(spans.parts());
     parts.extend(torques(e));
     parts.extend(of_models(e));
@@ -140,7 +141,26 @@ fn answer(e: &Estimate) -> Vec<Block> {
         };
         parts.push(Block::Table(head, (0..3).map(row).collect()));
     }
+    parts.extend(correlations(e));
     parts
+}
+
+fn next(e: &Estimate) -> Vec<Block> {
+    let steps: Vec<String> = e.next_steps().iter().map(ToString::to_string).collect();
+    if steps.is_empty() {
+        return Vec::new();
+    }
+    vec![Block::Heading("What to do next".into()), Block::List(steps)]
+}
+
+fn correlations(e: &Estimate) -> [Block; 2] {
+    let head = core::iter::once("").chain(ENTRIES.map(|(name, ..)| name)).map(String::from).collect();
+    let rows = ENTRIES.iter().zip(correlation(&e.covariance)).map(|((name, ..), row)| {
+        let cells = row.map(|c| two_places(c).replace('-', "\u{2212}"));
+        core::iter::once(name.to_string()).chain(cells).collect()
+    });
+    let about = "Correlations of the entries of the tensor:".into();
+    [Block::Paragraph(about), Block::Table(head, rows.collect())]
 }
 
 fn numbers(of: &[Nuisance]) -> Block {

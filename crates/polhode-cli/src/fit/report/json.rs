@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::attitudes::Read;
 use super::super::flights::Spans;
-use super::{attitudes, method, unused};
+use super::{attitudes, correlation, method, unused};
 
 fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
     (0..3).map(|i| (0..3).map(|j| m[(i, j)]).collect()).collect()
@@ -103,6 +103,8 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
         "spikes": e.spikes.iter().map(|s| json!({
             "segment": s.segment + 1, "line": s.line, "time": s.time,
         })).collect::<Vec<_>>(),
+        "correlation": correlation(&e.covariance),
+        "next_steps": e.next_steps().iter().map(ToString::to_string).collect::<Vec<_>>(),
         "unused_columns": unused(record),
         "flights": spans.json(),
         "flight_limits": spans.limits(),

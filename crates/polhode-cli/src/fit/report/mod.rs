@@ -5,6 +5,7 @@ mod json;
 mod rows;
 mod text;
 
+use nalgebra::SMatrix;
 use polhode_fit::{AverageAxis, Estimate, Identifiability, Method, ModelFit, Record, Systematic};
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
@@ -26,6 +27,20 @@ pub(super) fn method(e: &Estimate) -> &'static str {
 const METHOD: &str = "weak form, generalised least squares on denoised samples";
 pub(super) const ENTRIES: [(&str, usize, usize); 6] =
     [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
+
+/// The correlations of the entries xx, yy, zz, xy, xz, yz; those of one without a deviation are zero.
+pub(super) fn correlation(covariance: &SMatrix<f64, 6, 6>) -> [[f64; 6]; 6] {
+    let of = |i: usize, k: usize| {
+        let size = (covariance[(i, i)] * covariance[(k, k)]).sqrt();
+        if size > 0.0 { covariance[(i, k)] / size } else { 0.0 }
+    };
+    core::array::from_fn(|i| core::array::from_fn(|k| of(i, k)))
+}
+
+/// A correlation to two places, none with a minus sign before nothing.
+pub(super) fn two_places(correlation: f64) -> String {
+    format!("{:.2}", (100.0 * correlation).round() / 100.0 + 0.0)
+}
 
 /// A tensor in full.
 pub(super) fn identified(

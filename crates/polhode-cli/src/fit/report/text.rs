@@ -2,24 +2,30 @@
 
 use nalgebra::Matrix3;
 use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
+use polhode_pages::screen::wrapped;
 
 use super::super::attitudes::Read;
 use super::super::flights::Spans;
 use super::{
-    MODELS, SURE, about_models, attitudes, digits, method, mirror, models, sizes, systematic, unexplained,
-    unused, with_error,
+    ENTRIES, MODELS, SURE, about_models, attitudes, correlation, digits, method, mirror, models, sizes,
+    systematic, two_places, unexplained, unused, with_error,
 };
+
+/// Columns that sentences are wrapped at.
+const WIDTH: usize = 78;
 
 /// The answer first, then what it rests on.
 pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans, read: Option<&Read>) -> String {
     let mut lines = answer(e);
     lines.extend(attitudes::sentences(e, read));
+    lines.extend(next(e));
     lines.push(String::new());
     lines.extend(axes(e));
     lines.push(tensor("shape (trace 1)", &e.shape.tensor()));
     if let Some(inertia) = &e.inertia {
         lines.push(tensor("inertia (kg m^2)", &inertia.tensor()));
     }
+    lines.extend(correlations(e));
     lines.extend(torques(e));
     lines.extend(of_models(e));
     lines.extend(sensor(e));
@@ -95,6 +101,24 @@ fn axes(e: &Estimate) -> Vec<String> {
 pub(in crate::fit) fn tensor(name: &str, m: &Matrix3<f64>) -> String {
     let row = |i: usize| format!("  {:13.6e} {:13.6e} {:13.6e}", m[(i, 0)], m[(i, 1)], m[(i, 2)]);
     format!("\n{name}:\n{}\n{}\n{}", row(0), row(1), row(2))
+}
+
+/// What would make the answer surer.
+fn next(e: &Estimate) -> Vec<String> {
+    let steps = e.next_steps();
+    let each = steps.iter().map(|step| wrapped(&format!("  - {step}"), WIDTH, 4));
+    let each: Vec<String> = each.map(|step| format!("  {step}")).collect();
+    if each.is_empty() { each } else { core::iter::once("what to do next:".into()).chain(each).collect() }
+}
+
+fn correlations(e: &Estimate) -> Vec<String> {
+    let head: String = ENTRIES.iter().map(|(name, ..)| format!("{name:>7}")).collect();
+    let rows = correlation(&e.covariance).map(|row| row.map(|c| format!("{:>7}", two_places(c))).concat());
+    let named = ENTRIES.iter().zip(rows).map(|((name, ..), row)| format!("  {name}{row}"));
+    [String::new(), "correlations of its entries:".into(), format!("    {head}")]
+        .into_iter()
+        .chain(named)
+        .collect()
 }
 
 fn number(n: &Nuisance) -> String {
