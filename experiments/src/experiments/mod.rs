@@ -11,6 +11,7 @@ mod exact;
 mod fit_attitudes;
 mod fit_efficiency;
 mod fit_field;
+mod fit_stress;
 mod followed;
 mod heavy_top;
 mod inertia;
@@ -86,6 +87,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "fit-field",
         question: "what drag, torques, wheels, sensors that are off, spikes and mistaken units do to a fit",
         run: fit_field::run,
+    },
+    Experiment {
+        name: "fit-stress",
+        question: "what a fit makes of bodies that are neither free nor rigid, and of sensors with errors of every kind",
+        run: fit_stress::run,
     },
     Experiment {
         name: "lecture",

@@ -4,7 +4,7 @@ mod bound;
 mod cases;
 mod choice;
 pub(super) mod tally;
-mod trial;
+pub(super) mod trial;
 mod units;
 
 use polhode_files::error::Error;

@@ -11,22 +11,22 @@ const ONE_IN_TWENTY: f64 = 1.959_963_984_540_054;
 
 /// Counts of one row or several.
 #[derive(Default)]
-pub(super) struct Tally {
+pub(in crate::experiments) struct Tally {
     numbers: u64,
     /// Squared errors over the bound, where there is one.
     squares: Vec<f64>,
     answered: u64,
     covered: u64,
     stated: u64,
-    pub(super) warned: u64,
+    pub(in crate::experiments) warned: u64,
     /// Answers whose own 99.9 % ellipsoid does not hold the truth.
-    pub(super) outside: u64,
+    pub(in crate::experiments) outside: u64,
     /// Of these, without a warning, those that lines of systematic errors cover.
-    pub(super) by_lines: u64,
+    pub(in crate::experiments) by_lines: u64,
     /// Of these, those with neither.
-    pub(super) silent: u64,
-    pub(super) units: u64,
-    pub(super) refused: u64,
+    pub(in crate::experiments) silent: u64,
+    pub(in crate::experiments) units: u64,
+    pub(in crate::experiments) refused: u64,
     /// Answers that say that the record cannot tell its units.
     pub(super) open: u64,
     seconds: Vec<f64>,
@@ -47,7 +47,7 @@ impl Interval {
     }
 
     /// Of another number of standard deviations.
-    pub(super) fn wide(count: u64, of: u64, z: f64) -> Option<Self> {
+    pub(in crate::experiments) fn wide(count: u64, of: u64, z: f64) -> Option<Self> {
         if of == 0 {
             return None;
         }
@@ -63,7 +63,7 @@ impl Interval {
 }
 
 /// Four digits: what a Monte Carlo figure can bear, and the same on every machine.
-pub(super) fn rounded(x: f64) -> Option<f64> {
+pub(in crate::experiments) fn rounded(x: f64) -> Option<f64> {
     format!("{x:.3e}").parse().ok().filter(|x: &f64| x.is_finite())
 }
 
@@ -72,7 +72,7 @@ const MANY: u64 = 50;
 
 impl Tally {
     /// Of tensors with `numbers` unknowns, five or six.
-    pub(super) fn new(trials: &[Trial], numbers: u64) -> Self {
+    pub(in crate::experiments) fn new(trials: &[Trial], numbers: u64) -> Self {
         let mut t = Tally { numbers, ..Tally::default() };
         let (inside, outside) = ELLIPSOIDS[usize::from(numbers == 6)];
         for trial in trials {
@@ -97,7 +97,7 @@ impl Tally {
         t
     }
 
-    pub(super) fn add(&mut self, other: Tally) {
+    pub(in crate::experiments) fn add(&mut self, other: Tally) {
         self.squares.extend(other.squares);
         self.seconds.extend(other.seconds);
         self.answered += other.answered;
@@ -112,11 +112,11 @@ impl Tally {
         self.open += other.open;
     }
 
-    pub(super) fn answered(&self) -> u64 {
+    pub(in crate::experiments) fn answered(&self) -> u64 {
         self.answered
     }
 
-    pub(super) fn covered(&self) -> u64 {
+    pub(in crate::experiments) fn covered(&self) -> u64 {
         self.covered
     }
 
@@ -124,7 +124,7 @@ impl Tally {
         self.answered + self.units + self.refused
     }
 
-    pub(super) fn coverage(&self) -> Option<Interval> {
+    pub(in crate::experiments) fn coverage(&self) -> Option<Interval> {
         Interval::new(self.covered, self.stated)
     }
 

@@ -12,39 +12,39 @@ use super::bound::Problem;
 use super::cases::{Case, Drawn};
 
 /// The fit of one record.
-pub(super) struct Trial {
-    pub(super) verdict: Verdict,
+pub(in crate::experiments) struct Trial {
+    pub(in crate::experiments) verdict: Verdict,
     /// Time of the fit.
-    pub(super) seconds: f64,
+    pub(in crate::experiments) seconds: f64,
 }
 
-pub(super) enum Verdict {
+pub(in crate::experiments) enum Verdict {
     Answered(Answer),
     /// The units look mistaken, or the sampling does.
     Units,
     Refused,
 }
 
-pub(super) struct Answer {
+pub(in crate::experiments) struct Answer {
     /// eᵀ C⁻¹ e with C the bound.
-    pub(super) over_bound: Option<f64>,
+    pub(in crate::experiments) over_bound: Option<f64>,
     /// The same with the covariance that the fit states.
-    pub(super) own: Option<f64>,
-    pub(super) warned: bool,
+    pub(in crate::experiments) own: Option<f64>,
+    pub(in crate::experiments) warned: bool,
     /// Whether a warning says that the record cannot tell its units.
-    pub(super) open: bool,
+    pub(in crate::experiments) open: bool,
     /// Whether the statistical and systematic lines of the report cover the errors of the principal moments.
-    pub(super) lines_cover: bool,
+    pub(in crate::experiments) lines_cover: bool,
 }
 
-pub(super) type Entries = SMatrix<f64, 6, 1>;
+pub(in crate::experiments) type Entries = SMatrix<f64, 6, 1>;
 
-pub(super) fn entries(j: &Matrix3<f64>) -> Entries {
+pub(in crate::experiments) fn entries(j: &Matrix3<f64>) -> Entries {
     SMatrix::from([[j[(0, 0)], j[(1, 1)], j[(2, 2)], j[(0, 1)], j[(0, 2)], j[(1, 2)]]])
 }
 
 /// eᵀ C⁻¹ e; with `shape`, C is singular along the trace.
-pub(super) fn square(e: &Entries, c: &SMatrix<f64, 6, 6>, shape: bool) -> Option<f64> {
+pub(in crate::experiments) fn square(e: &Entries, c: &SMatrix<f64, 6, 6>, shape: bool) -> Option<f64> {
     let trace = SMatrix::<f64, 6, 1>::from([[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]]);
     let regular = if shape { c + trace * trace.transpose() * c.trace() } else { *c };
     Some(e.dot(&regular.cholesky()?.solve(e)))
@@ -125,7 +125,7 @@ fn answer(
             (square(&e, bound, true), square(&e, &estimate.free_covariance, true))
         }
     };
-    Answer { over_bound, own, warned, open, lines_cover: lines_cover(estimate, truth, drawn) }
+    Answer { over_bound, own, warned, open, lines_cover: lines_cover(estimate, truth, &drawn.errors()) }
 }
 
 /// The normal deviate that only one in a thousand exceeds, either sign.
@@ -133,10 +133,13 @@ const ONE_IN_A_THOUSAND: f64 = 3.290_526_731_491_895;
 
 /// Whether each principal moment is off by no more than its deviation and the systematic lines allow for, at the errors
 /// that the sensor really has.
-fn lines_cover(estimate: &Estimate, truth: &Matrix3<f64>, drawn: &Drawn) -> bool {
+pub(in crate::experiments) fn lines_cover(
+    estimate: &Estimate,
+    truth: &Matrix3<f64>,
+    errors: &[(&'static str, f64)],
+) -> bool {
     let mut moments: [f64; 3] = truth.symmetric_eigenvalues().into();
     moments.sort_by(f64::total_cmp);
-    let errors = drawn.errors();
     (0..3).all(|k| {
         let change = |name: &str, error: f64| {
             let line = estimate.systematic.iter().find(|line| line.name == name);
