@@ -127,6 +127,23 @@ pub enum CarrierError {
         /// Angle between the two axes, rad.
         angle: f64,
     },
+    /// With the deviations that the contradiction asks for, the size of the carrier is open.
+    #[error(
+        "the records contradict each other so much that they leave the size open: chi squared is {chi2:.1} of {dof} degrees of freedom, \
+         and with deviations enlarged by {:.1} the trace of the carrier would be {trace:.2e} +- {sigma:.2e} kg m^2; check that the \
+         sensor sits as before, which record is which, and the axes, place and masses of the proof body",
+        (chi2 / *dof as f64).sqrt()
+    )]
+    Contradicted {
+        /// Sum of squares of the records' deviations from the answer.
+        chi2: f64,
+        /// Its degrees of freedom.
+        dof: usize,
+        /// Trace of the carrier, kg m².
+        trace: f64,
+        /// Its standard deviation, enlarged, kg m².
+        sigma: f64,
+    },
     /// Gauss's and Newton's method did not come to rest.
     #[error(
         "the joint fit did not come to rest in {rounds} rounds: the last would move the answer by {moved:.1e} standard deviations; the \

@@ -43,6 +43,13 @@ pub struct MeasuredBody {
     pub axes: UnitQuaternion<f64>,
 }
 
+impl MeasuredBody {
+    /// The trace and its standard deviation, kg m².
+    pub(super) fn trace(&self) -> (f64, f64) {
+        (self.tensor.trace(), self.covariance.fixed_view::<3, 3>(0, 0).sum().max(0.0).sqrt())
+    }
+}
+
 /// The moment of inertia of a wheel about its axis.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,6 +22,7 @@ use crate::physical::truncated::spread_within;
 use crate::report::estimate::Estimate;
 use crate::report::nuisance::Agreement;
 use crate::settings::Settings;
+use crate::thresholds::noise::SURE;
 
 /// Fits carrier, object and wheel to all records at once.
 ///
@@ -52,7 +53,7 @@ use crate::settings::Settings;
 ///
 /// # Errors
 /// A record that cannot be fitted; nothing that gives a size, as a proof body too light for the records; wheels of only some of the
-/// records, or of different axes; records of which no answer comes.
+/// records, or of different axes; records that contradict each other so much that they leave the size open.
 pub fn fit_carrier(records: &CarrierRecords, settings: &Settings) -> Result<CarrierEstimate, CarrierError> {
     let beforehand = [
         ("known quantity", settings.known.is_some()),
@@ -111,13 +112,19 @@ pub fn fit_carrier(records: &CarrierRecords, settings: &Settings) -> Result<Carr
         .flatten();
     let covariance = cut.unwrap_or_else(|| &factor * factor.transpose());
     let report = Report { system: &system, answer: &answer, covariance: &covariance };
+    let carrier = report.body(system.carrier, Matrix3::zeros());
+    let (trace, sigma) = carrier.trace();
+    if contradicts(agreement) && trace <= SURE * sigma {
+        let Agreement { chi2, dof } = agreement;
+        return Err(CarrierError::Contradicted { chi2, dof, trace, sigma });
+    }
     let object = system.object.map(|placed| report.body(placed, Matrix3::zeros()));
     let itself = system.object.zip(records.object_term);
     let held = ["carrier", "object"].into_iter().zip(&terms).filter(|(_, body)| is_held(body, &answer));
     let held = held.filter(|_| pull > 0.0).map(|(name, _)| CarrierWarning::Held { name, pull });
     let warnings = [contradiction(agreement), object.as_ref().and_then(light)];
     Ok(CarrierEstimate {
-        carrier: report.body(system.carrier, Matrix3::zeros()),
+        carrier,
         object,
         object_itself: itself.map(|(placed, term)| report.body(placed, -term)),
         wheel: report.wheel(),

@@ -64,7 +64,6 @@ pub(super) fn contradiction(agreement: Agreement) -> Option<CarrierWarning> {
 
 /// That an object is small beside its deviation, where it is.
 pub(super) fn light(object: &MeasuredBody) -> Option<CarrierWarning> {
-    let trace = object.tensor.trace();
-    let sigma = object.covariance.fixed_view::<3, 3>(0, 0).sum().max(0.0).sqrt();
+    let (trace, sigma) = object.trace();
     (trace <= SURE * sigma).then_some(CarrierWarning::LightObject { trace, sigma })
 }

@@ -1,6 +1,6 @@
 //! Carrier, proof body, object and wheel from several records at once.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 use polhode::inertia::{Inertia, MassProperties};
 use polhode::num::Random;
 use polhode_fit::Attached::{self, Nothing, Object, ObjectAndProof, Proof};
@@ -446,15 +446,25 @@ fn the_physical_law_holds_carrier_and_object() {
 
 #[test]
 fn a_wrong_proof_body_is_seen_by_the_records() {
-    let mut bench = Bench::new(&[Nothing, Proof], 0.0, &mut Random::new(101));
-    // its axes x and y are exchanged
-    let exchanged = Matrix3::new(0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
-    bench.told = exchanged * bench.proof * exchanged;
-    let e = fit_carrier(&bench.records(1.0, &mut Random::new(102)), &Settings::default()).unwrap();
+    let bench = Bench::new(&[Nothing, Proof], 0.0, &mut Random::new(101));
+    let of = |told: Matrix3<f64>| {
+        let bench = Bench { told, ..bench.clone() };
+        fit_carrier(&bench.records(1.0, &mut Random::new(102)), &Settings::default())
+    };
+    // mounted askew by 0.03 rad
+    let askew = Rotation3::from_scaled_axis(Vector3::new(0.01, -0.02, 0.02)).into_inner();
+    let e = of(askew * bench.proof * askew.transpose()).unwrap();
     let Some(CarrierWarning::Contradiction { chi2, dof: 4 }) = e.warnings.first().copied() else {
         panic!("{:?}", e.warnings)
     };
     assert!(chi2 > 100.0);
+    let trace = bench.carrier.trace();
+    assert!((e.carrier.tensor.trace() - trace).abs() < 0.2 * trace, "{}", e.carrier.tensor.trace());
+    // its axes x and y exchanged: deviations enlarged by so much leave the size open
+    let exchanged = Matrix3::new(0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+    let error = of(exchanged * bench.proof * exchanged).unwrap_err();
+    let CarrierError::Contradicted { chi2, dof: 4, trace, sigma } = error else { panic!("{error}") };
+    assert!(chi2 > 1e6 && trace <= 5.0 * sigma, "{error}");
     // the records exchanged
     let mut turned = Bench { told: bench.proof, ..bench.clone() };
     turned.tumblings[0].attached = Proof;

@@ -89,6 +89,7 @@ fn refused(arguments: &CarrierArguments, data: &[PathBuf], error: CarrierError) 
         CarrierError::TooLight { .. }
         | CarrierError::Opposite { .. }
         | CarrierError::ObjectSize { .. }
+        | CarrierError::Contradicted { .. }
         | CarrierError::Unsettled { .. }
         | CarrierError::Solver(_) => true,
         _ => false,
