@@ -239,16 +239,19 @@ fn attitudes_of_few_digits_hide_no_fault_of_an_angular_velocity_in_space() {
     let mut convention = Reading::default();
     convention.rate_unit = Some(RateUnit::RadiansPerSecond);
     convention.omega_frame = Some(Frame::Space);
-    let of = |digits| {
-        let writing = Writing { digits, ..Writing::EXACT };
-        record(&mut Seeded(3), &rows, &convention, Form::Quaternion, writing)
-    };
-    let mut written = of(5);
-    written.rates = of(17).rates;
-    assert_eq!(judged(&written), Judgement::Right);
-    for row in [1, 200, 399] {
-        let mut bad = written.clone();
-        bad.rates.as_mut().unwrap()[row][1] += 1.2e-5;
-        assert_ne!(judged(&bad), Judgement::Right, "row {row}");
+    for faster in [1.0, 30.0] {
+        let rows: Vec<Written> = rows.iter().map(|(t, q, w)| (t / faster, *q, *w * faster)).collect();
+        let of = |digits| {
+            let writing = Writing { digits, ..Writing::EXACT };
+            record(&mut Seeded(3), &rows, &convention, Form::Quaternion, writing)
+        };
+        let mut written = of(5);
+        written.rates = of(7).rates;
+        assert_eq!(judged(&written), Judgement::Right);
+        for row in [1, 200, 399] {
+            let mut bad = written.clone();
+            bad.rates.as_mut().unwrap()[row][1] += 1.2e-5 * faster;
+            assert_ne!(judged(&bad), Judgement::Right, "row {row}, {faster} times faster");
+        }
     }
 }
