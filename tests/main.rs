@@ -30,6 +30,7 @@ mod motions;
 mod no_squish;
 mod num;
 mod observe;
+mod phase;
 #[cfg(feature = "random")]
 mod population;
 mod programs;

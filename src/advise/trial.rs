@@ -5,9 +5,8 @@ use std::time::Instant;
 use super::Predicted;
 use super::reference::Span;
 use crate::body::{Body, Clock, Conserved};
-use crate::method::AnyMethod;
+use crate::method::{AnyMethod, SOLVED};
 use crate::observe::Monitor;
-use crate::run::SOLVED;
 use crate::truth::{LOST, attitude_error};
 
 /// What a run over a horizon showed.

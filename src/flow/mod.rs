@@ -26,9 +26,9 @@ pub use derivative::{DerivativeError, TurnAxes};
 pub use exact_motion::{ExactMotion, NoClosedForm};
 pub(crate) use free::{Addition, Curve, FreeOrbit};
 pub use free::{
-    AtRest, Character, CovarianceError, FittedMotion, FreeBody, FreeFlow, FreeMotion, Interpolation, Mode,
-    Passage, Passages, PureSpin, Stability, StartCovariance, StateCovariance, StateDerivative, SymmetricTop,
-    ThroughError, TumblingElements, TumblingError,
+    AtRest, Character, CovarianceError, Departure, FittedMotion, FreeBody, FreeFlow, FreeMotion,
+    Interpolation, Mode, Passage, Passages, PureSpin, Stability, StartCovariance, StateCovariance,
+    StateDerivative, SymmetricTop, ThroughError, TumblingElements, TumblingError,
 };
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop, TopDerivative};

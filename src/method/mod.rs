@@ -22,6 +22,7 @@ mod lie_poisson_projected;
 mod linearly_implicit_euler;
 mod momentum_euler;
 mod mujoco_rk4;
+mod phase;
 mod rattle;
 mod richardson;
 mod rk4;
@@ -40,6 +41,7 @@ pub use buss_2::Buss;
 pub use combine::{
     Composed, FreePart, InTurn, Kicks, KineticSplit, Palindrome, SchemeError, Splitting, Symmetric, schemes,
 };
+pub(crate) use contract::SOLVED;
 pub(crate) use contract::lanes::Block;
 pub use contract::{
     AnyMethod, Claimed, Claims, Cost, Energy, Kept, Listing, Map, Method, SideBySide, Step, StepError, Stuck,
@@ -59,6 +61,7 @@ pub use lie_poisson_projected::SymmetricProjection;
 pub use linearly_implicit_euler::LinearlyImplicitEuler;
 pub use momentum_euler::MomentumEuler;
 pub use mujoco_rk4::MujocoRk4;
+pub use phase::{PhaseCorrected, PhaseDrift, PhaseError};
 pub use rattle::{Dmv, Rattle};
 pub use richardson::Richardson;
 pub use rk4::Rk4;

@@ -5,12 +5,8 @@ use thiserror::Error;
 use super::{CheckpointError, Sample, ScheduleError};
 use crate::body::StateError;
 use crate::events::EventError;
-use crate::method::{StepError, Stuck};
+use crate::method::{PhaseError, SOLVED, StepError, Stuck};
 use crate::num::{Precise, Shown};
-
-/// An implicit solve that ends further than this from its equation, relative, is no solution: the invariants would be
-/// lost by as much in every step. Rounding alone leaves about 1e-16.
-pub(crate) const SOLVED: f64 = 1e-13;
 
 /// Why a run could not start or go on.
 #[derive(Clone, Debug, Error)]
@@ -22,6 +18,9 @@ pub enum RunError {
     /// The start is not usable.
     #[error(transparent)]
     State(#[from] StateError),
+    /// The phase error that the method takes back cannot be predicted.
+    #[error(transparent)]
+    Phase(#[from] PhaseError),
     /// The checkpoint is not that of this run.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),

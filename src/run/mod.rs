@@ -17,7 +17,6 @@ pub use checkpoint::{Checkpoint, CheckpointError};
 pub use convergence::{Halving, HalvingError, halvings, halvings_against, observed_order};
 pub use ensemble::{Ensemble, EnsembleError, MemberError, Observed, Rows, Spread, Tally};
 pub use error::RunError;
-pub(crate) use error::SOLVED;
 pub use run::Run;
 pub use sample::{Sample, Watch};
 pub use schedule::{Multiples, Schedule, ScheduleError};

@@ -2,12 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::error::SOLVED;
 use super::run::probe;
 use super::schedule::{Place, ScheduleError};
 use super::{Run, RunError, Watch};
 use crate::body::{Body, Clock, Point, Time};
-use crate::method::{AnyMethod, Step, StepError, Stuck};
+use crate::method::{AnyMethod, SOLVED, Step, StepError, Stuck};
 use crate::num::Dd;
 
 /// When forces are switched, in the direction of the steps: phase n begins with the n-th of them, and phase 0 with the start.

@@ -2,11 +2,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::error::SOLVED;
 use super::phases::Phases;
 use super::{Checkpoint, CheckpointError, RunError, Sample, Schedule, Watch, checkpoint};
 use crate::body::{Body, Clock, Point, State, StateError, Witness};
-use crate::method::{AnyMethod, Step, Work};
+use crate::method::{AnyMethod, SOLVED, Step, Work};
 use crate::num::Dd;
 use crate::observe::{BLOCK, Errors, Invariants, Monitor};
 
@@ -131,6 +130,9 @@ impl Run {
         let (mut step, mut point) = (method.prepare_f64(clock, &acting)?, start);
         phases.check(method, body, clock)?;
         step.open(&mut point);
+        if let Some(refusal) = step.refusal() {
+            return Err(refusal.clone().into());
+        }
         Ok(Run {
             step,
             method: method.boxed(),

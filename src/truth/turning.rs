@@ -3,9 +3,8 @@
 use super::together::together;
 use super::{TruthError, attitude_error};
 use crate::body::{Body, Clock, Field as _, Point, Problem, Time};
-use crate::method::{AnyMethod, Rk8};
+use crate::method::{AnyMethod, Rk8, SOLVED};
 use crate::rotation::Vec3;
-use crate::run::SOLVED;
 
 /// The turn of a piece of the motion, rad, by the rate at its beginning.
 const PIECE: f64 = 8.0;

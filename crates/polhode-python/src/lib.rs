@@ -21,6 +21,7 @@ mod json;
 mod links;
 mod masses;
 mod motions;
+mod phases;
 mod runs;
 mod samples;
 mod shown;
@@ -63,6 +64,8 @@ mod _polhode {
     use super::masses::{MassProperties, mesh, solid};
     #[pymodule_export]
     use super::motions::FreeMotion;
+    #[pymodule_export]
+    use super::phases::{PhaseDrift, phase};
     #[pymodule_export]
     use super::runs::{methods, run};
     #[pymodule_export]

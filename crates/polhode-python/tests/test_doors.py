@@ -42,6 +42,23 @@ def test_advice(command):
         assert ours[both]["predicted_error"] == theirs[both]["predicted_error"], both
 
 
+def test_a_phase_error(command):
+    told = command("compare", "--moments", "1,2,3", "--omega", "0.4,1,-0.3", "--until", "100", "--methods", "rattle,rattle+phase",
+                   "--steps", "0.05", "--phase")  # fmt: skip
+    drift = polhode.phase("rattle", [1, 2, 3], [0.4, 1, -0.3], step=0.05)
+    # the command's start has gone through a file of doubles
+    close_to_all([drift.shift, drift.twist, drift.attitude_error(100)], [told[0][key] for key in ("shift_rate", "twist_rate", "predicted_error")])
+    assert drift.doubt < 1e-9 and drift.rounding(100) < 1e-12
+    exact = polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3]).at([100])
+    ends = [polhode.run(name, [1, 2, 3], [0.4, 1, -0.3], step=0.05, times=[100]) for name in ("rattle", "rattle+phase")]
+    errors = [2 * np.arccos(min(1.0, abs(float((end.attitude @ exact.attitude.T).item())))) for end in ends]
+    assert abs(errors[0] / drift.attitude_error(100) - 1) < 1e-6 and errors[1] < 1e-7  # arccos next to one
+    with pytest.raises(polhode.PolhodeError, match="its energy drifts"):
+        polhode.phase("rk4", [1, 2, 3], [0.4, 1, -0.3], step=0.05)
+    with pytest.raises(polhode.PolhodeError, match="its energy drifts"):
+        polhode.run("rk4+phase", [1, 2, 3], [0.4, 1, -0.3], step=0.05, times=[1])
+
+
 def test_a_tumbling_asteroid(command):
     (told,) = command("motion", "--body", "toutatis")
     assert (told.pop("frame"), told.pop("epoch")) == ("ecliptic J2000", "1992-11-09T17:49:47")

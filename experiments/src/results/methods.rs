@@ -12,7 +12,7 @@ pub(super) const PAGE: &str = "docs/methods.md";
 const HEAD: &str = "<!-- made by `polhode experiment publish`; edit the methods, and not this page -->
 
 What `polhode methods` lists, with what was measured. A name is taken by [`method()`](crate::method()) and by `--method`; it may have an
-argument and a scheme, `BASE[:ARGUMENT][@SCHEME]`, as in `lie-poisson:321@kahan-li-8`. `polhode methods --schemes` lists the schemes.
+argument and a scheme, `BASE[:ARGUMENT][@SCHEME][+phase]`, as in `lie-poisson:321@kahan-li-8`. `polhode methods --schemes` lists the schemes.
 `no-squish` is another name of `lie-poisson:321`, `kick-drift:4` one of `kick-drift@suzuki-4`.
 
 All claims are those of free motion, and each is tested; only the order of `kick-drift`, which is exact there, is that of motion in a

@@ -2,6 +2,7 @@
 
 use super::SideBySide;
 use crate::body::{Clock, Field, Point, Rotor, Time};
+use crate::method::phase::PhaseError;
 use crate::method::schemes::Scheme;
 use crate::num::{Dd, Real};
 
@@ -156,6 +157,10 @@ pub trait Map<S: Real>: Send + 'static {
     }
 }
 
+/// An implicit solve that ends further than this from its equation, relative, is no solution: the invariants would be
+/// lost by as much in every step. Rounding alone leaves about 1e-16.
+pub(crate) const SOLVED: f64 = 1e-13;
+
 /// What the steps that a map chooses have cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -240,6 +245,11 @@ pub trait Step<S: Real>: Send {
 
     /// As [`Map::stuck`].
     fn stuck(&self) -> Option<Stuck>;
+
+    /// Why steps cannot be taken from the state that was [opened](Self::open); its form is not finite then.
+    fn refusal(&self) -> Option<&PhaseError> {
+        None
+    }
 
     /// Takes `n` steps, from a state to a state.
     fn steps(&mut self, x: &mut Point<S>, n: u64) {

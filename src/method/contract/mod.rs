@@ -15,6 +15,7 @@ pub use catalogue::{catalogue, without_projections};
 pub use claims::{Claimed, Claims, Cost, Energy, Kept};
 pub use lanes::SideBySide;
 pub use listing::{Listing, listing};
+pub(crate) use map::SOLVED;
 pub use map::{Map, Method, Step, Stuck, Work};
 pub use name::{UnknownMethod, method};
 pub(super) use own_steps::OwnSteps;

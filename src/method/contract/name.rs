@@ -2,28 +2,30 @@
 
 use thiserror::Error;
 
+use crate::method::phase::TAKEN_BACK;
 use crate::method::schemes::{STRANG, SUZUKI_4, Scheme, UnknownScheme, scheme};
 use crate::method::{
     AdaptiveTaylor, AnyMethod, AxisOrder, AxisSplit, Buss, Claimed, Composed, Dmv, DormandPrince853,
     Embedded, ExactFlow, ExactStep, ExplicitEuler, FreePart, Gauss, ImplicitMidpoint, LieGroup, LieNewmark,
-    LinearlyImplicitEuler, Method, MomentumEuler, MujocoRk4, Pair, PreprocessedDmv, ProjectedRk4, Richardson,
-    Rk4, Rk8, SchemeError, SemiImplicitEuler, Splitting, Symmetric, SymmetricProjection, Taylor, Tsitouras54,
-    TwoAxes, TwoTurn, VariationalCayley,
+    LinearlyImplicitEuler, Method, MomentumEuler, MujocoRk4, Pair, PhaseCorrected, PhaseError,
+    PreprocessedDmv, ProjectedRk4, Richardson, Rk4, Rk8, SchemeError, SemiImplicitEuler, Splitting,
+    Symmetric, SymmetricProjection, Taylor, Tsitouras54, TwoAxes, TwoTurn, VariationalCayley,
 };
 use crate::num::Dd;
 
 /// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in
-/// `lie-poisson:321@kahan-li-8`.
+/// `lie-poisson:321@kahan-li-8`, each with or without `+phase` behind it.
 ///
 /// Bases are those of the [catalogue](super::catalogue()), schemes those of [`schemes::ALL`](crate::method::schemes::ALL). `lie-poisson` takes an
 /// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance, `dop853`
 /// and `tsit5` a tolerance;
 /// `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and `kick-drift@suzuki-4`, `no-squish` one of
 /// `lie-poisson:321`: that is the method of Miller et al., J. Chem. Phys. 116 (2002) 8649, which molecular dynamics programs
-/// write in quaternions and their momenta.
+/// write in quaternions and their momenta. `+phase` takes the [phase error](PhaseCorrected) back at output.
 ///
 /// # Errors
-/// A base or a scheme that does not exist, an argument that the base does not take, or a scheme that does not fit it.
+/// A base or a scheme that does not exist, an argument that the base does not take, a scheme that does not fit it, or a
+/// phase error that cannot be taken back.
 ///
 /// ```
 /// use polhode::body::Problem;
@@ -34,6 +36,9 @@ use crate::num::Dd;
 /// # Ok::<(), polhode::method::UnknownMethod>(())
 /// ```
 pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
+    if let Some(base) = name.strip_suffix(TAKEN_BACK) {
+        return Ok(Box::new(PhaseCorrected::new(&*method(base)?)?));
+    }
     let (head, scheme) = split(name, '@');
     let (base, argument) = split(head, ':');
     let asked = Asked { name, argument, scheme };
@@ -221,4 +226,7 @@ pub enum UnknownMethod {
     /// The scheme does not fit the base.
     #[error(transparent)]
     Unfit(#[from] SchemeError),
+    /// Energy or |m| are not kept: the phase error is not predicted.
+    #[error(transparent)]
+    Phase(#[from] PhaseError),
 }

@@ -72,6 +72,9 @@ impl Course<'_> {
         let mut step = self.method.prepare_f64(self.clock, &body).map_err(RunError::from)?;
         let mut point = start.to_f64();
         step.open(&mut point);
+        if let Some(refusal) = step.refusal() {
+            return Err(RunError::from(refusal.clone()).into());
+        }
         Ok(match step.side_by_side() {
             Some(side_by_side) => {
                 let observer = Observer::new(self, &body, start);

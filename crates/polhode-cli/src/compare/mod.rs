@@ -1,6 +1,7 @@
 //! `polhode compare`: methods at steps and tolerances on one body, against its true motion.
 
 mod entries;
+mod phase;
 mod rows;
 pub(crate) mod trajectory;
 
@@ -22,7 +23,6 @@ use crate::flags::motion::MotionArguments;
 use crate::flags::table::{Order, TableArguments};
 use crate::plot::Picture;
 use entries::{Entry, Positives, positives};
-use rows::columns;
 use trajectory::Trajectory;
 
 const USAGE: &str = "polhode compare <BODY> <START> --methods <A,...> --until <T> [OPTIONS]
@@ -55,7 +55,7 @@ const LOOKS: u32 = 64;
 pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) motion: MotionArguments,
-    /// Methods, separated by commas: BASE[:ARGUMENT][@SCHEME] as in kick-drift@srkn-6b; see `polhode methods`
+    /// Methods, separated by commas: BASE[:ARGUMENT][@SCHEME][+phase] as in kick-drift@srkn-6b; see `polhode methods`
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', required = true, help_heading = "Methods")]
     methods: Vec<String>,
     /// Steps of the methods, s, separated by commas; a whole number of each leads to T
@@ -80,6 +80,11 @@ pub(crate) struct Compare {
     /// State the place of the scalar in the quaternions of trajectories [default: as named, else found from the rows]
     #[arg(long, value_enum, help_heading = "Reading")]
     quaternion: Option<Order>,
+    /// Predict the attitude error at the end from a short run, of methods that keep energy and |m| of a free body within bounds:
+    /// how fast it grows as a shift in time along the polhode (s/s) and as a twist about L (rad/s). Oscillations and rounding are
+    /// not in it
+    #[arg(long, help_heading = "Output")]
+    phase: bool,
     /// Draw attitude error against processor time to this file
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
     figure: Option<PathBuf>,
@@ -129,7 +134,7 @@ impl Compare {
                 "--until: '{until}': two runs in double-double agree up to t = {known} only; attitude errors and flips are of that time"
             ));
         }
-        let mut table = Table::new("comparison", "Methods on one body.", columns(&body));
+        let mut table = Table::new("comparison", "Methods on one body.", self.columns(&body));
         let mut figure = Figure::log_log(
             "comparison",
             format!("Attitude error against processor time: {}, {} s", self.motion.body.label(), short(span)),
@@ -140,7 +145,11 @@ impl Compare {
             let (judged, time) = self.judged(&truth, entry)?;
             let steps = judged.last.steps as f64;
             let spent = (time.seconds * steps, time.seconds / time.rk4 * steps);
-            table.push(self.row(&truth, entry, &judged, spent));
+            let mut row = self.row(&truth, entry, &judged, spent);
+            if self.phase {
+                row.extend(phase::cells(entry, &body, &start, span));
+            }
+            table.push(row);
             if let Some(error) = judged.attitude_error() {
                 match figure.series.iter_mut().find(|series| series.name == entry.family) {
                     Some(series) => series.points.push((spent.1, error)),

@@ -55,7 +55,7 @@ impl Compare {
 
     pub(super) fn foreign(&self, truth: &Truth, trajectory: &Trajectory) -> Result<Vec<Cell>, Error> {
         let found = trajectory.against(truth, self.start_time)?;
-        let columns = columns(truth.body());
+        let columns = self.columns(truth.body());
         let mut row = vec![Cell::Empty; columns.len()];
         let mut set = |name: &str, value: Cell| {
             if let Some(place) = columns.iter().position(|column| column.name == name) {
@@ -83,7 +83,17 @@ impl Compare {
     }
 }
 
-pub(super) fn columns(body: &Body) -> Vec<Column> {
+impl Compare {
+    pub(super) fn columns(&self, body: &Body) -> Vec<Column> {
+        let mut columns = columns(body);
+        if self.phase {
+            columns.extend(super::phase::columns());
+        }
+        columns
+    }
+}
+
+fn columns(body: &Body) -> Vec<Column> {
     let conserved = body.conserved();
     let free = conserved.contains(&Conserved::Momentum);
     let shown = |column: Column, shown: bool| if shown { column } else { column.hidden() };

@@ -109,7 +109,7 @@ pub(crate) struct Plot {
     /// Time of the start, s; forces may depend on it
     #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Motion")]
     start_time: f64,
-    /// Method: exact, or BASE[:ARGUMENT][@SCHEME]; see `polhode methods`
+    /// Method: exact, or BASE[:ARGUMENT][@SCHEME][+phase]; see `polhode methods`
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Motion")]
     method: String,
     /// Step of a method with fixed steps, s; exact takes none, and taylor, dop853 and tsit5 need none

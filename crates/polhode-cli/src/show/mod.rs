@@ -71,7 +71,7 @@ pub(crate) struct Show {
     /// Time of the start, s; forces may depend on it
     #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Motion")]
     start_time: f64,
-    /// Method of the first body: exact, or BASE[:ARGUMENT][@SCHEME] [default: exact where there is a closed form, else taylor]
+    /// Method of the first body: exact, or BASE[:ARGUMENT][@SCHEME][+phase] [default: exact where there is a closed form, else taylor]
     #[arg(long, value_name = "NAME", help_heading = "Motion")]
     method: Option<String>,
     /// Step of a --method with fixed steps, s

@@ -68,6 +68,38 @@ fn errors_and_cost_are_those_of_the_run() {
 }
 
 #[test]
+fn the_phase_error_is_predicted_and_taken_back() {
+    let free = "compare --moments 1,2,3 --omega 0.4,1,-0.3 --until 100 --steps 0.05 --phase --methods";
+    let table = output(&format!("{free} rattle,two-turn,two-turn+phase,rk4,taylor"));
+    let rows = rows(&table);
+    // two turns oscillate as well
+    for (row, share) in rows.iter().zip([1e-9, 0.05]) {
+        let (measured, predicted) = (number(row, "attitude_error"), number(row, "predicted_error"));
+        assert!((predicted / measured - 1.0).abs() < share, "{row:?}");
+        assert!(cell(row, "prediction").starts_with("rates to "), "{row:?}");
+    }
+    assert!(number(&rows[2], "attitude_error") < 0.05 * number(&rows[1], "attitude_error"));
+    assert_eq!(cell(&rows[2], "method"), "two-turn+phase");
+    assert_eq!(cell(&rows[2], "prediction"), "taken back");
+    assert_eq!(cell(&rows[3], "prediction"), "none: its energy drifts");
+    assert_eq!(cell(&rows[4], "prediction"), "none: the method chooses its steps");
+    let refused = |line: &str, words: &str| {
+        let found = run(line);
+        assert!(found.code != 0 && found.err.contains(words), "{line}: {} {}", found.code, found.err);
+    };
+    refused(&format!("{free} rk4+phase"), "its energy drifts");
+    refused(&format!("{free} rattle+phase+phase"), "is taken back");
+    refused(
+        "compare --moments 1,1,0.5 --omega 0,0.1,20 --weight-moment 0,0,1 --until 1 --steps 0.125 --methods rattle+phase",
+        "rattle+phase",
+    );
+    refused(
+        "compare --moments 1,2,3 --omega 0.4,1,-0.3 --until 100 --steps 2.5 --methods rattle@suzuki-4,two-turn+phase",
+        "too few to tell",
+    );
+}
+
+#[test]
 fn runs_that_lose_the_attitude_say_when() {
     let found = rows(&output(&format!("{TEXTBOOK} --until 200 --methods explicit-euler,buss-2 --steps 0.5")));
     assert!(cell(&found[0], "status").starts_with("diverged at t = "), "{:?}", found[0]);

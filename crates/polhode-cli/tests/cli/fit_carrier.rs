@@ -159,8 +159,13 @@ fn what_a_joint_fit_cannot_use_is_refused() {
         assert_eq!(other.code, 1, "{mistaken}: {}", other.err);
         assert!(other.err.contains("the two shapes differ the other way"), "{mistaken}: {}", other.err);
     }
-    // a mistaken proof body is a warning with its numbers
-    let wrong =
-        run(&format!("{line} --proof-body 0.012,0.011,0.003 --proof-at 0.05,-0.02,0.03,2 --carrier-mass 6"));
-    assert!(wrong.err.contains("the records contradict each other: chi squared is"), "{}", wrong.err);
+    // a mistaken proof body, or a wrong sign in its place
+    for mistaken in [
+        "0.012,0.011,0.003 --proof-at 0.05,-0.02,0.03,2 --carrier-mass 6",
+        "0.003,0.011,0.012 --proof-at 0.05,0.02,0.03,2 --carrier-mass 6",
+    ] {
+        let wrong = run(&format!("{line} --proof-body {mistaken}"));
+        assert_eq!(wrong.code, 1, "{}", wrong.err);
+        assert!(wrong.err.contains("leave the size open: chi squared is"), "{}", wrong.err);
+    }
 }

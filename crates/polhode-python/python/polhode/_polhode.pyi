@@ -387,6 +387,27 @@ def advise(
     order: Order = "wxyz",
 ) -> Advice: ...
 
+class PhaseDrift:
+    @property
+    def shift(self) -> float: ...
+    @property
+    def twist(self) -> float: ...
+    @property
+    def doubt(self) -> float: ...
+    def attitude_error(self, t: float) -> float: ...
+    def rounding(self, t: float) -> float: ...
+
+def phase(
+    method: str,
+    body: BodyLike,
+    omega: ArrayLike | None = None,
+    attitude: Turn | None = None,
+    *,
+    step: float,
+    momentum: ArrayLike | None = None,
+    order: Order = "wxyz",
+) -> PhaseDrift: ...
+
 class Estimate:
     @property
     def shape(self) -> Floats: ...

@@ -4,15 +4,17 @@
 //! one of the time t + τ, turned about L by ψ. There is no other error, and both parts grow linearly. Where the energy swings
 //! within a bound, the same holds up to an oscillation that does not grow.
 
+mod bodies;
+mod corrected;
 mod measured;
 mod predicted;
 
-use polhode::body::{Body, Point, Problem};
+use polhode::body::{Body, Problem};
 use polhode::catalogue::{self, NamedBody};
-use polhode::flow::FreeMotion;
-use polhode::method::{AxisOrder, Claimed, TwoAxes, method};
+use polhode::flow::{Departure, FreeMotion};
+use polhode::method::{AxisOrder, Claimed, PhaseDrift, TwoAxes, method};
 use polhode::num::{Dd, Real};
-use polhode::rotation::{Quat, Vec3, rotation_angle};
+use polhode::rotation::Vec3;
 use polhode::run::{Run, Watch};
 use polhode::truth::attitude_error;
 use polhode_files::error::{Error, unexpected};
@@ -53,6 +55,24 @@ struct Rates {
     twist: f64,
 }
 
+impl Rates {
+    fn of(drift: &PhaseDrift) -> Rates {
+        Rates { shift: drift.shift(), twist: drift.twist() }
+    }
+
+    /// How far others are away, as angles of the attitude of a body that turns at `spin`, over these.
+    fn apart(self, other: Rates, spin: f64) -> f64 {
+        let difference = (other.shift - self.shift).abs() * spin + (other.twist - self.twist).abs();
+        difference / (self.shift.abs() * spin + self.twist.abs())
+    }
+
+    fn after(self, t: Dd) -> Departure {
+        let mut departure = Departure::NONE;
+        (departure.shift, departure.twist) = (t * Dd::of(self.shift), t * Dd::of(self.twist));
+        departure
+    }
+}
+
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let steps = context.scale.pick(10_000, 200_000, 1_000_000);
     let panels = context.scale.pick(8, 16, 32);
@@ -89,8 +109,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         }
         if body == BODIES[0] && order == 2 {
             for (figure, pick, rate) in [
-                (&mut shifts, (|look| look.shift) as fn(&Look) -> f64, predicted.shift),
-                (&mut twists, |look| look.twist, predicted.twist),
+                (&mut shifts, (|look| look.departure.shift.hi()) as fn(&Look) -> f64, predicted.shift),
+                (&mut twists, |look| look.departure.twist.hi(), predicted.twist),
             ] {
                 let points: Vec<_> = looks.iter().map(|look| (look.t, pick(look).abs())).collect();
                 if let Some(&(last, _)) = points.last() {
@@ -110,6 +130,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                  0.01 s; dotted: predicted";
     report.drawings.push(sheet("phase", title, 1, &[shifts, twists])?);
     report.tables.push(table);
+    bodies::add(context, &mut report)?;
+    corrected::add(context, &mut report)?;
     Ok(report)
 }
 
@@ -126,17 +148,16 @@ fn columns() -> Vec<Column> {
         Column::new("time", "s", "time of the last row of the run").hidden(),
         Column::new("shift_closed", "", "growth of the shift per second, leading term in closed form")
             .hidden(),
-        Column::new("shift_predicted", "", "the same from the errors of single steps over one period")
-            .heading("shift")
-            .digits(4),
+        Column::new("shift_steps", "", "the same from the errors of single steps over one period").hidden(),
+        Column::new("shift_predicted", "", "the same from a short run").heading("shift").digits(4),
         Column::new("shift_measured", "", "slope of the shift that was measured")
             .heading("measured")
             .digits(4),
         Column::new("shift_ratio", "", "measured over predicted").heading("ratio").digits(4),
         Column::new("twist_closed", "rad/s", "growth of the twist, leading term in closed form").hidden(),
-        Column::new("twist_predicted", "rad/s", "the same from the errors of single steps over one period")
-            .heading("twist")
-            .digits(4),
+        Column::new("twist_steps", "rad/s", "the same from the errors of single steps over one period")
+            .hidden(),
+        Column::new("twist_predicted", "rad/s", "the same from a short run").heading("twist").digits(4),
         Column::new("twist_measured", "rad/s", "slope of the twist that was measured")
             .heading("measured")
             .digits(4),
@@ -148,6 +169,9 @@ fn columns() -> Vec<Column> {
         )
         .hidden(),
         Column::new("disagreement_closed", "", "the same for the closed form").hidden(),
+        Column::new("disagreement_steps", "", "the same for the errors of single steps").hidden(),
+        Column::new("doubt", "", "difference of the rates between two fits to the short run, over the rates")
+            .hidden(),
         Column::new("attitude_predicted", "rad", "attitude error at the end, from the predicted growth")
             .hidden(),
         Column::new("attitude_error", "rad", "attitude error at the end").hidden(),
@@ -182,7 +206,8 @@ fn examine(named: &NamedBody, name: &str, steps: u64, panels: u32) -> Result<Fou
     let h = step_size(named.name, order, speed);
     let motion = FreeMotion::from_point(body.inertia(), point.to_dd());
 
-    let predicted = predicted::from_steps(&motion, &point.to_dd(), method.as_ref(), h, panels)?;
+    let predicted = method.phase(&body, &start, h).map_err(unexpected)?;
+    let steps_alone = predicted::from_steps(&motion, &point.to_dd(), method.as_ref(), h, panels)?;
     let closed = predicted::in_closed_form(&name, &point.to_dd(), moments, h);
     let mut run = Run::new(method.as_ref(), &body, &start, h).map_err(unexpected)?.watching(Watch::Never);
     let looks = measured::looks(&mut run, &motion, &times(steps))?;
@@ -190,12 +215,10 @@ fn examine(named: &NamedBody, name: &str, steps: u64, panels: u32) -> Result<Fou
     let last = run.sample();
 
     let spin = motion.character().map_err(unexpected)?.spin;
-    let apart = |rates: Rates| {
-        let difference = (rates.shift - measured.shift).abs() * spin + (rates.twist - measured.twist).abs();
-        difference / (measured.shift.abs() * spin + measured.twist.abs())
-    };
+    let apart = |rates: Rates| measured.apart(rates, spin);
+    let (doubt, predicted) = (predicted.doubt(), Rates::of(&predicted));
     let disagreement = apart(predicted);
-    let rest = looks.iter().map(|look| look.rest).fold(0.0, f64::max);
+    let rest = looks.iter().map(|look| look.departure.rest).fold(0.0, f64::max);
     let row = row![
         named.name,
         &*name,
@@ -203,16 +226,20 @@ fn examine(named: &NamedBody, name: &str, steps: u64, panels: u32) -> Result<Fou
         h,
         last.elapsed.hi(),
         closed.map(|rates| rates.shift),
+        steps_alone.shift,
         predicted.shift,
         measured.shift,
         measured.shift / predicted.shift,
         closed.map(|rates| rates.twist),
+        steps_alone.twist,
         predicted.twist,
         measured.twist,
         measured.twist / predicted.twist,
         disagreement,
         closed.map(apart),
-        angle_at(&motion, last.elapsed, predicted),
+        apart(steps_alone),
+        doubt,
+        motion.attitude_error_of(last.elapsed, predicted.after(last.elapsed)),
         attitude_error(last.point.attitude, motion.point_at_dd(last.elapsed).attitude),
         rest,
     ];
@@ -243,22 +270,6 @@ fn times(steps: u64) -> Vec<u64> {
     times
 }
 
-/// The vector of the turn in space that takes the attitude `from` to `to`: its axis times twice the sine of half its angle.
-fn turn_in_space(from: Quat<Dd>, to: Quat<Dd>) -> Vec3<Dd> {
-    let turn = to * from.conjugate();
-    turn.v * Dd::of(if turn.w.hi() < 0.0 { -2.0 } else { 2.0 })
-}
-
-/// The attitude error after the time `t` with shift and twist that grow at the rates `rates`.
-fn angle_at(motion: &FreeMotion, t: Dd, rates: Rates) -> f64 {
-    let exact = motion.point_at_dd(t);
-    let shifted: Point<Dd> = motion.point_at_dd(t + t * Dd::of(rates.shift));
-    let axis = exact.momentum_space();
-    let (sin, cos) = libm::sincos(0.5 * rates.twist * t.hi());
-    let twist = Quat::new(Dd::of(cos), axis * (Dd::of(sin) / axis.norm()));
-    rotation_angle(exact.attitude, twist * shifted.attitude).hi()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,7 +285,7 @@ mod tests {
         let closed = predicted::in_closed_form("rattle", &point, body.rotor().moments(), 0.01).unwrap();
         let steps = predicted::from_steps(&motion, &point, &method("rattle").unwrap(), 0.01, 16).unwrap();
         for rates in [closed, steps] {
-            let angle = angle_at(&motion, Dd::of(1e4), rates);
+            let angle = motion.attitude_error_of(Dd::of(1e4), rates.after(Dd::of(1e4)));
             assert!((angle - 0.237_24).abs() < 2e-5, "{angle}");
         }
         let apart = (closed.shift / steps.shift - 1.0).abs() + (closed.twist / steps.twist - 1.0).abs();

@@ -1,13 +1,13 @@
-//! How fast shift and twist will grow: from closed leading terms, and from the errors of single steps.
+//! How fast shift and twist will grow, in two further ways: from closed leading terms, and from the errors of single steps.
 
 use polhode::body::{Clock, Point};
 use polhode::flow::FreeMotion;
 use polhode::method::{AnyMethod, AxisOrder, TwoAxes};
 use polhode::num::{Dd, Real};
-use polhode::rotation::Vec3;
+use polhode::rotation::{Quat, Vec3};
 use polhode_files::error::{Error, unexpected};
 
-use super::{Rates, turn_in_space};
+use super::Rates;
 
 /// Nodes and weights of Gauss and Legendre on (−1, 1).
 const NODES: [(f64, f64); 5] = [
@@ -63,6 +63,12 @@ pub(super) fn from_steps(
     let axis = start.momentum_space();
     let twist = (turn - start.attitude.rotate(omega) * shift).dot(axis) / axis.norm();
     Ok(Rates { shift: shift.hi(), twist: twist.hi() })
+}
+
+/// The vector of the turn in space that takes the attitude `from` to `to`: its axis times twice the sine of half its angle.
+fn turn_in_space(from: Quat<Dd>, to: Quat<Dd>) -> Vec3<Dd> {
+    let turn = to * from.conjugate();
+    turn.v * Dd::of(if turn.w.hi() < 0.0 { -2.0 } else { 2.0 })
 }
 
 /// Rates from the leading term in closed form, where there is one.

@@ -1,0 +1,78 @@
+//! The phase error of a method, predicted before the run.
+
+use polhode::method::PhaseDrift as Drift;
+use pyo3::prelude::*;
+
+use crate::arrays::Order;
+use crate::bodies::{Body, Start};
+use crate::calm::aside;
+use crate::error::refused;
+use crate::runs::named;
+
+/// How fast the attitude error of a method grows: a shift in time along the polhode, and a twist about L.
+#[pyclass(frozen, module = "polhode")]
+pub(crate) struct PhaseDrift(Drift);
+
+#[pymethods]
+impl PhaseDrift {
+    /// Growth of the shift per time, s/s.
+    #[getter]
+    fn shift(&self) -> f64 {
+        self.0.shift()
+    }
+
+    /// Growth of the twist about L, rad/s.
+    #[getter]
+    fn twist(&self) -> f64 {
+        self.0.twist()
+    }
+
+    /// The share of the rates by which two fits to the short run differ.
+    #[getter]
+    fn doubt(&self) -> f64 {
+        self.0.doubt()
+    }
+
+    /// The attitude error after the time t, s, without oscillations and rounding, rad.
+    fn attitude_error(&self, t: f64) -> PyResult<f64> {
+        self.0.attitude_error(t).map_err(refused)
+    }
+
+    /// What rounding adds to the attitude after the time t, s, by order of magnitude, rad.
+    fn rounding(&self, t: f64) -> f64 {
+        self.0.rounding(t)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("PhaseDrift(shift {:e}, twist {:e} rad/s)", self.0.shift(), self.0.twist())
+    }
+}
+
+/// How fast the attitude error of `method` grows from the start of a free `body` with steps of `step` s, from one short run: of methods
+/// that keep energy and |m| within bounds.
+///
+/// The start is that of `FreeMotion`. `run(method + "+phase", ...)` takes it back at output.
+///
+/// >>> import polhode
+/// >>> drift = polhode.phase("rattle", [1, 2, 3], [0.4, 1, -0.3], step=0.01)
+/// >>> round(drift.attitude_error(1e4), 4)
+/// 0.2372
+#[pyfunction]
+#[pyo3(signature = (method, body, omega = None, attitude = None, *, step, momentum = None, order = "wxyz"))]
+#[allow(clippy::too_many_arguments, reason = "they are keywords")]
+pub(crate) fn phase(
+    py: Python<'_>,
+    method: &str,
+    body: &Bound<'_, PyAny>,
+    omega: Option<&Bound<'_, PyAny>>,
+    attitude: Option<&Bound<'_, PyAny>>,
+    step: f64,
+    momentum: Option<&Bound<'_, PyAny>>,
+    order: &str,
+) -> PyResult<PhaseDrift> {
+    let body = Body::of("body", body)?;
+    let start = body.start(&Start { omega, attitude, momentum, order: Order::of(order)? })?;
+    let (start, moved, found) = (body.body.leave(&start), body.body.clone(), named(method, None)?);
+    let drift = aside(py, move |_| found.phase(&moved, &start, step))?;
+    Ok(PhaseDrift(body.settle(drift.map_err(refused))?))
+}

@@ -1,0 +1,259 @@
+//! How fast shift and twist grow, from one short run.
+
+use super::PhaseError;
+use super::harmonics::slopes;
+use crate::body::{Body, Clock, Point, Problem, State};
+use crate::flow::{Departure, FreeMotion, Mode, TimeError};
+use crate::method::{AnyMethod, Energy, SOLVED, Step};
+use crate::num::{Dd, Real};
+
+/// What the names of methods end in whose phase error is taken back.
+pub(in crate::method) const TAKEN_BACK: &str = "+phase";
+
+/// Rates that differ by a larger share between two fits to the short run predict nothing.
+pub(super) const MOST_DOUBT: f64 = 1e-3;
+
+/// Most steps of the short run.
+pub(super) const MOST_STEPS: f64 = 2e6;
+
+/// Nothing is gained where the rates are settled to this share.
+const SETTLED: f64 = 1e-11;
+
+/// So near to each other two fits differ by rounding, once more harmonics do not bring them closer.
+const CLOSE: f64 = 1e-8;
+
+/// Shift and twist that stay proportional to the number of steps to this share are linear, but for rounding.
+const LINEAR: f64 = 1e-9;
+
+/// Departures of so many radians are rounding of the double-doubles of the short run.
+const ROUNDING: f64 = 1e-26;
+
+/// Half periods of the momentum in the short run; more where they have few steps, whose phases fill the period all the same.
+const HALF_PERIODS: f64 = 3.0;
+
+/// Fewest steps in half a period.
+const FEW_STEPS: f64 = 4.0;
+
+/// Fewest harmonics, and how often they are doubled.
+const FEWEST: usize = 2;
+const DOUBLINGS: u32 = 6;
+
+/// How fast the attitude error of a method grows from one start, predicted before the run.
+///
+/// After the time t the state is that of the exact motion at the time t (1 + [`shift`](Self::shift)), turned about L by t times
+/// [`twist`](Self::twist), but for oscillations that do not grow. What rounding adds is not in it.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::{Body, FreeMotion, Inertia, Run, method};
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
+/// let rattle = method("rattle")?;
+/// let drift = rattle.phase(&body, &start, 0.01)?;
+/// let end = Run::new(&rattle, &body, &start, 0.01)?.advance_to(1_000_000)?; // t = 1e4 s
+/// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(1e4)?;
+/// let error = end.state.rotation().angle_to(&exact.rotation()); // 0.237 rad
+/// assert!((drift.attitude_error(1e4)? / error - 1.0).abs() < 1e-8);
+/// // the energy oscillates within bounds, or does not
+/// assert!(method("rk4")?.phase(&body, &start, 0.01).is_err());
+/// # Ok::<(), polhode::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct PhaseDrift {
+    pub(super) rates: [Dd; 2],
+    doubt: f64,
+    step: f64,
+    motion: FreeMotion,
+}
+
+impl PhaseDrift {
+    /// Growth of the shift per time, s/s.
+    #[must_use]
+    pub fn shift(&self) -> f64 {
+        self.rates[0].hi()
+    }
+
+    /// Growth of the twist about L, rad/s.
+    #[must_use]
+    pub fn twist(&self) -> f64 {
+        self.rates[1].hi()
+    }
+
+    /// The share of the rates by which two fits to the short run differ.
+    #[must_use]
+    pub fn doubt(&self) -> f64 {
+        self.doubt
+    }
+
+    /// The attitude error after the time `t` (s), without oscillations and rounding, rad.
+    ///
+    /// # Errors
+    /// A time that is not finite, or beyond the [reach](FreeMotion::reach) of the exact motion.
+    pub fn attitude_error(&self, t: f64) -> Result<f64, TimeError> {
+        self.motion.check_time(t)?;
+        let t = Dd::of(t);
+        Ok(self.motion.attitude_error_of(t, Departure::grown(self.rates, t)))
+    }
+
+    /// What rounding adds to the attitude of a run in doubles after the time `t` (s), by order of magnitude, rad.
+    ///
+    /// Each step changes the energy by a rounding, which is random; the error of the rate walks as the root of the number of steps, and
+    /// the attitude as its integral (Brouwer, Astron. J. 46 (1937) 149).
+    #[must_use]
+    pub fn rounding(&self, t: f64) -> f64 {
+        let spin = self.motion.character().map_or(0.0, |character| character.spin);
+        f64::ROUNDOFF * (t / self.step).abs().max(1.0).sqrt() * (spin * t).abs()
+    }
+}
+
+impl dyn AnyMethod {
+    /// How fast the attitude error of this method grows from `start` with the step `h` (s): shift and twist, from one short run in
+    /// double-double over some three halves of a period of the momentum, from which oscillations of its period are taken off.
+    ///
+    /// # Errors
+    /// A method that does not keep energy and |m| in bounds, by its claims; a body on which forces act; a step or a start that is
+    /// not usable; where no prediction holds: on the separatrix, and so near it or with steps so long that shift and
+    /// twist do not grow linearly.
+    pub fn phase(&self, body: &Body, start: &State, h: f64) -> Result<PhaseDrift, PhaseError> {
+        check(self)?;
+        if let Some(force) = body.forces().first() {
+            return Err(PhaseError::Force { force: force.name().into() });
+        }
+        let mut step = self.prepare_dd(Clock::new(h), body)?;
+        drift(body, body.enter(start)?, step.as_mut(), Clock::new(h))
+    }
+}
+
+/// Refuses methods whose phase error has no constant rates.
+pub(super) fn check(method: &dyn AnyMethod) -> Result<(), PhaseError> {
+    let name = method.name();
+    if name.ends_with(TAKEN_BACK) {
+        return Err(PhaseError::TakenBack { method: name });
+    }
+    let Some(claims) = method.claims(Problem::Free) else { return Ok(()) };
+    let lost = match (claims.kept.energy, claims.kept.momentum_norm) {
+        (Energy::Drifts, _) => "its energy drifts",
+        (_, false) => "its |m| is not constant",
+        _ => return Ok(()),
+    };
+    Err(PhaseError::NotKept { method: name, lost })
+}
+
+/// The rates of steps of `clock` from `start`.
+pub(super) fn drift(
+    body: &Body,
+    start: Point<Dd>,
+    step: &mut dyn Step<Dd>,
+    clock: Clock,
+) -> Result<PhaseDrift, PhaseError> {
+    let motion = FreeMotion::from_point(body.inertia(), start);
+    let character = motion.character()?;
+    if character.mode == Mode::Separatrix {
+        return Err(PhaseError::Separatrix);
+    }
+    // the body is the same after half a turn about a principal axis: so is what oscillates after half a period
+    let half = character.polhode_period.map(|period| 0.5 * period);
+    let in_half = half.map_or(f64::INFINITY, |half| half / clock.step.abs());
+    let span = if half.is_some() { HALF_PERIODS * in_half } else { 0.0 };
+    if span > MOST_STEPS {
+        return Err(PhaseError::Long { steps: span });
+    }
+    let radians = |[shift, twist]: [f64; 2]| shift.abs() * character.spin + twist.abs();
+    let mut before: Option<[f64; 2]> = None;
+    // the fit that differs least from the one before, and by how much
+    let (mut best, mut doubt) = ([0.0; 2], f64::INFINITY);
+    for doubling in 0..=DOUBLINGS {
+        let count = FEWEST << doubling;
+        let looks = 3 * (2 + 2 * count) as u64;
+        let stride = (libm::ceil(span / looks as f64) as u64).max(1);
+        let run = ShortRun::new(&motion, start, step, clock, stride, looks)?;
+        if let Some((rates, doubt)) = run.linear(radians) {
+            return Ok(PhaseDrift { rates, doubt, step: clock.step, motion });
+        }
+        let Some(half) = half else { continue };
+        if in_half < FEW_STEPS {
+            return Err(PhaseError::Coarse { steps: in_half });
+        }
+        let (times, shift, twist) = (&run.times, &run.shift, &run.twist);
+        let turns: Vec<f64> = times.iter().zip(shift).map(|(t, shift)| (t + shift) / half).collect();
+        let Some(rates) = slopes(times, &turns, [shift, twist], count) else { break };
+        if let Some(before) = before {
+            let now = radians([rates[0] - before[0], rates[1] - before[1]]) / radians(rates);
+            if now < doubt {
+                (best, doubt) = (rates, now);
+            }
+            // where more harmonics bring them no closer it is rounding that differs
+            if now <= SETTLED || (now > doubt && doubt <= CLOSE) {
+                break;
+            }
+        }
+        before = Some(rates);
+    }
+    if doubt > MOST_DOUBT {
+        return Err(PhaseError::Unsettled { doubt, distance: character.separatrix_distance });
+    }
+    Ok(PhaseDrift { rates: best.map(Dd::of), doubt, step: clock.step, motion })
+}
+
+/// Departures from the exact motion along a short run.
+struct ShortRun {
+    /// After one step, and at the last look.
+    first: (Dd, Departure),
+    last: (Dd, Departure),
+    times: Vec<f64>,
+    shift: Vec<f64>,
+    twist: Vec<f64>,
+}
+
+impl ShortRun {
+    /// Looks every `stride` steps.
+    fn new(
+        motion: &FreeMotion,
+        start: Point<Dd>,
+        step: &mut dyn Step<Dd>,
+        clock: Clock,
+        stride: u64,
+        looks: u64,
+    ) -> Result<ShortRun, PhaseError> {
+        let mut x = start;
+        step.open(&mut x);
+        let mut look = |steps: u64, before: (Dd, Departure)| {
+            let more = steps - x.steps();
+            step.advance(&mut x, more);
+            let (t, point) = (clock.elapsed(steps), step.reading(&x));
+            let is_sound = point.is_finite() && step.worst_residual() <= SOLVED;
+            if !is_sound {
+                return Err(PhaseError::Diverged { steps });
+            }
+            let rates = [before.1.shift, before.1.twist].map(|grown| grown / before.0);
+            Ok((t, motion.departure(t, &point, Departure::grown(rates, t))))
+        };
+        let first = look(1, (Dd::ONE, Departure::NONE))?;
+        let mut last = first;
+        let mut run = ShortRun { first, last, times: Vec::new(), shift: Vec::new(), twist: Vec::new() };
+        for n in 1..=looks {
+            last = look(n * stride, last)?;
+            run.times.push(last.0.hi());
+            run.shift.push(last.1.shift.hi());
+            run.twist.push(last.1.twist.hi());
+        }
+        run.last = last;
+        Ok(run)
+    }
+
+    /// The rates, where shift and twist are proportional to the time, and the share by which they are not.
+    fn linear(&self, radians: impl Fn([f64; 2]) -> f64) -> Option<([Dd; 2], f64)> {
+        let rates = |(t, departure): &(Dd, Departure)| [departure.shift / *t, departure.twist / *t];
+        let last = radians([self.last.1.shift.hi(), self.last.1.twist.hi()]);
+        if last <= ROUNDING {
+            return Some(([Dd::ZERO; 2], 0.0));
+        }
+        let first = rates(&self.first).map(Dd::hi);
+        let off = |k: usize| {
+            radians([self.shift[k] - first[0] * self.times[k], self.twist[k] - first[1] * self.times[k]])
+        };
+        let off = (0..self.times.len()).map(off).fold(0.0, f64::max) / last;
+        (off <= LINEAR).then(|| (rates(&self.last), off))
+    }
+}

@@ -1,0 +1,88 @@
+//! Why the phase error of a method cannot be predicted.
+
+use thiserror::Error;
+
+use super::drift::{MOST_DOUBT, MOST_STEPS};
+use crate::body::StateError;
+use crate::flow::AtRest;
+use crate::method::StepError;
+
+/// Why the phase error of a method cannot be predicted.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PhaseError {
+    /// The method does not keep the energy and |m|.
+    #[error(
+        "the phase of method {method:?} has no constant rates: {lost}, so that its error grows faster than time; take a method that \
+         keeps both, such as two-turn or rattle"
+    )]
+    NotKept {
+        /// Name of the method.
+        method: String,
+        /// What it loses.
+        lost: &'static str,
+    },
+    /// What is left of the phase error does not grow.
+    #[error("the phase error of method {method:?} is taken back at output: what is left does not grow")]
+    TakenBack {
+        /// Name of the method.
+        method: String,
+    },
+    /// A force acts.
+    #[error("the phase error is predicted of free bodies, and {force} acts")]
+    Force {
+        /// Name of the force.
+        force: String,
+    },
+    /// The method takes no such steps of this body.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// The start is none.
+    #[error(transparent)]
+    Start(#[from] StateError),
+    /// Nothing moves.
+    #[error(transparent)]
+    AtRest(#[from] AtRest),
+    /// The motion has no period.
+    #[error(
+        "the start is on the separatrix: its motion has no period, and the phase error no constant rates"
+    )]
+    Separatrix,
+    /// The short run would be long.
+    #[error(
+        "the period of the momentum takes {steps:.1e} steps, more than the {MOST_STEPS:e} of a short run: nothing is predicted; take \
+         longer steps"
+    )]
+    Long {
+        /// Steps of the run.
+        steps: f64,
+    },
+    /// A period has too few steps.
+    #[error(
+        "the momentum comes round in {steps:.1} steps, too few to tell what oscillates from what grows: nothing is predicted; take \
+         shorter steps"
+    )]
+    Coarse {
+        /// Steps in half a period of the momentum.
+        steps: f64,
+    },
+    /// The step is so long, or the separatrix so near, that shift and twist do not grow linearly.
+    #[error(
+        "shift and twist do not grow linearly: their rates differ by a share of {doubt:.1e} between one short run and another, more \
+         than {MOST_DOUBT:e}; (|L|^2/2E - I2)/I2, zero on the separatrix, is {distance:.1e}; take shorter steps"
+    )]
+    Unsettled {
+        /// Relative difference of the rates.
+        doubt: f64,
+        /// Distance from the separatrix.
+        distance: f64,
+    },
+    /// The short run left the range of numbers, or an implicit step had no solution.
+    #[error(
+        "the short run of {steps} steps from which the phase error is predicted has no finite end: take shorter steps"
+    )]
+    Diverged {
+        /// Its steps.
+        steps: u64,
+    },
+}
