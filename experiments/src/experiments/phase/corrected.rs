@@ -8,7 +8,7 @@ use polhode::num::Random;
 use polhode::run::{Run, RunError, Watch};
 use polhode::truth::{LOST, attitude_error};
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::table::{Cell, Column, Table, row};
+use polhode_pages::table::{Column, Table, row};
 
 use super::super::contestants::weighed;
 use crate::experiment::{Context, Report};
@@ -51,7 +51,7 @@ pub(super) fn add(context: &Context, report: &mut Report) -> Result<(), Error> {
     let found = context.in_parallel(parts, |(name, member, turn, halved)| error(name, member, turn, halved));
     let found = found.into_iter().collect::<Result<Vec<_>, Error>>()?;
     let caption = format!(
-        "Attitude error over {bodies} random bodies at the cost of {COST} evaluations a radian: medians, or lost beyond {LOST} rad; with \
+        "Attitude error over {bodies} random bodies at the cost of {COST} evaluations a radian: medians, none where most are lost, beyond {LOST} rad; with \
          +phase shift and twist are taken back at output, what they are predicted by is not counted."
     );
     let [early, late] = turns;
@@ -59,19 +59,21 @@ pub(super) fn add(context: &Context, report: &mut Report) -> Result<(), Error> {
     for (name, errors) in METHODS.iter().zip(found.chunks(3 * bodies as usize)) {
         let medians: Vec<Option<f64>> = errors.chunks(bodies as usize).map(median).collect();
         let [first, half, last] = [medians[0], medians[1], medians[2]];
-        let shown = |error: Option<f64>| error.map_or(Cell::from("lost"), Cell::from);
         let slope = |ratio: Option<f64>, base: f64| ratio.map(|ratio| libm::log(ratio) / libm::log(base));
         let over = |a: Option<f64>, b: Option<f64>| Some(a? / b?);
+        let late_errors = errors.chunks(bodies as usize).last().unwrap_or_default();
+        let lost = late_errors.iter().flatten().filter(|error| **error > LOST).count() as u64;
         let refused = errors.iter().filter(|error| error.is_none()).count() as u64;
         table.push(row![
             *name,
             step(name)?,
             early,
-            shown(first),
+            first,
             slope(over(first, half), 2.0),
             late,
-            shown(last),
+            last,
             slope(over(last, first), late / early),
+            lost,
             refused,
         ]);
     }
@@ -127,6 +129,7 @@ fn columns() -> Vec<Column> {
         Column::new("late", "rad", "turn of the body in the longer run").hidden(),
         Column::new("late_error", "rad", "median of the attitude error at its end").heading("late").digits(2),
         Column::new("growth", "", "slope of the error over time between the two ends").digits(2),
+        Column::new("lost", "", "bodies whose attitude is lost at the end of the longer run"),
         Column::new("refused", "", "runs of bodies whose phase error is not predicted"),
     ]
 }
