@@ -68,8 +68,7 @@ impl FreeMotion {
                 break;
             }
         }
-        let axis = exact.momentum_space();
-        let axis = axis * (Dd::ONE / axis.norm());
+        let axis = direction(exact.momentum_space());
         let turn = point.attitude * exact.attitude.conjugate();
         let turn = if turn.w.hi() < 0.0 { -turn } else { turn };
         // of a turn by the vector v sin(φ/2) and the cosine w: the part about L is 2 atan2(v·L, w)
@@ -85,9 +84,14 @@ impl FreeMotion {
     pub fn attitude_error_of(&self, t: Dd, departure: Departure) -> f64 {
         let exact = self.point_at_dd(t);
         let shifted = self.point_at_dd(t + departure.shift);
-        let axis = exact.momentum_space();
         let (sin, cos) = (departure.twist * 0.5).sin_cos();
-        let twist = Quat::new(cos, axis * (sin / axis.norm()));
+        let twist = Quat::new(cos, direction(exact.momentum_space()) * sin);
         rotation_angle(exact.attitude, twist * shifted.attitude).hi()
     }
+}
+
+/// Of length one; of a body at rest, which has no twist, zero.
+fn direction(momentum: Vec3<Dd>) -> Vec3<Dd> {
+    let norm = momentum.norm();
+    if norm == Dd::ZERO { momentum } else { momentum * (Dd::ONE / norm) }
 }

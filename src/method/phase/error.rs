@@ -4,7 +4,6 @@ use thiserror::Error;
 
 use super::drift::{MOST_DOUBT, MOST_STEPS};
 use crate::body::StateError;
-use crate::flow::AtRest;
 use crate::method::StepError;
 
 /// Why the phase error of a method cannot be predicted.
@@ -40,9 +39,6 @@ pub enum PhaseError {
     /// The start is none.
     #[error(transparent)]
     Start(#[from] StateError),
-    /// Nothing moves.
-    #[error(transparent)]
-    AtRest(#[from] AtRest),
     /// The motion has no period.
     #[error(
         "the start is on the separatrix: its motion has no period, and the phase error no constant rates"

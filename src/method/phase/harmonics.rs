@@ -14,6 +14,9 @@ pub(super) fn slopes<const N: usize>(
     count: usize,
 ) -> Option<[f64; N]> {
     let unknowns = 2 + 2 * count;
+    if t.len() < unknowns {
+        return None;
+    }
     let longest = t.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
     let mut normal = DMatrix::<f64>::zeros(unknowns, unknowns);
     let mut right = [(); N].map(|()| DVector::<f64>::zeros(unknowns));
