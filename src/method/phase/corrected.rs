@@ -19,7 +19,7 @@ use crate::num::{Dd, Precise};
 /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
 /// let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3))?;
 /// let exact = FreeMotion::from_state(body.inertia(), &start)?.at(1e4)?;
-/// let error = |name: &str| -> polhode::Result<f64> {
+/// let error = |name: &str| -> Result<f64, polhode::Error> {
 ///     let end = Run::new(&method(name)?, &body, &start, 0.01)?.advance_to(1_000_000)?;
 ///     Ok(end.state.rotation().angle_to(&exact.rotation()))
 /// };
