@@ -22,14 +22,25 @@ impl Departure {
     /// None.
     pub const NONE: Departure = Departure { shift: Dd::ZERO, twist: Dd::ZERO, rest: 0.0 };
 
-    /// Of these rates after the time `t`, s: what it is where shift and twist grow linearly.
-    pub(crate) fn grown([shift, twist]: [Dd; 2], t: Dd) -> Departure {
+    /// What it is after the time `t` (s) where shift and twist grow linearly, at these rates in s/s and rad/s.
+    #[must_use]
+    pub fn grown([shift, twist]: [Dd; 2], t: Dd) -> Departure {
         Departure { shift: shift * t, twist: twist * t, rest: 0.0 }
+    }
+
+    /// This one, of the time `t` (s), as it is at the time `later` where it grows in proportion: a guess for the next look.
+    #[must_use]
+    pub fn carried_on(self, t: Dd, later: Dd) -> Departure {
+        Departure::grown([self.shift / t, self.twist / t], later)
     }
 }
 
-/// Rounds of Newton's method, which ends long before.
-const ROUNDS: usize = 8;
+/// Rounds of Newton's method, which ends long before where the momentum does not all but stand still.
+const ROUNDS: usize = 64;
+
+/// Next to the separatrix it does, and a step of Newton's method would be a leap over periods: at most so far, in radians of the
+/// fastest part of the phase.
+const LEAP: f64 = 1.0;
 
 /// The shift is found where a further round would move it by less than this share: Newton's method doubles its digits.
 const STILL: f64 = 1e-16;
@@ -53,6 +64,7 @@ impl FreeMotion {
     #[must_use]
     pub fn departure(&self, t: Dd, point: &Point<Dd>, near: Departure) -> Departure {
         let inverse: Vec3<Dd> = self.body().rotor().inverse_moments();
+        let most = LEAP / self.fastest_rate();
         let mut shift = near.shift;
         let mut exact = self.point_at_dd(t + shift);
         for _ in 0..ROUNDS {
@@ -62,6 +74,7 @@ impl FreeMotion {
                 break;
             }
             let change = (point.momentum_body - exact.momentum_body).dot(speed) / squared;
+            let change = if change.abs().hi() > most { Dd::of(most.copysign(change.hi())) } else { change };
             shift = shift + change;
             exact = self.point_at_dd(t + shift);
             if change.abs().hi() <= STILL * shift.abs().hi() {

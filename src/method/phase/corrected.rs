@@ -97,6 +97,8 @@ impl PhaseCorrected {
             clock,
             opened: 0,
             rates: [Dd::ZERO; 2],
+            period: None,
+            inverse_norm: Dd::ZERO,
             refusal: None,
         })
     }
@@ -112,8 +114,12 @@ struct CorrectedStep<S> {
     clock: Clock,
     /// Steps taken when it was opened.
     opened: u64,
-    /// Rate of the shift, and that of the twist over |m|.
+    /// Rates of shift and twist.
     rates: [Dd; 2],
+    /// Of the momentum, and the angle about L that the body turns in it.
+    period: Option<[Dd; 2]>,
+    /// 1/|m|.
+    inverse_norm: Dd,
     refusal: Option<PhaseError>,
 }
 
@@ -123,8 +129,9 @@ impl<S: Precise> Step<S> for CorrectedStep<S> {
         let start = Point::new(x.attitude.map(S::to_dd), x.momentum_body.map(S::to_dd));
         match drift(&self.body, start, self.precise.as_mut(), self.clock) {
             Ok(drift) => {
-                let [shift, twist] = drift.rates;
-                (self.rates, self.refusal) = ([shift, twist / start.momentum_body.norm()], None);
+                (self.rates, self.period, self.refusal) = (drift.rates, drift.period(), None);
+                let norm = start.momentum_body.norm();
+                self.inverse_norm = if norm == Dd::ZERO { Dd::ZERO } else { Dd::ONE / norm };
             }
             Err(error) => {
                 // whoever does not ask why sees a run that has no state
@@ -142,9 +149,17 @@ impl<S: Precise> Step<S> for CorrectedStep<S> {
     fn reading(&mut self, x: &Point<S>) -> Point<S> {
         let mut point = self.base.reading(x);
         let elapsed = self.clock.elapsed(x.steps()) - self.clock.elapsed(self.opened);
-        let (at, [shift, twist]) = (self.clock.at(x.steps()), self.rates);
-        self.flow.flow(at, S::from_dd(-(shift * elapsed)), &mut point);
-        Casimir::new(S::from_dd(-twist)).flow(at, S::from_dd(elapsed), &mut point);
+        let at = self.clock.at(x.steps());
+        let [mut shift, mut twist] = self.rates.map(|rate| rate * elapsed);
+        if let Some([period, turn]) = self.period {
+            // Whole periods are a turn about L. The free motion of the state has another energy, and another period, than that of the
+            // start: over many of them it would carry the state away from where it belongs.
+            let periods = (shift / period).round();
+            (shift, twist) = (shift - periods * period, twist + periods * turn);
+        }
+        self.flow.flow(at, S::from_dd(-shift), &mut point);
+        let twist = twist - (twist / Dd::TAU).round() * Dd::TAU;
+        Casimir::new(S::from_dd(self.inverse_norm)).flow(at, S::from_dd(-twist), &mut point);
         point
     }
 

@@ -99,11 +99,25 @@ impl PhaseDrift {
     /// What rounding adds to the attitude of a run in doubles after the time `t` (s), by order of magnitude, rad.
     ///
     /// Each step changes the energy by a rounding, which is random; the error of the rate walks as the root of the number of steps, and
-    /// the attitude as its integral (Brouwer, Astron. J. 46 (1937) 149).
+    /// the attitude as its integral (Brouwer, Astron. J. 46 (1937) 149). Next to the separatrix the period depends on the energy as on
+    /// the logarithm of k'², which multiplies the error of the rate by 1/k'².
     #[must_use]
     pub fn rounding(&self, t: f64) -> f64 {
-        let spin = self.motion.character().map_or(0.0, |character| character.spin);
-        f64::ROUNDOFF * (t / self.step).abs().max(1.0).sqrt() * (spin * t).abs()
+        let Ok(character) = self.motion.character() else { return 0.0 };
+        let sensitivity = 1.0 + character.complement.map_or(0.0, |complement| 1.0 / complement);
+        let of_rate = f64::ROUNDOFF * (t / self.step).abs().max(1.0).sqrt() * sensitivity;
+        (of_rate * character.spin * t).abs()
+    }
+}
+
+impl PhaseDrift {
+    /// The period of the momentum, s, and the angle by which the body turns about L in it, rad; `None` where it stands still.
+    pub(super) fn period(&self) -> Option<[Dd; 2]> {
+        let about = Dd::of(self.motion.character().ok()?.polhode_period?);
+        // in double-double: when the start comes next to a period that is known as a double
+        let start = self.motion.point_at_dd(Dd::ZERO);
+        let from_there = self.motion.departure(about, &start, Departure::NONE);
+        Some([about + from_there.shift, -from_there.twist])
     }
 }
 
@@ -228,8 +242,7 @@ impl ShortRun {
             if !point.is_finite() || step.worst_residual() > SOLVED {
                 return Err(PhaseError::Diverged { steps });
             }
-            let rates = [before.1.shift, before.1.twist].map(|grown| grown / before.0);
-            Ok((t, motion.departure(t, &point, Departure::grown(rates, t))))
+            Ok((t, motion.departure(t, &point, before.1.carried_on(before.0, t))))
         };
         let first = look(1, (Dd::ONE, Departure::NONE))?;
         let mut last = first;

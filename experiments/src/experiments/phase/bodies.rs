@@ -1,16 +1,14 @@
 //! Predicted and measured growth over random bodies: how well they agree, and where the prediction ends.
 
-use polhode::body::Body;
 use polhode::flow::FreeMotion;
-use polhode::inertia::Inertia;
 use polhode::method::{PhaseError, method};
 use polhode::num::Random;
 use polhode::run::{Run, Watch};
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Column, Table, row};
 
-use super::Rates;
 use super::measured::{looks, smooth_rates};
+use super::{Rates, drawn};
 use crate::experiment::{Context, Report};
 
 const SEED: u64 = 2026;
@@ -31,6 +29,9 @@ const STEPS: [f64; 4] = [0.02, 0.06, 0.2, 0.6];
 
 /// Turn of the body in a run, rad.
 const TURN: f64 = 2000.0;
+
+/// Fewest periods of the momentum in it.
+const PERIODS: f64 = 40.0;
 
 /// Looks at a run.
 const LOOKS: u64 = 512;
@@ -59,8 +60,8 @@ pub(super) fn add(context: &Context, report: &mut Report) -> Result<(), Error> {
     let found = context.in_parallel(members, |member| examine(member).map(|found| (member, found)));
     let found = found.into_iter().collect::<Result<Vec<_>, Error>>()?;
     let caption = format!(
-        "|measured/predicted - 1| of the growth of shift and twist, as angles of the attitude, over {TURN} rad: {bodies} random bodies, \
-         each with one method and one step. Near: |(|L|²/2E - I2)/I2|, zero on the separatrix."
+        "|measured/predicted - 1| of the growth of shift and twist, as angles of the attitude, over {TURN} rad or {PERIODS} periods of the \
+         momentum, whichever is more: {bodies} random bodies, each with one method and one step. Near: |(|L|²/2E - I2)/I2|, zero on the separatrix."
     );
     let mut table = Table::new("bodies", caption, columns());
     for (name, by_step) in (0..METHODS.len()).flat_map(|m| [(m, true), (m, false)]) {
@@ -112,13 +113,7 @@ fn draw_of(member: u64) -> (usize, usize) {
 
 fn examine(member: u64) -> Result<Found, Error> {
     let (name, step) = draw_of(member);
-    let mut random = Random::new(SEED).stream(member);
-    // point masses have every shape
-    let masses = [(); 3].map(|()| random.between(0.05, 1.0));
-    let moments = [masses[1] + masses[2], masses[0] + masses[2], masses[0] + masses[1]];
-    let body = Body::free(Inertia::from_moments(moments).map_err(unexpected)?);
-    let omega = random.normal_vector().normalize();
-    let start = body.state(Default::default(), omega).map_err(unexpected)?;
+    let (body, start) = drawn(Random::new(SEED).stream(member))?;
     let method = method(METHODS[name]).map_err(unexpected)?;
     let h = STEPS[step];
     let point = body.enter(&start).map_err(unexpected)?.to_f64();
@@ -141,9 +136,11 @@ fn examine(member: u64) -> Result<Found, Error> {
         return Ok(Found { distance, outcome: Outcome::Rounding });
     }
     let mut run = Run::new(&method, &body, &start, h).map_err(unexpected)?.watching(Watch::Never);
-    let steps: Vec<u64> = (1..=LOOKS).map(|k| ((TURN / h) as u64 * k) / LOOKS).collect();
-    let measured = smooth_rates(&looks(&mut run, &motion, &steps)?);
-    let apart = measured.apart(Rates::of(&drift), character.spin);
+    let time = character.polhode_period.map_or(TURN, |period| TURN.max(PERIODS * period));
+    let steps: Vec<u64> = (1..=LOOKS).map(|k| ((time / h) as u64 * k) / LOOKS).collect();
+    let predicted = Rates::of(&drift);
+    let measured = smooth_rates(&looks(&mut run, &motion, &steps, predicted)?);
+    let apart = measured.apart(predicted, character.spin);
     Ok(Found { distance, outcome: Outcome::Apart(apart) })
 }
 

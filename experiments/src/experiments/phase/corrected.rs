@@ -1,8 +1,7 @@
 //! What is left of the attitude error where the phase is taken back, at equal cost beside methods of higher order.
 
-use polhode::body::{Body, Problem};
+use polhode::body::Problem;
 use polhode::flow::FreeMotion;
-use polhode::inertia::Inertia;
 use polhode::method::{Claimed, PhaseError, method};
 use polhode::num::Random;
 use polhode::run::{Run, RunError, Watch};
@@ -11,6 +10,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Column, Table, row};
 
 use super::super::contestants::weighed;
+use super::drawn;
 use crate::experiment::{Context, Report};
 
 const SEED: u64 = 2027;
@@ -35,8 +35,9 @@ const METHODS: [&str; 14] = [
 /// Evaluations for each radian that the body turns.
 const COST: f64 = 40.0;
 
-/// Errors are the largest of so many looks at the end, over about a turn of the body.
-const LOOKS: u64 = 8;
+/// Errors are the largest of so many looks at the end, this many rad apart: over some periods of most bodies.
+const LOOKS: u64 = 16;
+const APART: f64 = 5.0;
 
 pub(super) fn add(context: &Context, report: &mut Report) -> Result<(), Error> {
     let bodies: u64 = context.scale.pick(2, 5, 20);
@@ -96,11 +97,7 @@ fn median(errors: &[Option<f64>]) -> Option<f64> {
 
 /// The attitude error at the end, rad; none where the start is refused.
 fn error(name: &str, member: u64, turn: f64, halved: bool) -> Result<Option<f64>, Error> {
-    let mut random = Random::new(SEED).stream(member);
-    let masses = [(); 3].map(|()| random.between(0.05, 1.0));
-    let moments = [masses[1] + masses[2], masses[0] + masses[2], masses[0] + masses[1]];
-    let body = Body::free(Inertia::from_moments(moments).map_err(unexpected)?);
-    let start = body.state(Default::default(), random.normal_vector().normalize()).map_err(unexpected)?;
+    let (body, start) = drawn(Random::new(SEED).stream(member))?;
     let h = step(name)? * if halved { 0.5 } else { 1.0 };
     let run = Run::new(&method(name).map_err(unexpected)?, &body, &start, h);
     let mut run = match run {
@@ -112,7 +109,7 @@ fn error(name: &str, member: u64, turn: f64, halved: bool) -> Result<Option<f64>
     let steps = (turn / h) as u64;
     let mut largest = 0.0_f64;
     for look in (0..LOOKS).rev() {
-        let sample = run.advance_to(steps - (look as f64 / h) as u64).map_err(unexpected)?;
+        let sample = run.advance_to(steps - (look as f64 * APART / h) as u64).map_err(unexpected)?;
         let exact = motion.point_at_dd(sample.elapsed);
         largest = largest.max(attitude_error(sample.point.attitude, exact.attitude));
     }

@@ -16,17 +16,25 @@ pub(super) struct Look {
 }
 
 /// Looks at the steps `steps`, which ascend.
-pub(super) fn looks(run: &mut Run, motion: &FreeMotion, steps: &[u64]) -> Result<Vec<Look>, Error> {
+///
+/// Shift and twist are followed from look to look: a period or a turn more would look the same. `expected` tells how far they come
+/// between two looks, to within half a period and half a turn.
+pub(super) fn looks(
+    run: &mut Run,
+    motion: &FreeMotion,
+    steps: &[u64],
+    expected: Rates,
+) -> Result<Vec<Look>, Error> {
     let mut looks: Vec<Look> = Vec::new();
     for &n in steps {
         let sample = run.advance_to(n).map_err(unexpected)?;
         let t = sample.elapsed;
-        // both are followed from look to look: a period more or a turn more would look the same
-        let near = looks.last().map_or(Departure::NONE, |look| {
-            let mut near = look.departure;
-            (near.shift, near.twist) = (near.shift * (t / Dd::of(look.t)), near.twist * (t / Dd::of(look.t)));
-            near
-        });
+        let mut near = expected.after(t);
+        if let Some(last) = looks.last() {
+            let then = expected.after(Dd::of(last.t));
+            near.shift = near.shift + (last.departure.shift - then.shift);
+            near.twist = near.twist + (last.departure.twist - then.twist);
+        }
         looks.push(Look { t: t.hi(), departure: motion.departure(t, &sample.point.to_dd(), near) });
     }
     Ok(looks)

@@ -9,11 +9,12 @@ mod corrected;
 mod measured;
 mod predicted;
 
-use polhode::body::{Body, Problem};
+use polhode::body::{Body, Problem, State};
 use polhode::catalogue::{self, NamedBody};
 use polhode::flow::{Departure, FreeMotion};
+use polhode::inertia::Inertia;
 use polhode::method::{AxisOrder, Claimed, PhaseDrift, TwoAxes, method};
-use polhode::num::{Dd, Real};
+use polhode::num::{Dd, Random, Real};
 use polhode::rotation::Vec3;
 use polhode::run::{Run, Watch};
 use polhode::truth::attitude_error;
@@ -67,10 +68,17 @@ impl Rates {
     }
 
     fn after(self, t: Dd) -> Departure {
-        let mut departure = Departure::NONE;
-        (departure.shift, departure.twist) = (t * Dd::of(self.shift), t * Dd::of(self.twist));
-        departure
+        Departure::grown([self.shift, self.twist].map(Dd::of), t)
     }
+}
+
+/// A free body of three point masses on its axes, of any shape therefore, and a start at 1 rad/s about any axis.
+fn drawn(mut random: Random) -> Result<(Body, State), Error> {
+    let masses = [(); 3].map(|()| random.between(0.05, 1.0));
+    let moments = [masses[1] + masses[2], masses[0] + masses[2], masses[0] + masses[1]];
+    let body = Body::free(Inertia::from_moments(moments).map_err(unexpected)?);
+    let start = body.state(Default::default(), random.normal_vector().normalize()).map_err(unexpected)?;
+    Ok((body, start))
 }
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
@@ -210,7 +218,7 @@ fn examine(named: &NamedBody, name: &str, steps: u64, panels: u32) -> Result<Fou
     let steps_alone = predicted::from_steps(&motion, &point.to_dd(), method.as_ref(), h, panels)?;
     let closed = predicted::in_closed_form(&name, &point.to_dd(), moments, h);
     let mut run = Run::new(method.as_ref(), &body, &start, h).map_err(unexpected)?.watching(Watch::Never);
-    let looks = measured::looks(&mut run, &motion, &times(steps))?;
+    let looks = measured::looks(&mut run, &motion, &times(steps), Rates::of(&predicted))?;
     let measured = measured::rates(&looks);
     let last = run.sample();
 
