@@ -24,7 +24,7 @@ mod turn;
 pub use casimir::Casimir;
 pub use derivative::{DerivativeError, TurnAxes};
 pub use exact_motion::{ExactMotion, NoClosedForm};
-pub(crate) use free::{Addition, Curve, FreeOrbit};
+pub(crate) use free::{Addition, Curve, FreeOrbit, direction, smallest_turn};
 pub use free::{
     AtRest, Character, CovarianceError, Departure, FittedMotion, FreeBody, FreeFlow, FreeMotion,
     Interpolation, Mode, Passage, Passages, PureSpin, Stability, StartCovariance, StateCovariance,

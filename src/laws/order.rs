@@ -8,6 +8,7 @@ use super::finding::{Finding, short};
 use super::subject::{Subject, largest};
 use super::words::{Law, Quantity, Verdict};
 use crate::body::{Clock, Problem};
+use crate::num::Real;
 use crate::run::{Halving, halvings_against, observed_order};
 
 /// The order in all halvings, or how far the error is below the tolerance.
@@ -93,6 +94,7 @@ fn within_tolerance(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> {
     let errors = halvings(subject, 6..7)?;
     let tolerance = subject.method.tolerance().filter(|_| !subject.is_to_rounding());
     let most = match tolerance {
+        None if subject.claims.to_doubles => f64::ROUNDOFF,
         None => EXACT,
         Some(tolerance) => {
             let mut step = subject.method.prepare_dd(Clock::new(case.span / 64.0), &case.body)?;
@@ -101,7 +103,11 @@ fn within_tolerance(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> {
         }
     };
     let error = largest(errors.iter().flat_map(|error| [error.attitude_error, error.momentum_error]));
-    let claim = tolerance.map_or("exact".into(), |tolerance| format!("to {tolerance:e}"));
+    let claim = match tolerance {
+        None if subject.claims.to_doubles => "of doubles".into(),
+        None => "exact".into(),
+        Some(tolerance) => format!("to {tolerance:e}"),
+    };
     let finding = Finding::new(subject.problem(), Law::Order, Quantity::State, claim);
     let finding = finding.judged(true, error, most, most);
     let needlessly = tolerance.is_some() && error <= 1e-6 * most;

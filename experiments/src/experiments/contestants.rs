@@ -25,6 +25,15 @@ pub(super) const SCHEMES: [&str; 19] = [
     "rk4-projected",
 ];
 
+/// Methods whose departure from the exact motion is taken back at output, by the exact motion itself.
+pub(super) const TAKEN_BACK: [&str; 4] =
+    ["rattle+phase", "implicit-midpoint+phase", "lie-poisson+phase", "two-turn+phase"];
+
+/// Whether a method uses the exact motion of a free body: these stand apart, the others are compared among themselves.
+pub(super) fn knows_the_motion(name: &str) -> bool {
+    name == "exact-step" || name.ends_with("+phase")
+}
+
 /// An implicit solution counts as so many evaluations: the sweeps that it takes where a step turns the body by about 15°.
 const SOLUTION: u32 = 6;
 

@@ -5,12 +5,13 @@ use std::time::Instant;
 use polhode::body::{Body, Clock, Problem};
 use polhode::catalogue::{self, NamedBody};
 use polhode::flow::FreeMotion;
-use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, without_projections};
+use polhode::method::{AnyMethod, AxisOrder, AxisSplit, Kicks, LiePoisson, method, without_projections};
 use polhode::observe::secular_drift;
-use polhode::run::Run;
+use polhode::run::{Run, RunError};
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Cell, Column, Table, row};
 
+use super::contestants::TAKEN_BACK;
 use super::followed::{
     Followed, columns_of_effort, columns_of_ending, effort, follow, is_whole, rows_of_methods, status,
 };
@@ -115,6 +116,7 @@ fn methods(body: &NamedBody) -> Vec<Box<dyn AnyMethod>> {
     // without torque kick-drift is exact-step, whatever its scheme
     methods
         .retain(|method| method.claims(Problem::Free).is_some() && !method.name().starts_with("kick-drift"));
+    methods.extend(TAKEN_BACK.iter().filter_map(|name| method(name).ok()));
     if body.name == "textbook" {
         let others =
             AxisOrder::ALL.into_iter().filter(|order| ["321", "123"].contains(&order.to_string().as_str()));
@@ -128,9 +130,13 @@ fn methods(body: &NamedBody) -> Vec<Box<dyn AnyMethod>> {
 fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Result<Vec<Cell>, Error> {
     let body = Body::free(named.inertia.clone());
     let start = body.state(Default::default(), named.omega_body.into()).map_err(unexpected)?;
-    let mut run = Run::new(method, &body, &start, h).map_err(unexpected)?;
-    let exact = FreeMotion::from_point(body.inertia(), run.start().to_dd());
     let speed = nalgebra::Vector3::from(named.omega_body).norm();
+    let mut run = match Run::new(method, &body, &start, h) {
+        Ok(run) => run,
+        Err(RunError::Phase(_)) => return Ok(not_predicted(named, method, h)),
+        Err(error) => return Err(unexpected(error)),
+    };
+    let exact = FreeMotion::from_point(body.inertia(), run.start().to_dd());
     let motion = |elapsed| Some(exact.point_at_dd(elapsed));
     let Followed { last, ending, attitude_error, times, energy_changes } =
         follow(&mut run, (steps, h), motion)?;
@@ -161,6 +167,17 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
         rejected,
     ]
     .to_vec())
+}
+
+/// The row of a start from which nothing is known to take back.
+fn not_predicted(named: &NamedBody, method: &dyn AnyMethod, h: f64) -> Vec<Cell> {
+    let speed = nalgebra::Vector3::from(named.omega_body).norm();
+    let mut cells = row![named.name, method.name(), h, h * speed, 0_u64].to_vec();
+    cells.extend(columns().iter().skip(cells.len()).map(|column| match column.name.as_ref() {
+        "status" => "not predicted".into(),
+        _ => None::<f64>.into(),
+    }));
+    cells
 }
 
 /// The least time of a step over bursts of a fraction of a millisecond.

@@ -23,6 +23,7 @@ pub(crate) use addition::{Addition, Curve};
 pub use character::{AtRest, Character, Mode};
 pub use covariance::{CovarianceError, StartCovariance, StateCovariance};
 pub use departure::Departure;
+pub(crate) use departure::{direction, smallest_turn};
 pub use derivative::StateDerivative;
 pub use free_body::FreeBody;
 pub use free_flow::FreeFlow;

@@ -51,6 +51,8 @@ pub struct Claims {
     /// Order of convergence of attitude and momentum; `None` where there is no error of discretisation but below the
     /// [tolerance](Claimed::tolerance).
     pub order: Option<u32>,
+    /// The error of discretisation is taken back to the rounding of doubles, whatever the scalar.
+    pub to_doubles: bool,
     /// Φ_{−h} ∘ Φ_h = 1.
     pub symmetric: bool,
     /// Without torque the map of momenta keeps the Lie–Poisson bracket.
@@ -71,8 +73,8 @@ pub struct Claims {
 impl Claims {
     /// Of a method that is neither symmetric nor Poisson nor symplectic and projects nothing; where it is or does, set the field.
     pub const fn new(order: Option<u32>, kept: Kept, cost: Cost, source: &'static str) -> Claims {
-        let [symmetric, poisson, symplectic, to_residual] = [false; 4];
-        Claims { order, symmetric, poisson, symplectic, kept, to_residual, cost, source }
+        let [to_doubles, symmetric, poisson, symplectic, to_residual] = [false; 5];
+        Claims { order, to_doubles, symmetric, poisson, symplectic, kept, to_residual, cost, source }
     }
 }
 

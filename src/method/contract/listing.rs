@@ -1,5 +1,7 @@
 //! What a table of methods says of each: its file, and one step as a formula.
 
+use crate::method::phase::TAKEN_BACK;
+
 /// A method of the catalogue, as a table shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -18,14 +20,24 @@ pub struct Listing {
 /// ```
 /// use polhode::method::listing;
 /// assert_eq!(listing("lie-poisson:321@suzuki-4").map(|listing| listing.file), Some("src/method/lie_poisson/mod.rs"));
+/// assert_eq!(listing("rattle+phase").map(|listing| listing.family), Some("phase taken back"));
 /// assert_eq!(listing("rk5"), None);
 /// ```
 #[must_use]
 pub fn listing(name: &str) -> Option<Listing> {
-    let base = name.split([':', '@']).next()?;
+    let taken_back = name.strip_suffix(TAKEN_BACK);
+    let base = taken_back.unwrap_or(name).split([':', '@']).next()?;
     let found = LISTINGS.iter().find(|(known, ..)| *known == base);
-    found.map(|&(_, family, file, formula)| Listing { family, file, formula })
+    let own = found.map(|&(_, family, file, formula)| Listing { family, file, formula })?;
+    Some(if taken_back.is_some() { CORRECTED } else { own })
 }
+
+/// Of any method whose departure from the exact motion is taken back.
+const CORRECTED: Listing = Listing {
+    family: "phase taken back",
+    file: "src/method/phase/corrected.rs",
+    formula: "steps of the method before +phase; at output their departure from the exact motion is taken back",
+};
 
 /// Base of the name, family, file, formula; `exact` is the closed form.
 const LISTINGS: [(&str, &str, &str, &str); 30] = [

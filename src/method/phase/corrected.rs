@@ -1,17 +1,19 @@
-//! `+phase`: the phase error of a method, taken back at output.
+//! `+phase`: the departure of a method from the exact motion, taken back at output.
 
 use super::PhaseError;
-use super::drift::{TAKEN_BACK, check, drift};
+use super::drift::{PhaseDrift, TAKEN_BACK, check, drift};
 use crate::body::{Body, Clock, Evaluated, Point, Problem, Time};
-use crate::flow::{Casimir, Flow, FreeFlow};
-use crate::method::{AnyMethod, Claimed, Claims, Energy, SideBySide, Step, StepError, Stuck, Work};
+use crate::flow::{Casimir, Departure, Flow, FreeFlow, direction, smallest_turn};
+use crate::method::{AnyMethod, Claimed, Claims, SideBySide, Step, StepError, Stuck, Work};
 use crate::num::{Dd, Precise};
+use crate::rotation::{Quat, Vec3};
 
-/// A method whose shift in time and twist about L are taken back at output, of free bodies.
+/// A method whose departure from the exact motion is taken back at output, of free bodies.
 ///
-/// The steps are those of the base, bit for bit. Before the first one a short run predicts [how fast](super::PhaseDrift) shift and twist
-/// grow; at each output the state goes back by the exact free motion by the shift, and is turned back about L by the twist. What
-/// oscillates with the period of the momentum stays, and so does what rounding has added.
+/// The steps are those of the base, bit for bit. Before the first one a short run predicts the [departure](super::PhaseDrift::departure):
+/// how fast shift in time and twist about L grow, and how they and the energy oscillate with the period of the momentum. At each output
+/// the state is turned back to its polhode, goes back by the exact free motion by the shift, and is turned back about L by the twist.
+/// What rounding has added stays, and so do harmonics beyond those of the short run.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -49,12 +51,11 @@ impl Claimed for PhaseCorrected {
 
     fn claims(&self, problem: Problem) -> Option<Claims> {
         let base = self.base.claims(problem).filter(|_| problem == Problem::Free)?;
-        // a map of momenta that keeps the bracket and the energy moves each of them along its orbit by the same time
-        let moves_by_one_time = base.poisson && base.kept.energy == Energy::Exact && base.kept.momentum_space;
-        let order = base.order.filter(|_| !moves_by_one_time);
+        // what is left depends on the harmonics of the short run, which are doubles, and on the step by no power
+        let (order, to_doubles) = (None, true);
         let [symmetric, poisson, symplectic] = [false; 3];
-        let source = "shift in time and twist about L, predicted by a short run, taken back at output";
-        Some(Claims { order, symmetric, poisson, symplectic, source, ..base })
+        let source = "departure from the exact motion, predicted by a short run, taken back at output";
+        Some(Claims { order, to_doubles, symmetric, poisson, symplectic, source, ..base })
     }
 }
 
@@ -96,9 +97,7 @@ impl PhaseCorrected {
             body: body.clone(),
             clock,
             opened: 0,
-            rates: [Dd::ZERO; 2],
-            period: None,
-            inverse_norm: Dd::ZERO,
+            taken_back: None,
             refusal: None,
         })
     }
@@ -114,24 +113,54 @@ struct CorrectedStep<S> {
     clock: Clock,
     /// Steps taken when it was opened.
     opened: u64,
-    /// Rates of shift and twist.
-    rates: [Dd; 2],
-    /// Of the momentum, and the angle about L that the body turns in it.
-    period: Option<[Dd; 2]>,
-    /// 1/|m|.
-    inverse_norm: Dd,
+    taken_back: Option<TakenBack>,
     refusal: Option<PhaseError>,
 }
 
-impl<S: Precise> Step<S> for CorrectedStep<S> {
+/// What is known of the departure from a start.
+struct TakenBack {
+    drift: PhaseDrift,
+    /// Of the momentum, and the angle about L that the body turns in it.
+    period: Option<[Dd; 2]>,
+    /// Direction of L.
+    along: Vec3<Dd>,
+    /// 1/|m|.
+    inverse_norm: Dd,
+}
+
+/// Rounds for the axis of the tilt, which is that of the state without it: each is nearer by the tilt.
+const TILT_ROUNDS: usize = 8;
+
+impl<S: Evaluated + Precise> CorrectedStep<S> {
+    /// Turned back to the L of the start, along `along`, and by `tilt` (rad) about ṁ as it is without it.
+    fn upright(&self, mut point: Point<S>, along: Vec3<Dd>, tilt: Dd) -> Point<S> {
+        let lean = smallest_turn(along.map(S::from_dd), direction(point.momentum_space()));
+        point.attitude = lean.conjugate() * point.attitude;
+        let inverse = self.body.rotor().inverse_moments();
+        let (sin, cos) = (S::from_dd(tilt) * S::of(0.5)).sin_cos();
+        let mut turn = Quat::identity();
+        for _ in 0..TILT_ROUNDS {
+            let m = turn.rotate(point.momentum_body);
+            let speed: Vec3<S> = m.cross(m.times(inverse));
+            turn = Quat::new(cos, direction(speed) * sin);
+        }
+        point.attitude = point.attitude * turn.conjugate();
+        point.momentum_body = turn.rotate(point.momentum_body);
+        point
+    }
+}
+
+impl<S: Evaluated + Precise> Step<S> for CorrectedStep<S> {
     fn open(&mut self, x: &mut Point<S>) {
         self.opened = x.steps();
         let start = Point::new(x.attitude.map(S::to_dd), x.momentum_body.map(S::to_dd));
         match drift(&self.body, start, self.precise.as_mut(), self.clock) {
             Ok(drift) => {
-                (self.rates, self.period, self.refusal) = (drift.rates, drift.period(), None);
                 let norm = start.momentum_body.norm();
-                self.inverse_norm = if norm == Dd::ZERO { Dd::ZERO } else { Dd::ONE / norm };
+                let inverse_norm = if norm == Dd::ZERO { Dd::ZERO } else { Dd::ONE / norm };
+                let (period, along) = (drift.period(), direction(start.momentum_space()));
+                (self.taken_back, self.refusal) =
+                    (Some(TakenBack { drift, period, along, inverse_norm }), None);
             }
             Err(error) => {
                 // whoever does not ask why sees a run that has no state
@@ -147,19 +176,21 @@ impl<S: Precise> Step<S> for CorrectedStep<S> {
     }
 
     fn reading(&mut self, x: &Point<S>) -> Point<S> {
-        let mut point = self.base.reading(x);
+        let point = self.base.reading(x);
+        let Some(TakenBack { drift, period, along, inverse_norm }) = &self.taken_back else { return point };
         let elapsed = self.clock.elapsed(x.steps()) - self.clock.elapsed(self.opened);
         let at = self.clock.at(x.steps());
-        let [mut shift, mut twist] = self.rates.map(|rate| rate * elapsed);
-        if let Some([period, turn]) = self.period {
-            // Whole periods are a turn about L. The free motion of the state has another energy, and another period, than that of the
-            // start: over many of them it would carry the state away from where it belongs.
+        let Departure { mut shift, mut twist, tilt, .. } = drift.departure_at(elapsed);
+        let mut point = self.upright(point, *along, tilt);
+        if let Some([period, turn]) = *period {
+            // Whole periods are a turn about L. The free motion of the state has another energy by a rounding, and another period than
+            // that of the start: over many of them it would carry the state away from where it belongs.
             let periods = (shift / period).round();
             (shift, twist) = (shift - periods * period, twist + periods * turn);
         }
         self.flow.flow(at, S::from_dd(-shift), &mut point);
         let twist = twist - (twist / Dd::TAU).round() * Dd::TAU;
-        Casimir::new(S::from_dd(self.inverse_norm)).flow(at, S::from_dd(-twist), &mut point);
+        Casimir::new(S::from_dd(*inverse_norm)).flow(at, S::from_dd(-twist), &mut point);
         point
     }
 

@@ -1,11 +1,11 @@
 //! How fast shift and twist grow, from one short run.
 
 use super::PhaseError;
-use super::harmonics::slopes;
+use super::harmonics::Harmonics;
 use crate::body::{Body, Clock, Point, Problem, State};
 use crate::flow::{Departure, FreeMotion, Mode, TimeError};
 use crate::method::{AnyMethod, Energy, SOLVED, Step};
-use crate::num::{Dd, Real};
+use crate::num::{Dd, Precise, Real};
 
 /// What the names of methods end in whose phase error is taken back.
 pub(in crate::method) const TAKEN_BACK: &str = "+phase";
@@ -41,7 +41,7 @@ const DOUBLINGS: u32 = 6;
 /// How fast the attitude error of a method grows from one start, predicted before the run.
 ///
 /// After the time t the state is that of the exact motion at the time t (1 + [`shift`](Self::shift)), turned about L by t times
-/// [`twist`](Self::twist), but for oscillations that do not grow. What rounding adds is not in it.
+/// [`twist`](Self::twist), but for [oscillations](Self::departure) that do not grow. What rounding adds is not in it.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -61,10 +61,34 @@ const DOUBLINGS: u32 = 6;
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct PhaseDrift {
-    pub(super) rates: [Dd; 2],
+    rates: [Dd; 2],
+    oscillation: Option<Oscillation>,
     doubt: f64,
     step: f64,
     motion: FreeMotion,
+}
+
+/// What does not grow, of shift, twist and tilt.
+#[derive(Clone, Debug)]
+struct Oscillation {
+    harmonics: Harmonics<3>,
+    /// Half a period of the momentum, s.
+    half: f64,
+}
+
+/// Rounds for the phase in which a state is, which its shift depends on: each is nearer by the share of the oscillation in a period.
+const PHASE_ROUNDS: usize = 8;
+
+impl Oscillation {
+    /// After the time `t` (s), at which the shift has grown to `shift`.
+    fn after(&self, t: Dd, shift: Dd) -> [f64; 3] {
+        let mut found = [0.0; 3];
+        for _ in 0..PHASE_ROUNDS {
+            let turns = (t + shift + Dd::of(found[0])) / Dd::of(self.half);
+            found = self.harmonics.bounded((turns - turns.round()).hi());
+        }
+        found
+    }
 }
 
 impl PhaseDrift {
@@ -84,6 +108,24 @@ impl PhaseDrift {
     #[must_use]
     pub fn doubt(&self) -> f64 {
         self.doubt
+    }
+
+    /// How a run departs from the exact motion after the time `t` (s): shift, twist and tilt with their oscillations, as far as the
+    /// short run tells them.
+    #[must_use]
+    pub fn departure(&self, t: f64) -> Departure {
+        self.departure_at(Dd::of(t))
+    }
+
+    /// As [`departure`](Self::departure).
+    pub(super) fn departure_at(&self, t: Dd) -> Departure {
+        let mut departure = Departure::grown(self.rates, t);
+        if let Some(oscillation) = &self.oscillation {
+            let [shift, twist, tilt] = oscillation.after(t, departure.shift).map(Dd::of);
+            (departure.shift, departure.twist, departure.tilt) =
+                (departure.shift + shift, departure.twist + twist, tilt);
+        }
+        departure
     }
 
     /// The attitude error after the time `t` (s), without oscillations and rounding, rad.
@@ -164,7 +206,13 @@ pub(super) fn drift(
     let motion = FreeMotion::from_point(body.inertia(), start);
     let Ok(character) = motion.character() else {
         // a body at rest stays so
-        return Ok(PhaseDrift { rates: [Dd::ZERO; 2], doubt: 0.0, step: clock.step, motion });
+        return Ok(PhaseDrift {
+            rates: [Dd::ZERO; 2],
+            oscillation: None,
+            doubt: 0.0,
+            step: clock.step,
+            motion,
+        });
     };
     if character.mode == Mode::Separatrix {
         return Err(PhaseError::Separatrix);
@@ -179,26 +227,29 @@ pub(super) fn drift(
     let radians = |[shift, twist]: [f64; 2]| shift.abs() * character.spin + twist.abs();
     let mut before: Option<[f64; 2]> = None;
     // the fit that differs least from the one before, and by how much
-    let (mut best, mut doubt) = ([0.0; 2], f64::INFINITY);
+    let (mut best, mut doubt) = (None, f64::INFINITY);
     for doubling in 0..=DOUBLINGS {
         let count = FEWEST << doubling;
         let looks = 3 * (2 + 2 * count) as u64;
         let stride = (libm::ceil(span / looks as f64) as u64).max(1);
         let run = ShortRun::new(&motion, start, step, clock, stride, looks)?;
         if let Some((rates, doubt)) = run.linear(radians) {
-            return Ok(PhaseDrift { rates, doubt, step: clock.step, motion });
+            return Ok(PhaseDrift { rates, oscillation: None, doubt, step: clock.step, motion });
         }
         let Some(half) = half else { continue };
         if in_half < FEW_STEPS {
             return Err(PhaseError::Coarse { steps: in_half });
         }
-        let (times, shift, twist) = (&run.times, &run.shift, &run.twist);
-        let turns: Vec<f64> = times.iter().zip(shift).map(|(t, shift)| (t + shift) / half).collect();
-        let Some(rates) = slopes(times, &turns, [shift, twist], count) else { break };
+        let [shift, _, _] = &run.departures;
+        let turns: Vec<f64> = run.times.iter().zip(shift).map(|(t, shift)| (t + shift) / half).collect();
+        let series = run.departures.each_ref().map(Vec::as_slice);
+        let Some(harmonics) = Harmonics::fit(&run.times, &turns, series, count) else { break };
+        let [shift, twist, _] = harmonics.slopes;
+        let rates = [shift, twist];
         if let Some(before) = before {
             let now = radians([rates[0] - before[0], rates[1] - before[1]]) / radians(rates);
             if now < doubt {
-                (best, doubt) = (rates, now);
+                (best, doubt) = (Some(Oscillation { harmonics, half }), now);
             }
             // where more harmonics bring them no closer it is rounding that differs
             if now <= SETTLED || (now > doubt && doubt <= CLOSE) {
@@ -207,10 +258,14 @@ pub(super) fn drift(
         }
         before = Some(rates);
     }
-    if doubt > MOST_DOUBT {
-        return Err(PhaseError::Unsettled { doubt, distance: character.separatrix_distance });
+    match best {
+        Some(oscillation) if doubt <= MOST_DOUBT => {
+            let [shift, twist, _] = oscillation.harmonics.slopes;
+            let rates = [shift, twist].map(Dd::of);
+            Ok(PhaseDrift { rates, oscillation: Some(oscillation), doubt, step: clock.step, motion })
+        }
+        _ => Err(PhaseError::Unsettled { doubt, distance: character.separatrix_distance }),
     }
-    Ok(PhaseDrift { rates: best.map(Dd::of), doubt, step: clock.step, motion })
 }
 
 /// Departures from the exact motion along a short run.
@@ -219,8 +274,8 @@ struct ShortRun {
     first: (Dd, Departure),
     last: (Dd, Departure),
     times: Vec<f64>,
-    shift: Vec<f64>,
-    twist: Vec<f64>,
+    /// Shift, twist and tilt.
+    departures: [Vec<f64>; 3],
 }
 
 impl ShortRun {
@@ -246,12 +301,12 @@ impl ShortRun {
         };
         let first = look(1, (Dd::ONE, Departure::NONE))?;
         let mut last = first;
-        let mut run = ShortRun { first, last, times: Vec::new(), shift: Vec::new(), twist: Vec::new() };
+        let mut run = ShortRun { first, last, times: Vec::new(), departures: Default::default() };
         for n in 1..=looks {
             last = look(n * stride, last)?;
             run.times.push(last.0.hi());
-            run.shift.push(last.1.shift.hi());
-            run.twist.push(last.1.twist.hi());
+            let Departure { shift, twist, tilt, .. } = last.1;
+            run.departures.iter_mut().zip([shift, twist, tilt]).for_each(|(all, one)| all.push(one.hi()));
         }
         run.last = last;
         Ok(run)
@@ -265,9 +320,8 @@ impl ShortRun {
             return Some(([Dd::ZERO; 2], 0.0));
         }
         let first = rates(&self.first).map(Dd::hi);
-        let off = |k: usize| {
-            radians([self.shift[k] - first[0] * self.times[k], self.twist[k] - first[1] * self.times[k]])
-        };
+        let off =
+            |k: usize| radians([0, 1].map(|part| self.departures[part][k] - first[part] * self.times[k]));
         let off = (0..self.times.len()).map(off).fold(0.0, f64::max) / last;
         (off <= LINEAR).then(|| (rates(&self.last), off))
     }

@@ -4,39 +4,67 @@ use core::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-/// The slopes of all `series` against the times `t`, each a line and `count` harmonics of the angles 2π `turns`.
-///
-/// `None` where these times do not tell them apart.
-pub(super) fn slopes<const N: usize>(
-    t: &[f64],
-    turns: &[f64],
-    series: [&[f64]; N],
-    count: usize,
-) -> Option<[f64; N]> {
-    let unknowns = 2 + 2 * count;
-    if t.len() < unknowns {
-        return None;
-    }
-    let longest = t.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
-    let mut normal = DMatrix::<f64>::zeros(unknowns, unknowns);
-    let mut right = [(); N].map(|()| DVector::<f64>::zeros(unknowns));
-    let mut row = vec![0.0; unknowns];
-    for (k, (t, turns)) in t.iter().zip(turns).enumerate() {
-        (row[0], row[1]) = (t / longest, 1.0);
-        for n in 1..=count {
-            let (sin, cos) = libm::sincos(TAU * (n as f64 * turns).fract());
-            (row[2 * n], row[2 * n + 1]) = (sin, cos);
+/// What `N` series are made of: lines, and oscillations of one period.
+#[derive(Clone, Debug)]
+pub(super) struct Harmonics<const N: usize> {
+    /// Of the lines.
+    pub(super) slopes: [f64; N],
+    constants: [f64; N],
+    /// Of each harmonic, of each series: the parts by sine and cosine.
+    waves: Vec<[[f64; 2]; N]>,
+}
+
+impl<const N: usize> Harmonics<N> {
+    /// Of all `series` over the times `t`, each a line and `count` harmonics of the angles 2π `turns`.
+    ///
+    /// `None` where these times do not tell them apart.
+    pub(super) fn fit(t: &[f64], turns: &[f64], series: [&[f64]; N], count: usize) -> Option<Self> {
+        let unknowns = 2 + 2 * count;
+        if t.len() < unknowns {
+            return None;
         }
-        for i in 0..unknowns {
-            for j in 0..=i {
-                normal[(i, j)] += row[i] * row[j];
+        let longest = t.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
+        let mut normal = DMatrix::<f64>::zeros(unknowns, unknowns);
+        let mut right = [(); N].map(|()| DVector::<f64>::zeros(unknowns));
+        let mut row = vec![0.0; unknowns];
+        for (k, (t, turns)) in t.iter().zip(turns).enumerate() {
+            (row[0], row[1]) = (t / longest, 1.0);
+            for n in 1..=count {
+                let (sin, cos) = harmonic(n, *turns);
+                (row[2 * n], row[2 * n + 1]) = (sin, cos);
             }
-            right.iter_mut().zip(series).for_each(|(right, values)| right[i] += row[i] * values[k]);
+            for i in 0..unknowns {
+                for j in 0..=i {
+                    normal[(i, j)] += row[i] * row[j];
+                }
+                right.iter_mut().zip(series).for_each(|(right, values)| right[i] += row[i] * values[k]);
+            }
         }
+        let factor = normal.cholesky()?;
+        let found = right.map(|right| factor.solve(&right));
+        let waves = (1..=count).map(|n| found.each_ref().map(|x| [x[2 * n], x[2 * n + 1]])).collect();
+        let fit = Harmonics {
+            slopes: found.each_ref().map(|x| x[0] / longest),
+            constants: found.each_ref().map(|x| x[1]),
+            waves,
+        };
+        found.iter().all(|x| x.iter().all(|part| part.is_finite())).then_some(fit)
     }
-    let factor = normal.cholesky()?;
-    let found = right.map(|right| factor.solve(&right)[0] / longest);
-    found.iter().all(|slope| slope.is_finite()).then_some(found)
+
+    /// What they are beside their lines through zero, after `turns`.
+    pub(super) fn bounded(&self, turns: f64) -> [f64; N] {
+        let mut sums = self.constants;
+        for (n, parts) in self.waves.iter().enumerate() {
+            let (sin, cos) = harmonic(n + 1, turns);
+            sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part[0] * sin + part[1] * cos);
+        }
+        sums
+    }
+}
+
+/// Sine and cosine of the `n`-th harmonic.
+fn harmonic(n: usize, turns: f64) -> (f64, f64) {
+    libm::sincos(TAU * (n as f64 * turns).fract())
 }
 
 #[cfg(test)]
@@ -50,13 +78,19 @@ mod tests {
         let wave = |t: &f64| 1e3 / (1.0 - 0.2 * libm::cos(TAU * t / 4.0));
         let first: Vec<f64> = t.iter().map(|t| 0.3 * t + wave(t)).collect();
         let second: Vec<f64> = t.iter().map(|t| -0.7 * t - 2.0).collect();
-        let [a, b] = slopes(&t, &turns, [&first, &second], 16).unwrap();
+        let fit = Harmonics::fit(&t, &turns, [&first, &second], 16).unwrap();
         // the harmonics left out are a tenth to the power of 17 of the wave
+        let [a, b] = fit.slopes;
         assert!((a - 0.3).abs() < 1e-9 && (b + 0.7).abs() < 1e-12, "{a} {b}");
+        // between the times of the fit, and long after it
+        for t in [0.33, 7.05, 123.4] {
+            let [a, b] = fit.bounded(t / 4.0);
+            assert!((a / wave(&t) - 1.0).abs() < 1e-9 && (b + 2.0).abs() < 1e-9, "{a} {b}");
+        }
         // without harmonics the wave is taken for a slope
-        let [a, _] = slopes(&t, &turns, [&first, &second], 0).unwrap();
-        assert!((a - 0.3).abs() > 0.1, "{a}");
+        let fit = Harmonics::fit(&t, &turns, [&first, &second], 0).unwrap();
+        assert!((fit.slopes[0] - 0.3).abs() > 0.1, "{fit:?}");
         // three times do not tell four numbers
-        assert_eq!(slopes(&t[..3], &turns[..3], [&first, &second], 1), None);
+        assert!(Harmonics::fit(&t[..3], &turns[..3], [&first, &second], 1).is_none());
     }
 }

@@ -226,7 +226,7 @@ fn examine(named: &NamedBody, name: &str, steps: u64, panels: u32) -> Result<Fou
     let apart = |rates: Rates| measured.apart(rates, spin);
     let (doubt, predicted) = (predicted.doubt(), Rates::of(&predicted));
     let disagreement = apart(predicted);
-    let rest = looks.iter().map(|look| look.departure.rest).fold(0.0, f64::max);
+    let rest = looks.iter().map(|look| look.departure.tilt.hi().abs()).fold(0.0, f64::max);
     let row = row![
         named.name,
         &*name,

@@ -2,11 +2,11 @@
 
 use polhode::body::Clock;
 use polhode::method::{AnyMethod, Claimed, method, without_projections};
-use polhode::run::Watch;
+use polhode::run::{RunError, Watch};
 use polhode::truth::{Care, Ending, Judged, LOST, Truth};
 use polhode_files::error::{Error, unexpected};
 
-use super::super::contestants::{SCHEMES, weighed, weight};
+use super::super::contestants::{SCHEMES, TAKEN_BACK, weighed, weight};
 use super::cases::Case;
 use super::contest::{Contestant, Quantiles, Run};
 use crate::timing::StepTime;
@@ -47,14 +47,15 @@ pub(super) struct Found {
     pub(super) energy: Option<f64>,
     /// Starts from which the attitude is held to the last horizon that was tried, of how many.
     pub(super) held: (u64, u64),
-    /// What became of the first run that did not come to its end.
-    pub(super) ending: Ending,
+    /// What became of the first run that did not come to its end; `not predicted` of one from whose start nothing is known to take
+    /// back.
+    pub(super) ending: String,
 }
 
 /// Every method that takes the case, each from coarse to fine.
 pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, Error> {
     let mut names: Vec<String> = without_projections().iter().map(|method| method.name()).collect();
-    names.extend(SCHEMES.map(String::from));
+    names.extend(SCHEMES.into_iter().chain(TAKEN_BACK).map(String::from));
     // without torque kick-drift is exact-step, whatever its scheme
     names.retain(|name| !(case.is_free() && name.starts_with("kick-drift")));
     let mut families = Vec::new();
@@ -115,11 +116,18 @@ impl Entry {
             let mut care = Care::default();
             (care.watch, care.until_lost) = (Watch::AtSamples, true);
             care.until = horizon * unit * (1.0 + 1e-9);
-            motion.judge(self.method.as_ref(), step, care).map_err(unexpected)
+            match motion.judge(self.method.as_ref(), step, care) {
+                Ok(judged) => Ok(Some(judged)),
+                Err(RunError::Phase(_)) => Ok(None),
+                Err(error) => Err(unexpected(error)),
+            }
         };
         let common = horizons.iter().copied().filter(|horizon| *horizon <= LONG).fold(0.0, f64::max);
         let mut all = motions.iter().map(|motion| run(motion, common)).collect::<Result<Vec<_>, _>>()?;
-        let evaluations: Vec<f64> = all.iter().map(|measured| self.per_unit(case, measured)).collect();
+        let evaluations: Vec<f64> = all
+            .iter()
+            .map(|measured| measured.as_ref().map_or(f64::INFINITY, |one| self.per_unit(case, one)))
+            .collect();
         let mut errors: Vec<Vec<Option<f64>>> =
             horizons.iter().map(|horizon| errors_of(&all, horizon * unit, common * unit)).collect();
         let end = horizons.last().copied().unwrap_or(common);
@@ -146,14 +154,15 @@ impl Entry {
             Some(_) => of_first,
             None => of_first * count / evaluations[0],
         });
-        let energies = all.iter().filter_map(|one| one.last.worst.energy.or(one.last.worst.jacobi));
-        let ending = all.iter().map(|measured| measured.ending).find(|ending| *ending != Ending::Held);
-        let held = all.iter().filter(|measured| measured.ending == Ending::Held).count();
+        let energies = all.iter().flatten().filter_map(|one| one.last.worst.energy.or(one.last.worst.jacobi));
+        let endings = || all.iter().map(|measured| measured.as_ref().map(|measured| measured.ending));
+        let ending = endings().find(|ending| *ending != Some(Ending::Held)).unwrap_or(Some(Ending::Held));
+        let held = endings().filter(|ending| *ending == Some(Ending::Held)).count();
         Ok(Found {
             run: Run { time: time.collect(), evaluations, errors },
             energy: Quantiles::of(energies.collect()).map(|energy| energy.median),
             held: (held as u64, all.len() as u64),
-            ending: ending.unwrap_or(Ending::Held),
+            ending: ending.map_or("not predicted".into(), |ending| ending.to_string()),
         })
     }
 
@@ -166,9 +175,10 @@ impl Entry {
 }
 
 /// The largest attitude error of each run up to `horizon` s; `None` where the runs end before.
-fn errors_of(runs: &[Judged], horizon: f64, end: f64) -> Vec<Option<f64>> {
-    let error = |measured: &Judged| {
-        let seen = measured.largest_attitude_error(horizon).filter(|error| *error <= LOST);
+fn errors_of(runs: &[Option<Judged>], horizon: f64, end: f64) -> Vec<Option<f64>> {
+    let error = |measured: &Option<Judged>| {
+        let seen = measured.as_ref().and_then(|measured| measured.largest_attitude_error(horizon));
+        let seen = seen.filter(|error| *error <= LOST);
         (horizon <= end).then(|| seen.unwrap_or(f64::INFINITY))
     };
     runs.iter().map(error).collect()

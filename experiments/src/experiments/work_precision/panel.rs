@@ -2,6 +2,7 @@
 
 use polhode_pages::figure::{Curve, Figure};
 
+use super::super::contestants::knows_the_motion;
 use super::contest::{CLOSED_FORM, Contestant, Currency};
 use super::tables::Contest;
 
@@ -17,7 +18,8 @@ pub(super) fn panel(contest: &Contest, currency: Currency) -> Figure {
     let (horizon, unit) = (case.horizons[last], case.unit);
     let title = format!("{}: {}; after {horizon:e} units of {unit} s", case.name, case.what);
     let mut figure = Figure::log_log("panel", title, x, "largest attitude error (rad)");
-    let others: Vec<&Contestant> = contest.contestants.iter().filter(|one| one.name != CLOSED_FORM).collect();
+    let others: Vec<&Contestant> =
+        contest.contestants.iter().filter(|one| !knows_the_motion(&one.name)).collect();
     let mut shown: Vec<&str> = vec!["rk4", "dop853"];
     let mut envelope: Vec<(f64, f64)> = Vec::new();
     for k in 0..=26 {

@@ -3,6 +3,7 @@
 use polhode::truth::Truth;
 use polhode_pages::table::{Cell, Column, Table, row};
 
+use super::super::contestants::knows_the_motion;
 use super::cases::{Case, Kind};
 use super::contest::{CLOSED_FORM, Contestant, Currency, Quantiles, ranked};
 use super::entry::{Entry, FEW, Found};
@@ -113,7 +114,7 @@ pub(super) fn error_row(case: &Case, entry: &Entry, found: &Found) -> Vec<Cell> 
             errors.map(|errors| errors.high).into(),
         ]);
     }
-    cells.extend(row![found.energy, found.held.1, found.held.0, found.ending.to_string()]);
+    cells.extend(row![found.energy, found.held.1, found.held.0, found.ending.as_str()]);
     cells
 }
 
@@ -123,12 +124,13 @@ pub(super) fn winners(name: &str, contests: &[Contest], currency: Currency) -> T
         Currency::Evaluations => (
             "Who reaches an accuracy from half of the starts with the fewest evaluations (right sides, turns, elliptic additions, \
              free flows and kicks; an implicit solution counts as six); exact-step, which is exact for free bodies at any step, \
-             stands apart.",
+             and methods with +phase, which use it at output, stand apart.",
             ["evaluations", "evaluations_p10", "evaluations_p90", "evaluations_next"],
         ),
         Currency::Time => (
             "Who reaches an accuracy from half of the starts in the least processor time, in steps of rk4 per unit of time, timed \
-             in the same moments; exact-step, which is exact for free bodies at any step, stands apart.",
+             in the same moments; exact-step, which is exact for free bodies at any step, and methods with +phase, which use it at \
+             output, stand apart.",
             ["rk4_steps", "rk4_steps_p10", "rk4_steps_p90", "rk4_steps_next"],
         ),
     };
@@ -136,7 +138,7 @@ pub(super) fn winners(name: &str, contests: &[Contest], currency: Currency) -> T
         Column::new("case", "", "body and starts"),
         Column::new("turned", "", "units of time, about as many rad").digits(2),
         Column::new("accuracy", "rad", "largest attitude error up to then").digits(2),
-        Column::new("winner", "", "the cheapest method but for exact-step"),
+        Column::new("winner", "", "the cheapest method of those that do not stand apart"),
         Column::new(
             cost,
             "",
@@ -158,7 +160,7 @@ pub(super) fn winners(name: &str, contests: &[Contest], currency: Currency) -> T
             for accuracy in ACCURACIES {
                 let all = ranked(&contest.contestants, accuracy, k, currency, &starts);
                 let of = |name: &str| all.iter().find(|found| found.0 == name).map(|found| found.1.median);
-                let mut others = all.iter().filter(|found| found.0 != CLOSED_FORM);
+                let mut others = all.iter().filter(|found| !knows_the_motion(found.0));
                 let Some(&(winner, cost)) = others.next() else { continue };
                 let next = others.next();
                 table.push(row![
@@ -201,7 +203,7 @@ pub(super) fn costs(contests: &[Contest]) -> Table {
         for (k, horizon, starts) in contest.judged() {
             for accuracy in ACCURACIES {
                 let all = ranked(&contest.contestants, accuracy, k, Currency::Time, &starts);
-                let rivals = all.iter().filter(|found| found.0 != CLOSED_FORM);
+                let rivals = all.iter().filter(|found| !knows_the_motion(found.0));
                 let Some(least) = rivals.map(|found| found.1.median).next() else { continue };
                 for (method, cost) in all {
                     let general = GENERAL.contains(&method);

@@ -7,14 +7,13 @@ use std::collections::BTreeMap;
 use polhode_pages::table::{Column, Table, row};
 use serde::Deserialize;
 
+use super::super::contestants::knows_the_motion;
+
 /// Accuracies of the table, rad.
 const ACCURACIES: [f64; 3] = [1e-4, 1e-8, 1e-12];
 
 /// Horizons of the table, units of time; beyond the first, kinds whose motion is not known so far have no rows.
 const HORIZONS: [f64; 2] = [1e4, 1e6];
-
-/// Exact at any step of free motion, without an error to compare.
-const CLOSED_FORM: &str = "exact-step";
 
 /// A row of `costs.csv`.
 #[derive(Clone, Debug, Deserialize)]
@@ -82,7 +81,7 @@ impl Which {
 
     fn contests(&self) -> Vec<Contest<'_>> {
         let mut contests: Vec<Contest> = Vec::new();
-        for row in self.rows.iter().filter(|row| row.method != CLOSED_FORM) {
+        for row in self.rows.iter().filter(|row| !knows_the_motion(&row.method)) {
             let same = |contest: &&mut Contest| {
                 contest.case == row.case && contest.turned == row.turned && contest.accuracy == row.accuracy
             };
