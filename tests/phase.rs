@@ -168,6 +168,7 @@ fn what_is_taken_back_leaves_the_steps_as_they_are() {
     let [(base, first), (corrected, last)] = &ends;
     assert_eq!(&base.replace("two-turn", ""), &corrected.replace("two-turn+phase", ""));
     assert_eq!(first.worst, last.worst);
+    assert_eq!((first.flips.is_some(), last.flips), (true, None));
     assert_ne!(first.state, last.state);
     // resumed, it goes on with the same bits
     let method = method("two-turn+phase").unwrap();

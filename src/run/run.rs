@@ -433,7 +433,7 @@ impl Run {
             errors: self.monitor.errors_at(at, &point),
             worst: if self.watch == Watch::Never { Errors::NONE } else { self.monitor.worst() },
             watch: self.watch,
-            flips: watched.then(|| self.monitor.flips()),
+            flips: (watched && !self.step.takes_back()).then(|| self.monitor.flips()),
         }
     }
 }

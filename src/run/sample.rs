@@ -75,7 +75,7 @@ pub struct Sample {
     /// How often the errors were evaluated.
     pub watch: Watch,
     /// How often the momentum along the axis of the middle moment has changed sign up to the last step, where every step was
-    /// watched.
+    /// watched; `None` where the phase is taken back, as states lie behind or before the steps then.
     pub flips: Option<u64>,
 }
 

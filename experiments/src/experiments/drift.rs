@@ -91,7 +91,8 @@ fn columns() -> Vec<Column> {
             .digits(2),
         Column::new("energy_slope", "1/rad", "secular slope of (E - E0)/E0 per radian turned").hidden(),
         Column::new("energy_slope_half_width", "1/rad", "half width of its 95 % interval").hidden(),
-        Column::new("flips", "", "changes of sign of the momentum along the middle axis").hidden(),
+        Column::new("flips", "", "changes of sign of the momentum along the middle axis, step by step")
+            .hidden(),
         Column::new("flips_exact", "", "the same of the exact motion").hidden(),
         Column::new("flips_right", "", "whether they agree").heading("flips").latex("flips"),
     ];
@@ -160,7 +161,7 @@ fn measure(named: &NamedBody, method: &dyn AnyMethod, h: f64, steps: u64) -> Res
         slope.map(|d| d.half_width),
         last.flips,
         flips,
-        is_whole(ending).then_some(if last.flips == Some(flips) { "right" } else { "wrong" }),
+        last.flips.filter(|_| is_whole(ending)).map(|found| if found == flips { "right" } else { "wrong" }),
         status(ending),
         last.elapsed.hi(),
         evaluations,

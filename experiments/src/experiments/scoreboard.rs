@@ -342,7 +342,7 @@ fn screen(shown: &[&Score], turned: f64, count: usize) -> String {
     let head = format!(
         "The best method of each family at {EVALUATIONS} evaluations a radian: largest relative errors of energy and |m| and \
          largest attitude error in rad while the body turns by {} rad, medians of {count} runs ({}). Bars: right digits of the \
-         attitude.",
+         attitude. exact-step and methods with +phase use the exact motion of a free body, the others do not.",
         grouped(turned),
         BODIES.join(", ")
     );

@@ -251,6 +251,11 @@ pub trait Step<S: Real>: Send {
         None
     }
 
+    /// Whether readings lie so far from the states of the steps that what is counted along these, as flips, is not that of readings.
+    fn takes_back(&self) -> bool {
+        false
+    }
+
     /// Takes `n` steps, from a state to a state.
     fn steps(&mut self, x: &mut Point<S>, n: u64) {
         if n > 0 {

@@ -194,6 +194,10 @@ impl<S: Evaluated + Precise> Step<S> for CorrectedStep<S> {
         point
     }
 
+    fn takes_back(&self) -> bool {
+        true
+    }
+
     fn refusal(&self) -> Option<&PhaseError> {
         self.refusal.as_ref()
     }
