@@ -1,7 +1,6 @@
 //! How far each estimator of inertia stays from the Cramér–Rao bound, and whether its own errors are honest.
 
 mod outcome;
-mod rivals;
 
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
 use polhode::flow::FreeMotion;
@@ -11,10 +10,10 @@ use polhode_files::error::{Error, unexpected};
 use polhode_fit::{FitError, Record, Settings, fit, foreseen_bound, simulate};
 use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Cell, Column, Table};
+use polhode_rivals::{ATTITUDE_NOISE, RIVALS, Rival};
 
 use crate::experiment::{Context, Report};
 use outcome::{Outcome, Summary, best, rounded};
-use rivals::{ATTITUDE_NOISE, RIVALS, Rival};
 
 const SEED: u64 = 40_400;
 /// Noise of a component as a share of the rate.

@@ -18,7 +18,7 @@ use record::{Stretch, normalised};
 
 /// A way to the tensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rival {
+pub enum Rival {
     /// J ω' + ω × J ω = 0 at every sample, ω' by central differences.
     CentralDifferences,
     /// The same with local cubics, the window being the best of [`WINDOWS`] at each noise.
@@ -36,7 +36,7 @@ pub(super) enum Rival {
 }
 
 /// All of them, maximum likelihood last.
-pub(super) const RIVALS: [Rival; 7] = [
+pub const RIVALS: [Rival; 7] = [
     Rival::CentralDifferences,
     Rival::SavitzkyGolay,
     Rival::Momentum,
@@ -54,12 +54,12 @@ const RADII: [f64; 3] = [1.5, 3.0, 6.0];
 const START: usize = 101;
 
 /// Error of the attitudes that one rival is given, rad.
-pub(super) const ATTITUDE_NOISE: f64 = 1e-3;
+pub const ATTITUDE_NOISE: f64 = 1e-3;
 
 /// What a rival says.
-pub(super) struct Answer {
+pub struct Answer {
     /// The tensor with trace 1.
-    pub(super) shape: Matrix3<f64>,
+    pub shape: Matrix3<f64>,
     /// Its coordinates, and their information before the physical law, where the rival states its uncertainty.
     coordinates: Vector5<f64>,
     information: Option<Matrix5<f64>>,
@@ -81,7 +81,7 @@ impl Answer {
     }
 
     /// eᵀ C⁻¹ e with the rival's own covariance.
-    pub(super) fn own_square(&self, truth: &Matrix3<f64>) -> Option<f64> {
+    pub fn own_square(&self, truth: &Matrix3<f64>) -> Option<f64> {
         let e = self.coordinates - Vector5::from_fn(|k, _| basis(k).dot(truth));
         self.information.map(|information| e.dot(&(information * e)))
     }
@@ -89,7 +89,7 @@ impl Answer {
 
 impl Rival {
     /// Its name, as tables print it.
-    pub(super) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::CentralDifferences => "central differences",
             Self::SavitzkyGolay => "Savitzky-Golay, tuned",
@@ -102,7 +102,7 @@ impl Rival {
     }
 
     /// How many choices it has.
-    pub(super) fn choices(self) -> usize {
+    pub fn choices(self) -> usize {
         match self {
             Self::SavitzkyGolay => WINDOWS.len(),
             Self::Wendy => RADII.len(),
@@ -111,7 +111,7 @@ impl Rival {
     }
 
     /// A choice in words.
-    pub(super) fn choice(self, k: usize) -> String {
+    pub fn choice(self, k: usize) -> String {
         match self {
             Self::SavitzkyGolay => format!("window {}", WINDOWS[k]),
             Self::Wendy => format!("radius {} rad", RADII[k]),
@@ -121,7 +121,7 @@ impl Rival {
 
     /// The answer with its k-th choice to a record with noise `sigma` (rad/s), which rivals are told, and attitudes that
     /// one rival is given. `None` where there is no answer.
-    pub(super) fn answer(
+    pub fn answer(
         self,
         k: usize,
         record: &Record,
