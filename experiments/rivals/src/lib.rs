@@ -21,13 +21,13 @@ use record::{Stretch, normalised};
 pub enum Rival {
     /// J ω' + ω × J ω = 0 at every sample, ω' by central differences.
     CentralDifferences,
-    /// The same with local cubics, the window being the best of [`WINDOWS`] at each noise.
+    /// The same with local cubics, the window being the best of five at each noise.
     SavitzkyGolay,
     /// R(t) J ω(t) = L with R by integration of the same rates.
     Momentum,
     /// The same with R from a second instrument, which no other row has.
     MomentumWithAttitude,
-    /// Weak form with errors in variables, the radius being the best of [`RADII`] at each noise.
+    /// Weak form with errors in variables, the radius being the best of three at each noise.
     Wendy,
     /// Extended Kalman filter of rate and tensor, three runs.
     Kalman,

@@ -51,8 +51,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     }
     if let Some(textbook) = catalogue::body("textbook") {
         // steps of those whose phase is taken back are those of their base
-        let timed = |method: &Box<dyn AnyMethod>| !TAKEN_BACK.contains(&method.name().as_str());
-        for method in methods(&textbook).into_iter().filter(timed) {
+        let is_timed = |method: &dyn AnyMethod| !TAKEN_BACK.contains(&method.name().as_str());
+        for method in methods(&textbook).into_iter().filter(|method| is_timed(method.as_ref())) {
             timing.push(row![method.name(), step_time(&textbook, method.as_ref())?]);
         }
     }
