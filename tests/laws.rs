@@ -587,7 +587,7 @@ fn a_method_refuses_by_name_what_it_cannot_do() {
     let error = refused(&method("lie-poisson").unwrap(), &case(Problem::Torque).body);
     assert_eq!(
         error.to_string(),
-        "method \"lie-poisson\" cannot take push, a torque without potential: it is for free motion and potentials; \
+        "method \"lie-poisson\" cannot take push, a torque without potential; \
          take rk4 or implicit-midpoint"
     );
 }

@@ -11,6 +11,9 @@ use crate::body::{Clock, Problem};
 use crate::num::Real;
 use crate::run::{Halving, halvings_against, observed_order};
 
+/// Of doubles: a quaternion whose parts are rounded is off by an angle of two roundings at most.
+const OF_DOUBLES: f64 = 2.0 * f64::ROUNDOFF;
+
 /// The order in all halvings, or how far the error is below the tolerance.
 pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> {
     match subject.claims.order {
@@ -94,7 +97,7 @@ fn within_tolerance(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> {
     let errors = halvings(subject, 6..7)?;
     let tolerance = subject.method.tolerance().filter(|_| !subject.is_to_rounding());
     let most = match tolerance {
-        None if subject.claims.to_doubles => f64::ROUNDOFF,
+        None if subject.claims.to_doubles => OF_DOUBLES,
         None => EXACT,
         Some(tolerance) => {
             let mut step = subject.method.prepare_dd(Clock::new(case.span / 64.0), &case.body)?;
@@ -104,7 +107,7 @@ fn within_tolerance(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> {
     };
     let error = largest(errors.iter().flat_map(|error| [error.attitude_error, error.momentum_error]));
     let claim = match tolerance {
-        None if subject.claims.to_doubles => "of doubles".into(),
+        None if subject.claims.to_doubles => format!("to {}", short(OF_DOUBLES)),
         None => "exact".into(),
         Some(tolerance) => format!("to {tolerance:e}"),
     };

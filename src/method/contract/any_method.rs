@@ -179,9 +179,7 @@ pub enum StepError {
 
 fn remedy(problem: Problem) -> &'static str {
     match problem {
-        Problem::Torque => {
-            "a torque without potential: it is for free motion and potentials; take rk4 or implicit-midpoint"
-        }
+        Problem::Torque => "a torque without potential; take rk4 or implicit-midpoint",
         _ => "a potential: it is for free motion; take kick-drift, for one",
     }
 }
