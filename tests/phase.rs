@@ -124,6 +124,13 @@ fn where_nothing_can_be_predicted_it_says_so() {
     ));
     let heavy = Body::heavy(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap(), Vector3::z()).unwrap();
     assert!(matches!(of(&heavy, [0.4, 1.0, -0.3], 0.01), Err(PhaseError::Force { .. })));
+    // so coarse next to the separatrix lie-poisson is chaotic: its first periods look like lines, those that follow do not
+    let coarse = method("lie-poisson").unwrap().phase(
+        &racket,
+        &racket.state(UnitQuaternion::identity(), [0.1, 1.0, 0.1].into()).unwrap(),
+        1.0,
+    );
+    assert!(matches!(coarse, Err(PhaseError::Unsettled { doubt, .. }) if doubt > 0.01), "{coarse:?}");
     // next to the separatrix rounding is all there is in a run of doubles
     let drift = of(&racket, [1e-9, 1.0, 1e-9], 0.1).unwrap();
     assert!(drift.rounding(1e3) > 1e3 * drift.attitude_error(1e3).unwrap());

@@ -31,6 +31,10 @@ const ROUNDING: f64 = 1e-26;
 /// Half periods of the momentum in the short run; more where they have few steps, whose phases fill the period all the same.
 const HALF_PERIODS: f64 = 3.0;
 
+/// So many times the short run goes on beyond the fit, and at so many looks it must be as predicted.
+const BEYOND: f64 = 2.0;
+const LOOKS_BEYOND: u64 = 48;
+
 /// Fewest steps in half a period.
 const FEW_STEPS: f64 = 4.0;
 
@@ -104,7 +108,8 @@ impl PhaseDrift {
         self.rates[1].hi()
     }
 
-    /// The share of the rates by which two fits to the short run differ.
+    /// The share of the growth that is in doubt: by which two fits to the short run differ, or by which the run departs otherwise than
+    /// predicted after the part that was fitted, whichever is more. What comes later than twice that part is not seen.
     #[must_use]
     pub fn doubt(&self) -> f64 {
         self.doubt
@@ -165,12 +170,13 @@ impl PhaseDrift {
 
 impl dyn AnyMethod {
     /// How fast the attitude error of this method grows from `start` with the step `h` (s): shift and twist, from one short run in
-    /// double-double over some three halves of a period of the momentum, from which oscillations of its period are taken off.
+    /// double-double over some three halves of a period of the momentum, from which oscillations of its period are taken off. The run
+    /// goes on for three periods more, and must depart as predicted.
     ///
     /// # Errors
     /// A method that does not keep energy and |m| in bounds, by its claims; a body on which forces act; a step or a start that is
     /// not usable; where no prediction holds: on the separatrix, and so near it or with steps so long that shift and
-    /// twist do not grow linearly.
+    /// twist do not grow linearly within the short run.
     pub fn phase(&self, body: &Body, start: &State, h: f64) -> Result<PhaseDrift, PhaseError> {
         check(self)?;
         if let Some(force) = body.forces().first() {
@@ -228,6 +234,7 @@ pub(super) fn drift(
     let mut before: Option<[f64; 2]> = None;
     // the fit that differs least from the one before, and by how much
     let (mut best, mut doubt) = (None, f64::INFINITY);
+    let mut state = start;
     for doubling in 0..=DOUBLINGS {
         let count = FEWEST << doubling;
         let looks = 3 * (2 + 2 * count) as u64;
@@ -236,6 +243,7 @@ pub(super) fn drift(
         if let Some((rates, doubt)) = run.linear(radians) {
             return Ok(PhaseDrift { rates, oscillation: None, doubt, step: clock.step, motion });
         }
+        state = run.state;
         let Some(half) = half else { continue };
         if in_half < FEW_STEPS {
             return Err(PhaseError::Coarse { steps: in_half });
@@ -258,14 +266,32 @@ pub(super) fn drift(
         }
         before = Some(rates);
     }
-    match best {
-        Some(oscillation) if doubt <= MOST_DOUBT => {
-            let [shift, twist, _] = oscillation.harmonics.slopes;
-            let rates = [shift, twist].map(Dd::of);
-            Ok(PhaseDrift { rates, oscillation: Some(oscillation), doubt, step: clock.step, motion })
-        }
-        _ => Err(PhaseError::Unsettled { doubt, distance: character.separatrix_distance }),
+    let unsettled = |doubt| PhaseError::Unsettled { doubt, distance: character.separatrix_distance };
+    let Some(oscillation) = best.filter(|_| doubt <= MOST_DOUBT) else { return Err(unsettled(doubt)) };
+    let [shift, twist, _] = oscillation.harmonics.slopes;
+    let rates = [shift, twist].map(Dd::of);
+    let mut drift = PhaseDrift { rates, oscillation: Some(oscillation), doubt, step: clock.step, motion };
+    // two fits agree where the fitted part is like a line by chance
+    let stride = (libm::ceil(BEYOND * span / LOOKS_BEYOND as f64) as u64).max(1);
+    for _ in 0..LOOKS_BEYOND {
+        step.advance(&mut state, stride);
+        let t = clock.elapsed(state.steps());
+        let expected = drift.departure_at(t);
+        let departure = drift.motion.departure(t, &read(step, &state)?, expected);
+        let off = [departure.shift - expected.shift, departure.twist - expected.twist].map(Dd::hi);
+        let off = radians(off) + (departure.tilt - expected.tilt).hi().abs();
+        drift.doubt = drift.doubt.max(off / (radians([shift, twist]) * t.hi().abs()));
     }
+    if drift.doubt <= MOST_DOUBT { Ok(drift) } else { Err(unsettled(drift.doubt)) }
+}
+
+/// What `step` reads of `x`.
+fn read(step: &mut dyn Step<Dd>, x: &Point<Dd>) -> Result<Point<Dd>, PhaseError> {
+    let point = step.reading(x);
+    if !point.is_finite() || step.worst_residual() > SOLVED {
+        return Err(PhaseError::Diverged { steps: x.steps() });
+    }
+    Ok(point)
 }
 
 /// Departures from the exact motion along a short run.
@@ -276,6 +302,8 @@ struct ShortRun {
     times: Vec<f64>,
     /// Shift, twist and tilt.
     departures: [Vec<f64>; 3],
+    /// At its end.
+    state: Point<Dd>,
 }
 
 impl ShortRun {
@@ -290,26 +318,22 @@ impl ShortRun {
     ) -> Result<ShortRun, PhaseError> {
         let mut x = start;
         step.open(&mut x);
-        let mut look = |steps: u64, before: (Dd, Departure)| {
+        let mut look = |steps: u64, before: (Dd, Departure)| -> Result<_, PhaseError> {
             let more = steps - x.steps();
             step.advance(&mut x, more);
-            let (t, point) = (clock.elapsed(steps), step.reading(&x));
-            if !point.is_finite() || step.worst_residual() > SOLVED {
-                return Err(PhaseError::Diverged { steps });
-            }
+            let (t, point) = (clock.elapsed(steps), read(step, &x)?);
             Ok((t, motion.departure(t, &point, before.1.carried_on(before.0, t))))
         };
         let first = look(1, (Dd::ONE, Departure::NONE))?;
         let mut last = first;
-        let mut run = ShortRun { first, last, times: Vec::new(), departures: Default::default() };
+        let (mut times, mut departures): (_, [Vec<f64>; 3]) = (Vec::new(), Default::default());
         for n in 1..=looks {
             last = look(n * stride, last)?;
-            run.times.push(last.0.hi());
+            times.push(last.0.hi());
             let Departure { shift, twist, tilt, .. } = last.1;
-            run.departures.iter_mut().zip([shift, twist, tilt]).for_each(|(all, one)| all.push(one.hi()));
+            departures.iter_mut().zip([shift, twist, tilt]).for_each(|(all, one)| all.push(one.hi()));
         }
-        run.last = last;
-        Ok(run)
+        Ok(ShortRun { first, last, times, departures, state: x })
     }
 
     /// The rates, where shift and twist are proportional to the time, and the share by which they are not.

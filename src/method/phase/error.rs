@@ -64,11 +64,11 @@ pub enum PhaseError {
     },
     /// The step is so long, or the separatrix so near, that shift and twist do not grow linearly.
     #[error(
-        "shift and twist do not grow linearly: their rates differ by a share of {doubt:.1e} between one short run and another, more \
-         than {MOST_DOUBT:e}; (|L|^2/2E - I2)/I2, zero on the separatrix, is {distance:.1e}; take shorter steps"
+        "shift and twist do not grow linearly: two parts of the short run differ in them by a share of {doubt:.1e}, more than \
+         {MOST_DOUBT:e}; (|L|^2/2E - I2)/I2, zero on the separatrix, is {distance:.1e}; take shorter steps"
     )]
     Unsettled {
-        /// Relative difference of the rates.
+        /// Relative difference of the growth.
         doubt: f64,
         /// Distance from the separatrix.
         distance: f64,

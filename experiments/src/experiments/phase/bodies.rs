@@ -139,7 +139,7 @@ fn examine(member: u64) -> Result<Found, Error> {
     let time = character.polhode_period.map_or(TURN, |period| TURN.max(PERIODS * period));
     let steps: Vec<u64> = (1..=LOOKS).map(|k| ((time / h) as u64 * k) / LOOKS).collect();
     let predicted = Rates::of(&drift);
-    let measured = smooth_rates(&looks(&mut run, &motion, &steps, predicted)?);
+    let measured = smooth_rates(&looks(&mut run, &motion, &steps, &drift)?);
     let apart = measured.apart(predicted, character.spin);
     Ok(Found { distance, outcome: Outcome::Apart(apart) })
 }

@@ -1,7 +1,7 @@
 //! Shift and twist along a run, and how fast they grow.
 
 use polhode::flow::{Departure, FreeMotion};
-use polhode::num::{Dd, Real};
+use polhode::method::PhaseDrift;
 use polhode::run::Run;
 use polhode_files::error::{Error, unexpected};
 
@@ -18,20 +18,20 @@ pub(super) struct Look {
 /// Looks at the steps `steps`, which ascend.
 ///
 /// Shift and twist are followed from look to look: a period or a turn more would look the same. `expected` tells how far they come
-/// between two looks, to within half a period and half a turn.
+/// between two looks, to within half a period and half a turn; next to the separatrix they swing by more than that.
 pub(super) fn looks(
     run: &mut Run,
     motion: &FreeMotion,
     steps: &[u64],
-    expected: Rates,
+    expected: &PhaseDrift,
 ) -> Result<Vec<Look>, Error> {
     let mut looks: Vec<Look> = Vec::new();
     for &n in steps {
         let sample = run.advance_to(n).map_err(unexpected)?;
         let t = sample.elapsed;
-        let mut near = expected.after(t);
+        let mut near = expected.departure(t.hi());
         if let Some(last) = looks.last() {
-            let then = expected.after(Dd::of(last.t));
+            let then = expected.departure(last.t);
             near.shift = near.shift + (last.departure.shift - then.shift);
             near.twist = near.twist + (last.departure.twist - then.twist);
         }

@@ -218,7 +218,7 @@ fn examine(named: &NamedBody, name: &str, steps: u64, panels: u32) -> Result<Fou
     let steps_alone = predicted::from_steps(&motion, &point.to_dd(), method.as_ref(), h, panels)?;
     let closed = predicted::in_closed_form(&name, &point.to_dd(), moments, h);
     let mut run = Run::new(method.as_ref(), &body, &start, h).map_err(unexpected)?.watching(Watch::Never);
-    let looks = measured::looks(&mut run, &motion, &times(steps), Rates::of(&predicted))?;
+    let looks = measured::looks(&mut run, &motion, &times(steps), &predicted)?;
     let measured = measured::rates(&looks);
     let last = run.sample();
 
