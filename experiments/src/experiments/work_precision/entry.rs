@@ -24,6 +24,9 @@ pub(super) const FEW: usize = 5;
 const AFFORDABLE: f64 = 40.0;
 const WORTH_WHILE: f64 = 1e-3;
 
+/// A method is not run at finer steps once so many of them in a row have brought no smaller error: there it is rounding.
+const IDLE: usize = 2;
+
 /// How far a scale goes.
 #[derive(Clone, Copy)]
 pub(super) struct Budget {
@@ -52,7 +55,7 @@ pub(super) struct Found {
     pub(super) ending: String,
 }
 
-/// Every method that takes the case, each from coarse to fine.
+/// Every method that takes the case, each from coarse to fine: the runs end where finer steps [bring nothing](is_settled).
 pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, Error> {
     let mut names: Vec<String> = without_projections().iter().map(|method| method.name()).collect();
     names.extend(SCHEMES.into_iter().chain(TAKEN_BACK).map(String::from));
@@ -99,6 +102,20 @@ pub(super) fn contestant(family: &[Entry], found: &[Found]) -> Option<Contestant
     let base = name.split(':').next().unwrap_or(&name).to_owned();
     let name = if method.tolerance().is_some() { base } else { name };
     Some(Contestant { name, runs: found.iter().map(|found| found.run.clone()).collect() })
+}
+
+/// Whether the last `IDLE` of the runs of a family, from coarse to fine, have brought no smaller median error to any horizon.
+pub(super) fn is_settled(case: &Case, found: &[Found]) -> bool {
+    let common = case.horizons.iter().filter(|horizon| **horizon <= LONG).count();
+    let Some(before) = found.len().checked_sub(IDLE).filter(|before| *before > 0) else { return false };
+    let least = |runs: &[Found], horizon: usize| {
+        let medians = runs.iter().filter_map(|one| one.run.errors(horizon)).map(|errors| errors.median);
+        medians.fold(f64::INFINITY, f64::min)
+    };
+    (0..common).all(|horizon| {
+        let known = least(&found[..before], horizon);
+        known.is_finite() && least(&found[before..], horizon) >= known
+    })
 }
 
 impl Entry {

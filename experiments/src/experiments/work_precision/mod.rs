@@ -33,10 +33,16 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             parts.push((k, family));
         }
     }
-    let found = context.in_parallel(parts, |(k, family)| {
-        let mut time = None;
-        let runs = family.iter().map(|entry| entry.measure(&cases[k], &motions[k], &mut time));
-        runs.collect::<Result<Vec<_>, _>>().map(|runs| (k, family, runs))
+    let found: Vec<Result<_, Error>> = context.in_parallel(parts, |(k, family)| {
+        let (mut time, mut runs) = (None, Vec::new());
+        for entry in &family {
+            runs.push(entry.measure(&cases[k], &motions[k], &mut time)?);
+            // the next ones would cost more for no more
+            if entry::is_settled(&cases[k], &runs) {
+                break;
+            }
+        }
+        Ok((k, family, runs))
     });
     let mut errors = tables::errors();
     let mut contests: Vec<Contest> = cases
