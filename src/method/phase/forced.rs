@@ -1,0 +1,88 @@
+//! Under forces: how much of the growth is not as that of the free body.
+
+use core::f64::consts::TAU;
+
+use super::PhaseError;
+use super::drift::{PhaseDrift, SHORT_RUN, Until, read};
+use super::undo::{Undo, inverse_norm_of};
+use crate::body::{Body, Clock, Point};
+use crate::method::taylor::AdaptiveTaylor;
+use crate::method::{AnyMethod, Step, StepError};
+use crate::num::Dd;
+use crate::rotation::rotation_angle;
+
+/// Where more of the growth is another than that of the free body, nothing is predicted.
+pub(super) const MOST_LEFT: f64 = 0.01;
+
+/// Looks at the last third of the run.
+const LOOKS: u64 = 16;
+
+/// Turns of a body whose momentum stands still, in place of periods.
+const TURNS: f64 = 3.0;
+
+/// A method and the true motion under the same forces.
+pub(super) struct Forced {
+    force: String,
+    body: Body,
+    clock: Clock,
+    steps: Box<dyn Step<Dd>>,
+    truth: Box<dyn Step<Dd>>,
+}
+
+impl Forced {
+    /// `None` where nothing acts on `body`.
+    pub(super) fn new(
+        method: &dyn AnyMethod,
+        body: &Body,
+        clock: Clock,
+    ) -> Result<Option<Forced>, StepError> {
+        let Some(force) = body.forces().first() else { return Ok(None) };
+        Ok(Some(Forced {
+            force: force.name().into(),
+            steps: method.prepare_dd(clock, body)?,
+            truth: AdaptiveTaylor::to_rounding().prepare_dd(clock, body)?,
+            body: body.clone(),
+            clock,
+        }))
+    }
+
+    /// `drift`, of the free body, with the share of the growth that is left where its departure is taken back from a run as long as its own,
+    /// and the time to which it holds: where energy or L change slowly, the share grows in proportion.
+    pub(super) fn bounded(
+        &mut self,
+        start: Point<Dd>,
+        mut drift: PhaseDrift,
+    ) -> Result<PhaseDrift, PhaseError> {
+        let refused = |share| PhaseError::Force { force: self.force.clone(), share };
+        let Ok(character) = drift.motion.character() else { return Err(refused(f64::INFINITY)) };
+        let span = character.polhode_period.map_or(TURNS * TAU / character.spin, |period| SHORT_RUN * period);
+        let end = libm::ceil(span / self.clock.step.abs()) as u64;
+        let stride = (end / (3 * LOOKS)).max(1);
+        let (mut x, mut exact) = (start, start);
+        self.steps.open(&mut x);
+        self.truth.open(&mut exact);
+        let mut undo = Undo::new(&self.body.rotor());
+        let (mut share, mut until): (f64, f64) = (0.0, f64::INFINITY);
+        for look in 0..LOOKS {
+            let more = if look == 0 { end.saturating_sub((LOOKS - 1) * stride).max(1) } else { stride };
+            self.steps.advance(&mut x, more);
+            self.truth.advance(&mut exact, more);
+            let (steps, t) = (x.steps(), self.clock.elapsed(x.steps()));
+            let mut point = read(self.steps.as_mut(), &x)?;
+            let departure = drift.departure_at(t);
+            undo.tilt(&mut point, departure.tilt);
+            let (at, inverse_norm) = (self.clock.at(steps), inverse_norm_of(&point));
+            undo.shift_and_twist(at, &mut point, [departure.shift, departure.twist], inverse_norm);
+            let left = rotation_angle(point.attitude, read(self.truth.as_mut(), &exact)?.attitude).hi();
+            let grown = drift.grown(t);
+            share = share.max(left / (grown.shift.hi().abs() * character.spin + grown.twist.hi().abs()));
+            until = t.hi().abs() * MOST_LEFT / share;
+        }
+        if share > MOST_LEFT {
+            return Err(refused(share));
+        }
+        (drift.doubt, drift.until) =
+            (drift.doubt.max(share), Some(Until { force: self.force.clone(), t: until }));
+        Ok(drift)
+    }
+}
