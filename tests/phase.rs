@@ -1,7 +1,7 @@
 //! The phase error: predicted rates beside long runs, and what is left where it is taken back.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::body::{Body, Point, State};
+use polhode::body::{Body, Force, Point, State};
 use polhode::flow::{Departure, FreeMotion};
 use polhode::inertia::Inertia;
 use polhode::laws::check;
@@ -123,7 +123,8 @@ fn where_nothing_can_be_predicted_it_says_so() {
         Err(PhaseError::Separatrix | PhaseError::Unsettled { .. })
     ));
     let heavy = Body::heavy(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap(), Vector3::z()).unwrap();
-    assert!(matches!(of(&heavy, [0.4, 1.0, -0.3], 0.01), Err(PhaseError::Force { .. })));
+    let strong = of(&heavy, [0.4, 1.0, -0.3], 0.01);
+    assert!(matches!(strong, Err(PhaseError::Force { share, .. }) if share > 0.1), "{strong:?}");
     // so coarse next to the separatrix lie-poisson is chaotic: its first periods look like lines, those that follow do not
     let coarse = method("lie-poisson").unwrap().phase(
         &racket,
@@ -253,6 +254,47 @@ fn what_has_no_phase_error_to_take_back_is_refused() {
     let heavy = Body::heavy(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap(), Vector3::z()).unwrap();
     assert!(matches!(
         Run::new(&method("two-turn+phase").unwrap(), &heavy, &start, 0.01),
-        Err(RunError::Step(_))
+        Err(RunError::Phase(PhaseError::Force { .. }))
     ));
+}
+
+/// What grows under a weak gravity gradient is that of the free body, but for a share that the start tells.
+#[test]
+fn weak_forces_leave_a_share_of_the_growth() {
+    let (free, start) = case(0);
+    let under = |rate: f64| free.clone().with(Force::gravity_gradient(rate, 0.0).unwrap());
+    let body = under(0.01);
+    let end = |name: &str, h: f64| {
+        let mut run = Run::new(&method(name).unwrap(), &body, &start, h).unwrap();
+        run.advance_to((1000.0 / h) as u64).unwrap().state.rotation()
+    };
+    let truth = end("taylor", 1000.0);
+    for name in ["two-turn", "rattle"] {
+        let drift = method(name).unwrap().phase(&body, &start, 0.05).unwrap();
+        let [error, left] =
+            [name.to_owned(), format!("{name}+phase")].map(|name| end(&name, 0.05).angle_to(&truth));
+        assert!(left < 0.005 * error, "{name}: {error} {left}");
+        assert!((drift.attitude_error(1e3).unwrap() / error - 1.0).abs() < 0.005, "{name}: {error}");
+        assert!(drift.holds_until() > 1e3, "{name}: {}", drift.holds_until());
+    }
+    // the share falls with the force
+    let of = |rate| method("rattle").unwrap().phase(&under(rate), &start, 0.05);
+    let [more, less] = [0.02, 0.002].map(|rate| of(rate).unwrap().doubt());
+    assert!(less < 0.1 * more && more < 0.01, "{more} {less}");
+    let strong = of(0.5);
+    assert!(matches!(strong, Err(PhaseError::Force { share, .. }) if share > 0.01), "{strong:?}");
+    // longer than they have shown to be weak
+    let until = of(0.02).unwrap().holds_until();
+    let mut run = Run::new(&method("rattle+phase").unwrap(), &under(0.02), &start, 0.05).unwrap();
+    assert!(run.advance_to((0.99 * until / 0.05) as u64).is_ok());
+    let late = run.advance_to((1.01 * until / 0.05) as u64);
+    assert!(matches!(late, Err(RunError::Phase(PhaseError::Late { .. }))), "{late:?}");
+    // steps are those of the base
+    let states = ["rattle", "rattle+phase"].map(|name| {
+        let method = method(name).unwrap();
+        let mut run = Run::new(&method, &body, &start, 0.05).unwrap();
+        let _ = run.advance_to(1000).unwrap();
+        run.checkpoint().to_string().replace("+phase", "")
+    });
+    assert_eq!(states[0], states[1]);
 }

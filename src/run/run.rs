@@ -228,7 +228,8 @@ impl Run {
     /// # Errors
     /// [`RunError::Diverged`], [`RunError::Force`] and [`RunError::Stuck`] with the last finite sample;
     /// [`RunError::Unsolved`] with the sample at which it was noticed, up to 4096 steps after the step that failed;
-    /// [`RunError::OutOfRange`]; [`RunError::Behind`] where the run is further on already.
+    /// [`RunError::OutOfRange`]; [`RunError::Phase`] where forces have acted too long on what is taken back at output;
+    /// [`RunError::Behind`] where the run is further on already.
     pub fn advance_to(&mut self, steps: u64) -> Result<Sample, RunError> {
         self.go_to(steps)?;
         self.finite_sample().map(|sample| *sample)
@@ -300,6 +301,9 @@ impl Run {
     /// The sample at the current step, if it is finite in the units of the body.
     pub(super) fn finite_sample(&mut self) -> Result<Box<Sample>, RunError> {
         self.read();
+        if let Some(refusal) = self.step.refusal() {
+            return Err(refusal.clone().into());
+        }
         let sample = self.sample();
         if sample.is_finite() {
             Ok(Box::new(sample))

@@ -45,7 +45,8 @@ pub struct Judged {
     pub last: Sample,
     /// What became of the run: that the attitude was lost before what came after.
     pub ending: Ending,
-    /// Evaluations that a method counts which chooses its steps, else those that it claims, of all kinds together.
+    /// Evaluations that a method counts which chooses its steps, else those that it claims, of all kinds together; zero where nothing is
+    /// claimed.
     pub evaluations: u64,
 }
 

@@ -1,7 +1,6 @@
 //! The phase error of a method, predicted before the run.
 
 use polhode::method::PhaseDrift as Drift;
-use polhode::num::Real;
 use pyo3::prelude::*;
 
 use crate::arrays::Order;
@@ -57,6 +56,12 @@ impl PhaseDrift {
         self.0.attitude_error(t).map_err(refused)
     }
 
+    /// The time to which it holds, s: infinite of a free body.
+    #[getter]
+    fn holds_until(&self) -> f64 {
+        self.0.holds_until()
+    }
+
     /// What rounding adds to the attitude after the time t, s, by order of magnitude, rad.
     fn rounding(&self, t: f64) -> f64 {
         self.0.rounding(t)
@@ -67,8 +72,8 @@ impl PhaseDrift {
     }
 }
 
-/// How fast the attitude error of `method` grows from the start of a free `body` with steps of `step` s, from one short run: of methods
-/// that keep energy and |m| within bounds.
+/// How fast the attitude error of `method` grows from the start of `body` with steps of `step` s, from one short run: of methods
+/// that keep energy and |m| of a free body within bounds. Under weak forces it holds to a time; strong ones are refused.
 ///
 /// The start is that of `FreeMotion`. `run(method + "+phase", ...)` takes it back at output.
 ///

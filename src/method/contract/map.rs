@@ -246,7 +246,8 @@ pub trait Step<S: Real>: Send {
     /// As [`Map::stuck`].
     fn stuck(&self) -> Option<Stuck>;
 
-    /// Why steps cannot be taken from the state that was [opened](Self::open); its form is not finite then.
+    /// Why steps cannot be taken from the state that was [opened](Self::open), or why there is no [reading](Self::reading); the state is not
+    /// finite then.
     fn refusal(&self) -> Option<&PhaseError> {
         None
     }

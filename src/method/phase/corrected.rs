@@ -2,18 +2,24 @@
 
 use super::PhaseError;
 use super::drift::{PhaseDrift, TAKEN_BACK, check, drift};
+use super::forced::Forced;
+use super::undo::{Undo, inverse_norm_of};
 use crate::body::{Body, Clock, Evaluated, Point, Problem, Time};
-use crate::flow::{Casimir, Departure, Flow, FreeFlow, direction, smallest_turn};
+use crate::flow::{Departure, direction};
 use crate::method::{AnyMethod, Claimed, Claims, SideBySide, Step, StepError, Stuck, Work};
 use crate::num::{Dd, Precise};
-use crate::rotation::{Quat, Vec3};
+use crate::rotation::Vec3;
 
-/// A method whose departure from the exact motion is taken back at output, of free bodies.
+/// A method whose departure from the exact motion is taken back at output.
 ///
 /// The steps are those of the base, bit for bit. Before the first one a short run predicts the [departure](super::PhaseDrift::departure):
 /// how fast shift in time and twist about L grow, and how they and the energy oscillate with the period of the momentum. At each output
 /// the state is turned back to its polhode, goes back by the exact free motion by the shift, and is turned back about L by the twist.
 /// What rounding has added stays, and so do harmonics beyond those of the short run.
+///
+/// Under weak forces shift and twist grow as those of the free body, but for a share that is measured at the start, from a short run beside
+/// Taylor series: they are taken back, and what oscillates stays. More than a hundredth is refused, and so are readings [after
+/// which](super::PhaseDrift::holds_until) it would be more, were the forces to go on as in the short run. Nothing is claimed of such runs.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -86,15 +92,13 @@ impl PhaseCorrected {
         clock: Clock,
         body: &Body,
     ) -> Result<CorrectedStep<S>, StepError> {
-        if let Some(force) = body.forces().first() {
-            let (method, force) = (self.name(), force.name().into());
-            return Err(StepError::Refused { method, force, problem: body.problem() });
-        }
+        let free = Body::free(body.inertia().clone());
         Ok(CorrectedStep {
             base,
-            precise: self.base.prepare_dd(clock, body)?,
-            flow: FreeFlow::new(&body.rotor()),
-            body: body.clone(),
+            precise: self.base.prepare_dd(clock, &free)?,
+            forced: Forced::new(self.base.as_ref(), body, clock)?,
+            undo: Undo::new(&body.rotor()),
+            body: free,
             clock,
             opened: 0,
             taken_back: None,
@@ -106,9 +110,11 @@ impl PhaseCorrected {
 /// Steps of the base, and what is taken back where they are read.
 struct CorrectedStep<S> {
     base: Box<dyn Step<S>>,
-    /// The base once more, for the short run.
+    /// The base once more, for the short run of the free body.
     precise: Box<dyn Step<Dd>>,
-    flow: FreeFlow<S>,
+    forced: Option<Forced>,
+    undo: Undo<S>,
+    /// On which nothing acts.
     body: Body,
     clock: Clock,
     /// Steps taken when it was opened.
@@ -128,36 +134,18 @@ struct TakenBack {
     inverse_norm: Dd,
 }
 
-/// Rounds for the axis of the tilt, which is that of the state without it: each is nearer by the tilt.
-const TILT_ROUNDS: usize = 8;
-
-impl<S: Evaluated + Precise> CorrectedStep<S> {
-    /// Turned back to the L of the start, along `along`, and by `tilt` (rad) about ṁ as it is without it.
-    fn upright(&self, mut point: Point<S>, along: Vec3<Dd>, tilt: Dd) -> Point<S> {
-        let lean = smallest_turn(along.map(S::from_dd), direction(point.momentum_space()));
-        point.attitude = lean.conjugate() * point.attitude;
-        let inverse = self.body.rotor().inverse_moments();
-        let (sin, cos) = (S::from_dd(tilt) * S::of(0.5)).sin_cos();
-        let mut turn = Quat::identity();
-        for _ in 0..TILT_ROUNDS {
-            let m = turn.rotate(point.momentum_body);
-            let speed: Vec3<S> = m.cross(m.times(inverse));
-            turn = Quat::new(cos, direction(speed) * sin);
-        }
-        point.attitude = point.attitude * turn.conjugate();
-        point.momentum_body = turn.rotate(point.momentum_body);
-        point
-    }
-}
-
 impl<S: Evaluated + Precise> Step<S> for CorrectedStep<S> {
     fn open(&mut self, x: &mut Point<S>) {
         self.opened = x.steps();
         let start = Point::new(x.attitude.map(S::to_dd), x.momentum_body.map(S::to_dd));
-        match drift(&self.body, start, self.precise.as_mut(), self.clock) {
+        let known = drift(&self.body, start, self.precise.as_mut(), self.clock);
+        let known = known.and_then(|drift| match &mut self.forced {
+            Some(forced) => forced.bounded(start, drift),
+            None => Ok(drift),
+        });
+        match known {
             Ok(drift) => {
-                let norm = start.momentum_body.norm();
-                let inverse_norm = if norm == Dd::ZERO { Dd::ZERO } else { Dd::ONE / norm };
+                let inverse_norm = inverse_norm_of(&start);
                 let (period, along) = (drift.period(), direction(start.momentum_space()));
                 (self.taken_back, self.refusal) =
                     (Some(TakenBack { drift, period, along, inverse_norm }), None);
@@ -180,17 +168,29 @@ impl<S: Evaluated + Precise> Step<S> for CorrectedStep<S> {
         let Some(TakenBack { drift, period, along, inverse_norm }) = &self.taken_back else { return point };
         let elapsed = self.clock.elapsed(x.steps()) - self.clock.elapsed(self.opened);
         let at = self.clock.at(x.steps());
+        let mut point = point;
+        if self.forced.is_some() {
+            if let Err(late) = drift.check(elapsed.hi()) {
+                point.momentum_body = point.momentum_body * S::of(f64::NAN);
+                self.refusal = Some(late);
+                return point;
+            }
+            // L and the energy change, and with them the phase of what oscillates: shift and twist grow all the same
+            let Departure { shift, twist, .. } = drift.grown(elapsed);
+            let inverse_norm = inverse_norm_of(&point);
+            self.undo.shift_and_twist(at, &mut point, [shift, twist], inverse_norm);
+            return point;
+        }
         let Departure { mut shift, mut twist, tilt, .. } = drift.departure_at(elapsed);
-        let mut point = self.upright(point, *along, tilt);
+        self.undo.lean(&mut point, *along);
+        self.undo.tilt(&mut point, tilt);
         if let Some([period, turn]) = *period {
             // Whole periods are a turn about L. The free motion of the state has another energy by a rounding, and another period than
             // that of the start: over many of them it would carry the state away from where it belongs.
             let periods = (shift / period).round();
             (shift, twist) = (shift - periods * period, twist + periods * turn);
         }
-        self.flow.flow(at, S::from_dd(-shift), &mut point);
-        let twist = twist - (twist / Dd::TAU).round() * Dd::TAU;
-        Casimir::new(S::from_dd(*inverse_norm)).flow(at, S::from_dd(-twist), &mut point);
+        self.undo.shift_and_twist(at, &mut point, [shift, twist], *inverse_norm);
         point
     }
 

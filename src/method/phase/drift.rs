@@ -1,9 +1,10 @@
 //! How fast shift and twist grow, from one short run.
 
 use super::PhaseError;
+use super::forced::{self, Forced};
 use super::harmonics::Harmonics;
 use crate::body::{Body, Clock, Point, Problem, State};
-use crate::flow::{Departure, FreeMotion, Mode, TimeError};
+use crate::flow::{Departure, FreeMotion, Mode};
 use crate::method::{AnyMethod, Energy, SOLVED, Step};
 use crate::num::{Dd, Precise, Real};
 
@@ -34,6 +35,9 @@ const HALF_PERIODS: f64 = 3.0;
 /// So many times the short run goes on beyond the fit, and at so many looks it must be as predicted.
 const BEYOND: f64 = 2.0;
 const LOOKS_BEYOND: u64 = 48;
+
+/// Periods of the momentum that it takes altogether.
+pub(super) const SHORT_RUN: f64 = 0.5 * HALF_PERIODS * (1.0 + BEYOND);
 
 /// Fewest steps in half a period.
 const FEW_STEPS: f64 = 4.0;
@@ -67,9 +71,22 @@ const DOUBLINGS: u32 = 6;
 pub struct PhaseDrift {
     rates: [Dd; 2],
     oscillation: Option<Oscillation>,
-    doubt: f64,
+    pub(super) doubt: f64,
+    /// Under forces.
+    pub(super) until: Option<Until>,
     step: f64,
-    motion: FreeMotion,
+    pub(super) motion: FreeMotion,
+}
+
+/// Under which forces it holds, and to which time (s).
+#[derive(Clone, Debug)]
+pub(super) struct Until {
+    pub(super) force: String,
+    pub(super) t: f64,
+    pub(super) body: Body,
+    pub(super) start: Point<f64>,
+    /// Time of the start, s.
+    pub(super) from: f64,
 }
 
 /// What does not grow, of shift, twist and tilt.
@@ -122,9 +139,14 @@ impl PhaseDrift {
         self.departure_at(Dd::of(t))
     }
 
+    /// What has grown of it after the time `t` (s).
+    pub(super) fn grown(&self, t: Dd) -> Departure {
+        Departure::grown(self.rates, t)
+    }
+
     /// As [`departure`](Self::departure).
     pub(super) fn departure_at(&self, t: Dd) -> Departure {
-        let mut departure = Departure::grown(self.rates, t);
+        let mut departure = self.grown(t);
         if let Some(oscillation) = &self.oscillation {
             let [shift, twist, tilt] = oscillation.after(t, departure.shift).map(Dd::of);
             (departure.shift, departure.twist, departure.tilt) =
@@ -136,11 +158,36 @@ impl PhaseDrift {
     /// The attitude error after the time `t` (s), without oscillations and rounding, rad.
     ///
     /// # Errors
-    /// A time that is not finite, or beyond the [reach](FreeMotion::reach) of the exact motion.
-    pub fn attitude_error(&self, t: f64) -> Result<f64, TimeError> {
+    /// A time that is not finite, or beyond the [reach](FreeMotion::reach) of the exact motion; under forces one [to
+    /// which](Self::holds_until) it does not hold.
+    pub fn attitude_error(&self, t: f64) -> Result<f64, PhaseError> {
         self.motion.check_time(t)?;
-        let t = Dd::of(t);
-        Ok(self.motion.attitude_error_of(t, Departure::grown(self.rates, t)))
+        self.check(t)?;
+        let grown = self.grown(Dd::of(t));
+        match &self.until {
+            // by how much a shift turns depends on where the body is
+            Some(Until { body, start, from, .. }) => {
+                forced::turned(body, *start, Clock { start: *from, step: t }, grown)
+            }
+            None => Ok(self.motion.attitude_error_of(Dd::of(t), grown)),
+        }
+    }
+
+    /// The time to which it holds, s: infinite of a free body; under forces that at which a hundredth of the growth is another, where what
+    /// the short run shows of them goes on in proportion.
+    #[must_use]
+    pub fn holds_until(&self) -> f64 {
+        self.until.as_ref().map_or(f64::INFINITY, |until| until.t)
+    }
+
+    /// Refuses times to which it does not hold.
+    pub(super) fn check(&self, t: f64) -> Result<(), PhaseError> {
+        match &self.until {
+            Some(Until { force, t: until, .. }) if t.abs() > *until => {
+                Err(PhaseError::Late { t, force: force.clone(), until: *until })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// What rounding adds to the attitude of a run in doubles after the time `t` (s), by order of magnitude, rad.
@@ -171,19 +218,31 @@ impl PhaseDrift {
 impl dyn AnyMethod {
     /// How fast the attitude error of this method grows from `start` with the step `h` (s): shift and twist, from one short run in
     /// double-double over some three halves of a period of the momentum, from which oscillations of its period are taken off. The run
-    /// goes on for three periods more, and must depart as predicted.
+    /// goes on for three periods more, and must depart as predicted. Under forces it is that of the free body, and another short run, beside
+    /// Taylor series, tells which share of the growth is another.
     ///
     /// # Errors
-    /// A method that does not keep energy and |m| in bounds, by its claims; a body on which forces act; a step or a start that is
+    /// A method that does not keep energy and |m| in bounds, by its claims; forces under which more than a hundredth of the growth is another
+    /// than that of the free body; a step or a start that is
     /// not usable; where no prediction holds: on the separatrix, and so near it or with steps so long that shift and
     /// twist do not grow linearly within the short run.
     pub fn phase(&self, body: &Body, start: &State, h: f64) -> Result<PhaseDrift, PhaseError> {
+        self.phase_by_clock(body, start, Clock::new(h))
+    }
+
+    /// As [`phase`](Self::phase), from a time on which forces may depend.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn phase_by_clock(&self, body: &Body, start: &State, clock: Clock) -> Result<PhaseDrift, PhaseError> {
         check(self)?;
-        if let Some(force) = body.forces().first() {
-            return Err(PhaseError::Force { force: force.name().into() });
+        let (free, start) = (Body::free(body.inertia().clone()), body.enter(start)?);
+        let mut step = self.prepare_dd(clock, &free)?;
+        let drift = drift(&free, start, step.as_mut(), clock)?;
+        match Forced::new(self, body, clock)? {
+            Some(mut forced) => forced.bounded(start, drift),
+            None => Ok(drift),
         }
-        let mut step = self.prepare_dd(Clock::new(h), body)?;
-        drift(body, body.enter(start)?, step.as_mut(), Clock::new(h))
     }
 }
 
@@ -216,6 +275,7 @@ pub(super) fn drift(
             rates: [Dd::ZERO; 2],
             oscillation: None,
             doubt: 0.0,
+            until: None,
             step: clock.step,
             motion,
         });
@@ -241,7 +301,7 @@ pub(super) fn drift(
         let stride = (libm::ceil(span / looks as f64) as u64).max(1);
         let run = ShortRun::new(&motion, start, step, clock, stride, looks)?;
         if let Some((rates, doubt)) = run.linear(radians) {
-            return Ok(PhaseDrift { rates, oscillation: None, doubt, step: clock.step, motion });
+            return Ok(PhaseDrift { rates, oscillation: None, doubt, until: None, step: clock.step, motion });
         }
         state = run.state;
         let Some(half) = half else { continue };
@@ -270,7 +330,8 @@ pub(super) fn drift(
     let Some(oscillation) = best.filter(|_| doubt <= MOST_DOUBT) else { return Err(unsettled(doubt)) };
     let [shift, twist, _] = oscillation.harmonics.slopes;
     let rates = [shift, twist].map(Dd::of);
-    let mut drift = PhaseDrift { rates, oscillation: Some(oscillation), doubt, step: clock.step, motion };
+    let (oscillation, until) = (Some(oscillation), None);
+    let mut drift = PhaseDrift { rates, oscillation, doubt, until, step: clock.step, motion };
     // two fits agree where the fitted part is like a line by chance
     let stride = (libm::ceil(BEYOND * span / LOOKS_BEYOND as f64) as u64).max(1);
     for _ in 0..LOOKS_BEYOND {
@@ -286,7 +347,7 @@ pub(super) fn drift(
 }
 
 /// What `step` reads of `x`.
-fn read(step: &mut dyn Step<Dd>, x: &Point<Dd>) -> Result<Point<Dd>, PhaseError> {
+pub(super) fn read(step: &mut dyn Step<Dd>, x: &Point<Dd>) -> Result<Point<Dd>, PhaseError> {
     let point = step.reading(x);
     if !point.is_finite() || step.worst_residual() > SOLVED {
         return Err(PhaseError::Diverged { steps: x.steps() });

@@ -3,7 +3,9 @@
 use thiserror::Error;
 
 use super::drift::{MOST_DOUBT, MOST_STEPS};
+use super::forced::MOST_LEFT;
 use crate::body::StateError;
+use crate::flow::TimeError;
 use crate::method::StepError;
 
 /// Why the phase error of a method cannot be predicted.
@@ -27,12 +29,33 @@ pub enum PhaseError {
         /// Name of the method.
         method: String,
     },
-    /// A force acts.
-    #[error("the phase error is predicted of free bodies, and {force} acts")]
+    /// Forces are strong.
+    #[error(
+        "the phase error is predicted of the free body, and under {force} a share of {share:.1e} of its growth is another, more than \
+         {MOST_LEFT:e}: nothing is predicted"
+    )]
     Force {
-        /// Name of the force.
+        /// Name of the first force.
         force: String,
+        /// Of the growth, from a short run beside the true motion.
+        share: f64,
     },
+    /// Forces have acted for long.
+    #[error(
+        "under {force} the phase error is predicted to {until:.3e} s, where a hundredth of its growth may be another than that of the \
+         free body, and {t:e} s are asked"
+    )]
+    Late {
+        /// The time, s.
+        t: f64,
+        /// Name of the first force.
+        force: String,
+        /// The last time that has an answer, s.
+        until: f64,
+    },
+    /// The time has no answer.
+    #[error(transparent)]
+    Time(#[from] TimeError),
     /// The method takes no such steps of this body.
     #[error(transparent)]
     Step(#[from] StepError),

@@ -6,6 +6,7 @@ use super::PhaseError;
 use super::drift::{PhaseDrift, SHORT_RUN, Until, read};
 use super::undo::{Undo, inverse_norm_of};
 use crate::body::{Body, Clock, Point};
+use crate::flow::Departure;
 use crate::method::taylor::AdaptiveTaylor;
 use crate::method::{AnyMethod, Step, StepError};
 use crate::num::Dd;
@@ -26,7 +27,8 @@ pub(super) struct Forced {
     body: Body,
     clock: Clock,
     steps: Box<dyn Step<Dd>>,
-    truth: Box<dyn Step<Dd>>,
+    /// In doubles: where the growth is not far beyond their rounding, it is refused.
+    truth: Box<dyn Step<f64>>,
 }
 
 impl Forced {
@@ -40,7 +42,7 @@ impl Forced {
         Ok(Some(Forced {
             force: force.name().into(),
             steps: method.prepare_dd(clock, body)?,
-            truth: AdaptiveTaylor::to_rounding().prepare_dd(clock, body)?,
+            truth: AdaptiveTaylor::to_rounding().prepare_f64(clock, body)?,
             body: body.clone(),
             clock,
         }))
@@ -58,7 +60,7 @@ impl Forced {
         let span = character.polhode_period.map_or(TURNS * TAU / character.spin, |period| SHORT_RUN * period);
         let end = libm::ceil(span / self.clock.step.abs()) as u64;
         let stride = (end / (3 * LOOKS)).max(1);
-        let (mut x, mut exact) = (start, start);
+        let (mut x, mut exact) = (start, start.to_f64());
         self.steps.open(&mut x);
         self.truth.open(&mut exact);
         let mut undo = Undo::new(&self.body.rotor());
@@ -73,7 +75,11 @@ impl Forced {
             undo.tilt(&mut point, departure.tilt);
             let (at, inverse_norm) = (self.clock.at(steps), inverse_norm_of(&point));
             undo.shift_and_twist(at, &mut point, [departure.shift, departure.twist], inverse_norm);
-            let left = rotation_angle(point.attitude, read(self.truth.as_mut(), &exact)?.attitude).hi();
+            let truth = self.truth.reading(&exact);
+            if !truth.is_finite() {
+                return Err(PhaseError::Diverged { steps });
+            }
+            let left = rotation_angle(point.attitude, truth.to_dd().attitude).hi();
             let grown = drift.grown(t);
             share = share.max(left / (grown.shift.hi().abs() * character.spin + grown.twist.hi().abs()));
             until = t.hi().abs() * MOST_LEFT / share;
@@ -81,8 +87,26 @@ impl Forced {
         if share > MOST_LEFT {
             return Err(refused(share));
         }
-        (drift.doubt, drift.until) =
-            (drift.doubt.max(share), Some(Until { force: self.force.clone(), t: until }));
+        let (force, body, start) = (self.force.clone(), self.body.clone(), start.to_f64());
+        drift.doubt = drift.doubt.max(share);
+        drift.until = Some(Until { force, t: until, body, start, from: self.clock.start });
         Ok(drift)
     }
+}
+
+/// By how much shift and twist of `departure` turn `body` where it is after one step of `clock`, rad.
+pub(super) fn turned(
+    body: &Body,
+    start: Point<f64>,
+    clock: Clock,
+    departure: Departure,
+) -> Result<f64, PhaseError> {
+    let mut point = start;
+    if clock.step != 0.0 {
+        AdaptiveTaylor::to_rounding().prepare_f64(clock, body)?.steps(&mut point, 1);
+    }
+    let (mut moved, inverse_norm) = (point, inverse_norm_of(&point));
+    let forward = [-departure.shift, -departure.twist];
+    Undo::new(&body.rotor()).shift_and_twist(clock.at(1), &mut moved, forward, inverse_norm);
+    Ok(rotation_angle(point.attitude, moved.attitude))
 }

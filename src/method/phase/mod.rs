@@ -8,7 +8,9 @@
 mod corrected;
 mod drift;
 mod error;
+mod forced;
 mod harmonics;
+mod undo;
 
 pub use corrected::PhaseCorrected;
 pub use drift::PhaseDrift;

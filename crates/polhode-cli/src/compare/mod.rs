@@ -80,9 +80,9 @@ pub(crate) struct Compare {
     /// State the place of the scalar in the quaternions of trajectories [default: as named, else found from the rows]
     #[arg(long, value_enum, help_heading = "Reading")]
     quaternion: Option<Order>,
-    /// Predict the attitude error at the end from a short run, of methods that keep energy and |m| of a free body within bounds:
-    /// how fast it grows as a shift in time along the polhode (s/s) and as a twist about L (rad/s). Oscillations and rounding are
-    /// not in it
+    /// Predict the attitude error at the end from a short run, of methods that keep energy and |m| of a free body within bounds,
+    /// without forces or under weak ones: how fast it grows as a shift in time along the polhode (s/s) and as a twist about L
+    /// (rad/s). Oscillations and rounding are not in it
     #[arg(long, help_heading = "Output")]
     phase: bool,
     /// Draw attitude error against processor time to this file
@@ -105,6 +105,7 @@ impl Compare {
         let speed = body.omega_of(&start).norm();
         for entry in &entries {
             self.check_cost(entry, &body, &start, speed, span)?;
+            phase::check(entry, &body, &start, [self.start_time, span])?;
         }
         let trajectories: Vec<Trajectory> = self
             .trajectory
@@ -147,7 +148,7 @@ impl Compare {
             let spent = (time.seconds * steps, time.seconds / time.rk4 * steps);
             let mut row = self.row(&truth, entry, &judged, spent);
             if self.phase {
-                row.extend(phase::cells(entry, &body, &start, span));
+                row.extend(phase::cells(entry, &body, &start, [self.start_time, span]));
             }
             table.push(row);
             if let Some(error) = judged.attitude_error() {

@@ -1,8 +1,9 @@
 //! The predicted phase error of a method, beside what was measured.
 
-use polhode::body::{Body, Point};
-use polhode::method::PhaseError;
+use polhode::body::{Body, Clock, Point};
+use polhode::method::{PhaseError, method};
 use polhode::num::Dd;
+use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Cell, Column, row};
 
 use super::entries::Entry;
@@ -18,14 +19,36 @@ pub(super) fn columns() -> Vec<Column> {
     ]
 }
 
-pub(super) fn cells(entry: &Entry, body: &Body, start: &Point<Dd>, span: f64) -> Vec<Cell> {
+/// Refuses a span over which forces act too long on what is taken back, before the true motion is worked out.
+pub(super) fn check(
+    entry: &Entry,
+    body: &Body,
+    start: &Point<Dd>,
+    [from, span]: [f64; 2],
+) -> Result<(), Error> {
+    let name = entry.method.name();
+    let base = name.strip_suffix("+phase").filter(|_| !body.forces().is_empty());
+    let (Some(base), Some(step)) = (base, entry.step) else { return Ok(()) };
+    let clock = Clock { start: from, step };
+    let drift = method(base).map_err(unexpected)?.phase_by_clock(body, &body.leave(&start.to_f64()), clock);
+    let late = drift.and_then(|drift| match drift.holds_until() < span.abs() {
+        true => drift.attitude_error(span).map(|_| ()),
+        false => Ok(()),
+    });
+    late.map_err(|error| Error::Input(format!("--methods: {name}: {error}")))
+}
+
+pub(super) fn cells(entry: &Entry, body: &Body, start: &Point<Dd>, [from, span]: [f64; 2]) -> Vec<Cell> {
     let Some(step) = entry.step else {
         return row![None::<f64>, None::<f64>, None::<f64>, "none: the method chooses its steps"].to_vec();
     };
-    match entry.method.phase(body, &body.leave(&start.to_f64()), step) {
+    let clock = Clock { start: from, step };
+    match entry.method.phase_by_clock(body, &body.leave(&start.to_f64()), clock) {
         Ok(drift) => {
             let error = drift.attitude_error(span).ok();
-            let known = if error.is_none_or(|error| drift.rounding(span) > error) {
+            let known = if drift.holds_until() < span.abs() {
+                format!("forces are weak to t = {:.3e} s only", drift.holds_until())
+            } else if error.is_none_or(|error| drift.rounding(span) > error) {
                 "below rounding".to_owned()
             } else {
                 format!("rates to {:.1e}", drift.doubt())

@@ -42,7 +42,7 @@ impl Compare {
             worst.momentum_vector,
             worst.momentum_z,
             worst.jacobi,
-            *evaluations,
+            (*evaluations > 0).then_some(*evaluations),
             seconds,
             rk4_steps,
             last.flips,
