@@ -289,6 +289,13 @@ fn weak_forces_leave_a_share_of_the_growth() {
     assert!(run.advance_to((0.99 * until / 0.05) as u64).is_ok());
     let late = run.advance_to((1.01 * until / 0.05) as u64);
     assert!(matches!(late, Err(RunError::Phase(PhaseError::Late { .. }))), "{late:?}");
+    // what oscillates would stay in the state when they are switched
+    let switched =
+        free.clone().with(Force::gravity_gradient(0.01, 0.0).unwrap().during([[1.0, 2.0]]).unwrap());
+    let predicted = method("rattle").unwrap().phase(&switched, &start, 0.05);
+    assert!(matches!(predicted, Err(PhaseError::Switched { .. })), "{predicted:?}");
+    let run = Run::new(&method("rattle+phase").unwrap(), &switched, &start, 0.05);
+    assert!(matches!(run, Err(RunError::Phase(PhaseError::Switched { .. }))));
     // steps are those of the base
     let states = ["rattle", "rattle+phase"].map(|name| {
         let method = method(name).unwrap();

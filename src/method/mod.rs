@@ -61,6 +61,7 @@ pub use lie_poisson_projected::SymmetricProjection;
 pub use linearly_implicit_euler::LinearlyImplicitEuler;
 pub use momentum_euler::MomentumEuler;
 pub use mujoco_rk4::MujocoRk4;
+pub(crate) use phase::throughout;
 pub use phase::{PhaseCorrected, PhaseDrift, PhaseError};
 pub use rattle::{Dmv, Rattle};
 pub use richardson::Richardson;

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use super::phases::Phases;
 use super::{Checkpoint, CheckpointError, RunError, Sample, Schedule, Watch, checkpoint};
 use crate::body::{Body, Clock, Point, State, StateError, Witness};
-use crate::method::{AnyMethod, SOLVED, Step, Work};
+use crate::method::{AnyMethod, SOLVED, Step, Work, throughout};
 use crate::num::Dd;
 use crate::observe::{BLOCK, Errors, Invariants, Monitor};
 
@@ -129,6 +129,9 @@ impl Run {
         let probe = probe(method, &acting, clock, &start)?;
         let (mut step, mut point) = (method.prepare_f64(clock, &acting)?, start);
         phases.check(method, body, clock)?;
+        if step.takes_back() {
+            throughout(body)?;
+        }
         step.open(&mut point);
         if let Some(refusal) = step.refusal() {
             return Err(refusal.clone().into());

@@ -223,9 +223,8 @@ impl dyn AnyMethod {
     ///
     /// # Errors
     /// A method that does not keep energy and |m| in bounds, by its claims; forces under which more than a hundredth of the growth is another
-    /// than that of the free body; a step or a start that is
-    /// not usable; where no prediction holds: on the separatrix, and so near it or with steps so long that shift and
-    /// twist do not grow linearly within the short run.
+    /// than that of the free body, or that are switched; a step or a start that is not usable; where no prediction holds: on the
+    /// separatrix, and so near it or with steps so long that shift and twist do not grow linearly within the short run.
     pub fn phase(&self, body: &Body, start: &State, h: f64) -> Result<PhaseDrift, PhaseError> {
         self.phase_by_clock(body, start, Clock::new(h))
     }
@@ -236,6 +235,7 @@ impl dyn AnyMethod {
     /// As there.
     pub fn phase_by_clock(&self, body: &Body, start: &State, clock: Clock) -> Result<PhaseDrift, PhaseError> {
         check(self)?;
+        throughout(body)?;
         let (free, start) = (Body::free(body.inertia().clone()), body.enter(start)?);
         let mut step = self.prepare_dd(clock, &free)?;
         let drift = drift(&free, start, step.as_mut(), clock)?;
@@ -259,6 +259,14 @@ pub(super) fn check(method: &dyn AnyMethod) -> Result<(), PhaseError> {
         _ => return Ok(()),
     };
     Err(PhaseError::NotKept { method: name, lost })
+}
+
+/// Refuses forces that are switched: what oscillates would stay in the state from then on.
+pub(crate) fn throughout(body: &Body) -> Result<(), PhaseError> {
+    match body.forces().iter().find(|force| force.intervals().is_some()) {
+        Some(force) => Err(PhaseError::Switched { force: force.name().into() }),
+        None => Ok(()),
+    }
 }
 
 /// The rates of steps of `clock` from `start`.

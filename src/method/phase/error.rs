@@ -40,6 +40,12 @@ pub enum PhaseError {
         /// Of the growth, from a short run beside the true motion.
         share: f64,
     },
+    /// A force that is switched.
+    #[error("the phase error is predicted of forces that act throughout, and {force} is switched")]
+    Switched {
+        /// Name of the force.
+        force: String,
+    },
     /// Forces have acted for long.
     #[error(
         "under {force} the phase error is predicted to {until:.3e} s, where a hundredth of its growth may be another than that of the \
@@ -69,7 +75,7 @@ pub enum PhaseError {
     Separatrix,
     /// The short run would be long.
     #[error(
-        "the period of the momentum takes {steps:.1e} steps, more than the {MOST_STEPS:e} of a short run: nothing is predicted; take \
+        "the short run would take {steps:.1e} steps, more than {MOST_STEPS:e}: nothing is predicted; take \
          longer steps"
     )]
     Long {

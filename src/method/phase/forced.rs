@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use super::PhaseError;
-use super::drift::{PhaseDrift, SHORT_RUN, Until, read};
+use super::drift::{MOST_STEPS, PhaseDrift, SHORT_RUN, Until, read};
 use super::undo::{Undo, inverse_norm_of};
 use crate::body::{Body, Clock, Point};
 use crate::flow::Departure;
@@ -59,6 +59,9 @@ impl Forced {
         let Ok(character) = drift.motion.character() else { return Err(refused(f64::INFINITY)) };
         let span = character.polhode_period.map_or(TURNS * TAU / character.spin, |period| SHORT_RUN * period);
         let end = libm::ceil(span / self.clock.step.abs()) as u64;
+        if end as f64 > MOST_STEPS {
+            return Err(PhaseError::Long { steps: end as f64 });
+        }
         let stride = (end / (3 * LOOKS)).max(1);
         let (mut x, mut exact) = (start, start.to_f64());
         self.steps.open(&mut x);
@@ -69,7 +72,8 @@ impl Forced {
             let more = if look == 0 { end.saturating_sub((LOOKS - 1) * stride).max(1) } else { stride };
             self.steps.advance(&mut x, more);
             self.truth.advance(&mut exact, more);
-            let (steps, t) = (x.steps(), self.clock.elapsed(x.steps()));
+            let steps = x.steps();
+            let t = self.clock.elapsed(steps);
             let mut point = read(self.steps.as_mut(), &x)?;
             let departure = drift.departure_at(t);
             undo.tilt(&mut point, departure.tilt);

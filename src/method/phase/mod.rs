@@ -15,4 +15,5 @@ mod undo;
 pub use corrected::PhaseCorrected;
 pub use drift::PhaseDrift;
 pub(super) use drift::TAKEN_BACK;
+pub(crate) use drift::throughout;
 pub use error::PhaseError;
