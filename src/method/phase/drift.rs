@@ -229,7 +229,7 @@ impl dyn AnyMethod {
         self.phase_by_clock(body, start, Clock::new(h))
     }
 
-    /// As [`phase`](Self::phase), from a time on which forces may depend.
+    /// As `phase`, from a time on which forces may depend.
     ///
     /// # Errors
     /// As there.
