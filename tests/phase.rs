@@ -1,7 +1,7 @@
 //! The phase error: predicted rates beside long runs, and what is left where it is taken back.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::body::{Body, Force, Point, State};
+use polhode::body::{Body, Clock, Force, Point, State};
 use polhode::flow::{Departure, FreeMotion};
 use polhode::inertia::Inertia;
 use polhode::laws::check;
@@ -289,6 +289,17 @@ fn weak_forces_leave_a_share_of_the_growth() {
     assert!(run.advance_to((0.99 * until / 0.05) as u64).is_ok());
     let late = run.advance_to((1.01 * until / 0.05) as u64);
     assert!(matches!(late, Err(RunError::Phase(PhaseError::Late { .. }))), "{late:?}");
+    // weak at the start, near the apogee of an eccentric orbit, and strong at its perigee
+    let eccentric = free.clone().with(Force::gravity_gradient(0.02, 0.7).unwrap());
+    let clock = Clock { start: 157.08, step: 0.05 };
+    let drift = method("rattle").unwrap().phase_by_clock(&eccentric, &start, clock).unwrap();
+    assert!(drift.doubt() < 1e-3 && drift.attitude_error(90.0).is_ok(), "{drift:?}");
+    let changed = drift.attitude_error(180.0);
+    assert!(matches!(changed, Err(PhaseError::Changed { change, .. }) if change > 0.01), "{changed:?}");
+    let mut run = Run::by_clock(&method("rattle+phase").unwrap(), &eccentric, &start, clock).unwrap();
+    assert!(run.advance_to(1_800).is_ok());
+    let changed = run.advance_to(3_600);
+    assert!(matches!(changed, Err(RunError::Phase(PhaseError::Changed { .. }))), "{changed:?}");
     // what oscillates would stay in the state when they are switched
     let switched =
         free.clone().with(Force::gravity_gradient(0.01, 0.0).unwrap().during([[1.0, 2.0]]).unwrap());

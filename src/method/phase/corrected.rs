@@ -19,7 +19,8 @@ use crate::rotation::Vec3;
 ///
 /// Under weak forces shift and twist grow as those of the free body, but for a share that is measured at the start, from a short run beside
 /// Taylor series: they are taken back, and what oscillates stays. More than a hundredth is refused, and so are readings [after
-/// which](super::PhaseDrift::holds_until) it would be more, were the forces to go on as in the short run. Nothing is claimed of such runs.
+/// which](super::PhaseDrift::holds_until) it would be more, were the forces to go on as in the short run, and readings of states whose |L| or
+/// distance from the separatrix has changed by a hundredth. Nothing is claimed of such runs.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -170,9 +171,11 @@ impl<S: Evaluated + Precise> Step<S> for CorrectedStep<S> {
         let at = self.clock.at(x.steps());
         let mut point = point;
         if self.forced.is_some() {
-            if let Err(late) = drift.check(elapsed.hi()) {
+            let (t, now) =
+                (elapsed.hi(), Point::new(point.attitude.map(S::to_dd), point.momentum_body.map(S::to_dd)));
+            if let Err(refusal) = drift.check(t).and_then(|()| drift.check_polhode(t, now)) {
                 point.momentum_body = point.momentum_body * S::of(f64::NAN);
-                self.refusal = Some(late);
+                self.refusal = Some(refusal);
                 return point;
             }
             // L and the energy change, and with them the phase of what oscillates: shift and twist grow all the same

@@ -1,7 +1,7 @@
 //! How fast shift and twist grow, from one short run.
 
 use super::PhaseError;
-use super::forced::{self, Forced};
+use super::forced::{self, Forced, MOST_LEFT};
 use super::harmonics::Harmonics;
 use crate::body::{Body, Clock, Point, Problem, State};
 use crate::flow::{Departure, FreeMotion, Mode};
@@ -133,7 +133,7 @@ impl PhaseDrift {
     }
 
     /// How a run departs from the exact motion after the time `t` (s): shift, twist and tilt with their oscillations, as far as the
-    /// short run tells them.
+    /// short run tells them. Under forces it is that of the free body.
     #[must_use]
     pub fn departure(&self, t: f64) -> Departure {
         self.departure_at(Dd::of(t))
@@ -159,7 +159,7 @@ impl PhaseDrift {
     ///
     /// # Errors
     /// A time that is not finite, or beyond the [reach](FreeMotion::reach) of the exact motion; under forces one [to
-    /// which](Self::holds_until) it does not hold.
+    /// which](Self::holds_until) it does not hold, or by which they have changed the polhode by a hundredth.
     pub fn attitude_error(&self, t: f64) -> Result<f64, PhaseError> {
         self.motion.check_time(t)?;
         self.check(t)?;
@@ -167,7 +167,8 @@ impl PhaseDrift {
         match &self.until {
             // by how much a shift turns depends on where the body is
             Some(Until { body, start, from, .. }) => {
-                forced::turned(body, *start, Clock { start: *from, step: t }, grown)
+                let along = |t, point| self.check_polhode(t, point);
+                forced::turned(body, *start, (*from, t), grown, along)
             }
             None => Ok(self.motion.attitude_error_of(Dd::of(t), grown)),
         }
@@ -188,6 +189,25 @@ impl PhaseDrift {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Refuses the state `point` after the time `t` (s), where forces have made its polhode another: the rates were those of the start.
+    pub(super) fn check_polhode(&self, t: f64, point: Point<Dd>) -> Result<(), PhaseError> {
+        let Some(Until { force, body, start, .. }) = &self.until else { return Ok(()) };
+        let now = FreeMotion::from_point(body.inertia(), point);
+        let change = match (self.motion.character(), now.character()) {
+            (Ok(before), Ok(now)) => {
+                let norm = point.momentum_body.norm() / start.to_dd().momentum_body.norm();
+                // 0/0 of a sphere, whose polhodes are points
+                let distance = now.separatrix_distance / before.separatrix_distance;
+                [norm.hi(), distance].into_iter().fold(0.0, |most: f64, ratio| most.max((ratio - 1.0).abs()))
+            }
+            _ => f64::INFINITY,
+        };
+        if change > MOST_LEFT {
+            return Err(PhaseError::Changed { t, force: force.clone(), change });
+        }
+        Ok(())
     }
 
     /// What rounding adds to the attitude of a run in doubles after the time `t` (s), by order of magnitude, rad.

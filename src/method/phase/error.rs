@@ -59,6 +59,19 @@ pub enum PhaseError {
         /// The last time that has an answer, s.
         until: f64,
     },
+    /// Forces have changed the motion.
+    #[error(
+        "under {force} |L| or the distance from the separatrix has changed by a share of {change:.1e} after {t:e} s, more than \
+         {MOST_LEFT:e}: the phase error is no longer that predicted at the start"
+    )]
+    Changed {
+        /// The time, s.
+        t: f64,
+        /// Name of the first force.
+        force: String,
+        /// Relative change, the larger of both.
+        change: f64,
+    },
     /// The time has no answer.
     #[error(transparent)]
     Time(#[from] TimeError),

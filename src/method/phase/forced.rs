@@ -18,6 +18,9 @@ pub(super) const MOST_LEFT: f64 = 0.01;
 /// Looks at the last third of the run.
 const LOOKS: u64 = 16;
 
+/// Times at which the polhode is compared with that of the start.
+const CHECKS: u64 = 64;
+
 /// Turns of a body whose momentum stands still, in place of periods.
 const TURNS: f64 = 3.0;
 
@@ -98,19 +101,28 @@ impl Forced {
     }
 }
 
-/// By how much shift and twist of `departure` turn `body` where it is after one step of `clock`, rad.
+/// By how much shift and twist of `departure` turn `body` where it is `t` s after the time `from`, rad; `check` sees the motion up to there.
 pub(super) fn turned(
     body: &Body,
     start: Point<f64>,
-    clock: Clock,
+    (from, t): (f64, f64),
     departure: Departure,
+    check: impl Fn(f64, Point<Dd>) -> Result<(), PhaseError>,
 ) -> Result<f64, PhaseError> {
+    let clock = Clock { start: from, step: t / CHECKS as f64 };
     let mut point = start;
-    if clock.step != 0.0 {
-        AdaptiveTaylor::to_rounding().prepare_f64(clock, body)?.steps(&mut point, 1);
+    if t != 0.0 {
+        let mut truth = AdaptiveTaylor::to_rounding().prepare_f64(clock, body)?;
+        let mut x = start;
+        truth.open(&mut x);
+        for _ in 0..CHECKS {
+            truth.advance(&mut x, 1);
+            point = truth.reading(&x);
+            check(clock.elapsed(x.steps()).hi(), point.to_dd())?;
+        }
     }
     let (mut moved, inverse_norm) = (point, inverse_norm_of(&point));
     let forward = [-departure.shift, -departure.twist];
-    Undo::new(&body.rotor()).shift_and_twist(clock.at(1), &mut moved, forward, inverse_norm);
+    Undo::new(&body.rotor()).shift_and_twist(clock.at(CHECKS), &mut moved, forward, inverse_norm);
     Ok(rotation_angle(point.attitude, moved.attitude))
 }

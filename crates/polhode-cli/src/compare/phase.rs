@@ -19,7 +19,7 @@ pub(super) fn columns() -> Vec<Column> {
     ]
 }
 
-/// Refuses a span over which forces act too long on what is taken back, before the true motion is worked out.
+/// Refuses a span over which forces do not stay weak on what is taken back, before the true motion is worked out in double-double.
 pub(super) fn check(
     entry: &Entry,
     body: &Body,
@@ -31,11 +31,8 @@ pub(super) fn check(
     let (Some(base), Some(step)) = (base, entry.step) else { return Ok(()) };
     let clock = Clock { start: from, step };
     let drift = method(base).map_err(unexpected)?.phase_by_clock(body, &body.leave(&start.to_f64()), clock);
-    let late = drift.and_then(|drift| match drift.holds_until() < span.abs() {
-        true => drift.attitude_error(span).map(|_| ()),
-        false => Ok(()),
-    });
-    late.map_err(|error| Error::Input(format!("--methods: {name}: {error}")))
+    let lasting = drift.and_then(|drift| drift.attitude_error(span));
+    lasting.map(|_| ()).map_err(|error| Error::Input(format!("--methods: {name}: {error}")))
 }
 
 pub(super) fn cells(entry: &Entry, body: &Body, start: &Point<Dd>, [from, span]: [f64; 2]) -> Vec<Cell> {
@@ -45,15 +42,13 @@ pub(super) fn cells(entry: &Entry, body: &Body, start: &Point<Dd>, [from, span]:
     let clock = Clock { start: from, step };
     match entry.method.phase_by_clock(body, &body.leave(&start.to_f64()), clock) {
         Ok(drift) => {
-            let error = drift.attitude_error(span).ok();
-            let known = if drift.holds_until() < span.abs() {
-                format!("forces are weak to t = {:.3e} s only", drift.holds_until())
-            } else if error.is_none_or(|error| drift.rounding(span) > error) {
-                "below rounding".to_owned()
-            } else {
-                format!("rates to {:.1e}", drift.doubt())
+            let error = drift.attitude_error(span);
+            let known = match &error {
+                Err(error) => format!("none: {error}"),
+                Ok(error) if drift.rounding(span) > *error => "below rounding".to_owned(),
+                Ok(_) => format!("rates to {:.1e}", drift.doubt()),
             };
-            row![error, drift.shift(), drift.twist(), known].to_vec()
+            row![error.ok(), drift.shift(), drift.twist(), known].to_vec()
         }
         Err(error) => {
             let why = match error {
