@@ -4,6 +4,8 @@
 //! is 1, and everything is measured in double-double, so that an exact law shows as 1e-28 and a broken one cannot hide
 //! behind rounding.
 
+use std::path::Path;
+
 use polhode::body::{Body, Clock, Field, Force, Point, Problem, State, Time};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
@@ -14,8 +16,9 @@ use polhode::laws::{
 use polhode::method::schemes::{self, Pairs, Scheme, Stages};
 use polhode::method::{
     AnyMethod, AxisOrder, AxisSplit, Buss, Claimed, Claims, Composed, Cost, Dmv, Energy, ExactFlow,
-    ExactStep, ExplicitEuler, Gauss, ImplicitMidpoint, Kicks, LieGroup, Method, MomentumEuler, MujocoRk4,
-    Rk4, Rk8, SemiImplicitEuler, Splitting, StepError, TwoTurn, VariationalCayley, catalogue, method,
+    ExactStep, ExplicitEuler, Gauss, ImplicitMidpoint, Kicks, LieGroup, Listing, Method, MomentumEuler,
+    MujocoRk4, Rk4, Rk8, SemiImplicitEuler, Splitting, StepError, TwoTurn, VariationalCayley, catalogue,
+    listing, method,
 };
 use polhode::num::{Dd, Real};
 use polhode::observe::Invariants;
@@ -754,5 +757,24 @@ fn a_name_that_is_no_method_is_refused_with_its_reason() {
     assert!(error("rattle@suzuki").contains("there is no scheme"));
     for known in catalogue() {
         assert_eq!(method(&known.name()).unwrap().name(), known.name());
+    }
+}
+
+/// Every name leads to a file that is called so; a variant stands in the file of the method that it varies.
+#[test]
+fn each_method_is_found_by_its_name_among_the_files() {
+    for method in catalogue() {
+        let name = method.name();
+        let base = name.split([':', '@']).next().unwrap();
+        let Listing { file, formula, .. } = listing(&name).unwrap_or_else(|| panic!("{name} is not listed"));
+        let stem = file.strip_prefix("src/method/").unwrap().trim_end_matches(".rs").trim_end_matches("/mod");
+        let variant = base.rsplit_once('-').map_or(base, |(plain, _)| plain);
+        assert!([base, variant].contains(&&*stem.replace('_', "-")), "{name} in {file}");
+        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap();
+        assert!(
+            text.contains(&format!("\"{base}")) || text.contains(&format!("`{base}`")),
+            "{name} in {file}"
+        );
+        assert!(!formula.is_empty() && !formula.contains('|'), "{name}: {formula}");
     }
 }

@@ -235,7 +235,7 @@ fn the_error_does_not_grow_where_it_is_taken_back() {
 
 #[test]
 fn laws_hold_of_what_is_taken_back() {
-    for name in ["rattle+phase", "dmv:10+phase", "two-turn+phase", "implicit-midpoint+phase"] {
+    for name in ["rattle+phase", "two-turn+phase"] {
         let report = check(&method(name).unwrap()).unwrap();
         assert_eq!(report.false_claims().count(), 0, "{report}");
         assert!(report.findings.iter().any(|finding| finding.verdict == polhode::laws::Verdict::Holds));

@@ -395,6 +395,8 @@ fn scaled(mut choice: Choice, finer: f64, smaller: f64) -> Choice {
 mod tests {
     use super::*;
     use crate::inertia::Inertia;
+    // named by their types: names would have all methods compiled into the program of these tests
+    use crate::method::{AdaptiveTaylor, AnyMethod, ExplicitEuler, Rk4};
 
     #[test]
     fn a_finer_setting_takes_as_many_times_the_steps_over_the_same_time() {
@@ -428,18 +430,17 @@ mod tests {
         let mut heed = |_: &Progress| {};
         let mut search = Calibration::new(&top, &demand, reference, (Instant::now(), &mut heed)).unwrap();
         let (apart, whole) = (search.reference.truth().apart(), search.reference.short().unwrap());
-        let candidates = Candidate::all(&top, &demand);
-        let candidate = candidates.iter().find(|candidate| candidate.is_adaptive()).unwrap();
-        let mut run = search.run(candidate, 1e-8, &whole, Some((&Stage::Methods, 0.0))).unwrap();
+        let candidate = Candidate::of(Box::new(AdaptiveTaylor::to_rounding()), top.problem()).unwrap();
+        let mut run = search.run(&candidate, 1e-8, &whole, Some((&Stage::Methods, 0.0))).unwrap();
         run.attitude = 1e-3 * apart;
-        let Predicted { value, factor } = search.expected(candidate, 1e-8, &whole, &run).attitude_error;
+        let Predicted { value, factor } = search.expected(&candidate, 1e-8, &whole, &run).attitude_error;
         assert!(apart > 0.0 && value * factor >= 2.0 * apart, "{value:e} by {factor}, known to {apart:e}");
     }
 
-    /// What `look` finds of the candidate `name` for a free body that turns by 1 rad/s, for `until` s and to 1e-6 rad; `heed` is
+    /// What `look` finds of the candidate `method` for a free body that turns by 1 rad/s, for `until` s and to 1e-6 rad; `heed` is
     /// told how long runs are expected to take.
     fn of<T>(
-        name: &str,
+        method: impl AnyMethod + 'static,
         until: f64,
         heed: &mut dyn FnMut(f64),
         look: impl FnOnce(&mut Calibration<'_>, &Candidate, &Span) -> T,
@@ -452,14 +453,13 @@ mod tests {
         let mut heed = |progress: &Progress| progress.seconds.into_iter().for_each(&mut *heed);
         let mut search = Calibration::new(&body, &demand, reference, (Instant::now(), &mut heed)).unwrap();
         let short = search.reference.short().unwrap();
-        let candidates = Candidate::all(&body, &demand);
-        let candidate = candidates.iter().find(|candidate| candidate.name == name).unwrap();
-        look(&mut search, candidate, &short)
+        let candidate = Candidate::of(Box::new(method), body.problem()).unwrap();
+        look(&mut search, &candidate, &short)
     }
 
     #[test]
     fn the_whole_time_takes_as_many_times_the_steps_of_a_part_as_it_is_longer() {
-        of("rk4", 1024.0, &mut |_| {}, |search, rk4, short| {
+        of(Rk4 { normalized: false }, 1024.0, &mut |_| {}, |search, rk4, short| {
             let run = search.run(rk4, 0.25, short, None).unwrap();
             let choice = search.expected(rk4, 0.25, short, &run);
             assert_eq!((short.horizon, choice.whole_time), (512.0, false));
@@ -469,7 +469,7 @@ mod tests {
 
     #[test]
     fn short_runs_find_a_step_that_meets_the_demand_and_tell_its_error() {
-        of("rk4", 64.0, &mut |_| {}, |search, rk4, short| {
+        of(Rk4 { normalized: false }, 64.0, &mut |_| {}, |search, rk4, short| {
             let found = search.first(rk4, short).unwrap();
             let run = search.run(rk4, found.value, short, None).unwrap();
             let (told, seen) = (found.choice.attitude_error.value, run.attitude);
@@ -480,7 +480,7 @@ mod tests {
 
     #[test]
     fn a_step_that_is_too_long_is_shortened_until_the_demand_is_met() {
-        of("rk4", 64.0, &mut |_| {}, |search, rk4, short| {
+        of(Rk4 { normalized: false }, 64.0, &mut |_| {}, |search, rk4, short| {
             let choice = search.first(rk4, short).unwrap().choice;
             let met = search.refined(rk4, Found { value: 0.1, choice }, Some(1e3)).unwrap();
             let error = met.attitude_error.value;
@@ -491,7 +491,7 @@ mod tests {
     #[test]
     fn half_the_step_is_expected_to_take_twice_the_time_where_the_attitude_was_lost() {
         let mut told = Vec::new();
-        of("explicit-euler", 64.0, &mut |seconds| told.push(seconds), |search, euler, short| {
+        of(ExplicitEuler, 64.0, &mut |seconds| told.push(seconds), |search, euler, short| {
             let run = search.run(euler, 1e-3, short, None).unwrap();
             let mut choice = search.expected(euler, 1e-3, short, &run);
             choice.seconds.value = 1.0;

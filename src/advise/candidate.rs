@@ -51,18 +51,16 @@ impl Candidate {
         let problem = body.problem();
         let besides = BESIDES.iter().filter_map(|name| method(name).ok());
         let all = without_projections().into_iter().chain(besides);
-        let taken = all.filter_map(|method| {
-            let claims = method.claims(problem)?;
-            let name = method.name();
+        let taken = all.filter_map(|method| Candidate::of(method, problem)).filter(|candidate| {
+            let (name, exact) = (&candidate.name, candidate.is_exact());
             let base = name.split([':', '@']).next().unwrap_or_default();
-            let exact = claims.order.is_none() && method.tolerance().is_none();
             let excluded = demand
                 .excluded
                 .iter()
-                .any(|other| *other == name || *other == base || (exact && other == "exact"));
+                .any(|other| other == name || other == base || (exact && other == "exact"));
             // without a force, one name for the steps along the one orbit is enough
             let twice = problem == Problem::Free && exact && base == "kick-drift";
-            (!excluded && !twice).then(|| Candidate { name: name.clone(), method, claims })
+            !excluded && !twice
         });
         let mut all: Vec<Self> = taken.collect();
         // the quick ones first: they tell which need not be tried in short steps
@@ -71,6 +69,12 @@ impl Candidate {
             (first, core::cmp::Reverse(candidate.claims.order.unwrap_or(u32::MAX)))
         });
         all
+    }
+
+    /// `method`, where it takes `problem`.
+    pub(super) fn of(method: Box<dyn AnyMethod>, problem: Problem) -> Option<Self> {
+        let claims = method.claims(problem)?;
+        Some(Candidate { name: method.name(), method, claims })
     }
 
     /// Whether the method chooses its steps.

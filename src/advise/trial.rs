@@ -143,7 +143,7 @@ mod tests {
     use super::super::reference::Reference;
     use super::*;
     use crate::inertia::Inertia;
-    use crate::method::method;
+    use crate::method::Rk4;
 
     fn seen(times_longer: f64, [before, attitude]: [f64; 2], energy: Option<[f64; 2]>) -> Trial {
         Trial {
@@ -188,7 +188,7 @@ mod tests {
         let span = reference.short().unwrap();
         let mut told = Vec::new();
         let mut heed = |done| told.push(done);
-        let found = trial(&method("rk4").unwrap(), &body, &span, (1.0, f64::INFINITY), &mut heed);
+        let found = trial(&Rk4 { normalized: false }, &body, &span, (1.0, f64::INFINITY), &mut heed);
         assert!(found.is_some());
         let looks = span.points.len();
         let parts: Vec<f64> = (1..=looks).map(|k| k as f64 / looks as f64).collect();

@@ -274,7 +274,6 @@ impl Flips {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Attitudes, Direction, Frame, QuaternionOrder, RateUnit};
     use super::*;
     use crate::inertia::Inertia;
     use crate::rotation::turn_by;
@@ -321,42 +320,5 @@ mod tests {
                 assert!((across(p, q) - expected).abs() < 1e-4, "{p} {q}: {} {expected}", across(p, q));
             }
         }
-    }
-
-    /// Programs turn their attitudes by the same angular velocities in other ways.
-    #[test]
-    fn a_method_that_explains_the_rates_is_named_although_attitudes_are_a_little_off() {
-        let (body, first) = tumbling(1.0);
-        let start = body.enter_omega(Quat::identity(), first.omega).unwrap().to_f64();
-        let explicit = method("explicit-euler").unwrap();
-        let mut run = Run::from_point(&explicit, &body, start, Clock::new(0.025)).unwrap();
-        let samples: Vec<_> = (0..60).map(|row| run.advance_to(2 * row).unwrap()).collect();
-        let times: Vec<f64> = (0..60).map(|row| 0.05 * f64::from(row)).collect();
-        let exact = motion(&body, &first, times.iter().copied(), true).unwrap();
-        let reading = Reading {
-            quaternion: Some(QuaternionOrder::ScalarFirst),
-            attitude: Some(Direction::BodyToSpace),
-            omega_frame: Some(Frame::Body),
-            rate_unit: Some(RateUnit::RadiansPerSecond),
-            ..Reading::default()
-        };
-        let named = |of_turns: f64, of_rates: f64| {
-            let rows = samples.iter().zip(&exact);
-            let (attitudes, rates) = rows
-                .map(|(sample, (q, omega))| {
-                    let off = Vec3::from(sample.omega_body) - *omega;
-                    let attitude = between(*q, sample.state.attitude.normalized(), of_turns);
-                    (attitude.components(), (*omega + off * of_rates).0)
-                })
-                .unzip();
-            let record = Trajectory::new(times.clone()).with_attitude(Attitudes::Quaternions(attitudes));
-            let found = signature(&record.with_rates(rates), &reading, &body, 0.0);
-            found.map(|found| (found.method, found.steps_per_row))
-        };
-        let explicit = Some(("explicit-euler".to_owned(), 2));
-        assert_eq!(named(1.0, 1.0), explicit);
-        assert_eq!(named(1.05, 1.0), explicit);
-        assert_eq!(named(1.3, 1.0), None, "attitudes are far off");
-        assert_eq!(named(1.05, 1.05), None, "neither is explained");
     }
 }

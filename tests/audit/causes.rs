@@ -7,7 +7,7 @@ use polhode::audit::{
 use polhode::body::{Body, Force};
 use polhode::inertia::Inertia;
 use polhode::method::{AxisOrder, method};
-use polhode::rotation::Vec3;
+use polhode::rotation::{Quat, Vec3};
 use polhode::run::Run;
 use polhode::units::RateUnit;
 
@@ -155,6 +155,32 @@ fn the_implicit_step_of_mujoco_is_named() {
     assert_eq!(verdict.suspect, Suspect::Integrator("linearly-implicit-euler".into()));
     let found = verdict.signature.unwrap();
     assert!((found.step - 0.01).abs() < 1e-12 && found.mismatch < 1e-6, "{found:?}");
+}
+
+/// Programs turn their attitudes by the same angular velocities in other ways.
+#[test]
+fn a_method_that_explains_the_rates_is_named_although_attitudes_are_a_little_off() {
+    let body = free([1.0, 2.0, 2.5]);
+    let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3)).unwrap();
+    let exact = states(&body, &start, 0.05, 60);
+    let named = |of_turns: f64, of_rates: f64| {
+        let mut run = Run::new(&method("explicit-euler").unwrap(), &body, &start, 0.025).unwrap();
+        let rows = exact.iter().enumerate().map(|(row, (time, q, omega))| {
+            let sample = run.advance_to(2 * row as u64).unwrap();
+            let off = q.conjugate() * sample.state.attitude.normalized();
+            let off = UnitQuaternion::from(off).scaled_axis();
+            let attitude = *q * Quat::from(UnitQuaternion::from_scaled_axis(off * of_turns));
+            (*time, attitude, *omega + (Vec3::from(sample.omega_body) - *omega) * of_rates)
+        });
+        let rows: Vec<Written> = rows.collect();
+        let verdict = audit(&plain(&rows), &Question::new(Some(body.clone()))).unwrap();
+        verdict.signature.map(|found| (found.method, found.steps_per_row))
+    };
+    let explicit = Some(("explicit-euler".to_owned(), 2));
+    assert_eq!(named(1.0, 1.0), explicit);
+    assert_eq!(named(1.05, 1.0), explicit);
+    assert_eq!(named(1.3, 1.0), None, "attitudes are far off");
+    assert_eq!(named(1.05, 1.05), None, "neither is explained");
 }
 
 #[test]

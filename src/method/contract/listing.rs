@@ -187,33 +187,3 @@ const LISTINGS: [(&str, &str, &str, &str); 30] = [
         "u = m + u × c − (u·c) c, c = h/2 I⁻¹u; m' = m + 2 u × c, q' = q cay(c)",
     ),
 ];
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use super::*;
-    use crate::method::{Claimed, catalogue};
-
-    /// Every name leads to a file that is called so; a variant stands in the file of the method that it varies.
-    #[test]
-    fn each_method_is_found_by_its_name_among_the_files() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        for method in catalogue() {
-            let name = method.name();
-            let base = name.split([':', '@']).next().unwrap();
-            let Listing { file, formula, .. } =
-                listing(&name).unwrap_or_else(|| panic!("{name} is not listed"));
-            let stem =
-                file.strip_prefix("src/method/").unwrap().trim_end_matches(".rs").trim_end_matches("/mod");
-            let variant = base.rsplit_once('-').map_or(base, |(plain, _)| plain);
-            assert!([base, variant].contains(&&*stem.replace('_', "-")), "{name} in {file}");
-            let text = std::fs::read_to_string(root.join(file)).unwrap();
-            assert!(
-                text.contains(&format!("\"{base}")) || text.contains(&format!("`{base}`")),
-                "{name} in {file}"
-            );
-            assert!(!formula.is_empty() && !formula.contains('|'), "{name}: {formula}");
-        }
-    }
-}

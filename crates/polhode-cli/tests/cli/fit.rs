@@ -199,7 +199,7 @@ fn what_is_not_determined_is_said_and_fails() {
 fn a_motion_that_noise_hides_is_a_refusal_and_no_bad_input() {
     let scratch = Scratch::new("hidden");
     let record = scratch.0.join("hidden.csv").display().to_string();
-    let spin = "simulate --moments 1,2,3 --omega -0.066,-0.079,-0.995 --until 60 --every 0.01 --noise 0.1";
+    let spin = "simulate --moments 1,2,3 --omega -0.066,-0.079,-0.995 --until 60 --every 0.04 --noise 0.05";
     output(&format!("{spin} --out {record}"));
     refused(1, &format!("fit {record}"), &["hidden.csv", "did not converge", "Known: ("]);
     let answer: Value = serde_json::from_str(&run(&format!("fit {record} --format json")).out).unwrap();

@@ -80,7 +80,7 @@ fn every_help_ends_with_two_examples_that_run() {
         let lines: Vec<&str> =
             examples.lines().map(|line| line.trim().strip_prefix("polhode ").unwrap()).collect();
         assert!(lines.len() >= 2, "{command}: {lines:?}");
-        // .ci/run compares the committed results, and another test runs every experiment at smoke scale
+        // .ci/run compares the committed results, and another test runs the main ones at smoke scale
         let elsewhere =
             |line: &&str| line.starts_with("experiment check") || *line == "experiment run --scale smoke";
         for line in lines.into_iter().filter(|line| !elsewhere(line)) {

@@ -139,7 +139,7 @@ fn signs_of_quaternions_mean_nothing_and_bad_frames_are_left_out() {
 
 #[test]
 fn the_direction_is_told_by_the_motion_and_an_axisymmetric_body_leaves_it_open() {
-    let toss = toss(ASYMMETRIC, 20.0, 30.0, 1e-2, 2);
+    let toss = toss(ASYMMETRIC, 10.0, 30.0, 1e-2, 2);
     let expected = fit_poses(&toss.poses(), &Settings::default()).unwrap();
     // claimed and wrong
     let PoseFault::Inverted { inverse, gain } = refused(&toss.poses().inverse()) else { panic!() };
@@ -153,7 +153,7 @@ fn the_direction_is_told_by_the_motion_and_an_axisymmetric_body_leaves_it_open()
         assert!((estimate.shape.tensor() - expected.shape.tensor()).amax() < 1e-9);
     }
     // the inverse motion of an elongated top is that of another one
-    let top = self::toss([1.0, 1.6, 1.6], 20.0, 30.0, 1e-2, 3);
+    let top = self::toss([1.0, 1.6, 1.6], 10.0, 30.0, 1e-2, 3);
     assert!(fit_poses(&top.poses(), &Settings::default()).is_ok());
     let PoseFault::Direction { as_read, inverse, .. } = refused(&top.poses().with_open_direction()) else {
         panic!()
@@ -287,7 +287,7 @@ fn several_segments_share_the_tensor_and_the_noise_may_be_given() {
 #[test]
 fn drag_and_small_constant_torques_are_reckoned_with_and_others_are_refused() {
     let body = Inertia::from_moments([0.2, 0.35, 0.45]).unwrap();
-    let times: Vec<f64> = (0..450).map(|i| f64::from(i) / 15.0).collect();
+    let times: Vec<f64> = (0..300).map(|i| f64::from(i) / 10.0).collect();
     let poses = |acting: Disturbances, stream: u64| {
         let (omega, mut random) = (Vector3::new(0.3, 1.0, 0.4), Random::new(8).stream(stream));
         let gyroscope = Gyroscope::default();
@@ -353,7 +353,7 @@ fn spin(
 fn near_steady_spins_are_answered_rightly_or_refused() {
     let bodies = [ASYMMETRIC, [1.0, 2.0, 2.1], [1.0, 2.0, 3.0], [1.0, 3.0, 3.3], [1.0, 1.1, 2.0]];
     let (mut answered, mut known) = (0, 0);
-    for k in 0..100 {
+    for k in (0..100).step_by(2) {
         let moments = bodies[k % 5];
         let axis = [0, 2][k / 5 % 2];
         let tilt = [2.0_f64, 4.0, 8.0, 16.0, 6.0][k / 10 % 5].to_radians();
@@ -375,7 +375,7 @@ fn near_steady_spins_are_answered_rightly_or_refused() {
             }
         }
     }
-    assert!(answered >= known && known > 30, "{answered} {known}");
+    assert!(answered >= known && known > 15, "{answered} {known}");
     // a record on which a search of forty steps stopped short of the maximum, at 0.046 for a moment of 0.196
     let mut random = Random::new(401_600).stream(17 << 32 | 2);
     let body = body([1.0, 2.0, 2.1], &mut random);

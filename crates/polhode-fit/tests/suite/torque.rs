@@ -89,7 +89,7 @@ fn with_drag(count: usize, times: &[f64], drag: f64, sigma: f64, model: TorqueMo
 #[test]
 fn drag_is_found_and_fitted_at_its_bound() {
     for (drag, sigma) in [(1e-3, 1e-3), (1e-2, 1e-2), (0.1, 1e-3)] {
-        let trials = with_drag(24, &sampled(20, 30), drag, sigma, TorqueModel::Auto, 5);
+        let trials = with_drag(24, &sampled(10, 30), drag, sigma, TorqueModel::Auto, 5);
         trials.print(&format!("drag {drag}, noise {sigma}"));
         assert_eq!(trials.refused, 0);
         assert!(trials.over_bound() < 1.26, "{:.3}", trials.over_bound());
@@ -162,7 +162,7 @@ fn a_body_that_a_motor_drives_contradicts_drag() {
 #[test]
 fn torque_noise_does_not_bias_the_moments() {
     let mut random = Random::new(66);
-    let times = sampled(25, 60);
+    let times = sampled(12, 60);
     let acting = Disturbances::default().with_torque_noise(3e-3);
     let sensor = Gyroscope::default().with_noise(7e-3);
     let (mut deviates, mut of_shape, count) = (Vector3::zeros(), 0.0, 40);
@@ -267,7 +267,7 @@ fn sensors(count: usize, rate: usize, sigma: f64) -> [Trials; 3] {
 
 #[test]
 fn errors_of_the_sensor_are_covered_by_their_priors() {
-    for trials in sensors(16, 20, 1e-2) {
+    for trials in sensors(16, 10, 1e-2) {
         assert_eq!(trials.refused, 0);
         // 0.95 − 4 √(0.95·0.05/16)
         assert!(trials.covered >= 12, "{} of 16", trials.covered);
