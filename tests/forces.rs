@@ -1,7 +1,9 @@
 //! Forces against closed forms, against fixtures of 30 digits (tests/data/forces, mpmath) and against what they conserve.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::body::{Body, Clock, Conserved, Force, ForceError, Point, Potential, Problem, State, Time};
+use polhode::body::{
+    Body, Clock, Conserved, Force, ForceError, Orbit, Point, Potential, Problem, State, Time,
+};
 use polhode::inertia::Inertia;
 use polhode::method::{AnyMethod, method};
 use polhode::num::{Dd, Real};
@@ -189,6 +191,12 @@ fn fixtures() -> Vec<Fixture> {
         let parameters = [11, 12, 13].map(double);
         let force = match fields[0] {
             "gradient" => Force::gravity_gradient(parameters[0], parameters[1]),
+            "conic" => {
+                let [gm, periapsis, eccentricity] = parameters;
+                let orbit = Orbit::conic(gm, periapsis, eccentricity).unwrap();
+                let orbit = orbit.passing_at(3.0).unwrap().in_plane([0.4, 0.9, -1.3]).unwrap();
+                Ok(Force::gravity_gradient_on(orbit))
+            }
             "body" => Force::constant_torque_body(parameters.into()),
             "space" => Force::constant_torque_space(parameters.into()),
             "drag" => Force::drag(parameters[0], parameters[1]),
@@ -227,12 +235,13 @@ fn errors(fixture: &Fixture, method: &dyn AnyMethod, steps: u64) -> f64 {
 #[test]
 fn motions_under_forces_are_those_of_the_fixtures() {
     let fixtures = fixtures();
-    assert_eq!(fixtures.len(), 6);
+    assert_eq!(fixtures.len(), 9);
     for fixture in &fixtures {
         let methods: &[(&str, u64, f64)] = match fixture.body.problem() {
             Problem::Potential => &[
                 ("kick-drift@sofroniou-spaletta-10", 2048, 1e-19),
                 ("lie-poisson@kahan-li-8", 1024, 1e-13),
+                ("taylor", 8, 1e-25),
                 ("implicit-midpoint@kahan-li-6", 1024, 1e-10),
             ],
             _ => &[("implicit-midpoint@kahan-li-8", 1024, 1e-15), ("rk4", 4096, 1e-9)],
@@ -499,13 +508,13 @@ fn parameters_that_no_force_has_are_refused() {
     );
     assert_eq!(
         refused(Force::gravity_gradient(0.001, 1.0)),
-        "the eccentricity is 1; that of an elliptic orbit is in [0, 1), and 0 is a circle"
+        "the eccentricity is 1; that of an elliptic orbit is in [0, 1), and 0 is a circle; a parabola or a hyperbola is given by its least distance"
     );
     assert!(Force::gravity_gradient(0.001, -0.1).is_err());
     assert!(Force::gravity_gradient(0.001, f64::NAN).is_err());
     assert_eq!(
         refused(Force::gravity_gradient(f64::INFINITY, 0.0)),
-        "the mean motion of the gravity gradient is inf; it must be a finite number"
+        "the mean motion of the orbit is inf; it must be a finite number"
     );
     assert!(Force::constant_torque_body(Vector3::new(0.0, f64::NAN, 0.0)).is_err());
     assert!(Force::constant_torque_space(Vector3::new(0.0, f64::INFINITY, 0.0)).is_err());

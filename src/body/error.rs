@@ -74,11 +74,36 @@ pub enum ForceError {
     },
     /// The eccentricity is that of no ellipse.
     #[error(
-        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle", Shown(*eccentricity)
+        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle; a parabola or a hyperbola is given by its least distance", Shown(*eccentricity)
     )]
     Eccentricity {
         /// The value.
         eccentricity: f64,
+    },
+    /// The eccentricity is that of no conic.
+    #[error(
+        "the eccentricity is {}; it is at least 0: below 1 the orbit is an ellipse, at 1 a parabola, above 1 a hyperbola",
+        Shown(*eccentricity)
+    )]
+    NoConic {
+        /// The value.
+        eccentricity: f64,
+    },
+    /// A parameter is zero or negative.
+    #[error("{quantity} of the {force} is {}; it must be positive", Shown(*value))]
+    NotPositive {
+        /// Name of the force.
+        force: &'static str,
+        /// Which parameter.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// An orbit is run through too fast or too slowly.
+    #[error("the angular velocity at the least distance, {} rad/s, is outside the range of a double", Shown(*rate))]
+    RateOutOfRange {
+        /// The root of GM over the cube of the least distance, rad/s.
+        rate: f64,
     },
     /// An interval in which it acts is none.
     #[error(

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::law::{Conserved, Law, Potential, SeriesLaw, Torque};
+use super::orbit::Orbit;
 use super::switched::Switched;
 use super::{ForceError, Time};
 use crate::inertia::Inertia;
@@ -23,8 +24,8 @@ pub struct Force {
     pub(crate) law: Law,
     /// The same law on power series; none of a closure.
     pub(crate) series: Option<SeriesLaw>,
-    /// Mean motion, rad/s, and eccentricity of a gravity gradient, which takes the tensor of the body that it acts on.
-    pub(super) orbit: Option<[f64; 2]>,
+    /// Of a gravity gradient, which takes the tensor of the body that it acts on.
+    pub(super) orbit: Option<Orbit>,
     /// Of a force that does not act always.
     pub(super) switched: Option<Switched>,
 }
@@ -90,7 +91,7 @@ impl Force {
     }
 
     /// The same force, a gravity gradient on the orbit `orbit`.
-    pub(super) fn on_orbit(self, orbit: [f64; 2]) -> Self {
+    pub(super) fn on_orbit(self, orbit: Orbit) -> Self {
         Force { orbit: Some(orbit), ..self }
     }
 

@@ -12,6 +12,7 @@ mod gravity;
 mod gravity_gradient;
 mod law;
 mod linear_potential;
+mod orbit;
 mod point;
 #[cfg(any(test, feature = "random"))]
 mod population;
@@ -29,6 +30,7 @@ pub use force::Force;
 pub(crate) use law::Evaluated;
 pub use law::{Conserved, Potential, Torque};
 pub use linear_potential::{LinearPotential, vertical};
+pub use orbit::Orbit;
 pub(crate) use point::RENORMALIZE_EVERY;
 pub use point::{Phase, Point};
 #[cfg(any(test, feature = "random"))]

@@ -82,6 +82,11 @@ impl Time {
         S::linear(self.dd(), self.unit)
     }
 
+    /// `time`, s, as a series that grows with its variable from there.
+    pub(super) fn counted_from<S: Real>(&self, time: Dd) -> S {
+        S::linear(time, self.unit)
+    }
+
     /// The angle `rate · t` (rate in rad/s), reduced to [−π, π] in double-double, so that many turns cost no digits of a
     /// double; as a series it goes on from there.
     #[must_use]

@@ -30,6 +30,7 @@ mod random;
 mod real;
 pub(crate) mod series;
 mod shown;
+pub(crate) mod stumpff;
 pub(crate) mod sum;
 pub mod trig;
 

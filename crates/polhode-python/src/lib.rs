@@ -57,7 +57,9 @@ mod _polhode {
     #[pymodule_export]
     use super::fits::fitted;
     #[pymodule_export]
-    use super::forces::{Force, drag, force, gravity, gravity_gradient, torque_body, torque_space};
+    use super::forces::{
+        Force, drag, force, gravity, gravity_gradient, gravity_gradient_on_conic, torque_body, torque_space,
+    };
     #[pymodule_export]
     use super::links::{Link, Links, diagnose};
     #[pymodule_export]

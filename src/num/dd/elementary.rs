@@ -14,7 +14,7 @@ const DEGREE: usize = 29;
 const LIGHT: usize = 17;
 
 /// 1/n!; every factorial up to 29! is exact in 106 bits.
-const INVERSE_FACTORIAL: [Dd; DEGREE + 1] = {
+pub(crate) const INVERSE_FACTORIAL: [Dd; DEGREE + 1] = {
     let mut table = [Dd::ONE; DEGREE + 1];
     let mut factorial = Dd::ONE;
     let mut n = 1;

@@ -20,6 +20,7 @@
 #![doc = include_str!("../accuracy/dd.md")]
 
 mod elementary;
+pub(crate) use elementary::INVERSE_FACTORIAL;
 mod scalar;
 mod text;
 

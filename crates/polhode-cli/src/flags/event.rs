@@ -4,9 +4,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::Body;
 use polhode::events::{Event, EventError};
 use polhode_files::error::Error;
-use polhode_files::numbers::{number, numbers, quaternion, turn};
+use polhode_files::numbers::{numbers, quaternion, turn};
 
-use super::start::{Factor, angle_unit, rate_unit};
+use super::start::{Factor, angle_unit, rate_unit, with_unit};
 
 /// The forms, for messages.
 pub(crate) const FORMS: &str =
@@ -99,17 +99,7 @@ fn limit(text: &str, unit: impl Fn(&str) -> Result<Factor, String>, example: &st
     let Some(rest) = text.strip_prefix(['<', '>']) else {
         return Err(format!("a limit is missing; write < or > and a number with its unit, as {example}"));
     };
-    let rest = rest.trim();
-    // where the unit begins; the e of an exponent has a digit or a sign behind it
-    let begins = |(at, c): (usize, char)| {
-        let exponent = matches!(c, 'e' | 'E')
-            && rest[at + 1..].starts_with(|next: char| next.is_ascii_digit() || matches!(next, '+' | '-'));
-        ((c.is_alphabetic() || c == '°') && !exponent).then_some(at)
-    };
-    let Some(at) = rest.char_indices().find_map(begins) else {
-        return Err(format!("'{rest}' has no unit; write it as {example}"));
-    };
-    let value = number(rest[..at].trim())? * unit(&rest[at..])?.0;
+    let value = with_unit(rest.trim(), unit, example)?;
     Ok(if text.starts_with('<') { Limit::Below(value) } else { Limit::Above(value) })
 }
 

@@ -2,9 +2,14 @@
 
 use clap::Args;
 use nalgebra::Vector3;
-use polhode::body::{Body, Force, ForceError};
+use polhode::body::{Body, Force, ForceError, Orbit};
 use polhode_files::error::Error;
 use polhode_files::numbers::{list, numbers};
+
+use super::start::{angle_unit, with_unit};
+
+/// Why a plane alone is refused.
+pub(crate) const NO_ORBIT: &str = "there is no orbit to turn";
 
 /// What acts on the body; several forces add.
 #[derive(Args, Clone, Debug)]
@@ -16,6 +21,25 @@ pub(crate) struct ForceArguments {
     /// Gravity gradient on an orbit in the space x-y plane: mean motion, rad/s, and eccentricity (default 0); perigee on +x at t = 0
     #[arg(long, value_name = "n[,e]", value_parser = one_or_two, allow_hyphen_values = true)]
     gravity_gradient: Option<OneOrTwo>,
+    /// Gravity gradient on a conic, also a flyby: GM of the attracting mass, m^3/s^2, least distance from its centre, m, eccentricity,
+    /// and the time of that distance, s (default 0)
+    #[arg(
+        long,
+        value_name = "GM,q,e[,t]",
+        value_parser = three_or_four,
+        allow_hyphen_values = true,
+        conflicts_with = "gravity_gradient"
+    )]
+    orbit: Option<ThreeOrFour>,
+    /// Plane of the orbit in space, each angle with its unit, as 17deg,46deg,63deg: longitude of the node, inclination, argument of the
+    /// periapsis [default: the x-y plane, the least distance on +x]
+    #[arg(
+        long,
+        value_name = "node,inclination,argument",
+        value_parser = plane,
+        allow_hyphen_values = true
+    )]
+    orbit_plane: Option<[f64; 3]>,
     /// Constant torque in body axes, N m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     torque_body: Option<[f64; 3]>,
@@ -39,11 +63,35 @@ fn one_or_two(text: &str) -> Result<OneOrTwo, String> {
     }
 }
 
+/// Three numbers and a fourth one, 0 if it is left out.
+#[derive(Clone, Copy, Debug)]
+struct ThreeOrFour([f64; 4]);
+
+fn three_or_four(text: &str) -> Result<ThreeOrFour, String> {
+    match list(text)?[..] {
+        [a, b, c] => Ok(ThreeOrFour([a, b, c, 0.0])),
+        [a, b, c, d] => Ok(ThreeOrFour([a, b, c, d])),
+        ref found => Err(format!("{} given, 3 or 4 needed; separate them by commas", found.len())),
+    }
+}
+
+/// Three angles with their units, in rad.
+pub(crate) fn plane(text: &str) -> Result<[f64; 3], String> {
+    let angles = text.split(',').map(|angle| with_unit(angle.trim(), angle_unit, "17deg"));
+    let angles: Vec<f64> = angles.collect::<Result<_, _>>()?;
+    let count = angles.len();
+    angles.try_into().map_err(|_| format!("{count} given, 3 needed; separate them by commas"))
+}
+
 /// Forces besides weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Forces {
     /// Mean motion, rad/s, and eccentricity.
     pub(crate) gravity_gradient: Option<[f64; 2]>,
+    /// GM, m^3/s^2, least distance, m, eccentricity, and the time of the least distance, s.
+    pub(crate) orbit: Option<[f64; 4]>,
+    /// Of either orbit: node, inclination and argument of the periapsis, rad.
+    pub(crate) orbit_plane: Option<[f64; 3]>,
     /// N m, body axes.
     pub(crate) torque_body: Option<[f64; 3]>,
     /// N m, axes of space.
@@ -58,10 +106,16 @@ impl Forces {
     /// # Errors
     /// What is wrong with one of them, and its name.
     pub(crate) fn act_on(&self, mut body: Body) -> Result<Body, (&'static str, ForceError)> {
-        if let Some([mean_motion, eccentricity]) = self.gravity_gradient {
-            let force = Force::gravity_gradient(mean_motion, eccentricity)
-                .map_err(|error| ("gravity-gradient", error))?;
-            body = body.with(force);
+        let ellipse = self.gravity_gradient.map(|[mean_motion, eccentricity]| {
+            Orbit::ellipse(mean_motion, eccentricity).map_err(|error| ("gravity-gradient", error))
+        });
+        let conic = self.orbit.map(|[gm, periapsis, eccentricity, time]| {
+            let orbit = Orbit::conic(gm, periapsis, eccentricity).and_then(|orbit| orbit.passing_at(time));
+            orbit.map_err(|error| ("orbit", error))
+        });
+        if let Some(orbit) = ellipse.or(conic).transpose()? {
+            let turned = self.orbit_plane.map_or(Ok(orbit), |angles| orbit.in_plane(angles));
+            body = body.with(Force::gravity_gradient_on(turned.map_err(|error| ("orbit-plane", error))?));
         }
         for (name, torque, make) in [
             (
@@ -87,6 +141,7 @@ impl ForceArguments {
     pub(crate) fn is_any(&self) -> bool {
         self.weight_moment.is_some()
             || self.gravity_gradient.is_some()
+            || self.orbit.is_some()
             || self.torque_body.is_some()
             || self.torque_space.is_some()
             || self.drag.is_some()
@@ -94,9 +149,16 @@ impl ForceArguments {
 
     /// `body` with the forces besides its weight.
     pub(crate) fn act_on(&self, body: Body) -> Result<Body, Error> {
+        if self.orbit_plane.is_some() && self.gravity_gradient.is_none() && self.orbit.is_none() {
+            return Err(Error::Input(format!(
+                "--orbit-plane: {NO_ORBIT}; add --orbit or --gravity-gradient"
+            )));
+        }
         let pair = |typed: Option<OneOrTwo>| typed.map(|OneOrTwo(pair)| pair);
         let forces = Forces {
             gravity_gradient: pair(self.gravity_gradient),
+            orbit: self.orbit.map(|ThreeOrFour(numbers)| numbers),
+            orbit_plane: self.orbit_plane,
             torque_body: self.torque_body,
             torque_space: self.torque_space,
             drag: pair(self.drag),

@@ -7,7 +7,7 @@ use polhode::num::Dd;
 use polhode::rotation::{EulerSequence, Quat, Vec3};
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::instant::seconds_in;
-use polhode_files::numbers::{numbers, quaternion, turn};
+use polhode_files::numbers::{number, numbers, quaternion, turn};
 use polhode_files::text::visible;
 
 use crate::flags::body::{BodyArguments, PublishedStart};
@@ -66,6 +66,24 @@ fn angle(name: &str) -> Option<f64> {
 pub(crate) fn angle_unit(text: &str) -> Result<Factor, String> {
     let known = angle(text).filter(|_| text != "rev").map(Factor);
     known.ok_or_else(|| format!("'{text}' is no unit of angles here; write rad or deg"))
+}
+
+/// A number with the unit behind it, as in `example`.
+pub(crate) fn with_unit(
+    text: &str,
+    unit: impl Fn(&str) -> Result<Factor, String>,
+    example: &str,
+) -> Result<f64, String> {
+    // where the unit begins; the e of an exponent has a digit or a sign behind it
+    let begins = |(at, c): (usize, char)| {
+        let exponent = matches!(c, 'e' | 'E')
+            && text[at + 1..].starts_with(|next: char| next.is_ascii_digit() || matches!(next, '+' | '-'));
+        ((c.is_alphabetic() || c == '°') && !exponent).then_some(at)
+    };
+    let Some(at) = text.char_indices().find_map(begins) else {
+        return Err(format!("'{text}' has no unit; write it as {example}"));
+    };
+    Ok(number(text[..at].trim())? * unit(&text[at..])?.0)
 }
 
 pub(crate) fn rate_unit(text: &str) -> Result<Factor, String> {

@@ -22,6 +22,8 @@ fn errors_are_filled_where_the_forces_conserve_their_quantity() {
         ("--drag 0.1", false, false, false),
         ("--torque-body 0.1,0,0 --torque-space 0,0,0.1", false, false, false),
         ("--gravity-gradient 0.5,0.2", false, false, false),
+        ("--gravity-gradient 0.5 --orbit-plane 0deg,60deg,0deg", false, false, false),
+        ("--orbit 2,1.5,4.25", false, false, false),
     ] {
         let text = of(forces);
         assert!(!columns(&text).contains(&"jacobi_error"), "{forces}");
@@ -47,6 +49,9 @@ fn motions_under_forces_are_the_golden_ones() {
     };
     golden("gravity-gradient.csv", &line("--gravity-gradient 0.5", "kick-drift@srkn-6b"));
     golden("elliptic.csv", &line("--gravity-gradient 0.5,0.3", "lie-poisson@kahan-li-6"));
+    // a flyby: the closest distance is passed between the first and the second row
+    let flyby = "--orbit 2,1.5,4.25,1.5 --orbit-plane 0.4rad,0.9rad,-1.3rad";
+    golden("flyby.csv", &line(flyby, "kick-drift@srkn-6b"));
     golden("drag.csv", &line("--drag 0.1,0.2 --torque-space 0.1,0,0", "implicit-midpoint"));
 }
 
@@ -67,6 +72,14 @@ fn every_unusable_force_or_scheme_is_refused_with_value_rule_and_remedy() {
         format!("--gravity-gradient 0.5,1 --method rk4 {stepped}"),
         format!("--gravity-gradient 0.5,-0.1 --method rk4 {stepped}"),
         "--gravity-gradient 0.5 --times 1".into(),
+        format!("--orbit 3.986e14,0,4.2 --method rk4 {stepped}"),
+        format!("--orbit 3.986e14,3.8e7,-0.1 --method rk4 {stepped}"),
+        format!("--orbit 3.986e14,3.8e7 --method rk4 {stepped}"),
+        format!("--orbit 1e300,1e-300,1 --method rk4 {stepped}"),
+        format!("--orbit 3.986e14,3.8e7,4.2 --gravity-gradient 0.5 --method rk4 {stepped}"),
+        format!("--orbit-plane 0deg,60deg,0deg --method rk4 {stepped}"),
+        format!("--orbit 3.986e14,3.8e7,4.2 --orbit-plane 0,60,0 --method rk4 {stepped}"),
+        format!("--orbit 3.986e14,3.8e7,4.2 --orbit-plane 0deg,60deg --method rk4 {stepped}"),
         format!("--torque-body 1,nan,0 --method rk4 {stepped}"),
         format!("--torque-space 1,2 --method rk4 {stepped}"),
         format!("--method kick-drift@suzuki-5 {stepped}"),

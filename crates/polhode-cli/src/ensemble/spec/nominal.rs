@@ -12,7 +12,7 @@ use polhode_files::toml_file::Section;
 
 use super::Acting;
 use crate::flags::body::{Described, described};
-use crate::flags::force::Forces;
+use crate::flags::force::{Forces, NO_ORBIT, plane};
 use crate::flags::start::{Factor, angle_unit, rate_unit};
 
 /// What `[body]`, `[start]` and `[force]` say.
@@ -136,7 +136,10 @@ fn inertia(body: &Section<'_>, key: &str) -> Result<Described, Error> {
 
 /// What acts, by `[force]` or, of the weight, by the catalogue.
 fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
-    force.only("[force]", &["weight_moment", "gravity_gradient", "torque_body", "torque_space", "drag"])?;
+    force.only(
+        "[force]",
+        &["weight_moment", "gravity_gradient", "orbit", "orbit_plane", "torque_body", "torque_space", "drag"],
+    )?;
     let one_or_two = |key: &str| -> Result<Option<[f64; 2]>, Error> {
         match force.list(key)?.as_deref() {
             None => Ok(None),
@@ -147,9 +150,28 @@ fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
     };
     let forces = Forces {
         gravity_gradient: one_or_two("gravity_gradient")?,
+        orbit: match force.list("orbit")?.as_deref() {
+            None => None,
+            Some([gm, periapsis, eccentricity]) => Some([*gm, *periapsis, *eccentricity, 0.0]),
+            Some([gm, periapsis, eccentricity, time]) => Some([*gm, *periapsis, *eccentricity, *time]),
+            Some(found) => return Err(force.at("orbit", &format!("{} given, 3 or 4 needed", found.len()))),
+        },
+        orbit_plane: match force.text("orbit_plane")? {
+            None => None,
+            Some(angles) => Some(plane(angles).map_err(|error| force.at("orbit_plane", &error))?),
+        },
         torque_body: force.numbers("torque_body")?,
         torque_space: force.numbers("torque_space")?,
         drag: one_or_two("drag")?,
     };
+    match (&forces.gravity_gradient, &forces.orbit, &forces.orbit_plane) {
+        (Some(_), Some(_), _) => {
+            return Err(force.at("orbit", "a body has one orbit, and gravity_gradient gives another"));
+        }
+        (None, None, Some(_)) => {
+            return Err(force.at("orbit_plane", &format!("{NO_ORBIT}; add orbit or gravity_gradient")));
+        }
+        _ => {}
+    }
     Ok(Acting { weight_moment: force.numbers("weight_moment")?.unwrap_or(own), forces })
 }

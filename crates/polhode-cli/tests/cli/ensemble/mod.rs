@@ -275,14 +275,14 @@ fn forces_act_on_every_member() {
     let scratch = Scratch::new("ensemble-forces");
     let line = |body: &str| {
         format!(
-            "propagate {body} --omega 0.1,0.2,5 --times 2 --method rk4 --step 0.01 --weight-moment 0,0,0.5 --drag 0.01,0.02 --torque-space 0,0,0.1 --gravity-gradient 0.3,0.1 --fields q,omega --out alone.csv"
+            "propagate {body} --omega 0.1,0.2,5 --times 2 --method rk4 --step 0.01 --weight-moment 0,0,0.5 --drag 0.01,0.02 --torque-space 0,0,0.1 --orbit 2,1.5,4.25,1 --orbit-plane 0.4rad,0.9rad,-1.3rad --fields q,omega --out alone.csv"
         )
     };
     scratch.file("members.csv", "i1,i2,i3\n1,1.1,0.5\n1,1.2,0.5\n");
     let spec = "[start]\nomega = [0.1, 0.2, 5]\n[spread]\nmembers_file = \"members.csv\"\n\
                 [run]\nmethod = \"rk4\"\nstep = 0.01\ntimes = [2]\n\
                 [force]\nweight_moment = [0, 0, 0.5]\ndrag = [0.01, 0.02]\ntorque_space = [0, 0, 0.1]\n\
-                gravity_gradient = [0.3, 0.1]\n[output]\narrays = [\"omegas\"]\n";
+                orbit = [2, 1.5, 4.25, 1]\norbit_plane = \"0.4rad, 0.9rad, -1.3rad\"\n[output]\narrays = [\"omegas\"]\n";
     scratch.file("spec.toml", spec);
     done("ensemble spec.toml --out out", &scratch);
     let out = scratch.0.join("out");

@@ -90,6 +90,21 @@ fn specifications_are_refused_with_line_value_and_law() {
             "[run]",
             "[force]\ngravity_gradient = [0.1, 1.5]\n[run]\nmethod = \"rk4\"\nstep = 0.5",
         ),
+        (
+            "two orbits",
+            "[run]",
+            "[force]\ngravity_gradient = [0.1]\norbit = [2, 1.5, 4.25]\n[run]\nmethod = \"rk4\"\nstep = 0.5",
+        ),
+        (
+            "a plane without an orbit",
+            "[run]",
+            "[force]\norbit_plane = \"0deg, 60deg, 0deg\"\n[run]\nmethod = \"rk4\"\nstep = 0.5",
+        ),
+        (
+            "a plane without units",
+            "[run]",
+            "[force]\norbit = [2, 1.5, 4.25]\norbit_plane = \"0, 60, 0\"\n[run]\nmethod = \"rk4\"\nstep = 0.5",
+        ),
         ("an unknown array", "[run]", "[output]\narrays = [\"attitude\"]\n[run]"),
         ("members from a file too", "attitude = 0.05", "members_file = \"members.csv\""),
     ] {

@@ -1,0 +1,279 @@
+//! Kepler's orbits of any eccentricity, in any plane: where a body is at which time.
+
+use core::cmp::Ordering;
+use core::f64::consts::PI;
+
+use super::force::finite;
+use super::{ForceError, Time};
+use crate::num::stumpff::{halvings, stumpff};
+use crate::num::{Dd, Precise as _, Real};
+use crate::rotation::{Quat, Vec3};
+
+const NAME: &str = "orbit";
+
+/// Newton's iteration descends monotonically, and for eccentricities near 1 slowly until it doubles the digits: it is done
+/// before.
+const MOST_DESCENTS: u32 = 2048;
+
+/// The orbit of a body about a point mass: a circle, an ellipse, a parabola or a hyperbola.
+///
+/// In the x–y plane of space it runs counter-clockwise about +z with the least distance, at t = 0, on +x;
+/// [`passing_at`](Self::passing_at) and [`in_plane`](Self::in_plane) say otherwise.
+///
+/// ```
+/// use polhode::body::{Body, Force, Orbit};
+/// use polhode::inertia::Inertia;
+/// // Apophis passes the Earth at some 38 000 km (GM = 3.986e14 m³/s²) on a hyperbola of eccentricity 4.2
+/// let flyby = Orbit::conic(3.986e14, 3.8e7, 4.2)?.passing_at(86_400.0)?.in_plane([0.3, 0.8, 1.1])?;
+/// let gradient = Force::gravity_gradient_on(flyby);
+/// let body = Body::free(Inertia::from_moments([0.61, 0.96, 1.0])?).with(gradient);
+/// assert!(body.conserved().is_empty());
+/// # Ok::<(), polhode::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+#[must_use]
+pub struct Orbit {
+    speed: Speed,
+    eccentricity: f64,
+    /// The time of the least distance, s.
+    passage: f64,
+    /// From the axes of the orbit, to the least distance, along the velocity there and along the normal, to space.
+    plane: Option<Quat<Dd>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Speed {
+    /// The mean motion on a circle or an ellipse, rad/s.
+    Mean(f64),
+    /// √(GM/q³) with the least distance q, rad/s.
+    AtPassage(Dd),
+}
+
+/// 3 GM/r³ in 1/s², and the direction to the body in space.
+pub(super) struct Place<S> {
+    pub(super) strength: S,
+    pub(super) direction: Vec3<S>,
+}
+
+impl Orbit {
+    /// An ellipse with the mean motion `mean_motion` (rad/s) and the eccentricity `eccentricity`, 0 for a circle.
+    ///
+    /// # Errors
+    /// A mean motion that is not finite, an eccentricity outside [0, 1).
+    pub fn ellipse(mean_motion: f64, eccentricity: f64) -> Result<Self, ForceError> {
+        let mean_motion = finite(NAME, "the mean motion", mean_motion)?;
+        if !(0.0..1.0).contains(&eccentricity) {
+            return Err(ForceError::Eccentricity { eccentricity });
+        }
+        Ok(Orbit { speed: Speed::Mean(mean_motion), eccentricity, passage: 0.0, plane: None })
+    }
+
+    /// An orbit about a mass with the gravitational parameter `gm` = G M (m³/s²) whose least distance from its centre is
+    /// `periapsis` (m), of any eccentricity: below 1 an ellipse, 1 a parabola, above 1 a hyperbola.
+    ///
+    /// From e = 1 to the nearest numbers on either side the motion changes by as much as they do: it is worked out by the
+    /// universal variable (Battin, An Introduction to the Mathematics and Methods of Astrodynamics, 1999, §4.5).
+    ///
+    /// # Errors
+    /// A parameter or a distance that is not positive and finite, an eccentricity below 0.
+    pub fn conic(gm: f64, periapsis: f64, eccentricity: f64) -> Result<Self, ForceError> {
+        let positive = |quantity: &'static str, value: f64| match finite(NAME, quantity, value)? {
+            value if value > 0.0 => Ok(Dd::of(value)),
+            value => Err(ForceError::NotPositive { force: NAME, quantity, value }),
+        };
+        let (gm, q) =
+            (positive("the gravitational parameter", gm)?, positive("the least distance", periapsis)?);
+        let eccentricity = finite(NAME, "the eccentricity", eccentricity)?;
+        if eccentricity < 0.0 {
+            return Err(ForceError::NoConic { eccentricity });
+        }
+        let rate = (gm / q).sqrt() / q;
+        if !(rate.hi() > 0.0 && rate.hi() * rate.hi() < f64::INFINITY) {
+            return Err(ForceError::RateOutOfRange { rate: rate.hi() });
+        }
+        Ok(Orbit { speed: Speed::AtPassage(rate), eccentricity, passage: 0.0, plane: None })
+    }
+
+    /// The same orbit with the least distance at the time `time`, s.
+    ///
+    /// # Errors
+    /// A time that is not finite.
+    pub fn passing_at(self, time: f64) -> Result<Self, ForceError> {
+        Ok(Orbit { passage: finite(NAME, "the time of the least distance", time)?, ..self })
+    }
+
+    /// The same orbit turned in space: the longitude of the ascending node, the inclination and the argument of the periapsis,
+    /// rad, from the axis x and about the axis z of space.
+    ///
+    /// # Errors
+    /// Angles that are not finite.
+    pub fn in_plane(self, angles: [f64; 3]) -> Result<Self, ForceError> {
+        let [mut node, mut inclination, mut argument] = [Quat::<Dd>::identity(); 3];
+        for (turn, axis, name, angle) in [
+            (&mut node, 2, "the longitude of the node", angles[0]),
+            (&mut inclination, 0, "the inclination", angles[1]),
+            (&mut argument, 2, "the argument of the periapsis", angles[2]),
+        ] {
+            let (sin, cos) = (Dd::of(finite(NAME, name, angle)?) * 0.5).sin_cos();
+            let mut v = Vec3::zero();
+            v[axis] = sin;
+            *turn = Quat::new(cos, v);
+        }
+        Ok(Orbit { plane: Some(node * inclination * argument), ..self })
+    }
+
+    /// Of a circle in the x–y plane of space, the rate at which it is run through, rad/s.
+    pub(super) fn steady_rate(&self) -> Option<f64> {
+        let rate = match self.speed {
+            Speed::Mean(rate) => rate,
+            Speed::AtPassage(rate) => rate.hi(),
+        };
+        (self.eccentricity == 0.0 && self.plane.is_none()).then_some(rate)
+    }
+
+    pub(super) fn at<S: Real>(&self, at: Time) -> Place<S> {
+        // the bits of a time from which nothing is taken stay
+        let at = if self.passage == 0.0 { at } else { at.later(Dd::of(-self.passage)) };
+        let (strength, [x, y]) = match self.speed {
+            Speed::Mean(rate) => self.by_mean_motion(rate, at),
+            Speed::AtPassage(rate) => self.by_universal_variable(rate, at),
+        };
+        let direction = Vec3([x, y, S::of(0.0)]);
+        let direction = match self.plane {
+            None => direction,
+            Some(Quat { w, v }) => Quat::new(S::from_dd(w), Vec3(v.0.map(S::from_dd))).rotate(direction),
+        };
+        Place { strength, direction }
+    }
+
+    /// Of a circle or an ellipse, 3 n² (a/r)³ and r̂ in the plane of the orbit.
+    fn by_mean_motion<S: Real>(&self, rate: f64, at: Time) -> (S, [S; 2]) {
+        let one = S::of(1.0);
+        let (x, y, near) = if self.eccentricity == 0.0 {
+            let (sin, cos) = at.angle::<S>(rate).sin_cos();
+            (cos, sin, one)
+        } else {
+            let e = S::of(self.eccentricity);
+            let (sin, cos) = self.eccentric_anomaly::<S>(rate, at).sin_cos();
+            let near = one / (one - e * cos); // a/r
+            ((cos - e) * near, (one - e * e).sqrt() * sin * near, near)
+        };
+        let n = S::of(rate);
+        (S::of(3.0) * n * n * (near * near * near), [x, y])
+    }
+
+    /// The solution of Kepler's equation `E − e sin E = M`, M in [−π, π].
+    fn eccentric_anomaly<S: Real>(&self, rate: f64, at: Time) -> S {
+        let mean: f64 = at.angle(rate);
+        let (e, m) = (self.eccentricity, mean.abs());
+        // M + e and π are upper bounds, and E − e sin E is convex up to π
+        let x = descend((m + e).min(PI), |x| {
+            let (sin, cos) = Real::sin_cos(x);
+            [x - e * sin - m, 1.0 - e * cos]
+        });
+        let (e, m) = (S::of(e), at.angle::<S>(rate));
+        let mut x = S::of(if mean < 0.0 { -x } else { x });
+        // each step doubles the digits: one polishes doubles, two give double-double
+        for _ in 0..S::NEWTON_STEPS {
+            let (sin, cos) = x.sin_cos();
+            x = x - (x - e * sin - m) / (S::of(1.0) - e * cos);
+        }
+        x
+    }
+
+    /// 3 GM/r³ and r̂ in the plane of the orbit, of any conic and without a singularity at the parabola.
+    ///
+    /// With lengths in least distances q, times in √(q³/GM), α = 1 − e and Stumpff's functions cₖ of αχ²:
+    /// `s = χ + e χ³ c₃`, `r = 1 + e χ² c₂`, `x = 1 − χ² c₂`, `y = √(1 + e) χ c₁`.
+    fn by_universal_variable<S: Real>(&self, rate: Dd, at: Time) -> (S, [S; 2]) {
+        let (e, alpha) = (self.eccentricity, Dd::sum(1.0, -self.eccentricity));
+        let since = at.dd();
+        let since = if alpha.hi() > 0.0 {
+            // less whole revolutions
+            let period = Dd::TAU / (rate * alpha * alpha.sqrt());
+            since - period * (since / period).round()
+        } else {
+            since
+        };
+        let scaled = (rate * since).hi();
+        let x = universal_variable(scaled.abs(), e, alpha.hi());
+        let halvings = halvings(alpha.hi() * x * x);
+        let s = at.counted_from::<S>(since) * S::from_dd(rate);
+        let (e, alpha) = (S::of(e), S::from_dd(alpha));
+        let mut x = S::of(if scaled < 0.0 { -x } else { x });
+        for _ in 0..S::NEWTON_STEPS {
+            let [_, _, c2, c3] = stumpff(alpha * x * x, halvings);
+            x = x - (x + e * x * x * x * c3 - s) / (S::of(1.0) + e * x * x * c2);
+        }
+        let [_, c1, c2, _] = stumpff(alpha * x * x, halvings);
+        let (one, across) = (S::of(1.0), x * x * c2);
+        let near = one / (one + e * across);
+        let rate = S::from_dd(rate);
+        let strength = S::of(3.0) * rate * rate * (near * near * near);
+        (strength, [(one - across) * near, (one + e).sqrt() * x * c1 * near])
+    }
+}
+
+/// The solution of `χ + e χ³ c₃(αχ²) = s`, s at least 0 and of an ellipse at most half a revolution.
+fn universal_variable(s: f64, e: f64, alpha: f64) -> f64 {
+    // c₃ is positive, at most a sixth on an ellipse and at least that on the others, where r grows with χ
+    let bound = if alpha > 0.0 {
+        PI / alpha.sqrt()
+    } else {
+        let root = (-alpha).sqrt();
+        let flat = libm::cbrt(6.0 * (s / e));
+        if alpha < 0.0 { flat.min(libm::asinh(s * root) / root) } else { flat }
+    };
+    descend(s.min(bound), |x| {
+        let z = alpha * x * x;
+        let [_, _, c2, c3] = stumpff(z, halvings(z));
+        [x + e * x * x * x * c3 - s, 1.0 + e * x * x * c2]
+    })
+}
+
+/// The root of a convex function below `x`, where it is not negative; `value` gives the function and its slope.
+fn descend(mut x: f64, value: impl Fn(f64) -> [f64; 2]) -> f64 {
+    for _ in 0..MOST_DESCENTS {
+        let [f, slope] = value(x);
+        let next = x - f / slope;
+        if next.partial_cmp(&x) != Some(Ordering::Less) {
+            break;
+        }
+        x = next;
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against Kepler's and Barker's equations in 90 digits, from circles through both neighbours of the parabola to straight lines.
+    #[test]
+    fn places_are_those_of_the_classical_equations() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/forces/conics.csv");
+        let text = std::fs::read_to_string(path).unwrap();
+        let (mut worst, mut count) = ([0.0_f64; 2], 0);
+        for line in text.lines().filter(|line| !line.starts_with('#')).skip(1) {
+            let fields: Vec<&str> = line.split(',').collect();
+            let [e, s] = [0, 1].map(|k| fields[k].parse::<f64>().unwrap());
+            let [x, y] = [2, 3].map(|k| fields[k].parse::<Dd>().unwrap());
+            let orbit = Orbit::conic(1.0, 1.0, e).unwrap();
+            let r = (x * x + y * y).sqrt();
+            let strength = Dd::of(3.0) / (r * r * r);
+            let (quick, precise) =
+                (orbit.at::<f64>(Time::from_seconds(s)), orbit.at::<Dd>(Time::from_seconds(s)));
+            let error = |place: Place<Dd>| {
+                let across = Vec3([x / r, y / r, Dd::ZERO]) - place.direction;
+                across.norm().hi().max((place.strength / strength - 1.0).hi().abs())
+            };
+            let quick =
+                Place { strength: Dd::of(quick.strength), direction: Vec3(quick.direction.0.map(Dd::of)) };
+            worst[0] = worst[0].max(error(quick));
+            // over many revolutions double-double keeps as many digits fewer as the time has
+            worst[1] = worst[1].max(error(precise) / (1.0 + 0.01 * s.abs()));
+            count += 1;
+        }
+        assert!(count == 88 && worst[0] < 1e-14 && worst[1] < 1e-29, "{count} {worst:?}");
+    }
+}
