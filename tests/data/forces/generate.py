@@ -1,6 +1,6 @@
 """Bodies under forces, integrated in 34 digits, and places on conics: writes reference.csv and conics.csv beside this file.
 
-python3 tests/data/forces/generate.py        (mpmath 1.3)
+python3 tests/data/forces/generate.py        (mpmath 1.3; a quarter of an hour)
 
 Equations of motion: m' = m x w + tau, q' = q (0, w)/2, w = m/I, q scalar first, body to space.
     gradient p1 = n, p2 = e: tau = 3 n^2 (a/r)^3 r x I r, r in body axes, orbit in the x-y plane of space, perigee on +x at t = 0

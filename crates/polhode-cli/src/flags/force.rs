@@ -68,10 +68,16 @@ fn one_or_two(text: &str) -> Result<OneOrTwo, String> {
 struct ThreeOrFour([f64; 4]);
 
 fn three_or_four(text: &str) -> Result<ThreeOrFour, String> {
-    match list(text)?[..] {
-        [a, b, c] => Ok(ThreeOrFour([a, b, c, 0.0])),
-        [a, b, c, d] => Ok(ThreeOrFour([a, b, c, d])),
-        ref found => Err(format!("{} given, 3 or 4 needed; separate them by commas", found.len())),
+    let found = conic(&list(text)?).map_err(|error| error + "; separate them by commas")?;
+    Ok(ThreeOrFour(found))
+}
+
+/// GM, least distance, eccentricity, and the time of the least distance, 0 if it is left out.
+pub(crate) fn conic(numbers: &[f64]) -> Result<[f64; 4], String> {
+    match *numbers {
+        [gm, periapsis, eccentricity] => Ok([gm, periapsis, eccentricity, 0.0]),
+        [gm, periapsis, eccentricity, time] => Ok([gm, periapsis, eccentricity, time]),
+        _ => Err(format!("{} given, 3 or 4 needed", numbers.len())),
     }
 }
 
@@ -142,6 +148,7 @@ impl ForceArguments {
         self.weight_moment.is_some()
             || self.gravity_gradient.is_some()
             || self.orbit.is_some()
+            || self.orbit_plane.is_some()
             || self.torque_body.is_some()
             || self.torque_space.is_some()
             || self.drag.is_some()

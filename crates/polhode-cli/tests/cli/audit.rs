@@ -288,10 +288,12 @@ fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
         &["zero.csv, line 2, column 2 (q_w): '0': every component of the attitude is zero"],
     );
     refused("audit absent.csv", &["absent.csv: cannot be read", "name a text file"]);
-    refused(
-        &format!("audit {short} --drag 1"),
-        &["--moments: missing: a force acts on a body that is known"],
-    );
+    for force in ["--drag 1", "--orbit 3.986e14,3.8e7,4.2", "--orbit-plane 0deg,60deg,0deg"] {
+        refused(
+            &format!("audit {short} {force}"),
+            &["--moments: missing: a force acts on a body that is known"],
+        );
+    }
     refused(&format!("audit {short} --columns q=1"), &["--columns", "'q=1' has no known key", "qw qx qy qz"]);
     refused(&format!("audit {short} --against {short}"), &["short.csv: no line '# moments: I1,I2,I3'"]);
     let own = scratch.file("README.md", "# Mine\n");

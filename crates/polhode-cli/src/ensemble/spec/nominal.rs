@@ -12,7 +12,7 @@ use polhode_files::toml_file::Section;
 
 use super::Acting;
 use crate::flags::body::{Described, described};
-use crate::flags::force::{Forces, NO_ORBIT, plane};
+use crate::flags::force::{Forces, NO_ORBIT, conic, plane};
 use crate::flags::start::{Factor, angle_unit, rate_unit};
 
 /// What `[body]`, `[start]` and `[force]` say.
@@ -150,11 +150,9 @@ fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
     };
     let forces = Forces {
         gravity_gradient: one_or_two("gravity_gradient")?,
-        orbit: match force.list("orbit")?.as_deref() {
+        orbit: match force.list("orbit")? {
             None => None,
-            Some([gm, periapsis, eccentricity]) => Some([*gm, *periapsis, *eccentricity, 0.0]),
-            Some([gm, periapsis, eccentricity, time]) => Some([*gm, *periapsis, *eccentricity, *time]),
-            Some(found) => return Err(force.at("orbit", &format!("{} given, 3 or 4 needed", found.len()))),
+            Some(numbers) => Some(conic(&numbers).map_err(|error| force.at("orbit", &error))?),
         },
         orbit_plane: match force.text("orbit_plane")? {
             None => None,
