@@ -85,24 +85,25 @@ pub(crate) fn gravity_gradient(mean_motion: f64, eccentricity: f64) -> PyResult<
 
 /// The gravity gradient on a conic about a mass with the gravitational parameter gm, m^3/s^2: least distance from its centre, m,
 /// eccentricity (below 1 an ellipse, 1 a parabola, above 1 a hyperbola), the time of the least distance, s, and the plane in space:
-/// longitude of the node, inclination and argument of the periapsis, rad.
+/// longitude of the node, inclination and argument of the periapsis, rad, by default the x-y plane with the least distance on +x.
 ///
 /// >>> from polhode import Body, gravity_gradient_on_conic
 /// >>> flyby = gravity_gradient_on_conic(3.986e14, 3.8e7, 4.2, time=86400, plane=[0.3, 0.8, 1.1])
 /// >>> Body([0.61, 0.96, 1], [flyby])
 /// Body(principal moments 0.61, 0.96, 1; forces: gravity gradient)
 #[pyfunction]
-#[pyo3(signature = (gm, periapsis, eccentricity, time = 0.0, plane = [0.0; 3]))]
+#[pyo3(signature = (gm, periapsis, eccentricity, time = 0.0, plane = None))]
 pub(crate) fn gravity_gradient_on_conic(
     gm: f64,
     periapsis: f64,
     eccentricity: f64,
     time: f64,
-    plane: [f64; 3],
+    plane: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Force> {
+    let angles = plane.map(|angles| vector("plane", angles)).transpose()?;
     let orbit = Orbit::conic(gm, periapsis, eccentricity)
         .and_then(|orbit| orbit.passing_at(time))
-        .and_then(|orbit| orbit.in_plane(plane));
+        .and_then(|orbit| angles.map_or(Ok(orbit), |angles| orbit.in_plane(angles.into())));
     orbit.map(|orbit| body::Force::gravity_gradient_on(orbit).into()).map_err(refused)
 }
 
