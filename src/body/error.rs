@@ -74,7 +74,9 @@ pub enum ForceError {
     },
     /// The eccentricity is that of no ellipse.
     #[error(
-        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle; a parabola or a hyperbola is given by its least distance", Shown(*eccentricity)
+        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle; a parabola or a hyperbola is \
+         given by its least distance",
+        Shown(*eccentricity)
     )]
     Eccentricity {
         /// The value.
