@@ -7,6 +7,7 @@
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::body::{Body, StateError};
+use crate::flow::{Mode, TumblingElements};
 use crate::inertia::{Amount, Inertia, MassError, MassProperties, Solid};
 use crate::rotation::EulerSequence;
 
@@ -41,7 +42,7 @@ pub struct NamedBody {
 pub struct Orientation {
     /// The axes of space.
     pub frame: &'static str,
-    /// The date of the reference motion's start, UTC, if it has one.
+    /// The date of the reference motion's start with its time scale, if it has one.
     pub epoch: Option<&'static str>,
     /// Where the attitude comes from.
     pub source: &'static str,
@@ -59,7 +60,7 @@ impl NamedBody {
     pub fn attitude_known(&self) -> String {
         match self.orientation {
             Some(Orientation { frame, epoch: Some(epoch), .. }) => {
-                format!("attitude in the frame {frame} at {epoch} UTC")
+                format!("attitude in the frame {frame} at {epoch}")
             }
             Some(Orientation { frame, .. }) => format!("attitude in the frame {frame}"),
             None => "attitude unknown: identity".into(),
@@ -156,7 +157,61 @@ impl Top {
     }
 }
 
-fn entries() -> [Entry; 11] {
+fn entries() -> Vec<Entry> {
+    let mut all = Vec::from(states());
+    all.splice(1..1, tumblers());
+    all
+}
+
+/// Bodies that are published by the elements of their light curves.
+fn tumblers() -> impl Iterator<Item = Entry> {
+    const HOUR: f64 = 3600.0;
+    const DAY: f64 = 86_400.0;
+    let degrees = |angles: [f64; 2]| angles.map(f64::to_radians);
+    let apophis = TumblingElements::new(Mode::ShortAxis, [27.38 * HOUR, 263.0 * HOUR])
+        .with_pole(degrees([250.0, -75.0]))
+        .with_angles(degrees([152.0, 14.0]));
+    let halley = TumblingElements::new(Mode::LongAxis, [3.69 * DAY, 7.1 * DAY]);
+    let apophis_source = "Pravec et al., Icarus 233 (2014) 48: pole 250, -75, phases 152, 14 degrees, light time taken off; periods 27.38 and 263 h";
+    let listed = [
+        (
+            "apophis",
+            "asteroid 99942 Apophis, tumbling in short-axis mode; ratios of moments",
+            apophis_source,
+            [0.61, 0.965, 1.0],
+            apophis,
+            Some(Orientation {
+                frame: "ecliptic J2000",
+                epoch: Some("2456284.676388 UTC"),
+                source: apophis_source,
+            }),
+        ),
+        (
+            "halley",
+            "nucleus of comet 1P/Halley, tumbling in long-axis mode; ratios of moments, pole and phases unknown",
+            "Belton et al., Icarus 93 (1991) 183: periods 3.69 and 7.1 d, long axis 66 degrees from the angular momentum; as a symmetric body, whose ratio follows from these",
+            [1.0, 2.278, 2.278],
+            halley,
+            None,
+        ),
+    ];
+    listed.into_iter().filter_map(|(name, summary, source, moments, elements, orientation)| {
+        let body = Body::free(Inertia::from_moments(moments).ok()?);
+        let start = elements.point(body.inertia()).ok()?;
+        let attitude = body.leave(&start).attitude.components();
+        Some(Entry {
+            name,
+            summary,
+            source,
+            unit: RATIO,
+            moments: Ok(moments),
+            omega_body: body.omega_of(&start).into(),
+            attitude: orientation.map(|orientation| (attitude, orientation)),
+        })
+    })
+}
+
+fn states() -> [Entry; 11] {
     // °/day to rad/s
     const DEGREE_PER_DAY: f64 = core::f64::consts::PI / 180.0 / 86_400.0;
     [
@@ -264,7 +319,7 @@ fn entries() -> [Entry; 11] {
 
 const TOUTATIS: Orientation = Orientation {
     frame: "ecliptic J2000",
-    epoch: Some("1992-11-09T17:49:47"),
+    epoch: Some("1992-11-09T17:49:47 UTC"),
     source: "3-1-3 angles of Takahashi, Busch and Scheeres, Astron. J. 146 (2013) 95, with body axes middle, short, long, as quoted in the tests of Principia; they give the pole 180.2, -54.75 degrees of Zhao et al., arXiv:1504.02024, to 0.3 degrees",
 };
 
@@ -411,6 +466,32 @@ mod tests {
         let [longitude, latitude] = motion.unwrap().tumbling().unwrap().pole.map(f64::to_degrees);
         assert!((longitude.rem_euclid(360.0) - 180.2).abs() < 0.3, "{longitude}");
         assert!((latitude + 54.75).abs() < 0.3, "{latitude}");
+    }
+
+    /// Each paper's other figures come out of the elements that it gives.
+    #[test]
+    fn tumblers_reproduce_the_figures_of_their_papers() {
+        let motion = |name: &str| {
+            let found = body(name).unwrap();
+            let [w, x, y, z] = found.attitude;
+            let attitude = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+            let omega = Vector3::from(found.omega_body);
+            crate::flow::FreeMotion::from_omega(&found.inertia, attitude, omega).unwrap()
+        };
+        let apophis = motion("apophis");
+        let elements = apophis.tumbling().unwrap();
+        // P_1 = 30.56 +- 0.01 h and 2E I_3/L^2 = 1.024 +- 0.013
+        assert!((elements.combined_period() / 3600.0 - 30.56).abs() < 0.01);
+        let momentum = apophis.at(0.0).unwrap().momentum().norm();
+        assert!((apophis.character().unwrap().spin / momentum - 1.024).abs() < 0.013);
+        let [longitude, latitude] = elements.pole.map(f64::to_degrees);
+        assert!((longitude.rem_euclid(360.0) - 250.0).abs() < 1e-9 && (latitude + 75.0).abs() < 1e-9);
+        let halley = motion("halley");
+        let [least, most] = halley.tilt_range().unwrap().map(f64::to_degrees);
+        assert!((least - 66.0).abs() < 0.5 && (most - 66.0).abs() < 0.5, "{least} {most}");
+        let periods =
+            [halley.tumbling().unwrap().precession_period, halley.tumbling().unwrap().rotation_period];
+        assert!((periods[0] / 86_400.0 - 3.69).abs() < 1e-6 && (periods[1] / 86_400.0 - 7.1).abs() < 1e-6);
     }
 
     #[test]

@@ -117,6 +117,7 @@ from!(
     crate::strapdown::StrapdownError,
     crate::strapdown::UnknownKind,
     crate::units::DateError,
+    crate::units::ScaleError,
 );
 #[cfg(any(test, feature = "random"))]
-from!(crate::body::NoMember);
+from!(crate::body::NoMember, crate::flow::NoTumbler);

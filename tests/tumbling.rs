@@ -175,3 +175,73 @@ fn a_steady_spin_has_an_axis_and_a_rate() {
     assert_eq!(spin([1.0, 2.0, 3.0], [0.0; 3]), None);
     assert_eq!(spin([1.0, 2.0, 3.0], [0.1, 1.0, 0.0]), None);
 }
+
+#[test]
+fn two_of_three_periods_are_enough() {
+    let apophis = TumblingElements::new(Mode::ShortAxis, [27.38, 263.0]);
+    let combined = apophis.combined_period();
+    // Pravec et al. (2014): the strongest frequency of the light curve is twice that of 30.56 h
+    assert!((combined - 30.56).abs() < 0.01, "{combined}");
+    let toutatis = TumblingElements::new(Mode::LongAxis, [7.38, 5.38]);
+    for elements in [apophis, toutatis] {
+        let (mode, precession, rotation) =
+            (elements.mode, elements.precession_period, elements.rotation_period);
+        let combined = elements.combined_period();
+        for found in [
+            TumblingElements::from_combined_and_rotation(mode, [combined, rotation]).unwrap(),
+            TumblingElements::from_precession_and_combined(mode, [precession, combined]).unwrap(),
+        ] {
+            assert!((found.precession_period / precession - 1.0).abs() < 1e-14);
+            assert!((found.rotation_period / rotation - 1.0).abs() < 1e-14);
+        }
+    }
+    // the long axis is slower than the short one in short-axis mode, and faster than both together in long-axis mode
+    for (mode, periods) in [(Mode::ShortAxis, [30.0, 20.0]), (Mode::LongAxis, [20.0, 30.0])] {
+        let refused = TumblingElements::from_precession_and_combined(mode, periods).unwrap_err().to_string();
+        assert!(refused.contains("1/P_1 = 1/P_phi"), "{refused}");
+    }
+    assert!(TumblingElements::from_combined_and_rotation(Mode::LongAxis, [30.0, 20.0]).is_err());
+    assert!(TumblingElements::from_combined_and_rotation(Mode::ShortAxis, [f64::NAN, 20.0]).is_err());
+}
+
+#[cfg(feature = "random")]
+#[test]
+fn members_of_solutions_have_their_elements() {
+    use polhode::flow::{NoTumbler, TumblingPopulation, TumblingSolution};
+    use polhode::num::Covariance;
+
+    let inertia = Inertia::from_moments([0.61, 0.965, 1.0]).unwrap();
+    let solution = |rotation: f64, deviations: [f64; 8]| {
+        let elements = TumblingElements::new(Mode::ShortAxis, [27.38, rotation]).with_pole([1.0, 0.5]);
+        TumblingSolution::new(inertia.clone(), elements, Covariance::independent(deviations).unwrap())
+    };
+    let deviations = [0.07, 6.0, 0.1, 0.05, 0.2, 0.1, 0.08, 0.008];
+    let both =
+        TumblingPopulation::new(vec![(3.0, solution(263.0, deviations)), (1.0, solution(300.0, [0.0; 8]))]);
+    let both = both.unwrap();
+    let (mut second, mut draws) = (0, 0);
+    for k in 0..2000 {
+        let member = both.member(7, k).unwrap();
+        assert_eq!(member, both.member(7, k).unwrap());
+        let motion =
+            FreeMotion::from_omega(&member.inertia, member.attitude.into(), member.omega_body.into())
+                .unwrap();
+        let found = motion.tumbling().unwrap();
+        assert_eq!(found.mode, Mode::ShortAxis);
+        if both.solution_of(7, k) == 1 {
+            second += 1;
+            assert!((found.rotation_period - 300.0).abs() < 1e-8 && (found.pole[0] - 1.0).abs() < 1e-12);
+        }
+        let [small, middle, large] = member.inertia.principal_moments();
+        assert!(large == 1.0 && middle <= large && small <= middle);
+        draws += member.draws;
+    }
+    // binomial, five standard deviations
+    assert!((f64::from(second) - 500.0).abs() < 5.0 * 19.4, "{second}");
+    assert!(draws > 2000, "no draw was cut off");
+
+    let refused = |weighted| TumblingPopulation::new(weighted).unwrap_err();
+    assert!(matches!(refused(vec![]), NoTumbler::Weight { .. }));
+    assert!(matches!(refused(vec![(f64::NAN, solution(263.0, deviations))]), NoTumbler::Weight { .. }));
+    assert!(matches!(refused(vec![(1.0, solution(150.0, deviations))]), NoTumbler::Drawn { draws: 0, .. }));
+}

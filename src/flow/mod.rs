@@ -30,6 +30,8 @@ pub use free::{
     Interpolation, Mode, Passage, Passages, PureSpin, Stability, StartCovariance, StateCovariance,
     StateDerivative, SymmetricTop, ThroughError, TumblingElements, TumblingError,
 };
+#[cfg(any(test, feature = "random"))]
+pub use free::{NoElements, NoTumbler, TumblingPopulation, TumblingSolution};
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop, TopDerivative};
 pub use reach::TimeError;

@@ -3,12 +3,16 @@
 //! Attitudes are unit quaternions, **scalar first, active, body → space**: `v_space = q v_body q*`.
 //! Increments multiply on the right: `q ← q ∘ p`.
 
+mod celestial;
+mod directions;
 mod dispersion;
 mod distance;
 mod euler;
 mod quaternion;
 mod vec3;
 
+pub use celestial::CelestialFrame;
+pub use directions::Directions;
 pub use dispersion::Dispersion;
 pub use distance::rotation_angle;
 pub(crate) use distance::{rotation_vector, turn_by};

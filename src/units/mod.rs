@@ -1,8 +1,10 @@
 //! Units of times, rates, angles, momenta and torques, by the names that files use, and dates.
 
 mod date;
+mod time_scale;
 
-pub use date::{Date, DateError};
+pub use date::{Date, DateError, ScaleError};
+pub use time_scale::TimeScale;
 
 use crate::num::Shown;
 

@@ -22,7 +22,8 @@ const EXAMPLES: &str = "Examples:
   polhode motion --body toutatis
   polhode motion --moments 1,2,3 --omega 0,1,0 --format json
   polhode motion --moments 0.61,0.965,1 --periods 27.38h,263h --mode sam \\
-    --pole 250,-75 --phases 152,14 --angle-unit deg";
+    --pole 250,-75 --phases 152,14 --angle-unit deg
+  polhode motion --body toutatis --to-frame icrf";
 
 /// Mode, periods, stability and distance to the separatrix of torque-free motion
 ///
@@ -45,10 +46,12 @@ const EXAMPLES: &str = "Examples:
 ///   lambda, beta         longitude and latitude of L in space
 ///   phi, psi             Euler angles at the start (z-x-z, z along L and along
 ///                        the axis)
-///   frame, epoch         of a catalogued body: the axes of space (unknown: the
-///                        attitude at the start is the identity) and the date
+///   frame, epoch         the axes of space, by --frame or of a catalogued body
+///                        (unknown: its attitude at the start is the identity),
+///                        and the date of its start
 ///
-/// csv and json have angles in rad and times in s.
+/// csv and json have angles in rad and times in s. A start with a known frame is
+/// turned to another by --to-frame.
 #[derive(Args, Clone, Debug)]
 #[command(verbatim_doc_comment, override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Motion {
@@ -72,11 +75,14 @@ impl Motion {
         let motion = FreeMotion::from_point(body.inertia(), start);
         let quantities = quantities(&body, &start, &motion);
         let mut quantities = quantities.map_err(|error| Error::Input(format!("--omega: {error}")))?;
+        let known = self.start.frame_of_motion(published.as_ref()).map(|frame| frame.name());
         let published = published.filter(|_| !self.start.has_attitude());
-        let frame = published.as_ref().map(|found| found.orientation.map_or("unknown", |known| known.frame));
+        let of_body =
+            published.as_ref().map(|found| found.orientation.map_or("unknown", |known| known.frame));
+        let frame = known.or(of_body);
         let epoch = published.and_then(|found| found.orientation?.epoch);
-        quantities.push(("frame", "", "", "axes of space, of the catalogue", frame.into()));
-        quantities.push(("epoch", "", "", "of the start, UTC", epoch.into()));
+        quantities.push(("frame", "", "", "axes of space", frame.into()));
+        quantities.push(("epoch", "", "", "of the start", epoch.into()));
         let format = Format::of(self.format, self.out.as_deref())?;
         let text = if format == Format::Table { sheet(quantities) } else { format.write(&wide(quantities)) };
         emit(&text, self.out.as_deref())

@@ -1,7 +1,6 @@
 //! An instant or a time span as it is written: a number of seconds, a number with a unit, or a date.
 
-use polhode::units::Date;
-use polhode::units::TimeUnit;
+use polhode::units::{Date, TimeScale, TimeUnit};
 
 use crate::numbers::number;
 
@@ -38,20 +37,43 @@ pub fn positive_duration(text: &str) -> Result<f64, String> {
 }
 
 /// The date of t = 0.
-pub fn epoch(text: &str) -> Result<Date, String> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Epoch {
+    /// The date.
+    pub date: Date,
+    /// The time scale of this date and of others that are written without one.
+    pub scale: Option<TimeScale>,
+}
+
+impl Epoch {
+    /// A date, and the scale of dates without one.
+    #[must_use]
+    pub fn new(date: Date, scale: Option<TimeScale>) -> Self {
+        Epoch { date: scale.map_or(date, |scale| date.or_in(scale)), scale }
+    }
+}
+
+/// A date by itself.
+pub fn date(text: &str) -> Result<Date, String> {
     text.parse::<Date>().map_err(|error| error.to_string())
 }
 
+/// The time scale of that name.
+pub fn time_scale(text: &str) -> Result<TimeScale, String> {
+    TimeScale::named(text).ok_or_else(|| format!("'{text}' is no time scale here; write UTC, TAI, TT or TDB"))
+}
+
 /// The time `text` in seconds, from `epoch` on where there is one.
-pub fn seconds(text: &str, epoch: Option<&Date>) -> Result<f64, String> {
+pub fn seconds(text: &str, epoch: Option<Epoch>) -> Result<f64, String> {
     let text = text.trim();
     if with_unit(text).is_some_and(|(_, name)| TimeUnit::named(name).is_some()) {
         return duration(text);
     }
     match epoch {
-        Some(epoch) => {
-            let date: Date = text.parse().map_err(|error: polhode::units::DateError| error.to_string())?;
-            Ok(date.seconds_since(epoch))
+        Some(Epoch { date: epoch, scale }) => {
+            let date = date(text)?;
+            let date = scale.map_or(date, |scale| date.or_in(scale));
+            date.seconds_since(&epoch).map_err(|error| format!("'{text}': {error}"))
         }
         None => duration(text).map_err(|error| match text.parse::<Date>() {
             Ok(_) => format!("'{text}' is a date; give the date of t = 0 by --epoch"),
@@ -102,7 +124,8 @@ mod tests {
 
     #[test]
     fn dates_count_from_the_epoch() {
-        let noon = epoch("2000-01-01T12:00").unwrap();
+        let epoch = |text: &str, scale| Some(Epoch::new(date(text).unwrap(), scale));
+        let noon = epoch("2000-01-01T12:00", None);
         for (text, expected) in [
             ("2451545", 0.0),
             ("2451545.1", 8640.0),
@@ -110,11 +133,18 @@ mod tests {
             ("2000-01-01", -43_200.0),
             ("3h", 10_800.0),
         ] {
-            let found = seconds(text, Some(&noon)).unwrap();
+            let found = seconds(text, noon).unwrap();
             approx::assert_relative_eq!(found, expected, max_relative = 1e-15);
         }
         assert!(seconds("2000-01-01", None).unwrap_err().contains("--epoch"));
-        assert!(seconds("2000-01-32", Some(&noon)).unwrap_err().contains("no such day"));
+        assert!(seconds("2451545 TDB", None).unwrap_err().contains("--epoch"));
+        assert!(seconds("2451545 TDB", noon).unwrap_err().contains("a minute off"));
+        assert!(seconds("2000-01-32", noon).unwrap_err().contains("no such day"));
+        for utc in [epoch("2000-01-01T12:00 UTC", None), epoch("2000-01-01T12:00", Some(TimeScale::Utc))] {
+            let found = seconds("2451545 TT", utc).unwrap();
+            assert!((found + 64.184).abs() < 1e-9, "{found}");
+        }
+        assert_eq!(seconds("2451545.1", epoch("2451545", Some(TimeScale::Tdb))), Ok(8640.0));
         assert!(is_moment("2000-01-01").is_ok() && is_moment("12h").is_ok() && is_moment("2e").is_err());
     }
 }

@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use polhode::units::Date;
 use polhode::units::TimeUnit;
 
 use crate::error::{Error, Rule, TableError};
-use crate::instant::{is_moment, seconds};
+use crate::instant::{Epoch, is_moment, seconds};
 use crate::table::{
     ColumnNames, Delimiter, Lines as Text, Name, ReadOptions, Source as Rows, Table, uncommented, width_rule,
 };
@@ -29,7 +28,7 @@ pub struct TimesColumn {
     /// Its name or its number, from 1.
     pub wanted: Option<String>,
     /// The date of t = 0.
-    pub epoch: Option<Date>,
+    pub epoch: Option<Epoch>,
     /// The flags that name it, for messages.
     pub asked: Asked,
 }
@@ -190,14 +189,14 @@ impl Times<'_> {
             }
             let Some(place) = found else { continue };
             self.is_empty = false;
-            return place.time(lines, self.column.epoch.as_ref()).map(Some);
+            return place.time(lines, self.column.epoch).map(Some);
         }
     }
 }
 
 impl Place {
     /// The time in a line.
-    fn time(&self, line: &Text, epoch: Option<&Date>) -> Result<f64, TableError> {
+    fn time(&self, line: &Text, epoch: Option<Epoch>) -> Result<f64, TableError> {
         let text = line.text.trim();
         let mut cells = vec![text.to_string()];
         if self.columns > 1 {
@@ -292,7 +291,7 @@ mod tests {
         let column = TimesColumn {
             source: Source::File(path),
             wanted: wanted.map(String::from),
-            epoch: epoch.map(|date| date.parse().unwrap()),
+            epoch: epoch.map(|date| Epoch::new(date.parse().unwrap(), None)),
             asked: Asked { file: "--times".into(), column: "--times-column" },
         };
         let times: Result<Vec<f64>, Error> = column.read().unwrap().collect();

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::Error;
-use crate::instant::duration;
+use crate::instant::{Epoch, seconds};
 use crate::numbers::number;
 use crate::text::visible;
 
@@ -84,27 +84,41 @@ impl<'t> Section<'t> {
         Err(self.at(key, &format!("{number:?} is not positive; give a number above zero")))
     }
 
-    /// A number of seconds, or a text with a unit.
+    /// A time span: a number of seconds, or a text with a unit.
     pub fn seconds(&self, key: &str) -> Result<Option<f64>, Error> {
-        self.value(key).map(|value| self.seconds_of(key, value)).transpose()
+        self.moment(key, None)
     }
 
     /// The same for a list.
     pub fn times(&self, key: &str) -> Result<Option<Vec<f64>>, Error> {
+        self.moments(key, None)
+    }
+
+    /// A time: as a span or, where t = 0 has a date, as a date in quotes; numbers are Julian dates then.
+    pub fn moment(&self, key: &str, epoch: Option<Epoch>) -> Result<Option<f64>, Error> {
+        self.value(key).map(|value| self.moment_of(key, value, epoch)).transpose()
+    }
+
+    /// The same for a list.
+    pub fn moments(&self, key: &str, epoch: Option<Epoch>) -> Result<Option<Vec<f64>>, Error> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
             DeValue::Array(items) => {
-                items.iter().map(|item| self.seconds_of(key, item)).collect::<Result<_, _>>().map(Some)
+                items.iter().map(|item| self.moment_of(key, item, epoch)).collect::<Result<_, _>>().map(Some)
             }
-            _ => Ok(Some(vec![self.seconds_of(key, value)?])),
+            _ => Ok(Some(vec![self.moment_of(key, value, epoch)?])),
         }
     }
 
-    fn seconds_of(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, Error> {
-        match value.get_ref() {
-            DeValue::String(text) => duration(text).map_err(|error| self.at(key, &error)),
-            _ => self.number(key, value),
-        }
+    fn moment_of(&self, key: &str, value: &Spanned<DeValue<'_>>, epoch: Option<Epoch>) -> Result<f64, Error> {
+        let text = match (value.get_ref(), epoch) {
+            (DeValue::String(text), _) => text.as_ref(),
+            (DeValue::Integer(integer), Some(_)) if integer.radix() == 10 => integer.as_str(),
+            (DeValue::Float(float), Some(_)) => float.as_str(),
+            _ => return self.number(key, value),
+        };
+        seconds(text, epoch)
+            .map_err(|error| self.at(key, &error.replace("by --epoch", "by epoch in [start]")))
     }
 
     /// A count.
@@ -131,8 +145,22 @@ impl<'t> Section<'t> {
 
     /// `N` lists of `M` numbers each.
     pub fn rows<const N: usize, const M: usize>(&self, key: &str) -> Result<Option<[[f64; M]; N]>, Error> {
-        let Some(value) = self.value(key) else { return Ok(None) };
         let needed = || self.at(key, &format!("needed are {N} lists of {M} numbers, as [[...], [...]]"));
+        self.lists(key, needed)?.map(|rows| rows.try_into().map_err(|_| needed())).transpose()
+    }
+
+    /// Any number of lists of two numbers each; none where the key is missing.
+    pub fn pairs(&self, key: &str) -> Result<Vec<[f64; 2]>, Error> {
+        let needed = || self.at(key, "needed are lists of 2 numbers, as [[...], [...]]");
+        Ok(self.lists(key, needed)?.unwrap_or_default())
+    }
+
+    fn lists<const M: usize>(
+        &self,
+        key: &str,
+        needed: impl Fn() -> Error,
+    ) -> Result<Option<Vec<[f64; M]>>, Error> {
+        let Some(value) = self.value(key) else { return Ok(None) };
         let DeValue::Array(rows) = value.get_ref() else { return Err(needed()) };
         let row = |row: &Spanned<DeValue<'_>>| -> Result<[f64; M], Error> {
             let DeValue::Array(items) = row.get_ref() else { return Err(needed()) };
@@ -140,8 +168,7 @@ impl<'t> Section<'t> {
                 items.iter().map(|item| self.number(key, item)).collect::<Result<_, _>>()?;
             numbers.try_into().map_err(|_| needed())
         };
-        let rows: Vec<[f64; M]> = rows.iter().map(row).collect::<Result<_, _>>()?;
-        rows.try_into().map(Some).map_err(|_| needed())
+        rows.iter().map(row).collect::<Result<_, _>>().map(Some)
     }
 
     /// Several numbers in brackets, or one without.

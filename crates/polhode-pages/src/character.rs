@@ -20,9 +20,7 @@ pub fn quantities(body: &Body, start: &Point<Dd>, motion: &FreeMotion) -> Result
     let tilt = motion.tilt_range();
     let (axis_name, axis) = axis(body, motion, character);
     let precession_period = character.precession_rate.map(|rate| core::f64::consts::TAU / rate.abs());
-    // the frequency of the light curve: the turn about L seen with the turn about the axis
-    let sign = if character.mode == Mode::LongAxis { 1.0 } else { -1.0 };
-    let combined = tumbling.map(|found| 1.0 / (1.0 / found.precession_period + sign / found.rotation_period));
+    let combined = tumbling.map(|found| found.combined_period());
     let moments = body.inertia().principal_moments();
     let largest = moments.iter().fold(0.0_f64, |most, moment| most.max(*moment));
     let state = body.leave(start);
@@ -30,7 +28,8 @@ pub fn quantities(body: &Body, start: &Point<Dd>, motion: &FreeMotion) -> Result
     let omega = body.omega_of(start);
     let q = state.attitude.components();
     let pole = tumbling.map(|found| found.pole);
-    let angles = tumbling.map(|found| found.angles);
+    let whole = |angle: f64| angle.rem_euclid(core::f64::consts::TAU);
+    let angles = tumbling.map(|found| found.angles.map(whole));
     Ok(vec![
         ("mode", "", "", "long-axis, short-axis, separatrix or steady", character.mode.name().into()),
         ("modulus", "k", "", "of the elliptic functions", character.parameter.map(|k| k.sqrt() + 0.0).into()),
@@ -86,15 +85,21 @@ pub fn quantities(body: &Body, start: &Point<Dd>, motion: &FreeMotion) -> Result
             "lambda",
             "rad",
             "longitude of L in space, 0 to 2 pi",
-            pole.map(|pole| pole[0].rem_euclid(core::f64::consts::TAU)).into(),
+            pole.map(|pole| whole(pole[0])).into(),
         ),
         ("beta", "beta", "rad", "latitude of L in space", pole.map(|pole| pole[1]).into()),
-        ("phi", "phi_0", "rad", "of the axis about L at the start", angles.map(|angles| angles[0]).into()),
+        (
+            "phi",
+            "phi_0",
+            "rad",
+            "of the axis about L at the start, 0 to 2 pi",
+            angles.map(|angles| angles[0]).into(),
+        ),
         (
             "psi",
             "psi_0",
             "rad",
-            "of the body about the axis at the start",
+            "of the body about the axis at the start, 0 to 2 pi",
             angles.map(|angles| angles[1]).into(),
         ),
         ("q_w", "", "", "attitude at the start, body to space", q[0].into()),

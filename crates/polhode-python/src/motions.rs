@@ -1,8 +1,10 @@
 //! Motions in closed form, at any time.
 
+use std::collections::HashMap;
+
 use nalgebra::Vector3;
 use polhode::body::{Point, State};
-use polhode::flow::{self, TimeError};
+use polhode::flow::{self, TimeError, TumblingElements};
 use polhode::num::{Covariance, Dd};
 use polhode_pages::character::quantities;
 use polhode_pages::table::{Cell, Column, Table, row};
@@ -190,6 +192,52 @@ impl FreeMotion {
         let nonlinearity = found.iter().map(|found| found.nonlinearity).collect();
         let state = array(t.py(), entries, &[&shape[..], &[6, 6]].concat())?;
         Ok((state, array(t.py(), nonlinearity, &shape)?))
+    }
+
+    /// The motion of a tumbling body in the elements of its light curve: two of its periods, s, by the names `P_phi`, `P_psi` and `P_1`;
+    /// `mode`, "lam" or "sam"; `pole`, longitude and latitude of the angular momentum, and `phases`, phi and psi at t = 0, rad;
+    /// `is_reversed`: whether the axis of the mode points away from the angular momentum.
+    ///
+    /// >>> import numpy, polhode
+    /// >>> apophis = polhode.FreeMotion.tumbling(
+    /// ...     [0.61, 0.965, 1], {"P_phi": 27.38 * 3600, "P_psi": 263 * 3600}, "sam", pole=numpy.radians([250, -75]))
+    /// >>> round(apophis.character()["combined_period"] / 3600, 2)
+    /// 30.56
+    #[staticmethod]
+    #[pyo3(signature = (inertia, periods, mode, *, pole = None, phases = None, is_reversed = false, order = "wxyz"))]
+    fn tumbling(
+        inertia: &Bound<'_, PyAny>,
+        periods: HashMap<String, f64>,
+        mode: &str,
+        pole: Option<[f64; 2]>,
+        phases: Option<[f64; 2]>,
+        is_reversed: bool,
+        order: &str,
+    ) -> PyResult<Self> {
+        let (order, inertia) = (Order::of(order)?, through::free("inertia", inertia)?);
+        let mode = match mode {
+            "lam" => flow::Mode::LongAxis,
+            "sam" => flow::Mode::ShortAxis,
+            _ => return Err(refused(format!("mode: '{mode}' is no mode; write \"lam\" or \"sam\""))),
+        };
+        let period = |name: &str| periods.get(name).copied();
+        let elements = match (periods.len(), period("P_phi"), period("P_psi"), period("P_1")) {
+            (2, Some(precession), Some(rotation), None) => {
+                Ok(TumblingElements::new(mode, [precession, rotation]))
+            }
+            (2, Some(precession), None, Some(combined)) => {
+                TumblingElements::from_precession_and_combined(mode, [precession, combined])
+            }
+            (2, None, Some(rotation), Some(combined)) => {
+                TumblingElements::from_combined_and_rotation(mode, [combined, rotation])
+            }
+            _ => return Err(refused("periods: needed are two of P_phi, P_psi and P_1, s")),
+        };
+        let elements = elements.map_err(of("periods"))?.with_reversed(is_reversed);
+        let elements = pole.map_or(elements, |pole| elements.with_pole(pole));
+        let elements = phases.map_or(elements, |phases| elements.with_angles(phases));
+        let start = elements.point(&inertia).map_err(of("periods"))?;
+        Ok(FreeMotion { motion: flow::FreeMotion::from_point(&inertia, start), start, order })
     }
 
     /// All free motions through two attitudes `attitude` (2, 4) at two times `t`, s, that turn at most `turns` times between them, in

@@ -18,6 +18,8 @@ mod symmetric_top;
 mod theta;
 mod through;
 mod tumbling;
+#[cfg(any(test, feature = "random"))]
+mod tumbling_population;
 
 pub(crate) use addition::{Addition, Curve};
 pub use character::{AtRest, Character, Mode};
@@ -35,3 +37,5 @@ pub use symmetric_top::SymmetricTop;
 pub(super) use theta::{Family, LEAST_TERMS, Powers, T, U, V_MINUS, V_PLUS, least_value, polynomial};
 pub use through::{FittedMotion, Interpolation, Passage, Passages, ThroughError};
 pub use tumbling::{TumblingElements, TumblingError};
+#[cfg(any(test, feature = "random"))]
+pub use tumbling_population::{NoElements, NoTumbler, TumblingPopulation, TumblingSolution};

@@ -69,6 +69,20 @@ pub enum TumblingError {
         /// Its value.
         value: f64,
     },
+    /// P_1 leaves no other period.
+    #[error(
+        "P_1 = {combined:?} leaves no period beside {other:?}; in {} mode 1/P_1 = 1/P_phi {} 1/P_psi",
+        .mode.name(),
+        if *.mode == Mode::LongAxis { "+" } else { "-" }
+    )]
+    Combined {
+        /// The mode.
+        mode: Mode,
+        /// P_1.
+        combined: f64,
+        /// The other period that was given.
+        other: f64,
+    },
     /// The periods do not fit the moments.
     #[error(
         "P_psi/P_phi = {ratio:?}: a body of these moments in {} mode has ratios above {least:?} and below some {most:.1}",
@@ -107,6 +121,11 @@ fn cyclic(axis: usize) -> Quat<Dd> {
     }
 }
 
+/// Of 1/P_ψ in 1/P_1.
+fn sign(mode: Mode) -> f64 {
+    if mode == Mode::LongAxis { 1.0 } else { -1.0 }
+}
+
 fn turn(axis: usize, angle: Dd) -> Quat<Dd> {
     let (sin, cos) = (angle * 0.5).sin_cos();
     Quat::new(cos, Vec3::unit(axis) * sin)
@@ -124,6 +143,53 @@ impl TumblingElements {
     pub fn new(mode: Mode, [precession_period, rotation_period]: [f64; 2]) -> Self {
         let (pole, angles) = ([0.0, core::f64::consts::FRAC_PI_2], [0.0; 2]);
         TumblingElements { mode, precession_period, rotation_period, pole, angles, is_reversed: false }
+    }
+
+    /// The same by `[P_φ, P_1]`, P_1 being the [combined period](Self::combined_period).
+    ///
+    /// # Errors
+    /// Periods that leave no positive P_ψ.
+    pub fn from_precession_and_combined(
+        mode: Mode,
+        [precession, combined]: [f64; 2],
+    ) -> Result<Self, TumblingError> {
+        let rate = (1.0 / combined - 1.0 / precession) * sign(mode);
+        Self::with_rate(mode, combined, precession, rate, |rotation| [precession, rotation])
+    }
+
+    /// The same by `[P_1, P_ψ]`.
+    ///
+    /// # Errors
+    /// Periods that leave no positive P_φ.
+    pub fn from_combined_and_rotation(
+        mode: Mode,
+        [combined, rotation]: [f64; 2],
+    ) -> Result<Self, TumblingError> {
+        let rate = 1.0 / combined - sign(mode) / rotation;
+        Self::with_rate(mode, combined, rotation, rate, |precession| [precession, rotation])
+    }
+
+    fn with_rate(
+        mode: Mode,
+        combined: f64,
+        other: f64,
+        rate: f64,
+        periods: impl Fn(f64) -> [f64; 2],
+    ) -> Result<Self, TumblingError> {
+        if !(rate.is_finite() && rate > 0.0) {
+            return Err(TumblingError::Combined { mode, combined, other });
+        }
+        Ok(Self::new(mode, periods(1.0 / rate)))
+    }
+
+    /// P_1, with 1/P_1 = 1/P_φ + 1/P_ψ in long-axis mode and 1/P_φ − 1/P_ψ in short-axis mode: twice its frequency often leads in a
+    /// light curve. In short-axis mode it is the mean period in which the *long* axis goes round L, P_φ of papers that follow the
+    /// long axis in either mode.
+    ///
+    /// Sources: P. Pravec et al., Icarus 173 (2005) 108; N. H. Samarasinha and B. E. A. Mueller, Icarus 248 (2015) 347.
+    #[must_use]
+    pub fn combined_period(&self) -> f64 {
+        1.0 / (1.0 / self.precession_period + sign(self.mode) / self.rotation_period)
     }
 
     /// With longitude λ and latitude β of L in space, rad.

@@ -43,7 +43,7 @@ impl Gather {
         let threads = threads_of(self.threads);
         let shards = finished(&self.folder)?;
         let identity = self.check(&shards)?;
-        let needed = reduce::memory(identity.members, threads);
+        let needed = reduce::memory(identity.members, threads, !identity.observer.is_empty());
         if let Some(free) = memory::free().filter(|free| needed > *free) {
             let rule = format!(
                 "reducing {} members takes {} of memory, and {} are free",
@@ -63,7 +63,8 @@ impl Gather {
         let shares = together(&shards)?;
         let mut arrays = shards.iter().map(Finished::attitudes).collect::<Result<Vec<_>, _>>()?;
         let unreadable = |error: std::io::Error| Error::Input(format!("{}: {error}", self.folder.display()));
-        let reduced = reduce(&mut arrays, identity.members, threads).map_err(unreadable)?;
+        let reduced =
+            reduce(&mut arrays, identity.members, threads, &identity.directions()).map_err(unreadable)?;
         let records: Vec<Record> = shards.iter().map(|shard| shard.record.clone()).collect();
         let record = Record::of_shards(&records).ok_or_else(|| unexpected("no shards"))?;
         let results = Results::new(&reduced, &shares, record);

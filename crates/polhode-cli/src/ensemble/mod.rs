@@ -174,7 +174,7 @@ impl Ensemble {
         let range = Shard::WHOLE.range(spec.members);
         let (arrays, shares) = work::propagate(spec, range, means, &staging, &self.out)?;
         let mut attitudes = [arrays.attitudes];
-        let reduced = reduce::reduce(&mut attitudes, spec.members, means.threads)
+        let reduced = reduce::reduce(&mut attitudes, spec.members, means.threads, &identity.directions())
             .map_err(|error| Error::Input(format!("{}: {error}", self.out.display())))?;
         let record = Record::new(spec, None, shares.draws, shares.failures.len() as u64);
         let results = Results::new(&reduced, &shares, record);
@@ -239,7 +239,8 @@ impl Ensemble {
         cost::check_all(&spec.place, range.end - range.start, spec.steps())?;
         let (members, threads) = (range.end - range.start, threads_of(self.threads));
         let times = spec.plan.times.len() as u64;
-        let reduction = if shard == Shard::WHOLE { reduce::memory(members, threads) } else { 0 };
+        let is_observed = !spec.observer.is_empty();
+        let reduction = if shard == Shard::WHOLE { reduce::memory(members, threads, is_observed) } else { 0 };
         let rows = members.saturating_mul(times).saturating_mul(80);
         let work = BYTES_OF_MEMBER
             .saturating_mul(members)

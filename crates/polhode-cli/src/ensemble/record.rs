@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use polhode::num::Real;
+use polhode::rotation::Vec3;
 use polhode_experiments::build;
 use polhode_pages::output::MARK;
 use serde::{Deserialize, Serialize};
@@ -25,6 +27,9 @@ pub(super) struct Identity {
     /// The event whose first passages are looked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) event: Option<String>,
+    /// Longitude and latitude of the direction to the observer, rad, at each time or at all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) observer: Vec<[String; 2]>,
 }
 
 /// The contents of `run.toml`.
@@ -71,6 +76,21 @@ impl Identity {
             attitudes: spec.attitudes,
             omegas: spec.omegas,
             event: spec.watched.as_ref().map(|watched| watched.event.text().into()),
+            observer: spec.observer.iter().map(|angles| angles.map(|angle| format!("{angle:?}"))).collect(),
+        }
+    }
+
+    /// The direction to the observer at each time, axes of space; none where there is none.
+    pub(super) fn directions(&self) -> Vec<Vec3<f64>> {
+        let direction = |angles: &[String; 2]| {
+            // as this program wrote them
+            let [(sin, cos), (up, across)] =
+                angles.each_ref().map(|angle| Real::sin_cos(angle.parse::<f64>().unwrap_or(f64::NAN)));
+            Vec3([cos * across, sin * across, up])
+        };
+        match &self.observer[..] {
+            [one] => vec![direction(one); self.times as usize],
+            each => each.iter().map(direction).collect(),
         }
     }
 

@@ -2,12 +2,14 @@
 
 use std::io;
 
-use polhode::rotation::{Dispersion, Quat};
+use polhode::rotation::{Directions, Dispersion, Quat, Vec3};
 use polhode_experiments::parallel;
 use polhode_files::npy::Array;
 
-/// Memory for the members of one time, bytes a member: attitudes as read, as quaternions, and their angles.
-pub(super) const BYTES: u64 = 32 + 32 + 8;
+/// Memory for the members of one time, bytes a member: attitudes as read, as quaternions, their angles.
+const BYTES: u64 = 32 + 32 + 8;
+/// The same of directions to an observer, and their angles.
+const BYTES_OF_OBSERVER: u64 = 24 + 8;
 /// Memory that the times reduced side by side may take together.
 const MOST: u64 = 200_000_000;
 
@@ -24,29 +26,48 @@ pub(super) struct Reduced {
     pub(super) deviations: [f64; 3],
     pub(super) axes: [[f64; 3]; 3],
     pub(super) members: u64,
+    /// Where the observer stands in the sky of the members, if there is one.
+    pub(super) seen: Option<Seen>,
+}
+
+/// The direction to the observer in the axes of the members.
+#[derive(Clone, Debug)]
+pub(super) struct Seen {
+    /// Longitude from x towards y and latitude, rad.
+    pub(super) mean: [f64; 2],
+    /// Angles to it that half of the members do not exceed, 95 % and none.
+    pub(super) angles: [f64; 3],
 }
 
 /// How many times are reduced side by side on `threads` threads.
-fn side_by_side(members: u64, threads: usize) -> usize {
-    let room = (MOST / (BYTES * members).max(1)).max(1);
+fn side_by_side(members: u64, threads: usize, is_observed: bool) -> usize {
+    let room = (MOST / bytes(is_observed).saturating_mul(members).max(1)).max(1);
     threads.min(usize::try_from(room).unwrap_or(threads)).max(1)
 }
 
-/// Bytes that the reduction takes.
-pub(super) fn memory(members: u64, threads: usize) -> u64 {
-    BYTES.saturating_mul(members).saturating_mul(side_by_side(members, threads) as u64)
+/// Bytes that the reduction takes, with an observer or without.
+pub(super) fn memory(members: u64, threads: usize, is_observed: bool) -> u64 {
+    let together = side_by_side(members, threads, is_observed) as u64;
+    bytes(is_observed).saturating_mul(members).saturating_mul(together)
+}
+
+fn bytes(is_observed: bool) -> u64 {
+    BYTES + if is_observed { BYTES_OF_OBSERVER } else { 0 }
 }
 
 /// Every time of the arrays, whose members follow each other; `None` where no member has a row.
 ///
 /// The numbers depend on the members and their order only: not on where one array ends and the next begins, nor on threads.
+///
+/// `observer`: the direction to it at each time, axes of space; none where there is none.
 pub(super) fn reduce(
     arrays: &mut [Array<4>],
     members: u64,
     threads: usize,
+    observer: &[Vec3<f64>],
 ) -> io::Result<Vec<Option<Reduced>>> {
     let times = arrays.first().map_or(0, Array::times);
-    let batch = side_by_side(members, threads);
+    let batch = side_by_side(members, threads, !observer.is_empty());
     let mut reduced: Vec<Option<Reduced>> = Vec::with_capacity(times as usize);
     let mut next = 0;
     while next < times {
@@ -64,12 +85,18 @@ pub(super) fn reduce(
                 let rows = array.entries(time)?.filter(|q| *q != [0.0; 4]);
                 slab.extend(rows.map(Quat::from_components));
             }
-            slabs.push(slab);
+            slabs.push((slab, observer.get(time as usize)));
         }
-        let dispersions = parallel::map(slabs, batch, |slab: Vec<Quat<f64>>| Dispersion::of(&slab));
-        for found in dispersions {
+        let spread = |(slab, direction): (Vec<Quat<f64>>, Option<&Vec3<f64>>)| {
+            let seen = direction.and_then(|direction| {
+                let directions: Vec<_> = slab.iter().map(|q| q.rotate_back(*direction)).collect();
+                Directions::of(&directions)
+            });
+            Some((Dispersion::of(&slab)?, seen))
+        };
+        for found in parallel::map(slabs, batch, spread) {
             let before = reduced.iter().rev().find_map(|row| row.as_ref().map(|row| row.mean));
-            reduced.push(found.map(|found| Reduced::of(&found, before)));
+            reduced.push(found.map(|(found, seen)| Reduced::of(&found, seen, before)));
         }
         next = end;
     }
@@ -77,7 +104,7 @@ pub(super) fn reduce(
 }
 
 impl Reduced {
-    fn of(found: &Dispersion, before: Option<[f64; 4]>) -> Self {
+    fn of(found: &Dispersion, seen: Option<Directions>, before: Option<[f64; 4]>) -> Self {
         let mean = found.mean().components();
         let is_turned_over =
             before.is_some_and(|before| before.iter().zip(mean).map(|(a, b)| a * b).sum::<f64>() < 0.0);
@@ -90,6 +117,12 @@ impl Reduced {
             deviations: found.deviations(),
             axes: found.axes().map(|axis| axis.0),
             members: found.count() as u64,
+            seen: seen.map(|seen| {
+                let [x, y, z] = seen.mean().0;
+                let mean =
+                    [libm::atan2(y, x).rem_euclid(core::f64::consts::TAU), libm::atan2(z, libm::hypot(x, y))];
+                Seen { mean, angles: [0.5, 0.95, 1.0].map(|p| seen.quantile(p)) }
+            }),
         }
     }
 }

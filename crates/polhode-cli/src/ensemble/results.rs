@@ -29,6 +29,9 @@ impl Results {
         let summary = summary(reduced, shares);
         let identity = &record.identity;
         let mut tables = vec![dispersion(reduced, shares), failures_table(&shares.failures)];
+        if !identity.observer.is_empty() {
+            tables.push(seen(reduced, shares));
+        }
         if identity.event.is_some() {
             tables.push(passages::table(&shares.passages));
         }
@@ -146,6 +149,27 @@ fn dispersion(reduced: &[Option<Reduced>], shares: &Shares) -> Table {
     for (t, row) in shares.times.iter().zip(reduced) {
         let numbers =
             row.iter().flat_map(|row| row.deviations.into_iter().chain(row.axes.into_iter().flatten()));
+        let mut cells: Vec<Cell> = [*t].into_iter().chain(numbers).map(Cell::from).collect();
+        cells.resize(table.columns.len(), Cell::Empty);
+        table.push(cells);
+    }
+    table
+}
+
+fn seen(reduced: &[Option<Reduced>], shares: &Shares) -> Table {
+    let to_mean = "angle to it that this share of the members does not exceed";
+    let columns = vec![
+        Column::new("t", "s", "time"),
+        Column::new("longitude", "rad", "of the mean direction to the observer, body axes, from x towards y"),
+        Column::new("latitude", "rad", "of the mean direction to the observer, body axes"),
+        Column::new("angle_p50", "rad", to_mean),
+        Column::new("angle_p95", "rad", to_mean),
+        Column::new("angle_max", "rad", "largest angle to it"),
+    ];
+    let mut table = Table::new("observer", "Where the observer stands in the sky of the members.", columns);
+    for (t, row) in shares.times.iter().zip(reduced) {
+        let seen = row.iter().filter_map(|row| row.seen.as_ref());
+        let numbers = seen.flat_map(|seen| seen.mean.into_iter().chain(seen.angles));
         let mut cells: Vec<Cell> = [*t].into_iter().chain(numbers).map(Cell::from).collect();
         cells.resize(table.columns.len(), Cell::Empty);
         table.push(cells);

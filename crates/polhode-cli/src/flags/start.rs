@@ -4,7 +4,7 @@ use clap::Args;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use polhode::body::{Body, Point, State};
 use polhode::num::Dd;
-use polhode::rotation::{EulerSequence, Quat, Vec3};
+use polhode::rotation::{CelestialFrame, EulerSequence, Quat, Vec3};
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::instant::seconds_in;
 use polhode_files::numbers::{number, numbers, quaternion, turn};
@@ -46,8 +46,18 @@ pub(crate) struct StartArguments {
     /// Unit of angles that are typed: rad or deg [default: rad]
     #[arg(long, value_name = "UNIT", value_parser = angle_unit)]
     angle_unit: Option<Factor>,
+    /// Axes of space that the attitude or the pole refers to: ecliptic (J2000) or icrf [default: those of the catalogue's body]
+    #[arg(long, value_name = "FRAME", value_parser = frame)]
+    frame: Option<CelestialFrame>,
+    /// Axes of space of the motion: the start is turned into these, and rows, --orbit-plane and what else is in space refer to them [default: those of the start]
+    #[arg(long, value_name = "FRAME", value_parser = frame)]
+    to_frame: Option<CelestialFrame>,
     #[command(flatten)]
     tumbling: TumblingArguments,
+}
+
+pub(crate) fn frame(text: &str) -> Result<CelestialFrame, String> {
+    CelestialFrame::named(text).ok_or_else(|| format!("'{text}' is no frame here; write ecliptic or icrf"))
 }
 
 /// What a unit is in rad or rad/s.
@@ -149,18 +159,53 @@ impl StartArguments {
             );
         }
         if let Some(published) = body.published_start().filter(|_| !self.has_attitude()) {
-            tell("note", &published.known);
+            let turned = self.to_frame.map(|to| format!("; turned to {}", to.name()));
+            tell("note", &format!("{}{}", published.known, turned.unwrap_or_default()));
         }
     }
 
     /// The exact start of `body` in the solver frame; attitude and spin that are not given are those that are `published` with the
     /// body, if they are.
     pub(crate) fn inside(&self, body: &Body, published: Option<PublishedStart>) -> Result<Point<Dd>, Error> {
+        if let (Some(given), Some(known)) =
+            (self.frame, published.as_ref().and_then(|start| start.orientation))
+            && !self.has_attitude()
+            && given.name() != known.frame
+        {
+            let rule = format!("the start of the catalogue is in the frame {}", known.frame);
+            return Err(Error::input("--frame", given.name(), &rule, "give --to-frame to turn it"));
+        }
+        let mut point = self.as_given(body, &published)?;
+        let Some(to) = self.to_frame else { return Ok(point) };
+        let Some(from) = self.frame_of_start(published.as_ref()) else {
+            return Err(Error::input(
+                "--to-frame",
+                to.name(),
+                "needs the axes that the start refers to",
+                "give --frame ecliptic or icrf, too",
+            ));
+        };
+        point.attitude = Quat::<Dd>::of(from.turn_to(to).into()).normalized() * point.attitude;
+        Ok(point)
+    }
+
+    /// The axes of space that the start refers to, if they are known.
+    fn frame_of_start(&self, published: Option<&PublishedStart>) -> Option<CelestialFrame> {
+        let of_body = || published.filter(|_| !self.has_attitude())?.orientation;
+        self.frame.or_else(|| CelestialFrame::named(of_body()?.frame))
+    }
+
+    /// The axes of space that the motion is in, if they are known.
+    pub(crate) fn frame_of_motion(&self, published: Option<&PublishedStart>) -> Option<CelestialFrame> {
+        self.to_frame.or_else(|| self.frame_of_start(published))
+    }
+
+    fn as_given(&self, body: &Body, published: &Option<PublishedStart>) -> Result<Point<Dd>, Error> {
         let angle_unit = self.angle_unit.map_or(1.0, |Factor(unit)| unit);
         if let Some(elements) = self.tumbling.elements(angle_unit)? {
             return elements.point(body.inertia()).map_err(|error| self.tumbling.refused(&error));
         }
-        let attitude = match (self.attitude(angle_unit), &published) {
+        let attitude = match (self.attitude(angle_unit), published) {
             (Some(attitude), _) => attitude,
             (None, Some(published)) => Quat::from_components(published.attitude),
             (None, None) => Quat::from_components([1.0, 0.0, 0.0, 0.0]),
@@ -180,7 +225,7 @@ impl StartArguments {
         }
         let unit = self.rate_unit.map_or(1.0, |Factor(unit)| unit);
         let Some(omega) =
-            self.omega.map(|omega| omega.map(|w| w * unit)).or(published.map(|start| start.omega))
+            self.omega.map(|omega| omega.map(|w| w * unit)).or(published.as_ref().map(|start| start.omega))
         else {
             return Err(Error::Input(
                 "--omega: missing; give --omega wx,wy,wz, --momentum-body, --momentum-space or --periods; bodies of the catalogue have a start"

@@ -10,7 +10,7 @@ use polhode_files::numbers::numbers;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Start of a tumbling body")]
 pub(crate) struct TumblingArguments {
-    /// Start by periods in place of --omega: P_phi of the precession about the angular momentum and P_psi of the rotation about the body axis of --mode, s or with a unit: 27.38h,263h
+    /// Start by periods in place of --omega: P_phi of the precession about the angular momentum and P_psi of the rotation about the body axis of --mode, s or with a unit: 27.38h,263h; or two of P_phi, P_psi and P_1 by name: P_1=30.56h,P_psi=263h
     #[arg(long, value_name = "P_phi,P_psi", value_parser = periods, requires = "mode",
           conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation"])]
     periods: Option<Periods>,
@@ -28,22 +28,87 @@ pub(crate) struct TumblingArguments {
     reversed: bool,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Periods([f64; 2]);
+/// Two of the three periods, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Periods {
+    /// P_phi and P_psi.
+    Both([f64; 2]),
+    /// P_phi and P_1.
+    PrecessionAndCombined([f64; 2]),
+    /// P_1 and P_psi.
+    CombinedAndRotation([f64; 2]),
+}
 
-fn periods(text: &str) -> Result<Periods, String> {
-    let found: Vec<f64> = text.split(',').map(positive_duration).collect::<Result<_, _>>()?;
-    let count = found.len();
-    let both = found.try_into().map(Periods);
-    both.map_err(|_| format!("{count} given, 2 needed: P_phi and P_psi, separated by a comma"))
+/// Their names, in the order in which they are understood without.
+const NAMES: [&str; 3] = ["P_phi", "P_psi", "P_1"];
+
+pub(crate) fn periods(text: &str) -> Result<Periods, String> {
+    let mut found = [None; 3];
+    let items: Vec<&str> = text.split(',').collect();
+    let named = items.iter().filter(|item| item.contains('=')).count();
+    if named > 0 && named < items.len() {
+        return Err("name both periods or none, as in P_1=30.56h,P_psi=263h".into());
+    }
+    for (place, item) in items.iter().enumerate() {
+        let (which, period) = match item.split_once('=') {
+            None => (place, *item),
+            Some((name, period)) => {
+                let known = NAMES.iter().position(|known| known.eq_ignore_ascii_case(name.trim()));
+                (
+                    known.ok_or_else(|| {
+                        format!("'{}' is no period; write P_phi, P_psi or P_1", name.trim())
+                    })?,
+                    period,
+                )
+            }
+        };
+        let period = positive_duration(period)?;
+        match found.get_mut(which) {
+            Some(slot @ None) => *slot = Some(period),
+            Some(Some(_)) => return Err(format!("{} is given twice", NAMES[which])),
+            None => break,
+        }
+    }
+    let count = items.len();
+    match found {
+        _ if count != 2 => Err(format!("{count} given, 2 needed: P_phi and P_psi, separated by a comma")),
+        [Some(precession), Some(rotation), _] => Ok(Periods::Both([precession, rotation])),
+        [Some(precession), _, Some(combined)] => Ok(Periods::PrecessionAndCombined([precession, combined])),
+        [_, Some(rotation), Some(combined)] => Ok(Periods::CombinedAndRotation([combined, rotation])),
+        _ => Err("needed are two of P_phi, P_psi and P_1".into()),
+    }
+}
+
+impl Periods {
+    /// The elements with these periods.
+    pub(crate) fn elements(self, mode: Mode) -> Result<TumblingElements, TumblingError> {
+        match self {
+            Periods::Both(periods) => Ok(TumblingElements::new(mode, periods)),
+            Periods::PrecessionAndCombined(periods) => {
+                TumblingElements::from_precession_and_combined(mode, periods)
+            }
+            Periods::CombinedAndRotation(periods) => {
+                TumblingElements::from_combined_and_rotation(mode, periods)
+            }
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum ModeArgument {
+pub(crate) enum ModeArgument {
     /// Long-axis mode
     Lam,
     /// Short-axis mode
     Sam,
+}
+
+impl From<ModeArgument> for Mode {
+    fn from(mode: ModeArgument) -> Mode {
+        match mode {
+            ModeArgument::Lam => Mode::LongAxis,
+            ModeArgument::Sam => Mode::ShortAxis,
+        }
+    }
 }
 
 impl TumblingArguments {
@@ -53,14 +118,13 @@ impl TumblingArguments {
 
     /// The elements that the flags state, if they do.
     pub(crate) fn elements(&self, angle_unit: f64) -> Result<Option<TumblingElements>, Error> {
-        let Some(Periods(periods)) = self.periods else { return Ok(None) };
-        let mode = match self.mode {
-            Some(ModeArgument::Lam) => Mode::LongAxis,
-            Some(ModeArgument::Sam) => Mode::ShortAxis,
-            None => return Err(Error::input("--mode", "", "missing beside --periods", "give lam or sam")),
+        let Some(periods) = self.periods else { return Ok(None) };
+        let Some(mode) = self.mode else {
+            return Err(Error::input("--mode", "", "missing beside --periods", "give lam or sam"));
         };
         let angles = |typed: Option<[f64; 2]>| typed.map(|angles| angles.map(|angle| angle * angle_unit));
-        let elements = TumblingElements::new(mode, periods).with_reversed(self.reversed);
+        let elements = periods.elements(mode.into()).map_err(|error| self.refused(&error))?;
+        let elements = elements.with_reversed(self.reversed);
         let elements = angles(self.pole).map_or(elements, |pole| elements.with_pole(pole));
         Ok(Some(angles(self.phases).map_or(elements, |phases| elements.with_angles(phases))))
     }

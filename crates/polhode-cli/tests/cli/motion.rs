@@ -82,3 +82,53 @@ fn periods_without_a_motion_are_refused() {
     refused("motion --moments 1,1,2 --periods 1h,10h --mode lam", &["--mode: no long-axis motion"]);
     refused(&of(""), &["--omega: missing", "--periods"]);
 }
+
+#[test]
+fn any_two_of_three_periods_are_a_start() {
+    let of = |periods: &str| {
+        let text = output(&format!("motion --moments 0.61,0.965,1 --mode sam --periods {periods}"));
+        ["precession_period", "polhode_period", "combined_period"].map(|name| number(&text, name) / 3600.0)
+    };
+    let [precession, rotation, combined] = of("27.38h,263h");
+    for (periods, expected) in [
+        (format!("P_phi={precession:?}h,P_1={combined:?}h"), [precession, rotation, combined]),
+        (format!("P_psi={rotation:?}h,P_1={combined:?}h"), [precession, rotation, combined]),
+        ("p_psi=263h,p_phi=27.38h".into(), [precession, rotation, combined]),
+    ] {
+        for (found, expected) in of(&periods).into_iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 1e-11, "{periods}: {found} for {expected}");
+        }
+    }
+    let of = |periods: &str| format!("motion --moments 0.61,0.965,1 --mode sam --periods {periods}");
+    refused(&of("P_1=30h,27h"), &["--periods", "name both periods or none"]);
+    refused(&of("P_2=30h,P_psi=263h"), &["--periods", "'P_2' is no period"]);
+    refused(&of("P_1=30h,P_1=263h"), &["--periods", "P_1 is given twice"]);
+    refused(&of("P_1=20h,P_phi=27h"), &["--periods: P_1 = ", "1/P_1 = 1/P_phi - 1/P_psi"]);
+}
+
+#[test]
+fn a_start_is_turned_from_the_ecliptic_to_the_equator() {
+    let motion = "motion --moments 0.61,0.965,1 --periods 27.38h,263h --mode sam --angle-unit deg";
+    // the pole of the ecliptic: right ascension 18 h, declination the complement of the obliquity
+    let text = output(&format!("{motion} --pole 0,90 --frame ecliptic --to-frame icrf"));
+    assert_eq!(cell(&text, "frame"), "ICRF");
+    let (longitude, latitude) = (number(&text, "lambda").to_degrees(), number(&text, "beta").to_degrees());
+    assert!(
+        (longitude - 270.0).abs() < 1e-9 && (latitude - 66.560_708_9).abs() < 1e-7,
+        "{longitude} {latitude}"
+    );
+    // there and back, and the catalogue knows its frame
+    let toutatis = output("motion --body toutatis");
+    let turned = output("motion --body toutatis --to-frame icrf");
+    let angles = format!("{},{}", cell(&turned, "lambda"), cell(&turned, "beta"));
+    let periods = format!("{},{}", cell(&turned, "precession_period"), cell(&turned, "polhode_period"));
+    let back = output(&format!(
+        "motion --body toutatis --periods {periods} --mode lam --pole {angles} --frame icrf --to-frame ecliptic"
+    ));
+    for name in ["lambda", "beta"] {
+        assert!((number(&back, name) - number(&toutatis, name)).abs() < 1e-12, "{name}");
+    }
+    refused("motion --body phone --to-frame icrf", &["--to-frame", "needs the axes", "--frame"]);
+    refused("motion --body toutatis --frame icrf", &["--frame", "ecliptic J2000", "--to-frame"]);
+    refused("motion --body toutatis --frame equator", &["--frame", "'equator' is no frame"]);
+}

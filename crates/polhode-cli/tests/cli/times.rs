@@ -33,8 +33,18 @@ fn times_of_a_file_a_pipe_and_a_list_give_the_same_rows() {
 fn times_have_units_and_dates() {
     assert_eq!(output(&with("--times 1min,1.5h,1d")), output(&with("--times 60,5400,86400")));
     assert_eq!(output(&with("--until 1h --every 20min")), output(&with("--until 3600 --every 1200")));
-    let dated = "--epoch 1992-11-09T12:00 --times 2448936,1992-11-09T18:00:00Z,90min,2448937.25";
+    let dated = "--epoch 1992-11-09T12:00 --times 2448936,1992-11-09T18:00:00,90min,2448937.25";
     assert_eq!(output(&with(dated)), output(&with("--times 0,21600,5400,108000")));
+    let scaled = "--epoch 1992-11-09T12:00Z --times 2448936UTC,1992-11-09T18:00:00Z,90min,2448937.25UTC";
+    assert_eq!(output(&with(scaled)), output(&with("--times 0,21600,5400,108000")));
+    // the leap second of 2016, and 69.184 s between both scales
+    let utc = "--time-scale utc --epoch 2016-12-31 --times 2017-01-01,2017-01-01T00:01:09.184TT";
+    assert_eq!(output(&with(utc)), output(&with("--times 86401,86401")));
+    refused(
+        &with("--epoch 1992-11-09T12:00 --times 1992-11-09T18:00:00Z"),
+        &["--times: '1992-11-09T18:00:00Z': one date is in UTC", "a minute off"],
+    );
+    refused(&with("--epoch 2017-01-01 --times 1h --time-scale GMT"), &["'GMT' is no time scale"]);
     let span = "--epoch 2448936 --until 1992-11-10T12:00 --every 12h --start-time 2448936";
     assert_eq!(output(&with(span)), output(&with("--until 86400 --every 43200")));
     let rk4 = "--until 500ms --every 250ms --method rk4 --step 125ms";

@@ -49,7 +49,7 @@ impl Clock {
             Kind::Stamps(first) => {
                 (cell.parse::<i128>().ok()? - first) as f64 + nanoseconds?.parse::<f64>().ok()? / 1e9
             }
-            Kind::Dates(first) => cell.parse::<Date>().ok()?.seconds_since(first),
+            Kind::Dates(first) => cell.parse::<Date>().ok()?.seconds_since(first).ok()?,
         };
         time.is_finite().then_some(time)
     }

@@ -98,6 +98,17 @@ class FreeMotion:
         self, t: ArrayLike, covariance: ArrayLike, *, axes: TurnAxes = "space", torque: ArrayLike | None = None
     ) -> tuple[Floats, Floats]: ...
     @staticmethod
+    def tumbling(
+        inertia: BodyLike,
+        periods: dict[str, float],
+        mode: Literal["lam", "sam"],
+        *,
+        pole: ArrayLike | None = None,
+        phases: ArrayLike | None = None,
+        is_reversed: bool = False,
+        order: Order = "wxyz",
+    ) -> FreeMotion: ...
+    @staticmethod
     def through(
         inertia: BodyLike, t: ArrayLike, attitude: Turn, *, turns: float = 1.0, order: Order = "wxyz"
     ) -> list[Passage]: ...

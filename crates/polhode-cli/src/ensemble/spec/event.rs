@@ -19,11 +19,7 @@ pub(in crate::ensemble) struct Watched {
 }
 
 impl Watched {
-    pub(super) fn read(
-        event_of: &Section<'_>,
-        run: &Section<'_>,
-        spec: &Spec,
-    ) -> Result<Option<Self>, Error> {
+    pub(super) fn read(event_of: &Section<'_>, spec: &Spec) -> Result<Option<Self>, Error> {
         event_of.only("[event]", &["first", "every"])?;
         if event_of.keys.is_empty() {
             return Ok(None);
@@ -31,7 +27,7 @@ impl Watched {
         let refused = |error: &dyn std::fmt::Display| event_of.at("first", &error.to_string());
         let missing = || refused(&format!("missing in [event]; {FORMS}"));
         let typed = event(event_of.text("first")?.ok_or_else(missing)?).map_err(|error| refused(&error))?;
-        let start = run.seconds("start_time")?.unwrap_or(0.0);
+        let start = spec.plan.start;
         let last = spec.plan.times.iter().fold(start, |last, t| t.max(last));
         if last == start {
             return Err(refused(&"is looked for up to the last time in [run], which is not after the start"));

@@ -1,6 +1,7 @@
 //! The file that says what an ensemble is: bodies, starts, how they are spread, and what is done with them.
 
 mod candidates;
+mod elements;
 mod event;
 mod nominal;
 mod run;
@@ -10,6 +11,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use polhode::body::{Body, Member, Population, StateError};
+use polhode::flow::TumblingPopulation;
 use polhode::inertia::Inertia;
 use polhode_files::error::Error;
 use polhode_files::read;
@@ -24,7 +26,7 @@ pub(super) use event::Watched;
 use nominal::Nominal;
 pub(super) use run::{Motion, Plan};
 
-const SECTIONS: [&str; 7] = ["body", "start", "spread", "run", "force", "event", "output"];
+const SECTIONS: [&str; 8] = ["body", "start", "spread", "run", "force", "event", "output", "observer"];
 
 /// An ensemble as it was specified, checked.
 #[derive(Debug)]
@@ -38,6 +40,8 @@ pub(super) struct Spec {
     acting: Acting,
     pub(super) plan: Plan,
     pub(super) watched: Option<Watched>,
+    /// Longitude and latitude of the direction to the observer, rad: none, one, or one for each time.
+    pub(super) observer: Vec<[f64; 2]>,
     /// Which arrays are kept.
     pub(super) attitudes: bool,
     pub(super) omegas: bool,
@@ -49,6 +53,7 @@ pub(super) struct Spec {
 #[derive(Debug)]
 enum Source {
     Drawn(Box<Population>),
+    Tumbling(Box<TumblingPopulation>),
     Listed(Box<Candidates>),
 }
 
@@ -75,7 +80,7 @@ impl Spec {
         let file = TomlFile { path, text: &text };
         let document = file.parse()?;
         let top = Section { file: &file, place: 0, keys: document.get_ref() };
-        top.only("a specification", &SECTIONS)?;
+        top.only("a specification", &[&SECTIONS[..], &["solution"]].concat())?;
         let empty = DeTable::new();
         let section = |name: &str| match top.value(name) {
             None => Ok(Section { file: &file, place: 0, keys: &empty }),
@@ -84,7 +89,7 @@ impl Spec {
                 other => Err(top.at(name, &format!("{} given, a table [{name}] needed", other.type_str()))),
             },
         };
-        let [body, start, spread, run, force, event, output] = SECTIONS.map(section);
+        let [body, start, spread, run, force, event, output, observer] = SECTIONS.map(section);
         let (spread, run, output) = (spread?, run?, output?);
         let listed = spread::members_file(&spread)?;
         let nominal = Nominal::read(&body?, &start?, &force?, listed.is_some())?;
@@ -108,13 +113,14 @@ impl Spec {
                 (Source::Listed(Box::new(candidates)), members.unwrap_or(count))
             }
             None => {
-                let population = spread::population(&spread, &nominal)?;
+                let source = source(&top, &spread, &nominal)?;
                 plan.check_nominal(&run, &nominal)?;
                 let missing = || run.at("members", "missing; say how many are drawn");
-                (Source::Drawn(Box::new(population)), members.ok_or_else(missing)?)
+                (source, members.ok_or_else(missing)?)
             }
         };
         output.only("[output]", &["arrays"])?;
+        let observer = directions(&observer?, plan.times.len(), nominal.units.angle)?;
         let [attitudes, omegas] = arrays(&output)?;
         let acting = nominal.acting;
         let place = file.line(run.place_of("members"));
@@ -127,11 +133,12 @@ impl Spec {
             acting,
             plan,
             watched: None,
+            observer,
             attitudes,
             omegas,
             hash: String::new(),
         };
-        spec.watched = Watched::read(&event?, &run, &spec)?;
+        spec.watched = Watched::read(&event?, &spec)?;
         spec.hash = spec.hashed();
         Ok(spec)
     }
@@ -141,12 +148,16 @@ impl Spec {
         let mut sum = Checksum::new();
         let _ = match &self.source {
             Source::Drawn(population) => write!(sum, "{} {population:?}", self.seed),
+            Source::Tumbling(population) => write!(sum, "{} {population:?}", self.seed),
             Source::Listed(candidates) => write!(sum, "{candidates:?}"),
         };
         let kept = (self.attitudes, self.omegas);
         let _ = write!(sum, " {} {:?} {:?} {kept:?}", self.members, self.acting, self.plan);
         if let Some(watched) = &self.watched {
             let _ = write!(sum, " {watched:?}");
+        }
+        if !self.observer.is_empty() {
+            let _ = write!(sum, " {:?}", self.observer);
         }
         sum.hexadecimal()
     }
@@ -155,6 +166,9 @@ impl Spec {
     pub(super) fn member(&self, k: u64) -> Result<Member, String> {
         match &self.source {
             Source::Drawn(population) => population.member(self.seed, k).map_err(|error| error.to_string()),
+            Source::Tumbling(population) => {
+                population.member(self.seed, k).map_err(|error| error.to_string())
+            }
             Source::Listed(candidates) => candidates.member(k),
         }
     }
@@ -175,14 +189,14 @@ impl Spec {
 
     /// Whether members are drawn, with `seed`.
     pub(super) fn is_drawn(&self) -> bool {
-        matches!(self.source, Source::Drawn(_))
+        !matches!(self.source, Source::Listed(_))
     }
 
-    /// What members are drawn from, if they are drawn.
+    /// The spread of attitude, rates and tensor that members are drawn from, if that is what they are drawn from.
     pub(super) fn population(&self) -> Option<&Population> {
         match &self.source {
             Source::Drawn(population) => Some(population),
-            Source::Listed(_) => None,
+            Source::Tumbling(_) | Source::Listed(_) => None,
         }
     }
 
@@ -193,8 +207,39 @@ impl Spec {
     /// Bytes that the members take before any of them moves.
     pub(super) fn bytes_of_source(&self) -> u64 {
         match &self.source {
-            Source::Drawn(_) => 0,
+            Source::Drawn(_) | Source::Tumbling(_) => 0,
             Source::Listed(candidates) => candidates.bytes(),
+        }
+    }
+}
+
+/// What members are drawn from.
+fn source(top: &Section<'_>, spread: &Section<'_>, nominal: &Nominal) -> Result<Source, Error> {
+    let (Some(elements), Some(inertia)) = (&nominal.elements, &nominal.inertia) else {
+        if top.value("solution").is_some() {
+            return Err(top.at("solution", "needs periods and mode in [start], which each solution changes"));
+        }
+        return Ok(Source::Drawn(Box::new(spread::population(spread, nominal)?)));
+    };
+    let population = elements::population(top, spread, inertia, elements, nominal.units)?;
+    Ok(Source::Tumbling(Box::new(population)))
+}
+
+/// The direction to the observer: one, or one for each time.
+fn directions(observer: &Section<'_>, times: usize, unit: f64) -> Result<Vec<[f64; 2]>, Error> {
+    observer.only("[observer]", &["direction", "directions"])?;
+    let in_radians = |angles: [f64; 2]| angles.map(|angle| angle * unit);
+    match (observer.numbers::<2>("direction")?, observer.value("directions")) {
+        (None, None) => Ok(Vec::new()),
+        (Some(one), None) => Ok(vec![in_radians(one)]),
+        (Some(_), Some(_)) => Err(observer.at("directions", "given beside direction; leave one of them out")),
+        (None, Some(_)) => {
+            let pairs = observer.pairs("directions")?;
+            if pairs.len() != times {
+                let rule = format!("{} given for {times} times; give one for each", pairs.len());
+                return Err(observer.at("directions", &rule));
+            }
+            Ok(pairs.into_iter().map(in_radians).collect())
         }
     }
 }

@@ -5,12 +5,14 @@ use std::path::Path;
 use nalgebra::Matrix3;
 use polhode::body::Body;
 use polhode::catalogue;
+use polhode::flow::TumblingElements;
 use polhode::inertia::Inertia;
 use polhode::rotation::{Quat, Vec3};
 use polhode_files::error::{Error, tell};
+use polhode_files::instant::{Epoch, date, time_scale};
 use polhode_files::toml_file::Section;
 
-use super::Acting;
+use super::{Acting, elements};
 use crate::flags::body::{Described, described};
 use crate::flags::force::{Forces, NO_ORBIT, conic, plane};
 use crate::flags::start::{Factor, angle_unit, rate_unit};
@@ -25,6 +27,10 @@ pub(super) struct Nominal {
     pub(super) omega: Option<Vec3<f64>>,
     pub(super) acting: Acting,
     pub(super) units: Units,
+    /// The elements that `[start]` gives in place of an angular velocity.
+    pub(super) elements: Option<TumblingElements>,
+    /// The date of t = 0.
+    pub(super) epoch: Option<Epoch>,
 }
 
 /// In which units angles and rates are typed.
@@ -55,8 +61,10 @@ impl Nominal {
         listed: bool,
     ) -> Result<Self, Error> {
         body.only("[body]", &["moments", "inertia", "body"])?;
-        start.only("[start]", &["omega", "attitude", "rate_unit", "angle_unit"])?;
+        let known = ["omega", "attitude", "rate_unit", "angle_unit", "epoch", "time_scale"];
+        start.only("[start]", &[&known[..], &elements::START].concat())?;
         let units = Units::read(start)?;
+        let epoch = epoch(start)?;
         let given: Vec<&str> = body.keys.keys().map(|key| key.get_ref().as_ref()).collect();
         let found = match given[..] {
             [] if listed => None,
@@ -66,6 +74,15 @@ impl Nominal {
                 return Err(body.at(second, &format!("given beside {first}; leave one of them out")));
             }
         };
+        let elements = elements::elements(start, units, None)?;
+        if elements.is_some() {
+            if let Some(key) = ["omega", "attitude"].into_iter().find(|key| start.value(key).is_some()) {
+                return Err(start.at(key, "given beside periods; leave one of them out"));
+            }
+            if listed {
+                return Err(start.at("periods", "given beside members_file, which lists the starts"));
+            }
+        }
         let published =
             body.text("body")?.and_then(|name| catalogue::body(name).or_else(|| catalogue::top(name)));
         let typed = start.numbers::<4>("attitude")?;
@@ -73,16 +90,26 @@ impl Nominal {
             return Err(start.at("attitude", "the zero quaternion has no direction; any other norm is fine"));
         }
         let omega = start.numbers::<3>("omega")?.map(|omega| omega.map(|rate| rate * units.rate));
-        if let (None, Some(published)) = (typed, &published) {
+        if let (None, None, Some(published)) = (typed, &elements, &published) {
             tell("note", &format!("{}: {}", published.name, published.attitude_known()));
         }
         let attitude =
             typed.or(published.as_ref().map(|found| found.attitude)).unwrap_or([1.0, 0.0, 0.0, 0.0]);
         let omega = omega.or(published.map(|found| found.omega_body));
+        let (attitude, omega) = match (&elements, &found) {
+            (Some(elements), Some(found)) => {
+                let body = Body::free(found.inertia.clone());
+                let point = elements.point(body.inertia());
+                let point = point.map_err(|error| start.at("periods", &error.to_string()))?;
+                (body.leave(&point).attitude.components(), Some(body.omega_of(&point).into()))
+            }
+            _ => (attitude, omega),
+        };
         if omega.is_none() && !listed {
-            return Err(
-                start.at("omega", "missing in [start]; give [wx, wy, wz] in rad/s, or another rate_unit")
-            );
+            return Err(start.at(
+                "omega",
+                "missing in [start]; give [wx, wy, wz] in rad/s, or another rate_unit, or periods and mode",
+            ));
         }
         let own = found.as_ref().map_or([0.0; 3], |found| found.weight_moment);
         let nominal = Self {
@@ -91,6 +118,8 @@ impl Nominal {
             omega: omega.map(Vec3),
             acting: acting(force, own)?,
             units,
+            elements,
+            epoch,
         };
         if let Some(inertia) = &nominal.inertia {
             nominal.check(force, start, inertia)?;
@@ -109,6 +138,18 @@ impl Nominal {
             _ => Ok(()),
         }
     }
+}
+
+/// The date of t = 0, and the scale of dates without one.
+fn epoch(start: &Section<'_>) -> Result<Option<Epoch>, Error> {
+    let read = |key: &str, error: String| start.at(key, &error);
+    let scale = start.text("time_scale")?.map(time_scale).transpose();
+    let scale = scale.map_err(|error| read("time_scale", error))?;
+    let found = start.text("epoch")?.map(date).transpose().map_err(|error| read("epoch", error))?;
+    if let (None, Some(_)) = (found, scale) {
+        return Err(start.at("time_scale", "is that of dates; give epoch, the date of t = 0, too"));
+    }
+    Ok(found.map(|date| Epoch::new(date, scale)))
 }
 
 fn inertia(body: &Section<'_>, key: &str) -> Result<Described, Error> {

@@ -8,6 +8,7 @@ use polhode::flow::ExactMotion;
 use polhode::method::{AnyMethod, Claimed, method};
 use polhode::run::Schedule;
 use polhode_files::error::{Error, unexpected};
+use polhode_files::instant::Epoch;
 use polhode_files::toml_file::Section;
 use toml::Spanned;
 use toml::de::DeValue;
@@ -34,6 +35,8 @@ const KEYS: [&str; 12] = [
 /// Times of the rows and how members get there.
 #[derive(Clone, Debug)]
 pub(in crate::ensemble) struct Plan {
+    /// Time of the start, s.
+    pub(in crate::ensemble) start: f64,
     /// Times of the rows, s.
     pub(in crate::ensemble) times: Vec<f64>,
     pub(in crate::ensemble) motion: Motion,
@@ -52,9 +55,10 @@ pub(in crate::ensemble) enum Motion {
 impl Plan {
     pub(super) fn read(run: &Section<'_>, nominal: &Nominal) -> Result<Self, Error> {
         run.only("[run]", &KEYS)?;
-        let start = run.seconds("start_time")?.unwrap_or(0.0);
+        let epoch = nominal.epoch;
+        let start = run.moment("start_time", epoch)?.unwrap_or(0.0);
         let every = run.seconds("every")?;
-        let times = times(run, start, every)?;
+        let times = times(run, start, every, epoch)?;
         let name = run.text("method")?.unwrap_or("exact");
         let tolerance = run.positive("tolerance")?;
         let step = run.seconds("step")?;
@@ -104,7 +108,7 @@ impl Plan {
                 return Err(run.at("errors", &format!("{} given, true or false needed", other.type_str())));
             }
         };
-        Ok(Self { times, motion, errors })
+        Ok(Self { start, times, motion, errors })
     }
 
     /// Whether the nominal member can be followed so far; what is wrong with it is mostly wrong with all.
@@ -164,7 +168,7 @@ fn without_tolerance(name: &str) -> String {
 }
 
 /// The times in a file that stands beside the specification.
-fn times_of_file(run: &Section<'_>) -> Result<Option<Vec<f64>>, Error> {
+fn times_of_file(run: &Section<'_>, epoch: Option<Epoch>) -> Result<Option<Vec<f64>>, Error> {
     let column = match run.value("times_column").map(Spanned::get_ref) {
         Some(DeValue::Integer(number)) => Some(number.to_string()),
         _ => run.text("times_column")?.map(String::from),
@@ -177,17 +181,17 @@ fn times_of_file(run: &Section<'_>) -> Result<Option<Vec<f64>>, Error> {
     };
     let path = run.file.path.parent().unwrap_or(Path::new("")).join(name);
     let place = format!("{}: key 'times_file'", run.file.line(run.place_of("times_file")));
-    of_file(path, column, place).map(Some)
+    of_file(path, column, place, epoch).map(Some)
 }
 
-fn times(run: &Section<'_>, start: f64, every: Option<f64>) -> Result<Vec<f64>, Error> {
-    let until = run.seconds("until")?;
-    let list = run.times("times")?;
+fn times(run: &Section<'_>, start: f64, every: Option<f64>, epoch: Option<Epoch>) -> Result<Vec<f64>, Error> {
+    let until = run.moment("until", epoch)?;
+    let list = run.moments("times", epoch)?;
     let key = if run.value("times_file").is_some() { "times_file" } else { "times" };
     if list.is_some() && key == "times_file" {
         return Err(run.at(key, "given beside times; leave one of them out"));
     }
-    let file = times_of_file(run)?;
+    let file = times_of_file(run, epoch)?;
     let found = match (list.or(file), until, every) {
         (Some(list), None, None) => list,
         (Some(_), ..) => return Err(run.at(key, "given beside until and every; leave one of them out")),

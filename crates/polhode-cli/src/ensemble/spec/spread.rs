@@ -9,13 +9,14 @@ use polhode_files::toml_file::Section;
 use toml::Spanned;
 use toml::de::DeValue;
 
+use super::elements;
 use super::nominal::{Nominal, Units};
 
 const KEYS: [&str; 6] = ["omega", "attitude", "moments", "covariance", "range", "members_file"];
 
 /// The file that lists the members, if they are not drawn.
 pub(super) fn members_file(spread: &Section<'_>) -> Result<Option<PathBuf>, Error> {
-    spread.only("[spread]", &KEYS)?;
+    spread.only("[spread]", &[&KEYS[..], &elements::SPREAD].concat())?;
     let Some(name) = spread.text("members_file")? else { return Ok(None) };
     if let Some(other) = spread.keys.keys().map(Spanned::get_ref).find(|key| key.as_ref() != "members_file") {
         return Err(
@@ -44,6 +45,9 @@ pub(super) fn population(spread: &Section<'_>, nominal: &Nominal) -> Result<Popu
     let (Some(inertia), Some(omega)) = (nominal.inertia.clone(), nominal.omega) else {
         return Err(spread.at("members_file", "missing; without it give [body] and [start]"));
     };
+    if let Some(key) = elements::SPREAD.into_iter().find(|key| spread.value(key).is_some()) {
+        return Err(spread.at(key, "needs periods and mode in [start]"));
+    }
     let covariance = table(spread, "covariance")?;
     let range = table(spread, "range")?;
     if let Some(covariance) = &covariance {

@@ -5,9 +5,9 @@ mod regular;
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::units::Date;
+use polhode::units::{Date, TimeScale};
 use polhode_files::error::{Error, warn};
-use polhode_files::instant::{duration, epoch, is_moment, seconds};
+use polhode_files::instant::{Epoch, date, duration, is_moment, seconds, time_scale};
 use polhode_files::times::{Asked, Source, TimesColumn};
 
 pub(crate) use regular::{Regular, regular};
@@ -38,9 +38,12 @@ pub(crate) struct TimeArguments {
         hide_default_value = true
     )]
     start_time: String,
-    /// Date of t = 0: ISO 8601, or a Julian date; times without a unit are then Julian dates. Days have 86400 s, without leap seconds
-    #[arg(long, value_name = "DATE", value_parser = epoch, allow_hyphen_values = true)]
+    /// Date of t = 0: ISO 8601, or a Julian date, with UTC, TAI, TT or TDB behind it; times without a unit are then Julian dates. Where no date has a time scale days have 86400 s
+    #[arg(long, value_name = "DATE", value_parser = date, allow_hyphen_values = true)]
     epoch: Option<Date>,
+    /// Time scale of dates that are written without one: UTC, TAI, TT or TDB
+    #[arg(long, value_name = "SCALE", value_parser = time_scale, requires = "epoch")]
+    time_scale: Option<TimeScale>,
 }
 
 /// What `--times` names.
@@ -76,20 +79,26 @@ fn item_of(list: &str, k: usize) -> String {
 }
 
 impl TimeArguments {
+    fn epoch(&self) -> Option<Epoch> {
+        self.epoch.map(|date| Epoch::new(date, self.time_scale))
+    }
+
     /// Time of the start, s.
     pub(crate) fn start(&self) -> Result<f64, Error> {
         self.moment("--start-time", &self.start_time)
     }
 
-    /// Says so where t = 0 is another date than that of the `published` start.
+    /// Says so where t = 0 is another date than that of the `published` start; a date without a scale is taken in that of the other.
     pub(crate) fn compare_epoch(&self, published: &str) {
-        let published_date = published.parse::<Date>().ok();
-        if let (Some(given), Some(date)) = (&self.epoch, published_date)
-            && given.seconds_since(&date) != 0.0
-        {
+        let (Some(Epoch { date: given, .. }), Ok(date)) = (self.epoch(), published.parse::<Date>()) else {
+            return;
+        };
+        let given = date.scale().map_or(given, |scale| given.or_in(scale));
+        let later = given.seconds_since(&date).unwrap_or(f64::INFINITY);
+        if later != 0.0 {
             warn(&format!(
-                "--epoch: the published start is of {published} UTC; here it is that of --start-time, {:+.0} s from there",
-                given.seconds_since(&date) + self.start().unwrap_or_default()
+                "--epoch: the published start is of {published}; here it is that of --start-time, {:+.0} s from there",
+                later + self.start().unwrap_or_default()
             ));
         }
     }
@@ -128,7 +137,7 @@ impl TimeArguments {
         match (&self.times, &self.until, self.every) {
             (Some(Times::List(list)), ..) => {
                 let each = list.iter().enumerate().map(|(k, text)| {
-                    let found = seconds(text, self.epoch.as_ref());
+                    let found = seconds(text, self.epoch());
                     found.map_err(|error| {
                         Error::Input(format!("--times: {}{error}", item_of(&list.join(","), k)))
                     })
@@ -158,20 +167,25 @@ impl TimeArguments {
 
     fn column(&self, source: Source) -> TimesColumn {
         let asked = Asked { file: "--times".into(), column: "--times-column" };
-        TimesColumn { source, wanted: self.times_column.clone(), epoch: self.epoch, asked }
+        TimesColumn { source, wanted: self.times_column.clone(), epoch: self.epoch(), asked }
     }
 
     fn moment(&self, flag: &str, text: &str) -> Result<f64, Error> {
-        seconds(text, self.epoch.as_ref()).map_err(|error| {
+        seconds(text, self.epoch()).map_err(|error| {
             Error::Input(format!("{flag}: '{}': {error}", polhode_files::text::visible(text)))
         })
     }
 }
 
 /// The times in the file `path`, s, that is named at `place` of a specification, its column by the key `times_column`.
-pub(crate) fn of_file(path: PathBuf, column: Option<String>, place: String) -> Result<Vec<f64>, Error> {
+pub(crate) fn of_file(
+    path: PathBuf,
+    column: Option<String>,
+    place: String,
+    epoch: Option<Epoch>,
+) -> Result<Vec<f64>, Error> {
     let asked = Asked { file: place, column: "times_column" };
-    TimesColumn { source: Source::File(path), wanted: column, epoch: None, asked }.read()?.collect()
+    TimesColumn { source: Source::File(path), wanted: column, epoch, asked }.read()?.collect()
 }
 
 /// Output times, s, in the order in which they were given.

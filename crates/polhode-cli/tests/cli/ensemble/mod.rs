@@ -2,6 +2,8 @@
 
 #[cfg(unix)]
 mod cluster;
+#[allow(clippy::disallowed_methods)] // directions and deviations to the digits of any machine
+mod elements;
 mod first_order;
 #[cfg(unix)]
 mod killed;

@@ -10,7 +10,7 @@ use crate::harness::{Scratch, golden, polhode, words};
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The refusal of a specification, without the name of the folder.
-fn refusal(scratch: &Scratch, line: &str) -> String {
+pub(super) fn refusal(scratch: &Scratch, line: &str) -> String {
     let answer = polhode(&words(line), &scratch.0);
     assert_eq!((answer.code, answer.out.as_str()), (2, ""), "{line}: {}", answer.err);
     format!("$ polhode {line}\n{}\n", answer.err)
