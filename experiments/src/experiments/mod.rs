@@ -12,6 +12,7 @@ mod fit_attitudes;
 mod fit_efficiency;
 mod fit_field;
 mod fit_stress;
+mod flyby;
 mod followed;
 mod heavy_top;
 mod inertia;
@@ -142,6 +143,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "chaos",
         question: "what each method says of a chaotic top: energy, L_z, Lyapunov exponent, and how long the attitude holds",
         run: chaos::run,
+    },
+    Experiment {
+        name: "flyby",
+        question: "what the Earth does to the spin of Apophis on 13 April 2029, from published spin states",
+        run: flyby::run,
     },
     Experiment {
         name: "programs",
