@@ -18,7 +18,9 @@ fn supplied(scratch: &Scratch) {
     let logs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/programs");
     fs::copy(logs.join("mujoco-euler.csv"), scratch.0.join("mujoco.csv")).unwrap();
     fs::create_dir(scratch.0.join("examples")).unwrap();
-    fs::copy(root().join("examples/ensemble.toml"), scratch.0.join("examples/ensemble.toml")).unwrap();
+    for name in ["examples/ensemble.toml", "examples/apophis.toml"] {
+        fs::copy(root().join(name), scratch.0.join(name)).unwrap();
+    }
     fs::copy(root().join("examples/ensemble.toml"), scratch.0.join("spec.toml")).unwrap();
     scratch.file("epochs.csv", "jd\n2448936.5\n2448937.25\n");
     let inertia = "<inertia ixx=\"0.01\" iyy=\"0.02\" izz=\"0.025\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>";
