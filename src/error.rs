@@ -94,6 +94,7 @@ from!(
     crate::method::AxisOrderError,
     crate::method::DmvOrderError,
     crate::method::GaussOrderError,
+    crate::method::LossError,
     crate::method::PhaseError,
     crate::method::SchemeError,
     crate::method::StepError,

@@ -13,6 +13,7 @@
 
 mod casimir;
 mod derivative;
+mod dissipation;
 mod exact_motion;
 mod free;
 mod kick;
@@ -23,6 +24,7 @@ mod turn;
 
 pub use casimir::Casimir;
 pub use derivative::{DerivativeError, TurnAxes};
+pub use dissipation::Dissipation;
 pub use exact_motion::{ExactMotion, NoClosedForm};
 pub(crate) use free::{Addition, Curve, FreeOrbit, direction, smallest_turn};
 pub use free::{

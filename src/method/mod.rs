@@ -8,6 +8,7 @@ mod combine;
 mod commutator_free_4;
 mod contract;
 mod crouch_grossman_3;
+mod dissipating;
 mod dmv;
 mod dop853;
 mod exact_step;
@@ -47,6 +48,7 @@ pub use contract::{
     AnyMethod, Claimed, Claims, Cost, Energy, Kept, Listing, Map, Method, SideBySide, Step, StepError, Stuck,
     ToleranceError, UnknownMethod, Work, catalogue, listing, method, without_projections,
 };
+pub use dissipating::{Dissipating, LossError};
 pub use dmv::{DmvOrderError, PreprocessedDmv};
 pub use dop853::{Dop853, DormandPrince853};
 pub use exact_step::ExactStep;

@@ -41,6 +41,8 @@ const EXAMPLES: &str = "Examples:
 ///   separatrix_distance  (|L|^2/2E - I_middle)/I_middle, negative in long-axis
 ///                        mode
 ///   energy_ratio         energy over the least energy with this L
+///   damping              with inner friction the energy above that of the steady
+///                        spin falls by a factor of e in this time over the loss
 ///   stability            of a steady spin, with the growth_rate of deviations
 ///   theta_min, _max      least and largest angle between the axis and L
 ///   lambda, beta         longitude and latitude of L in space

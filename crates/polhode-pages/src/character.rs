@@ -23,6 +23,8 @@ pub fn quantities(body: &Body, start: &Point<Dd>, motion: &FreeMotion) -> Result
     let combined = tumbling.map(|found| found.combined_period());
     let moments = body.inertia().principal_moments();
     let largest = moments.iter().fold(0.0_f64, |most, moment| most.max(*moment));
+    let friction = moments.iter().map(|moment| 1.0 / moment - 1.0 / largest).sum::<f64>();
+    let is_spherical = friction == 0.0;
     let state = body.leave(start);
     let momentum = state.momentum_body.norm();
     let omega = body.omega_of(start);
@@ -65,6 +67,13 @@ pub fn quantities(body: &Body, start: &Point<Dd>, motion: &FreeMotion) -> Result
             "",
             "to the least energy with this L",
             (largest * character.spin / momentum).into(),
+        ),
+        (
+            "damping",
+            "",
+            "s",
+            "e-fold of the energy above that of the steady spin, times the loss of inner friction",
+            (!is_spherical).then_some(1.0 / (momentum * friction)).into(),
         ),
         ("axis", "", "", "of the mode or of the spin", axis_name.into()),
         ("axis_x", "", "", "unit vector, body axes", axis.map(|axis| axis.x + 0.0).into()),

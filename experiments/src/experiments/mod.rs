@@ -6,6 +6,7 @@ mod chaos;
 mod conservation;
 mod contestants;
 mod derivative;
+mod dissipation;
 mod drift;
 mod exact;
 mod fit_attitudes;
@@ -143,6 +144,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "chaos",
         question: "what each method says of a chaotic top: energy, L_z, Lyapunov exponent, and how long the attitude holds",
         run: chaos::run,
+    },
+    Experiment {
+        name: "dissipation",
+        question: "how a tumbling body with inner friction comes to a steady spin, and what the splitting keeps on the way",
+        run: dissipation::run,
     },
     Experiment {
         name: "flyby",

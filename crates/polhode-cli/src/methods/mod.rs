@@ -5,9 +5,13 @@ mod check;
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::method::{AnyMethod, Claimed, ToleranceError, UnknownMethod, catalogue, method};
+use polhode::method::schemes::{STRANG, scheme};
+use polhode::method::{
+    AnyMethod, Claimed, Dissipating, Splitting, ToleranceError, UnknownMethod, catalogue, method,
+};
 use polhode_experiments::methods::{schemes, table};
 use polhode_files::error::Error;
+use polhode_files::numbers::number;
 use polhode_pages::output::emit;
 use polhode_pages::table::Format;
 
@@ -48,6 +52,19 @@ impl Methods {
 /// The method that `flag` names.
 pub(crate) fn named(flag: &str, name: &str) -> Result<Box<dyn AnyMethod>, Error> {
     method(name).map_err(|error| unknown(flag, error))
+}
+
+/// The same, or `dissipating:LOSS[@SCHEME]`, which moves another body than a rigid one and is no method of the catalogue.
+pub(crate) fn moving(flag: &str, name: &str) -> Result<Box<dyn AnyMethod>, Error> {
+    let Some(argument) = name.strip_prefix("dissipating:") else { return named(flag, name) };
+    let refused = |error: &dyn std::fmt::Display| Error::Input(format!("{flag}: {name}: {error}"));
+    let (loss, scheme) = match argument.split_once('@') {
+        None => (argument, STRANG),
+        Some((loss, name)) => (loss, *scheme(name).map_err(|error| refused(&error))?),
+    };
+    let loss = number(loss).map_err(|error| refused(&error))?;
+    let parts = Dissipating::new(loss).map_err(|error| refused(&error))?;
+    Ok(Box::new(Splitting::of_flows(parts, scheme).map_err(|error| refused(&error))?))
 }
 
 /// Why what `flag` names is no method.

@@ -13,7 +13,7 @@ use polhode_files::text::short;
 
 use crate::cost;
 use crate::flags::motion::MotionArguments;
-use crate::methods::{Unusable, adaptive, at_tolerance, named, not_taken, unknown};
+use crate::methods::{Unusable, adaptive, at_tolerance, moving, not_taken, unknown};
 
 /// Points of a curve: at least so many, and at most.
 pub(crate) const FEWEST: u64 = 600;
@@ -205,7 +205,7 @@ impl Looks {
 
     fn follow_method(&mut self, course: &Course, start: Point<Dd>) -> Result<(), Error> {
         let method = match course.tolerance {
-            None => named(course.flags.method, course.method)?,
+            None => moving(course.flags.method, course.method)?,
             Some(tolerance) => at_tolerance(course.method, tolerance).map_err(|why| match why {
                 Unusable::Unknown(error) => unknown(course.flags.method, error),
                 Unusable::FixedSteps | Unusable::Twice => without_tolerance(course, tolerance),

@@ -23,7 +23,7 @@ use crate::cost;
 use crate::flags::event::{TypedEvent, event};
 use crate::flags::motion::MotionArguments;
 use crate::flags::times::{OutputTimes, TimeArguments};
-use crate::methods::{Unusable, adaptive, at_tolerance, named, not_taken, unknown};
+use crate::methods::{Unusable, adaptive, at_tolerance, moving, not_taken, unknown};
 use columns::{Columns, Reading};
 
 const USAGE: &str = "polhode propagate <BODY> [START] <TIMES> [OPTIONS]
@@ -71,7 +71,7 @@ pub(crate) struct Propagate {
     /// Most turns between two attitudes, by the mean spin 2E/|L| [default: 1]
     #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true, requires = "through", help_heading = "Through attitudes")]
     turns: Option<f64>,
-    /// Method: exact, or BASE[:ARGUMENT][@SCHEME][+phase] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
+    /// Method: exact, or BASE[:ARGUMENT][@SCHEME][+phase] as in kick-drift@srkn-6b, or dissipating:LOSS[@SCHEME], a body with inner friction; see `polhode methods` and `polhode methods --schemes`
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Method")]
     method: String,
     /// Step of a method with fixed steps, s; exact, taylor, dop853 and tsit5 need none
@@ -310,7 +310,7 @@ impl Propagate {
     }
 
     fn stepping_method(&self) -> Result<Box<dyn AnyMethod>, Error> {
-        let Some(tolerance) = self.tolerance else { return named("--method", &self.method) };
+        let Some(tolerance) = self.tolerance else { return moving("--method", &self.method) };
         at_tolerance(&self.method, tolerance).map_err(|why| match why {
             Unusable::Unknown(error) => unknown("--method", error),
             Unusable::FixedSteps => self.without_tolerance(tolerance),

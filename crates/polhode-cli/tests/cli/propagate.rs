@@ -370,3 +370,31 @@ fn a_weight_moment_makes_a_top() {
     let stepped = output(&format!("{heavy} --method kick-drift:4 --step 0.015625 --format csv"));
     assert!(stepped.lines().nth(1).unwrap().ends_with(','), "{stepped}");
 }
+
+#[test]
+fn a_body_with_inner_friction_keeps_l_and_loses_energy() {
+    let of = |method: &str| {
+        format!(
+            "propagate --moments 1,2,3 --omega 0.4,1,0.8 --method {method} --step 0.05 --times 0,100,2000 \
+             --fields t,omega,energy,momentum_vector_error"
+        )
+    };
+    let rows: Vec<Vec<f64>> = output(&of("dissipating:1e-2@suzuki-4"))
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    assert!(rows[1][4] < rows[0][4] && rows[2][4] < rows[1][4], "{rows:?}");
+    assert!(rows[2][5] < 1e-14, "{rows:?}");
+    // it ends about the axis of the largest moment, with all of |m|
+    let momentum = (0.4_f64 * 0.4 + 4.0 + 5.76).sqrt();
+    assert!((rows[2][3] - momentum / 3.0).abs() < 1e-3, "{rows:?}");
+    refused(&of("dissipating:0"), &["--method: dissipating:0: the loss is 0", "above 0 and below 1"]);
+    refused(&of("dissipating:x"), &["--method: dissipating:x", "not a number"]);
+    refused(&of("dissipating:1e-3@strong"), &["--method", "strong"]);
+    // it is no rigid body, so that nothing compares it with one
+    refused(
+        "compare --moments 1,2,3 --omega 0.4,1,0.8 --methods dissipating:1e-3 --steps 0.1 --until 10",
+        &["--methods", "dissipating:1e-3"],
+    );
+}

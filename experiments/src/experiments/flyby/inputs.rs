@@ -8,7 +8,7 @@ use polhode::units::Date;
 use polhode_files::error::{Error, unexpected};
 
 /// GM of the Earth, km³/s²: IERS Conventions (2010), table 1.1.
-pub(super) const GM: f64 = 398_600.4418;
+pub(super) const GM: f64 = 398_600.441_8;
 
 /// Osculating orbit about the Earth next to the perigee, ecliptic and equinox J2000: JPL Horizons, solution of November 2023, as
 /// printed in the readme of github.com/disruptiveplanets/AIME. Least distance in km.
