@@ -114,6 +114,7 @@ pub mod guide {
     #[doc = include_str!("../docs/teaching.md")]
     pub mod teaching {}
     #[doc = include_str!("../docs/tumbling.md")]
+    #[allow(rustdoc::broken_intra_doc_links, reason = "its tables name units in brackets")]
     pub mod tumbling {}
 }
 

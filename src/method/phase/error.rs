@@ -31,8 +31,8 @@ pub enum PhaseError {
     },
     /// Forces are strong.
     #[error(
-        "the phase error is predicted of the free body, and under {force} a share of {share:.1e} of its growth is another, more than \
-         {MOST_LEFT:e}: nothing is predicted"
+        "the phase error is predicted of the free body, and under {force} {} of its growth is another, more than {MOST_LEFT:e}: nothing is predicted",
+        share_in_words(*share)
     )]
     Force {
         /// Name of the first force.
@@ -123,4 +123,9 @@ pub enum PhaseError {
         /// Its steps.
         steps: u64,
     },
+}
+
+/// Of a method without a phase error of its own the share has no bound.
+fn share_in_words(share: f64) -> String {
+    if share < 1.0 { format!("a share of {share:.1e}") } else { "all".into() }
 }

@@ -38,11 +38,17 @@ const AFTER_HELP: &str = "SPEC.toml:
   [body]    moments = [3], inertia = [6] (xx, yy, zz, xy, xz, yz), or body
   [start]   omega = [3], rad/s; attitude = [4], quaternion from body to space,
             scalar first; rate_unit and angle_unit, such as \"deg/s\" and
-            \"deg\", hold for [spread] and the members too
+            \"deg\", hold for [spread] and the members too; or of a tumbling
+            body periods, mode, pole, phases, reversed; epoch and time_scale
+            make dates of the times in [run]
   [spread]  standard deviations, one or three each: omega, rad/s; attitude,
             rad, about the body axes; moments, relative
-  [spread.covariance]  omega 3x3, attitude 3x3, inertia 6x6, or joint 12x12
+            of elements one or two each: periods, pole, phases, ratios
+  [spread.covariance]  omega 3x3, attitude 3x3, inertia 6x6, or joint 12x12;
+                       elements 8x8
   [spread.range]       omega, attitude, moments: [[low, high], ...]; \"all\"
+  [[solution]]  weight, and what differs in periods, mode, pole, phases, spread
+  [observer]    direction = [lambda, beta], or directions, one for each time
   [run]     members, seed, method, step, tolerance, start_time, times,
             times_file and times_column, or until and every;
             errors = false leaves energy and L unwatched
@@ -61,7 +67,7 @@ Examples:
 /// Many bodies from uncertain starts: mean attitude and dispersion over time
 ///
 /// Members are drawn from standard deviations, covariances or ranges of start and inertia, or listed in a CSV (members_file).
-/// Tensors that no body has are drawn again, so the spread of the inertia ends at the triangle inequalities. Member k is the
+/// Elements of tumbling bodies are drawn, too, about one solution of a light curve or several. Tensors that no body has are drawn again, so the spread of the inertia ends at the triangle inequalities. Member k is the
 /// same in any division of the work. DIR gets summary.csv, dispersion.csv, dispersion.svg, failures.csv,
 /// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml; with an [event] passages.csv, when it
 /// first happens to each member. Of free bodies in exact motion the spread to first order is printed beside that of the members.
@@ -300,7 +306,7 @@ fn said(results: &Results, shares: &Shares, identity: &Identity, out: &Path) -> 
         && shares.failures.iter().all(|failure| Some(&failure.t) == start);
     let draws = shares.draws;
     let redrawn = if draws > members {
-        format!("{} of {draws} tensors drawn belong to no body and were drawn again.\n", draws - members)
+        format!("{} of {draws} draws belong to no body and were drawn again.\n", draws - members)
     } else {
         String::new()
     };

@@ -45,7 +45,7 @@ pub(super) struct Record {
     pub(super) method: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) seed: Option<u64>,
-    /// Tensors drawn, with those whose moments violate the triangle inequality and were drawn again.
+    /// Draws, with those that belong to no body and were drawn again.
     pub(super) draws: u64,
     /// Members that have no rows from some time on.
     pub(super) failed: u64,

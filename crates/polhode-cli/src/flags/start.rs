@@ -201,7 +201,7 @@ impl StartArguments {
     }
 
     fn as_given(&self, body: &Body, published: &Option<PublishedStart>) -> Result<Point<Dd>, Error> {
-        let angle_unit = self.angle_unit.map_or(1.0, |Factor(unit)| unit);
+        let angle_unit = self.angle_unit();
         if let Some(elements) = self.tumbling.elements(angle_unit)? {
             return elements.point(body.inertia()).map_err(|error| self.tumbling.refused(&error));
         }
@@ -234,6 +234,11 @@ impl StartArguments {
         };
         let start = body.enter_omega(attitude, Vec3(omega));
         start.map_err(|error| Error::Input(format!("--omega: {error}")))
+    }
+
+    /// The unit of angles that are typed, rad.
+    pub(crate) fn angle_unit(&self) -> f64 {
+        self.angle_unit.map_or(1.0, |Factor(unit)| unit)
     }
 
     /// The attitude that was typed, of any norm but zero.

@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 use polhode::body::{Body, Conserved, Point, State, Time};
 use polhode::observe::{Errors, Invariants};
-use polhode::rotation::EulerSequence;
+use polhode::rotation::{EulerSequence, Vec3};
+use polhode::units::Date;
 use polhode_files::error::Error;
 use polhode_pages::table::{Cell, Column, Table};
 
@@ -22,15 +23,19 @@ enum Quantity {
     MomentumZError,
     JacobiError,
     AttitudeError,
+    /// Of the time, where t = 0 has a date.
+    JulianDate,
+    /// Longitude and latitude of the direction to an observer in the axes of the body.
+    Observer(usize),
 }
 
 use Quantity::{
-    Angle, Attitude, AttitudeError, Energy, EnergyError, JacobiError, Momentum, MomentumError,
-    MomentumVectorError, MomentumZError, Omega,
+    Angle, Attitude, AttitudeError, Energy, EnergyError, JacobiError, JulianDate, Momentum, MomentumError,
+    MomentumVectorError, MomentumZError, Observer, Omega,
 };
 
 /// Group, name, unit, meaning and digits of each quantity, in the order of the columns.
-const ALL: [(Quantity, &str, &str, &str, &str, usize); 19] = [
+const ALL: [(Quantity, &str, &str, &str, &str, usize); 22] = [
     (Quantity::Time, "t", "t", "s", "time", 6),
     (Attitude(0), "q", "q_w", "", "attitude, body to space, scalar part", 6),
     (Attitude(1), "q", "q_x", "", "attitude, x", 6),
@@ -64,6 +69,9 @@ const ALL: [(Quantity, &str, &str, &str, &str, usize); 19] = [
     (Angle(0), "euler", "phi", "rad", "first Euler angle", 6),
     (Angle(1), "euler", "theta", "rad", "second Euler angle", 6),
     (Angle(2), "euler", "psi", "rad", "third Euler angle", 6),
+    (Observer(0), "observer", "observer_longitude", "rad", "of the direction to the observer, body axes", 6),
+    (Observer(1), "observer", "observer_latitude", "rad", "of the direction to the observer, body axes", 6),
+    (JulianDate, "jd", "jd", "d", "Julian date in the time scale of the epoch", 12),
 ];
 
 /// The columns of one run.
@@ -71,7 +79,17 @@ const ALL: [(Quantity, &str, &str, &str, &str, usize); 19] = [
 pub(super) struct Columns {
     /// Places in [`ALL`].
     places: Vec<usize>,
-    sequence: EulerSequence,
+    asked: Asked,
+}
+
+/// What columns beside those of every motion are worked out by.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Asked {
+    pub(super) sequence: Option<EulerSequence>,
+    /// Direction to the observer, axes of space.
+    pub(super) observer: Option<Vec3<f64>>,
+    /// The date of t = 0.
+    pub(super) epoch: Option<Date>,
 }
 
 /// What a row is made of.
@@ -90,14 +108,12 @@ pub(super) struct Reading<'a> {
 
 impl Columns {
     /// Those that `fields` names, by groups or by columns, or all that the motion of `body` has.
-    pub(super) fn chosen(
-        fields: &[String],
-        sequence: Option<EulerSequence>,
-        body: &Body,
-    ) -> Result<Self, Error> {
+    pub(super) fn chosen(fields: &[String], asked: Asked, body: &Body) -> Result<Self, Error> {
         let has = |quantity: Quantity| match quantity {
             JacobiError => has_jacobi(body),
-            Angle(_) => sequence.is_some(),
+            Angle(_) => asked.sequence.is_some(),
+            Observer(_) => asked.observer.is_some(),
+            JulianDate => asked.epoch.is_some(),
             _ => true,
         };
         let mut places: Vec<usize> = Vec::new();
@@ -122,26 +138,24 @@ impl Columns {
             places.extend(named);
         }
         if fields.is_empty() {
-            places = (0..ALL.len()).filter(|place| has(ALL[*place].0)).collect();
+            // a date is another name of the time: by name alone
+            let shown = |place: &usize| ALL[*place].0 != JulianDate && has(ALL[*place].0);
+            places = (0..ALL.len()).filter(shown).collect();
         }
         if places.is_empty() {
             return Err(Error::input(
                 "--fields",
                 &fields.join(","),
                 "the motion has no such quantity",
-                "name others",
+                "name others; jd needs --epoch, observer needs --observer",
             ));
         }
-        Ok(Self { places, sequence: sequence.unwrap_or_default() })
+        Ok(Self { places, asked })
     }
 
     /// As [`chosen`](Self::chosen), of single states: without what is compared with a start or an exact motion.
-    pub(super) fn of_states(
-        fields: &[String],
-        sequence: Option<EulerSequence>,
-        body: &Body,
-    ) -> Result<Self, Error> {
-        let mut columns = Columns::chosen(fields, sequence, body)?;
+    pub(super) fn of_states(fields: &[String], asked: Asked, body: &Body) -> Result<Self, Error> {
+        let mut columns = Columns::chosen(fields, asked, body)?;
         let is_error = |place: &usize| ALL[*place].1 == "errors";
         if let (false, Some(place)) = (fields.is_empty(), columns.places.iter().find(|place| is_error(place)))
         {
@@ -186,7 +200,13 @@ impl Columns {
         reading: &'a Reading<'a>,
     ) -> impl Iterator<Item = Cell> + 'a {
         let angles = self.quantities().any(|quantity| matches!(quantity, Angle(_)));
-        let angles = angles.then(|| self.sequence.angles(reading.state.rotation()).angles);
+        let sequence = self.asked.sequence.unwrap_or_default();
+        let angles = angles.then(|| sequence.angles(reading.state.rotation()).angles);
+        let seen = self.asked.observer.map(|observer| {
+            let [x, y, z] = reading.state.attitude.rotate_back(observer).0;
+            let longitude = libm::atan2(y, x).rem_euclid(core::f64::consts::TAU);
+            [longitude, libm::atan2(z, libm::hypot(x, y))]
+        });
         let energies = self.quantities().any(|quantity| matches!(quantity, Energy | Momentum));
         let invariants = energies.then(|| Invariants::of(body, reading.at, reading.point));
         self.quantities().map(move |quantity| match quantity {
@@ -202,6 +222,8 @@ impl Columns {
             MomentumZError => reading.worst.and_then(|worst| worst.momentum_z).into(),
             JacobiError => reading.worst.and_then(|worst| worst.jacobi).into(),
             AttitudeError => reading.attitude_error.into(),
+            Observer(k) => seen.map(|seen| seen[k]).into(),
+            JulianDate => self.asked.epoch.map(|epoch| epoch.later(reading.at.seconds()).julian()).into(),
         })
     }
 }

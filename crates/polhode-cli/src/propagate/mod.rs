@@ -10,13 +10,13 @@ use clap::Args;
 use polhode::body::{Body, Clock, Point, Problem, Time};
 use polhode::flow::ExactMotion;
 use polhode::method::{AnyMethod, Claimed, StepError};
-use polhode::num::Dd;
+use polhode::num::{Dd, Real};
 use polhode::observe::Monitor;
-use polhode::rotation::rotation_angle;
+use polhode::rotation::{Vec3, rotation_angle};
 use polhode::run::{Run, RunError, Sample, Watch};
 use polhode_files::error::{Error, warn};
 use polhode_files::instant::positive_duration;
-use polhode_files::numbers::positive;
+use polhode_files::numbers::{numbers, positive};
 use polhode_pages::table::{Format, RowWriter};
 
 use crate::cost;
@@ -24,7 +24,7 @@ use crate::flags::event::{TypedEvent, event};
 use crate::flags::motion::MotionArguments;
 use crate::flags::times::{OutputTimes, TimeArguments};
 use crate::methods::{Unusable, adaptive, at_tolerance, moving, not_taken, unknown};
-use columns::{Columns, Reading};
+use columns::{Asked, Columns, Reading};
 
 const USAGE: &str = "polhode propagate <BODY> [START] <TIMES> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
@@ -80,7 +80,10 @@ pub(crate) struct Propagate {
     /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
     #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true, help_heading = "Method")]
     tolerance: Option<f64>,
-    /// Columns of the rows, by commas: t, q, omega, energy, momentum, errors, euler, or names of columns [default: all]
+    /// Direction to an observer: longitude from x towards y of space and latitude, rad or --angle-unit; adds where he stands in the sky of the body, observer_longitude and observer_latitude, body axes, rad
+    #[arg(long, value_name = "lambda,beta", value_parser = numbers::<2>, allow_hyphen_values = true, help_heading = "Output")]
+    observer: Option<[f64; 2]>,
+    /// Columns of the rows, by commas: t, jd (with --epoch), q, omega, energy, momentum, errors, euler, observer, or names of columns [default: all but jd]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Output")]
     fields: Vec<String>,
     /// How rows are printed [default: table on a terminal, csv otherwise]
@@ -100,7 +103,7 @@ impl Propagate {
         if !self.events.is_empty() {
             return self.look_for_events(&body);
         }
-        let columns = Columns::chosen(&self.fields, self.motion.start.euler, &body)?;
+        let columns = Columns::chosen(&self.fields, self.asked(), &body)?;
         let start = self.motion.start(&body)?;
         let times = self.times.output()?;
         self.compare_epoch();
@@ -108,6 +111,20 @@ impl Propagate {
             self.exact(&body, start, &times, columns)
         } else {
             self.stepped(&body, start, &times, columns)
+        }
+    }
+
+    /// What columns are worked out by beside the motion.
+    fn asked(&self) -> Asked {
+        let unit = self.motion.start.angle_unit();
+        let observer = self.observer.map(|angles| {
+            let [(sin, cos), (up, across)] = angles.map(|angle| Real::sin_cos(angle * unit));
+            Vec3([cos * across, sin * across, up])
+        });
+        Asked {
+            sequence: self.motion.start.euler,
+            observer,
+            epoch: self.times.epoch().map(|epoch| epoch.date),
         }
     }
 

@@ -193,3 +193,44 @@ fn the_attitude_of_the_catalogue_stays_unless_another_is_given() {
     assert_eq!(dated("1992-11-09T17:49:47").err, "");
     assert!(dated("1992-11-09T17:50").err.contains("published start is of 1992-11-09T17:49:47 UTC"));
 }
+
+#[test]
+fn rows_have_dates_and_where_the_observer_stands() {
+    let dated =
+        "propagate --body apophis --epoch 2456284.676388UTC --times 0s,12h,2456300.5UTC --angle-unit deg";
+    let rows = |flags: &str| -> Vec<Vec<f64>> {
+        let text = output(&format!("{dated} {flags}"));
+        text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+    };
+    let found = rows("--observer 210,5 --fields jd,observer,q");
+    for (row, julian) in found.iter().zip([2_456_284.676_388, 2_456_285.176_388, 2_456_300.5]) {
+        assert!((row[0] - julian).abs() < 1e-9, "{row:?}");
+        // the direction from the body is that in space, turned back
+        let (longitude, latitude) = (row[1], row[2]);
+        let inside = nalgebra::Vector3::new(
+            libm::cos(longitude) * libm::cos(latitude),
+            libm::sin(longitude) * libm::cos(latitude),
+            libm::sin(latitude),
+        );
+        let q = nalgebra::Quaternion::new(row[3], row[4], row[5], row[6]);
+        let back = nalgebra::UnitQuaternion::from_quaternion(q) * inside;
+        let (longitude, latitude) = (210_f64.to_radians(), 5_f64.to_radians());
+        let expected = nalgebra::Vector3::new(
+            libm::cos(longitude) * libm::cos(latitude),
+            libm::sin(longitude) * libm::cos(latitude),
+            libm::sin(latitude),
+        );
+        assert!((back - expected).norm() < 1e-13, "{row:?}");
+    }
+    // asked for by its flag it stands beside all that a motion has, a date by name alone
+    let head = output(&format!("{dated} --observer 210,5"));
+    assert!(
+        head.lines().next().unwrap().ends_with("attitude_error,observer_longitude,observer_latitude"),
+        "{head}"
+    );
+    refused("propagate --body apophis --times 0 --fields jd", &["--fields", "jd needs --epoch"]);
+    refused(
+        "propagate --body apophis --times 0 --fields observer",
+        &["--fields", "observer needs --observer"],
+    );
+}

@@ -87,6 +87,11 @@ struct Spread {
 impl Spread {
     fn read(spread: &Section<'_>, units: Units, before: Option<&Spread>) -> Result<Spread, Error> {
         let mut found = before.cloned().unwrap_or(Spread { deviations: [0.0; 8], covariance: None });
+        if let (Some(_), Some(key)) =
+            (&found.covariance, SPREAD.into_iter().find(|key| spread.value(key).is_some()))
+        {
+            return Err(spread.at(key, "given beside the covariance of all solutions; leave one of them out"));
+        }
         for (place, key) in SPREAD.into_iter().enumerate() {
             let list = if key == "periods" { spread.times(key)? } else { spread.list(key)? };
             let unit = if matches!(key, "pole" | "phases") { units.angle } else { 1.0 };

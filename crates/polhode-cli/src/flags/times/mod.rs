@@ -79,7 +79,8 @@ fn item_of(list: &str, k: usize) -> String {
 }
 
 impl TimeArguments {
-    fn epoch(&self) -> Option<Epoch> {
+    /// The date of t = 0.
+    pub(crate) fn epoch(&self) -> Option<Epoch> {
         self.epoch.map(|date| Epoch::new(date, self.time_scale))
     }
 

@@ -156,6 +156,11 @@ fn elements_are_refused_with_line_and_law() {
         ("a date without an epoch", "epoch = \"2012-12-23T04:14 UTC\"\n", ""),
         ("directions that are too few", "direction = [30, 5]", "directions = [[30, 5]]"),
         ("a direction twice", "direction = [30, 5]", "direction = [30, 5]\ndirections = [[30, 5]]"),
+        (
+            "a spread of one solution beside the covariance of all",
+            "[spread]\nperiods = [\"0.07h\", \"6h\"]\npole = [9, 4]\nphases = 5\nratios = [0.08, 0.008]\n",
+            &format!("[spread.covariance]\nelements = {:?}\n", [[0.0; 8]; 8]),
+        ),
     ] {
         assert!(APOPHIS.contains(from), "{what}");
         scratch.file("spec.toml", APOPHIS.replace(from, to));
