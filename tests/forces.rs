@@ -1,6 +1,6 @@
 //! Forces against closed forms, against fixtures of 30 digits (tests/data/forces, mpmath) and against what they conserve.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use polhode::body::{
     Body, Clock, Conserved, Force, ForceError, Orbit, Point, Potential, Problem, State, Time,
 };
@@ -522,4 +522,77 @@ fn parameters_that_no_force_has_are_refused() {
         refused(Force::gravity(Vector3::new(0.0, f64::NAN, 0.0))),
         "a component of the weight moment of the uniform gravity is NaN; it must be a finite number"
     );
+}
+
+/// The place on the hyperbola of the fixture at the time t, by Kepler's equation.
+fn on_the_hyperbola([gm, q, e]: [f64; 3], t: f64) -> [f64; 3] {
+    let a = q / (e - 1.0);
+    let mean = (t - 3.0) * (gm / (a * a * a)).sqrt();
+    let mut f = libm::asinh(mean / e);
+    for _ in 0..60 {
+        f -= (e * libm::sinh(f) - f - mean) / (e * libm::cosh(f) - 1.0);
+    }
+    let across = a * (e * e - 1.0).sqrt() * libm::sinh(f);
+    let turn = |axis: Vector3<f64>, angle: f64| Rotation3::from_scaled_axis(axis * angle);
+    let plane = turn(Vector3::z(), 0.4) * turn(Vector3::x(), 0.9) * turn(Vector3::z(), -1.3);
+    (plane * Vector3::new(a * (e - libm::cosh(f)), across, 0.0)).into()
+}
+
+#[test]
+fn an_orbit_on_a_table_moves_the_body_as_the_conic_does() {
+    let parameters = [2.0, 1.5, 4.25];
+    let fixture = fixtures().into_iter().find(|one| one.name == format!("conic {parameters:?}")).unwrap();
+    let mut before = f64::INFINITY;
+    for rows in [40, 80, 160, 320] {
+        let times: Vec<f64> = (0..=rows).map(|k| 8.0 * f64::from(k) / f64::from(rows)).collect();
+        let places: Vec<[f64; 3]> = times.iter().map(|t| on_the_hyperbola(parameters, *t)).collect();
+        let orbit = Orbit::table(parameters[0], &times, &places).unwrap();
+        let estimate = orbit.interpolation_error().unwrap();
+        assert_eq!(orbit.span(), Some([0.0, 8.0]));
+        let body = Body::free(fixture.body.inertia().clone()).with(Force::gravity_gradient_on(orbit));
+        let on_table = Fixture { body, name: String::new(), ..fixture };
+        let error = errors(&on_table, &method("kick-drift@srkn-6b").unwrap(), 2560);
+        println!("{rows} rows: {error:.1e}, estimate {estimate:.1e}");
+        // through eight rows the error falls by 2^8 with half the interval, until steps or doubles end it
+        assert!(error < before / 64.0 || error < 1e-11, "{rows} rows: {error:.1e} after {before:.1e}");
+        assert!(error < 30.0 * estimate, "{rows} rows: {error:.1e}, estimate {estimate:.1e}");
+        before = error;
+        if rows == 320 {
+            assert!(error < 1e-10, "{error:.1e}");
+        }
+    }
+}
+
+#[test]
+fn tables_of_orbits_are_refused_by_their_law() {
+    let times: Vec<f64> = (0..9).map(f64::from).collect();
+    let places: Vec<[f64; 3]> = times.iter().map(|t| [10.0, *t, 0.0]).collect();
+    let refused = |gm: f64, times: &[f64], places: &[[f64; 3]]| {
+        Orbit::table(gm, times, places).unwrap_err().to_string()
+    };
+    assert!(refused(0.0, &times, &places).contains("must be positive"));
+    assert!(refused(1.0, &times[..7], &places[..7]).contains("needs 8 of each"));
+    assert!(refused(1.0, &times, &places[..8]).contains("9 times and 8 places"));
+    let twice = [0.0, 1.0, 2.0, 2.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+    assert!(refused(1.0, &twice, &places).contains("2 s comes after 2 s"));
+    let mut wrong = places.clone();
+    wrong[4] = [0.0; 3];
+    assert!(refused(1.0, &times, &wrong).contains("distance"));
+    wrong[4] = [f64::NAN, 0.0, 0.0];
+    assert!(refused(1.0, &times, &wrong).contains("finite"));
+    // a circle of which half a revolution is missing
+    let angles = [0.0, 0.1, 0.2, 0.3, 3.3, 3.4, 3.5, 3.6, 3.7];
+    let circle = angles.map(|angle| [libm::cos(angle), libm::sin(angle), 0.0]);
+    assert!(
+        refused(1.0, &angles, &circle).contains("between 0.3 s and 3.3 s"),
+        "{}",
+        refused(1.0, &angles, &circle)
+    );
+    // a run that leaves the table ends there
+    let orbit = Orbit::table(1.0, &times, &places).unwrap();
+    let body = Body::free(inertia([1.0, 2.0, 2.5])).with(Force::gravity_gradient_on(orbit));
+    let mut leaving = run("rk4", &body, [0.3, 1.0, -0.4], 0.125);
+    assert!(leaving.advance_to(60).is_ok());
+    let error = leaving.advance_to(80).unwrap_err().to_string();
+    assert!(error.contains("gravity gradient"), "{error}");
 }

@@ -107,6 +107,39 @@ pub enum ForceError {
         /// The root of GM over the cube of the least distance, rad/s.
         rate: f64,
     },
+    /// A table of an orbit has too few rows.
+    #[error(
+        "the table of the orbit has {times} times and {places} places; it needs {needed} of each at least, and as many places as times"
+    )]
+    Rows {
+        /// Of times.
+        times: usize,
+        /// Of places.
+        places: usize,
+        /// At least.
+        needed: usize,
+    },
+    /// The times of a table do not ascend.
+    #[error("in the table of the orbit {} s comes after {} s; times ascend", Shown(*after), Shown(*before))]
+    NotAscending {
+        /// The time before, s.
+        before: f64,
+        /// The time after it in the table, s.
+        after: f64,
+    },
+    /// Rows of a table are too far apart.
+    #[error(
+        "between {} s and {} s the table of the orbit has a gap: places through eight and through six rows differ by {error:.1e} of the distance; \
+         give rows between them", Shown(*from), Shown(*to)
+    )]
+    Gap {
+        /// The row before, s.
+        from: f64,
+        /// The row after, s.
+        to: f64,
+        /// The difference over the distance.
+        error: f64,
+    },
     /// An interval in which it acts is none.
     #[error(
         "the interval from {} s to {} s comes after {} s; intervals of a force ascend, and each ends after its beginning",

@@ -97,7 +97,7 @@ impl Force {
 
     /// The same force as it acts on a body with the inertia `inertia`.
     pub(super) fn on(self, inertia: &Inertia) -> Self {
-        match self.orbit {
+        match self.orbit.clone() {
             Some(orbit) => self.switch(Force::gradient_on(inertia.tensor(), orbit)),
             None => self,
         }

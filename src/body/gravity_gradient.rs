@@ -53,7 +53,7 @@ impl Force {
 
     /// The same on a body with the tensor `tensor`, kg m², body axes.
     pub(super) fn gradient_on(tensor: Matrix3<f64>, orbit: Orbit) -> Self {
-        Force::potential(NAME, GravityGradient { tensor, orbit }).on_orbit(orbit)
+        Force::potential(NAME, GravityGradient { tensor, orbit: orbit.clone() }).on_orbit(orbit)
     }
 }
 

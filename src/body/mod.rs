@@ -13,6 +13,7 @@ mod gravity_gradient;
 mod law;
 mod linear_potential;
 mod orbit;
+mod orbit_table;
 mod point;
 #[cfg(any(test, feature = "random"))]
 mod population;

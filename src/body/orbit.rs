@@ -2,8 +2,10 @@
 
 use core::cmp::Ordering;
 use core::f64::consts::PI;
+use std::sync::Arc;
 
 use super::force::finite;
+use super::orbit_table::Table;
 use super::{ForceError, Time};
 use crate::num::stumpff::{halvings, stumpff};
 use crate::num::{Dd, Precise as _, Real};
@@ -15,7 +17,7 @@ const NAME: &str = "orbit";
 /// before.
 const MOST_DESCENTS: u32 = 2048;
 
-/// The orbit of a body about a point mass: a circle, an ellipse, a parabola or a hyperbola.
+/// The orbit of a body about a point mass: a circle, an ellipse, a parabola, a hyperbola, or a table of places.
 ///
 /// In the x–y plane of space it runs counter-clockwise about +z with the least distance, at t = 0, on +x;
 /// [`passing_at`](Self::passing_at) and [`in_plane`](Self::in_plane) say otherwise.
@@ -30,7 +32,7 @@ const MOST_DESCENTS: u32 = 2048;
 /// assert!(body.conserved().is_empty());
 /// # Ok::<(), polhode::Error>(())
 /// ```
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 #[must_use]
 pub struct Orbit {
     speed: Speed,
@@ -41,12 +43,14 @@ pub struct Orbit {
     plane: Option<Quat<Dd>>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Speed {
     /// The mean motion on a circle or an ellipse, rad/s.
     Mean(f64),
     /// √(GM/q³) with the least distance q, rad/s.
     AtPassage(Dd),
+    /// Where it is at which time.
+    Table(Arc<Table>),
 }
 
 /// 3 GM/r³ in 1/s², and the direction to the body in space.
@@ -95,7 +99,47 @@ impl Orbit {
         Ok(Orbit { speed: Speed::AtPassage(rate), eccentricity, passage: 0.0, plane: None })
     }
 
-    /// The same orbit with the least distance at the time `time`, s.
+    /// An orbit about a mass with the gravitational parameter `gm` (m³/s²) by its places (m, axes of space) at ascending times (s), such as an
+    /// ephemeris tells: at least eight rows, between which a polynomial through the eight nearest is taken. The gravity gradient ends with the
+    /// table: a run that goes further is refused.
+    ///
+    /// # Errors
+    /// A parameter that is not positive, fewer rows than eight, times that do not ascend, places that are not finite or at distance
+    /// zero; and gaps, between whose rows the places through eight and through six rows differ by more than a thousandth of the distance.
+    ///
+    /// ```
+    /// use polhode::body::Orbit;
+    /// let times: Vec<f64> = (0..20).map(|k| 300.0 * f64::from(k)).collect();
+    /// let places: Vec<[f64; 3]> = times.iter().map(|t| [7e6, 7.5e3 * t, 0.0]).collect();
+    /// let straight = Orbit::table(3.986e14, &times, &places)?;
+    /// assert!(straight.interpolation_error().is_some_and(|error| error < 1e-15));
+    /// # Ok::<(), polhode::body::ForceError>(())
+    /// ```
+    pub fn table(gm: f64, times: &[f64], places: &[[f64; 3]]) -> Result<Self, ForceError> {
+        let table = Arc::new(Table::new(gm, times, places)?);
+        Ok(Orbit { speed: Speed::Table(table), eccentricity: 0.0, passage: 0.0, plane: None })
+    }
+
+    /// Of a [table](Self::table), the largest difference between the places through eight rows and through six, over the distance: the error
+    /// of the latter, and more than that of the places that are taken.
+    #[must_use]
+    pub fn interpolation_error(&self) -> Option<f64> {
+        match &self.speed {
+            Speed::Table(table) => Some(table.error()),
+            _ => None,
+        }
+    }
+
+    /// Of a [table](Self::table), its first and its last time, s.
+    #[must_use]
+    pub fn span(&self) -> Option<[f64; 2]> {
+        match &self.speed {
+            Speed::Table(table) => Some(table.span().map(|time| time + self.passage)),
+            _ => None,
+        }
+    }
+
+    /// The same orbit with the least distance at the time `time`, s; of a table that much later.
     ///
     /// # Errors
     /// A time that is not finite.
@@ -125,9 +169,10 @@ impl Orbit {
 
     /// Of a circle in the x–y plane of space, the rate at which it is run through, rad/s.
     pub(super) fn steady_rate(&self) -> Option<f64> {
-        let rate = match self.speed {
-            Speed::Mean(rate) => rate,
+        let rate = match &self.speed {
+            Speed::Mean(rate) => *rate,
             Speed::AtPassage(rate) => rate.hi(),
+            Speed::Table(_) => return None,
         };
         (self.eccentricity == 0.0 && self.plane.is_none()).then_some(rate)
     }
@@ -135,11 +180,12 @@ impl Orbit {
     pub(super) fn at<S: Real>(&self, at: Time) -> Place<S> {
         // the bits of a time from which nothing is taken stay
         let at = if self.passage == 0.0 { at } else { at.later(Dd::of(-self.passage)) };
-        let (strength, [x, y]) = match self.speed {
-            Speed::Mean(rate) => self.by_mean_motion(rate, at),
-            Speed::AtPassage(rate) => self.by_universal_variable(rate, at),
+        let in_plane = |(strength, [x, y]): (S, [S; 2])| (strength, Vec3([x, y, S::of(0.0)]));
+        let (strength, direction) = match &self.speed {
+            Speed::Mean(rate) => in_plane(self.by_mean_motion(*rate, at)),
+            Speed::AtPassage(rate) => in_plane(self.by_universal_variable(*rate, at)),
+            Speed::Table(table) => table.at(at),
         };
-        let direction = Vec3([x, y, S::of(0.0)]);
         let direction = match self.plane {
             None => direction,
             Some(Quat { w, v }) => Quat::new(S::from_dd(w), Vec3(v.0.map(S::from_dd))).rotate(direction),

@@ -35,6 +35,7 @@ pub mod members;
 pub mod mesh;
 pub mod npy;
 pub mod numbers;
+pub mod orbit;
 mod read;
 pub mod record;
 pub mod robots;

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use crate::error::{Error, Rule, TableError};
+use crate::error::{Error, Rule};
 use crate::numbers::number;
-use crate::table::{Delimiter, Lines, plain, uncommented, width_rule};
+use crate::table::{Delimiter, Lines, plain, width_rule};
 
 /// Columns by what they are together; each group is stated in whole or not at all.
 const GROUPS: [(&str, &[&str]); 4] = [
@@ -64,7 +64,7 @@ pub fn read(
     let place = |line: u64| format!("{}:{line}", path.display());
     let mut names: Vec<String> = Vec::new();
     let mut delimiter = Delimiter::Mark(',');
-    if next(&mut lines)? {
+    if lines.advance_to_row()? {
         delimiter = Delimiter::of(&lines.text);
         names = delimiter.names(&lines.text);
     }
@@ -73,7 +73,7 @@ pub fn read(
     header(&columns).map_err(|(rule, remedy)| Error::input(&place(named_at), "", rule, remedy))?;
     let (mut cells, mut numbers) = (Vec::new(), Vec::with_capacity(columns.width));
     let mut is_empty = true;
-    while next(&mut lines)? {
+    while lines.advance_to_row()? {
         let (line, before) = (lines.text.trim(), cells.len());
         delimiter.split(line, &mut cells);
         if cells.len() == names.len() + 1
@@ -107,16 +107,6 @@ pub fn read(
         return Err(Error::Input(format!("{}: no rows; give a member a row", place(named_at))));
     }
     Ok(columns)
-}
-
-/// Goes to the next line that is neither empty nor a comment; `false` behind the last.
-fn next(lines: &mut Lines<'_>) -> Result<bool, TableError> {
-    while lines.advance()? {
-        if !lines.text.trim().is_empty() && uncommented(lines.text.trim()).is_none() {
-            return Ok(true);
-        }
-    }
-    Ok(false)
 }
 
 impl Columns {

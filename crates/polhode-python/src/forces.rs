@@ -101,9 +101,34 @@ pub(crate) fn gravity_gradient_on_conic(
     plane: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Force> {
     let angles = plane.map(|angles| vector("plane", angles)).transpose()?;
-    let orbit = Orbit::conic(gm, periapsis, eccentricity)
-        .and_then(|orbit| orbit.passing_at(time))
-        .and_then(|orbit| angles.map_or(Ok(orbit), |angles| orbit.in_plane(angles.into())));
+    let orbit = Orbit::conic(gm, periapsis, eccentricity).and_then(|orbit| orbit.passing_at(time)).and_then(
+        |orbit| match angles {
+            None => Ok(orbit),
+            Some(angles) => orbit.in_plane(angles.into()),
+        },
+    );
+    orbit.map(|orbit| body::Force::gravity_gradient_on(orbit).into()).map_err(refused)
+}
+
+/// The gravity gradient on an orbit by its places (n, 3), m, axes of space, at the ascending times `t`, s, about a mass with the
+/// gravitational parameter gm, m^3/s^2: a polynomial through the eight nearest rows, of which there are eight at least. A run that leaves
+/// the table is refused.
+///
+/// >>> import numpy
+/// >>> from polhode import Body, gravity_gradient_on_table
+/// >>> t = numpy.linspace(0, 600, 21)
+/// >>> places = 7e6 * numpy.stack([numpy.cos(1e-3 * t), numpy.sin(1e-3 * t), 0 * t], axis=1)
+/// >>> Body([0.61, 0.96, 1], [gravity_gradient_on_table(3.986e14, t, places)])
+/// Body(principal moments 0.61, 0.96, 1; forces: gravity gradient)
+#[pyfunction]
+pub(crate) fn gravity_gradient_on_table(
+    gm: f64,
+    t: &Bound<'_, PyAny>,
+    places: &Bound<'_, PyAny>,
+) -> PyResult<Force> {
+    let times = Numbers::of("t", t)?.list()?;
+    let places = Numbers::of("places", places)?.rows::<3>(Some(times.len()))?;
+    let orbit = Orbit::table(gm, &times, &places);
     orbit.map(|orbit| body::Force::gravity_gradient_on(orbit).into()).map_err(refused)
 }
 

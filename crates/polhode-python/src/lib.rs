@@ -58,7 +58,8 @@ mod _polhode {
     use super::fits::fitted;
     #[pymodule_export]
     use super::forces::{
-        Force, drag, force, gravity, gravity_gradient, gravity_gradient_on_conic, torque_body, torque_space,
+        Force, drag, force, gravity, gravity_gradient, gravity_gradient_on_conic, gravity_gradient_on_table,
+        torque_body, torque_space,
     };
     #[pymodule_export]
     use super::links::{Link, Links, diagnose};

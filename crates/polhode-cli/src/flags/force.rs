@@ -1,10 +1,13 @@
 //! The flags that name what acts on a body.
 
+use std::path::{Path, PathBuf};
+
 use clap::Args;
 use nalgebra::Vector3;
 use polhode::body::{Body, Force, ForceError, Orbit};
-use polhode_files::error::Error;
-use polhode_files::numbers::{list, numbers};
+use polhode_files::error::{Error, tell};
+use polhode_files::numbers::{list, numbers, positive};
+use polhode_files::text::visible;
 
 use super::start::{angle_unit, with_unit};
 
@@ -40,6 +43,13 @@ pub(crate) struct ForceArguments {
         allow_hyphen_values = true
     )]
     orbit_plane: Option<[f64; 3]>,
+    /// Gravity gradient on an orbit by a table of places, between which a polynomial is taken: a file with the columns t (s, or with a unit), x, y,
+    /// z (axes of space), lengths in the unit of --gm; eight rows at least
+    #[arg(long, value_name = "FILE", requires = "gm", conflicts_with_all = ["gravity_gradient", "orbit", "orbit_plane"])]
+    orbit_table: Option<PathBuf>,
+    /// GM of the mass that --orbit-table is about, m^3/s^2
+    #[arg(long, value_name = "GM", value_parser = positive, allow_hyphen_values = true, requires = "orbit_table")]
+    gm: Option<f64>,
     /// Constant torque in body axes, N m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     torque_body: Option<[f64; 3]>,
@@ -89,13 +99,33 @@ pub(crate) fn plane(text: &str) -> Result<[f64; 3], String> {
     angles.try_into().map_err(|_| format!("{count} given, 3 needed; separate them by commas"))
 }
 
+/// The orbit in a file, with how well places between its rows are known.
+pub(crate) fn table(file: &Path, gm: f64) -> Result<Orbit, Error> {
+    let (times, places) = polhode_files::orbit::read(file)?;
+    let name = file.display().to_string();
+    let name = visible(&name);
+    let orbit =
+        Orbit::table(gm, &times, &places).map_err(|error| Error::Input(format!("{name}: {error}")))?;
+    if let (Some(error), Some([first, last])) = (orbit.interpolation_error(), orbit.span()) {
+        tell(
+            "note",
+            &format!(
+                "{name}: from {first:?} s to {last:?} s; places between rows are off by {error:.0e} of the distance at most"
+            ),
+        );
+    }
+    Ok(orbit)
+}
+
 /// Forces besides weight.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Forces {
     /// Mean motion, rad/s, and eccentricity.
     pub(crate) gravity_gradient: Option<[f64; 2]>,
     /// GM, m^3/s^2, least distance, m, eccentricity, and the time of the least distance, s.
     pub(crate) orbit: Option<[f64; 4]>,
+    /// By a table of places.
+    pub(crate) table: Option<Orbit>,
     /// Of either orbit: node, inclination and argument of the periapsis, rad.
     pub(crate) orbit_plane: Option<[f64; 3]>,
     /// N m, body axes.
@@ -119,8 +149,11 @@ impl Forces {
             let orbit = Orbit::conic(gm, periapsis, eccentricity).and_then(|orbit| orbit.passing_at(time));
             orbit.map_err(|error| ("orbit", error))
         });
-        if let Some(orbit) = ellipse.or(conic).transpose()? {
-            let turned = self.orbit_plane.map_or(Ok(orbit), |angles| orbit.in_plane(angles));
+        if let Some(orbit) = ellipse.or(conic).or(self.table.clone().map(Ok)).transpose()? {
+            let turned = match self.orbit_plane {
+                None => Ok(orbit),
+                Some(angles) => orbit.in_plane(angles),
+            };
             body = body.with(Force::gravity_gradient_on(turned.map_err(|error| ("orbit-plane", error))?));
         }
         for (name, torque, make) in [
@@ -149,6 +182,7 @@ impl ForceArguments {
             || self.gravity_gradient.is_some()
             || self.orbit.is_some()
             || self.orbit_plane.is_some()
+            || self.orbit_table.is_some()
             || self.torque_body.is_some()
             || self.torque_space.is_some()
             || self.drag.is_some()
@@ -161,10 +195,15 @@ impl ForceArguments {
                 "--orbit-plane: {NO_ORBIT}; add --orbit or --gravity-gradient"
             )));
         }
+        let table = match (&self.orbit_table, self.gm) {
+            (Some(file), Some(gm)) => Some(table(file, gm)?),
+            _ => None,
+        };
         let pair = |typed: Option<OneOrTwo>| typed.map(|OneOrTwo(pair)| pair);
         let forces = Forces {
             gravity_gradient: pair(self.gravity_gradient),
             orbit: self.orbit.map(|ThreeOrFour(numbers)| numbers),
+            table,
             orbit_plane: self.orbit_plane,
             torque_body: self.torque_body,
             torque_space: self.torque_space,

@@ -71,7 +71,9 @@ pub(crate) struct Propagate {
     /// Most turns between two attitudes, by the mean spin 2E/|L| [default: 1]
     #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true, requires = "through", help_heading = "Through attitudes")]
     turns: Option<f64>,
-    /// Method: exact, or BASE[:ARGUMENT][@SCHEME][+phase] as in kick-drift@srkn-6b, or dissipating:LOSS[@SCHEME], a body with inner friction; see `polhode methods` and `polhode methods --schemes`
+    /// Method: exact, or BASE[:ARGUMENT][@SCHEME][+phase] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
+    ///
+    /// dissipating:LOSS[@SCHEME] moves a body with inner friction, which loses energy and keeps its angular momentum
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Method")]
     method: String,
     /// Step of a method with fixed steps, s; exact, taylor, dop853 and tsit5 need none

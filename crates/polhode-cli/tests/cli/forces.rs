@@ -1,6 +1,6 @@
 //! What acts on a body, by its flags: rows, golden refusals, and the column of Jacobi's constant.
 
-use crate::harness::{golden, output, run};
+use crate::harness::{Scratch, golden, output, polhode, run, words};
 
 const BODY: &str = "propagate --moments 1,2,2.5 --omega 0.3,1,-0.4";
 
@@ -98,4 +98,57 @@ fn every_unusable_force_or_scheme_is_refused_with_value_rule_and_remedy() {
         told += &format!("{flags}\n  {}\n", answer.err.trim_end().replace('\n', "\n  "));
     }
     golden("force-refusals.txt", &told);
+}
+
+#[test]
+fn an_orbit_is_read_from_a_table() {
+    let scratch = Scratch::new("orbit-table");
+    // a circle of radius 2 about a mass with GM = 2
+    let rate = 0.5;
+    let row = |k: u32| {
+        let (sin, cos) = libm::sincos(rate * f64::from(k) * 0.25);
+        format!("{:?},{:?},{:?},0\n", 0.25 * f64::from(k), 2.0 * cos, 2.0 * sin)
+    };
+    let rows: String = (0..=80).map(row).collect();
+    scratch.file("circle.csv", format!("# places of an ephemeris\nt,x,y,z\n{rows}"));
+    let motion =
+        "propagate --moments 1,2,2.5 --omega 0.3,1,-0.4 --method rk8 --step 0.0625 --times 20 --fields q";
+    let of = |flags: &str| {
+        let answer = polhode(&words(&format!("{motion} {flags}")), &scratch.0);
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        let row = answer.out.lines().nth(1).unwrap().to_owned();
+        (row.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>(), answer.err)
+    };
+    let (table, note) = of("--orbit-table circle.csv --gm 2");
+    let (conic, _) = of("--orbit 2,2,0");
+    for (a, b) in table.iter().zip(&conic) {
+        assert!((a - b).abs() < 1e-8, "{table:?} {conic:?}");
+    }
+    assert!(note.contains("circle.csv: from 0.0 s to 20.0 s") && note.contains("of the distance"), "{note}");
+    let mut told = String::new();
+    scratch.file("few.csv", "t,x,y,z\n0,1,0,0\n1,1,1,0\n");
+    scratch.file("named.csv", "time,x,y,z\n0,1,0,0\n");
+    scratch.file("ragged.csv", "t,x,y,z\n0,1,0\n");
+    scratch.file("wrong.csv", "t,x,y,z\n0,1,0,up\n");
+    for flags in [
+        "--orbit-table circle.csv",
+        "--gm 2",
+        "--orbit-table circle.csv --gm -2",
+        "--orbit-table circle.csv --gm 2 --orbit 2,2,0",
+        "--orbit-table absent.csv --gm 2",
+        "--orbit-table few.csv --gm 2",
+        "--orbit-table named.csv --gm 2",
+        "--orbit-table ragged.csv --gm 2",
+        "--orbit-table wrong.csv --gm 2",
+    ] {
+        let answer = polhode(&words(&format!("{motion} {flags}")), &scratch.0);
+        assert_eq!((answer.code, answer.out.as_str()), (2, ""), "{flags}: {}", answer.err);
+        told += &format!("$ polhode propagate ... {flags}\n{}\n", answer.err);
+    }
+    golden("orbit-table.txt", &told);
+    // beyond the table there is no force
+    let late = motion.replace("--times 20", "--times 25");
+    let answer = polhode(&words(&format!("{late} --orbit-table circle.csv --gm 2")), &scratch.0);
+    assert_eq!(answer.code, 1, "{}", answer.err);
+    assert!(answer.err.contains("gravity gradient"), "{}", answer.err);
 }

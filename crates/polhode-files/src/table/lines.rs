@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use super::array::{ArrayText, MAGIC};
+use super::cells::uncommented;
 use crate::error::{Rule, TableError};
 use crate::inputs;
 use crate::text::visible;
@@ -39,6 +40,16 @@ pub(crate) struct Lines<'t> {
 }
 
 impl<'t> Lines<'t> {
+    /// Goes to the next line that is neither empty nor a comment; `false` behind the last.
+    pub(crate) fn advance_to_row(&mut self) -> Result<bool, TableError> {
+        while self.advance()? {
+            if !self.text.trim().is_empty() && uncommented(self.text.trim()).is_none() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
     /// Of the file at `path`, or of standard input where that is `-`.
     pub(crate) fn open(path: &Path) -> Result<Lines<'static>, TableError> {
         let (name, mut reader): (String, Box<dyn BufRead>) = if path.as_os_str() == "-" {

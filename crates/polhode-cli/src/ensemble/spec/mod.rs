@@ -58,7 +58,7 @@ enum Source {
 }
 
 /// What acts on every member.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Acting {
     weight_moment: [f64; 3],
     forces: Forces,
@@ -201,7 +201,7 @@ impl Spec {
     }
 
     pub(super) fn acting(&self) -> Acting {
-        self.acting
+        self.acting.clone()
     }
 
     /// Bytes that the members take before any of them moves.

@@ -14,7 +14,7 @@ use polhode_files::toml_file::Section;
 
 use super::{Acting, elements};
 use crate::flags::body::{Described, described};
-use crate::flags::force::{Forces, NO_ORBIT, conic, plane};
+use crate::flags::force::{Forces, NO_ORBIT, conic, plane, table};
 use crate::flags::start::{Factor, angle_unit, rate_unit};
 
 /// What `[body]`, `[start]` and `[force]` say.
@@ -179,7 +179,17 @@ fn inertia(body: &Section<'_>, key: &str) -> Result<Described, Error> {
 fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
     force.only(
         "[force]",
-        &["weight_moment", "gravity_gradient", "orbit", "orbit_plane", "torque_body", "torque_space", "drag"],
+        &[
+            "weight_moment",
+            "gravity_gradient",
+            "orbit",
+            "orbit_plane",
+            "orbit_table",
+            "gm",
+            "torque_body",
+            "torque_space",
+            "drag",
+        ],
     )?;
     let one_or_two = |key: &str| -> Result<Option<[f64; 2]>, Error> {
         match force.list(key)?.as_deref() {
@@ -199,10 +209,24 @@ fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
             None => None,
             Some(angles) => Some(plane(angles).map_err(|error| force.at("orbit_plane", &error))?),
         },
+        table: match (force.text("orbit_table")?, force.positive("gm")?) {
+            (None, None) => None,
+            (Some(name), Some(gm)) => {
+                Some(table(&force.file.path.parent().unwrap_or(Path::new("")).join(name), gm)?)
+            }
+            (Some(_), None) => return Err(force.at("orbit_table", "needs gm, of the mass that it is about")),
+            (None, Some(_)) => return Err(force.at("gm", "is that of an orbit_table; give one")),
+        },
         torque_body: force.numbers("torque_body")?,
         torque_space: force.numbers("torque_space")?,
         drag: one_or_two("drag")?,
     };
+    if forces.table.is_some()
+        && let Some(key) =
+            ["gravity_gradient", "orbit", "orbit_plane"].into_iter().find(|key| force.value(key).is_some())
+    {
+        return Err(force.at(key, "given beside orbit_table; leave one of them out"));
+    }
     match (&forces.gravity_gradient, &forces.orbit, &forces.orbit_plane) {
         (Some(_), Some(_), _) => {
             return Err(force.at("orbit", "a body has one orbit, and gravity_gradient gives another"));
