@@ -172,6 +172,11 @@ fn tumblers() -> impl Iterator<Item = Entry> {
         .with_pole(degrees([250.0, -75.0]))
         .with_angles(degrees([152.0, 14.0]));
     let halley = TumblingElements::new(Mode::LongAxis, [3.69 * DAY, 7.1 * DAY]);
+    const MINUTE: f64 = 60.0;
+    // of a uniform ellipsoid of 14.9 by 8.0 by 6.2 m, over the largest
+    let [a, b, c] = [14.9 * 14.9, 8.0 * 8.0, 6.2 * 6.2];
+    let tc4_moments = [(b + c) / (a + b), (a + c) / (a + b), 1.0];
+    let tc4 = TumblingElements::new(Mode::LongAxis, [12.25 * MINUTE, 8.47 * MINUTE]);
     let apophis_source = "Pravec et al., Icarus 233 (2014) 48: pole 250, -75, phases 152, 14 degrees, light time taken off; periods 27.38 and 263 h";
     let listed = [
         (
@@ -185,6 +190,14 @@ fn tumblers() -> impl Iterator<Item = Entry> {
                 epoch: Some("2456284.676388 UTC"),
                 source: apophis_source,
             }),
+        ),
+        (
+            "2012-tc4",
+            "asteroid 2012 TC4, tumbling in long-axis mode; ratios of moments, pole and phases unknown",
+            "Urakawa et al., arXiv:1903.05687: precession 12.25 and rotation 8.47 min, axes 14.9, 8.0 and 6.2 m; as an ellipsoid of uniform density",
+            tc4_moments,
+            tc4,
+            None,
         ),
         (
             "halley",
@@ -486,6 +499,10 @@ mod tests {
         assert!((apophis.character().unwrap().spin / momentum - 1.024).abs() < 0.013);
         let [longitude, latitude] = elements.pole.map(f64::to_degrees);
         assert!((longitude.rem_euclid(360.0) - 250.0).abs() < 1e-9 && (latitude + 75.0).abs() < 1e-9);
+        let tc4 = motion("2012-tc4").tumbling().unwrap();
+        assert_eq!(tc4.mode, Mode::LongAxis);
+        assert!((tc4.precession_period / 60.0 - 12.25).abs() < 1e-6);
+        assert!((tc4.rotation_period / 60.0 - 8.47).abs() < 1e-6);
         let halley = motion("halley");
         let [least, most] = halley.tilt_range().unwrap().map(f64::to_degrees);
         assert!((least - 66.0).abs() < 0.5 && (most - 66.0).abs() < 0.5, "{least} {most}");

@@ -20,7 +20,7 @@ use crate::num::Precise;
 /// use polhode::{Body, Inertia, Run};
 /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
 /// let start = body.state(Default::default(), [0.4, 1.0, 0.8].into())?;
-/// let method = Splitting::of_flows(Dissipating::new(1e-3)?, STRANG)?;
+/// let method = Splitting::of_flows(Dissipating::new(1e-2)?, STRANG)?;
 /// let end = Run::new(&method, &body, &start, 0.05)?.advance_to(40_000)?;
 /// assert!(end.worst.of(Conserved::Momentum).is_some_and(|error| error < 1e-14));
 /// let omega = end.omega_body; // about the third axis now

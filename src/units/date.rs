@@ -90,7 +90,12 @@ impl Date {
             }
             _ => {}
         }
-        Ok(((self.instant - other.instant) * DAY).to_f64())
+        // seconds of TDB where both are of it, whose length swings by 3e-10 with the year
+        let reading = |date: &Date| match (self.scale, other.scale) {
+            (Some(TimeScale::Tdb), Some(TimeScale::Tdb)) => TimeScale::Tdb.of_tai(date.instant),
+            _ => date.instant,
+        };
+        Ok(((reading(self) - reading(other)) * DAY).to_f64())
     }
 
     /// The time scale that was written behind it.

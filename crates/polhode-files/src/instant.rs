@@ -144,7 +144,8 @@ mod tests {
             let found = seconds("2451545 TT", utc).unwrap();
             assert!((found + 64.184).abs() < 1e-9, "{found}");
         }
-        assert_eq!(seconds("2451545.1", epoch("2451545", Some(TimeScale::Tdb))), Ok(8640.0));
+        let found = seconds("2451545.1", epoch("2451545", Some(TimeScale::Tdb))).unwrap();
+        assert!((found - 8640.0).abs() < 1e-9, "{found}");
         assert!(is_moment("2000-01-01").is_ok() && is_moment("12h").is_ok() && is_moment("2e").is_err());
     }
 }
