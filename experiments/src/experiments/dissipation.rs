@@ -4,7 +4,8 @@
 //! # Averaged law
 //! The energy of free motion, averaged over a period of the momentum, falls at the rate dE/dt = −δ ⟨|m × I⁻¹m|²⟩/|m|. The
 //! mean is taken along the exact motion, by the trapezoidal rule over a whole period, which converges faster than any power; E then follows by
-//! classical Runge–Kutta steps. What is left out is of second order in δ.
+//! classical Runge–Kutta steps. Within a period the energy falls now faster, now slower than its mean, so that the law is followed to the
+//! share of a period in the damping time.
 
 use polhode::body::{Body, Clock, Point};
 use polhode::catalogue;
@@ -46,7 +47,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     Ok(report)
 }
 
-/// A body with |m| = 1 whose momentum leans from the axis of the largest moment by `lean` rad, half of that way towards the middle axis.
+/// A body with |m| = 1 whose momentum leans from the axis of the largest moment by `lean` rad, midway between the other two axes.
 fn start(name: &str, lean: f64) -> Result<(Body, Point<Dd>), Error> {
     let named = catalogue::body(name).ok_or_else(|| unexpected("a body of the catalogue is missing"))?;
     let moments = named.inertia.principal_moments();
@@ -65,7 +66,7 @@ fn method(loss: f64, scheme: Scheme) -> Result<Method, Error> {
     Splitting::of_flows(parts, scheme).map_err(unexpected)
 }
 
-/// Attitude errors against steps a hundredth as long.
+/// Attitude errors against much shorter steps of the scheme of order 4.
 fn orders(context: &Context, report: &mut Report) -> Result<(), Error> {
     let mut table = Table::new(
         "orders",
