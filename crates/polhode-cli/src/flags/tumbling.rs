@@ -111,6 +111,15 @@ impl From<ModeArgument> for Mode {
     }
 }
 
+/// Refuses what is no latitude, as degrees are that were taken for rad.
+pub(crate) fn latitude([_, latitude]: [f64; 2], unit: f64) -> Result<(), String> {
+    if (latitude * unit).abs() <= core::f64::consts::FRAC_PI_2 {
+        return Ok(());
+    }
+    let remedy = if unit == 1.0 { "; degrees need the unit of angles deg" } else { "" };
+    Err(format!("the latitude {latitude:?} is beyond a quarter of a turn{remedy}"))
+}
+
 impl TumblingArguments {
     pub(crate) fn is_given(&self) -> bool {
         self.periods.is_some()
@@ -122,6 +131,9 @@ impl TumblingArguments {
         let Some(mode) = self.mode else {
             return Err(Error::input("--mode", "", "missing beside --periods", "give lam or sam"));
         };
+        if let Some(pole) = self.pole {
+            latitude(pole, angle_unit).map_err(|error| Error::Input(format!("--pole: {error}")))?;
+        }
         let angles = |typed: Option<[f64; 2]>| typed.map(|angles| angles.map(|angle| angle * angle_unit));
         let elements = periods.elements(mode.into()).map_err(|error| self.refused(&error))?;
         let elements = elements.with_reversed(self.reversed);

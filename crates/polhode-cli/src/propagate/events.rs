@@ -15,7 +15,7 @@ use crate::flags::event::spacing;
 impl Propagate {
     /// Writes a row of each event, by time.
     pub(super) fn look_for_events(&self, body: &Body) -> Result<(), Error> {
-        let columns = Columns::of_states(&self.fields, self.asked(), body)?;
+        let columns = Columns::of_states(&self.fields, self.asked()?, body)?;
         let start = self.motion.start(body)?;
         let [from, to] = self.times.span()?;
         if !(to > from && (to - from).is_finite()) {

@@ -23,6 +23,7 @@ use crate::cost;
 use crate::flags::event::{TypedEvent, event};
 use crate::flags::motion::MotionArguments;
 use crate::flags::times::{OutputTimes, TimeArguments};
+use crate::flags::tumbling::latitude;
 use crate::methods::{Unusable, adaptive, at_tolerance, moving, not_taken, unknown};
 use columns::{Asked, Columns, Reading};
 
@@ -105,7 +106,7 @@ impl Propagate {
         if !self.events.is_empty() {
             return self.look_for_events(&body);
         }
-        let columns = Columns::chosen(&self.fields, self.asked(), &body)?;
+        let columns = Columns::chosen(&self.fields, self.asked()?, &body)?;
         let start = self.motion.start(&body)?;
         let times = self.times.output()?;
         self.compare_epoch();
@@ -117,17 +118,17 @@ impl Propagate {
     }
 
     /// What columns are worked out by beside the motion.
-    fn asked(&self) -> Asked {
+    fn asked(&self) -> Result<Asked, Error> {
         let unit = self.motion.start.angle_unit();
+        if let Some(observer) = self.observer {
+            latitude(observer, unit).map_err(|error| Error::Input(format!("--observer: {error}")))?;
+        }
         let observer = self.observer.map(|angles| {
             let [(sin, cos), (up, across)] = angles.map(|angle| Real::sin_cos(angle * unit));
             Vec3([cos * across, sin * across, up])
         });
-        Asked {
-            sequence: self.motion.start.euler,
-            observer,
-            epoch: self.times.epoch().map(|epoch| epoch.date),
-        }
+        let epoch = self.times.epoch().map(|epoch| epoch.date);
+        Ok(Asked { sequence: self.motion.start.euler, observer, epoch })
     }
 
     fn compare_epoch(&self) {

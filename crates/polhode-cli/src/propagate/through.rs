@@ -26,7 +26,7 @@ impl Propagate {
                 "--through: the motion between two attitudes is known for free bodies; leave out what acts on the body".into(),
             ));
         }
-        let columns = Columns::of_states(&self.fields, self.asked(), body)?;
+        let columns = Columns::of_states(&self.fields, self.asked()?, body)?;
         let attitudes = read(file)?;
         let turns = self.turns.unwrap_or(1.0);
         let refused = |error: ThroughError| {

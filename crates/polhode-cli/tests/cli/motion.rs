@@ -78,6 +78,8 @@ fn periods_without_a_motion_are_refused() {
     refused(&of("--periods 1h,0h --mode sam"), &["--periods", "not positive"]);
     refused(&of("--periods 1h,10h"), &["--mode"]);
     refused(&of("--periods 1h,10h --mode sam --omega 1,0,0"), &["--periods", "--omega"]);
+    refused(&of("--periods 1h,10h --mode sam --pole 250,-75"), &["--pole: the latitude -75.0", "deg"]);
+    refused(&of("--periods 1h,10h --mode sam --pole 10,95 --angle-unit deg"), &["--pole: the latitude 95.0"]);
     refused(&of("--periods 1h,10h --mode tumbling"), &["--mode", "lam, sam"]);
     refused("motion --moments 1,1,2 --periods 1h,10h --mode lam", &["--mode: no long-axis motion"]);
     refused(&of(""), &["--omega: missing", "--periods"]);

@@ -228,6 +228,7 @@ fn rows_have_dates_and_where_the_observer_stands() {
         head.lines().next().unwrap().ends_with("attitude_error,observer_longitude,observer_latitude"),
         "{head}"
     );
+    refused("propagate --body apophis --times 0 --observer 210,5", &["--observer: the latitude 5.0", "deg"]);
     refused("propagate --body apophis --times 0 --fields jd", &["--fields", "jd needs --epoch"]);
     refused(
         "propagate --body apophis --times 0 --fields observer",

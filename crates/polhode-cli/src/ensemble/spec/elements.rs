@@ -9,7 +9,7 @@ use polhode_files::toml_file::Section;
 use toml::de::DeValue;
 
 use super::nominal::Units;
-use crate::flags::tumbling::{ModeArgument, Periods, periods};
+use crate::flags::tumbling::{ModeArgument, Periods, latitude, periods};
 
 /// Keys of `[start]` and of a solution.
 pub(super) const START: [&str; 5] = ["periods", "mode", "pole", "phases", "reversed"];
@@ -68,6 +68,9 @@ fn rest(table: &Section<'_>, units: Units, elements: TumblingElements) -> Result
         let typed = table.numbers::<2>(key)?;
         Ok(typed.map_or(before, |typed| typed.map(|angle| angle * units.angle)))
     };
+    if let Some(pole) = table.numbers::<2>("pole")? {
+        latitude(pole, units.angle).map_err(|error| table.at("pole", &error))?;
+    }
     let reversed = match table.value("reversed").map(|value| value.get_ref()) {
         None => elements.is_reversed,
         Some(DeValue::Boolean(reversed)) => *reversed,

@@ -21,6 +21,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::checksum::Checksum;
 use crate::flags::force::Forces;
+use crate::flags::tumbling::latitude;
 use candidates::Candidates;
 pub(super) use event::Watched;
 use nominal::Nominal;
@@ -229,9 +230,11 @@ fn source(top: &Section<'_>, spread: &Section<'_>, nominal: &Nominal) -> Result<
 fn directions(observer: &Section<'_>, times: usize, unit: f64) -> Result<Vec<[f64; 2]>, Error> {
     observer.only("[observer]", &["direction", "directions"])?;
     let in_radians = |angles: [f64; 2]| angles.map(|angle| angle * unit);
+    let checked =
+        |key: &str, angles: [f64; 2]| latitude(angles, unit).map_err(|error| observer.at(key, &error));
     match (observer.numbers::<2>("direction")?, observer.value("directions")) {
         (None, None) => Ok(Vec::new()),
-        (Some(one), None) => Ok(vec![in_radians(one)]),
+        (Some(one), None) => checked("direction", one).map(|()| vec![in_radians(one)]),
         (Some(_), Some(_)) => Err(observer.at("directions", "given beside direction; leave one of them out")),
         (None, Some(_)) => {
             let pairs = observer.pairs("directions")?;
@@ -239,6 +242,7 @@ fn directions(observer: &Section<'_>, times: usize, unit: f64) -> Result<Vec<[f6
                 let rule = format!("{} given for {times} times; give one for each", pairs.len());
                 return Err(observer.at("directions", &rule));
             }
+            pairs.iter().try_for_each(|pair| checked("directions", *pair))?;
             Ok(pairs.into_iter().map(in_radians).collect())
         }
     }

@@ -154,6 +154,8 @@ fn elements_are_refused_with_line_and_law() {
         ("a date that is none", "2012-12-23T04:14 UTC\"\n[spread]", "2012-13-23 UTC\"\n[spread]"),
         ("a date without a scale", "\"2013-01-05 UTC\"", "\"2013-01-05\""),
         ("a date without an epoch", "epoch = \"2012-12-23T04:14 UTC\"\n", ""),
+        ("degrees that would be rad", "angle_unit = \"deg\"\n", ""),
+        ("an observer beyond the pole", "direction = [30, 5]", "direction = [30, 95]"),
         ("directions that are too few", "direction = [30, 5]", "directions = [[30, 5]]"),
         ("a direction twice", "direction = [30, 5]", "direction = [30, 5]\ndirections = [[30, 5]]"),
         (
