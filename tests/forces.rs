@@ -179,7 +179,7 @@ struct Fixture {
 }
 
 fn fixtures() -> Vec<Fixture> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/forces/reference.csv");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/forces/reference.csv");
     let text = std::fs::read_to_string(path).unwrap();
     let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
     rows.map(|line| {

@@ -770,7 +770,8 @@ fn each_method_is_found_by_its_name_among_the_files() {
         let stem = file.strip_prefix("src/method/").unwrap().trim_end_matches(".rs").trim_end_matches("/mod");
         let variant = base.rsplit_once('-').map_or(base, |(plain, _)| plain);
         assert!([base, variant].contains(&&*stem.replace('_', "-")), "{name} in {file}");
-        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap();
+        let text =
+            std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file)).unwrap();
         assert!(
             text.contains(&format!("\"{base}")) || text.contains(&format!("`{base}`")),
             "{name} in {file}"

@@ -1,5 +1,6 @@
 //! The library as its users call it: one program, so that it is linked once. Every file beside this one is named here.
 
+#![cfg(test)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // what clippy.toml allows inside #[test], for the helpers too
 
 mod adaptive;

@@ -203,7 +203,7 @@ fn accuracy_tables() -> [(&'static str, String); 3] {
 #[test]
 fn measured_accuracy_is_what_the_documentation_says() {
     for (name, text) in accuracy_tables() {
-        let file = format!("{}/src/num/accuracy/{name}.md", env!("CARGO_MANIFEST_DIR"));
+        let file = format!("{}/../src/num/accuracy/{name}.md", env!("CARGO_MANIFEST_DIR"));
         let documented = std::fs::read_to_string(&file).unwrap();
         assert!(
             documented == text,
@@ -216,7 +216,8 @@ fn measured_accuracy_is_what_the_documentation_says() {
 #[ignore = "writes src/num/accuracy/*.md"]
 fn write_accuracy_tables() {
     for (name, text) in accuracy_tables() {
-        std::fs::write(format!("{}/src/num/accuracy/{name}.md", env!("CARGO_MANIFEST_DIR")), text).unwrap();
+        std::fs::write(format!("{}/../src/num/accuracy/{name}.md", env!("CARGO_MANIFEST_DIR")), text)
+            .unwrap();
     }
 }
 

@@ -272,7 +272,7 @@ fn the_numbers_of_flows_are_those_of_the_sources() {
 
 #[test]
 fn coefficients_are_those_that_the_sources_print() {
-    let path = format!("{}/tests/data/schemes/coefficients.csv", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/data/schemes/coefficients.csv", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(path).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
     let mut read = 0;

@@ -53,7 +53,7 @@ MODULES = {
     "audit": (["src/audit/**"], 50, ["library audit::units::", "polhode audit::", "library audit:: hostile::", "cli audit::"]),
     "fit": (["crates/polhode-fit/src/**"], 25, ["polhode_fit", "suite"]),
 }
-PACKAGES = {"polhode": "polhode", "library": "polhode", "cli": "polhode-cli", "polhode_fit": "polhode-fit", "suite": "polhode-fit"}
+PACKAGES = {"polhode": "polhode", "library": "polhode-tests", "cli": "polhode-cli", "polhode_fit": "polhode-fit", "suite": "polhode-fit"}
 # tests may take so many times as long as without a mutant, and this, s
 PATIENCE = (5, 60)
 
