@@ -212,7 +212,7 @@ fn closures_are_refused_and_singular_laws_end_a_run() {
             )
         );
     }
-    // √(5 − t) has no series at t = 5, and none that reaches beyond
+    // √(5 − t) has no series at t = 5, and is no number beyond, where a step may end whose last terms it does not change
     struct Fading;
     impl<S: Real> Torque<S> for Fading {
         fn torque(&self, at: Time, _: Quat<S>, _: Vec3<S>) -> Vec3<S> {
@@ -223,7 +223,7 @@ fn closures_are_refused_and_singular_laws_end_a_run() {
     for watch in [Watch::EveryStep, Watch::AtSamples, Watch::Never] {
         let error = run("taylor", &fading, 0.5).watching(watch).advance_to(100).unwrap_err();
         let RunError::Force { force, time, .. } = error else { panic!("{error}") };
-        assert!(force == "fading" && time > 4.999 && time < 5.0, "{force}, {time}");
+        assert!(force == "fading" && (time - 5.0).abs() < 1e-3, "{force}, {time}");
     }
     // |ω| has none where a body begins to turn
     let drag = body.with(Force::drag(0.0, 0.1).unwrap());
@@ -244,7 +244,7 @@ impl<S: Real> Torque<S> for Counted {
 }
 
 #[test]
-fn a_step_evaluates_a_law_as_often_as_its_order() {
+fn a_step_evaluates_a_law_once() {
     let count = Arc::new(AtomicU32::new(0));
     let (body, start) = free();
     let body = body.with(Force::torque("counted", Counted(count.clone())));
@@ -254,7 +254,6 @@ fn a_step_evaluates_a_law_as_often_as_its_order() {
         let mut step = method.prepare_f64(Clock::new(0.01), &body).unwrap();
         count.store(0, Ordering::Relaxed);
         step.steps(&mut x, 1);
-        let cost = method.claims(body.problem()).unwrap().cost;
-        assert_eq!(count.load(Ordering::Relaxed), cost.right_sides, "{name}");
+        assert_eq!(count.load(Ordering::Relaxed), 1, "{name}");
     }
 }

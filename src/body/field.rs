@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::law::Evaluated;
 use super::{Force, LinearPotential, Time};
-use crate::num::{Dd, Real, Series};
+use crate::num::{Dd, Real, Series, Tape};
 use crate::rotation::{Quat, Vec3};
 
 /// The torque of everything that acts on a body, along its principal axes, in N m divided by
@@ -23,11 +23,14 @@ pub trait Field<S: Real>: Clone + Send + Sync + 'static {
     /// The torque of all the rest.
     fn remainder(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S>;
 
-    /// The same on power series; `None` where a force cannot be evaluated on them.
+    /// The same on power series, each force a part of the [tape](crate::num::Tape); `None` where a force cannot be evaluated on them.
     #[inline]
     fn remainder_series(&self, _: Time, _: Quat<Series<S>>, _: Vec3<Series<S>>) -> Option<Vec3<Series<S>>> {
         None
     }
+
+    /// Takes note that the series of one of the forces of the rest, counted from 0, is not finite about the time `at`.
+    fn not_finite(&self, _: Time, _force: usize) {}
 
     /// The whole torque, divided by the scale.
     #[inline]
@@ -126,12 +129,11 @@ impl<S: Evaluated> Forces<S> {
         energy * S::of(1.0 / self.scale)
     }
 
-    /// The sum of what `evaluate` gives of each force, in SI units and body axes. The witness takes note where attitude and
-    /// angular velocity are at most `most`.
+    /// The sum of what `evaluate` gives of each force, in SI units and body axes.
     #[inline]
     fn sum<T: Real>(
         &self,
-        (at, most): (Time, f64),
+        at: Time,
         frame: Option<Quat<T>>,
         attitude: Quat<T>,
         omega_body: Vec3<T>,
@@ -144,17 +146,23 @@ impl<S: Evaluated> Forces<S> {
         let mut torque = Vec3::zero();
         for force in self.others.iter() {
             let one = evaluate(force, attitude, omega_body)?;
-            if let Some(witness) = &self.witness
+            if self.witness.is_some()
                 && !one.magnitude().is_finite()
-                && attitude.magnitude() <= most
-                && omega_body.magnitude() <= most
+                && attitude.magnitude() <= OUT_OF_RANGE
+                && omega_body.magnitude() <= OUT_OF_RANGE
             {
-                witness.get_or_init(|| Failure { force: force.name().into(), time: at.seconds() });
+                self.note(at, force);
             }
             torque = torque + one;
         }
         let torque = frame.map_or(torque, |frame| frame.rotate_back(torque));
         Some(torque * T::of(1.0 / self.scale))
+    }
+
+    fn note(&self, at: Time, force: &Force) {
+        if let Some(witness) = &self.witness {
+            witness.get_or_init(|| Failure { force: force.name().into(), time: at.seconds() });
+        }
     }
 }
 
@@ -167,7 +175,7 @@ impl<S: Evaluated> Field<S> for Forces<S> {
     #[inline(never)]
     fn remainder(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
         let evaluate = |force: &Force, attitude, omega| Some(S::torque(&force.law, at, attitude, omega));
-        self.sum((at, OUT_OF_RANGE), self.frame, attitude, omega_body, evaluate).unwrap_or(Vec3::zero())
+        self.sum(at, self.frame, attitude, omega_body, evaluate).unwrap_or(Vec3::zero())
     }
 
     fn remainder_series(
@@ -178,9 +186,16 @@ impl<S: Evaluated> Field<S> for Forces<S> {
     ) -> Option<Vec3<Series<S>>> {
         let frame = self.frame.map(|frame| frame.map(Series::number));
         let evaluate = |force: &Force, attitude, omega| {
-            force.series.as_ref().map(|law| S::series(law, at, attitude, omega))
+            let torque = force.series.as_ref().map(|law| S::series(law, at, attitude, omega));
+            Tape::<S>::end_part();
+            torque
         };
-        // coefficients of higher order may be of any size
-        self.sum((at, f64::MAX), frame, attitude, omega_body, evaluate)
+        self.sum(at, frame, attitude, omega_body, evaluate)
+    }
+
+    fn not_finite(&self, at: Time, force: usize) {
+        if let Some(force) = self.others.get(force) {
+            self.note(at, force);
+        }
     }
 }

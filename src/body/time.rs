@@ -21,7 +21,7 @@ impl Clock {
     /// The beginning of step `steps`.
     #[inline]
     pub fn at(&self, steps: u64) -> Time {
-        Time { clock: *self, steps, offset: Dd::ZERO, unit: 1.0 }
+        Time { clock: *self, steps, offset: Dd::ZERO }
     }
 
     /// Time since the start after `steps` steps, s, exact: a sum `t += h` would lose a second in a long enough run.
@@ -38,8 +38,6 @@ pub struct Time {
     clock: Clock,
     steps: u64,
     offset: Dd,
-    /// What the variable of a power series counts, s.
-    unit: f64,
 }
 
 impl Time {
@@ -59,9 +57,9 @@ impl Time {
         Time { offset: self.offset + duration, ..*self }
     }
 
-    /// The time `elapsed` (s) after the start, whose series count `unit` seconds.
-    pub(crate) fn at_elapsed(&self, elapsed: Dd, unit: f64) -> Self {
-        Time { steps: 0, offset: elapsed, unit, ..*self }
+    /// The time `elapsed` (s) after the start.
+    pub(crate) fn at_elapsed(&self, elapsed: Dd) -> Self {
+        Time { steps: 0, offset: elapsed, ..*self }
     }
 
     /// Time since the start, s.
@@ -79,12 +77,12 @@ impl Time {
     /// does. A law has to ask for the time in the scalar that it is evaluated in.
     #[must_use]
     pub fn seconds<S: Real>(&self) -> S {
-        S::linear(self.dd(), self.unit)
+        S::linear(self.dd(), 1.0)
     }
 
     /// `time`, s, as a series that grows with its variable from there.
     pub(super) fn counted_from<S: Real>(&self, time: Dd) -> S {
-        S::linear(time, self.unit)
+        S::linear(time, 1.0)
     }
 
     /// The angle `rate · t` (rate in rad/s), reduced to [−π, π] in double-double, so that many turns cost no digits of a
@@ -92,6 +90,6 @@ impl Time {
     #[must_use]
     pub fn angle<S: Real>(&self, rate: f64) -> S {
         let angle = self.dd() * rate;
-        S::linear(angle - Dd::TAU * (angle / Dd::TAU).round(), rate * self.unit)
+        S::linear(angle - Dd::TAU * (angle / Dd::TAU).round(), rate)
     }
 }

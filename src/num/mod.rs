@@ -3,7 +3,7 @@
 //! * the two traits, [`Real`] for explicit kernels and [`Precise`] for what must compare or round;
 //! * [`Dd`]: double-double numbers, 106 bits, for constants, references and invariants;
 //! * [`trig`]: sine and cosine in `f64`, the same bits on every CPU;
-//! * [`Series`]: truncated power series;
+//! * [`Tape`], [`Series`]: truncated power series of what a law makes of them;
 //! * [`Compensated`]: compensated sums;
 //! * [`Expansion`]: exact sums and products of a few numbers;
 //! * [`elliptic`]: elliptic integrals and functions;
@@ -44,7 +44,7 @@ pub(crate) use lanes::{LANES, Lane};
 #[cfg(any(test, feature = "random"))]
 pub use random::Random;
 pub use real::{Precise, Real};
-pub use series::Series;
+pub use series::{Series, Tape};
 #[doc(hidden)]
 pub use shown::{Computed, Shown};
 pub use sum::Compensated;

@@ -34,7 +34,7 @@ pub trait Real:
     fn from_dd(x: Dd) -> Self {
         Self::of(x.hi()) + Self::of(x.lo())
     }
-    /// `value + slope · s` as a [series](super::Series) in s; of any other scalar `value`.
+    /// `value + slope · t` as a [series](super::Series) in the time t, s; of any other scalar `value`.
     #[inline]
     #[must_use]
     fn linear(value: Dd, _slope: f64) -> Self {

@@ -85,7 +85,7 @@ impl<S: Real, F: Field<S>, P: Pair> EmbeddedMap<S, F, P> {
 
     fn rate(&mut self, at: Time, later: Dd, x: &Phase<S>) -> Phase<S> {
         self.work.evaluations += 1;
-        self.equations.rate(at.at_elapsed(self.base + later, 1.0), x)
+        self.equations.rate(at.at_elapsed(self.base + later), x)
     }
 
     /// The rates of `stages` of a step of `h`, from the place `from` on.
@@ -132,7 +132,7 @@ impl<S: Real, F: Field<S>, P: Pair> EmbeddedMap<S, F, P> {
         loop {
             size = rounded_down(size);
             if !(size.is_normal() && 0.1 * size > self.base.hi().abs() * f64::ROUNDOFF) {
-                let time = at.at_elapsed(self.base, 1.0).seconds();
+                let time = at.at_elapsed(self.base).seconds();
                 let estimate = Some(estimate).filter(|estimate| estimate.is_finite());
                 self.stuck = Some(Stuck { time, step: size, estimate, needed: None });
                 return None;
@@ -182,7 +182,7 @@ impl<S: Real, F: Field<S>, P: Pair> EmbeddedMap<S, F, P> {
             x.add_momentum(change.momentum_body);
             x.add_attitude(change.attitude);
             if let Some(needed) = own.needed((behind - begun).hi(), (end - begun).hi()) {
-                let time = at.at_elapsed(behind, 1.0).seconds();
+                let time = at.at_elapsed(behind).seconds();
                 self.stuck = Some(Stuck { time, step: h.abs(), estimate: None, needed: Some(needed) });
                 self.current = None;
                 x.add_momentum(Vec3([S::of(f64::NAN); 3]));

@@ -138,10 +138,11 @@ impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
             return current;
         }
         // from the base alone, so that a run taken up again has the same bits
-        let others = self.series.others(at.at_elapsed(self.base, 1.0), x);
-        let rate = self.series.rate(x, others);
+        let at = at.at_elapsed(self.base);
+        self.series.record(at, x);
+        let rate = self.series.rate(x, self.series.torque(at, 0));
         let unit = unit(if self.h.hi() < 0.0 { -1.0 / rate } else { 1.0 / rate });
-        self.series.expand(at.at_elapsed(self.base, unit), unit, x, others);
+        self.series.expand(at, unit, x);
         let current = Current { unit, reach: self.series.reach(self.tolerance) };
         self.current = Some(current);
         self.work.evaluations += self.series.order() as u64;
@@ -169,7 +170,7 @@ impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
             self.work.accepted += 1;
             let needed = own.needed((next - begun).hi(), (end - begun).hi());
             self.stuck = needed.map(|needed| {
-                let (time, step) = (at.at_elapsed(next, 1.0).seconds(), (reach * unit).abs());
+                let (time, step) = (at.at_elapsed(next).seconds(), (reach * unit).abs());
                 Stuck { time, step, estimate: None, needed: Some(needed) }
             });
         }

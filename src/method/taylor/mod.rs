@@ -20,9 +20,9 @@ const SOURCE: &str = "Jorba and Zou, Experimental Math. 14 (2005) 99";
 /// Taylor's method of a fixed order K, from 8 to 40.
 ///
 /// Φ_h: `m + Σ h^n m_n`, `q + Σ h^n q_n`, n from 1 to K, the coefficients by recurrences (Jorba and Zou, Experimental Math. 14
-/// (2005) 99). Free motion and linear potentials have recurrences of their own, of K² operations. Any other force is evaluated on
-/// [series](crate::num::Series) K times a step, of K³ operations in all; it has to be analytic along the motion, and a closure
-/// in `f64` cannot be taken. Keeps nothing; |q| is brought back to 1 in every eighth step.
+/// (2005) 99). Free motion and linear potentials have recurrences of their own. The law of any other force is evaluated on
+/// [series](crate::num::Series) once a step and recorded; each of its products then takes K²/2 multiplications. It has to be
+/// analytic along the motion, and a closure in `f64` cannot be taken. Keeps nothing; |q| is brought back to 1 in every eighth step.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -91,9 +91,8 @@ pub struct TaylorMap<S, F> {
 
 impl<S: Real, F: Field<S>> Map<S> for TaylorMap<S, F> {
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
-        let at = at.at_elapsed(at.elapsed(), self.unit);
-        let others = self.series.others(at, x);
-        self.series.expand(at, self.unit, x, others);
+        self.series.record(at, x);
+        self.series.expand(at, self.unit, x);
         add_change(&self.series, self.share, x);
         x.renormalize_at_times();
     }

@@ -4,7 +4,7 @@ use core::array::from_fn;
 
 use crate::body::{Field, Gyroscopic, Phase, Point, Rotor, Time, vertical};
 use crate::method::solve::length::length;
-use crate::num::{Dd, Real, Series};
+use crate::num::{Dd, Real, Series, Tape};
 use crate::rotation::{Quat, Vec3};
 
 /// Coefficients of attitude and momentum up to an order K, the time counted in a unit.
@@ -12,8 +12,8 @@ use crate::rotation::{Quat, Vec3};
 /// With `m = Σ m_n`, `q = Σ q_n` and the unit u: `(n + 1) m_{n+1} = u (Σ m_k × I⁻¹m_{n−k} + τ_n)` and
 /// `2 (n + 1) q_{n+1} = u Σ q_k ∘ I⁻¹m_{n−k}`, k ≤ n. The first sum is taken as `D_i Σ (m_k)_j (m_{n−k})_l`,
 /// `D_i = 1/I_l − 1/I_j`, as its products cancel along the axis of a rod. Of a linear potential τ_n is `Γ_n × c`, with
-/// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; of all other forces it is the coefficient n of their law, evaluated on the series
-/// so far, anew for each n. The unit is a power of two, so that it costs no rounding.
+/// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; of all other forces it is the coefficient n of their laws, which are recorded once
+/// for all n. The unit is a power of two, so that it costs no rounding.
 #[derive(Clone, Debug)]
 pub(super) struct MotionSeries<S, F> {
     order: usize,
@@ -26,6 +26,8 @@ pub(super) struct MotionSeries<S, F> {
     attitude: Vec<Spun<S>>,
     /// ω and Γ; empty without a linear potential.
     fall: Vec<[Turned<S>; 2]>,
+    /// The torque of all but the linear part by attitude and ω; `None` where that is all that acts.
+    others: Option<Tape<S>>,
 }
 
 /// A vector by its next components and those after them: `a × b` is `a.next · b.after − a.after · b.next`.
@@ -81,6 +83,7 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
             momentum: Vec::with_capacity(order + 1),
             attitude: Vec::with_capacity(order + 1),
             fall: Vec::with_capacity(if field.linear_part().is_some() { order + 1 } else { 0 }),
+            others: F::HAS_REMAINDER.then(|| Tape::new(order)),
         }
     }
 
@@ -98,24 +101,34 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
         x.momentum_body.times(inverse).magnitude().max(acceleration.sqrt())
     }
 
-    /// The torque of all but the linear part at `x`.
-    pub(super) fn others(&self, at: Time, x: &Point<S>) -> Vec3<S> {
-        if !F::HAS_REMAINDER {
-            return Vec3::zero();
-        }
-        let omega = x.momentum_body.times(self.inverse_moments);
-        self.torque(at, x.attitude.map(Series::number), omega.map(Series::number), 0)
+    /// Records the torque of all but the linear part about `x`.
+    pub(super) fn record(&mut self, at: Time, x: &Point<S>) {
+        let Some(tape) = &mut self.others else { return };
+        let field = &self.field;
+        tape.record(
+            &arguments(x.attitude.components(), x.momentum_body.times(self.inverse_moments)),
+            |given| {
+                let &[w, x, y, z, a, b, c] = given else { return [Series::of(f64::NAN); 3] };
+                let torque = field.remainder_series(at, Quat::new(w, Vec3([x, y, z])), Vec3([a, b, c]));
+                torque.map_or([Series::of(f64::NAN); 3], |torque| torque.0)
+            },
+        );
     }
 
     /// The coefficient n of the torque of all but the linear part.
-    fn torque(&self, at: Time, q: Quat<Series<S>>, omega: Vec3<Series<S>>, n: usize) -> Vec3<S> {
-        let torque = self.field.remainder_series(at, q, omega);
-        torque.map_or(Vec3([S::of(f64::NAN); 3]), |torque| torque.map(|series| series.coefficient(n)))
+    pub(super) fn torque(&self, at: Time, n: usize) -> Vec3<S> {
+        let Some(tape) = &self.others else { return Vec3::zero() };
+        let torque = Vec3([0, 1, 2].map(|axis| tape.result(axis, n)));
+        if !torque.magnitude().is_finite()
+            && let Some(part) = tape.culprit(n)
+        {
+            self.field.not_finite(at, part);
+        }
+        torque
     }
 
-    /// Works out the series about `x`. Series that `at` makes of the time count in `unit`, s; `others` is the torque of all but
-    /// the linear part at `x`.
-    pub(super) fn expand(&mut self, at: Time, unit: f64, x: &Point<S>, others: Vec3<S>) {
+    /// Works out the series about `x`, which count `unit` seconds; what acts beside the linear part has been recorded there.
+    pub(super) fn expand(&mut self, at: Time, unit: f64, x: &Point<S>) {
         let (m, q, inverse) = (x.momentum_body, x.attitude, self.inverse_moments);
         let linear = self.field.linear_part().copied();
         self.momentum.clear();
@@ -126,19 +139,17 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
         if linear.is_some() {
             self.fall.push([Turned::new(m.times(inverse)), Turned::new(vertical(q))]);
         }
-        let mut known = F::HAS_REMAINDER.then(|| Known::new(q, m.times(inverse)));
+        if let Some(tape) = &mut self.others {
+            tape.count_in(unit);
+        }
         for n in 0..self.order {
             let (mut rate, spin) = self.gyroscopic_term_and_spin();
             if let Some(linear) = &linear {
                 let up = Vec3(self.fall[n][1].components());
                 rate = rate + up.cross(linear.moment);
             }
-            if let Some(known) = &known {
-                rate = rate
-                    + match n {
-                        0 => others,
-                        _ => self.torque(at, known.attitude, known.omega, n),
-                    };
+            if F::HAS_REMAINDER {
+                rate = rate + self.torque(at, n);
             }
             let share = self.shares[n] * S::of(unit);
             let q = spin.map(|c| c * share);
@@ -149,8 +160,8 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
             if let Some(up) = up {
                 self.fall.push([Turned::new(m.times(inverse)), Turned::new(up)]);
             }
-            if let Some(known) = &mut known {
-                known.push(q, m.times(inverse));
+            if let Some(tape) = &mut self.others {
+                tape.push(&arguments(q, m.times(inverse)));
             }
         }
     }
@@ -231,23 +242,7 @@ fn least(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.min(b) }
 }
 
-/// Attitude and angular velocity as far as their series are known.
-struct Known<S> {
-    attitude: Quat<Series<S>>,
-    omega: Vec3<Series<S>>,
-}
-
-impl<S: Real> Known<S> {
-    fn new(attitude: Quat<S>, omega: Vec3<S>) -> Self {
-        let first = |c| Series::from_coefficients(&[c]);
-        Known { attitude: attitude.map(first), omega: omega.map(first) }
-    }
-
-    fn push(&mut self, [w, x, y, z]: [S; 4], omega: Vec3<S>) {
-        self.attitude.w.push(w);
-        for (axis, c) in [x, y, z].into_iter().enumerate() {
-            self.attitude.v[axis].push(c);
-            self.omega[axis].push(omega[axis]);
-        }
-    }
+/// What a torque is a function of.
+fn arguments<S>([w, x, y, z]: [S; 4], Vec3([a, b, c]): Vec3<S>) -> [S; 7] {
+    [w, x, y, z, a, b, c]
 }
