@@ -80,12 +80,10 @@ const SPIN: f64 = 0.9;
 /// Mean motion of the bodies in orbit, rad/s.
 const MEAN_MOTION: f64 = 0.125;
 
-const WHOLE: &[f64] = &[1e2, 1e4, 1e6];
-
 /// All cases of a scale.
 pub(super) fn all(scale: Scale) -> Result<Vec<Case>, Error> {
     // a closed form is known at any time, a run in double-double costs its time
-    let closed = &WHOLE[..scale.pick(1, 2, 3)];
+    let closed: &[f64] = scale.pick(&[1e2], &[1e2, 1e3], &[1e2, 1e4, 1e6]);
     let followed: &[f64] = scale.pick(&[1e2], &[1e2, 1e3], &[1e2, 1e3, 1e4]);
     let members = scale.pick(2, 3, 11);
     let mut cases: Vec<Case> = Vec::new();
