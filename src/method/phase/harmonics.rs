@@ -34,9 +34,9 @@ impl<const N: usize> Harmonics<N> {
                 (row[2 * n], row[2 * n + 1]) = (sin, cos);
             }
             for i in 0..unknowns {
-                for j in 0..=i {
-                    normal[(i, j)] += row[i] * row[j];
-                }
+                // the column from the diagonal down
+                let column = &mut normal.as_mut_slice()[i * unknowns + i..(i + 1) * unknowns];
+                column.iter_mut().zip(&row[i..]).for_each(|(sum, other)| *sum += row[i] * other);
                 right.iter_mut().zip(series).for_each(|(right, values)| right[i] += row[i] * values[k]);
             }
         }
