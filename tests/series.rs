@@ -64,6 +64,22 @@ fn quotients_roots_and_sines_have_the_coefficients_of_their_taylor_series() {
     assert!(apart(root, |n| b[n]) < 1e-26);
 }
 
+/// x' = −x y, y' = x y through (1, 1): both by their sum of 2 and their quotient, whose rate is -2.
+#[test]
+fn solutions_have_the_coefficients_of_their_series() {
+    let (one, two) = (Series::<Dd>::of(1.0), Series::<Dd>::of(2.0));
+    let [sum, residual, here] = coefficients(0.0, |_, _| {
+        let [x, y] = Series::solution([one, one], |[x, y]| [-(x * y), x * y]).unwrap();
+        // x'/x = −y, so that the logarithmic rate of x/y is −(x + y)
+        let [ratio] = Series::solution([one], |[ratio]| [-(two * ratio)]).unwrap();
+        [x + y, x - ratio * y, x]
+    });
+    assert!(apart(sum, |n| if n == 0 { Dd::of(2.0) } else { Dd::ZERO }) < 1e-30);
+    assert!(apart(residual, |_| Dd::ZERO) < 1e-28);
+    assert_eq!([here[0], here[1]], [Dd::ONE, -Dd::ONE]);
+    assert!(<f64 as Real>::solution([1.0], |x| x).is_none());
+}
+
 #[test]
 fn numbers_are_series_with_the_bits_of_numbers() {
     let found = |law: fn(Series<f64>, Series<f64>) -> Series<f64>| {

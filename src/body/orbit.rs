@@ -203,7 +203,12 @@ impl Orbit {
             let e = S::of(self.eccentricity);
             let (sin, cos) = self.eccentric_anomaly::<S>(rate, at).sin_cos();
             let near = one / (one - e * cos); // a/r
-            ((cos - e) * near, (one - e * e).sqrt() * sin * near, near)
+            let (n, minor) = (S::of(rate) * near, (one - e * e).sqrt());
+            let state = [cos - e, minor * sin, -(n * sin), n * minor * cos];
+            if let Some(place) = pulled(S::of(rate) * S::of(rate), state) {
+                return place;
+            }
+            ((cos - e) * near, minor * sin * near, near)
         };
         let n = S::of(rate);
         (S::of(3.0) * n * n * (near * near * near), [x, y])
@@ -218,7 +223,7 @@ impl Orbit {
             let (sin, cos) = Real::sin_cos(x);
             [x - e * sin - m, 1.0 - e * cos]
         });
-        let (e, m) = (S::of(e), at.angle::<S>(rate));
+        let (e, m) = (S::of(e), S::from_dd(at.reduced_angle(rate)));
         let mut x = S::of(if mean < 0.0 { -x } else { x });
         // each step doubles the digits: one polishes doubles, two give double-double
         for _ in 0..S::NEWTON_STEPS {
@@ -245,20 +250,38 @@ impl Orbit {
         let scaled = (rate * since).hi();
         let x = universal_variable(scaled.abs(), e, alpha.hi());
         let halvings = halvings(alpha.hi() * x * x);
-        let s = at.counted_from::<S>(since) * S::from_dd(rate);
+        let s = S::from_dd(since) * S::from_dd(rate);
         let (e, alpha) = (S::of(e), S::from_dd(alpha));
         let mut x = S::of(if scaled < 0.0 { -x } else { x });
         for _ in 0..S::NEWTON_STEPS {
             let [_, _, c2, c3] = stumpff(alpha * x * x, halvings);
             x = x - (x + e * x * x * x * c3 - s) / (S::of(1.0) + e * x * x * c2);
         }
-        let [_, c1, c2, _] = stumpff(alpha * x * x, halvings);
+        let [c0, c1, c2, _] = stumpff(alpha * x * x, halvings);
         let (one, across) = (S::of(1.0), x * x * c2);
         let near = one / (one + e * across);
         let rate = S::from_dd(rate);
+        let (speed, wide) = (rate * near, (one + e).sqrt());
+        let state = [one - across, wide * x * c1, -(speed * x * c1), speed * wide * c0];
+        if let Some(place) = pulled(rate * rate, state) {
+            return place;
+        }
         let strength = S::of(3.0) * rate * rate * (near * near * near);
-        (strength, [(one - across) * near, (one + e).sqrt() * x * c1 * near])
+        (strength, [(one - across) * near, wide * x * c1 * near])
     }
+}
+
+/// 3 GM/r³ and r̂ on the motion through place and velocity, as series in the time, by the equations of motion themselves, which take the fewest
+/// operations; `None` of other scalars.
+fn pulled<S: Real>(gm: S, state: [S; 4]) -> Option<(S, [S; 2])> {
+    let near = |x: S, y: S| S::of(1.0) / (x * x + y * y).sqrt();
+    let [x, y, ..] = S::solution(state, |[x, y, u, v]| {
+        let near = near(x, y);
+        let pull = gm * (near * near * near);
+        [u, v, -(x * pull), -(y * pull)]
+    })?;
+    let near = near(x, y);
+    Some((S::of(3.0) * gm * (near * near * near), [x * near, y * near]))
 }
 
 /// The solution of `χ + e χ³ c₃(αχ²) = s`, s at least 0 and of an ellipse at most half a revolution.

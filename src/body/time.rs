@@ -89,7 +89,11 @@ impl Time {
     /// double; as a series it goes on from there.
     #[must_use]
     pub fn angle<S: Real>(&self, rate: f64) -> S {
+        S::linear(self.reduced_angle(rate), rate)
+    }
+
+    pub(super) fn reduced_angle(&self, rate: f64) -> Dd {
         let angle = self.dd() * rate;
-        S::linear(angle - Dd::TAU * (angle / Dd::TAU).round(), rate)
+        angle - Dd::TAU * (angle / Dd::TAU).round()
     }
 }

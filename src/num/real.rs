@@ -40,6 +40,15 @@ pub trait Real:
     fn linear(value: Dd, _slope: f64) -> Self {
         Self::from_dd(value)
     }
+    /// The solution of `x' = rates(x)` in the time, s, through the numbers `x` as [series](super::Series); `None` of any other scalar.
+    #[inline]
+    #[must_use]
+    fn solution<const N: usize>(
+        _x: [Self; N],
+        _rates: impl FnOnce([Self; N]) -> [Self; N],
+    ) -> Option<[Self; N]> {
+        None
+    }
     /// `x` rounded to the digits of this scalar: a length of time that every kernel then shares.
     #[inline]
     fn rounded(x: Dd) -> Dd {

@@ -29,6 +29,8 @@ enum Operation<S> {
     Given,
     /// Of a straight line c₀ + slope · t, with the slope in seconds.
     Line(f64),
+    /// Over the time in seconds.
+    Integral(Term<S>),
     Sum(Term<S>, Term<S>),
     Difference(Term<S>, Term<S>),
     Negative(u32),
@@ -80,6 +82,8 @@ pub struct Tape<S> {
     /// `width` coefficients of each entry.
     coefficients: Vec<S>,
     width: usize,
+    /// What the variable counts, s.
+    unit: f64,
     /// 1/n.
     shares: Vec<S>,
     /// How many coefficients are known of what depends on the arguments.
@@ -108,6 +112,7 @@ impl<S: Real> Tape<S> {
             entries: Vec::new(),
             coefficients: Vec::new(),
             width: width.max(1),
+            unit: 1.0,
             shares: (0..width.max(1)).map(share).collect(),
             known: 0,
             arguments: 0,
@@ -147,6 +152,7 @@ impl<S: Real> Tape<S> {
     /// The variable of the series counts `unit` seconds, a power of two. Works out what depends on the time alone; comes before
     /// the first [`push`](Self::push).
     pub fn count_in(&mut self, unit: f64) {
+        self.unit = unit;
         // sine and cosine of an angle need each other's lower coefficients
         for n in 1..self.width {
             for k in 0..self.entries.len() {
@@ -233,7 +239,9 @@ impl<S: Real> Tape<S> {
             Operation::Root(a) | Operation::Sine(a, _) | Operation::Cosine(a, _) => {
                 (usize::MAX, [Term::Entry(a); 2])
             }
-            Operation::Given | Operation::Line(_) => (usize::MAX, [Term::Number(first); 2]),
+            Operation::Given | Operation::Line(_) | Operation::Integral(_) => {
+                (usize::MAX, [Term::Number(first); 2])
+            }
         };
         let of_time = terms.iter().all(|term| match term {
             Term::Number(_) => true,
@@ -280,6 +288,7 @@ impl<S: Real> Tape<S> {
         let entry = |k: u32, n: usize| self.coefficients[k as usize * self.width + n];
         match self.entries[k].operation {
             Operation::Given | Operation::Line(_) => S::of(0.0),
+            Operation::Integral(a) => self.coefficient(a, n - 1) * S::of(self.unit) * self.shares[n],
             Operation::Sum(a, b) => self.coefficient(a, n) + self.coefficient(b, n),
             Operation::Difference(a, b) => self.coefficient(a, n) - self.coefficient(b, n),
             Operation::Negative(a) => -entry(a, n),
@@ -394,6 +403,28 @@ impl<S: Real> Real for Series<S> {
     fn linear(value: Dd, slope: f64) -> Self {
         let entered = on_tape(|tape| tape.enter(Operation::Line(slope), S::from_dd(value), 1, true));
         entered.unwrap_or(Series::number(S::of(f64::NAN)))
+    }
+
+    fn solution<const N: usize>(
+        x: [Self; N],
+        rates: impl FnOnce([Self; N]) -> [Self; N],
+    ) -> Option<[Self; N]> {
+        let enter = |tape: &mut Tape<S>, Series(x): Series<S>| {
+            let first = tape.coefficient(x, 0);
+            tape.enter(Operation::Integral(Term::Number(S::of(0.0))), first, usize::MAX, true)
+        };
+        let solution = on_tape(|tape: &mut Tape<S>| x.map(|x| enter(tape, x)))?;
+        let rates = rates(solution);
+        on_tape(|tape: &mut Tape<S>| {
+            for (Series(x), Series(rate)) in solution.into_iter().zip(rates) {
+                if let Term::Entry(k) = x
+                    && let Some(entry) = tape.entries.get_mut(k as usize)
+                {
+                    entry.operation = Operation::Integral(rate);
+                }
+            }
+        })?;
+        Some(solution)
     }
 
     fn sqrt(self) -> Self {
