@@ -114,7 +114,7 @@ fn orders(context: &Context, report: &mut Report) -> Result<(), Error> {
 
 /// L and energy over very many steps.
 fn kept(context: &Context, report: &mut Report) -> Result<(), Error> {
-    let steps: u64 = context.scale.pick(20_000, 200_000, 10_000_000);
+    let steps: u64 = context.scale.pick(20_000, 50_000, 10_000_000);
     let mut table = Table::new(
         "kept",
         format!("What is kept over {steps} steps of Strang's scheme."),

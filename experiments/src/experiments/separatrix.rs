@@ -46,7 +46,7 @@ const STEPS: [f64; 4] = [1.0 / 2.0, 1.0 / 4.0, 1.0 / 8.0, 1.0 / 16.0];
 const BUDGET: f64 = STEPS[2];
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let horizon = context.scale.pick(500.0, 10_000.0, 20_000.0);
+    let horizon = context.scale.pick(500.0, 5_000.0, 20_000.0);
     let members = context.scale.pick(4, 10, 24);
     let decades: &[i32] = context.scale.pick(&[-2, -6], &[-2, -4, -6, -8, -10], &[-2, -4, -6, -8, -10]);
     let steps = context.scale.pick(&STEPS[1..3], &STEPS[..], &STEPS[..]);

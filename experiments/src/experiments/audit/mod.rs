@@ -46,7 +46,7 @@ const MARGIN: f64 = 10.0;
 const TOLERANCE: f64 = 1e-6;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let (trials, each) = context.scale.pick((8, 1), (40, 4), (500, 40));
+    let (trials, each) = context.scale.pick((8, 1), (20, 2), (500, 40));
     let seeds = Random::new(SEED);
     let found = context.in_parallel((0..trials).collect(), |k: u64| one(&mut seeds.stream(k)));
     let found = found.into_iter().collect::<Result<Vec<Found>, Error>>()?;

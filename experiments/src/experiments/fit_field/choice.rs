@@ -129,7 +129,7 @@ const RARE: f64 = 1e-3;
 
 /// The table, and what should not have happened.
 pub(super) fn table(context: &Context) -> Result<(Table, Vec<String>), Error> {
-    let trials = context.scale.pick(1, 3, 1000);
+    let trials = context.scale.pick(1, 1, 1000);
     let torques = TORQUES.map(|size| Acting { model: TorqueModel::Constant, size });
     let drags = DRAGS.map(|size| Acting { model: TorqueModel::Drag, size });
     let rows: Vec<Acting> = torques.into_iter().chain(drags).collect();

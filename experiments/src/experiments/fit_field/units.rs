@@ -104,7 +104,7 @@ type Is = fn(&Kind) -> bool;
 
 /// Counts of each kind at each level of torque noise, and what should not have happened.
 pub(super) fn table(context: &Context) -> Result<(Table, Vec<String>), Error> {
-    let (right, wrong, every) = context.scale.pick((2, 1, 12), (7, 1, 4), (250, 10, 1));
+    let (right, wrong, every) = context.scale.pick((2, 1, 12), (2, 1, 12), (250, 10, 1));
     let products = UnitProduct::common(RateUnit::RadiansPerSecond);
     let kinds = |k: u64| {
         let others = products.iter().step_by(every).filter(move |_| k < wrong);

@@ -127,7 +127,7 @@ fn trial(case: &Case, shorter: f64, stream: u64) -> Result<Trial, Error> {
 const SURELY: f64 = 5.0;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let trials: u64 = context.scale.pick(1, 2, 100);
+    let trials: u64 = context.scale.pick(1, 1, 100);
     let shorter = context.scale.pick(0.4, 1.0, 1.0);
     let parts = (0..CASES.len()).flat_map(|case| (0..trials).map(move |k| (case, k))).collect();
     let results = context.in_parallel(parts, |(case, k): (usize, u64)| {

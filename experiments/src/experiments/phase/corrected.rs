@@ -40,7 +40,7 @@ const LOOKS: u64 = 16;
 const APART: f64 = 5.0;
 
 pub(super) fn add(context: &Context, report: &mut Report) -> Result<(), Error> {
-    let bodies: u64 = context.scale.pick(2, 5, 20);
+    let bodies: u64 = context.scale.pick(2, 3, 20);
     let turns: [f64; 2] = context.scale.pick([1e2, 1e3], [1e3, 1e4], [1e4, 1e6]);
     let mut parts = Vec::new();
     for name in METHODS {
