@@ -77,6 +77,9 @@ fn solutions_have_the_coefficients_of_their_series() {
     assert!(apart(sum, |n| if n == 0 { Dd::of(2.0) } else { Dd::ZERO }) < 1e-30);
     assert!(apart(residual, |_| Dd::ZERO) < 1e-28);
     assert_eq!([here[0], here[1]], [Dd::ONE, -Dd::ONE]);
+    // x' = s, whose rate is an argument
+    let [square] = coefficients(0.0, |s, _| Series::solution([one], |_| [s]).unwrap());
+    assert!(apart(square, |n| Dd::of([1.0, 0.0, 0.5].get(n).copied().unwrap_or(0.0))) < 1e-30);
     assert!(<f64 as Real>::solution([1.0], |x| x).is_none());
 }
 
@@ -129,6 +132,8 @@ fn what_is_not_analytic_is_not_finite() {
     assert!(!zero(Real::sqrt, 0.0, 1.0)[1].is_finite());
     assert!(!zero(Real::sqrt, -1.0, 1.0)[0].is_finite());
     assert_eq!(zero(Real::sqrt, 0.0, 0.0), [0.0, 0.0]);
+    // its root has no series at 0: not the 1 of its first coefficient
+    assert!(!zero(|s| s.sinc_cos_of_root().0, 0.0, 1.0)[0].is_finite());
 }
 
 /// One law evaluates another while it is recorded, and an entry outlives its tape.
@@ -152,7 +157,12 @@ fn tapes_are_apart_and_entries_of_no_tape_are_no_numbers() {
 fn the_time_of_a_law_that_is_evaluated_on_series_goes_on() {
     let mut tape = Tape::new(3);
     let at = Clock { start: 2.0, step: 0.5 }.at(3);
-    tape.record(&[], |_: &[Series<f64>]| [at.seconds(), Time::from_seconds(100.0).angle(0.25)]);
+    let law = |_: &[Series<f64>]| [at.seconds(), Time::from_seconds(100.0).angle(0.25)];
+    // in seconds where nothing else is said
+    tape.record(&[], law);
+    tape.push(&[]);
+    assert_eq!([tape.result(0, 1), tape.result(1, 1)], [1.0, 0.25]);
+    tape.record(&[], law);
     tape.count_in(0.5);
     assert_eq!([0, 1, 2].map(|n| tape.result(0, n)), [3.5, 0.5, 0.0]);
     assert!((tape.result(1, 0) - (25.0 - 4.0 * core::f64::consts::TAU)).abs() < 1e-14);

@@ -40,7 +40,7 @@ pub trait Real:
     fn linear(value: Dd, _slope: f64) -> Self {
         Self::from_dd(value)
     }
-    /// The solution of `x' = rates(x)` in the time, s, through the numbers `x` as [series](super::Series); `None` of any other scalar.
+    /// The solution of `x' = rates(x)` in the time, s, through `x` at this moment, as [series](super::Series); `None` of any other scalar.
     #[inline]
     #[must_use]
     fn solution<const N: usize>(

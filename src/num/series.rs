@@ -82,8 +82,8 @@ pub struct Tape<S> {
     /// `width` coefficients of each entry.
     coefficients: Vec<S>,
     width: usize,
-    /// What the variable counts, s.
-    unit: f64,
+    /// What the variable counts, s, once it has been said.
+    unit: Option<f64>,
     /// 1/n.
     shares: Vec<S>,
     /// How many coefficients are known of what depends on the arguments.
@@ -112,7 +112,7 @@ impl<S: Real> Tape<S> {
             entries: Vec::new(),
             coefficients: Vec::new(),
             width: width.max(1),
-            unit: 1.0,
+            unit: None,
             shares: (0..width.max(1)).map(share).collect(),
             known: 0,
             arguments: 0,
@@ -146,13 +146,13 @@ impl<S: Real> Tape<S> {
         self.entries.clear();
         self.coefficients.clear();
         self.parts.clear();
-        self.known = 1;
+        (self.unit, self.known) = (None, 1);
     }
 
     /// The variable of the series counts `unit` seconds, a power of two. Works out what depends on the time alone; comes before
-    /// the first [`push`](Self::push).
+    /// the first [`push`](Self::push), which else takes a second.
     pub fn count_in(&mut self, unit: f64) {
-        self.unit = unit;
+        self.unit = Some(unit);
         // sine and cosine of an angle need each other's lower coefficients
         for n in 1..self.width {
             for k in 0..self.entries.len() {
@@ -174,6 +174,9 @@ impl<S: Real> Tape<S> {
         let n = self.known;
         if n >= self.width {
             return;
+        }
+        if self.unit.is_none() {
+            self.count_in(1.0);
         }
         self.known += 1;
         for (k, c) in arguments.iter().enumerate().take(self.arguments) {
@@ -288,7 +291,9 @@ impl<S: Real> Tape<S> {
         let entry = |k: u32, n: usize| self.coefficients[k as usize * self.width + n];
         match self.entries[k].operation {
             Operation::Given | Operation::Line(_) => S::of(0.0),
-            Operation::Integral(a) => self.coefficient(a, n - 1) * S::of(self.unit) * self.shares[n],
+            Operation::Integral(a) => {
+                self.coefficient(a, n - 1) * S::of(self.unit.unwrap_or(1.0)) * self.shares[n]
+            }
             Operation::Sum(a, b) => self.coefficient(a, n) + self.coefficient(b, n),
             Operation::Difference(a, b) => self.coefficient(a, n) - self.coefficient(b, n),
             Operation::Negative(a) => -entry(a, n),
@@ -411,7 +416,8 @@ impl<S: Real> Real for Series<S> {
     ) -> Option<[Self; N]> {
         let enter = |tape: &mut Tape<S>, Series(x): Series<S>| {
             let first = tape.coefficient(x, 0);
-            tape.enter(Operation::Integral(Term::Number(S::of(0.0))), first, usize::MAX, true)
+            // the rates may depend on arguments, too
+            tape.enter(Operation::Integral(Term::Number(S::of(0.0))), first, usize::MAX, false)
         };
         let solution = on_tape(|tape: &mut Tape<S>| x.map(|x| enter(tape, x)))?;
         let rates = rates(solution);
@@ -451,6 +457,17 @@ impl<S: Real> Real for Series<S> {
                 entered.unwrap_or([(); 2].map(|()| Series::number(S::of(f64::NAN))).into())
             }
         }
+    }
+
+    /// Of an entry without the branch at 0, which would take its first coefficient for all.
+    fn sinc_cos_of_root(self) -> (Self, Self) {
+        if let Term::Number(c) = self.0 {
+            let (sinc, cos) = c.sinc_cos_of_root();
+            return (Series::number(sinc), Series::number(cos));
+        }
+        let x = self.sqrt();
+        let (sin, cos) = x.sin_cos();
+        (sin / x, cos)
     }
 
     fn magnitude(self) -> f64 {
