@@ -69,8 +69,8 @@ const PARTS: usize = 16;
 const STUDENT: f64 = 2.131;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let span = context.scale.pick(64.0, 1024.0, 16_384.0);
-    let held = context.scale.pick(64.0, 256.0, 1024.0);
+    let span = context.scale.pick(64.0, 512.0, 16_384.0);
+    let held = context.scale.pick(64.0, 128.0, 1024.0);
     let finest = context.scale.pick(4, 5, 7);
     let inertia = Inertia::from_moments(MOMENTS).map_err(unexpected)?;
     let body = Body::heavy(inertia, Vec3([0.0, 0.0, 1.0]).into()).map_err(unexpected)?;

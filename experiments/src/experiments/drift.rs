@@ -20,7 +20,7 @@ use crate::experiment::{Context, Report};
 const BODIES: [&str; 7] = ["textbook", "toutatis", "racket", "t-handle", "phone", "water", "spacecraft"];
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let steps = context.scale.pick(2_000, 100_000, 1_000_000);
+    let steps = context.scale.pick(2_000, 50_000, 1_000_000);
     let mut parts = Vec::new();
     for body in BODIES.iter().filter_map(|name| catalogue::body(name)) {
         for h in step_sizes(&body) {

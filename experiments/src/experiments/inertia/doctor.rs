@@ -80,7 +80,7 @@ fn patient(random: &mut Random) -> Result<Patient, Error> {
 }
 
 pub(super) fn rates(context: &Context, random: &Random, failures: &mut Vec<String>) -> Result<Table, Error> {
-    let bodies = context.scale.pick(50, 500, 5000);
+    let bodies = context.scale.pick(50, 200, 5000);
     let mut table = Table::new(
         "doctor",
         format!(

@@ -149,7 +149,7 @@ fn outcome(
 }
 
 pub(super) fn budgets(context: &Context, report: &mut Report) -> Result<(), Error> {
-    let records = context.scale.pick(12, 20, 1000);
+    let records = context.scale.pick(12, 12, 1000);
     let rates = context.scale.pick(&RATES[..2], &RATES[..3], &RATES[..]);
     let mut cells = Vec::new();
     for causes in [Causes::Noise, Causes::All] {

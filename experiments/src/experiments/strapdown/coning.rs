@@ -97,7 +97,7 @@ impl Coning {
 
 pub(super) fn coning(context: &Context, report: &mut Report) -> Result<(), Error> {
     // a multiple of 1000 and of 2, 3, 4 and 5
-    let samples = context.scale.pick(6_000, 12_000, 60_000);
+    let samples = context.scale.pick(6_000, 6_000, 60_000);
     let magnus = |order, count| Rule::magnus(order, count).map_err(unexpected);
     let mut rules =
         vec![("rate", Kind::Rate, Rule::Trapezoid), ("increment", Kind::Increment, Rule::Trapezoid)];

@@ -60,7 +60,7 @@ fn held(error: f64) -> Option<f64> {
 
 pub(super) fn compare(context: &Context, report: &mut Report) -> Result<(), Error> {
     let cases = context.scale.pick(&CASES[1..2], &CASES[..], &CASES[..]);
-    let shorter = context.scale.pick(0.1, 1.0, 1.0);
+    let shorter = context.scale.pick(0.1, 0.3, 1.0);
     let mut parts = Vec::new();
     for kind in [Kind::Rate, Kind::Increment] {
         let rich = cost(kind, Rule::magnus(RICH.0, RICH.1).map_err(unexpected)?)?;
@@ -134,7 +134,7 @@ fn claimed(kind: Kind, rule: Rule) -> Option<f64> {
 const CLOSE: f64 = 0.15;
 
 pub(super) fn orders(context: &Context, report: &mut Report) -> Result<(), Error> {
-    let halvings: u32 = context.scale.pick(4, 6, 7);
+    let halvings: u32 = context.scale.pick(4, 5, 7);
     let mut parts = Vec::new();
     for motion in ["free", "top"] {
         for kind in Kind::ALL {

@@ -24,8 +24,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let cases = cases::all(context.scale)?;
     let motions = motions(context, &cases)?;
     let budget = Budget {
-        evaluations: context.scale.pick(10.0, 80.0, 320.0),
-        tolerances: context.scale.pick(3, 1, 1),
+        evaluations: context.scale.pick(10.0, 60.0, 320.0),
+        tolerances: context.scale.pick(3, 2, 1),
     };
     let mut parts = Vec::new();
     for (k, case) in cases.iter().enumerate() {
