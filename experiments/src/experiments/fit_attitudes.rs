@@ -48,7 +48,7 @@ struct Trial {
 }
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let trials: u64 = context.scale.pick(2, 2, 300);
+    let trials: u64 = context.scale.pick(2, 2, 100);
     let seconds = context.scale.pick(12, 12, 30);
     let rates = context.scale.pick(&RATES[..2], &RATES[..], &RATES[..]);
     let cells: Vec<(usize, usize, usize)> = (0..BODIES.len())
