@@ -8,7 +8,7 @@ const SOURCES: [&str; 6] = ["../src", "../crates", "src", "../Cargo.toml", "../C
 fn main() {
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
     set("POLHODE_RUSTC", output(&rustc, &["--version"]));
-    set("POLHODE_PROFILE", std::env::var("PROFILE").ok());
+    set("POLHODE_PROFILE", profile());
     set("POLHODE_TARGET", std::env::var("TARGET").ok());
     set("POLHODE_COMMIT", output("git", &["rev-parse", "HEAD"]));
     let status = [&["status", "--porcelain", "--"][..], &SOURCES].concat();
@@ -20,6 +20,12 @@ fn main() {
     if let Some(log) = output("git", &["rev-parse", "--git-path", "logs/HEAD"]) {
         println!("cargo::rerun-if-changed={log}");
     }
+}
+
+/// Cargo names the profile of which another is made: `paper` is the release with these experiments optimised.
+fn profile() -> Option<String> {
+    let (profile, level) = (std::env::var("PROFILE").ok()?, std::env::var("OPT_LEVEL").ok()?);
+    Some(if profile == "release" && level != "0" { "paper".into() } else { profile })
 }
 
 fn set(name: &str, value: Option<String>) {
