@@ -21,35 +21,45 @@ use record::{Stretch, normalised};
 pub enum Rival {
     /// J ω' + ω × J ω = 0 at every sample, ω' by central differences.
     CentralDifferences,
-    /// The same with local cubics, the window being the best of five at each noise.
+    /// The same with local cubics, the window being the best of several at each noise.
     SavitzkyGolay,
     /// R(t) J ω(t) = L with R by integration of the same rates.
     Momentum,
     /// The same with R from a second instrument, which no other row has.
     MomentumWithAttitude,
-    /// Weak form with errors in variables, the radius being the best of three at each noise.
+    /// Weak form with errors in variables, the radius being the best of several at each noise.
     Wendy,
-    /// Extended Kalman filter of rate and tensor, three runs.
+    /// The largest likelihood of the same equations, with the radius of the test functions in the middle.
+    WendyLikelihood,
+    /// Extended Kalman filter of rate and tensor, three runs, its prior being the best of several at each noise.
     Kalman,
+    /// Iterated smoother of the same.
+    Smoother,
     /// Maximum likelihood by multiple shooting.
     OutputError,
 }
 
 /// All of them, maximum likelihood last.
-pub const RIVALS: [Rival; 7] = [
+pub const RIVALS: [Rival; 9] = [
     Rival::CentralDifferences,
     Rival::SavitzkyGolay,
     Rival::Momentum,
     Rival::MomentumWithAttitude,
     Rival::Wendy,
+    Rival::WendyLikelihood,
     Rival::Kalman,
+    Rival::Smoother,
     Rival::OutputError,
 ];
 
 /// Samples of a Savitzky–Golay window.
-const WINDOWS: [usize; 5] = [51, 101, 151, 201, 301];
+const WINDOWS: [usize; 7] = [51, 101, 151, 201, 301, 401, 601];
 /// Half widths of the test functions of WENDy, in radians of the motion.
-const RADII: [f64; 3] = [1.5, 3.0, 6.0];
+const RADII: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
+/// The one of the likelihood.
+const MIDDLE: f64 = RADII[2];
+/// Standard deviations of a coordinate of the tensor before a filter runs, shares of the trace.
+const PRIORS: [f64; 3] = [0.01, 0.03, 0.1];
 /// Window of the start of those that need one.
 const START: usize = 101;
 
@@ -96,7 +106,9 @@ impl Rival {
             Self::Momentum => "momentum",
             Self::MomentumWithAttitude => "momentum with attitude",
             Self::Wendy => "WENDy, tuned",
-            Self::Kalman => "extended Kalman filter",
+            Self::WendyLikelihood => "WENDy-MLE",
+            Self::Kalman => "extended Kalman filter, tuned",
+            Self::Smoother => "iterated Kalman smoother",
             Self::OutputError => "maximum likelihood",
         }
     }
@@ -106,6 +118,7 @@ impl Rival {
         match self {
             Self::SavitzkyGolay => WINDOWS.len(),
             Self::Wendy => RADII.len(),
+            Self::Kalman => PRIORS.len(),
             _ => 1,
         }
     }
@@ -115,6 +128,7 @@ impl Rival {
         match self {
             Self::SavitzkyGolay => format!("window {}", WINDOWS[k]),
             Self::Wendy => format!("radius {} rad", RADII[k]),
+            Self::Kalman => format!("prior {}", PRIORS[k]),
             _ => String::new(),
         }
     }
@@ -143,7 +157,9 @@ impl Rival {
                 momentum::measured(stretches.first()?, attitudes, start()?, sigma, ATTITUDE_NOISE)
             }
             Self::Wendy => wendy::answer(&stretches, RADII[k], sigma),
-            Self::Kalman => kalman::answer(&stretches, start()?, sigma),
+            Self::WendyLikelihood => wendy::likeliest(&stretches, MIDDLE, sigma),
+            Self::Kalman => kalman::filtered(&stretches, start()?, PRIORS[k], sigma),
+            Self::Smoother => kalman::smoothed(&stretches, start()?, PRIORS[2], sigma),
             Self::OutputError => output_error::answer(&stretches, start()?, sigma),
         }
     }
@@ -219,7 +235,7 @@ mod tests {
         let likelihood = best(Rival::OutputError, &example, sigma).0;
         assert!(own < 2.0 * likelihood && likelihood < 2.0 * own, "{own:e} {likelihood:e}");
         assert!(best(Rival::CentralDifferences, &example, sigma).0 > 30.0 * likelihood);
-        for rival in [Rival::Wendy, Rival::Kalman, Rival::OutputError] {
+        for rival in RIVALS.into_iter().filter(|rival| best(*rival, &example, sigma).1.is_some()) {
             // the 99.9 % point of χ² with five degrees of freedom
             let square = best(rival, &example, sigma).1.unwrap();
             assert!(square < 20.5, "{}: {square}", rival.name());

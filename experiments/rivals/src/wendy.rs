@@ -16,6 +16,10 @@ use super::record::Stretch;
 /// Test functions for each radius.
 const PER_RADIUS: f64 = 6.0;
 const ROUNDS: usize = 50;
+/// Standard deviations of a coordinate between two points of a difference quotient of the likelihood.
+const APART: f64 = 0.2;
+/// Step, in standard deviations, that ends the search for the largest likelihood.
+const NEAR: f64 = 1e-2;
 /// Change of the coordinates that ends the rounds.
 const STILL: f64 = 1e-8;
 
@@ -26,25 +30,83 @@ struct Test {
     slopes: Vec<f64>,
 }
 
-/// With test functions of half width `radius`. `None` where the rounds do not come to rest.
-pub(super) fn answer(stretches: &[Stretch], radius: f64, sigma: f64) -> Option<Answer> {
-    let tests: Vec<Vec<Test>> = stretches.iter().map(|s| tests(s, radius)).collect();
-    let equations: Vec<Vec<[f64; 6]>> = stretches.iter().zip(&tests).map(|(s, t)| equations(s, t)).collect();
-    let (mut x, _) = solve(&equations)?;
-    for _ in 0..ROUNDS {
-        let mut whitened = Vec::with_capacity(equations.len());
-        for ((s, tests), rows) in stretches.iter().zip(&tests).zip(&equations) {
-            let mut covariance = covariance(s, tests, &x);
+/// The weak equations of a record.
+struct Weak<'a> {
+    stretches: &'a [Stretch],
+    tests: Vec<Vec<Test>>,
+    equations: Vec<Vec<[f64; 6]>>,
+}
+
+impl<'a> Weak<'a> {
+    fn new(stretches: &'a [Stretch], radius: f64) -> Self {
+        let tests: Vec<Vec<Test>> = stretches.iter().map(|s| tests(s, radius)).collect();
+        let equations = stretches.iter().zip(&tests).map(|(s, t)| equations(s, t)).collect();
+        Weak { stretches, tests, equations }
+    }
+
+    /// The equations whitened by their covariance at `x`, and the logarithm of its determinant.
+    fn whitened(&self, x: &Vector5<f64>) -> Option<(Vec<Vec<[f64; 6]>>, f64)> {
+        let (mut whitened, mut determinant) = (Vec::with_capacity(self.equations.len()), 0.0);
+        for ((s, tests), rows) in self.stretches.iter().zip(&self.tests).zip(&self.equations) {
+            let mut covariance = covariance(s, tests, x);
             covariance.factor()?;
+            determinant += covariance.log_determinant();
             let mut rows = rows.clone();
             covariance.forward(&mut rows);
             whitened.push(rows);
         }
-        let (next, information) = solve(&whitened)?;
-        let step = (next - x).norm();
-        x = next;
-        if step < STILL {
-            return Answer::constrained(x, information / (sigma * sigma));
+        Some((whitened, determinant))
+    }
+
+    /// Least squares weighted again and again until the answer rests.
+    fn reweighted(&self) -> Option<(Vector5<f64>, Matrix5<f64>)> {
+        let (mut x, _) = solve(&self.equations)?;
+        for _ in 0..ROUNDS {
+            let (next, information) = solve(&self.whitened(&x)?.0)?;
+            let step = (next - x).norm();
+            x = next;
+            if step < STILL {
+                return Some((x, information));
+            }
+        }
+        None
+    }
+
+    /// Twice the negative logarithm of the likelihood, but for a constant.
+    fn cost(&self, x: &Vector5<f64>, sigma: f64) -> Option<f64> {
+        let (rows, determinant) = self.whitened(x)?;
+        let left = |row: &[f64; 6]| row[5] + (0..5).map(|k| row[k] * x[k]).sum::<f64>();
+        let squares: f64 = rows.iter().flatten().map(|row| left(row) * left(row)).sum();
+        Some(squares / (sigma * sigma) + determinant)
+    }
+}
+
+/// With test functions of half width `radius`. `None` where the rounds do not come to rest.
+pub(super) fn answer(stretches: &[Stretch], radius: f64, sigma: f64) -> Option<Answer> {
+    let (x, information) = Weak::new(stretches, radius).reweighted()?;
+    Answer::constrained(x, information / (sigma * sigma))
+}
+
+/// The largest likelihood of the weak residuals, whose covariance depends on the tensor, too (WENDy-MLE): from the answer of least
+/// squares by the scoring of Fisher, with difference quotients. `None` where the search does not come to rest.
+///
+/// Source: N. Rummel, D. A. Messenger, S. Becker, V. Dukic, D. M. Bortz, arXiv 2502.08881 (2025).
+pub(super) fn likeliest(stretches: &[Stretch], radius: f64, sigma: f64) -> Option<Answer> {
+    let weak = Weak::new(stretches, radius);
+    let (mut x, information) = weak.reweighted()?;
+    let information = information / (sigma * sigma);
+    let covariance = information.try_inverse()?;
+    for _ in 0..ROUNDS {
+        let mut gradient = Vector5::zeros();
+        for k in 0..5 {
+            let apart = Vector5::ith(k, 0.5 * APART * covariance[(k, k)].sqrt());
+            let [after, before] = [x + apart, x - apart].map(|x| weak.cost(&x, sigma));
+            gradient[k] = (after? - before?) / (2.0 * apart[k]);
+        }
+        let step = covariance * gradient * -0.5;
+        x += step;
+        if step.dot(&(information * step)).sqrt() < NEAR {
+            return Answer::constrained(x, information);
         }
     }
     None
@@ -187,6 +249,11 @@ impl Banded {
             }
         }
         Some(())
+    }
+
+    /// Of the matrix, once it is factored.
+    fn log_determinant(&self) -> f64 {
+        (0..self.size).map(|i| 2.0 * libm::log(self.entries[self.place(i, i)])).sum()
     }
 
     /// L⁻¹ times the rows.

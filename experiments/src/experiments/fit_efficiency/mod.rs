@@ -41,7 +41,7 @@ struct Trial {
 }
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let trials = context.scale.pick(2, 8, 400);
+    let trials = context.scale.pick(2, 8, 200);
     let seconds = context.scale.pick(20, 60, 60);
     let cells: Vec<(usize, usize)> =
         (0..BODIES.len()).flat_map(|body| (0..NOISES.len()).map(move |noise| (body, noise))).collect();
@@ -92,7 +92,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                 None => curves.push(Curve::new(label, vec![value]).with_spread(vec![summary.interval])),
             }
         };
-        table.push(summary.row(name, OWN, "", level, Some(refused)));
+        table.push(summary.row(name, OWN, "", level, refused));
         point(OWN, &summary);
         if broken > 0 || cell.iter().any(|t| t.own.is_some() && !t.physical) {
             failures
@@ -116,12 +116,13 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                 .map(|k| cell.iter().map(|t| t.rivals[place][k]).collect::<Vec<_>>())
                 .map(|outcomes| Summary::new(&outcomes, &likelihood));
             let Some((k, summary)) = best(by_choice) else { continue };
-            table.push(summary.row(name, rival.name(), &rival.choice(k), level, None));
+            let without = (cell.len() - summary.answered) as u64;
+            table.push(summary.row(name, rival.name(), &rival.choice(k), level, without));
             point(rival.name(), &summary);
         }
     }
     let compared = comparison(&curves);
-    let hidden = ["body", "choice", "answered", "refused"];
+    let hidden = ["body", "choice", "answered"];
     let caption = "Errors over the Cramer-Rao bound, and coverage of the 95 % ellipsoids, asymmetric body.";
     let asymmetric = table.view("asymmetric", caption, &hidden, ("body", "asymmetric"));
     figure.series = curves;
@@ -263,6 +264,6 @@ fn columns() -> Vec<Column> {
         .heading("over ML"),
         Column::new("coverage", "", "share of answers whose own 95 % ellipsoid holds the truth"),
         Column::new("answered", "", "records with an answer"),
-        Column::new("refused", "", "records refused because they do not determine the tensor"),
+        Column::new("refused", "", "records without an answer: refused, or the search did not come to rest"),
     ]
 }

@@ -72,7 +72,7 @@ impl Summary {
         estimator: &str,
         choice: &str,
         noise: f64,
-        refused: Option<u64>,
+        refused: u64,
     ) -> [Cell; 11] {
         row![
             body,
