@@ -21,6 +21,7 @@ use crate::report::estimate::Estimate;
 use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
+use crate::report::parts::scatter;
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::noise;
@@ -164,7 +165,9 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let misfit = weak.misfit(variance);
     let information = || FitError::Solver(SolverFailure::Information);
     let kept = |column: &Column| matches!(column.class(), Class::Drag | Class::Input);
-    let deviation = (variance * misfit.max(1.0)).sqrt();
+    let scatter = scatter(weak, variance * misfit.max(1.0));
+    let excess = scatter.map_or(1.0, |scatter| scatter.chi2 / scatter.dof as f64);
+    let deviation = (variance * misfit.max(1.0) * excess).sqrt();
     let spread = match settings.torque {
         TorqueModel::Auto => spread(&chosen.models, chosen.model),
         _ => Form::zeros(),
@@ -188,6 +191,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         variance,
         chosen: &chosen,
         misfit,
+        scatter,
         spikes,
         input,
         joint: &joint,

@@ -80,7 +80,7 @@ fn explained(record: &Record, settings: &Settings) -> Option<Estimate> {
             return None;
         }
     }
-    let Found { moved, torque, gain, without } = each.into_iter().next()?;
+    let Found { moved, torque, gain, without, models } = each.into_iter().next()?;
     let Moved { followed, alternatives } = moved;
     if !explains(&tracks, followed.levels.rate) {
         return None;
@@ -92,6 +92,7 @@ fn explained(record: &Record, settings: &Settings) -> Option<Estimate> {
         torque,
         gain,
         without,
+        models,
         alternatives,
         unit,
         used: long.iter().map(|(k, s)| (*k, middle(s))).collect(),

@@ -164,6 +164,8 @@ thresholds! {
         HALVES: f64 = 35.888_186_879_672_87,
             "chi squared of 5 degrees of freedom with a chance of 1e-6: two parts of a record contradict each other", DERIVED;
         CUTS: usize = 8, "parts of a record at whose borders it is cut in two", UNMEASURED;
+        SCATTERED: f64 = 4.264_890_793_922_825,
+            "standard normal deviate with a chance of 1e-5: the parts of a record scatter by more than their noise", DERIVED;
         NOISY: f64 = 4.0,
             "mean square residual of a segment over that of the median segment that is worth one", UNMEASURED;
         UNCERTAIN: f64 = 5e-3,

@@ -436,7 +436,11 @@ fn a_mirrored_axis_is_named_and_undone() {
     assert_eq!(undone["shape"], of_right["shape"]);
     let answer = run(&format!("fit {wrong} --axes x,-y,z --format table"));
     assert!(answer.err.contains("columns x, -y, z (a mirror"), "{}", answer.err);
-    assert!(answer.out.contains("if the axes are left-handed: I1 : I2 : I3 = 0.13"), "{}", answer.out);
+    assert!(
+        answer.out.contains("if the axes are left-handed (--axes):\n  I1 : I2 : I3 = 0.13"),
+        "{}",
+        answer.out
+    );
     assert!(answer.out.contains("of |dw/dt|^2 unexplained"), "{}", answer.out);
     refused(2, &format!("fit {right} --axes x,x,z"), &["--axes", "names an axis twice"]);
     // of a body that is known, one hand has its moments

@@ -7,6 +7,7 @@ use crate::likelihood::descent::Problem;
 use crate::likelihood::growth::{Followed, steady};
 use crate::likelihood::sums::Reduced;
 use crate::likelihood::track::Track;
+use crate::models::weighed::Weighed;
 use crate::physical::coordinates::{Coordinates, Form, tensor};
 use crate::settings::torque::TorqueModel;
 use crate::thresholds::ladder;
@@ -43,50 +44,96 @@ pub(crate) struct Found {
     pub(crate) torque: Acting,
     pub(crate) gain: Option<f64>,
     pub(crate) without: Option<Coordinates>,
+    /// What each torque makes of the samples.
+    pub(crate) models: Vec<Weighed>,
 }
 
 impl Found {
-    /// Of one torque, compared with no other.
-    pub(crate) fn of(moved: Option<Moved>, torque: Acting) -> Option<Found> {
-        Some(Found { moved: moved?, torque, gain: None, without: None })
+    /// Of a torque that was asked for.
+    fn of(moved: Moved, torque: Acting, models: Vec<Weighed>) -> Found {
+        Found { moved, torque, gain: None, without: None, models }
     }
 }
 
 /// The model with the torque that is asked for.
 pub(crate) fn with_torque(model: TorqueModel, moved: impl Fn(bool) -> Option<Moved>) -> Option<Found> {
-    match model {
-        TorqueModel::None => Found::of(moved(false), Acting::Nothing),
-        TorqueModel::Drag => Found::of(moved(true), Acting::Drag),
-        TorqueModel::Constant => Found::of(moved(false), Acting::Constant),
-        _ => chosen(moved),
-    }
+    let torque = match model {
+        TorqueModel::None => Acting::Nothing,
+        TorqueModel::Constant => Acting::Constant,
+        TorqueModel::Drag => {
+            let slowed = moved(true)?;
+            let models = moved(false).map_or(Vec::new(), |free| weighed(&free, Some(&slowed)));
+            return Some(Found::of(slowed, Acting::Drag, models));
+        }
+        _ => return chosen(moved),
+    };
+    let free = moved(false)?;
+    let models = weighed(&free, None);
+    Some(Found::of(free, torque, models))
+}
+
+/// What each torque makes of the samples beside the free motion, drag by what was followed with it where that was done. A constant
+/// torque that turns the body by more than the first order holds is left out.
+fn weighed(free: &Moved, slowed: Option<&Moved>) -> Vec<Weighed> {
+    let Some(own) = covariance(&free.followed) else { return Vec::new() };
+    let of = |model, gain, x, covariance: Form| {
+        Some(Weighed { model, gain, x, factor: covariance.cholesky()?.l(), held_out: None })
+    };
+    let x = free.followed.model.x;
+    let linear = |model, found: &alternatives::Found| {
+        let (spread, moved) = (found.spread.rows(0, 5), Coordinates::from_fn(|k, _| found.moved[k]));
+        let added = spread * spread.transpose();
+        of(model, found.gain, x + moved, own + Form::from_fn(|i, k| added[(i, k)]))
+    };
+    let found = free.alternatives.as_ref();
+    let drag = match slowed {
+        Some(Moved { followed, .. }) => covariance(followed)
+            .and_then(|covariance| of(TorqueModel::Drag, gain(free, followed), followed.model.x, covariance)),
+        None => found.and_then(|found| linear(TorqueModel::Drag, found.drag.as_ref()?)),
+    };
+    let constant = found.map(|found| &found.constant).filter(|torque| is_linear(&free.followed, torque));
+    let constant = constant.and_then(|torque| linear(TorqueModel::Constant, torque));
+    [of(TorqueModel::None, 0.0, x, own), drag, constant].into_iter().flatten().collect()
+}
+
+/// The covariance of the tensor by the second derivative of the likelihood.
+fn covariance(followed: &Followed) -> Option<Form> {
+    let Followed { model, tracks, levels, .. } = followed;
+    let problem = Problem { tracks, levels: *levels, radius: f64::INFINITY, pull: None };
+    let (sums, _) = problem.sums(model)?;
+    Some(Reduced::new(&sums, None, 0.0)?.of_tensor()?.cholesky()?.inverse())
+}
+
+/// Log-likelihood of a model less that of the free motion.
+fn gain(free: &Moved, followed: &Followed) -> f64 {
+    0.5 * (free.followed.cost() - followed.cost())
 }
 
 /// The torque that the samples ask for: none, or the one of drag and a constant torque that gains more.
 fn chosen(moved: impl Fn(bool) -> Option<Moved>) -> Option<Found> {
-    let Some(free) = moved(false) else { return Found::of(moved(true), Acting::Drag) };
+    let Some(free) = moved(false) else { return Some(Found::of(moved(true)?, Acting::Drag, Vec::new())) };
     let found = free.alternatives.as_ref();
     let more = of_three();
     let drag = found.and_then(|found| found.drag.as_ref()).map_or(f64::INFINITY, |drag| drag.gain);
     let constant = found.map_or(0.0, |found| found.constant.gain);
     if drag <= ladder::FIRST && constant <= more {
-        return Found::of(Some(free), Acting::Nothing);
+        let models = weighed(&free, None);
+        return Some(Found::of(free, Acting::Nothing, models));
     }
     let without = Some(free.followed.model.x);
-    let slowed = moved(true).map(|slowed| {
-        let gain = 0.5 * (free.followed.cost() - slowed.followed.cost());
-        (slowed, gain)
-    });
-    match slowed {
-        Some((slowed, gain)) if gain > ladder::FIRST && gain - ladder::FIRST >= constant - more => {
-            Some(Found { moved: slowed, torque: Acting::Drag, gain: Some(gain), without })
+    let slowed = moved(true);
+    let models = weighed(&free, slowed.as_ref());
+    let slowed = slowed.map(|slowed| (gain(&free, &slowed.followed), slowed));
+    Some(match slowed {
+        Some((gain, moved)) if gain > ladder::FIRST && gain - ladder::FIRST >= constant - more => {
+            Found { moved, torque: Acting::Drag, gain: Some(gain), without, models }
         }
         // one that is too large for the first order is reckoned with only where noise cannot be it, and then refused
         _ if constant > more && (constant > MOVING || is_linear_of(&free)) => {
-            Some(Found { moved: free, torque: Acting::Constant, gain: Some(constant), without })
+            Found { moved: free, torque: Acting::Constant, gain: Some(constant), without, models }
         }
-        _ => Found::of(Some(free), Acting::Nothing),
-    }
+        _ => Found::of(free, Acting::Nothing, models),
+    })
 }
 
 fn is_linear_of(moved: &Moved) -> bool {

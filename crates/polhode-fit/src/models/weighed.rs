@@ -31,15 +31,19 @@ pub(crate) fn asked(model: TorqueModel) -> f64 {
     }
 }
 
-/// The share of each model: its likelihood beside that of the others, each less the gain that the choice asks of it. Drag about the
-/// axes of the sensor has one where a drag was chosen, as only then the choice asks for it: else a turn of the sensor would change what
-/// is said of a free body.
+/// The share of each model: its likelihood beside that of the others, each less one for every coefficient. The choice itself asks for more:
+/// what it leaves out is not refuted by that. Drag about the axes of the sensor has one where a drag was chosen, as only then the choice asks
+/// for it: else a turn of the sensor would change what is said of a free body.
+///
+/// Source: H. Akaike, Biometrika 66 (1979) 237; K. P. Burnham and D. R. Anderson, Model
+/// Selection and Multimodel Inference, Springer (2002), section 2.9.
 pub(crate) fn shares(models: &[Weighed], chosen: TorqueModel) -> Vec<f64> {
     let is_asked = |one: &Weighed| {
         let drags = [TorqueModel::Drag, TorqueModel::Quadratic, TorqueModel::Drag3];
         one.model != TorqueModel::Drag3 || drags.contains(&chosen)
     };
-    let score = |one: &Weighed| if is_asked(one) { one.gain - asked(one.model) } else { f64::NEG_INFINITY };
+    let coefficients = |one: &Weighed| torque_columns(one.model).len() as f64;
+    let score = |one: &Weighed| if is_asked(one) { one.gain - coefficients(one) } else { f64::NEG_INFINITY };
     let best = models.iter().map(score).fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<f64> = models.iter().map(|one| libm::exp(score(one) - best)).collect();
     let sum: f64 = weights.iter().sum();
@@ -83,10 +87,10 @@ mod tests {
         Weighed { model, gain, x, factor: Form::identity() * deviation, held_out: None }
     }
 
-    /// Where the choice is as near as can be, both weigh the same.
+    /// A coefficient that gains one weighs as much as none.
     #[test]
-    fn models_weigh_what_the_choice_makes_of_them() {
-        let (gain, unit) = (asked(TorqueModel::Drag), 1e-6);
+    fn models_weigh_by_their_likelihood_less_their_coefficients() {
+        let (gain, unit) = (1.0, 1e-6);
         let alike = |added: Form, expected: [f64; 5]| {
             let expected = Form::from_diagonal(&Coordinates::from(expected));
             assert!((added / (unit * unit) - expected).norm() < 1e-6, "{added}");
@@ -107,8 +111,7 @@ mod tests {
     /// A model under which the record tells nothing of the tensor adds no more than the tensors of all bodies differ.
     #[test]
     fn a_model_that_leaves_the_tensor_open_adds_what_the_law_leaves() {
-        let gain = asked(TorqueModel::Constant);
-        let models = [of(TorqueModel::None, 0.0, 0.0, 1e-3), of(TorqueModel::Constant, gain, 50.0, 30.0)];
+        let models = [of(TorqueModel::None, 0.0, 0.0, 1e-3), of(TorqueModel::Constant, 3.0, 50.0, 30.0)];
         let added = spread(&models, TorqueModel::None).symmetric_eigenvalues();
         // half of 1/6, the square of the largest distance from the sphere
         assert!(added.iter().all(|variance| (0.99..1.01).contains(&(12.0 * variance))), "{added}");

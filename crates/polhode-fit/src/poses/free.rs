@@ -12,6 +12,7 @@ use crate::likelihood::growth::{Followed, follow};
 use crate::likelihood::local::{self, Node};
 use crate::likelihood::momentum::tensor_of;
 use crate::likelihood::track::Track;
+use crate::models::weighed::Weighed;
 use crate::physical::coordinates::{Coordinates, Form, coordinates, tensor};
 use crate::poses::clean::{jumps, turns};
 use crate::poses::fault::PoseFault;
@@ -28,6 +29,8 @@ pub(crate) struct Free {
     pub(crate) gain: Option<f64>,
     /// The coordinates without it.
     pub(crate) without: Option<Coordinates>,
+    /// What each torque makes of the samples.
+    pub(crate) models: Vec<Weighed>,
     /// What a torque or moving axes would bring; `None` where the samples do not determine the model.
     pub(crate) alternatives: Option<Alternatives>,
     /// Unit of rates and inverse of that of times, rad/s.
@@ -73,7 +76,7 @@ impl Free {
         let not_free = |residual| PoseFault::NotFree { residual, noise: Some(noise), turn: largest_turn };
         let first = turned(&first, &turn);
         let moved = |drag| Some(Moved::new(follow(&tracks, first, turn, levels, drag)?));
-        let Found { moved, torque, gain, without } =
+        let Found { moved, torque, gain, without, models } =
             with_torque(settings.torque, moved).ok_or_else(|| not_free(1.0))?;
         let Moved { followed, alternatives } = moved;
         let steady = steady_within_noise(&followed);
@@ -84,6 +87,7 @@ impl Free {
             torque,
             gain,
             without,
+            models,
             alternatives,
             unit,
             used,

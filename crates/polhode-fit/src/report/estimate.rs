@@ -122,7 +122,7 @@ pub struct Estimate {
     pub whiteness: Whiteness,
     /// The torque that the fit reckons with.
     pub torque: FittedTorque,
-    /// Each model of the torque beside it; empty of a likelihood on the exact motion. Where the fit has chosen the model, the deviations
+    /// Each model of the torque beside it; of a likelihood on the exact motion those that it has. Where the fit has chosen the model, the deviations
     /// of the answer include how far apart these are, in proportion to their shares.
     pub models: Vec<ModelFit>,
     /// What was estimated of the sensor, each with its prior.
@@ -141,6 +141,8 @@ pub struct Estimate {
     /// The shape that explains the record as well if its axes are left-handed, as with one axis reversed or two exchanged;
     /// `None` where wheels or known torques act, and of attitudes, which tell the hand.
     pub mirror: Option<InertiaShape>,
+    /// Standard deviations of its principal moments, ascending.
+    pub sigma_mirror: Option<[f64; 3]>,
     /// Samples that were left out because they stand out of their neighbours.
     pub spikes: Vec<Spike>,
     /// Residuals by segment.

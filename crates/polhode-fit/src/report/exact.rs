@@ -12,6 +12,7 @@ use crate::likelihood::growth::Followed;
 use crate::likelihood::profile::fall;
 use crate::likelihood::sums::{Reduced, Sums};
 use crate::likelihood::track::{COMMON, Kind, Track};
+use crate::models::weighed::spread;
 use crate::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, tensor};
 use crate::physical::face::Nearest;
 use crate::physical::failure::SolverFailure;
@@ -25,7 +26,8 @@ use crate::report::attitudes::{AlignmentFit, AttitudeFit};
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
-use crate::report::mirror::mirrored;
+use crate::report::mirror::{mirror_sigmas, mirrored};
+use crate::report::model::models;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::scale::{by_prior, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
@@ -145,7 +147,7 @@ pub(crate) fn report(
         energy_trend: None,
         whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
         torque: torque(free, information.torques.clone(), settings.torque == TorqueModel::Auto),
-        models: Vec::new(),
+        models: models(&free.models, model_of(free.torque), None),
         nuisances: Vec::new(),
         systematic: Vec::new(),
         prior: agreed,
@@ -153,6 +155,7 @@ pub(crate) fn report(
         unexplained: None,
         attitudes: has_attitudes.then(|| attitudes(repeated, settings, free, told, &information)),
         mirror: if has_attitudes { None } else { shape_of(&mirrored(&shape.tensor())).ok() },
+        sigma_mirror: (!has_attitudes).then(|| mirror_sigmas(&answer.x, &on_face)),
         spikes: Vec::new(),
         residuals,
         warnings: Vec::new(),
@@ -168,13 +171,17 @@ pub(crate) fn report(
     Ok(estimate)
 }
 
-/// The torque that was reckoned with.
-fn torque(free: &Free, coefficients: Vec<Nuisance>, is_chosen: bool) -> FittedTorque {
-    let model = match free.torque {
+fn model_of(torque: Acting) -> TorqueModel {
+    match torque {
         Acting::Nothing => TorqueModel::None,
         Acting::Drag => TorqueModel::Drag,
         Acting::Constant => TorqueModel::Constant,
-    };
+    }
+}
+
+/// The torque that was reckoned with.
+fn torque(free: &Free, coefficients: Vec<Nuisance>, is_chosen: bool) -> FittedTorque {
+    let model = model_of(free.torque);
     let ratios_without = free.without.map(|x| {
         let (moments, _) = eigen(tensor(&x));
         [moments[0] / moments[2], moments[1] / moments[2]]
@@ -216,6 +223,13 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
         torques.extend(each.map(|column| Nuisance::new(&column, drag, sigma, free.unit)));
     }
     let curvature = tensor;
+    // samples that leave a number open have no covariance, and are refused for it
+    if settings.torque == TorqueModel::Auto
+        && let Some(own) = tensor.cholesky()
+    {
+        let covariance = own.inverse() + spread(&free.models, model_of(free.torque));
+        tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
+    }
     if !free.followed.beyond.is_empty() {
         // as far as the noise of the levels is that of the walk
         let enlarged = (levels.attitude / own.attitude).max(levels.rate / own.rate);

@@ -21,10 +21,11 @@ use crate::report::answer::{Answer, of_entries, ratios, shape_of, sigmas};
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
-use crate::report::mirror::mirrored;
+use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::models;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance};
 use crate::report::nuisances::nuisances;
+use crate::report::parts::Scatter;
 use crate::report::segments::summaries;
 use crate::report::sensor::Suspect;
 use crate::report::systematic::systematic;
@@ -48,6 +49,8 @@ pub(crate) struct Facts<'a> {
     pub(crate) variance: f64,
     pub(crate) chosen: &'a Chosen,
     pub(crate) misfit: f64,
+    /// How far the parts of the record contradict each other.
+    pub(crate) scatter: Option<Scatter>,
     pub(crate) spikes: Vec<Spike>,
     /// Unit of the column of wheel momenta and torques, kg m².
     pub(crate) input: Option<f64>,
@@ -139,6 +142,7 @@ impl Facts<'_> {
             per_segment: summaries(weak, self.record, self.variance, self.rms),
             unexplained: motion.and_then(|motion| motion.unexplained(&j)),
             mirror: if self.input.is_none() { shape_of(&mirrored(&j)).ok() } else { None },
+            sigma_mirror: self.input.is_none().then(|| mirror_sigmas(&nearest.x, &on_face)),
             spikes: self.spikes.clone(),
             residuals,
             warnings: Vec::new(),
@@ -164,6 +168,7 @@ impl Facts<'_> {
             variance: self.variance,
             open,
             suspect,
+            scatter: self.scatter,
             found: self.settings.torque == TorqueModel::Auto,
             noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
             driven: self.input.is_some(),

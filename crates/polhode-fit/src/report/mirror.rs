@@ -6,7 +6,7 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::record::{Record, Segment};
 
-use crate::physical::coordinates::eigen;
+use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
 
 /// The tensor of trace 1 with the same axes and the negated ratios.
 pub(crate) fn mirrored(j: &Matrix3<f64>) -> Matrix3<f64> {
@@ -15,6 +15,16 @@ pub(crate) fn mirrored(j: &Matrix3<f64>) -> Matrix3<f64> {
     // (I₂ − I₃)/I₁ = −a and (I₃ − I₁)/I₂ = −b
     let other = Vector3::new(1.0 + b, 1.0 - a, 1.0 + a * b).map(|moment| moment.max(0.0));
     axes * Matrix3::from_diagonal(&(other / other.sum())) * axes.transpose()
+}
+
+/// Standard deviations of its principal moments, ascending; `factor` is one of the covariance of the coordinates `x` of the answer.
+pub(crate) fn mirror_sigmas(x: &Coordinates, factor: &Form) -> [f64; 3] {
+    let moments = |x: Coordinates| eigen(mirrored(&tensor(&x))).0;
+    let squares = factor.column_iter().map(|by| {
+        let apart = (moments(x + by) - moments(x - by)) * 0.5;
+        apart.component_mul(&apart)
+    });
+    squares.sum::<Vector3<f64>>().map(f64::sqrt).into()
 }
 
 /// The record with all rates reversed: the same body in axes of the other hand. `None` where wheels or torques act.
@@ -33,6 +43,7 @@ pub(crate) fn reversed(record: &Record) -> Option<Record> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physical::coordinates::basis;
 
     #[test]
     fn the_mirror_has_the_negated_ratios_and_is_its_own_inverse() {
@@ -42,5 +53,23 @@ mod tests {
         let expected = Vector3::new(1.8, 1.6, 0.52) / 3.92;
         assert!((other.diagonal() - expected).amax() < 1e-12, "{other}");
         assert!((mirrored(&other) - j).amax() < 1e-12);
+    }
+
+    #[test]
+    fn the_mirror_is_as_uncertain_as_its_derivatives_say() {
+        let moments = |e: f64| {
+            let [a, b, c] = [1.0 + e, 2.0, 2.6];
+            mirrored(&(Matrix3::from_diagonal(&Vector3::new(a, b, c)) / (a + b + c)))
+        };
+        let e = 1e-4;
+        let of = |j: Matrix3<f64>| Coordinates::from_fn(|k, _| basis(k).dot(&j));
+        let x = |e: f64| of(Matrix3::from_diagonal(&(Vector3::new(1.0 + e, 2.0, 2.6) / (5.6 + e))));
+        let mut factor = Form::zeros();
+        factor.set_column(0, &((x(e) - x(-e)) * 0.5));
+        let sigmas = mirror_sigmas(&x(0.0), &factor);
+        for (k, sigma) in sigmas.into_iter().enumerate() {
+            let own = (eigen(moments(e)).0[k] - eigen(moments(-e)).0[k]).abs() * 0.5;
+            assert!((sigma / own - 1.0).abs() < 1e-6, "{k}: {sigma:e} {own:e}");
+        }
     }
 }

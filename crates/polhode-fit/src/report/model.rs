@@ -14,7 +14,7 @@ pub struct ModelFit {
     pub model: TorqueModel,
     /// Log-likelihood less that without a torque; each coefficient adds a half where it is of no use.
     pub gain: f64,
-    /// Its share among all, each with its likelihood less the gain that the choice asks of it.
+    /// Its share among all, each with its likelihood less one for every coefficient.
     pub share: f64,
     /// Principal moments, ascending, as shares of the trace.
     pub principal: [f64; 3],

@@ -94,7 +94,9 @@ mod tests {
     /// Chances of 1e-6 and 1e-5, by the incomplete gamma function.
     #[test]
     fn quantiles_are_those_of_chi_squared() {
-        for (dof, z, exact) in [(35.0, 4.753_424, 89.947), (35.0, 4.264_891, 82.640), (5.0, 4.264_891, 30.856)] {
+        for (dof, z, exact) in
+            [(35.0, 4.753_424, 89.947), (35.0, 4.264_891, 82.640), (5.0, 4.264_891, 30.856)]
+        {
             assert!((quantile(dof, z) / exact - 1.0).abs() < 0.04, "{}", quantile(dof, z));
         }
     }

@@ -4,8 +4,8 @@ use core::fmt;
 
 use crate::error::per_cent;
 use crate::physical::constraint::ActiveConstraint;
-use crate::report::halves::Halves;
 use crate::report::nuisance::FittedTorque;
+use crate::report::parts::{Halves, Scatter};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::thresholds::likelihood::LINEAR;
 use crate::units::product::{UnitProduct, alternatives};
@@ -109,6 +109,8 @@ pub enum Warning {
     },
     /// Two parts of the record contradict each other.
     Halves(Halves),
+    /// The parts of the record scatter by more than their noise; the deviations are enlarged accordingly.
+    Scatter(Scatter),
     /// The residuals of one segment exceed those of the median segment.
     NoisySegment {
         /// Which segment of the record, from 0.
@@ -268,6 +270,12 @@ impl fmt::Display for Warning {
                 100.0 * share,
                 moments(first),
                 moments(second)
+            ),
+            Self::Scatter(Scatter { parts, chi2, dof }) => write!(
+                f,
+                "the tensors of {parts} parts of the record, each by itself, scatter by more than their noise (chi squared {chi2:.0} of {dof}): \
+                 a torque or an error of the sensor that is no part of the fit, or a tensor that changes; deviations are enlarged by {:.1}",
+                (chi2 / *dof as f64).sqrt()
             ),
             Self::NoisySegment { segment, start, times } => write!(
                 f,

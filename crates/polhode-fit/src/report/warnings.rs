@@ -8,7 +8,7 @@ use polhode::record::Record;
 
 use crate::report::attitudes::AttitudeFit;
 use crate::report::estimate::Estimate;
-use crate::report::halves::halves;
+use crate::report::parts::{Scatter, halves};
 use crate::report::sensor::Suspect;
 use crate::report::torque_free::InvariantTrend;
 use crate::report::warning::Warning;
@@ -28,6 +28,8 @@ pub(super) struct Grounds<'a> {
     pub(super) open: Option<&'a Others>,
     /// Errors of the sensor that explain the record better.
     pub(super) suspect: Option<Suspect>,
+    /// How far the parts of the record contradict each other.
+    pub(super) scatter: Option<Scatter>,
     /// Whether the fit has found the torque by itself.
     pub(super) found: bool,
     /// The same of torque noise.
@@ -95,6 +97,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
         list.push(Warning::Sensor { what, size, unit, gain });
     }
     list.extend(halves(weak, grounds.variance * misfit.max(1.0)).map(Warning::Halves));
+    list.extend(grounds.scatter.map(Warning::Scatter));
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);
     if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {

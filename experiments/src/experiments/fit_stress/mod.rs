@@ -101,9 +101,8 @@ fn trial(case: &Case, shorter: f64, stream: u64) -> Result<Trial, Error> {
             }
             let mirror = estimate.mirror.as_ref().map(|mirror| mirror.principal_moments());
             let trace: f64 = case.moments.iter().sum();
-            let is_mirror = mirror.is_some_and(|mirror| {
-                (0..3)
-                    .all(|k| (mirror[k] - case.moments[k] / trace).abs() < 5.0 * estimate.sigma_principal[k])
+            let is_mirror = mirror.zip(estimate.sigma_mirror).is_some_and(|(mirror, sigmas)| {
+                (0..3).all(|k| (mirror[k] - case.moments[k] / trace).abs() < 5.0 * sigmas[k])
             });
             Verdict::Answered(Answer {
                 over_bound: None,

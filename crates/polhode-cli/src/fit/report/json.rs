@@ -66,6 +66,7 @@ fn answer(e: &Estimate) -> Value {
         "energy_drift": e.energy_trend.map(drift),
         "unexplained": e.unexplained,
         "mirror": e.mirror.as_ref().map(|mirror| square(&mirror.tensor())),
+        "sigma_mirror": e.sigma_mirror,
         "whiteness": { "correlation": e.whiteness.correlation, "sigma": e.whiteness.sigma },
     })
 }

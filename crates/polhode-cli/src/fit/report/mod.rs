@@ -225,8 +225,9 @@ pub(super) fn unexplained(e: &Estimate) -> Option<String> {
 
 /// The moments that left-handed axes would mean, in one sentence.
 pub(super) fn mirror(e: &Estimate) -> Option<String> {
-    let [a, b, c] = e.mirror.as_ref()?.principal_moments().map(|moment| format!("{moment:.4}"));
-    Some(format!("if the axes are left-handed: I1 : I2 : I3 = {a} : {b} : {c} (--axes)"))
+    let (moments, sigmas) = (e.mirror.as_ref()?.principal_moments(), e.sigma_mirror?);
+    let [a, b, c] = [0, 1, 2].map(|k| concise(moments[k], sigmas[k]));
+    Some(format!("if the axes are left-handed (--axes): I1 : I2 : I3 = {a} : {b} : {c}"))
 }
 
 /// The models of the torque beside each other: name, gain of log-likelihood, share, both ratios with their deviations, what free

@@ -61,7 +61,8 @@ pub(super) fn rows(e: &Estimate) -> Table {
     if let Some(mirror) = &e.mirror {
         // the moments if the axes are left-handed
         for (k, moment) in mirror.principal_moments().into_iter().enumerate() {
-            table.push(row![format!("mirror_principal_{}", k + 1), moment, None::<f64>]);
+            let sigma = e.sigma_mirror.map(|sigmas| sigmas[k]);
+            table.push(row![format!("mirror_principal_{}", k + 1), moment, sigma]);
         }
     }
     table

@@ -77,7 +77,7 @@ fn answer(e: &Estimate) -> Vec<String> {
         if e.spikes.is_empty() { String::new() } else { format!(", spikes left out: {}", e.spikes.len()) }
     ));
     lines.extend(unexplained(e));
-    lines.extend(mirror(e));
+    lines.extend(mirror(e).map(|line| line.replacen(": I1", ":\n  I1", 1)));
     lines
 }
 
