@@ -19,11 +19,11 @@ pub(crate) struct Estimate {
     pub(crate) warnings: Vec<String>,
 }
 
-fn six<'py>(py: Python<'py>, m: &SMatrix<f64, 6, 6>) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn six<'py>(py: Python<'py>, m: &SMatrix<f64, 6, 6>) -> PyResult<Bound<'py, PyAny>> {
     array(py, m.transpose().as_slice().to_vec(), &[6, 6])
 }
 
-fn named<'py>(py: Python<'py>, all: &[Nuisance]) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn named<'py>(py: Python<'py>, all: &[Nuisance]) -> PyResult<Bound<'py, PyDict>> {
     let found = PyDict::new(py);
     for one in all {
         let entry = PyDict::new(py);
@@ -165,6 +165,12 @@ impl Estimate {
         self.found.mirror.as_ref().map(|mirror| matrix(py, &mirror.tensor())).transpose()
     }
 
+    /// Standard deviations of its principal moments, ascending.
+    #[getter]
+    fn sigma_mirror<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.found.sigma_mirror.map(|sigmas| array(py, sigmas.to_vec(), &[3])).transpose()
+    }
+
     /// The torque that the fit reckons with: a dict by coefficient of `value`, `sigma`, `unit`, `prior`.
     #[getter]
     fn torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -172,7 +178,7 @@ impl Estimate {
     }
 
     /// What each model of the torque makes of the record: a dict by model of `gain` (log-likelihood less that without a torque), `share`,
-    /// `principal`, `sigma_principal`, `unexplained` and `held_out`; empty of a fit to attitudes.
+    /// `principal`, `sigma_principal`, `unexplained` and `held_out`; of a fit to attitudes those of no torque, drag and a small constant torque.
     #[getter]
     fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = PyDict::new(py);

@@ -116,14 +116,7 @@ pub(crate) fn fitted(
         .with_check_units(!trust_units)
         .with_torque(model(torque)?)
         .with_quantum(sigma("quantum", quantum)?)
-        .with_sensor(
-            SensorPriors::default()
-                .with_offset(sigma("gyro_bias", gyro_bias)?)
-                .with_scale(sigma("gyro_scale", gyro_scale)?)
-                .with_axis_scales(sigma("gyro_axis_scales", gyro_axis_scales)?)
-                .with_misalignment(sigma("gyro_misalignment", gyro_misalignment)?)
-                .with_skew(sigma("gyro_skew", gyro_skew)?),
-        );
+        .with_sensor(priors([gyro_bias, gyro_scale, gyro_axis_scales, gyro_misalignment, gyro_skew])?);
     let (found, spans, is_part) = aside(py, move |_| measured.fitted(&settings))?.map_err(refused)?;
     let mut warnings: Vec<String> = found.warnings.iter().map(ToString::to_string).collect();
     if is_part {
@@ -135,6 +128,22 @@ pub(crate) fn fitted(
     }
     warnings.iter().try_for_each(|warning| warn(py, warning))?;
     Ok(Estimate { found, flights: spans, warnings })
+}
+
+/// Errors of the sensor by their standard deviations: offset, rad/s, scale, scales of the axes, misalignment, rad, and skew, s.
+pub(crate) fn priors(sigmas: [Option<f64>; 5]) -> PyResult<SensorPriors> {
+    let names = ["gyro_bias", "gyro_scale", "gyro_axis_scales", "gyro_misalignment", "gyro_skew"];
+    let mut checked = [None; 5];
+    for (k, sigma) in sigmas.into_iter().enumerate() {
+        checked[k] = sigma.map(|value| positive(names[k], value)).transpose()?;
+    }
+    let [bias, scale, axis_scales, misalignment, skew] = checked;
+    Ok(SensorPriors::default()
+        .with_offset(bias)
+        .with_scale(scale)
+        .with_axis_scales(axis_scales)
+        .with_misalignment(misalignment)
+        .with_skew(skew))
 }
 
 /// What was measured.
@@ -212,7 +221,7 @@ impl Measured {
     }
 }
 
-fn model(torque: &str) -> PyResult<TorqueModel> {
+pub(crate) fn model(torque: &str) -> PyResult<TorqueModel> {
     Ok(match torque {
         "none" => TorqueModel::None,
         "drag" => TorqueModel::Drag,
@@ -229,7 +238,7 @@ fn model(torque: &str) -> PyResult<TorqueModel> {
 }
 
 /// Times and rates, a record, or several of one body.
-fn recorded(
+pub(crate) fn recorded(
     t: &Bound<'_, PyAny>,
     rates: Option<&Bound<'_, PyAny>>,
     wheel: Option<&Bound<'_, PyAny>>,

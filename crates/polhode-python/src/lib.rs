@@ -9,6 +9,7 @@ mod attitudes;
 mod audits;
 mod bodies;
 mod calm;
+mod carriers;
 mod columns;
 mod derivatives;
 mod ensembles;
@@ -46,6 +47,8 @@ mod _polhode {
     use super::audits::{Verdict, verdict_on};
     #[pymodule_export]
     use super::bodies::{Body, catalogue_names, named_body};
+    #[pymodule_export]
+    use super::carriers::{CarrierEstimate, MeasuredBody, fitted_carrier};
     #[pymodule_export]
     use super::ensembles::Ensemble;
     #[pymodule_export]

@@ -130,7 +130,10 @@ impl Fit {
         let figure = figure.transpose()?;
         memory::check_files(&self.files(), 3)?;
         if self.carrier.is_given() {
-            return output.write_whole(&self.joint()?);
+            let format = Format::of(self.format, self.out.as_deref())?;
+            let wheel = (self.wheel.momentum(), self.wheel.calibrated().is_some());
+            let (settings, wanted) = (self.settings()?, carrier::Wanted { output, format, page });
+            return carrier::run(&self.carrier, &self.data, &self.reading, wheel, &settings, wanted);
         }
         let chosen = self.poses.chosen(&self.data, &self.reading);
         let read = match chosen {
@@ -251,13 +254,6 @@ impl Fit {
             .with_torque(self.torque.into())
             .with_quantum(self.sensor.quantum())
             .with_sensor(self.sensor.priors()))
-    }
-
-    /// Carrier, proof body and object as one fit.
-    fn joint(&self) -> Result<String, Error> {
-        let format = Format::of(self.format, self.out.as_deref())?;
-        let wheel = (self.wheel.momentum(), self.wheel.calibrated().is_some());
-        carrier::report(&self.carrier, &self.data, &self.reading, wheel, &self.settings()?, format)
     }
 
     /// Every file that is read, in the order in which --window counts them.

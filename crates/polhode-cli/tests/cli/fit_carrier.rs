@@ -64,12 +64,32 @@ fn carrier_and_object_are_absolute_by_a_proof_body() {
     assert_eq!(found["records"].as_array().unwrap().len(), 4);
     assert!(found["chi2"].as_f64().unwrap() < 34.0, "{}", found["chi2"]); // 1e-4 of eight degrees
 
+    // the bodies of the answer are bodies of every command
+    let file = scratch.file("joint.json", found.to_string());
+    for of in ["carrier", "object_itself"] {
+        let entry = |(i, k): (usize, usize)| found[of]["inertia"][i][k].to_string();
+        let entries = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(entry).join(",");
+        let motion = |body: &str| output(&format!("motion {body} --omega 1,2,3 --format json"));
+        assert_eq!(motion(&format!("--body {file}:{of}")), motion(&format!("--inertia={entries}")));
+    }
+    refused(
+        &format!("motion --body {file} --omega 1,2,3"),
+        &["has 3 bodies: carrier, object, object_itself"],
+    );
+
     let text = run(&format!("{line} --format table")).out;
     assert!(text.starts_with("carrier: principal moments (kg m^2, 95 %)\n  I1  ("), "{text}");
     for words in ["object about its centre of mass", "size by the proof body", "of 8 degrees of freedom"] {
         assert!(text.contains(words), "{text}");
     }
     assert!(text.lines().all(|line| line.len() <= 80), "{text}");
+    let page = scratch.0.join("joint.html").display().to_string();
+    output(&format!("{line} --report {page}"));
+    let page = std::fs::read_to_string(page).unwrap();
+    for words in ["Object about its centre of mass: moments (", "agreement of the records: chi^2", "Records"]
+    {
+        assert!(page.contains(words), "{words}");
+    }
     let rows = run(&format!("{line} --format csv")).out;
     assert!(rows.contains("\ncarrier_xx,0.0") && rows.contains("\nobject_itself_principal_1,0.0"), "{rows}");
 

@@ -9,18 +9,25 @@ use super::Named;
 use crate::error::{Error, warn};
 use crate::read;
 
+/// The bodies of a joint fit of carrier and object.
+const JOINT: [&str; 3] = ["carrier", "object", "object_itself"];
+
 /// Every body of a file.
 pub(super) fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
     let text = read(path, "name a JSON file of polhode inertia or polhode fit")?;
     let refused =
         |error: &dyn std::fmt::Display| Error::Input(format!("{flag}: {}: {error}", path.display()));
     let value: Value = serde_json::from_str(&text).map_err(|error| refused(&error))?;
-    let objects = match value {
-        Value::Array(objects) => objects,
-        object => vec![object],
+    let named = |object: Value| (object["name"].as_str().unwrap_or_default().to_string(), object);
+    let objects: Vec<(String, Value)> = match value {
+        Value::Array(objects) => objects.into_iter().map(named).collect(),
+        Value::Object(mut joint) if joint.get("carrier").is_some_and(Value::is_object) => {
+            let own = |name: &str| Some((name.to_string(), joint.remove(name).filter(Value::is_object)?));
+            JOINT.into_iter().filter_map(own).collect()
+        }
+        object => vec![named(object)],
     };
-    let each = objects.into_iter().map(|object| {
-        let name = object["name"].as_str().unwrap_or_default().to_string();
+    let each = objects.into_iter().map(|(name, object)| {
         let matrix = |key: &str| serde_json::from_value::<[[f64; 3]; 3]>(object[key].clone()).ok();
         let entries = match (matrix("inertia"), matrix("shape")) {
             (Some(entries), _) => entries,

@@ -1,5 +1,7 @@
 //! What a joint fit of carrier, proof body and object tells.
 
+use core::fmt;
+
 use nalgebra::{DMatrix, Matrix3, SMatrix, UnitQuaternion};
 
 use crate::carrier::records::Attached;
@@ -15,6 +17,15 @@ pub enum SizeSource {
     Inputs,
     /// The proof body.
     Proof,
+}
+
+impl fmt::Display for SizeSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            SizeSource::Inputs => "wheels or torques",
+            SizeSource::Proof => "proof body",
+        })
+    }
 }
 
 /// How well a source tells the size by itself.

@@ -52,6 +52,24 @@ impl ProofBody {
         ProofBody::adding(body.tensor() + term)
     }
 
+    /// The same on a carrier that holds an object of mass `object.0`, kg, whose centre of mass is at `object.1`, m: both places are counted
+    /// from the centre of mass of the carrier alone.
+    ///
+    /// # Errors
+    /// A mass that is not positive, a place that is not finite.
+    pub fn attached_beside(
+        body: &MassProperties,
+        carrier_mass: f64,
+        object: (f64, Vector3<f64>),
+    ) -> Result<ProofBody, CarrierError> {
+        let (mass, place) = object;
+        // the object is checked as what is attached to the carrier
+        parallel_axis(mass, place, carrier_mass)?;
+        let centre = place / (1.0 + carrier_mass / mass);
+        let from_centre = body.moved(-centre).map_err(CarrierError::Proof)?;
+        ProofBody::attached(&from_centre, carrier_mass + mass)
+    }
+
     /// With independent standard deviations of the entries ij of what it adds, `share` √(D_ii D_jj); without it they are exact. Those of
     /// different records are independent, too.
     #[must_use]

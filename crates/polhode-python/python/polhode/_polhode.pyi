@@ -472,6 +472,8 @@ class Estimate:
     @property
     def mirror(self) -> Floats | None: ...
     @property
+    def sigma_mirror(self) -> Floats | None: ...
+    @property
     def torque(self) -> dict[str, dict[str, Any]]: ...
     @property
     def models(self) -> dict[str, dict[str, Any]]: ...
@@ -512,6 +514,68 @@ def fit(
     prior_shape: bool = False,
     trust_units: bool = False,
 ) -> Estimate: ...
+
+class MeasuredBody:
+    @property
+    def tensor(self) -> Floats: ...
+    @property
+    def covariance(self) -> Floats: ...
+    @property
+    def principal(self) -> Floats: ...
+    @property
+    def sigma_principal(self) -> Floats: ...
+    @property
+    def axes(self) -> Floats: ...
+
+class CarrierEstimate:
+    @property
+    def carrier(self) -> MeasuredBody: ...
+    @property
+    def object(self) -> MeasuredBody | None: ...
+    @property
+    def object_itself(self) -> MeasuredBody | None: ...
+    @property
+    def wheel(self) -> tuple[float, float] | None: ...
+    @property
+    def covariance(self) -> Floats: ...
+    @property
+    def sizes(self) -> dict[str, float]: ...
+    @property
+    def agreement(self) -> tuple[float, int]: ...
+    @property
+    def pull(self) -> float: ...
+    @property
+    def nuisances(self) -> dict[str, dict[str, Any]]: ...
+    @property
+    def records(self) -> dict[str, Estimate]: ...
+    @property
+    def warnings(self) -> list[str]: ...
+
+Tumble: TypeAlias = Record | Sequence[Record] | tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, ArrayLike]
+
+def fit_carrier(
+    carrier: Tumble,
+    *,
+    proof: Tumble | None = None,
+    object: Tumble | None = None,
+    object_proof: Tumble | None = None,
+    proof_body: BodyLike | None = None,
+    proof_sigma: float | None = None,
+    carrier_mass: float | None = None,
+    object_mass: float | None = None,
+    object_at: ArrayLike | None = None,
+    unknown_wheel: bool = False,
+    torque: Literal["none", "drag", "drag3", "quadratic", "constant", "auto"] = "auto",
+    radius: float | None = None,
+    noise: float | None = None,
+    gyro_bias: float | None = None,
+    gyro_scale: float | None = None,
+    gyro_axis_scales: float | None = None,
+    gyro_misalignment: float | None = None,
+    gyro_skew: float | None = None,
+    quantum: float | None = None,
+    trust_units: bool = False,
+) -> CarrierEstimate: ...
 
 class MassProperties:
     def __new__(

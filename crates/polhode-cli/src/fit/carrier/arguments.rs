@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::MassProperties;
 use polhode_files::error::Error;
 use polhode_files::numbers::{list, numbers, positive};
-use polhode_fit::ProofBody;
+use polhode_fit::{CarrierError, ProofBody};
 
 use crate::flags::body::named;
 
@@ -19,7 +19,7 @@ pub(crate) struct CarrierArguments {
     /// DATA and --object-proof, in this order
     #[arg(long, value_name = "FILE.csv", help_heading = "Carrier", conflicts_with_all = [
         "at_least", "at_most", "body", "trace", "momentum", "twice_energy", "moment", "prior_inertia", "prior_shape",
-        "residuals", "figure", "report",
+        "residuals", "figure",
     ])]
     carrier: Vec<PathBuf>,
     /// Record of carrier and proof body: it gives the size
@@ -77,23 +77,25 @@ impl CarrierArguments {
 
     /// The proof body on the carrier.
     pub(super) fn proof_body(&self) -> Result<Option<ProofBody>, Error> {
-        self.proof_at_centre(Vector3::zeros(), 0.0)
+        self.proof(ProofBody::attached)
     }
 
-    /// The same on carrier and object, counted from their common centre of mass.
+    /// The same on carrier and object.
     pub(super) fn proof_body_beside_object(&self) -> Result<Option<ProofBody>, Error> {
-        match (self.object_proof.is_empty(), self.proof_at, self.object_at, self.carrier_mass) {
-            (false, Some(_), None, _) => Err(Error::input(
+        if self.object_proof.is_empty() {
+            return Ok(None);
+        }
+        match (self.proof_at, self.object_place()?) {
+            (Some(_), None) => Err(Error::input(
                 "--object-proof",
                 "",
                 "the proof body is counted from the common centre of mass of carrier and object, which nothing gives",
                 "give place and mass of the object by --object-at",
             )),
-            (false, Some(_), Some([x, y, z, mass]), Some(carrier)) => {
-                let share = mass / (mass + carrier);
-                self.proof_at_centre(Vector3::new(x, y, z) * share, mass)
+            (_, Some((mass, place, _))) => {
+                self.proof(|body, carrier| ProofBody::attached_beside(body, carrier, (mass, place)))
             }
-            _ => self.proof_body(),
+            (None, None) => self.proof_body(),
         }
     }
 
@@ -105,17 +107,19 @@ impl CarrierArguments {
             .transpose()
     }
 
-    /// The proof body on a carrier with further mass, whose common centre of mass is at `centre`.
-    fn proof_at_centre(&self, centre: Vector3<f64>, further: f64) -> Result<Option<ProofBody>, Error> {
+    /// The proof body, placed by `attach`, which takes the mass of the carrier, where a place is given.
+    fn proof(
+        &self,
+        attach: impl Fn(&MassProperties, f64) -> Result<ProofBody, CarrierError>,
+    ) -> Result<Option<ProofBody>, Error> {
         let Some(text) = &self.proof_body else { return Ok(None) };
         let tensor = own(text)?;
         let refused = |error: String| Error::Input(format!("--proof-body: {error}"));
         let body = match self.proof_at.zip(self.carrier_mass) {
             None => ProofBody::adding(tensor),
             Some(([x, y, z, m], carrier)) => {
-                let place = Vector3::new(x, y, z) - centre;
-                let body = MassProperties::new(mass("--proof-at", m)?, place, tensor);
-                ProofBody::attached(&body.map_err(|error| refused(error.to_string()))?, carrier + further)
+                let body = MassProperties::new(mass("--proof-at", m)?, Vector3::new(x, y, z), tensor);
+                attach(&body.map_err(|error| refused(error.to_string()))?, carrier)
             }
         };
         Ok(Some(body.map_err(|error| refused(error.to_string()))?.with_deviation(self.proof_sigma)))

@@ -1,6 +1,7 @@
 //! Carrier, proof body and object as one joint fit.
 
 mod arguments;
+mod page;
 mod report;
 
 use std::path::PathBuf;
@@ -8,6 +9,8 @@ use std::path::PathBuf;
 use nalgebra::Vector3;
 use polhode_files::error::{Error, warn};
 use polhode_fit::{Attached, CarrierError, CarrierRecords, FitError, Settings, fit_carrier};
+use polhode_pages::document::Form;
+use polhode_pages::output::Output;
 use polhode_pages::table::Format;
 
 use super::flights::Spans;
@@ -16,16 +19,59 @@ use super::report::unused;
 use crate::flags::record::RecordArguments;
 pub(super) use arguments::CarrierArguments;
 
-/// The answer as text, rows or JSON; `data` are the records of the object, `wheel` the momentum of a wheel per rad/s of its speed and
-/// whether its inertia is to be found.
-pub(super) fn report(
+/// Where an answer goes.
+pub(super) struct Wanted {
+    pub(super) output: Output,
+    pub(super) format: Format,
+    pub(super) page: Option<(Output, Form)>,
+}
+
+/// Fits all records, and writes the answer as text, rows or JSON, and as a page; `data` are the records of the object, `wheel` the
+/// momentum of a wheel per rad/s of its speed and whether its inertia is to be found.
+pub(super) fn run(
+    arguments: &CarrierArguments,
+    data: &[PathBuf],
+    reading: &RecordArguments,
+    wheel: (Option<Vector3<f64>>, bool),
+    settings: &Settings,
+    wanted: Wanted,
+) -> Result<(), Error> {
+    let Wanted { output, format, page } = wanted;
+    let found = records(arguments, data, reading, wheel, settings)?
+        .and_then(|records| fit_carrier(&records, settings));
+    let estimate = match found {
+        Ok(estimate) => estimate,
+        Err(error) => {
+            let (names, reason) = (named(&about(arguments, data, &error)), reason(&error));
+            if let Some((file, form)) = page {
+                file.write_whole(&page::refused(&reason, &names, form))?;
+            }
+            let message = format!("{names}: {reason}");
+            return Err(if is_failure(&error) { Error::Failed(message) } else { Error::Input(message) });
+        }
+    };
+    for (attached, of_record) in &estimate.records {
+        of_record.warnings.iter().for_each(|warning| warn(&format!("{attached}: {warning}")));
+    }
+    estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
+    output.write_whole(&report::report(&estimate, format))?;
+    match page {
+        Some((file, form)) => {
+            let names = named(&arguments.files(data).concat());
+            file.write_whole(&page::estimated(&estimate, &names, form))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The records of all files, with what was attached in each.
+fn records(
     arguments: &CarrierArguments,
     data: &[PathBuf],
     reading: &RecordArguments,
     (momentum, finds_wheel): (Option<Vector3<f64>>, bool),
     settings: &Settings,
-    format: Format,
-) -> Result<String, Error> {
+) -> Result<Result<CarrierRecords, CarrierError>, Error> {
     let files = arguments.files(data);
     let given = files.map(|files| !files.is_empty());
     let [mut alone, mut proof, mut object, mut both] = reading.records(files, momentum)?;
@@ -41,10 +87,12 @@ pub(super) fn report(
             warn(&format!("{attached}: columns not used: {}", names.join(", ")));
         }
         if reading.is_whole() {
-            let found = Spans::find(record, settings).map_err(|error| {
-                refused(arguments, data, CarrierError::Record { attached, error: Box::new(error) })
-            })?;
-            found.remark().into_iter().for_each(|remark| warn(&format!("{attached}: {remark}")));
+            match Spans::find(record, settings) {
+                Ok(found) => {
+                    found.remark().into_iter().for_each(|remark| warn(&format!("{attached}: {remark}")));
+                }
+                Err(error) => return Ok(Err(CarrierError::Record { attached, error: Box::new(error) })),
+            }
         }
     }
     let mut records = CarrierRecords::new(alone);
@@ -54,37 +102,35 @@ pub(super) fn report(
     if given[2] {
         records = records.with_object(object);
     }
-    if let Some(body) = arguments.proof_body_beside_object()?.filter(|_| given[3]) {
+    if let Some(body) = arguments.proof_body_beside_object()? {
         records = records.with_object_and_proof(both, body);
     }
     if let Some((mass, place, carrier)) = arguments.object_place()? {
         records =
             records.with_object_at(mass, place, carrier).map_err(|error| Error::Input(error.to_string()))?;
     }
-    if finds_wheel {
-        records = records.with_unknown_wheel();
-    }
-    let estimate = fit_carrier(&records, settings).map_err(|error| refused(arguments, data, error))?;
-    for (attached, of_record) in &estimate.records {
-        of_record.warnings.iter().for_each(|warning| warn(&format!("{attached}: {warning}")));
-    }
-    estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
-    Ok(report::report(&estimate, format))
+    Ok(Ok(if finds_wheel { records.with_unknown_wheel() } else { records }))
 }
 
-/// A refusal with the files it is about.
-fn refused(arguments: &CarrierArguments, data: &[PathBuf], error: CarrierError) -> Error {
+fn named(files: &[PathBuf]) -> String {
+    files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+}
+
+/// The files that a refusal is about.
+fn about(arguments: &CarrierArguments, data: &[PathBuf], error: &CarrierError) -> Vec<PathBuf> {
     let [alone, proof, object, both] = arguments.files(data);
-    let files = match &error {
+    match error {
         CarrierError::Record { attached: Attached::Nothing, .. } => alone.to_vec(),
         CarrierError::Record { attached: Attached::Proof, .. } => proof.to_vec(),
         CarrierError::Record { attached: Attached::Object, .. } => object.to_vec(),
         CarrierError::Record { .. } => both.to_vec(),
         _ => [alone, proof, object, both].concat(),
-    };
-    let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
-    let names = names.join(", ");
-    let failed = match &error {
+    }
+}
+
+/// Whether the records were tried, and do not tell.
+fn is_failure(error: &CarrierError) -> bool {
+    match error {
         CarrierError::Record { error, .. } => refusal::facts(error).1,
         CarrierError::TooLight { .. }
         | CarrierError::Opposite { .. }
@@ -93,8 +139,12 @@ fn refused(arguments: &CarrierArguments, data: &[PathBuf], error: CarrierError) 
         | CarrierError::Unsettled { .. }
         | CarrierError::Solver(_) => true,
         _ => false,
-    };
-    let reason = match &error {
+    }
+}
+
+/// A refusal in words, with the flags that help.
+fn reason(error: &CarrierError) -> String {
+    match error {
         CarrierError::Record { attached, error } => {
             let of: &FitError = error;
             format!("{attached}: {}", refusal::reason(of))
@@ -104,7 +154,5 @@ fn refused(arguments: &CarrierArguments, data: &[PathBuf], error: CarrierError) 
         }
         CarrierError::ObjectSize { .. } => format!("{error} (--object-proof)"),
         _ => error.to_string(),
-    };
-    let message = format!("{names}: {reason}");
-    if failed { Error::Failed(message) } else { Error::Input(message) }
+    }
 }

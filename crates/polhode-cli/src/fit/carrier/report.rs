@@ -1,7 +1,7 @@
 //! A joint fit as text, as rows and as JSON.
 
 use nalgebra::Matrix3;
-use polhode_fit::{CarrierEstimate, MeasuredBody, Nuisance, SizeSource};
+use polhode_fit::{CarrierEstimate, MeasuredBody, Nuisance, Size};
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Map, Value, json};
 
@@ -16,7 +16,7 @@ pub(super) fn report(e: &CarrierEstimate, format: Format) -> String {
 }
 
 /// The bodies that the fit tells: name of the rows, words, tensor.
-fn bodies(e: &CarrierEstimate) -> Vec<(&'static str, &'static str, &MeasuredBody)> {
+pub(super) fn bodies(e: &CarrierEstimate) -> Vec<(&'static str, &'static str, &MeasuredBody)> {
     let added = if e.object_itself.is_some() { "object, as it adds to the carrier" } else { "object" };
     let all = [
         ("carrier", "carrier", Some(&e.carrier)),
@@ -26,10 +26,21 @@ fn bodies(e: &CarrierEstimate) -> Vec<(&'static str, &'static str, &MeasuredBody
     all.into_iter().filter_map(|(name, words, body)| Some((name, words, body?))).collect()
 }
 
-fn source(of: SizeSource) -> &'static str {
-    match of {
-        SizeSource::Inputs => "wheels or torques",
-        _ => "proof body",
+/// What gives the size, and how well each does by itself.
+pub(super) fn sizes(e: &CarrierEstimate) -> Vec<String> {
+    let line = |size: &Size| {
+        let relative = 100.0 * size.relative;
+        format!("size by the {}: alone to {relative:.2} % (one deviation)", size.source)
+    };
+    e.sizes.iter().map(line).collect()
+}
+
+/// How the records agree.
+pub(super) fn agreement(e: &CarrierEstimate) -> String {
+    let (chi2, dof) = (e.agreement.chi2, e.agreement.dof);
+    match dof {
+        0 => "agreement: nothing that the records could contradict".into(),
+        _ => format!("agreement of the records: chi^2 {chi2:.1} of {dof} degrees of freedom"),
     }
 }
 
@@ -48,15 +59,8 @@ fn text(e: &CarrierEstimate) -> String {
     if let Some(wheel) = e.wheel {
         lines.push(format!("wheel inertia: {} kg m^2 (95 %)", scaled(wheel.inertia, SURE * wheel.sigma)));
     }
-    for size in &e.sizes {
-        let relative = 100.0 * size.relative;
-        lines.push(format!("size by the {}: alone to {relative:.2} % (one deviation)", source(size.source)));
-    }
-    let (chi2, dof) = (e.agreement.chi2, e.agreement.dof);
-    lines.push(match dof {
-        0 => "agreement: nothing that the records could contradict".into(),
-        _ => format!("agreement of the records: chi^2 {chi2:.1} of {dof} degrees of freedom"),
-    });
+    lines.extend(sizes(e));
+    lines.push(agreement(e));
     for (_, words, body) in bodies(e) {
         lines.push(tensor(&format!("{words} (kg m^2, sensor axes)"), &body.tensor));
         let deviations = Matrix3::from_fn(|i, k| body.covariance[(place(i, k), place(i, k))].sqrt());
@@ -134,7 +138,7 @@ fn object(e: &CarrierEstimate) -> Value {
     let more = json!({
         "covariance": e.covariance.row_iter().map(|r| r.iter().copied().collect::<Value>()).collect::<Value>(),
         "sizes": e.sizes.iter()
-            .map(|size| json!({ "source": source(size.source), "relative_sigma": size.relative })).collect::<Value>(),
+            .map(|size| json!({ "source": size.source.to_string(), "relative_sigma": size.relative })).collect::<Value>(),
         "chi2": e.agreement.chi2,
         "dof": e.agreement.dof,
         "pull": e.pull,

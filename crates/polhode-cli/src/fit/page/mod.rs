@@ -163,7 +163,7 @@ fn correlations(e: &Estimate) -> [Block; 2] {
     [Block::Paragraph(about), Block::Table(head, rows.collect())]
 }
 
-fn numbers(of: &[Nuisance]) -> Block {
+pub(in crate::fit) fn numbers(of: &[Nuisance]) -> Block {
     let head = ["", "value", "unit", "prior"].map(String::from).to_vec();
     let row = |n: &Nuisance| {
         let prior = n.prior.map_or("–".into(), |prior| format!("± {prior}"));

@@ -1,0 +1,315 @@
+//! Carrier, proof body and object as one joint fit.
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::{inertia as masses, record};
+use polhode_fit::{self as fits, CarrierRecords, ProofBody, Settings, fit_carrier};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::{Numbers, array, matrix};
+use crate::bodies::inertia;
+use crate::calm::aside;
+use crate::error::{of, refused, warn};
+use crate::estimates::{Estimate, named, six};
+use crate::fits::{model, priors, recorded};
+use crate::masses::MassProperties;
+use crate::units::positive;
+
+/// An absolute tensor and how far to trust it, kg m^2, sensor axes.
+#[pyclass(frozen, module = "polhode")]
+pub(crate) struct MeasuredBody(fits::MeasuredBody);
+
+#[pymethods]
+impl MeasuredBody {
+    /// The tensor.
+    #[getter]
+    fn tensor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        matrix(py, &self.0.tensor)
+    }
+
+    /// Covariance of its entries xx, yy, zz, xy, xz, yz, (kg m^2)^2.
+    #[getter]
+    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        six(py, &self.0.covariance)
+    }
+
+    /// Principal moments, ascending.
+    #[getter]
+    fn principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.0.principal.to_vec(), &[3])
+    }
+
+    /// Their standard deviations.
+    #[getter]
+    fn sigma_principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.0.sigma_principal.to_vec(), &[3])
+    }
+
+    /// The rotation from principal axes to those of the sensor, w, x, y, z.
+    #[getter]
+    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let q = self.0.axes.quaternion();
+        array(py, vec![q.w, q.i, q.j, q.k], &[4])
+    }
+
+    fn __repr__(&self) -> String {
+        let of = |k: usize| format!("{:.6e} +- {:.1e}", self.0.principal[k], self.0.sigma_principal[k]);
+        format!("MeasuredBody(moments {}, {}, {} kg m^2)", of(0), of(1), of(2))
+    }
+}
+
+/// What a joint fit of carrier, proof body and object tells.
+#[pyclass(frozen, module = "polhode")]
+pub(crate) struct CarrierEstimate {
+    found: fits::CarrierEstimate,
+    warnings: Vec<String>,
+}
+
+#[pymethods]
+impl CarrierEstimate {
+    /// The carrier, about its centre of mass.
+    #[getter]
+    fn carrier(&self) -> MeasuredBody {
+        MeasuredBody(self.found.carrier.clone())
+    }
+
+    /// What the object adds to it: its tensor with the parallel-axis term; `None` without an object.
+    #[getter]
+    fn object(&self) -> Option<MeasuredBody> {
+        self.found.object.clone().map(MeasuredBody)
+    }
+
+    /// The object about its own centre of mass, where its mass and place were given.
+    #[getter]
+    fn object_itself(&self) -> Option<MeasuredBody> {
+        self.found.object_itself.clone().map(MeasuredBody)
+    }
+
+    /// Moment of inertia of the wheel about its axis and its standard deviation, kg m^2, where it was to be found.
+    #[getter]
+    fn wheel(&self) -> Option<(f64, f64)> {
+        self.found.wheel.map(|wheel| (wheel.inertia, wheel.sigma))
+    }
+
+    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the carrier, those of what the object adds, and the wheel, (kg m^2)^2.
+    #[getter]
+    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let m = &self.found.covariance;
+        array(py, m.transpose().as_slice().to_vec(), &[m.nrows(), m.ncols()])
+    }
+
+    /// What gives the size of the carrier: a dict by source of the relative standard deviation of its trace by that source alone.
+    #[getter]
+    fn sizes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = PyDict::new(py);
+        for size in &self.found.sizes {
+            found.set_item(size.source.to_string(), size.relative)?;
+        }
+        Ok(found)
+    }
+
+    /// Chi squared of the records about the answer, and its degrees of freedom.
+    #[getter]
+    fn agreement(&self) -> (f64, usize) {
+        (self.found.agreement.chi2, self.found.agreement.dof)
+    }
+
+    /// Standard deviations by which the physical law moved the answer.
+    #[getter]
+    fn pull(&self) -> f64 {
+        self.found.pull
+    }
+
+    /// What was estimated of the sensor from all records: a dict by name of `value`, `sigma`, `unit`, `prior`.
+    #[getter]
+    fn nuisances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        named(py, &self.found.nuisances)
+    }
+
+    /// Each record by itself: a dict by what tumbled.
+    #[getter]
+    fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for (attached, found) in &self.found.records {
+            let warnings = found.warnings.iter().map(ToString::to_string).collect();
+            let one = Estimate { found: found.clone(), flights: Vec::new(), warnings };
+            all.set_item(attached.to_string(), Bound::new(py, one)?)?;
+        }
+        Ok(all)
+    }
+
+    /// What limits the use of the estimate, a sentence each; Python warnings say the same.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
+    fn __repr__(&self) -> String {
+        let bodies = [
+            ("carrier", Some(&self.found.carrier)),
+            ("object", self.found.object.as_ref()),
+            ("object_itself", self.found.object_itself.as_ref()),
+        ];
+        let line = |(name, body): (&str, Option<&fits::MeasuredBody>)| {
+            Some(format!("{name}: {}", MeasuredBody(body?.clone()).__repr__()))
+        };
+        let (chi2, dof) = self.agreement();
+        let lines: Vec<String> = bodies.into_iter().filter_map(line).collect();
+        format!("{}\nagreement: chi^2 {chi2:.1} of {dof} degrees of freedom", lines.join("\n"))
+    }
+}
+
+/// Absolute tensors of a carrier and of an object on it, from records of one sensor on the carrier: alone, with a proof body whose mass
+/// properties are known (`proof`), with the object (`object`), and with both (`object_proof`).
+///
+/// Each record is a `Record` of `read`, a list of them, or a tuple of times, s, and `rates` (n, 3), rad/s, with angular momenta of a wheel
+/// (n, 3), N m s, as a third member where one turns. `proof_body`: what it adds to the carrier's tensor, kg m^2, three moments or (3, 3); or
+/// its mass properties, whose centre of mass is counted from that of the carrier, with `carrier_mass`, kg. `proof_sigma`: relative standard
+/// deviation of what it adds; exact without. `object_mass`, kg, and `object_at`, m, its centre of mass from that of the carrier: gives
+/// its tensor about its own centre of mass, too. `unknown_wheel`: the momenta are the axis times the speed of a wheel, rad/s, whose inertia is
+/// found. The others are those of `fit`. Source: the parallel-axis theorem about the common centre of mass.
+///
+/// >>> import numpy, polhode
+/// >>> t, random = numpy.arange(1000) * 0.01, numpy.random.default_rng(1)
+/// >>> carrier, proof = numpy.array([0.02, 0.03, 0.04]), numpy.array([0.015, 0.004, 0.016])
+/// >>> def tumble(moments):
+/// ...     return t, polhode.FreeMotion(moments, [1, 3, 2]).at(t).omega + random.normal(0, 1e-3, (1000, 3))
+/// >>> found = polhode.fit_carrier(tumble(carrier), proof=tumble(carrier + proof), proof_body=proof)
+/// >>> bool(numpy.all(abs(found.carrier.principal - carrier) < 5 * found.carrier.sigma_principal))
+/// True
+#[pyfunction(name = "fit_carrier")]
+#[pyo3(signature = (carrier, *, proof = None, object = None, object_proof = None, proof_body = None, proof_sigma = None,
+                    carrier_mass = None, object_mass = None, object_at = None, unknown_wheel = false, torque = "auto", radius = None,
+                    noise = None, gyro_bias = None, gyro_scale = None, gyro_axis_scales = None, gyro_misalignment = None,
+                    gyro_skew = None, quantum = None, trust_units = false))]
+#[allow(clippy::too_many_arguments, reason = "they are keywords")]
+pub(crate) fn fitted_carrier(
+    py: Python<'_>,
+    carrier: &Bound<'_, PyAny>,
+    proof: Option<&Bound<'_, PyAny>>,
+    object: Option<&Bound<'_, PyAny>>,
+    object_proof: Option<&Bound<'_, PyAny>>,
+    proof_body: Option<&Bound<'_, PyAny>>,
+    proof_sigma: Option<f64>,
+    carrier_mass: Option<f64>,
+    object_mass: Option<f64>,
+    object_at: Option<&Bound<'_, PyAny>>,
+    unknown_wheel: bool,
+    torque: &str,
+    radius: Option<f64>,
+    noise: Option<f64>,
+    gyro_bias: Option<f64>,
+    gyro_scale: Option<f64>,
+    gyro_axis_scales: Option<f64>,
+    gyro_misalignment: Option<f64>,
+    gyro_skew: Option<f64>,
+    quantum: Option<f64>,
+    trust_units: bool,
+) -> PyResult<CarrierEstimate> {
+    let place = Numbers::maybe("object_at", object_at)?.map(Numbers::vector).transpose()?;
+    let placed = match (object_mass, place, carrier_mass) {
+        (Some(mass), Some(place), Some(carrier)) => Some((mass, place, carrier)),
+        (None, None, _) => None,
+        _ => return Err(refused("object_mass, object_at, carrier_mass: give all three")),
+    };
+    let known = match (proof_body, proof.or(object_proof)) {
+        (None, Some(_)) => return Err(refused("proof_body: missing; proof and object_proof need it")),
+        (Some(_), None) => {
+            return Err(refused("proof, object_proof: missing; give a record with the proof body"));
+        }
+        (known, _) => known.map(|body| Known::of(body, carrier_mass)).transpose()?,
+    };
+    let body = |found: Result<ProofBody, fits::CarrierError>| {
+        found.map(|body| body.with_deviation(proof_sigma)).map_err(of("proof_body"))
+    };
+    let mut records = CarrierRecords::new(tumble("carrier", carrier)?);
+    if let (Some(proof), Some(known)) = (proof, &known) {
+        records = records.with_proof(tumble("proof", proof)?, body(known.on_carrier())?);
+    }
+    if let Some(object) = object {
+        records = records.with_object(tumble("object", object)?);
+    }
+    if let (Some(both), Some(known)) = (object_proof, &known) {
+        let beside = known.beside(placed.map(|(mass, place, _)| (mass, place)))?;
+        records = records.with_object_and_proof(tumble("object_proof", both)?, body(beside)?);
+    }
+    if let Some((mass, place, carrier)) = placed {
+        records = records.with_object_at(mass, place, carrier).map_err(refused)?;
+    }
+    if unknown_wheel {
+        records = records.with_unknown_wheel();
+    }
+    let settings = Settings::default()
+        .with_radius(radius)
+        .with_noise(noise)
+        .with_check_units(!trust_units)
+        .with_torque(model(torque)?)
+        .with_quantum(quantum.map(|value| positive("quantum", value)).transpose()?)
+        .with_sensor(priors([gyro_bias, gyro_scale, gyro_axis_scales, gyro_misalignment, gyro_skew])?);
+    let found = aside(py, move |_| fit_carrier(&records, &settings))?.map_err(refused)?;
+    let of_records = found.records.iter().flat_map(|(attached, one)| {
+        one.warnings.iter().map(move |warning| format!("{attached}: {warning}")).collect::<Vec<_>>()
+    });
+    let warnings: Vec<String> = found.warnings.iter().map(ToString::to_string).chain(of_records).collect();
+    warnings.iter().try_for_each(|warning| warn(py, warning))?;
+    Ok(CarrierEstimate { found, warnings })
+}
+
+/// A proof body as it is given.
+enum Known {
+    /// By what it adds to the carrier.
+    Adding(Matrix3<f64>),
+    /// By its mass properties, and the mass of the carrier, kg.
+    Attached(masses::MassProperties, f64),
+}
+
+impl Known {
+    fn of(value: &Bound<'_, PyAny>, carrier_mass: Option<f64>) -> PyResult<Self> {
+        match (value.extract::<MassProperties>(), carrier_mass) {
+            (Ok(body), Some(carrier)) => Ok(Known::Attached(body.0, carrier)),
+            (Ok(_), None) => {
+                Err(refused("carrier_mass: missing; the proof body is given by its mass properties"))
+            }
+            (Err(_), _) => Ok(Known::Adding(inertia("proof_body", value)?.tensor())),
+        }
+    }
+
+    fn on_carrier(&self) -> Result<ProofBody, fits::CarrierError> {
+        match self {
+            Known::Adding(tensor) => ProofBody::adding(*tensor),
+            Known::Attached(body, carrier) => ProofBody::attached(body, *carrier),
+        }
+    }
+
+    /// On carrier and object.
+    fn beside(&self, object: Option<(f64, Vector3<f64>)>) -> PyResult<Result<ProofBody, fits::CarrierError>> {
+        match (self, object) {
+            (Known::Adding(_), _) => Ok(self.on_carrier()),
+            (Known::Attached(body, carrier), Some(object)) => {
+                Ok(ProofBody::attached_beside(body, *carrier, object))
+            }
+            (Known::Attached(..), None) => Err(refused(
+                "object_mass, object_at: missing; beside an object the proof body is counted from their common centre of mass",
+            )),
+        }
+    }
+}
+
+/// A record: one of a file, several, or times and rates.
+fn tumble(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<record::Record> {
+    let of_record = |error: PyErr| refused(format!("{name}: {}", error.value(value.py())));
+    let Ok(parts) = value.cast::<PyTuple>() else {
+        return recorded(value, None, None, None).map_err(of_record);
+    };
+    let part = |k: usize| parts.get_item(k);
+    let found = match parts.len() {
+        2 => recorded(&part(0)?, Some(&part(1)?), None, None),
+        3 => recorded(&part(0)?, Some(&part(1)?), Some(&part(2)?), None),
+        count => {
+            return Err(refused(format!(
+                "{name}: a tuple of {count}; give times, rates and, of a wheel, momenta"
+            )));
+        }
+    };
+    found.map_err(of_record)
+}
