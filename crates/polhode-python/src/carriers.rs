@@ -2,7 +2,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::{inertia as masses, record};
-use polhode_fit::{self as fits, CarrierRecords, ProofBody, Settings, fit_carrier};
+use polhode_fit::{
+    self as fits, Attached, CarrierError, CarrierRecords, Flights, ProofBody, Settings, during, fit_carrier,
+    flights,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -163,7 +166,7 @@ impl CarrierEstimate {
 /// properties are known (`proof`), with the object (`object`), and with both (`object_proof`).
 ///
 /// Each record is a `Record` of `read`, a list of them, or a tuple of times, s, and `rates` (n, 3), rad/s, with angular momenta of a wheel
-/// (n, 3), N m s, as a third member where one turns. `proof_body`: what it adds to the carrier's tensor, kg m^2, three moments or (3, 3); or
+/// (n, 3), N m s, as a third member where one turns. The flights of a record that is not free as a whole are found. `proof_body`: what it adds to the carrier's tensor, kg m^2, three moments or (3, 3); or
 /// its mass properties, whose centre of mass is counted from that of the carrier, with `carrier_mass`, kg. `proof_sigma`: relative standard
 /// deviation of what it adds; exact without. `object_mass`, kg, and `object_at`, m, its centre of mass from that of the carrier: gives
 /// its tensor about its own centre of mass, too. `unknown_wheel`: the momenta are the axis times the speed of a wheel, rad/s, whose inertia is
@@ -219,26 +222,20 @@ pub(crate) fn fitted_carrier(
         }
         (known, _) => known.map(|body| Known::of(body, carrier_mass)).transpose()?,
     };
-    let body = |found: Result<ProofBody, fits::CarrierError>| {
+    let body = |found: Result<ProofBody, CarrierError>| {
         found.map(|body| body.with_deviation(proof_sigma)).map_err(of("proof_body"))
     };
-    let mut records = CarrierRecords::new(tumble("carrier", carrier)?);
-    if let (Some(proof), Some(known)) = (proof, &known) {
-        records = records.with_proof(tumble("proof", proof)?, body(known.on_carrier())?);
-    }
-    if let Some(object) = object {
-        records = records.with_object(tumble("object", object)?);
-    }
-    if let (Some(both), Some(known)) = (object_proof, &known) {
-        let beside = known.beside(placed.map(|(mass, place, _)| (mass, place)))?;
-        records = records.with_object_and_proof(tumble("object_proof", both)?, body(beside)?);
-    }
-    if let Some((mass, place, carrier)) = placed {
-        records = records.with_object_at(mass, place, carrier).map_err(refused)?;
-    }
-    if unknown_wheel {
-        records = records.with_unknown_wheel();
-    }
+    let on_carrier = match (proof, &known) {
+        (Some(proof), Some(known)) => Some((tumble("proof", proof)?, body(known.on_carrier())?)),
+        _ => None,
+    };
+    let beside = match (object_proof, &known) {
+        (Some(both), Some(known)) => {
+            let beside = known.beside(placed.map(|(mass, place, _)| (mass, place)))?;
+            Some((tumble("object_proof", both)?, body(beside)?))
+        }
+        _ => None,
+    };
     let settings = Settings::default()
         .with_radius(radius)
         .with_noise(noise)
@@ -246,13 +243,66 @@ pub(crate) fn fitted_carrier(
         .with_torque(model(torque)?)
         .with_quantum(quantum.map(|value| positive("quantum", value)).transpose()?)
         .with_sensor(priors([gyro_bias, gyro_scale, gyro_axis_scales, gyro_misalignment, gyro_skew])?);
-    let found = aside(py, move |_| fit_carrier(&records, &settings))?.map_err(refused)?;
-    let of_records = found.records.iter().flat_map(|(attached, one)| {
-        one.warnings.iter().map(move |warning| format!("{attached}: {warning}")).collect::<Vec<_>>()
-    });
-    let warnings: Vec<String> = found.warnings.iter().map(ToString::to_string).chain(of_records).collect();
+    let tumbles = Tumbles {
+        carrier: tumble("carrier", carrier)?,
+        proof: on_carrier,
+        object: object.map(|object| tumble("object", object)).transpose()?,
+        both: beside,
+        placed,
+        unknown_wheel,
+    };
+    let (found, mut warnings) = aside(py, move |_| tumbles.fitted(&settings))?.map_err(refused)?;
+    warnings.extend(found.warnings.iter().map(ToString::to_string));
+    for (attached, one) in &found.records {
+        warnings.extend(one.warnings.iter().map(|warning| format!("{attached}: {warning}")));
+    }
     warnings.iter().try_for_each(|warning| warn(py, warning))?;
     Ok(CarrierEstimate { found, warnings })
+}
+
+/// The records, and what is known of what tumbled in them.
+struct Tumbles {
+    carrier: record::Record,
+    proof: Option<(record::Record, ProofBody)>,
+    object: Option<record::Record>,
+    both: Option<(record::Record, ProofBody)>,
+    /// Mass, kg, and place, m, of the object, and the mass of the carrier.
+    placed: Option<(f64, Vector3<f64>, f64)>,
+    unknown_wheel: bool,
+}
+
+impl Tumbles {
+    /// The estimate, and what is to be said of records that are free in part.
+    fn fitted(self, settings: &Settings) -> Result<(fits::CarrierEstimate, Vec<String>), CarrierError> {
+        let mut warnings = Vec::new();
+        let mut free = |attached: Attached, record: record::Record| {
+            let of_record = |error| CarrierError::Record { attached, error: Box::new(error) };
+            let Flights { list, whole, .. } = flights(&record, settings).map_err(of_record)?;
+            if whole {
+                return Ok(record);
+            }
+            let remark = "the record as a whole is not that of a free body: the fit uses the flights that were found in it";
+            warnings.push(format!("{attached}: {remark}, {} of them", list.len()));
+            Ok(during(&record, &list))
+        };
+        let mut records = CarrierRecords::new(free(Attached::Nothing, self.carrier)?);
+        if let Some((record, body)) = self.proof {
+            records = records.with_proof(free(Attached::Proof, record)?, body);
+        }
+        if let Some(record) = self.object {
+            records = records.with_object(free(Attached::Object, record)?);
+        }
+        if let Some((record, body)) = self.both {
+            records = records.with_object_and_proof(free(Attached::ObjectAndProof, record)?, body);
+        }
+        if let Some((mass, place, carrier)) = self.placed {
+            records = records.with_object_at(mass, place, carrier)?;
+        }
+        if self.unknown_wheel {
+            records = records.with_unknown_wheel();
+        }
+        Ok((fit_carrier(&records, settings)?, warnings))
+    }
 }
 
 /// A proof body as it is given.
@@ -274,7 +324,7 @@ impl Known {
         }
     }
 
-    fn on_carrier(&self) -> Result<ProofBody, fits::CarrierError> {
+    fn on_carrier(&self) -> Result<ProofBody, CarrierError> {
         match self {
             Known::Adding(tensor) => ProofBody::adding(*tensor),
             Known::Attached(body, carrier) => ProofBody::attached(body, *carrier),
@@ -282,7 +332,7 @@ impl Known {
     }
 
     /// On carrier and object.
-    fn beside(&self, object: Option<(f64, Vector3<f64>)>) -> PyResult<Result<ProofBody, fits::CarrierError>> {
+    fn beside(&self, object: Option<(f64, Vector3<f64>)>) -> PyResult<Result<ProofBody, CarrierError>> {
         match (self, object) {
             (Known::Adding(_), _) => Ok(self.on_carrier()),
             (Known::Attached(body, carrier), Some(object)) => {

@@ -98,6 +98,36 @@ def test_a_record(command):
         assert found.systematic[line["name"]]["principal"].tolist() == line["principal"]
 
 
+def test_a_carrier_a_proof_body_and_an_object(command):
+    tensors = {"carrier": "0.03,0.051,0.063,0.003,-0.006,0.002", "proof": "0.03495,0.0671,0.07935,0.0045,-0.00825,0.0029",
+               "object": "0.037,0.06,0.0768,0.0054,-0.0048,0.0018", "both": "0.04244,0.07776,0.096,0.00828,-0.0072,0.003"}
+    for (name, tensor), omega in zip(tensors.items(), ["1,2.5,1.5", "2,1,2", "-1,2,2", "2,2,-1"]):
+        motion = ["--omega", omega, "--until", "8", "--every", "0.02", "--noise", "0.001"]
+        command("simulate", f"--inertia={tensor}", *motion, "--out", f"{name}.csv", format=None)
+    told = command("fit", "object.csv", "--carrier", "carrier.csv", "--proof", "proof.csv", "--object-proof", "both.csv", "--proof-body",
+                   "0.003,0.011,0.012", "--proof-at", "0.05,-0.02,0.03,2", "--carrier-mass", "6", "--object-at", "-0.04,0.04,0.02,2")
+    carrier, proof, item, both = (polhode.read(command.folder / f"{name}.csv", kind="record") for name in tensors)
+    known = polhode.MassProperties(2, [0.05, -0.02, 0.03], np.diag([0.003, 0.011, 0.012]))
+    found = polhode.fit_carrier(carrier, proof=proof, object=item, object_proof=both, proof_body=known, carrier_mass=6,
+                                object_mass=2, object_at=[-0.04, 0.04, 0.02])
+    for body in ("carrier", "object", "object_itself"):
+        assert_array_equal(getattr(found, body).tensor, told[body]["inertia"], err_msg=body)
+        assert_array_equal(getattr(found, body).covariance, told[body]["inertia_covariance"], err_msg=body)
+    assert found.agreement == (told["chi2"], told["dof"]) and found.warnings == told["warnings"]
+    assert set(found.records) == {record["attached"] for record in told["records"]}
+    for wrong, words in [
+        (dict(), "nothing gives the size of the carrier"),
+        (dict(proof=proof), "proof_body: missing"),
+        (dict(proof=proof, proof_body=known), "carrier_mass: missing"),
+        (dict(proof_body=[1, 2, 2.5]), "proof, object_proof: missing"),
+        (dict(object=item, object_mass=2), "give all three"),
+        (dict(object=(item.t,)), "object: a tuple of 1"),
+        (dict(object_proof=both, proof_body=known, carrier_mass=6), "object_mass, object_at: missing"),
+    ]:
+        with pytest.raises(polhode.PolhodeError, match=words):
+            polhode.fit_carrier(carrier, **wrong)
+
+
 @pytest.mark.parametrize("rates", [[], ["--noise", "0.01"]])
 def test_a_record_of_attitudes(command, rates):
     start = ["--body", "phone", "--omega", "1,9,2", "--until", "5", "--every", "0.02"]
