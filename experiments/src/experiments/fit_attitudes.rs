@@ -29,7 +29,7 @@ const ELLIPSOID: f64 = 11.070_497_693_516_35;
 const VAGUE: f64 = 0.1;
 
 /// Records of a row from which on its own intervals tell something.
-const TELLING: u64 = 75;
+const TELLING: u64 = 100;
 
 /// The squared error of one answer, over the bound and over the covariance that is stated.
 #[derive(Clone, Copy)]
@@ -48,7 +48,7 @@ struct Trial {
 }
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let trials: u64 = context.scale.pick(2, 2, 75);
+    let trials: u64 = context.scale.pick(2, 2, 40);
     let seconds = context.scale.pick(12, 12, 30);
     let rates = context.scale.pick(&RATES[..2], &RATES[..], &RATES[..]);
     let cells: Vec<(usize, usize, usize)> = (0..BODIES.len())
