@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::{inertia as masses, record};
 use polhode_fit::{
-    self as fits, Attached, CarrierError, CarrierRecords, Flights, ProofBody, Settings, during, fit_carrier,
-    flights,
+    self as fits, Attached, CarrierError, CarrierRecords, FitError, Flights, ProofBody, Settings, during,
+    fit_carrier, flights,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -275,8 +275,8 @@ impl Tumbles {
     /// The estimate, and what is to be said of records that are free in part.
     fn fitted(self, settings: &Settings) -> Result<(fits::CarrierEstimate, Vec<String>), CarrierError> {
         let mut warnings = Vec::new();
-        let mut free = |attached: Attached, record: record::Record| {
-            let of_record = |error| CarrierError::Record { attached, error: Box::new(error) };
+        let mut free = |attached: Attached, record: record::Record| -> Result<record::Record, CarrierError> {
+            let of_record = |error: FitError| CarrierError::Record { attached, error: Box::new(error) };
             let Flights { list, whole, .. } = flights(&record, settings).map_err(of_record)?;
             if whole {
                 return Ok(record);
