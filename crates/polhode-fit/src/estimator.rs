@@ -166,7 +166,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let information = || FitError::Solver(SolverFailure::Information);
     let kept = |column: &Column| matches!(column.class(), Class::Drag | Class::Input);
     let scatter = scatter(weak, variance * misfit.max(1.0));
-    let excess = scatter.map_or(1.0, |scatter| scatter.chi2 / scatter.dof as f64);
+    let excess = scatter.map_or(1.0, |scatter| scatter.excess());
     let deviation = (variance * misfit.max(1.0) * excess).sqrt();
     let spread = match settings.torque {
         TorqueModel::Auto => spread(&chosen.models, chosen.model),

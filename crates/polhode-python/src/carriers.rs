@@ -252,10 +252,7 @@ pub(crate) fn fitted_carrier(
         unknown_wheel,
     };
     let (found, mut warnings) = aside(py, move |_| tumbles.fitted(&settings))?.map_err(refused)?;
-    warnings.extend(found.warnings.iter().map(ToString::to_string));
-    for (attached, one) in &found.records {
-        warnings.extend(one.warnings.iter().map(|warning| format!("{attached}: {warning}")));
-    }
+    warnings.extend(found.all_warnings());
     warnings.iter().try_for_each(|warning| warn(py, warning))?;
     Ok(CarrierEstimate { found, warnings })
 }

@@ -29,7 +29,7 @@ const ELLIPSOID: f64 = 11.070_497_693_516_35;
 const VAGUE: f64 = 0.1;
 
 /// Records of a row from which on its own intervals tell something.
-const TELLING: u64 = 100;
+const TELLING: u64 = 40;
 
 /// The squared error of one answer, over the bound and over the covariance that is stated.
 #[derive(Clone, Copy)]

@@ -99,3 +99,14 @@ pub struct CarrierEstimate {
     /// What limits the use of the estimate, beside the warnings of each record.
     pub warnings: Vec<CarrierWarning>,
 }
+
+impl CarrierEstimate {
+    /// All warnings in words, those of each record with what tumbled.
+    #[must_use]
+    pub fn all_warnings(&self) -> Vec<String> {
+        let of_records = self.records.iter().flat_map(|(attached, of)| {
+            of.warnings.iter().map(move |warning| format!("{attached}: {warning}"))
+        });
+        of_records.chain(self.warnings.iter().map(ToString::to_string)).collect()
+    }
+}

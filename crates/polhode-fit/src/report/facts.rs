@@ -153,6 +153,11 @@ impl Facts<'_> {
         Ok(estimate)
     }
 
+    /// By how much the variance of the noise is enlarged: what it does not explain, and how far parts of the record contradict each other.
+    fn excess(&self) -> f64 {
+        self.misfit.max(1.0) * self.scatter.map_or(1.0, |scatter| scatter.excess())
+    }
+
     /// Root of the trace of the covariance under the chosen model alone.
     fn statistical(&self) -> Option<f64> {
         let deviation = (self.variance * self.misfit.max(1.0)).sqrt();
@@ -200,7 +205,7 @@ impl Facts<'_> {
             return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, &at.x));
         };
         let scale = scale_of(known, self.stretches, self.rms, j, self.variance);
-        let excess = self.misfit.max(1.0);
+        let excess = self.excess();
         let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, excess, motions)?;
         Ok((Some(inertia), Some(covariance)))
     }
@@ -237,7 +242,7 @@ impl Facts<'_> {
 
     /// The coefficients of the torque, and what was estimated of the sensor.
     fn nuisances(&self, at: &Unknowns, held: &[(usize, f64)]) -> (FittedTorque, Vec<Nuisance>) {
-        let variance = self.variance * self.misfit.max(1.0);
+        let variance = self.variance * self.excess();
         let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms, held);
         let (torques, sensor) = all
             .into_iter()

@@ -38,6 +38,13 @@ pub struct Scatter {
     pub dof: usize,
 }
 
+impl Scatter {
+    /// By how much the variance of the answer is enlarged.
+    pub(crate) fn excess(&self) -> f64 {
+        self.chi2 / self.dof as f64
+    }
+}
+
 /// How the tensors of all parts scatter, where that is more than chance brings; `variance` as above.
 pub(crate) fn scatter(weak: &WeakEstimate, variance: f64) -> Option<Scatter> {
     let each = (0..CUTS).map(|k| solved(weak, variance, [k, k + 1].map(|k| k as f64 / CUTS as f64)));

@@ -271,11 +271,11 @@ impl fmt::Display for Warning {
                 moments(first),
                 moments(second)
             ),
-            Self::Scatter(Scatter { parts, chi2, dof }) => write!(
+            Self::Scatter(scatter @ Scatter { parts, chi2, dof }) => write!(
                 f,
                 "the tensors of {parts} parts of the record, each by itself, scatter by more than their noise (chi squared {chi2:.0} of {dof}): \
                  a torque or an error of the sensor that is no part of the fit, or a tensor that changes; deviations are enlarged by {:.1}",
-                (chi2 / *dof as f64).sqrt()
+                scatter.excess().sqrt()
             ),
             Self::NoisySegment { segment, start, times } => write!(
                 f,

@@ -42,6 +42,33 @@ fn a_tensor_that_changes_is_named_with_both() {
     }
 }
 
+/// A moment that grows near the end makes the parts of a record scatter, and the deviations as much larger; those of an ideal record do not.
+#[test]
+fn parts_that_scatter_are_named_and_enlarge_the_deviations() {
+    let mut random = Random::new(644);
+    for grows in [true, false, true, false] {
+        let before = Matrix3::from_diagonal(&Vector3::from(SHAPE));
+        let mut after = before;
+        after[(0, 0)] *= if grows { 1.2 } else { 1.0 };
+        let none = |_: f64, _: &Vector3<f64>| Vector3::zeros();
+        let mut rates = motion(&before, random.normal_vector().normalize(), &sampled(50, 52), &none);
+        let last = rates.pop().unwrap();
+        let next = after.try_inverse().unwrap() * (before * last);
+        rates.extend(motion(&after, next, &sampled(50, 8), &none));
+        let times: Vec<f64> = (0..rates.len()).map(|k| k as f64 / 50.0).collect();
+        let record = Record::from_samples(&times, &noisy(&rates, 1e-2, &mut random)).unwrap();
+        let e = fit(&record, &Settings::default()).unwrap();
+        let found =
+            e.warnings.iter().find_map(|w| if let Warning::Scatter(found) = w { Some(found) } else { None });
+        assert_eq!(found.is_some(), grows, "{:?}", e.warnings);
+        // beside the noise alone, which the bound has
+        if let (Some(found), Some(bound)) = (found, e.bound) {
+            let wider = e.free_covariance.trace() / bound.trace() / (found.chi2 / found.dof as f64);
+            assert!(wider > 0.9, "{wider}");
+        }
+    }
+}
+
 #[test]
 fn a_sensor_that_stands_still_is_named() {
     let body = Inertia::from_moments(SHAPE).unwrap();

@@ -303,6 +303,11 @@ fn drag_and_small_constant_torques_are_reckoned_with_and_others_are_refused() {
         let found = &e.torque.coefficients[0];
         assert!((found.value - drag).abs() < 4.0 * found.sigma && found.sigma < 5e-5, "{found:?}");
         assert!(distance(&e) < 20.5 && e.warnings.iter().any(|w| matches!(w, Warning::Torque(_))));
+        let named: Vec<TorqueModel> = e.models.iter().map(|one| one.model).collect();
+        assert!(named.starts_with(&[TorqueModel::None, TorqueModel::Drag]), "{named:?}");
+        assert!((e.models.iter().map(|one| one.share).sum::<f64>() - 1.0).abs() < 1e-12);
+        let [none, own] = [&e.models[0], &e.models[1]];
+        assert!(none.gain == 0.0 && own.gain > 5.0 && own.share > none.share, "{drag}: {own:?}");
         // the direction is told with drag too
         if drag == 5e-2 {
             let PoseFault::Inverted { .. } = refused(&slowed.inverse()) else { panic!() };
@@ -321,7 +326,14 @@ fn drag_and_small_constant_torques_are_reckoned_with_and_others_are_refused() {
     {
         assert!(matches!(refused(&poses(acting, 6)), PoseFault::NotFree { .. }));
     }
-    let other = fit_poses(&poses(Disturbances::default(), 7), &settings.with_torque(TorqueModel::Drag3));
+    let free = poses(Disturbances::default(), 7);
+    // a model that was asked for leaves the others out of its deviations
+    let chosen = fit_poses(&free, &settings).unwrap();
+    let asked = fit_poses(&free, &settings.clone().with_torque(TorqueModel::None)).unwrap();
+    assert_eq!((chosen.models.len(), &chosen.models), (3, &asked.models));
+    let wider = chosen.free_covariance.trace() / asked.free_covariance.trace();
+    assert!(wider > 1.0 && wider < 2.0, "{wider}");
+    let other = fit_poses(&free, &settings.with_torque(TorqueModel::Drag3));
     assert!(matches!(other, Err(FitError::Poses(PoseFault::Torque))));
 }
 

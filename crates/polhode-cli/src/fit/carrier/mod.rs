@@ -50,10 +50,7 @@ pub(super) fn run(
             return Err(if is_failure(&error) { Error::Failed(message) } else { Error::Input(message) });
         }
     };
-    for (attached, of_record) in &estimate.records {
-        of_record.warnings.iter().for_each(|warning| warn(&format!("{attached}: {warning}")));
-    }
-    estimate.warnings.iter().for_each(|warning| warn(&warning.to_string()));
+    estimate.all_warnings().iter().for_each(|warning| warn(warning));
     output.write_whole(&report::report(&estimate, format))?;
     match page {
         Some((file, form)) => {

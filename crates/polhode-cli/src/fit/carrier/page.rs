@@ -4,15 +4,12 @@ use polhode_fit::CarrierEstimate;
 use polhode_pages::document::{Block, Form, Tone};
 
 use super::report::{agreement, bodies, sizes};
-use crate::fit::page::numbers;
+use crate::fit::page::{against, capital, numbers};
 use crate::fit::report::{ENTRIES, SURE, scaled};
 
 /// The page of an answer from the files `names`.
 pub(super) fn estimated(e: &CarrierEstimate, names: &str, form: Form) -> String {
-    let of_records = e.records.iter().flat_map(|(attached, of)| {
-        of.warnings.iter().map(move |warning| format!("{attached}: {warning}")).collect::<Vec<_>>()
-    });
-    let warnings: Vec<String> = e.warnings.iter().map(ToString::to_string).chain(of_records).collect();
+    let warnings = e.all_warnings();
     let mut parts = vec![verdict(e, warnings.len())];
     parts.extend(bodies(e).into_iter().flat_map(|(_, words, body)| {
         let moments = (0..3).map(|k| {
@@ -27,8 +24,11 @@ pub(super) fn estimated(e: &CarrierEstimate, names: &str, form: Form) -> String 
         });
         [
             Block::Heading(capital(words)),
-            Block::Table(head(&["", "kg m², 95 %", "axis: x", "y", "z"]), moments.collect()),
-            Block::Table(head(&["entry", "kg m², 95 %"]), entries.collect()),
+            Block::Table(
+                ["", "kg m², 95 %", "axis: x", "y", "z"].map(String::from).to_vec(),
+                moments.collect(),
+            ),
+            Block::Table(["entry", "kg m², 95 %"].map(String::from).to_vec(), entries.collect()),
         ]
     }));
     let mut facts = sizes(e);
@@ -47,7 +47,7 @@ pub(super) fn estimated(e: &CarrierEstimate, names: &str, form: Form) -> String 
         let noise = minus(&format!("{:.2e}", of.noise_sigma));
         vec![attached.to_string(), of.samples.to_string(), noise, of.torque.model.to_string()]
     });
-    let heads = head(&["record", "samples", "noise (rad/s)", "torque"]);
+    let heads = ["record", "samples", "noise (rad/s)", "torque"].map(String::from).to_vec();
     parts.extend([Block::Heading("Records".into()), Block::Table(heads, rows.collect())]);
     form.write(&format!("Carrier and object from {names}"), &parts)
 }
@@ -62,11 +62,7 @@ pub(super) fn refused(reason: &str, names: &str, form: Form) -> String {
 fn verdict(e: &CarrierEstimate, warnings: usize) -> Block {
     let (words, body) = bodies(e).pop().map_or(("carrier", &e.carrier), |(_, words, body)| (words, body));
     let moments = [0, 1, 2].map(|k| shown(body.principal[k], body.sigma_principal[k])).join(", ");
-    let (tone, against) = match warnings {
-        0 => (Tone::Good, String::new()),
-        1 => (Tone::Doubtful, "; a warning speaks against it".into()),
-        count => (Tone::Doubtful, format!("; {count} warnings speak against it")),
-    };
+    let (tone, against) = against(warnings);
     Block::Verdict(tone, format!("{}: moments {moments} kg m² (95 %){against}.", capital(words)))
 }
 
@@ -76,12 +72,4 @@ fn shown(value: f64, sigma: f64) -> String {
 
 fn minus(number: &str) -> String {
     number.replace('-', "\u{2212}")
-}
-
-fn capital(words: &str) -> String {
-    format!("{}{}", words[..1].to_uppercase(), &words[1..])
-}
-
-fn head(names: &[&str]) -> Vec<String> {
-    names.iter().map(|name| (*name).to_string()).collect()
 }

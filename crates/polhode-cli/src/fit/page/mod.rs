@@ -92,11 +92,7 @@ fn answer(e: &Estimate) -> Vec<Block> {
         let off = off.map(|_| squares.sum::<f64>().sqrt());
         rows.push(row(name.into(), e.ratios[k], e.sigma_ratios[k], off));
     }
-    let (tone, against) = match e.warnings.len() {
-        0 => (Tone::Good, String::new()),
-        1 => (Tone::Doubtful, "; a warning speaks against it".into()),
-        count => (Tone::Doubtful, format!("; {count} warnings speak against it")),
-    };
+    let (tone, against) = against(e.warnings.len());
     let mut parts = vec![
         Block::Verdict(tone, format!("I1 : I2 : I3 = {a} : {b} : {c}, as shares of the trace{against}.")),
         Block::Table(head, rows),
@@ -105,7 +101,7 @@ fn answer(e: &Estimate) -> Vec<Block> {
         parts.push(Block::Paragraph(format!("Systematic: if the sensor is off by {}.", sizes(e))));
     }
     let facts = [unexplained(e), mirror(e)].into_iter().flatten();
-    parts.extend(facts.map(|fact| Block::Paragraph(format!("{}{}.", fact[..1].to_uppercase(), &fact[1..]))));
+    parts.extend(facts.map(|fact| Block::Paragraph(format!("{}.", capital(&fact)))));
     if let Some(prior) = e.prior {
         parts.push(Block::Paragraph(format!(
             "With a prior tensor; χ² of its distance from the record is {:.1} at {} degrees of freedom.",
@@ -143,6 +139,20 @@ fn answer(e: &Estimate) -> Vec<Block> {
     }
     parts.extend(correlations(e));
     parts
+}
+
+/// How a verdict with so many warnings looks, and what it says of them.
+pub(in crate::fit) fn against(warnings: usize) -> (Tone, String) {
+    match warnings {
+        0 => (Tone::Good, String::new()),
+        1 => (Tone::Doubtful, "; a warning speaks against it".into()),
+        count => (Tone::Doubtful, format!("; {count} warnings speak against it")),
+    }
+}
+
+/// With a capital letter first.
+pub(in crate::fit) fn capital(words: &str) -> String {
+    format!("{}{}", words[..1].to_uppercase(), &words[1..])
 }
 
 fn next(e: &Estimate) -> Vec<Block> {
@@ -202,7 +212,7 @@ fn of_models(e: &Estimate) -> Vec<Block> {
     let cell = |cell: &String| cell.replace("+-", "±").replace('-', "\u{2212}");
     let rows = rows.iter().map(|row| row.iter().map(cell).collect()).collect();
     let about = about_models(e);
-    let about = format!("{}{}:", about[..1].to_uppercase(), &about[1..]);
+    let about = format!("{}:", capital(&about));
     let heads = MODELS.map(String::from).to_vec();
     vec![Block::Heading("Models of the torque".into()), Block::Paragraph(about), Block::Table(heads, rows)]
 }
