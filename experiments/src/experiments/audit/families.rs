@@ -51,7 +51,7 @@ impl Counts {
     fn of(scale: Scale) -> Self {
         scale.pick(
             Counts { exact: 8, fault: 1, sphere: 1, method: 1, long: &[(3_000, 1)], every: 6 },
-            Counts { exact: 60, fault: 1, sphere: 1, method: 1, long: &[(30_000, 1)], every: 1 },
+            Counts { exact: 60, fault: 1, sphere: 1, method: 1, long: &[(30_000, 1)], every: 2 },
             Counts {
                 exact: 1000,
                 fault: 100,

@@ -87,7 +87,7 @@ pub(super) fn all(scale: Scale) -> Result<Vec<Case>, Error> {
     let followed: &[f64] = scale.pick(&[1e2], &[1e2, 1e3], &[1e2, 1e3, 1e4]);
     let members = scale.pick(2, 3, 11);
     let mut cases: Vec<Case> = Vec::new();
-    for (name, moments) in &FREE[..scale.pick(1, 3, FREE.len())] {
+    for (name, moments) in &FREE[..scale.pick(1, 2, FREE.len())] {
         let body = Body::free(Inertia::from_moments(*moments).map_err(unexpected)?);
         let starts = drawn(cases.len(), members, |random| (anywhere(random, 1.0), UPRIGHT));
         let how = "ω = 1 rad/s in all directions";
