@@ -94,7 +94,7 @@ enum Outcome {
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let each = context.scale.pick(2, 2, 46);
-    let longest = context.scale.pick(60.0, 1e3, 1e5);
+    let longest = context.scale.pick(60.0, 3e2, 1e5);
     let problems = problems::all(SEED, each, longest)?;
     // one after the other, as a user asks: the threads of others would count as thinking
     let mut asked = Vec::new();

@@ -188,7 +188,7 @@ fn beside_taylor(context: &Context, report: &mut Report, timing: &mut Table) -> 
 
 /// Motions through two attitudes: the true one is among them.
 fn through(context: &Context, report: &mut Report, timing: &mut Table) -> Result<String, Error> {
-    let pairs = context.scale.pick(40, 2_000, 20_000_u64);
+    let pairs = context.scale.pick(40, 1_000, 20_000_u64);
     let mut table = Table::new(
         "through",
         format!("All motions through two attitudes, 0.01 to 4 turns apart, of {pairs} random pairs a body."),
