@@ -131,7 +131,7 @@ fn cavities_count_negative_and_parts_add() {
 /// Grains with a pore each, too many to look at every grain for every pore.
 #[test]
 fn many_cavities_are_found_in_their_parts() {
-    let n = 40;
+    let n = 24;
     let at = |k: usize| Vector3::new((k % n) as f64, (k / n % n) as f64, (k / n / n) as f64) * 2.0;
     let mut triangles = Vec::new();
     for k in 0..n * n * n {
