@@ -191,6 +191,7 @@ fn a_symplectic_map_keeps_the_form_and_the_others_do_not() {
 /// In double precision: rounding may walk, some hundredths of a unit in the last place in a step, but not always in one
 /// direction.
 #[test]
+#[ignore = "a million steps: takes seconds, `.ci/run` does it"]
 fn rounding_does_not_bias_what_is_kept() {
     for method in catalogue() {
         let report = check_only(&method, &[Problem::Free], &[Law::Rounding]).unwrap();

@@ -62,6 +62,7 @@ impl Top {
 /// Tops of the same spin turn about their axis by the same angle in every step, so that a bias of its sine and cosine would
 /// move all of them one way.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn rounding_moves_tops_of_an_ensemble_either_way() {
     const MEMBERS: u32 = 64;
     let method = method("kick-drift").unwrap();
@@ -79,6 +80,7 @@ fn rounding_moves_tops_of_an_ensemble_either_way() {
 
 /// What rounding makes of |m|, and of the energy where the method keeps it, over 64 asymmetric bodies.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn rounding_moves_free_bodies_of_an_ensemble_either_way() {
     const MEMBERS: u32 = 64;
     for (name, keeps_energy) in [

@@ -16,7 +16,7 @@ const STEPS: u64 = 240;
 /// Each quantity that the motion conserves, and |q|.
 pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> {
     let h = subject.telling_step(0.125);
-    let points = subject.integrate(h, STEPS)?;
+    let points = subject.integrate(h, STEPS, 1)?;
     let times: Vec<f64> = (0..STEPS).map(|n| n as f64 * h).collect();
     let (case, kept) = (subject.case, subject.claims.kept);
     let conserved = case.body.conserved();
@@ -63,8 +63,8 @@ fn error_of<'a>(subject: &Subject<'a>, quantity: Quantity) -> impl Fn(&Point<Dd>
     }
 }
 
-/// Largest relative error of the energy in `steps` steps of `h`.
-pub(super) fn worst_energy(subject: &Subject<'_>, h: f64, steps: u64) -> Result<f64, LawsError> {
+/// Largest relative error of the energy at `points` points, after every so many steps of `h`.
+pub(super) fn worst_energy(subject: &Subject<'_>, h: f64, points: u64, every: u64) -> Result<f64, LawsError> {
     let error = error_of(subject, Quantity::Energy);
-    Ok(largest(subject.integrate(h, steps)?.iter().map(|x| error(x).magnitude())))
+    Ok(largest(subject.integrate(h, points, every)?.iter().map(|x| error(x).magnitude())))
 }

@@ -41,16 +41,16 @@ impl Subject<'_> {
         }
     }
 
-    /// The points after `steps` steps of `h`, in double-double.
-    pub(super) fn integrate(&self, h: f64, steps: u64) -> Result<Vec<Point<Dd>>, StepError> {
+    /// `points` points, each `every` steps of `h` after the last, in double-double.
+    pub(super) fn integrate(&self, h: f64, points: u64, every: u64) -> Result<Vec<Point<Dd>>, StepError> {
         let mut x = self.case.start;
         let mut step = self.method.prepare_dd(Clock::new(h), &self.case.body)?;
         step.open(&mut x);
         let next = |_| {
-            step.advance(&mut x, 1);
+            step.advance(&mut x, every);
             step.reading(&x)
         };
-        Ok((0..steps).map(next).collect())
+        Ok((0..points).map(next).collect())
     }
 
     /// One step of `h` from `start`, in double-double.

@@ -206,7 +206,6 @@ fn no_integrator_is_named_from_attitudes_alone() {
 fn a_clock_that_is_off_is_no_integrator() {
     for (moments, factor) in [
         ([2.0, 2.0, 2.0], 1.0 + 1e-5),
-        ([2.0, 2.0, 2.0], 1.0 - 1e-4),
         ([2.0, 2.0, 2.0], 1.0 + 1.0 / 480.0),
         ([1.0, 1.0, 2.0], 1.0 - 1e-4),
         ([1.0, 2.0, 3.0], 1.0 + 1.0 / 480.0),

@@ -56,6 +56,8 @@ MODULES = {
 PACKAGES = {"polhode": "polhode", "library": "polhode-tests", "cli": "polhode-cli", "polhode_fit": "polhode-fit", "suite": "polhode-fit"}
 # tests may take so many times as long as without a mutant, and this, s
 PATIENCE = (5, 60)
+# tests that are not run, since they take minutes
+MINUTES = (ROOT / ".ci" / "minutes").read_text().split()
 
 
 def output(*command, cwd=ROOT):
@@ -149,7 +151,7 @@ def tests(program, filters, number, limit=None):
     # a group of its own, so that commands which tests run end with them
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "start_new_session": True}
     late = threading.Event()
-    with subprocess.Popen([executable, *filters], cwd=folder, env={**os.environ, VARIABLE: str(number)}, **pipes) as run:
+    with subprocess.Popen([executable, *filters, "--include-ignored", *MINUTES], cwd=folder, env={**os.environ, VARIABLE: str(number)}, **pipes) as run:
 
         def end():
             late.set()

@@ -113,6 +113,7 @@ fn every_command_of_the_front_page_runs_and_prints_what_it_says() {
 }
 
 #[test]
+#[ignore = "many commands: takes seconds, `.ci/run` does it"]
 fn every_command_of_the_guide_runs() {
     let pages = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
     let mut names: Vec<String> = pages

@@ -37,6 +37,7 @@ fn a_folder_of_something_else_is_not_replaced_by_results() {
 }
 
 #[test]
+#[ignore = "an experiment at smoke scale: takes seconds, `.ci/run` does it"]
 fn experiments_run_and_can_be_published() {
     let scratch = Scratch::new("experiments");
     // the main job, and what else is quick and has tables of other forms: `experiment check` runs them all

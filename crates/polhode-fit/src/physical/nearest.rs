@@ -317,18 +317,18 @@ mod tests {
     /// not always the one that it lies on.
     #[test]
     fn random_programs_with_a_lower_limit_end_certified() {
-        with_limits(7, |axis, s| Limit { axis, at_least: Some(0.4 + 0.05 * s), at_most: None });
+        with_limits(7, 25, |axis, s| Limit { axis, at_least: Some(0.4 + 0.05 * s), at_most: None });
     }
 
     #[test]
     fn random_programs_with_an_upper_limit_end_certified() {
-        with_limits(8, |axis, s| Limit { axis, at_least: None, at_most: Some(0.2 + 0.05 * s) });
+        with_limits(8, 75, |axis, s| Limit { axis, at_least: None, at_most: Some(0.2 + 0.05 * s) });
     }
 
-    fn with_limits(seed: u64, limit: impl Fn(Vector3<f64>, f64) -> Limit) {
+    fn with_limits(seed: u64, trials: usize, limit: impl Fn(Vector3<f64>, f64) -> Limit) {
         let mut next = numbers(seed);
         let (mut of_law, mut of_limits) = (0, 0);
-        for trial in 0..75 {
+        for trial in 0..trials {
             let mut root = Form::from_fn(|i, k| if i < k { 50.0 * next() } else { 0.0 });
             for k in 0..5 {
                 root[(k, k)] = libm::pow(10.0, 2.0 + next());
@@ -347,6 +347,6 @@ mod tests {
             of_law += usize::from(answer.active.iter().any(|a| is_law(a.constraint)));
             of_limits += usize::from(answer.active.iter().any(|a| !is_law(a.constraint)));
         }
-        assert!(of_law > 12 && of_limits > 12, "{of_law}, {of_limits}");
+        assert!(6 * of_law > trials && 6 * of_limits > trials, "{of_law}, {of_limits}");
     }
 }

@@ -243,6 +243,7 @@ fn distance(e: &DVector<f64>, c: &DMatrix<f64>) -> f64 {
 /// The mean of χ² over n degrees of freedom scatters over 16 benches by √(2/(16 n)): 0.14 of six and 0.10 of
 /// twelve, over 8 by 0.14.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn tensors_reach_the_bound_and_are_covered() {
     let carrier = scatter(&[Nothing, Proof], None, 16);
     let both = scatter(&[Nothing, Proof, Object, ObjectAndProof], None, 16);

@@ -44,6 +44,7 @@ fn trials(count: usize, rate: usize, sigma: f64, seed: u64) -> Trials {
 
 /// With 40 trials the mean of χ²₅/5 scatters by √(2/200) = 0.1, its root by 0.05: four of these about 1.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn efficient_at_low_noise_and_nearly_so_at_high() {
     for (sigma, rate, low, high) in [(1e-3, 25, 0.8, 1.2), (1e-2, 25, 0.8, 1.2), (1e-1, 50, 0.8, 1.6)] {
         let t = trials(40, rate, sigma, 20_240);
@@ -168,6 +169,7 @@ fn the_bound_is_that_of_the_motion_that_was_measured() {
 }
 
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn the_bound_of_random_records_is_that_of_their_motion() {
     let mut random = Random::new(41);
     for trial in 0..40 {
@@ -308,6 +310,7 @@ fn scale_from_what_is_known_besides() {
 
 /// The mean energy and momentum carry noise of their own, and share some with the shape.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn a_scale_from_energy_or_momentum_scatters_as_it_claims() {
     let j = Matrix3::from_diagonal(&Vector3::new(1.0, 1.5, 2.0));
     let omega = Vector3::new(0.5, 1.0, 0.6);

@@ -86,6 +86,7 @@ fn refused(poses: &Poses) -> PoseFault {
 
 /// Over several bodies, noises from 0.05 to 2 degrees and sampling rates: the error is that of the bound, and the stated covariance holds it.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn errors_are_those_of_the_bound() {
     let (mut squares, mut own, mut count) = (0.0, 0.0, 0.0);
     for (k, noise) in [0.05_f64, 0.5, 2.0].into_iter().enumerate() {
@@ -362,6 +363,7 @@ fn spin(
 /// Two turns of a body that spins nearly about its first or third axis: its likelihood has valleys that bend, and maxima that are not the
 /// highest.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn near_steady_spins_are_answered_rightly_or_refused() {
     let bodies = [ASYMMETRIC, [1.0, 2.0, 2.1], [1.0, 2.0, 3.0], [1.0, 3.0, 3.3], [1.0, 1.1, 2.0]];
     let (mut answered, mut known) = (0, 0);

@@ -33,6 +33,7 @@ fn record(body: &Matrix3<f64>, sigma: f64, random: &mut Random) -> Record {
 /// Bodies are drawn from the prior: e is then normal with the covariance that the fit states, of shape and of size. The
 /// mean of χ² over its 5 and 6 degrees of freedom scatters over 60 bodies by √(2/300) = 0.08 and 0.075.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn bodies_from_a_prior_are_covered_by_the_joint_covariance() {
     let mut random = Random::new(71);
     let model = turned(MOMENTS, &random_rotation(&mut random));
@@ -71,6 +72,7 @@ fn bodies_from_a_prior_are_covered_by_the_joint_covariance() {
 /// Bodies are drawn from the prior and spin about a principal axis: the record tells that axis and no ratio, the prior the
 /// rest. The mean of χ² over its 5 degrees of freedom scatters over 40 bodies by √(2/200) = 0.1.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn a_prior_fills_what_a_pure_spin_leaves_open() {
     let mut random = Random::new(75);
     let model = turned(MOMENTS, &random_rotation(&mut random));

@@ -87,6 +87,7 @@ fn with_drag(count: usize, times: &[f64], drag: f64, sigma: f64, model: TorqueMo
 /// With 24 trials the mean of χ²₅/5 scatters by √(2/120) = 0.13, its root by 0.065: four of these about 1, and the share
 /// of trials that are covered by 0.045.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn drag_is_found_and_fitted_at_its_bound() {
     for (drag, sigma) in [(1e-3, 1e-3), (1e-2, 1e-2), (0.1, 1e-3)] {
         let trials = with_drag(24, &sampled(10, 30), drag, sigma, TorqueModel::Auto, 5);
@@ -160,6 +161,7 @@ fn a_body_that_a_motor_drives_contradicts_drag() {
 /// Torque noise turns the body, and so it stands in the slopes of the rates as well as in the residuals: least squares that forget
 /// it find the smallest moment too small by one standard deviation. The mean of 40 normal deviates scatters by 0.16.
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn torque_noise_does_not_bias_the_moments() {
     let mut random = Random::new(66);
     let times = sampled(12, 60);
@@ -266,6 +268,7 @@ fn sensors(count: usize, rate: usize, sigma: f64) -> [Trials; 3] {
 }
 
 #[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
 fn errors_of_the_sensor_are_covered_by_their_priors() {
     for trials in sensors(16, 10, 1e-2) {
         assert_eq!(trials.refused, 0);

@@ -197,11 +197,12 @@ mod tests {
 
     #[test]
     fn what_is_unknown_widens_it_and_what_is_known_gives_the_trace() {
-        let free = problem().bound(&times()).unwrap().trace();
+        let times: Vec<f64> = (0..200).map(|i| 0.1 * f64::from(i)).collect();
+        let free = problem().bound(&times).unwrap().trace();
         let with = |change: &dyn Fn(&mut Problem)| {
             let mut problem = problem();
             change(&mut problem);
-            problem.bound(&times()).unwrap().trace()
+            problem.bound(&times).unwrap().trace()
         };
         let drag = with(&|p| p.unknown.drag = true);
         let torque = with(&|p| p.unknown.torque = true);
