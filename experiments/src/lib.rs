@@ -9,4 +9,5 @@ mod experiments;
 pub mod methods;
 pub mod parallel;
 pub mod results;
+mod statistics;
 pub mod timing;

@@ -9,8 +9,8 @@ use polhode_files::error::{Error, unexpected};
 use polhode_fit::{FitError, Poses, Record, Settings, fit, fit_poses, foreseen_attitude_bound};
 use polhode_pages::table::{Column, Table, row};
 
-use super::fit_field::tally::Interval;
 use crate::experiment::{Context, Report};
+use crate::statistics::{Interval, rounded};
 
 const SEED: u64 = 401_600;
 /// Standard deviation of a component of the rotation vector, degrees.
@@ -62,8 +62,10 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let stream = (((body * NOISES.len() + noise) * RATES.len() + rate) as u64) << 32 | k;
         trial(BODIES[body].1, NOISES[noise].to_radians(), rates[rate], seconds, stream)
     });
+    let are_checked =
+        if trials >= TELLING { "" } else { " Too few to check each row: all are checked together." };
     let caption = format!(
-        "Inertia from attitudes: {trials} records of {seconds} s a row, random axes and starts, 1 rad/s."
+        "Inertia from attitudes: {trials} records of {seconds} s a row, random axes and starts, 1 rad/s.{are_checked}"
     );
     let mut table = Table::new("attitudes", caption, columns());
     let (mut pooled, mut failures) = (Summary::default(), Vec::new());
@@ -188,11 +190,6 @@ impl Summary {
         let over = (mean / 5.0).sqrt();
         Some((over / half, over * half))
     }
-}
-
-/// Four digits: what a Monte Carlo figure can bear, and the same on every machine.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 fn entries(j: &Matrix3<f64>) -> SMatrix<f64, 6, 1> {

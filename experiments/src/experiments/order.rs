@@ -10,6 +10,7 @@ use polhode_pages::table::{Column, Table, row};
 
 use super::followed::claimed_evaluations;
 use crate::experiment::{Context, Report};
+use crate::statistics::largest;
 
 /// Time over which errors grow, s: a power of two, so that every step is exact.
 const SPAN: f64 = 2.0;
@@ -101,7 +102,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         orders.push(row![method.name(), order(&method).map(u64::from), last.0, last.1]);
         let measured = [last.0, last.1].into_iter().flatten();
         let claim = order(&method).map_or(f64::NAN, f64::from);
-        let off = measured.map(|found| (found - claim).abs()).fold(0.0, f64::max);
+        let off = largest(measured.map(|found| (found - claim).abs()));
         if off <= CLOSE {
             as_claimed += 1;
         } else {

@@ -15,6 +15,7 @@ use polhode_pages::table::{self, Column, Table, row, to_digits};
 
 use super::contestants::{SCHEMES, TAKEN_BACK, knows_the_motion, weighed, weight};
 use crate::experiment::{Context, Report};
+use crate::statistics::largest;
 
 const SEED: u64 = 1852;
 
@@ -164,7 +165,7 @@ impl Field {
         let worst = run.last.worst;
         let is_whole = matches!(run.ending, Ending::Held | Ending::Lost(_));
         let of_whole = |error: Option<f64>| error.filter(|_| is_whole);
-        let largest = run.looks.iter().map(|look| look.attitude_error).fold(0.0, f64::max);
+        let largest = largest(run.looks.iter().map(|look| look.attitude_error));
         Seen {
             cost: self.cost(method, run),
             energy: of_whole(worst.energy),

@@ -10,7 +10,7 @@ use super::specimen::{Kind, Specimen, keeps_momentum};
 use super::truth::{Columns, Judged, Style, judged};
 use super::writing::{Form, Writing, one_of};
 use crate::experiment::{Context, Scale};
-use crate::experiments::fit_field::tally::Interval;
+use crate::statistics::Interval;
 
 /// A family, and which of its records.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -31,7 +31,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
-use crate::experiments::fit_field::tally::Interval;
+use crate::statistics::Interval;
 use alike::{ORDERS, alike};
 use families::Families;
 use mistakes::{Mistake, claims, wrong};

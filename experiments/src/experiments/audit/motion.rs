@@ -11,6 +11,7 @@ use polhode::run::{Run, Watch};
 use polhode_files::error::{Error, unexpected};
 
 use super::nearest::distance;
+use crate::statistics::largest;
 
 /// A row before it is written: time, attitude from body to space, angular velocity in body axes.
 #[derive(Clone, Copy)]
@@ -36,7 +37,7 @@ impl Motion {
         let distance = |(a, b): (&Row, &Row)| {
             rotation_angle(a.attitude, b.attitude).max((a.omega - b.omega).norm() / b.omega.norm())
         };
-        self.rows.iter().zip(&self.exact).map(distance).fold(0.0, f64::max)
+        largest(self.rows.iter().zip(&self.exact).map(distance))
     }
 
     /// The largest distance from the nearest exact motion, where that is less than the distance `error` from the same start.

@@ -6,6 +6,7 @@ use polhode::flow::FreeMotion;
 use polhode::rotation::{Quat, Vec3, rotation_angle};
 
 use super::motion::Row;
+use crate::statistics::largest;
 
 /// Rows that the start is fitted to.
 const FITTED: usize = 48;
@@ -62,8 +63,5 @@ pub(super) fn distance(body: &Body, rows: &[Row]) -> Option<f64> {
         let omega = (Vector3::from(row.omega) - body.omega_body(&state)).norm() / speed;
         Some(rotation_angle(state.attitude, row.attitude).max(omega))
     });
-    distances
-        .collect::<Option<Vec<f64>>>()
-        .map(|all| all.into_iter().fold(0.0, f64::max))
-        .filter(|x| x.is_finite())
+    distances.collect::<Option<Vec<f64>>>().map(largest).filter(|x| x.is_finite())
 }

@@ -13,7 +13,8 @@ use polhode_pages::table::{Cell, Column, Table};
 use polhode_rivals::{ATTITUDE_NOISE, RIVALS, Rival};
 
 use crate::experiment::{Context, Report};
-use outcome::{Outcome, Summary, best, rounded};
+use crate::statistics::rounded;
+use outcome::{Outcome, Summary, best};
 
 const SEED: u64 = 40_400;
 /// Noise of a component as a share of the rate.

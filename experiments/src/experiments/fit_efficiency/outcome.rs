@@ -1,5 +1,6 @@
 //! What the answers of one estimator to many records amount to.
 
+use crate::statistics::rounded;
 use polhode_pages::table::{Cell, row, to_digits};
 
 /// The 95 % point of χ² with five degrees of freedom.
@@ -80,10 +81,10 @@ impl Summary {
             choice,
             noise,
             rounded(self.over_bound),
-            self.median.and_then(rounded),
-            self.quantile_90.and_then(rounded),
-            self.over_likelihood.and_then(rounded),
-            self.coverage.and_then(rounded),
+            self.median.map(rounded),
+            self.quantile_90.map(rounded),
+            self.over_likelihood.map(rounded),
+            self.coverage.map(rounded),
             self.answered as u64,
             refused,
         ]
@@ -113,11 +114,6 @@ fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let below = place.floor() as usize;
     let above = (below + 1).min(last);
     Some(sorted[below] + (place - below as f64) * (sorted[above] - sorted[below]))
-}
-
-/// Four digits: what a Monte Carlo figure can bear, and the same on every machine.
-pub(super) fn rounded(x: f64) -> Option<f64> {
-    format!("{x:.3e}").parse().ok().filter(|x: &f64| x.is_finite())
 }
 
 #[cfg(test)]

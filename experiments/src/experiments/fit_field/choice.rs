@@ -12,9 +12,10 @@ use polhode_files::error::{Error, unexpected};
 use polhode_fit::{Disturbances, Gyroscope, Record, Settings, TorqueModel, fit, simulate_with};
 use polhode_pages::table::{Column, Table, row};
 
-use super::tally::{ELLIPSOIDS, Interval, rounded};
+use super::tally::ELLIPSOIDS;
 use super::trial::{entries, square};
 use crate::experiment::Context;
+use crate::statistics::{Interval, rounded};
 
 const SEED: u64 = 402_026;
 const MOMENTS: [f64; 3] = [1.0, 2.0, 2.6];
@@ -156,13 +157,13 @@ pub(super) fn table(context: &Context) -> Result<(Table, Vec<String>), Error> {
             acting.size,
             counts.answered - counts.other,
             counts.refused,
-            coverage.and_then(|c| rounded(c.share)),
-            coverage.and_then(|c| rounded(c.low)),
-            coverage.and_then(|c| rounded(c.high)),
+            coverage.map(|c| rounded(c.share)),
+            coverage.map(|c| rounded(c.low)),
+            coverage.map(|c| rounded(c.high)),
             counts.answered - counts.inside[1],
             counts.other,
             counts.other_outside,
-            counts.wider.get(counts.wider.len() / 2).copied().and_then(rounded),
+            counts.wider.get(counts.wider.len() / 2).copied().map(rounded),
         ]);
         failures.extend(counts.failures(&format!("{} {}", acting.model, acting.size), 0.91, 1.0));
     }

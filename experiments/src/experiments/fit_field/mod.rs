@@ -11,8 +11,9 @@ use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
+use crate::statistics::{Interval, rounded};
 use cases::{CASES, Model};
-use tally::{Interval, Tally, rounded};
+use tally::Tally;
 use trial::{Trial, trial};
 
 const SEED: u64 = 160_160;
@@ -42,7 +43,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let case = &CASES[case];
         let tally = Tally::new(cell, if case.wheel_known { 6 } else { 5 });
         let coverage = tally.coverage();
-        let shown = |x: Option<f64>| x.and_then(rounded);
+        let shown = |x: Option<f64>| x.map(rounded);
         table.push(row![
             case.name,
             case.model.name(),
@@ -141,7 +142,7 @@ fn totals(pooled: &Tally, cells: &[(usize, f64)], results: &[Trial], trials: usi
     let mut table = Table::new("totals", caption, columns);
     let mut push = |quantity: &str, count: u64, of: u64| {
         let interval = Interval::new(count, of);
-        let shown = |x: fn(&Interval) -> f64| interval.as_ref().map(x).and_then(rounded);
+        let shown = |x: fn(&Interval) -> f64| interval.as_ref().map(x).map(rounded);
         table.push(row![quantity, count, of, shown(|i| i.share), shown(|i| i.low), shown(|i| i.high)]);
     };
     let of = |wanted: &dyn Fn(&cases::Case) -> bool| -> Tally {

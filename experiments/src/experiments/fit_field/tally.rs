@@ -2,12 +2,11 @@
 
 use super::cases::{Case, Model};
 use super::trial::{Trial, Verdict};
+use crate::statistics::Interval;
 
 /// The 95 % points of χ² with five and six degrees of freedom, and the 99.9 % points.
 pub(super) const ELLIPSOIDS: [(f64, f64); 2] =
     [(11.070_497_693_516_35, 20.515_005_652_432_87), (12.591_587_243_743_98, 22.457_744_484_825_326)];
-/// The normal deviate that one in twenty exceeds, either sign.
-const ONE_IN_TWENTY: f64 = 1.959_963_984_540_054;
 
 /// Counts of one row or several.
 #[derive(Default)]
@@ -30,41 +29,6 @@ pub(in crate::experiments) struct Tally {
     /// Answers that say that the record cannot tell its units.
     pub(super) open: u64,
     seconds: Vec<f64>,
-}
-
-/// A share with its 95 % interval.
-#[derive(Clone, Copy)]
-pub(in crate::experiments) struct Interval {
-    pub(in crate::experiments) share: f64,
-    pub(in crate::experiments) low: f64,
-    pub(in crate::experiments) high: f64,
-}
-
-impl Interval {
-    /// Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209. `None` of nothing.
-    pub(in crate::experiments) fn new(count: u64, of: u64) -> Option<Self> {
-        Self::wide(count, of, ONE_IN_TWENTY)
-    }
-
-    /// Of another number of standard deviations.
-    pub(in crate::experiments) fn wide(count: u64, of: u64, z: f64) -> Option<Self> {
-        if of == 0 {
-            return None;
-        }
-        let (n, share) = (of as f64, count as f64 / of as f64);
-        let square = z * z / n;
-        let centre = (share + 0.5 * square) / (1.0 + square);
-        let half = z / (1.0 + square) * (share * (1.0 - share) / n + 0.25 * square / n).sqrt();
-        // none and all end at the end, whatever the rounding
-        let low = if count == 0 { 0.0 } else { (centre - half).max(0.0) };
-        let high = if count == of { 1.0 } else { (centre + half).min(1.0) };
-        Some(Interval { share, low, high })
-    }
-}
-
-/// Four digits: what a Monte Carlo figure can bear, and the same on every machine.
-pub(in crate::experiments) fn rounded(x: f64) -> Option<f64> {
-    format!("{x:.3e}").parse().ok().filter(|x: &f64| x.is_finite())
 }
 
 /// Records of which a share of 95 % is asked.
@@ -198,20 +162,6 @@ fn middle(values: &[f64], share: f64) -> Option<f64> {
 mod tests {
     use super::super::trial::Answer;
     use super::*;
-
-    #[test]
-    fn intervals_are_those_of_the_published_example() {
-        // Newcombe, Stat. Med. 17 (1998) 857, table I: 81 of 263, and 0 of 20
-        let i = Interval::new(81, 263).unwrap();
-        assert!((i.low - 0.2553).abs() < 5e-5 && (i.high - 0.3662).abs() < 5e-5, "{} {}", i.low, i.high);
-        let i = Interval::new(0, 20).unwrap();
-        assert!(
-            i.low == 0.0 && Interval::new(0, 18).unwrap().low == 0.0 && (i.high - 0.1611).abs() < 5e-5,
-            "{}",
-            i.high
-        );
-        assert!(Interval::new(0, 0).is_none());
-    }
 
     #[test]
     fn a_tally_counts_each_verdict_once() {

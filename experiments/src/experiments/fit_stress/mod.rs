@@ -15,9 +15,10 @@ use polhode_files::error::{Error, unexpected};
 use polhode_fit::{FitError, Record, Segment, Settings, fit};
 use polhode_pages::table::{Column, Table, row};
 
-use super::fit_field::tally::{Interval, Tally, rounded};
+use super::fit_field::tally::Tally;
 use super::fit_field::trial::{Answer, Trial, Verdict, entries, lines_cover, square};
 use crate::experiment::{Context, Report};
+use crate::statistics::{Interval, rounded};
 use cases::{CASES, Case, Model, Sampling, Start};
 
 const SEED: u64 = 404_026;
@@ -142,7 +143,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     for (case, cell) in CASES.iter().zip(results.chunks(trials as usize)) {
         let tally = Tally::new(cell, 5);
         let coverage = tally.coverage();
-        let shown = |x: Option<f64>| x.and_then(rounded);
+        let shown = |x: Option<f64>| x.map(rounded);
         table.push(row![
             case.name,
             case.model.name(),

@@ -20,6 +20,7 @@ use self::balance::balance;
 use self::clone::{Approach, Spin};
 use self::inputs::Published;
 use crate::experiment::{Context, Report};
+use crate::statistics::largest;
 
 const SEED: u64 = 2029;
 const HOUR: f64 = 3600.0;
@@ -417,7 +418,7 @@ fn windows(context: &Context, report: &mut Report, until: f64) -> Result<(), Err
             Ok([one.angle(&longer), (one.effective / longer.effective - 1.0).abs()])
         });
         let found = found.into_iter().collect::<Result<Vec<[f64; 2]>, Error>>()?;
-        let most = |k: usize| found.iter().map(|one| one[k]).fold(0.0, f64::max);
+        let most = |k: usize| largest(found.iter().map(|one| one[k]));
         table.push(row![days, most(0), most(1)]);
     }
     report.tables.push(table);

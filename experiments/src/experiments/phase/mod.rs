@@ -23,6 +23,7 @@ use polhode_pages::figure::{Curve, Figure, sheet};
 use polhode_pages::table::{Cell, Column, Table, row};
 
 use crate::experiment::{Context, Report};
+use crate::statistics::largest;
 use measured::Look;
 
 const BODIES: [&str; 5] = ["textbook", "toutatis", "water", "spacecraft", "dyadic"];
@@ -226,7 +227,7 @@ fn examine(named: &NamedBody, name: &str, steps: u64, panels: u32) -> Result<Fou
     let apart = |rates: Rates| measured.apart(rates, spin);
     let (doubt, predicted) = (predicted.doubt(), Rates::of(&predicted));
     let disagreement = apart(predicted);
-    let rest = looks.iter().map(|look| look.departure.tilt.hi().abs()).fold(0.0, f64::max);
+    let rest = largest(looks.iter().map(|look| look.departure.tilt.hi().abs()));
     let row = row![
         named.name,
         &*name,

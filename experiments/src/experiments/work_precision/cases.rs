@@ -9,6 +9,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_files::text::short;
 
 use crate::experiment::Scale;
+use crate::statistics::rounded;
 
 pub(super) const SEED: u64 = 1967;
 
@@ -167,11 +168,6 @@ fn anywhere(random: &mut Random, speed: f64) -> [f64; 3] {
 
 fn any_attitude(random: &mut Random) -> [f64; 4] {
     [(); 4].map(|()| random.normal())
-}
-
-/// To four digits.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 impl Case {

@@ -7,6 +7,7 @@ use super::super::contestants::knows_the_motion;
 use super::cases::{Case, Kind};
 use super::contest::{CLOSED_FORM, Contestant, Currency, Quantiles, ranked};
 use super::entry::{Entry, FEW, Found};
+use crate::statistics::rounded;
 
 /// Accuracies that winners are named for, rad.
 const ACCURACIES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
@@ -43,11 +44,6 @@ impl Contest<'_> {
         let horizons = self.case.horizons.iter().enumerate();
         horizons.map(|(k, horizon)| (k, *horizon, self.starts(k))).filter(|(_, _, starts)| !starts.is_empty())
     }
-}
-
-/// To four digits: what depends on the machine has no more.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 pub(super) fn errors() -> Table {
