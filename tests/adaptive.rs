@@ -1,7 +1,7 @@
 //! What every method that chooses its steps has to do: output changes no bit, runs are taken up, no scale is special.
 
 use crate::motions::{free, magnet, run, satellite, started, thruster, top};
-use polhode::body::{Body, State};
+use polhode::body::{Body, Force, State};
 use polhode::inertia::Inertia;
 use polhode::method::{AnyMethod, Claimed, catalogue, method};
 use polhode::run::{Run, Watch};
@@ -126,4 +126,30 @@ fn a_tolerance_is_a_property_and_not_a_spelling() {
     assert!(
         refused("taylor", f64::NAN).starts_with("NaN is no tolerance of taylor; it must be from 1.2e-16")
     );
+}
+
+/// Drag of 1 N m s stops a ball of 2 kg m² as exp(−t/2): long after its speed is no normal double its attitude is that of 100 s.
+#[test]
+fn a_body_that_drag_stops_comes_to_rest() {
+    let body =
+        |moments| Body::free(Inertia::from_moments(moments).unwrap()).with(Force::drag(1.0, 0.0).unwrap());
+    let end = |body: &Body, method: &dyn AnyMethod, until: f64| {
+        let start = body.state(Default::default(), [0.4, 1.0, -0.3].into()).unwrap();
+        Run::new(method, body, &start, until).unwrap().watching(Watch::Never).advance_to(1).unwrap()
+    };
+    let (ball, asymmetric) = (body([2.0; 3]), body([1.0, 2.0, 3.0]));
+    for method in adaptive_methods() {
+        let name = method.name();
+        let slow = end(&ball, &method, 500.0).momentum_norm / end(&ball, &method, 0.0625).momentum_norm;
+        let expected = libm::exp(-(500.0 - 0.0625) / 2.0);
+        let off = slow / expected - 1.0;
+        assert!(off.abs() < 500.0 * method.tolerance().unwrap(), "{name}: {off:e}");
+        let stopped = end(&asymmetric, &method, 100.0).state.rotation();
+        for until in [500.0, 2500.0, 20_000.0] {
+            let rest = end(&asymmetric, &method, until);
+            let turned = rest.state.rotation().angle_to(&stopped);
+            assert!(rest.momentum_norm < 1e-70 && turned < 1e-12, "{name}, {until} s: {turned:e}");
+        }
+        assert!(end(&asymmetric, &method, 20_000.0).momentum_norm < 1e-280, "{name}");
+    }
 }

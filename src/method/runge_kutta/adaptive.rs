@@ -272,10 +272,12 @@ impl Next {
 }
 
 impl Allowed {
-    /// In a step from `x` to `y`. A momentum of zero at both allows any error: there is none.
+    /// In a step from `x` to `y`. A momentum of zero at both allows any error: there is none. Of one next to zero at least the least
+    /// normal double is allowed, below which doubles have fewer digits.
     fn of<S: Real>(tolerance: f64, x: &Phase<S>, y: &Phase<S>) -> Self {
         let sizes = [x, y].map(|x| (length(x.momentum_body.0), length(x.attitude.components())));
-        let inverse = |size: f64| if size == 0.0 { 0.0 } else { 1.0 / (tolerance * size) };
+        let inverse =
+            |size: f64| if size == 0.0 { 0.0 } else { 1.0 / (tolerance * size).max(f64::MIN_POSITIVE) };
         // f64::max would drop a NaN, and with a NaN in y the estimate is none either
         let largest = |a: f64, b: f64| if a > b { a } else { b };
         Allowed {

@@ -140,13 +140,24 @@ impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
         // from the base alone, so that a run taken up again has the same bits
         let at = at.at_elapsed(self.base);
         self.series.record(at, x);
-        let rate = self.series.rate(x, self.series.torque(at, 0));
-        let unit = unit(if self.h.hi() < 0.0 { -1.0 / rate } else { 1.0 / rate });
-        self.series.expand(at, unit, x);
-        let current = Current { unit, reach: self.series.reach(self.tolerance) };
+        let torque = self.series.torque(at, 0);
+        let (turns, slows) = (self.series.rate(x, torque), self.series.damping(x, torque));
+        let mut current = self.expanded_at(at, turns, x);
+        // drag stops a slow body long before it turns: in a unit of that time high terms leave the range of doubles
+        if !(current.reach > 0.0) && slows > turns && slows.is_finite() {
+            self.series.record(at, x);
+            current = self.expanded_at(at, slows, x);
+        }
         self.current = Some(current);
         self.work.evaluations += self.series.order() as u64;
         current
+    }
+
+    /// The series about `x`, which counts in the time that the rate, 1/s, tells.
+    fn expanded_at(&mut self, at: Time, rate: f64, x: &Point<S>) -> Current {
+        let unit = unit(if self.h.hi() < 0.0 { -1.0 / rate } else { 1.0 / rate });
+        self.series.expand(at, unit, x);
+        Current { unit, reach: self.series.reach(self.tolerance) }
     }
 
     /// Takes the steps that end by `end`, s since the start.

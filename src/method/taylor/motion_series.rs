@@ -101,6 +101,11 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
         x.momentum_body.times(inverse).magnitude().max(acceleration.sqrt())
     }
 
+    /// The rate, 1/s, at which the torque `others` changes the spin through `x`, relative to it.
+    pub(super) fn damping(&self, x: &Point<S>, others: Vec3<S>) -> f64 {
+        others.magnitude() / x.momentum_body.magnitude()
+    }
+
     /// Records the torque of all but the linear part about `x`.
     pub(super) fn record(&mut self, at: Time, x: &Point<S>) {
         let Some(tape) = &mut self.others else { return };
@@ -211,7 +216,10 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
         let momentum = |n: usize| length(self.momentum[n].components());
         let moving = (0..self.order).find(|&n| momentum(n) != 0.0).unwrap_or(0);
         let allowed = tolerance * momentum(moving);
-        let mut reach = f64::INFINITY;
+        let is_next_to_rest = momentum(moving) != 0.0 && allowed < f64::MIN_POSITIVE;
+        let allowed = if is_next_to_rest { f64::MIN_POSITIVE } else { allowed };
+        // there the terms of high orders are no normal doubles, and say nothing
+        let mut reach = if is_next_to_rest { 1.0 } else { f64::INFINITY };
         for n in [self.order - 1, self.order] {
             let of_attitude = (tolerance / length(self.attitude[n].components), n);
             let last = momentum(n);
