@@ -144,7 +144,7 @@ impl<S: Real, F: Field<S>> AdaptiveTaylorMap<S, F> {
         let (turns, slows) = (self.series.rate(x, torque), self.series.damping(x, torque));
         let mut current = self.expanded_at(at, turns, x);
         // drag stops a slow body long before it turns: in a unit of that time high terms leave the range of doubles
-        if !(current.reach > 0.0) && slows > turns && slows.is_finite() {
+        if (current.reach == 0.0 || current.reach.is_nan()) && slows > turns && slows.is_finite() {
             self.series.record(at, x);
             current = self.expanded_at(at, slows, x);
         }
