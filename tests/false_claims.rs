@@ -400,3 +400,52 @@ fn a_report_is_text_and_back() {
     assert_eq!("".parse::<Report>().unwrap_err().line, 1);
     assert_eq!("polhode laws 1".parse::<Report>().unwrap_err().line, 2);
 }
+
+/// A method whose momenta shrink at a rate of 1/s, which it says nothing of.
+#[derive(Clone)]
+struct Damped<M> {
+    base: M,
+    rate: f64,
+}
+
+struct DampedMap<S, M> {
+    base: M,
+    factor: S,
+}
+
+impl<M: Claimed> Claimed for Damped<M> {
+    fn name(&self) -> String {
+        format!("damped-{}", self.base.name())
+    }
+    fn claims(&self, problem: Problem) -> Option<Claims> {
+        self.base.claims(problem)
+    }
+}
+
+impl<S: Real, M: Method<S>> Method<S> for Damped<M> {
+    type Map<F: Field<S>> = DampedMap<S, M::Map<F>>;
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F> {
+        let factor = S::from_dd(Dd::ONE - h * self.rate);
+        DampedMap { base: self.base.map(h, rotor, field), factor }
+    }
+}
+
+impl<S: Real, M: Map<S>> Map<S> for DampedMap<S, M> {
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        self.base.apply(at, x);
+        x.momentum_body = x.momentum_body * self.factor;
+    }
+}
+
+/// Over 250 s the energy falls by about the amplitude of its oscillation; the law decides from a fifth of it on.
+#[test]
+fn a_slow_loss_of_energy_under_forces_is_named() {
+    let drifts = |rate: f64, problem| {
+        let damped = Damped { base: Splitting::strang(TwoTurn { axes: None }, Kicks), rate };
+        let report = check_only(&damped, &[problem], &[Law::Drift]).unwrap();
+        found(&report).contains(&(Law::Drift, Quantity::Energy))
+    };
+    for problem in [Problem::Free, Problem::Linear, Problem::Potential] {
+        assert!(drifts(1e-6, problem) && !drifts(0.0, problem), "{problem:?}");
+    }
+}

@@ -14,7 +14,7 @@ use crate::rotation::Quat;
 /// For how long a bounded error is watched, s.
 const LONG: f64 = 250.0;
 
-/// The energy is read after every fourth step: to read it takes as long as some steps.
+/// The energy is read after every fourth step: to read it takes as long as some steps. What comes back in so many steps is not seen.
 const EVERY: u64 = 4;
 
 /// From so many starts the slope of the energy error is averaged, from the second number where the interval of the first is too wide:
