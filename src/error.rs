@@ -75,6 +75,7 @@ from!(
     crate::audit::AuditError,
     crate::body::ForceError,
     crate::body::StateError,
+    crate::body::WheelError,
     crate::events::EventError,
     crate::flow::AtRest,
     crate::flow::CovarianceError,

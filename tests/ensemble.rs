@@ -233,7 +233,7 @@ fn threads_that_are_asked_for_do_the_work() {
         let noted = Arc::clone(&seen);
         let mut ensemble = Ensemble::new().threads(threads).acted_on(move |inertia| {
             noted.lock().unwrap().insert(std::thread::current().id());
-            Ok(Body::free(inertia))
+            Ok::<_, StateError>(Body::free(inertia))
         });
         (0..130).for_each(|k| ensemble.push_omega(&inertia(k), attitude(k), omega(k)));
         // several parts
@@ -262,7 +262,8 @@ fn forces_act_on_every_member() {
         assert_eq!(*state, LagrangeTop::from_point(&body, start).unwrap().at(2.5).unwrap());
     }
     let drag = Force::drag(0.5, 0.0).unwrap();
-    let mut slowed = Ensemble::new().acted_on(move |inertia| Ok(Body::free(inertia).with(drag.clone())));
+    let mut slowed =
+        Ensemble::new().acted_on(move |inertia| Ok::<_, StateError>(Body::free(inertia).with(drag.clone())));
     fill(&mut slowed);
     let slower = advanced(&slowed, "rk4", Clock::new(0.01), &[0, 100]);
     for (before, after) in slower[0].iter().zip(&slower[1]) {

@@ -205,7 +205,7 @@ impl AnyMethod for Refusing {
 fn a_method_that_refuses_what_it_claims_to_take_is_named() {
     let report = check(&Refusing).unwrap();
     assert_eq!(found(&report), [(Law::Takes, Quantity::Method)]);
-    assert_eq!(report.findings.len(), 4);
+    assert_eq!(report.findings.len(), 6);
     assert_eq!(report.text().parse(), Ok(report));
 }
 

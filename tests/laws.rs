@@ -33,7 +33,14 @@ const EXACT: f64 = 1e-28;
 /// Moments, momenta and torques of the cases are this many times those of the problems in the literature.
 const SIZE: f64 = 24.0;
 
-const PROBLEMS: [Problem; 4] = [Problem::Free, Problem::Linear, Problem::Potential, Problem::Torque];
+const PROBLEMS: [Problem; 6] = [
+    Problem::Free,
+    Problem::Linear,
+    Problem::Potential,
+    Problem::Torque,
+    Problem::Gyrostat,
+    Problem::GyrostatPotential,
+];
 
 fn case(problem: Problem) -> &'static Case {
     cases().unwrap().iter().find(|case| case.problem() == problem).unwrap()

@@ -23,6 +23,7 @@ mod false_claims;
 mod fixtures;
 mod forces;
 #[cfg(feature = "random")]
+mod gyrostat;
 mod hostile;
 mod inertia;
 mod laws;

@@ -10,6 +10,9 @@ pub(super) fn reordered(body: &Body, order: [usize; 3]) -> Option<Body> {
     if order == [0, 1, 2] {
         return Some(body.clone());
     }
+    if !body.wheels().is_empty() {
+        return None; // their axes stay where they are
+    }
     let inertia = body.inertia();
     let tensor = inertia.tensor();
     let reordered = if inertia.is_along_principal_axes() {

@@ -35,8 +35,8 @@ pub(super) fn conservation(
     let Some(first) = looked.first().copied() else { return (Vec::new(), Traces::default()) };
     let quantities = Quantities::new(body);
     let has_attitude = first.attitude.is_some();
-    let space = |row: &Row| row.attitude.map_or(Vec3::zero(), |q| q.rotate(quantities.momentum(row)));
-    let start_momentum = quantities.momentum(&first);
+    let space = |row: &Row| row.attitude.map_or(Vec3::zero(), |q| q.rotate(quantities.whole_momentum(row)));
+    let start_momentum = quantities.whole_momentum(&first);
     let (l, norm) = (space(&first), start_momentum.norm());
     let energy = quantities.energy(&first);
     let kinetic = quantities.kinetic(&first);
@@ -45,7 +45,7 @@ pub(super) fn conservation(
         return (Vec::new(), Traces::default());
     }
     let energy_of = |row: &Row| (quantities.energy(row) - energy) / energy_scale;
-    let norm_of = |row: &Row| (quantities.momentum(row).norm() - norm) / norm;
+    let norm_of = |row: &Row| (quantities.whole_momentum(row).norm() - norm) / norm;
     let vector_of = |row: &Row| (space(row) - l).norm() / norm;
     let z_of = |row: &Row| (space(row)[2] - l[2]) / norm;
     // the direction across which L leaves first tells the sign of its angle

@@ -65,6 +65,14 @@ impl<'a> Quantities<'a> {
         Quantities { body, dynamics: Dynamics::new(body), free: body.problem() == Problem::Free }
     }
 
+    /// I ω and the momentum of wheels in body axes.
+    pub(super) fn whole_momentum(&self, row: &Row) -> Vec3<f64> {
+        let scale = self.body.scale();
+        let at = Time::from_seconds(row.time);
+        let wheels = self.body.wheels().iter().map(|wheel| wheel.momentum::<f64>(at).map(|l| l / scale));
+        wheels.fold(self.momentum(row), |sum, one| sum + one)
+    }
+
     /// I ω in body axes.
     pub(super) fn momentum(&self, row: &Row) -> Vec3<f64> {
         self.dynamics.momentum(row.omega)

@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::field::{Field, Forces, Witness};
 use super::law::Evaluated;
+use super::wheel::{OnCarrier, Wheel, WheelError, Wheels};
 use super::{Conserved, Exit, Force, LinearPotential, Point, Rotor, State, StateError, Time};
 use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real};
@@ -19,20 +20,28 @@ pub enum Problem {
     Linear,
     /// Torques that come from potentials.
     Potential,
+    /// The body carries [wheels](Wheel), and nothing else acts.
+    Gyrostat,
+    /// The body carries wheels, and torques that come from potentials act.
+    GyrostatPotential,
     /// Any torque.
     Torque,
 }
 
-/// A rigid body and the [forces](Force) that act on it, if any.
+/// A rigid body, the [wheels](Wheel) that it carries and the [forces](Force) that act on it, if any.
 ///
 /// A user's [`State`] refers to the body axes that the inertia was given in. Kernels work on a [`Point`] in the solver
 /// frame: along principal axes, with moments and momenta divided by a power of two, so that fourth powers neither over- nor
 /// underflow and a change of the unit of mass by a power of two changes no bit. [`enter`](Body::enter) and
-/// [`leave`](Body::leave) convert between the two.
+/// [`leave`](Body::leave) convert between the two. The momentum of both is that of the carrier, I ω;
+/// [`momentum_space`](Self::momentum_space) adds that of wheels.
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Body {
     inertia: Inertia,
+    /// The inertia as it was given, where wheels turn freely, which the other is without.
+    locked: Option<Inertia>,
+    wheels: Vec<Wheel>,
     forces: Vec<Force>,
     /// The sum of those that are linear in the vertical, in the solver frame.
     linear: Option<LinearPotential<Dd>>,
@@ -42,7 +51,8 @@ pub struct Body {
 impl Body {
     /// A body on which no torque acts.
     pub fn free(inertia: Inertia) -> Self {
-        Body { inertia, forces: Vec::new(), linear: None, witness: None }
+        let (forces, wheels) = (Vec::new(), Vec::new());
+        Body { inertia, locked: None, wheels, forces, linear: None, witness: None }
     }
 
     /// A body with a fixed point, the origin, under uniform gravity along −Z of space.
@@ -89,8 +99,52 @@ impl Body {
             let moment = self.linear.map_or(moment, |linear| linear.moment + moment);
             self.linear = (moment != Vec3::zero()).then_some(LinearPotential { moment });
         }
-        self.forces.push(force.on(&self.inertia));
+        let locked = self.locked_inertia();
+        self.forces.push(force.on(locked));
         self
+    }
+
+    /// The same body with one more wheel. Its [inertia](Self::locked_inertia) includes that of the wheel, at rest on the body.
+    ///
+    /// # Errors
+    /// A wheel that has more inertia about its axis than the whole has room for.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::body::{Body, Wheel};
+    /// use polhode::Inertia;
+    /// let body = Body::free(Inertia::from_moments([1.0, 2.0, 2.5])?);
+    /// let wheel = |inertia| Wheel::new(Vector3::x(), inertia, 50.0);
+    /// assert!(body.clone().with_wheel(wheel(0.1)?).is_ok());
+    /// assert!(body.with_wheel(wheel(0.6)?).is_err()); // 0.4, 2 and 2.5 kg m² without it: no body
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    pub fn with_wheel(mut self, wheel: Wheel) -> Result<Self, WheelError> {
+        let locked = self.locked_inertia().clone();
+        self.wheels.push(wheel);
+        let without = |held: bool| {
+            let axial = self.wheels.iter().filter(|wheel| held || !wheel.is_held());
+            locked.less_axial(axial.map(|wheel| (wheel.axis_dd(), wheel.inertia())))
+        };
+        let inertia = without(true).and_then(|_| without(false)).map_err(|rest| {
+            let about_axis = wheel.axis().dot(&(locked.tensor() * wheel.axis()));
+            WheelError::TooLarge { inertia: wheel.inertia(), about_axis, rest }
+        })?;
+        if self.wheels.iter().any(|wheel| !wheel.is_held()) {
+            (self.inertia, self.locked) = (inertia, Some(locked));
+        }
+        Ok(self.changed(|wheel| *wheel, |force| Some(force.clone())))
+    }
+
+    /// The body with its wheels changed, and with what is left of its forces.
+    pub(super) fn changed(
+        &self,
+        wheel: impl FnMut(&Wheel) -> Wheel,
+        left: impl FnMut(&Force) -> Option<Force>,
+    ) -> Body {
+        let wheels = self.wheels.iter().map(wheel).collect();
+        let bare = Body { wheels, locked: self.locked.clone(), ..Body::free(self.inertia.clone()) };
+        self.forces.iter().filter_map(left).fold(bare, Body::with)
     }
 
     /// Whether the solver frame has digits for a potential linear in the vertical with this moment, N m.
@@ -99,9 +153,19 @@ impl Body {
         clear(scaled.magnitude()) && clear(moment.magnitude())
     }
 
-    /// Its inertia.
+    /// Its inertia I, that of p = I ω: with wheels that are held, and without `J a aᵀ` of each that turns freely.
     pub fn inertia(&self) -> &Inertia {
         &self.inertia
+    }
+
+    /// The inertia that was given: of body and wheels as if all were one rigid body.
+    pub fn locked_inertia(&self) -> &Inertia {
+        self.locked.as_ref().unwrap_or(&self.inertia)
+    }
+
+    /// The wheels that it carries.
+    pub fn wheels(&self) -> &[Wheel] {
+        &self.wheels
     }
 
     /// The forces that act on it, in the order in which they were given.
@@ -115,20 +179,31 @@ impl Body {
         self.forces.iter().filter(move |force| !is_linear(force))
     }
 
+    /// The name of something that acts on it, or that it carries wheels; `None` of a free body.
+    pub(crate) fn acts(&self) -> Option<String> {
+        let name = self.remainder().next().or(self.forces.first()).map(|force| force.name().to_owned());
+        name.or((!self.wheels.is_empty()).then(|| "wheels".into()))
+    }
+
     /// What kind of motion it makes.
     pub fn problem(&self) -> Problem {
+        let have_potentials = self.remainder().all(Force::has_potential);
         match (&self.linear, self.remainder().next()) {
+            (None, None) if !self.wheels.is_empty() => Problem::Gyrostat,
+            _ if !self.wheels.is_empty() && have_potentials => Problem::GyrostatPotential,
             (None, None) => Problem::Free,
             (Some(_), None) => Problem::Linear,
-            _ if self.remainder().all(Force::has_potential) => Problem::Potential,
+            _ if have_potentials => Problem::Potential,
             _ => Problem::Torque,
         }
     }
 
     /// What the motion conserves, in exact arithmetic.
     pub fn conserved(&self) -> Vec<Conserved> {
-        let free =
-            vec![Conserved::Energy, Conserved::MomentumNorm, Conserved::Momentum, Conserved::MomentumZ];
+        let mut free = vec![Conserved::MomentumNorm, Conserved::Momentum, Conserved::MomentumZ];
+        if self.wheels.iter().all(|wheel| wheel.motor().is_none()) {
+            free.insert(0, Conserved::Energy);
+        }
         let linear = self.linear.map(|_| vec![Conserved::Energy, Conserved::MomentumZ]);
         let others = self.remainder().map(Force::conserved);
         linear.into_iter().chain(others).fold(free, |a, b| {
@@ -159,9 +234,45 @@ impl Body {
         Body { witness: Some(witness), ..self.clone() }
     }
 
-    /// Every force in the solver frame, in one value.
+    /// Every force in the solver frame, in one value; wheels act on the momentum of the carrier like torques.
     pub(crate) fn field<S: Evaluated>(&self) -> Forces<S> {
+        let wheels = self.wheels.iter().map(|wheel| Force::torque("wheel", OnCarrier(*wheel)));
+        self.field_of(self.linear_potential(), self.remainder().cloned().chain(wheels))
+    }
+
+    /// The forces alone, without wheels.
+    pub(crate) fn field_without_wheels<S: Evaluated>(&self) -> Forces<S> {
         self.field_of(self.linear_potential(), self.remainder().cloned())
+    }
+
+    /// The momentum of its wheels in the solver frame; `None` without wheels.
+    pub(crate) fn momentum_of_wheels(&self) -> Option<Wheels> {
+        let axis = |axis: Vec3<Dd>| self.inertia.along_axes(axis).map(|a| a * (1.0 / self.scale()));
+        (!self.wheels.is_empty()).then(|| Wheels::new(&self.wheels, axis))
+    }
+
+    /// L, the angular momentum of body and wheels in space at the time `t`, s, in kg m²/s.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::body::{Body, Wheel};
+    /// use polhode::Inertia;
+    /// let wheel = Wheel::new(Vector3::z(), 0.5, 4.0)?;
+    /// let body = Body::free(Inertia::from_moments([3.0, 3.0, 5.0])?).with_wheel(wheel)?;
+    /// let start = body.state(Default::default(), Vector3::new(1.0, 0.0, 0.0))?;
+    /// assert_eq!(body.momentum_space(0.0, &start), Vector3::new(3.0, 0.0, 2.0));
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    #[must_use]
+    pub fn momentum_space(&self, t: f64, x: &State) -> Vector3<f64> {
+        x.rotation() * (x.momentum() + self.momentum_of_wheels_at(t))
+    }
+
+    /// The angular momentum of its wheels at the time `t`, s, body axes, kg m²/s: what [`State::momentum`] is without. Zero without wheels.
+    #[must_use]
+    pub fn momentum_of_wheels_at(&self, t: f64) -> Vector3<f64> {
+        let wheels = self.wheels.iter().map(|wheel| wheel.momentum::<f64>(Time::from_seconds(t)));
+        wheels.fold(Vec3::zero(), |sum, one| sum + one).into()
     }
 
     /// One force alone in the solver frame, evaluated by its law.
@@ -204,13 +315,13 @@ impl Body {
     /// Kinetic and potential energy, divided by the scale.
     pub(crate) fn scaled_energy(&self, at: Time, x: &Point<Dd>) -> Dd {
         let kinetic = self.rotor().kinetic_energy(x.momentum_body);
-        if self.problem() == Problem::Free {
+        if self.forces.is_empty() {
             return kinetic;
         }
-        kinetic + self.field().energy(at, x.attitude)
+        kinetic + self.field_without_wheels().energy(at, x.attitude)
     }
 
-    /// Σ (|U| + |τ|) over the forces besides the linear potential at the point `x`, divided by the scale.
+    /// Σ (|U| + |τ|) over the forces besides the linear potential and wheels at the point `x`, divided by the scale.
     pub(crate) fn size_of_remainder(&self, at: Time, x: &Point<Dd>) -> Dd {
         let omega = x.momentum_body.times(self.rotor().inverse_moments());
         let sizes = self.remainder().map(|force| {

@@ -21,6 +21,7 @@ mod rotor;
 mod state;
 mod switched;
 mod time;
+mod wheel;
 
 pub use body::{Body, Problem};
 pub use error::{ForceError, StateError};
@@ -40,3 +41,4 @@ pub use rotor::Rotor;
 pub(crate) use rotor::{Gyroscopic, kinetic_energy};
 pub use state::State;
 pub use time::{Clock, Time};
+pub use wheel::{Wheel, WheelError, Wheels};

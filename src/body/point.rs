@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Mul};
 
-use crate::num::sum::{Compensated, add_carried};
+use crate::num::sum::{Compensated, add_carried, add_parts_carried};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -102,6 +102,42 @@ impl<S: Real> Point<S> {
     #[inline]
     pub fn add_component(&mut self, axis: usize, delta: S) {
         add_carried(&mut self.momentum_body[axis], &mut self.carried.momentum_body[axis], delta);
+    }
+
+    /// `q += Σ attitude`, `m += Σ momentum`, each in two parts, the second of the size of a rounding error of the first.
+    pub(crate) fn add_in_parts(&mut self, attitude: [Quat<S>; 2], momentum: [Vec3<S>; 2]) {
+        let [high, low] = momentum;
+        for k in 0..3 {
+            let carried = &mut self.carried.momentum_body[k];
+            add_parts_carried(&mut self.momentum_body[k], carried, high[k], low[k]);
+        }
+        let [high, low] = attitude;
+        add_parts_carried(&mut self.attitude.w, &mut self.carried.attitude.w, high.w, low.w);
+        for k in 0..3 {
+            let carried = &mut self.carried.attitude.v[k];
+            add_parts_carried(&mut self.attitude.v[k], carried, high.v[k], low.v[k]);
+        }
+    }
+
+    /// The same point, nothing carried.
+    pub(crate) fn without_carried(&self) -> Self {
+        Point { carried: Phase::zero(), ..*self }
+    }
+
+    /// Moves as `moved` has moved from this point [without what is carried](Self::without_carried): that of both is kept.
+    pub(crate) fn follow(&mut self, moved: &Point<S>) {
+        let change = |to: S, carried: S, from: S| {
+            let (high, low) = to.two_sum(-from);
+            [high, low + carried]
+        };
+        let (q, m) = (self.attitude, self.momentum_body);
+        let (to, left) = (moved.attitude, moved.carried.attitude);
+        let w = change(to.w, left.w, q.w);
+        let v = [0, 1, 2].map(|k| change(to.v[k], left.v[k], q.v[k]));
+        let n = [0, 1, 2].map(|k| change(moved.momentum_body[k], moved.carried.momentum_body[k], m[k]));
+        let part = |p: usize| (Quat::new(w[p], Vec3(v.map(|v| v[p]))), Vec3(n.map(|n| n[p])));
+        let ((q_high, m_high), (q_low, m_low)) = (part(0), part(1));
+        self.add_in_parts([q_high, q_low], [m_high, m_low]);
     }
 
     /// `q += delta`.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::law::{Evaluated, Law, SeriesLaw};
-use super::{Body, Force, ForceError, Time, Torque};
+use super::{Body, Force, ForceError, Time, Torque, Wheel};
 use crate::rotation::{Quat, Vec3};
 
 /// When a force acts, and its law then.
@@ -102,20 +102,20 @@ impl Force {
 }
 
 impl Body {
-    /// When its forces are switched on or off, s, ascending.
+    /// When its forces and the motors of its wheels are switched on or off, s, ascending.
     #[must_use]
     pub fn switching_times(&self) -> Vec<f64> {
-        let intervals = self.forces().iter().filter_map(Force::intervals).flatten();
-        let mut times: Vec<f64> = intervals.flatten().copied().filter(|t| t.is_finite()).collect();
+        let intervals = self.forces().iter().filter_map(Force::intervals).flatten().flatten().copied();
+        let motors = self.wheels().iter().flat_map(Wheel::switching_times);
+        let mut times: Vec<f64> = intervals.chain(motors).filter(|t| t.is_finite()).collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
         times
     }
 
-    /// The body with the forces alone that act just after the time `t`, s, or just before it, and which are not switched.
+    /// The body with the forces and motors alone that act just after the time `t`, s, or just before it, and which are not switched.
     pub(crate) fn acting(&self, t: f64, after: bool) -> Body {
-        let acts = |force: &&Force| force.switched.as_ref().is_none_or(|switched| switched.acts(t, after));
-        let acting = self.forces().iter().filter(acts).map(Force::unswitched);
-        acting.fold(Body::free(self.inertia().clone()), Body::with)
+        let acts = |force: &Force| force.switched.as_ref().is_none_or(|switched| switched.acts(t, after));
+        self.changed(|wheel| wheel.acting(t, after), |force| acts(force).then(|| force.unswitched()))
     }
 }

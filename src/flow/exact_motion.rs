@@ -63,6 +63,9 @@ impl ExactMotion {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn from_point(body: &Body, start: Point<Dd>) -> Result<Self, NoClosedForm> {
+        if !body.wheels().is_empty() {
+            return Err(NoClosedForm::Forced { force: "momentum of wheels".into() });
+        }
         match (body.problem(), body.remainder().next()) {
             (Problem::Free, _) => Ok(Self::Free(Box::new(FreeMotion::from_point(body.inertia(), start)))),
             (_, Some(force)) => Err(NoClosedForm::Forced { force: force.name().into() }),

@@ -104,9 +104,14 @@ impl Spectrum {
     pub(super) fn of_finite(matrix: &Matrix3<f64>) -> Self {
         let largest = matrix.amax();
         let scale = if largest == 0.0 { 1.0 } else { power_of_two_below(largest) };
-        let (moments, axes) = principal_axes(Tensor::symmetric_part(&(matrix / scale)).0);
+        Self::of_scaled(scale, &Tensor::symmetric_part(&(matrix / scale)))
+    }
+
+    /// Of `scale` times a tensor.
+    pub(super) fn of_scaled(scale: f64, tensor: &Tensor) -> Self {
+        let (moments, axes) = principal_axes(tensor.0);
         // what a rotation leaves of a zero is no moment; without one the moments are the entries
-        let is_diagonal = (0..3).all(|j| (0..3).all(|k| j == k || matrix[(j, k)] == 0.0));
+        let is_diagonal = (0..3).all(|j| (0..3).all(|k| j == k || tensor.0[j][k].hi() == 0.0));
         let kept = |moment: Dd| if is_diagonal || moment.hi().abs() > ROTATED { moment } else { Dd::ZERO };
         Spectrum { scale, moments: moments.map(kept), axes }
     }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::checks::{check_finite, check_symmetric, check_triangle};
 use super::principal::{frame_quaternion, principal_axes};
-use super::symmetric::{Spectrum, from_entries, power_of_two_below};
+use super::symmetric::{Spectrum, Tensor, from_entries, power_of_two_below};
 use super::{InertiaError, Symmetry};
 use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
@@ -91,7 +91,11 @@ impl Inertia {
     /// positive, break a triangle inequality, or are less than 2⁻²⁰⁰ of the largest.
     pub fn from_tensor(tensor: Matrix3<f64>) -> Result<Self, InertiaError> {
         check_symmetric(&tensor)?;
-        let Spectrum { scale, moments, axes } = Spectrum::of_finite(&tensor);
+        Self::of_spectrum(tensor, Spectrum::of_finite(&tensor))
+    }
+
+    fn of_spectrum(tensor: Matrix3<f64>, spectrum: Spectrum) -> Result<Self, InertiaError> {
+        let Spectrum { scale, moments, axes } = spectrum;
         let rounded = moments.map(Dd::hi);
         if rounded.iter().any(|i| !(i * scale).is_finite()) {
             return Err(InertiaError::OutOfRange { value: tensor.amax() });
@@ -188,6 +192,26 @@ impl Inertia {
         let axes = frame.to_rotation_matrix();
         let turned = axes.matrix() * along.tensor * axes.matrix().transpose();
         Self::from_tensor((turned + turned.transpose()) * 0.5)
+    }
+
+    /// Less `J a aᵀ` of each axis a of length 1 and moment J about it, to the digits of double-double.
+    pub(crate) fn less_axial(
+        &self,
+        parts: impl Iterator<Item = (Vec3<Dd>, f64)>,
+    ) -> Result<Self, InertiaError> {
+        let whole = Tensor::symmetric_part(&(self.tensor / self.scale));
+        let rest = parts.fold(whole, |rest, (axis, moment)| {
+            let moment = moment / self.scale;
+            rest - Tensor([0, 1, 2].map(|j| [0, 1, 2].map(|k| axis[j] * axis[k] * moment)))
+        });
+        let tensor = rest.rounded();
+        if self.is_along_principal_axes() && tensor == Matrix3::from_diagonal(&tensor.diagonal()) {
+            // typed moments keep their axes
+            let inertia = Self::from_moments([0, 1, 2].map(|k| tensor[(k, k)] * self.scale))?;
+            let moments = [0, 1, 2].map(|k| rest.0[k][k] * (self.scale / inertia.scale));
+            return Ok(Inertia { moments, ..inertia });
+        }
+        Self::of_spectrum(tensor * self.scale, Spectrum::of_scaled(self.scale, &rest))
     }
 
     /// The power of two by which the kernels divide moments and momenta.

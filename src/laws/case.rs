@@ -4,7 +4,9 @@ use std::sync::OnceLock;
 
 use super::LawsError;
 use super::fields::{OfTheVertical, Pushed};
-use crate::body::{Body, Clock, Force, Point, Problem, State, Time};
+use nalgebra::Vector3;
+
+use crate::body::{Body, Clock, Force, Point, Problem, State, Time, Wheel};
 use crate::flow::FreeMotion;
 use crate::inertia::Inertia;
 use crate::method::{AnyMethod, Taylor};
@@ -107,7 +109,16 @@ pub(super) fn pushed() -> Pushed {
     Pushed(0.5 * SIZE)
 }
 
-/// One case of each kind of motion: free, under gravity, in a potential, under a torque that depends on everything.
+/// The body of the other cases with two wheels, one of them free, along no principal axis; their speeds in proportion to `speed`, rad/s.
+fn gyrostat(speed: f64) -> Result<Body, LawsError> {
+    let held = Wheel::new(Vector3::new(2.0, -1.0, 2.0), 0.01 * SIZE, 5.0 * speed)?;
+    let free = Wheel::new(Vector3::new(0.6, 0.0, -0.8), 0.02 * SIZE, -4.0 * speed)?;
+    let free = free.free(Vector3::new(1.5, 0.5, -0.75));
+    Ok(Body::free(inertia()?).with_wheel(held)?.with_wheel(free)?)
+}
+
+/// One case of each kind of motion: free, under gravity, in a potential, under a torque that depends on everything, with wheels, and
+/// with wheels in a potential.
 ///
 /// No moment equals another, no scale is 1, no start is next to a steady turn.
 ///
@@ -120,8 +131,8 @@ pub(super) fn pushed() -> Pushed {
 /// assert_eq!((free.problem(), heavy.problem()), (Problem::Free, Problem::Linear));
 /// # Ok::<(), polhode::Error>(())
 /// ```
-pub fn cases() -> Result<&'static [Case; 4], LawsError> {
-    static CASES: OnceLock<Result<[Case; 4], LawsError>> = OnceLock::new();
+pub fn cases() -> Result<&'static [Case; 6], LawsError> {
+    static CASES: OnceLock<Result<[Case; 6], LawsError>> = OnceLock::new();
     let build = || {
         let potential = Force::potential("vertical", of_the_vertical());
         Ok([
@@ -129,6 +140,8 @@ pub fn cases() -> Result<&'static [Case; 4], LawsError> {
             heavy()?,
             of(Body::free(inertia()?).with(potential))?,
             of(Body::free(inertia()?).with(Force::torque("push", pushed())))?,
+            of(gyrostat(10.0)?)?,
+            of(gyrostat(10.0)?.with(Force::potential("vertical", of_the_vertical())))?,
         ])
     };
     CASES.get_or_init(build).as_ref().map_err(Clone::clone)

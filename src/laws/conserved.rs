@@ -52,13 +52,16 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> 
 /// The error of `quantity` at a point, relative but for |q|²; of L without sign.
 fn error_of<'a>(subject: &Subject<'a>, quantity: Quantity) -> impl Fn(&Point<Dd>) -> Dd + use<'a> {
     let case = subject.case;
+    let wheels = subject.momentum_of_wheels();
+    let momentum = move |x: &Point<Dd>| x.momentum_body + wheels;
+    let space = move |x: &Point<Dd>| x.attitude.rotate(momentum(x));
     let x0 = &case.start;
-    let (e0, squared, l0) = (case.energy(x0), x0.momentum_body.norm_squared(), x0.momentum_space());
+    let (e0, squared, l0) = (case.energy(x0), momentum(x0).norm_squared(), space(x0));
     move |x| match quantity {
         Quantity::Energy => case.energy(x) / e0 - Dd::ONE,
-        Quantity::MomentumNorm => x.momentum_body.norm_squared() / squared - Dd::ONE,
-        Quantity::MomentumSpace => (x.momentum_space() - l0).norm() / l0.norm(),
-        Quantity::MomentumZ => (x.momentum_space() - l0)[2] / l0.norm(),
+        Quantity::MomentumNorm => momentum(x).norm_squared() / squared - Dd::ONE,
+        Quantity::MomentumSpace => (space(x) - l0).norm() / l0.norm(),
+        Quantity::MomentumZ => (space(x) - l0)[2] / l0.norm(),
         _ => x.attitude.norm_squared() - Dd::ONE,
     }
 }

@@ -40,8 +40,9 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> 
     let torques = finding(Quantity::Torques, claimed);
     let in_potential = problem != Problem::Linear || subject.method.claims(Problem::Potential).is_some();
     let undecided = match problem {
-        Problem::Free if claimed == 0 => return Ok(findings),
-        _ if problem == Problem::Free || !in_potential => Some(unseen),
+        Problem::Free | Problem::Gyrostat if claimed == 0 => return Ok(findings),
+        Problem::Free | Problem::Gyrostat => Some(unseen),
+        _ if !in_potential => Some(unseen),
         _ if subject.method.needs_series() => {
             Some("torques of a series are evaluated once for all its terms")
         }

@@ -34,6 +34,9 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> 
     }
 }
 
+/// A thousandth of a rounding: what a step of a method may lose for good by rounding, relative to the energy.
+const BIAS: f64 = 1e-3 * f64::ROUNDOFF;
+
 fn bounded(subject: &Subject<'_>, order: u32) -> Result<Vec<Finding>, LawsError> {
     let problem = subject.problem();
     let h = match (problem, order) {
@@ -53,6 +56,10 @@ fn bounded(subject: &Subject<'_>, order: u32) -> Result<Vec<Finding>, LawsError>
         verdict: if holds { Verdict::Holds } else { Verdict::False },
         ..Finding::new(problem, Law::Drift, Quantity::Amplitude, format!("h^{order}"))
     };
+    // there starts scatter by more than a fifth of the amplitude in the time watched
+    if problem == Problem::GyrostatPotential {
+        return Ok(vec![amplitude]);
+    }
     let mut slopes = Vec::new();
     let ([drift, half_width], is_narrow) = loop {
         let (starts, student) = STARTS[usize::from(!slopes.is_empty())];
@@ -68,6 +75,8 @@ fn bounded(subject: &Subject<'_>, order: u32) -> Result<Vec<Finding>, LawsError>
     let (verdict, why) = match () {
         // NaN does not hold
         _ if drift.abs() < half_width && is_narrow => (Verdict::Holds, ""),
+        // the runs are in doubles
+        _ if (drift.abs() + half_width) * h < BIAS => (Verdict::Holds, ""),
         _ if drift.abs() < half_width => {
             (Verdict::Undecided, "the interval is wider than a fifth of the amplitude in the time watched")
         }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::body::{ForceError, StateError};
+use crate::body::{ForceError, StateError, WheelError};
 use crate::inertia::InertiaError;
 use crate::method::{SchemeError, StepError, TaylorOrderError};
 use crate::run::HalvingError;
@@ -17,6 +17,9 @@ pub enum LawsError {
     /// The start is not usable.
     #[error(transparent)]
     State(#[from] StateError),
+    /// The body cannot carry a wheel.
+    #[error(transparent)]
+    Wheel(#[from] WheelError),
     /// A force cannot act.
     #[error(transparent)]
     Force(#[from] ForceError),

@@ -28,6 +28,7 @@ fn exponents(subject: &Subject<'_>, order: u32) -> Range<u32> {
         (Problem::Linear, 1) => 8..11,
         (Problem::Linear, _) => 6..9,
         (_, 1) => 8..11,
+        (Problem::GyrostatPotential, 8..) => 7..10,
         (_, 8..) => 5..8,
         (Problem::Torque, 6..) => 6..9,
         (Problem::Torque, _) => 8..11,

@@ -1,4 +1,5 @@
-//! The Lie–Poisson bracket of momenta, {m_i, m_j} = −ε_ijk m_k: D B(m) Dᵀ = B(m'), D the derivative of one free step.
+//! The Lie–Poisson bracket of momenta, {m_i, m_j} = −ε_ijk m_k: D B(m) Dᵀ = B(m'), D the derivative of one step without torque and m the
+//! momentum of body and wheels.
 
 use super::LawsError;
 use super::difference::derivative;
@@ -12,7 +13,7 @@ use crate::rotation::{Quat, Vec3};
 
 /// The defect of the bracket, of free motion.
 pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> {
-    if subject.problem() != Problem::Free {
+    if !matches!(subject.problem(), Problem::Free | Problem::Gyrostat) {
         return Ok(Vec::new());
     }
     let claimed = subject.claims.poisson;
@@ -25,8 +26,11 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> 
 
 /// Largest entry of `D B(m) Dᵀ − B(m')` over |m'|, B(m) the Lie–Poisson tensor.
 fn defect(subject: &Subject<'_>, h: f64) -> Result<f64, StepError> {
-    let map = |m: Vec3<Dd>| Ok(subject.one_step(Point::new(Quat::identity(), m), h)?.momentum_body);
-    let m = subject.case.start.momentum_body;
+    let wheels = subject.momentum_of_wheels();
+    let map = |m: Vec3<Dd>| {
+        Ok(subject.one_step(Point::new(Quat::identity(), m - wheels), h)?.momentum_body + wheels)
+    };
+    let m = subject.case.start.momentum_body + wheels;
     let column = |axis: usize| derivative(|d| Ok(map(m + Vec3::unit(axis) * d)?.0));
     let columns = [column(0)?, column(1)?, column(2)?];
     // B(m) v = v × m up to sign, so D B Dᵀ has the entries (row_i × row_j)·m

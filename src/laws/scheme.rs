@@ -24,7 +24,7 @@ use crate::method::{Claimed, ExactFlow, Splitting};
 /// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn check_scheme(scheme: &Scheme) -> Result<Report, LawsError> {
-    let [_, heavy, potential, _] = cases()?;
+    let [_, heavy, potential, ..] = cases()?;
     let method = Splitting::kicked(ExactFlow, *scheme)?;
     let case: &Case = if scheme.gradients().is_empty() { potential } else { heavy };
     let mut report = Report::new(scheme.name);

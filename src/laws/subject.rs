@@ -1,9 +1,10 @@
 //! A method, one of its claims and the case that they are measured on.
 
 use super::case::Case;
-use crate::body::{Clock, Point, Problem};
+use crate::body::{Clock, Point, Problem, Time};
 use crate::method::{AnyMethod, Claims, StepError};
 use crate::num::{Dd, Real};
+use crate::rotation::Vec3;
 
 /// What every law is measured of.
 #[derive(Clone, Copy)]
@@ -16,6 +17,12 @@ pub(super) struct Subject<'a> {
 impl Subject<'_> {
     pub(super) fn problem(&self) -> Problem {
         self.case.problem()
+    }
+
+    /// The momentum of the wheels, which no case has with a motor; zero without wheels.
+    pub(super) fn momentum_of_wheels(&self) -> Vec3<Dd> {
+        let wheels = self.case.body.momentum_of_wheels();
+        wheels.map_or(Vec3::zero(), |wheels| wheels.at(Time::from_seconds(0.0)))
     }
 
     /// A step at which what a method loses shows: `usual`, more for one of high order, and for one that takes steps of its own.

@@ -1,4 +1,5 @@
-//! The symplectic form ξ₁·δm₂ − ξ₂·δm₁ + m·(ξ₁ × ξ₂) of two variations, ξ a turn of the body about its own axes.
+//! The symplectic form ξ₁·δm₂ − ξ₂·δm₁ + m·(ξ₁ × ξ₂) of two variations, ξ a turn of the body about its own axes, m with the momentum of
+//! wheels.
 
 use super::LawsError;
 use super::difference::derivative;
@@ -26,11 +27,12 @@ fn defect(subject: &Subject<'_>, h: f64) -> Result<f64, StepError> {
         part(a, 0).dot(part(b, 3)) - part(b, 0).dot(part(a, 3)) + turns
     };
     let (columns, image) = tangent(subject, h)?;
+    let wheels = subject.momentum_of_wheels();
     let unit = |axis: usize| core::array::from_fn(|k| if k == axis { Dd::ONE } else { Dd::ZERO });
     let pairs = (0..6).flat_map(|i| (0..i).map(move |j| (i, j)));
     Ok(largest(pairs.map(|(i, j)| {
-        let before = form(subject.case.start.momentum_body, &unit(i), &unit(j));
-        (form(image, &columns[i], &columns[j]) - before).magnitude()
+        let before = form(subject.case.start.momentum_body + wheels, &unit(i), &unit(j));
+        (form(image + wheels, &columns[i], &columns[j]) - before).magnitude()
     })))
 }
 

@@ -151,8 +151,14 @@ words! {
 }
 
 /// The kinds of motion, in the order of reports.
-pub(super) const PROBLEMS: [Problem; 4] =
-    [Problem::Free, Problem::Linear, Problem::Potential, Problem::Torque];
+pub(super) const PROBLEMS: [Problem; 6] = [
+    Problem::Free,
+    Problem::Linear,
+    Problem::Potential,
+    Problem::Torque,
+    Problem::Gyrostat,
+    Problem::GyrostatPotential,
+];
 
 /// The word of a kind of motion.
 pub(super) fn word_of(problem: Problem) -> &'static str {
@@ -161,6 +167,8 @@ pub(super) fn word_of(problem: Problem) -> &'static str {
         Problem::Linear => "gravity",
         Problem::Potential => "potential",
         Problem::Torque => "torque",
+        Problem::Gyrostat => "wheels",
+        Problem::GyrostatPotential => "wheels-potential",
     }
 }
 

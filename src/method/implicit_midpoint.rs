@@ -54,9 +54,11 @@ impl Claimed for ImplicitMidpoint {
     }
     fn claims(&self, problem: Problem) -> Option<Claims> {
         let kept = match problem {
-            Problem::Free => Kept::all_of_free_motion(Energy::Exact),
+            Problem::Free | Problem::Gyrostat => Kept::all_of_free_motion(Energy::Exact),
             Problem::Linear => Kept { energy: Energy::Exact, momentum_z: true, norm: true, ..Kept::NOTHING },
-            Problem::Potential | Problem::Torque => Kept { norm: true, ..Kept::NOTHING },
+            Problem::Potential | Problem::GyrostatPotential | Problem::Torque => {
+                Kept { norm: true, ..Kept::NOTHING }
+            }
         };
         let source = "Austin, Krishnaprasad and Wang, J. Comput. Phys. 107 (1993) 105; Lewis and Simo, J. Nonlinear Sci. 4 (1994) 253";
         Some(Claims { symmetric: true, ..Claims::new(Some(2), kept, Cost::solves(1), source) })

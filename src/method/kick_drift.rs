@@ -45,6 +45,9 @@ impl FreePart for ExactFlow {
     fn free_cost(&self, _: &Scheme) -> Option<Cost> {
         Some(Cost::additions(1))
     }
+    fn wheel_cost(&self) -> Option<Cost> {
+        Some(self.cost())
+    }
     fn source(&self) -> &'static str {
         "Strang, SIAM J. Numer. Anal. 5 (1968) 506; Celledoni, Fasso, Safstrom and Zanna, SIAM J. Sci. Comput. 30 (2008) 2084"
     }

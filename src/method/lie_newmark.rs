@@ -43,13 +43,17 @@ impl Claimed for LieNewmark {
     fn claims(&self, problem: Problem) -> Option<Claims> {
         let energy = match problem {
             Problem::Free | Problem::Linear => Energy::Bounded,
-            Problem::Potential | Problem::Torque => Energy::Drifts,
+            Problem::Potential | Problem::Gyrostat | Problem::GyrostatPotential | Problem::Torque => {
+                Energy::Drifts
+            }
         };
         let kept = Kept { energy, norm: true, ..Kept::NOTHING };
         let source = "Simo and Vu-Quoc, Comput. Methods Appl. Mech. Eng. 66 (1988) 125";
         let torques = Cost::kicks(if problem == Problem::Free { 0 } else { 2 });
         let claims = Claims::new(Some(2), kept, Cost::solves(1) + torques, source);
-        Some(Claims { symmetric: problem != Problem::Torque, ..claims })
+        // not with a torque that depends on the angular velocity, as that of wheels does
+        let symmetric = matches!(problem, Problem::Free | Problem::Linear | Problem::Potential);
+        Some(Claims { symmetric, ..claims })
     }
 }
 

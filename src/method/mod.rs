@@ -40,7 +40,8 @@ mod variational_cayley;
 
 pub use buss_2::Buss;
 pub use combine::{
-    Composed, FreePart, InTurn, Kicks, KineticSplit, Palindrome, SchemeError, Splitting, Symmetric, schemes,
+    Composed, FreePart, InTurn, Kicks, KineticSplit, Palindrome, SchemeError, Splitting, Symmetric,
+    WheelSplit, schemes,
 };
 pub(crate) use contract::SOLVED;
 pub(crate) use contract::lanes::Block;

@@ -57,6 +57,9 @@ impl FreePart for Dmv {
     fn cost(&self) -> Cost {
         Cost::solves(1)
     }
+    fn wheel_cost(&self) -> Option<Cost> {
+        Some(self.cost())
+    }
     fn source(&self) -> &'static str {
         "Moser and Veselov, Commun. Math. Phys. 139 (1991) 217; McLachlan and Scovel, J. Nonlinear Sci. 5 (1995) 233"
     }

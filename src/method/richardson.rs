@@ -43,7 +43,7 @@ impl Claimed for Richardson {
         let kicks = Cost::kicks(if free { 0 } else { 2 });
         let claims =
             Claims::new(Some(2), kept, Cost::right_sides(2) + kicks, "LAMMPS, MathExtra::richardson");
-        (problem != Problem::Torque).then_some(claims)
+        matches!(problem, Problem::Free | Problem::Linear | Problem::Potential).then_some(claims)
     }
 }
 

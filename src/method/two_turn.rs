@@ -6,7 +6,7 @@ use core::str::FromStr;
 use thiserror::Error;
 
 use super::schemes::{Pairs, STRANG, Scheme, Stages};
-use super::{Cost, Energy, FreePart, Map, Method, SideBySide, Symmetric};
+use super::{Cost, Energy, FreePart, Map, Method, SideBySide, Symmetric, WheelSplit};
 use crate::body::{Field, Point, Rotor, Time};
 use crate::flow::{Casimir, Flow};
 use crate::method::solve::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
@@ -97,10 +97,14 @@ impl TwoAxes {
 
     /// The turns of a step of `h`, two flows in turn as `scheme` says, the turn about the outer axis first.
     fn turns<S: Precise>(self, rotor: &Rotor, h: Dd, scheme: &Scheme) -> Turns<S> {
+        Turns::two(self.0, self.0.map(|k| self.rate(rotor, k) * h), scheme)
+    }
+
+    /// The rate of the turn about axis `k` over the momentum about it: 1/I_k − 1/I_j, j the reference.
+    fn rate(self, rotor: &Rotor, k: usize) -> Dd {
         let (i, j) = (rotor.moments::<Dd>(), self.reference());
         // not as a difference of reciprocals, which has fewer digits than the moments
-        let rate = |k: usize| (i[j] - i[k]) / (i[j] * i[k]) * h;
-        Turns::two(self.0, self.0.map(rate), scheme)
+        (i[j] - i[k]) / (i[j] * i[k])
     }
 
     /// With α, β, γ the reciprocal moments of outer, reference and inner axis,
@@ -168,6 +172,17 @@ impl FreePart for TwoTurn {
             }
             _ => None,
         }
+    }
+    /// The turn at a constant rate about the reference axis takes no sine.
+    fn wheel_cost(&self) -> Option<Cost> {
+        Some(Cost::turns(4))
+    }
+    fn wheel_split(&self, rotor: &Rotor) -> WheelSplit {
+        let axes = self.axes.unwrap_or_else(|| TwoAxes::usual(rotor.moments()));
+        let ([outer, inner], reference) = (axes.axes(), axes.reference());
+        let axes =
+            [(reference, Dd::ZERO), (outer, axes.rate(rotor, outer)), (inner, axes.rate(rotor, inner))];
+        WheelSplit::Turns { axes, ball: Some(rotor.inverse_moments::<Dd>()[reference]) }
     }
     fn source(&self) -> &'static str {
         "Fasso, J. Comput. Phys. 189 (2003) 527; Hairer, Lubich and Wanner, Geometric Numerical Integration, (VII.5.33)"

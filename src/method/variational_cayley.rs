@@ -45,6 +45,9 @@ impl FreePart for VariationalCayley {
     fn cost(&self) -> Cost {
         Cost::solves(1)
     }
+    fn wheel_cost(&self) -> Option<Cost> {
+        Some(self.cost())
+    }
     fn source(&self) -> &'static str {
         "Bou-Rabee and Marsden, Found. Comput. Math. 9 (2009) 197"
     }

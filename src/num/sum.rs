@@ -72,3 +72,12 @@ pub fn add_carried<S: Real>(sum: &mut S, carry: &mut S, delta: S) {
     *carry = delta - (new - *sum);
     *sum = new;
 }
+
+/// The same of a term in two parts, without rounding it: a term that is the same linear function of the sum in every step would
+/// drift otherwise.
+#[inline]
+pub(crate) fn add_parts_carried<S: Real>(sum: &mut S, carry: &mut S, delta: S, rest: S) {
+    let (delta, rest) = delta.two_sum(*carry + rest);
+    let (new, error) = sum.two_sum(delta);
+    (*sum, *carry) = (new, error + rest);
+}

@@ -1,5 +1,6 @@
 //! What a motion with forces conserves, and the scales of its errors.
 
+use super::invariants::with_wheels;
 use crate::body::{Body, Conserved, Point, Problem, Time};
 use crate::num::{Dd, Real};
 
@@ -41,7 +42,9 @@ impl Forced {
             Conserved::Jacobi { rate } if !has(Conserved::Energy) => Some(*rate),
             _ => None,
         });
-        let turning = (start.momentum_body.norm_of_any_size() * jacobi.unwrap_or(0.0)).magnitude();
+        let whole =
+            with_wheels(body.momentum_of_wheels().as_ref(), at, start).momentum_body.norm_of_any_size();
+        let turning = (whole * jacobi.unwrap_or(0.0)).magnitude();
         let alone = problem == Problem::Linear && jacobi.is_none();
         Some(Forced {
             linear_alone: alone

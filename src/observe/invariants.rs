@@ -1,8 +1,14 @@
 //! Energy and momentum with more digits than were integrated.
 
-use crate::body::{Body, Point, Time};
+use crate::body::{Body, Point, Time, Wheels};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
+
+/// The point `x` with the momentum of body and wheels.
+pub(crate) fn with_wheels(wheels: Option<&Wheels>, at: Time, x: &Point<Dd>) -> Point<Dd> {
+    let of_wheels = wheels.map_or(Vec3::zero(), |wheels| wheels.at(at));
+    Point::new(x.attitude, x.momentum_body + of_wheels)
+}
 
 /// Energy and momentum of a point in double-double, in the solver frame and divided by [`Body::scale`].
 /// [`Body::conserved`] tells which of them are constant.
@@ -10,11 +16,11 @@ use crate::rotation::Vec3;
 #[must_use]
 #[non_exhaustive]
 pub struct Invariants {
-    /// Energy ½ m·I⁻¹m + U.
+    /// Energy ½ ω·Iω + U.
     pub energy: Dd,
-    /// |m|².
+    /// |m|², with the momentum of wheels.
     pub momentum_squared: Dd,
-    /// L = q m q*.
+    /// L = q m q*, with the momentum of wheels.
     pub momentum_space: Vec3<Dd>,
 }
 
@@ -22,10 +28,12 @@ impl Invariants {
     /// Of the point `x` at the time `at`.
     pub fn of(body: &Body, at: Time, x: &Point<f64>) -> Self {
         let x = x.to_dd();
+        let energy = body.scaled_energy(at, &x);
+        let whole = with_wheels(body.momentum_of_wheels().as_ref(), at, &x);
         Invariants {
-            energy: body.scaled_energy(at, &x),
-            momentum_squared: x.momentum_body.norm_squared(),
-            momentum_space: x.momentum_space(),
+            energy,
+            momentum_squared: whole.momentum_body.norm_squared(),
+            momentum_space: whole.momentum_space(),
         }
     }
 

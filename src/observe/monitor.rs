@@ -2,9 +2,10 @@
 
 use super::flips::Flips;
 use super::forced::Forced;
+use super::invariants::with_wheels;
 use super::lanes::{Lane, Reference};
 use super::{Errors, Invariants};
-use crate::body::{Body, Clock, Forces, Point, Time, kinetic_energy};
+use crate::body::{Body, Clock, Forces, Point, Time, Wheels, kinetic_energy};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
@@ -17,6 +18,7 @@ pub struct Monitor {
     field: Forces<Dd>,
     clock: Clock,
     inverse_moments: Vec3<Dd>,
+    wheels: Option<Wheels>,
     forced: Option<Forced>,
     start: Invariants,
     reference: Reference,
@@ -47,9 +49,10 @@ impl Monitor {
         flips.observe(x.momentum_body);
         let start = Invariants::of(body, at, x);
         let mut monitor = Monitor {
-            field: body.field(),
+            field: body.field_without_wheels(),
             clock,
             inverse_moments: rotor.inverse_moments(),
+            wheels: body.momentum_of_wheels(),
             forced,
             reference: Reference::new(rotor.inverse_moments(), &start, body.linear_potential()),
             start,
@@ -132,16 +135,17 @@ impl Monitor {
             (error, 0.0) => error / of_point(),
             (error, scale) => error / scale,
         };
+        let whole = with_wheels(self.wheels.as_ref(), at, &point);
         let kinetic = || self.kinetic(&point).hi();
-        let norm = || point.momentum_body.norm().hi();
+        let norm = || whole.momentum_body.norm().hi();
         let energy = || self.kinetic(&point) + self.field.energy(at, point.attitude) - self.start.energy;
-        let momentum = || point.momentum_space() - self.start.momentum_space;
+        let momentum = || whole.momentum_space() - self.start.momentum_space;
         let size = || self.start.momentum_squared.sqrt();
         Errors {
             energy: forced.energy.then(|| relative(energy().magnitude(), forced.energy_scale, &kinetic)),
             momentum_norm: forced
                 .momentum_norm
-                .then(|| relative((point.momentum_body.norm() - size()).magnitude(), size().hi(), &norm)),
+                .then(|| relative((whole.momentum_body.norm() - size()).magnitude(), size().hi(), &norm)),
             momentum_vector: forced
                 .momentum_vector
                 .then(|| relative(momentum().norm().magnitude(), size().hi(), &norm)),

@@ -88,11 +88,12 @@ pub(super) fn identity(body: &Body, clock: Clock, start: &Point<f64>) -> Vec<Str
         None => format!("force {:?}", force.name()),
         Some(intervals) => format!("force {:?} during {intervals:?}", force.name()),
     });
+    let wheels = body.wheels().iter().map(|wheel| format!("wheel {wheel}"));
     let (at, start) = (clock.at(0), start.to_dd());
     let energy = body.energy_of(at, &start);
     let at_start =
         format!("start {:?} {:?} {}", energy.hi(), energy.lo(), numbers(body.torque_of(at, &start)));
-    [moments, axes].into_iter().chain(weight).chain(forces).chain([at_start]).collect()
+    [moments, axes].into_iter().chain(weight).chain(forces).chain(wheels).chain([at_start]).collect()
 }
 
 impl Checkpoint {

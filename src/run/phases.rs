@@ -48,7 +48,7 @@ impl Phases {
 
     /// The body of phase `n`; `body` itself where nothing is switched.
     pub(super) fn body<'b>(&self, n: usize, body: &'b Body, clock: Clock) -> Cow<'b, Body> {
-        if body.forces().iter().all(|force| force.intervals().is_none()) {
+        if body.switching_times().is_empty() {
             return Cow::Borrowed(body);
         }
         let time = if n == 0 { clock.start } else { self.switches[n - 1].time };

@@ -54,14 +54,16 @@ pub(super) struct Follower {
     speed: f64,
 }
 
-/// |ω| at the time `at`, s, of the clock of the forces, and the rate at which weight or torque can turn the body, rad/s.
+/// |ω| at the time `at`, s, of the clock of the forces, and the rate at which weight, torque or wheels can turn the body, rad/s.
 fn speed(body: &Body, at: f64, x: &Point<Dd>) -> f64 {
     let least = body.rotor().moments::<f64>().0.into_iter().fold(f64::INFINITY, f64::min);
     let weight = body.linear_potential::<f64>().map_or(0.0, |linear| linear.moment.norm());
-    let torque = body.torque_of(Time::from_seconds(at), x);
+    let at = Time::from_seconds(at);
+    let wheels = body.momentum_of_wheels().map_or(0.0, |wheels| wheels.at(at).norm().hi());
+    let torque = body.torque_of(at, x);
     // the square of one may be beyond the range of numbers
     let torque = Some(torque.norm().hi()).filter(|norm| norm.is_finite()).unwrap_or(torque.magnitude());
-    body.omega_of(x).norm() + libm::sqrt(weight.max(torque) / least)
+    body.omega_of(x).norm() + libm::sqrt(weight.max(torque) / least) + wheels / least
 }
 
 impl Follower {

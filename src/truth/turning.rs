@@ -60,7 +60,7 @@ pub(crate) struct Turning {
     pub(super) error: Option<f64>,
 }
 
-/// |ω|, and the rate at which weight or torque can turn the body, rad/s.
+/// |ω|, and the rate at which weight, torque or wheels can turn the body, rad/s.
 pub(super) fn rate(body: &Body, at: Time, x: &Point<f64>) -> f64 {
     let inverse = body.rotor().inverse_moments::<f64>();
     let omega = x.momentum_body.times(inverse);
@@ -69,7 +69,8 @@ pub(super) fn rate(body: &Body, at: Time, x: &Point<f64>) -> f64 {
     // the square of one may be beyond the range of numbers
     let torque = Some(torque.norm()).filter(|norm| norm.is_finite()).unwrap_or(torque.magnitude());
     let least = inverse.0.into_iter().fold(0.0, f64::max);
-    omega.norm() + libm::sqrt(weight.max(torque) * least)
+    let wheels = body.momentum_of_wheels().map_or(0.0, |wheels| wheels.at(at).norm().hi());
+    omega.norm() + libm::sqrt(weight.max(torque) * least) + wheels * least
 }
 
 impl Turning {

@@ -11,6 +11,7 @@ use polhode_pages::table::{Cell, Column, Format, Table, row};
 
 use crate::flags::body::BodyArguments;
 use crate::flags::start::StartArguments;
+use crate::flags::wheel::WheelArguments;
 
 const USAGE: &str = "polhode motion <BODY> [START] [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
@@ -60,6 +61,8 @@ pub(crate) struct Motion {
     #[command(flatten)]
     pub(crate) body: BodyArguments,
     #[command(flatten)]
+    wheels: WheelArguments,
+    #[command(flatten)]
     pub(crate) start: StartArguments,
     /// How the quantities are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum, help_heading = "Output")]
@@ -71,7 +74,10 @@ pub(crate) struct Motion {
 
 impl Motion {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        let body = self.body.free()?;
+        let (body, of_file) = self.body.free()?;
+        let body = self
+            .wheels
+            .carried(body, of_file, |held| self.start.inside(held, self.body.published_start()))?;
         let published = self.body.published_start();
         let start = self.start.inside(&body, published.clone())?;
         let motion = FreeMotion::from_point(body.inertia(), start);

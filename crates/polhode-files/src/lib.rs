@@ -45,6 +45,7 @@ pub mod times;
 pub mod toml_file;
 pub mod trajectory;
 pub mod twins;
+pub mod wheel;
 
 pub use error::{Broken, Error, Rule, TableError};
 pub use read::{read, read_own};

@@ -156,6 +156,9 @@ impl LagrangeTop {
         if let Some(force) = body.remainder().next() {
             return Err(LagrangeError::Forced { force: force.name().into() });
         }
+        if !body.wheels().is_empty() {
+            return Err(LagrangeError::Forced { force: "momentum of wheels".into() });
+        }
         let weight_moment = body.linear_potential::<Dd>().ok_or(LagrangeError::Free)?.moment;
         let (axis, transverse, axial) = symmetry_axis(body, weight_moment)?;
         let frame = turn_to(axis);

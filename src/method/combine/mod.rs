@@ -9,6 +9,7 @@ mod scheme_error;
 pub mod schemes;
 mod splitting;
 mod splitting_map;
+mod wheels;
 
 pub use composed::{Composed, Symmetric};
 pub use kicks::Kicks;
@@ -16,3 +17,4 @@ pub use kinetic_split::{InTurn, KineticSplit, Palindrome};
 pub(super) use lengths::lengths;
 pub use scheme_error::SchemeError;
 pub use splitting::{FreePart, Splitting};
+pub use wheels::WheelSplit;

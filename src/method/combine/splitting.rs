@@ -6,9 +6,10 @@ use super::lengths::lengths;
 use super::processor::{Processor, Timed};
 use super::schemes::{Part, STRANG, Scheme};
 use super::splitting_map::{Ends, SplittingMap};
-use crate::body::{Field, Problem, Rotor};
-use crate::method::{Claimed, Claims, Cost, Energy, Kept, Kicks, Method, Symmetric};
-use crate::num::{Dd, Real};
+use super::wheels::{WheelMap, WheelSplit};
+use crate::body::{Field, Free, Problem, Rotor, Wheels};
+use crate::method::{Claimed, Claims, Cost, Energy, Kept, Kicks, Map, Method, Symmetric};
+use crate::num::{Dd, Precise, Real};
 
 /// A splitting of H = A + B: maps of A and of B in turn, for the shares of the step that `scheme` gives.
 ///
@@ -58,6 +59,14 @@ pub trait FreePart: Symmetric {
     /// [`Method::free_map`]. A scheme for two flows then has its order in free motion.
     fn free_cost(&self, _: &Scheme) -> Option<Cost> {
         None
+    }
+    /// Work of one map of a body with [wheels](crate::body::Wheel), of order 2; `None`, the default, where it takes none.
+    fn wheel_cost(&self) -> Option<Cost> {
+        None
+    }
+    /// How it takes wheels.
+    fn wheel_split(&self, _: &Rotor) -> WheelSplit {
+        WheelSplit::Around
     }
     /// Where it comes from.
     fn source(&self) -> &'static str;
@@ -149,6 +158,14 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
             }
             // the kicks would alternate with free motion of a lower order
             Problem::Linear | Problem::Potential if self.is_for_free_motion() => None,
+            Problem::Gyrostat | Problem::GyrostatPotential => {
+                let (one, lengths) = (self.a.wheel_cost()?, self.scheme.lengths()?);
+                let kicks = if problem == Problem::Gyrostat { 0 } else { count(Part::B) };
+                let kept = self.a.kept();
+                let energy = if kept.energy == Energy::Drifts { Energy::Drifts } else { Energy::Bounded };
+                let cost = one * lengths.len() as u32 + Cost::kicks(kicks);
+                Some(claims(Some(self.scheme.order), Kept { energy, ..kept }, cost))
+            }
             Problem::Potential if !self.scheme.gradients().is_empty() => None,
             Problem::Linear | Problem::Potential => {
                 let Kept { energy, momentum_space, momentum_z, norm, .. } = self.a.kept();
@@ -179,6 +196,38 @@ impl<S: Real, A: Method<S> + FreePart> Method<S> for Splitting<A, Kicks> {
                 ends: Ends::OfA,
             };
         }
+        self.by_scheme(h, rotor, a, b, self.a.order().is_none())
+    }
+
+    fn wheel_map<F: Field<S>>(
+        &self,
+        h: Dd,
+        rotor: &Rotor,
+        field: &F,
+        wheels: &Wheels,
+    ) -> Option<Box<dyn Map<S>>>
+    where
+        S: Precise,
+    {
+        let _ = (self.a.wheel_cost()?, self.scheme.lengths()?);
+        let split = self.a.wheel_split(rotor);
+        let free = |length| Box::new(self.a.map(length, rotor, &Free)) as Box<dyn Map<S>>;
+        let a = |length| WheelMap::new(length, rotor, wheels, split.clone(), || free(length));
+        let b = |length| self.b.map(length, rotor, field);
+        Some(Box::new(self.by_scheme::<S, F, _>(h, rotor, a, b, false)))
+    }
+}
+
+impl<A> Splitting<A, Kicks> {
+    /// One step of `h`: maps of A and B by the scheme; `exact` says whether two maps of A in turn are one of the whole length.
+    fn by_scheme<S: Real, F: Field<S>, M: Map<S>>(
+        &self,
+        h: Dd,
+        rotor: &Rotor,
+        a: impl Fn(Dd) -> M,
+        b: impl Fn(Dd) -> KickMap<S, F>,
+        exact: bool,
+    ) -> SplittingMap<M, KickMap<S, F>> {
         let flows = self.scheme.flows();
         let lengths = |part| {
             let shares: Vec<Dd> = flows.iter().filter(|flow| flow.0 == part).map(|flow| flow.1).collect();
@@ -188,7 +237,7 @@ impl<S: Real, A: Method<S> + FreePart> Method<S> for Splitting<A, Kicks> {
         let gradients = self.scheme.gradients();
         let first_gradient = gradients.first().copied().unwrap_or(Dd::ZERO);
         let mut gradients = gradients.into_iter();
-        let processor = Processor::new::<S>(h, &self.scheme.processor(), a, b);
+        let processor = Processor::new::<S>(h, &self.scheme.processor(), &a, &b);
         let (mut opening, mut pairs, mut free) = (None, Vec::new(), None);
         let (mut begun, mut first) = (processor.duration, None);
         for (part, _) in &flows {
@@ -221,8 +270,7 @@ impl<S: Real, A: Method<S> + FreePart> Method<S> for Splitting<A, Kicks> {
                 merged: Timed { begun, map: b(first * 2.0).with_gradient(first_gradient * 2.0, h, rotor) },
                 back: b(-first).with_gradient(-first_gradient, h, rotor),
             },
-            // two maps of A in turn are one of the whole length only if it is exact
-            Some(_) if self.a.order().is_some() => Ends::Apart,
+            Some(_) if !exact => Ends::Apart,
             Some(last) => {
                 Ends::A { merged: Timed { begun: last.begun, map: a(first * 2.0) }, back: a(-first) }
             }

@@ -5,6 +5,7 @@ use core::fmt;
 use thiserror::Error;
 
 use super::map::Stepper;
+use super::with_wheels::WithWheels;
 use crate::body::{Body, Clock, Evaluated, Free, Problem};
 use crate::method::{Claimed, Claims, Method, Step, ToleranceError};
 use crate::num::{Dd, Shown};
@@ -108,7 +109,7 @@ where
     let problem = body.problem();
     if method.claims(problem).is_none() {
         let what = body.remainder().find(|force| problem != Problem::Torque || !force.has_potential());
-        let what = what.or(body.forces().first()).map_or(String::new(), |force| force.name().into());
+        let what = what.map(|force| force.name().to_owned()).or(body.acts()).unwrap_or_default();
         if problem == Problem::Potential && method.claims(Problem::Linear).is_some() {
             return Err(StepError::NoGradient { method: method.name(), force: what });
         }
@@ -120,6 +121,17 @@ where
         return Err(StepError::Closure { method: method.name(), force: force.name().into() });
     }
     let rotor = body.rotor();
+    let together = body.momentum_of_wheels().and_then(|wheels| {
+        let map = if problem == Problem::Gyrostat {
+            method.wheel_map(h, &rotor, &Free, &wheels)
+        } else {
+            method.wheel_map(h, &rotor, &body.field_without_wheels::<S>(), &wheels)
+        };
+        Some(WithWheels::new(map?, wheels, clock, h))
+    });
+    if let Some(together) = together {
+        return Ok(Box::new(together));
+    }
     Ok(match (problem, body.linear_potential::<S>()) {
         (Problem::Free, _) => Box::new(Stepper::new(method.map(h, &rotor, &Free), clock)),
         (Problem::Linear, Some(linear)) => Box::new(Stepper::new(method.map(h, &rotor, &linear), clock)),
@@ -180,6 +192,7 @@ pub enum StepError {
 fn remedy(problem: Problem) -> &'static str {
     match problem {
         Problem::Torque => "a torque without potential; take rk4 or implicit-midpoint",
+        Problem::Gyrostat | Problem::GyrostatPotential => "on a body with wheels; take taylor or lie-poisson",
         _ => "a potential: it is for free motion; take kick-drift, for one",
     }
 }

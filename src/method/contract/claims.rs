@@ -105,13 +105,14 @@ impl Kept {
         norm: false,
     };
 
-    /// L as far as `problem` conserves it, and |q|: what a map keeps that turns the body alone and adds impulses in space.
+    /// L as far as `problem` conserves it, and |q|: what a map keeps that turns the body alone and adds impulses in space; of wheels,
+    /// which push it like torques, nothing.
     pub const fn momentum_alone(problem: Problem) -> Kept {
         let free = matches!(problem, Problem::Free);
         Kept {
             momentum_norm: free,
             momentum_space: free,
-            momentum_z: !matches!(problem, Problem::Torque),
+            momentum_z: matches!(problem, Problem::Free | Problem::Linear | Problem::Potential),
             norm: true,
             ..Kept::NOTHING
         }

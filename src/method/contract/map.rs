@@ -1,10 +1,10 @@
 //! One step of size h as a map: prepared once for a body and a step, then applied many times.
 
 use super::SideBySide;
-use crate::body::{Clock, Field, Point, Rotor, Time};
+use crate::body::{Clock, Field, Point, Rotor, Time, Wheels};
 use crate::method::phase::PhaseError;
 use crate::method::schemes::Scheme;
-use crate::num::{Dd, Real};
+use crate::num::{Dd, Precise, Real};
 
 /// A family of maps Φ_h, one for each duration, body and field of forces.
 ///
@@ -71,6 +71,15 @@ pub trait Method<S: Real> {
 
     /// The same for free motion by `scheme`, where that takes fewer flows than the maps of the scheme one after another.
     fn free_map<F: Field<S>>(&self, _: &Scheme, _: Dd, _: &Rotor, _: &F) -> Option<Self::Map<F>> {
+        None
+    }
+
+    /// The map for a body with `wheels`, besides which `field` acts. It moves the momentum of body and wheels together. `None`, the
+    /// default, where [`map`](Self::map) takes wheels as one of the torques of its field, and moves the momentum I ω of the carrier.
+    fn wheel_map<F: Field<S>>(&self, _: Dd, _: &Rotor, _: &F, _: &Wheels) -> Option<Box<dyn Map<S>>>
+    where
+        S: Precise,
+    {
         None
     }
 }
@@ -154,6 +163,48 @@ pub trait Map<S: Real>: Send + 'static {
     /// Why a map that chooses its steps cannot go on: the state that it leaves then is not finite.
     fn stuck(&self) -> Option<Stuck> {
         None
+    }
+}
+
+impl<S: Real> Map<S> for Box<dyn Map<S>> {
+    fn apply(&mut self, at: Time, x: &mut Point<S>) {
+        (**self).apply(at, x);
+    }
+    fn open(&mut self, at: Time, x: &mut Point<S>) {
+        (**self).open(at, x);
+    }
+    fn advance(&mut self, at: Time, x: &mut Point<S>) {
+        (**self).advance(at, x);
+    }
+    fn close(&mut self, at: Time, x: &mut Point<S>) {
+        (**self).close(at, x);
+    }
+    fn synchronize(&self, elapsed: Dd, x: &mut Point<S>) {
+        (**self).synchronize(elapsed, x);
+    }
+    fn memory(&self) -> Vec<f64> {
+        (**self).memory()
+    }
+    fn remember(&mut self, memory: &[f64]) {
+        (**self).remember(memory);
+    }
+    fn base(&self) -> Option<Dd> {
+        (**self).base()
+    }
+    fn dense(&mut self, until: Time, x: &mut Point<S>) -> Point<S> {
+        (**self).dense(until, x)
+    }
+    fn side_by_side(&self) -> Option<SideBySide<S>> {
+        (**self).side_by_side()
+    }
+    fn worst_residual(&self) -> f64 {
+        (**self).worst_residual()
+    }
+    fn work(&self) -> Option<Work> {
+        (**self).work()
+    }
+    fn stuck(&self) -> Option<Stuck> {
+        (**self).stuck()
     }
 }
 

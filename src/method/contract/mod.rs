@@ -9,6 +9,7 @@ mod map;
 mod name;
 mod own_steps;
 mod tolerance;
+mod with_wheels;
 
 pub use any_method::{AnyMethod, StepError};
 pub use catalogue::{catalogue, without_projections};

@@ -74,10 +74,10 @@ impl Claimed for Gauss {
         format!("gauss:{}", 2 * self.stages)
     }
     fn claims(&self, problem: Problem) -> Option<Claims> {
-        let free = problem == Problem::Free;
+        let free = matches!(problem, Problem::Free | Problem::Gyrostat);
         let energy = match problem {
-            Problem::Free | Problem::Linear => Energy::Exact,
-            Problem::Potential | Problem::Torque => Energy::Drifts,
+            Problem::Free | Problem::Linear | Problem::Gyrostat => Energy::Exact,
+            Problem::Potential | Problem::GyrostatPotential | Problem::Torque => Energy::Drifts,
         };
         let kept = Kept { energy, momentum_norm: free, norm: true, ..Kept::NOTHING };
         let stages = self.stages as u32;

@@ -5,7 +5,7 @@ mod axis_order;
 pub use axis_order::{AxisOrder, AxisOrderError};
 
 use super::schemes::{STRANG, Scheme, Stages};
-use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric};
+use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric, WheelSplit};
 use crate::body::{Field, Point, Rotor, Time};
 use crate::method::solve::turns::Turns;
 use crate::num::{Dd, Precise};
@@ -56,6 +56,14 @@ impl FreePart for AxisSplit {
             Stages::Composition(_) => Some(Cost::turns(4) * scheme.lengths()?.len() as u32),
             _ => None,
         }
+    }
+    fn wheel_cost(&self) -> Option<Cost> {
+        Some(Cost::turns(5))
+    }
+    fn wheel_split(&self, rotor: &Rotor) -> WheelSplit {
+        let order = self.axes.unwrap_or_else(|| AxisOrder::best(rotor.moments()));
+        let inverse = rotor.inverse_moments::<Dd>();
+        WheelSplit::Turns { axes: order.axes().map(|axis| (axis, inverse[axis])), ball: None }
     }
     fn source(&self) -> &'static str {
         "McLachlan, Phys. Rev. Lett. 71 (1993) 3043; Touma and Wisdom, Astron. J. 107 (1994) 1189"

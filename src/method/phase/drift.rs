@@ -283,10 +283,12 @@ pub(super) fn check(method: &dyn AnyMethod) -> Result<(), PhaseError> {
 
 /// Refuses forces that are switched: what oscillates would stay in the state from then on.
 pub(crate) fn throughout(body: &Body) -> Result<(), PhaseError> {
-    match body.forces().iter().find(|force| force.intervals().is_some()) {
-        Some(force) => Err(PhaseError::Switched { force: force.name().into() }),
-        None => Ok(()),
+    if body.switching_times().is_empty() {
+        return Ok(());
     }
+    let force = body.forces().iter().find(|force| force.intervals().is_some());
+    let force = force.map_or("motor of a wheel", |force| force.name()).into();
+    Err(PhaseError::Switched { force })
 }
 
 /// The rates of steps of `clock` from `start`.

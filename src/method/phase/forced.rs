@@ -41,9 +41,9 @@ impl Forced {
         body: &Body,
         clock: Clock,
     ) -> Result<Option<Forced>, StepError> {
-        let Some(force) = body.forces().first() else { return Ok(None) };
+        let Some(force) = body.acts() else { return Ok(None) };
         Ok(Some(Forced {
-            force: force.name().into(),
+            force,
             steps: method.prepare_dd(clock, body)?,
             truth: AdaptiveTaylor::to_rounding().prepare_f64(clock, body)?,
             body: body.clone(),

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::body::StateError;
+use crate::body::{StateError, WheelError};
 use crate::events::EventError;
 use crate::flow::{NoClosedForm, TimeError};
 use crate::inertia::InertiaError;
@@ -20,6 +20,9 @@ pub enum MemberError {
     /// Its start, or the weight that acts on it, is not usable.
     #[error(transparent)]
     State(#[from] StateError),
+    /// It cannot carry its wheels.
+    #[error(transparent)]
+    Wheel(#[from] WheelError),
     /// Its motion has no closed form.
     #[error(transparent)]
     NoClosedForm(#[from] NoClosedForm),

@@ -22,14 +22,14 @@ use self::members::{Inertias, Start};
 pub use self::rows::Rows;
 pub use self::spread::{Spread, Tally};
 use self::stepped::Course;
-use crate::body::{Body, Clock, Point, State, StateError};
+use crate::body::{Body, Clock, Point, State};
 use crate::inertia::Inertia;
 use crate::method::AnyMethod;
 use crate::num::{Dd, Instructions};
 use crate::rotation::Vec3;
 
 /// Makes the body of a member from its inertia.
-type Acting = Arc<dyn Fn(Inertia) -> Result<Body, StateError> + Send + Sync>;
+type Acting = Arc<dyn Fn(Inertia) -> Result<Body, MemberError> + Send + Sync>;
 
 /// What is compared with the start or with the exact motion in every row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -143,7 +143,8 @@ impl Ensemble {
         self.starts.push(start);
     }
 
-    /// The same members, each of them the body that `body` makes of its inertia: heavy, or with forces.
+    /// The same members, each of them the body that `body` makes of its inertia: heavy, with forces or wheels. An error is the failure
+    /// of that member.
     ///
     /// ```
     /// use nalgebra::Vector3;
@@ -152,11 +153,11 @@ impl Ensemble {
     /// let heavy = Ensemble::new().acted_on(|inertia| Body::heavy(inertia, Vector3::new(0.0, 0.0, 2.0)));
     /// assert!(heavy.is_empty());
     /// ```
-    pub fn acted_on(
+    pub fn acted_on<E: Into<MemberError>>(
         mut self,
-        body: impl Fn(Inertia) -> Result<Body, StateError> + Send + Sync + 'static,
+        body: impl Fn(Inertia) -> Result<Body, E> + Send + Sync + 'static,
     ) -> Self {
-        self.acting = Some(Arc::new(body));
+        self.acting = Some(Arc::new(move |inertia| body(inertia).map_err(Into::into)));
         self
     }
 

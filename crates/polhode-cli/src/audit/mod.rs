@@ -20,6 +20,7 @@ use polhode_pages::verdict::{self, Adviser, Outcome};
 
 use crate::flags::body::BodyArguments;
 use crate::flags::force::ForceArguments;
+use crate::flags::wheel::WheelArguments;
 use crate::memory;
 use against::Golden;
 use arguments::ReadingArguments;
@@ -57,6 +58,8 @@ pub(crate) struct Audit {
     record: Option<PathBuf>,
     #[command(flatten)]
     body: Option<BodyArguments>,
+    #[command(flatten)]
+    wheels: WheelArguments,
     #[command(flatten)]
     forces: ForceArguments,
     #[command(flatten)]
@@ -141,7 +144,10 @@ impl Audit {
         let golden = self.against.as_deref().map(Golden::read).transpose()?;
         let body = match (&golden, &self.body) {
             (Some(golden), _) => Some(self.forces.act_on(golden.body.clone())?),
-            (None, Some(body)) => Some(self.forces.act_on(body.heavy(self.forces.weight_moment)?)?),
+            (None, Some(body)) => {
+                let (body, wheels) = body.heavy(self.forces.weight_moment)?;
+                Some(self.wheels.held(self.forces.act_on(body)?, wheels)?)
+            }
             (None, None) => None,
         };
         if body.is_none() && self.forces.is_any() {

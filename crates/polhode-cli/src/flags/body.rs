@@ -9,6 +9,7 @@ use polhode_files::bodies;
 use polhode_files::error::Error;
 use polhode_files::numbers::{list, numbers};
 use polhode_files::text::visible;
+use polhode_files::wheel::GivenWheel;
 
 /// A body: exactly one of three flags.
 #[derive(Args, Clone, Debug)]
@@ -43,11 +44,12 @@ pub(crate) struct Described {
     pub(crate) inertia: Inertia,
     /// N m, body axes; zero of a body without a fixed point.
     pub(crate) weight_moment: [f64; 3],
+    pub(crate) wheels: Vec<GivenWheel>,
 }
 
 impl Described {
     fn alone(inertia: Inertia) -> Self {
-        Self { inertia, weight_moment: [0.0; 3] }
+        Self { inertia, weight_moment: [0.0; 3], wheels: Vec::new() }
     }
 }
 
@@ -59,10 +61,10 @@ pub(crate) fn described(text: &str) -> Result<Described, Error> {
 /// The same of another flag.
 pub(crate) fn named(flag: &str, text: &str) -> Result<Described, Error> {
     if let Some(found) = catalogue::body(text).or_else(|| catalogue::top(text)) {
-        return Ok(Described { inertia: found.inertia, weight_moment: found.weight_moment });
+        return Ok(Described { weight_moment: found.weight_moment, ..Described::alone(found.inertia) });
     }
-    if let Some(inertia) = bodies::inertia(flag, text)? {
-        return Ok(Described::alone(inertia));
+    if let Some((inertia, wheels)) = bodies::inertia(flag, text)? {
+        return Ok(Described { wheels, ..Described::alone(inertia) });
     }
     let known: Vec<&str> =
         catalogue::bodies().iter().chain(&catalogue::tops()).map(|body| body.name).collect();
@@ -74,19 +76,21 @@ pub(crate) fn named(flag: &str, text: &str) -> Result<Described, Error> {
 }
 
 impl BodyArguments {
-    /// The body that the flags describe, with the catalogue's weight moment or `weight_moment` in its place.
-    pub(crate) fn heavy(&self, weight_moment: Option<[f64; 3]>) -> Result<Body, Error> {
-        let Described { inertia, weight_moment: own } = self.described()?;
+    /// The body that the flags describe, with the catalogue's weight moment or `weight_moment` in its place, and the wheels that its
+    /// file names.
+    pub(crate) fn heavy(&self, weight_moment: Option<[f64; 3]>) -> Result<(Body, Vec<GivenWheel>), Error> {
+        let Described { inertia, weight_moment: own, wheels } = self.described()?;
         let moment = weight_moment.unwrap_or(own);
         if moment == [0.0; 3] {
-            return Ok(Body::free(inertia));
+            return Ok((Body::free(inertia), wheels));
         }
-        Body::heavy(inertia, moment.into()).map_err(|error| Error::Input(format!("--weight-moment: {error}")))
+        let body = Body::heavy(inertia, moment.into());
+        Ok((body.map_err(|error| Error::Input(format!("--weight-moment: {error}")))?, wheels))
     }
 
     /// The same for what only free bodies do.
-    pub(crate) fn free(&self) -> Result<Body, Error> {
-        let Described { inertia, weight_moment } = self.described()?;
+    pub(crate) fn free(&self) -> Result<(Body, Vec<GivenWheel>), Error> {
+        let Described { inertia, weight_moment, wheels } = self.described()?;
         if weight_moment != [0.0; 3] {
             let name = self.body.as_deref().unwrap_or_default();
             return Err(Error::input(
@@ -96,7 +100,7 @@ impl BodyArguments {
                 "name a free body, or give its --moments to leave the weight out",
             ));
         }
-        Ok(Body::free(inertia))
+        Ok((Body::free(inertia), wheels))
     }
 
     /// The catalogue's name or the file that `--body` names.

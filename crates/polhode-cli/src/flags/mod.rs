@@ -10,3 +10,4 @@ pub(crate) mod start;
 pub(crate) mod table;
 pub(crate) mod times;
 pub(crate) mod tumbling;
+pub(crate) mod wheel;

@@ -8,11 +8,14 @@ use polhode_files::error::Error;
 use crate::flags::body::BodyArguments;
 use crate::flags::force::ForceArguments;
 use crate::flags::start::StartArguments;
+use crate::flags::wheel::WheelArguments;
 
 #[derive(Args, Clone, Debug)]
 pub(crate) struct MotionArguments {
     #[command(flatten)]
     pub(crate) body: BodyArguments,
+    #[command(flatten)]
+    wheels: WheelArguments,
     #[command(flatten)]
     pub(crate) start: StartArguments,
     #[command(flatten)]
@@ -27,7 +30,9 @@ impl MotionArguments {
             let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
             return Err(Error::input("--body", file, rule, remedy));
         }
-        self.forces.act_on(self.body.heavy(self.forces.weight_moment)?)
+        let (body, of_file) = self.body.heavy(self.forces.weight_moment)?;
+        let body = self.forces.act_on(body)?;
+        self.wheels.carried(body, of_file, |held| self.start(held))
     }
 
     /// The exact start of that `body` in the solver frame.

@@ -23,10 +23,10 @@ pub(crate) struct StartArguments {
     /// Unit of --omega: rad/s, deg/s, rpm, or another of rad, deg, rev per s, min, h, d, as in deg/d [default: rad/s]
     #[arg(long, value_name = "UNIT", value_parser = rate_unit, requires = "omega")]
     rate_unit: Option<Factor>,
-    /// Angular momentum at the start in place of --omega, body axes, kg m^2/s
+    /// Angular momentum at the start in place of --omega, that of wheels included, body axes, kg m^2/s
     #[arg(long, value_name = "mx,my,mz", value_parser = numbers::<3>, allow_hyphen_values = true, conflicts_with = "omega")]
     momentum_body: Option<[f64; 3]>,
-    /// Angular momentum at the start in place of --omega, axes of space, kg m^2/s
+    /// Angular momentum at the start in place of --omega, that of wheels included, axes of space, kg m^2/s
     #[arg(long, value_name = "Lx,Ly,Lz", value_parser = numbers::<3>, allow_hyphen_values = true,
           conflicts_with_all = ["omega", "momentum_body"])]
     momentum_space: Option<[f64; 3]>,
@@ -203,6 +203,10 @@ impl StartArguments {
     fn as_given(&self, body: &Body, published: &Option<PublishedStart>) -> Result<Point<Dd>, Error> {
         let angle_unit = self.angle_unit();
         if let Some(elements) = self.tumbling.elements(angle_unit)? {
+            if !body.wheels().is_empty() {
+                let rule = "these are elements of the motion of a body without wheels";
+                return Err(Error::input("--periods", "", rule, "give --omega"));
+            }
             return elements.point(body.inertia()).map_err(|error| self.tumbling.refused(&error));
         }
         let attitude = match (self.attitude(angle_unit), published) {
@@ -210,7 +214,9 @@ impl StartArguments {
             (None, Some(published)) => Quat::from_components(published.attitude),
             (None, None) => Quat::from_components([1.0, 0.0, 0.0, 0.0]),
         };
+        let of_wheels = body.momentum_of_wheels_at(0.0);
         let from_momentum = |flag: &str, momentum_body: Vec3<f64>| {
+            let momentum_body = momentum_body - of_wheels.into();
             let start = body.enter(&State { attitude, momentum_body });
             start.map_err(|error| Error::Input(format!("{flag}: {error}")))
         };

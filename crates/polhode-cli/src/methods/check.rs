@@ -33,6 +33,10 @@ enum Motion {
     Potential,
     /// Any torque
     Torque,
+    /// Wheels on the body, and no torque
+    Wheels,
+    /// Wheels, and a potential
+    WheelsPotential,
 }
 
 impl From<Motion> for Problem {
@@ -42,6 +46,8 @@ impl From<Motion> for Problem {
             Motion::Gravity => Self::Linear,
             Motion::Potential => Self::Potential,
             Motion::Torque => Self::Torque,
+            Motion::Wheels => Self::Gyrostat,
+            Motion::WheelsPotential => Self::GyrostatPotential,
         }
     }
 }
@@ -71,7 +77,7 @@ pub(super) fn written(report: &Report, format: Format) -> String {
 fn table(report: &Report) -> Table {
     let columns = vec![
         Column::new("method", "", "name of the method"),
-        Column::new("motion", "", "free, gravity, potential or torque"),
+        Column::new("motion", "", "free, gravity, potential, torque, wheels or wheels-potential"),
         Column::new("law", "", "what is measured"),
         Column::new("quantity", "", "of what"),
         Column::new("claim", "", "what the method claims"),

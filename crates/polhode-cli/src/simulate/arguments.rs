@@ -24,10 +24,10 @@ pub(super) struct DisturbanceArguments {
     /// White noise of each component of the torque: deviation of the impulse of 1 s, N m s^(1/2)
     #[arg(long, value_name = "S", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     torque_noise: f64,
-    /// Momentum of a wheel at the start, written to the columns hx, hy, hz (N m s) (--wheel of fit is an axis with an inertia)
+    /// Momentum of wheels at the start beside those of --wheel, written with theirs to the columns hx, hy, hz (N m s)
     #[arg(long, value_name = "hx,hy,hz", value_parser = numbers::<3>, allow_hyphen_values = true)]
-    wheel: Option<[f64; 3]>,
-    /// Change of the wheel's momentum, N m
+    wheel_momentum: Option<[f64; 3]>,
+    /// Change of the wheels' momentum, N m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     wheel_rate: Option<[f64; 3]>,
 }
@@ -37,13 +37,14 @@ fn vector(given: Option<[f64; 3]>) -> Vector3<f64> {
 }
 
 impl DisturbanceArguments {
-    pub(super) fn disturbances(&self) -> Disturbances {
+    /// With wheels of the momentum `of_wheels` besides, N m s.
+    pub(super) fn disturbances(&self, of_wheels: Vector3<f64>) -> Disturbances {
         Disturbances::default()
             .with_relative_drag(self.relative_drag)
             .with_drag(vector(self.drag))
             .with_torque(vector(self.torque) + vector(self.known_torque))
             .with_torque_noise(self.torque_noise)
-            .with_wheel(vector(self.wheel))
+            .with_wheel(vector(self.wheel_momentum) + of_wheels)
             .with_wheel_rate(vector(self.wheel_rate))
     }
 
@@ -53,7 +54,7 @@ impl DisturbanceArguments {
     }
 
     pub(super) fn has_wheel(&self) -> bool {
-        self.wheel.is_some() || self.wheel_rate.is_some()
+        self.wheel_momentum.is_some() || self.wheel_rate.is_some()
     }
 }
 

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nalgebra::Vector3;
+use polhode::body::Body;
 use polhode::num::Random;
 use polhode_files::error::Error;
 use polhode_files::numbers::{not_negative, number, numbers, positive};
@@ -15,6 +16,7 @@ use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
 use crate::flags::body::BodyArguments;
 use crate::flags::times::{Regular, regular};
+use crate::flags::wheel::WheelArguments;
 use arguments::{DisturbanceArguments, GyroscopeArguments};
 
 const USAGE: &str = "polhode simulate <BODY> [--omega <wx,wy,wz>] --until <T> --every <DT>
@@ -36,6 +38,8 @@ const EXAMPLES: &str = "Examples:
 pub(crate) struct Simulate {
     #[command(flatten)]
     body: BodyArguments,
+    #[command(flatten)]
+    wheels: WheelArguments,
     /// Angular velocity at the start, body axes, rad/s [default: that of the catalogue's body]
     #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true, help_heading = "Start")]
     omega: Option<[f64; 3]>,
@@ -88,14 +92,15 @@ fn jitter(text: &str) -> Result<f64, String> {
 
 impl Simulate {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        let body = self.body.free()?;
+        let body = self.carrier()?;
         let published = self.body.published_start().map(|start| start.omega);
         let Some(start) = self.omega.or(published) else {
             return Err(Error::Input(
                 "--omega: missing; give --omega wx,wy,wz; bodies of the catalogue have one".into(),
             ));
         };
-        let (disturbances, gyroscope) = (self.disturbances.disturbances(), self.gyroscope.gyroscope());
+        let disturbances = self.disturbances.disturbances(body.momentum_of_wheels_at(0.0));
+        let gyroscope = self.gyroscope.gyroscope();
         let mut random = Random::new(self.seed);
         let grid: Vec<f64> =
             regular(0.0, self.until, self.every).and_then(Regular::kept).map_err(Error::Input)?;
@@ -104,7 +109,9 @@ impl Simulate {
             let rule = format!("{} samples each, and at most {MOST_SAMPLES} are written", grid.len());
             return Err(Error::input("--tosses", &tosses.to_string(), &rule, "give fewer, or a larger DT"));
         }
-        let mut rows = RowWriter::new(self.table(), self.format, self.out.as_deref(), tosses * grid.len())?;
+        let tells_wheels = self.disturbances.has_wheel() || !body.wheels().is_empty();
+        let mut rows =
+            RowWriter::new(self.table(tells_wheels), self.format, self.out.as_deref(), tosses * grid.len())?;
         let pause = self.pause.unwrap_or(20.0 * self.every);
         for toss in 0..tosses {
             let mut scattered = |share: f64, times: &[f64]| -> Vec<f64> {
@@ -140,7 +147,7 @@ impl Simulate {
                 if self.gyroscope.has_rates() {
                     cells.extend(w.iter());
                 }
-                if self.disturbances.has_wheel() {
+                if tells_wheels {
                     cells.extend(disturbances.wheel_at(*t).iter());
                 }
                 cells.extend(self.disturbances.known_torque().into_iter().flatten());
@@ -150,7 +157,16 @@ impl Simulate {
         rows.finish()
     }
 
-    fn table(&self) -> Table {
+    /// The body with its wheels.
+    fn carrier(&self) -> Result<Body, Error> {
+        let (body, wheels) = self.body.free()?;
+        self.wheels.carried(body, wheels, |_| {
+            let rule = "a record tells momenta of wheels that do not depend on how the body turns";
+            Err(Error::input("--wheel", "", rule, "give wheels whose speed is held"))
+        })
+    }
+
+    fn table(&self, tells_wheels: bool) -> Table {
         let axes = |names: [&'static str; 3], unit, meaning: [&'static str; 3]| {
             names.into_iter().zip(meaning).map(move |(name, meaning)| Column::new(name, unit, meaning))
         };
@@ -168,7 +184,7 @@ impl Simulate {
         if self.gyroscope.has_rates() {
             columns.extend(axes(["wx", "wy", "wz"], "rad/s", about));
         }
-        if self.disturbances.has_wheel() {
+        if tells_wheels {
             let meaning = "momentum of the wheel along this body axis";
             columns.extend(axes(["hx (N m s)", "hy (N m s)", "hz (N m s)"], "N m s", [meaning; 3]));
         }

@@ -35,7 +35,7 @@ pub fn form(flag: &str, text: &str) -> Result<Option<Form>, Error> {
     let nothing = |center_of_mass, remark| Form { pieces: Vec::new(), center_of_mass, remark };
     Ok(Some(match ending.as_str() {
         "toml" => {
-            let (body, pieces) = parts::with_looks(path)?;
+            let parts::Parts { body, pieces, .. } = parts::read(path)?;
             Form { pieces, center_of_mass: body.center_of_mass(), remark: None }
         }
         "stl" | "obj" | "ply" => {

@@ -15,29 +15,33 @@ pub use crate::look::{Look, Piece};
 use crate::read;
 use crate::robots::{self, Language};
 use crate::text::visible;
+use crate::wheel::GivenWheel;
 pub use form::{Form, form};
 pub use parts::parts;
 
-/// Name and tensor of a body in the axes of its frame, about its centre of mass, kg m²; the name may be empty.
-type Named = (String, Matrix3<f64>);
+/// Name and tensor of a body in the axes of its frame, about its centre of mass, kg m², and its wheels; the name may be empty.
+type Named = (String, Matrix3<f64>, Vec<GivenWheel>);
 
 /// The body that a text names.
 struct Chosen<'t> {
     path: &'t Path,
     name: String,
     tensor: Matrix3<f64>,
+    wheels: Vec<GivenWheel>,
 }
 
-/// The inertia of the body that `text` names, as FILE or FILE:LINK; `None` where there is no such file. Messages begin with
-/// `flag`. A mesh has a density of 1 kg/m³.
+/// The inertia of the body that `text` names, as FILE or FILE:LINK, and the wheels that the file gives it; `None` where there is no such
+/// file. Messages begin with `flag`. A mesh has a density of 1 kg/m³.
 ///
 /// # Errors
 /// A file that cannot be read, that has no such body or several to choose from, or whose tensor no body has.
-pub fn inertia(flag: &str, text: &str) -> Result<Option<Inertia>, Error> {
-    let Some(Chosen { path, name, tensor }) = chosen(flag, text)? else { return Ok(None) };
+pub fn inertia(flag: &str, text: &str) -> Result<Option<(Inertia, Vec<GivenWheel>)>, Error> {
+    let Some(Chosen { path, name, tensor, wheels }) = chosen(flag, text)? else { return Ok(None) };
     let of = if name.is_empty() { name } else { format!(" of '{}'", visible(&name)) };
     let inertia = Inertia::from_tensor(tensor);
-    inertia.map(Some).map_err(|error| Error::Input(format!("{flag}: {}{of}: {error}", path.display())))
+    let inertia =
+        inertia.map_err(|error| Error::Input(format!("{flag}: {}{of}: {error}", path.display())))?;
+    Ok(Some((inertia, wheels)))
 }
 
 /// Whether a text names a mesh, which has no mass.
@@ -55,13 +59,13 @@ fn chosen<'t>(flag: &str, text: &'t str) -> Result<Option<Chosen<'t>>, Error> {
     };
     let mut bodies = tensors(flag, path)?;
     let chosen = match link {
-        Some(link) => bodies.iter().position(|(name, _)| name == link),
+        Some(link) => bodies.iter().position(|(name, ..)| name == link),
         None if bodies.len() == 1 => Some(0),
         None => None,
     };
     let Some(chosen) = chosen else {
         let names: Vec<&str> =
-            bodies.iter().map(|(name, _)| name.as_str()).filter(|name| !name.is_empty()).collect();
+            bodies.iter().map(|(name, ..)| name.as_str()).filter(|name| !name.is_empty()).collect();
         return Err(match link {
             _ if bodies.is_empty() => {
                 Error::input(flag, text, "no body in it states an inertia tensor", "name another file")
@@ -81,8 +85,8 @@ fn chosen<'t>(flag: &str, text: &'t str) -> Result<Option<Chosen<'t>>, Error> {
             ),
         });
     };
-    let (name, tensor) = bodies.swap_remove(chosen);
-    Ok(Some(Chosen { path, name, tensor }))
+    let (name, tensor, wheels) = bodies.swap_remove(chosen);
+    Ok(Some(Chosen { path, name, tensor, wheels }))
 }
 
 /// The ending of a file in small letters.
@@ -94,8 +98,11 @@ fn ending(path: &Path) -> String {
 fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
     match ending(path).as_str() {
         "json" => json::tensors(flag, path),
-        "toml" => Ok(vec![(String::new(), parts(path)?.tensor())]),
-        "stl" | "obj" | "ply" => Ok(vec![(String::new(), form::of_mesh(path)?.tensor())]),
+        "toml" => {
+            let parts = parts::read(path)?;
+            Ok(vec![(String::new(), parts.body.tensor(), parts.wheels)])
+        }
+        "stl" | "obj" | "ply" => Ok(vec![(String::new(), form::of_mesh(path)?.tensor(), Vec::new())]),
         kind @ ("urdf" | "mjcf" | "sdf" | "xml") => links(path, kind),
         _ => Err(Error::input(
             flag,
@@ -117,7 +124,7 @@ fn links(path: &Path, kind: &str) -> Result<Vec<Named>, Error> {
     let links = robots::read(language, path, &text, None)?;
     // a frame without a body, and a link that states no tensor, have none to give
     let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
-    Ok(bodies.map(|body| (body.name.clone(), tensor(body))).collect())
+    Ok(bodies.map(|body| (body.name.clone(), tensor(body), Vec::new())).collect())
 }
 
 fn model(path: &Path) -> Result<String, Error> {

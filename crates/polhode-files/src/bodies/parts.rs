@@ -11,26 +11,36 @@ use crate::error::Error;
 use crate::look::{Look, Piece};
 use crate::mesh::{MeshOptions, length_unit, surface};
 use crate::numbers::turn;
-use crate::read;
 use crate::toml_file::{Section, TomlFile};
+use crate::wheel::GivenWheel;
 
 const KEYS: [&str; 10] =
     ["name", "shape", "size", "mass", "density", "at", "turn", "file", "length_unit", "inertia"];
+
+/// What a TOML file says of a body.
+pub(super) struct Parts {
+    /// Their sum.
+    pub(super) body: MassProperties,
+    /// What they look like.
+    pub(super) pieces: Vec<Piece>,
+    /// The wheels, which parts include.
+    pub(super) wheels: Vec<GivenWheel>,
+}
 
 /// The sum of the parts of a TOML file: its `[[part]]` tables.
 ///
 /// # Errors
 /// A file that cannot be read; a key that is unknown, missing, or has a value that cannot be used, with its line.
 pub fn parts(path: &Path) -> Result<MassProperties, Error> {
-    with_looks(path).map(|(body, _)| body)
+    read(path).map(|parts| parts.body)
 }
 
-/// The same with what the parts look like.
-pub(super) fn with_looks(path: &Path) -> Result<(MassProperties, Vec<Piece>), Error> {
-    let text = read(path, "name a TOML file with [[part]] tables")?;
+/// The same with what the parts look like, and the `[[wheels]]`.
+pub(super) fn read(path: &Path) -> Result<Parts, Error> {
+    let text = crate::read(path, "name a TOML file with [[part]] tables")?;
     let file = TomlFile { path, text: &text };
     let document = file.parse()?;
-    let (mut bodies, mut pieces) = (Vec::new(), Vec::new());
+    let (mut bodies, mut pieces, mut wheels) = (Vec::new(), Vec::new(), Vec::new());
     for (key, value) in document.get_ref() {
         match (key.get_ref().as_ref(), value.get_ref()) {
             ("part", DeValue::Array(parts)) => {
@@ -44,16 +54,21 @@ pub(super) fn with_looks(path: &Path) -> Result<(MassProperties, Vec<Piece>), Er
                     pieces.push(piece);
                 }
             }
+            ("wheels", _) => {
+                let top = Section { file: &file, place: 0, keys: document.get_ref() };
+                wheels = GivenWheel::list_of_toml(&top)?;
+            }
             ("name", DeValue::String(_)) => {}
             (other, _) => {
-                let message = format!("key '{other}': unknown here; needed are [[part]] tables");
+                let message =
+                    format!("key '{other}': unknown here; needed are [[part]] tables, and [[wheels]]");
                 return Err(file.error(key.span().start, &message));
             }
         }
     }
     let sum = MassProperties::sum(bodies);
-    let sum = sum.map_err(|error| file.error(0, &format!("{error}; write [[part]] tables")))?;
-    Ok((sum, pieces))
+    let body = sum.map_err(|error| file.error(0, &format!("{error}; write [[part]] tables")))?;
+    Ok(Parts { body, pieces, wheels })
 }
 
 struct Part<'t>(Section<'t>);

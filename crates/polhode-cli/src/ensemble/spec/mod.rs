@@ -10,9 +10,10 @@ mod spread;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use polhode::body::{Body, Member, Population, StateError};
+use polhode::body::{Body, Member, Population, Wheel};
 use polhode::flow::TumblingPopulation;
 use polhode::inertia::Inertia;
+use polhode::run::MemberError;
 use polhode_files::error::Error;
 use polhode_files::read;
 use polhode_files::toml_file::{Section, TomlFile};
@@ -63,14 +64,16 @@ enum Source {
 pub(super) struct Acting {
     weight_moment: [f64; 3],
     forces: Forces,
+    wheels: Vec<Wheel>,
 }
 
 impl Acting {
     /// The body of a member.
-    pub(super) fn on(&self, inertia: Inertia) -> Result<Body, StateError> {
+    pub(super) fn on(&self, inertia: Inertia) -> Result<Body, MemberError> {
         let body = Body::heavy(inertia, self.weight_moment.into())?;
         // what is wrong with a force is wrong for every inertia, and was found out when the specification was read
-        Ok(self.forces.act_on(body.clone()).unwrap_or(body))
+        let body = self.forces.act_on(body.clone()).unwrap_or(body);
+        Ok(self.wheels.iter().try_fold(body, |body, wheel| body.with_wheel(*wheel))?)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Matrix3;
-use polhode::body::Body;
+use polhode::body::{Body, Wheel};
 use polhode::catalogue;
 use polhode::flow::TumblingElements;
 use polhode::inertia::Inertia;
@@ -11,6 +11,7 @@ use polhode::rotation::{Quat, Vec3};
 use polhode_files::error::{Error, tell};
 use polhode_files::instant::{Epoch, date, time_scale};
 use polhode_files::toml_file::Section;
+use polhode_files::wheel::GivenWheel;
 
 use super::{Acting, elements};
 use crate::flags::body::{Described, described};
@@ -60,12 +61,13 @@ impl Nominal {
         force: &Section<'_>,
         listed: bool,
     ) -> Result<Self, Error> {
-        body.only("[body]", &["moments", "inertia", "body"])?;
+        body.only("[body]", &["moments", "inertia", "body", "wheels"])?;
         let known = ["omega", "attitude", "rate_unit", "angle_unit", "epoch", "time_scale"];
         start.only("[start]", &[&known[..], &elements::START].concat())?;
         let units = Units::read(start)?;
         let epoch = epoch(start)?;
-        let given: Vec<&str> = body.keys.keys().map(|key| key.get_ref().as_ref()).collect();
+        let keys = body.keys.keys().map(|key| key.get_ref().as_ref());
+        let given: Vec<&str> = keys.filter(|key| *key != "wheels").collect();
         let found = match given[..] {
             [] if listed => None,
             [] => return Err(body.at("moments", "missing in [body]; give moments, inertia or body")),
@@ -112,23 +114,36 @@ impl Nominal {
             ));
         }
         let own = found.as_ref().map_or([0.0; 3], |found| found.weight_moment);
+        let wheels = wheels(body, found.as_ref())?;
         let nominal = Self {
             inertia: found.map(|found| found.inertia),
             attitude: Quat::from_components(attitude),
             omega: omega.map(Vec3),
-            acting: acting(force, own)?,
+            acting: Acting { wheels, ..acting(force, own)? },
             units,
             elements,
             epoch,
         };
         if let Some(inertia) = &nominal.inertia {
-            nominal.check(force, start, inertia)?;
+            nominal.check(body, force, start, inertia)?;
         }
         Ok(nominal)
     }
 
     /// Whether body, weight, forces and start go together.
-    fn check(&self, force: &Section<'_>, start: &Section<'_>, inertia: &Inertia) -> Result<(), Error> {
+    fn check(
+        &self,
+        body: &Section<'_>,
+        force: &Section<'_>,
+        start: &Section<'_>,
+        inertia: &Inertia,
+    ) -> Result<(), Error> {
+        let carried = self
+            .acting
+            .wheels
+            .iter()
+            .try_fold(Body::free(inertia.clone()), |body, wheel| body.with_wheel(*wheel));
+        let _ = carried.map_err(|error| body.at("wheels", &error.to_string()))?;
         let heavy = Body::heavy(inertia.clone(), self.acting.weight_moment.into());
         let heavy = heavy.map_err(|error| force.at("weight_moment", &error.to_string()))?;
         let body = self.acting.forces.act_on(heavy);
@@ -154,7 +169,7 @@ fn epoch(start: &Section<'_>) -> Result<Option<Epoch>, Error> {
 
 fn inertia(body: &Section<'_>, key: &str) -> Result<Described, Error> {
     let refused = |error: &dyn std::fmt::Display| body.at(key, &error.to_string());
-    let alone = |inertia| Described { inertia, weight_moment: [0.0; 3] };
+    let alone = |inertia| Described { inertia, weight_moment: [0.0; 3], wheels: Vec::new() };
     if let Some(moments) = body.numbers::<3>("moments")? {
         return Inertia::from_moments(moments).map(alone).map_err(|error| refused(&error));
     }
@@ -173,6 +188,20 @@ fn inertia(body: &Section<'_>, key: &str) -> Result<Described, Error> {
             refused(&message.strip_prefix("--body: ").unwrap_or(&message))
         },
     )
+}
+
+/// The wheels of every member: those of the body's file and of `wheels` in `[body]`. A member differs in its start, by which a wheel that
+/// is not held has its momentum.
+fn wheels(body: &Section<'_>, found: Option<&Described>) -> Result<Vec<Wheel>, Error> {
+    let mut given = found.map_or(Vec::new(), |found| found.wheels.clone());
+    given.extend(GivenWheel::list_of_toml(body)?);
+    match given.iter().all(GivenWheel::is_held) {
+        true => Ok(given.iter().map(GivenWheel::held).collect()),
+        false => Err(body.at(
+            "wheels",
+            "members of an ensemble carry wheels whose speed is held; leave free and torque out",
+        )),
+    }
 }
 
 /// What acts, by `[force]` or, of the weight, by the catalogue.
@@ -236,5 +265,5 @@ fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
         }
         _ => {}
     }
-    Ok(Acting { weight_moment: force.numbers("weight_moment")?.unwrap_or(own), forces })
+    Ok(Acting { weight_moment: force.numbers("weight_moment")?.unwrap_or(own), forces, wheels: Vec::new() })
 }
