@@ -1,0 +1,107 @@
+//! The periods of the motion: the lattice of `Y² = 4X³ − g₂X − g₃`.
+//!
+//! T is the real period and ω₂ = iy, or T/2 + iy where two of the roots e_k are no real numbers (*skew*); with the
+//! arithmetic-geometric mean M, `T = π/M(√(e₁ − e₃), √(e₁ − e₂))`, e₁ = ℘(T/2), and y likewise.
+
+use crate::num::complex::Complex;
+use crate::num::{Dd, Precise, Real};
+
+/// Below this share of the others a difference of two roots is rounding.
+const ROUNDING: f64 = 1e-32;
+
+/// Real and second period of the curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lattice {
+    /// e₁ = ℘(T/2), real, e₂ and e₃.
+    pub(super) roots: [Complex<Dd>; 3],
+    pub(super) g2: Dd,
+    pub(super) period: Dd,
+    /// y.
+    pub(super) height: Dd,
+    pub(super) is_skew: bool,
+    /// ((e₁ − e₂)/(e₁ − e₃))², or what it is of a skew lattice, where this is small; else 1: the digits of T are those of it.
+    pub(super) apart: f64,
+}
+
+impl Lattice {
+    pub(super) fn new([g2, g3]: [Dd; 2]) -> Self {
+        let is_low = g3 < Dd::ZERO;
+        let single = isolated(g2, g3);
+        let mut split = g2 - single * single * 3.0;
+        let least = single.magnitude() * ROUNDING;
+        if split.magnitude() < least * least {
+            split = Dd::of(least * least);
+        }
+        let half = split.abs().sqrt() * 0.5;
+        let (middle, lift) = (single * -0.5, single.abs() * 1.5);
+        let relative = (split / (lift * lift)).magnitude();
+        let real = |x: Dd| Complex::new(x, Dd::ZERO);
+        let (is_skew, roots, period, height);
+        if split > Dd::ZERO {
+            is_skew = false;
+            let (near, far, apart) = (lift - half, lift + half, half * 2.0);
+            // the smaller difference next to the single root, and the difference of the other two
+            let [along, across] = [near, apart].map(|other| Dd::PI / mean(far.sqrt(), other.sqrt()));
+            if is_low {
+                roots = [real(middle + half), real(middle - half), real(single)];
+                (period, height) = (across, along);
+            } else {
+                roots = [real(single), real(middle + half), real(middle - half)];
+                (period, height) = (along, across);
+            }
+        } else {
+            is_skew = true;
+            let size = (lift * lift + half * half).sqrt();
+            let (large, small) = ((size + lift) * 0.5, half * half / ((size + lift) * 2.0));
+            let [long, short] = [small, large].map(|square| Dd::PI / mean(square.sqrt(), size.sqrt()));
+            roots = [real(single), Complex::new(middle, half), Complex::new(middle, -half)];
+            (period, height) = if is_low { (long, short * 0.5) } else { (short, long * 0.5) };
+        }
+        let apart = if is_low { relative.min(1.0) } else { 1.0 };
+        Lattice { roots, g2, period, height, is_skew, apart }
+    }
+
+    /// y/T.
+    pub(super) fn ratio(&self) -> Dd {
+        self.height / self.period
+    }
+
+    /// `u` less the period of the lattice that brings it next to zero.
+    pub(super) fn reduced(&self, u: Complex<Dd>) -> Complex<Dd> {
+        let up = (u.im / self.height).round();
+        let im = u.im - up * self.height;
+        let re = if self.is_skew { u.re - up * self.period * 0.5 } else { u.re };
+        Complex::new(re - (re / self.period).round() * self.period, im)
+    }
+}
+
+/// The root of 4x³ − g₂x − g₃ that is farther from the other two than these from each other, by Newton's method from outside.
+fn isolated(g2: Dd, g3: Dd) -> Dd {
+    let (h2, h3) = (g2.hi(), g3.hi().abs());
+    let value = |x: f64| (4.0 * x * x - h2) * x - h3;
+    let mut x = (0.5 * h2.max(0.0)).sqrt().max(libm::cbrt(0.5 * h3));
+    for _ in 0..200 {
+        let next = x - value(x) / (12.0 * x * x - h2);
+        if next.is_nan() || next >= x {
+            break;
+        }
+        x = next;
+    }
+    let mut root = Dd::of(x);
+    for _ in 0..3 {
+        let square = root * root;
+        let value = (square * 4.0 - g2) * root - g3.abs();
+        root = root - value / (square * 12.0 - g2);
+    }
+    if g3 < Dd::ZERO { -root } else { root }
+}
+
+fn mean(mut a: Dd, mut b: Dd) -> Dd {
+    for _ in 0..40 {
+        if (a - b).magnitude() <= 1e-15 * a.magnitude() {
+            break;
+        }
+        (a, b) = ((a + b) * 0.5, (a * b).sqrt());
+    }
+    (a + b) * 0.5
+}
