@@ -6,8 +6,11 @@
 use crate::num::complex::Complex;
 use crate::num::{Dd, Precise, Real};
 
-/// Below this share of the others a difference of two roots is rounding.
-const ROUNDING: f64 = 1e-32;
+/// What rounding leaves of invariants, of the sizes of their terms.
+const ROUNDING: f64 = 1e-30;
+
+/// The difference that equal roots are given: the nome then is lost beside one.
+const EQUAL: f64 = 1e-36;
 
 /// Real and second period of the curve.
 #[derive(Clone, Copy, Debug)]
@@ -19,22 +22,25 @@ pub(super) struct Lattice {
     /// y.
     pub(super) height: Dd,
     pub(super) is_skew: bool,
-    /// ((e₁ − e₂)/(e₁ − e₃))², or what it is of a skew lattice, where this is small; else 1: the digits of T are those of it.
+    /// What rounding leaves of X beside equal roots.
+    pub(super) rounding: f64,
+    /// (e₁ − e₂)² over the terms it is a sum of, where T grows as it goes to zero, else 1: of the 106 bits T has lost as many as this is
+    /// below one.
     pub(super) apart: f64,
 }
 
 impl Lattice {
-    pub(super) fn new([g2, g3]: [Dd; 2]) -> Self {
+    /// Of invariants whose terms are of the size `terms`, that of g₂.
+    pub(super) fn new([g2, g3]: [Dd; 2], terms: f64) -> Self {
         let is_low = g3 < Dd::ZERO;
         let single = isolated(g2, g3);
         let mut split = g2 - single * single * 3.0;
-        let least = single.magnitude() * ROUNDING;
-        if split.magnitude() < least * least {
-            split = Dd::of(least * least);
+        let square = single.magnitude() * single.magnitude();
+        if split.magnitude() < terms * ROUNDING {
+            split = Dd::of(square * EQUAL * EQUAL);
         }
         let half = split.abs().sqrt() * 0.5;
         let (middle, lift) = (single * -0.5, single.abs() * 1.5);
-        let relative = (split / (lift * lift)).magnitude();
         let real = |x: Dd| Complex::new(x, Dd::ZERO);
         let (is_skew, roots, period, height);
         if split > Dd::ZERO {
@@ -57,8 +63,9 @@ impl Lattice {
             roots = [real(single), Complex::new(middle, half), Complex::new(middle, -half)];
             (period, height) = if is_low { (long, short * 0.5) } else { (short, long * 0.5) };
         }
-        let apart = if is_low { relative.min(1.0) } else { 1.0 };
-        Lattice { roots, g2, period, height, is_skew, apart }
+        let apart = if is_low { (split.magnitude() / terms).min(1.0) } else { 1.0 };
+        let rounding = (terms * ROUNDING).sqrt() * 1e-12;
+        Lattice { roots, g2, period, height, is_skew, rounding, apart }
     }
 
     /// y/T.

@@ -41,8 +41,10 @@ pub(super) struct Level {
     r: Complex<Dd>,
     wheel_3: Dd,
     /// P without its cubic term: `P(μ̄ + x) = −x⁴ + 6 A₂x² + 4 A₃x + A₄`, and μ̄.
-    pub(super) depressed: [Dd; 3],
+    depressed: [Dd; 3],
     pub(super) centre: Dd,
+    /// The size of the terms of A₄.
+    pub(super) terms: f64,
 }
 
 /// A point of the curve `Y² = 4X³ − g₂X − g₃`.
@@ -101,7 +103,7 @@ impl Level {
         let alpha = Complex::new(a(0, 2), -a(1, 2));
         let beta = Complex::new((a(0, 0) - a(1, 1)) * 0.5, -a(0, 1));
         let a33 = a(2, 2);
-        let (depressed, centre) = pencil(spread, n, nu);
+        let (depressed, centre, terms) = pencil(spread, n, nu);
         Course::Moving(Box::new(Level {
             frame,
             spread,
@@ -116,7 +118,15 @@ impl Level {
             wheel_3: g[2],
             depressed,
             centre,
+            terms,
         }))
+    }
+
+    /// Whether ν stays: a ball, and a symmetric carrier with the wheel along its axis. The motion then is that of two turns.
+    pub(super) fn is_elementary(&self) -> bool {
+        let same = |k: usize| self.spread[k] == Dd::ZERO;
+        let bare = |k: usize| same(k) && self.wheel[k] == Dd::ZERO;
+        (0..3).all(same) || (0..3).filter(|&k| bare(k)).count() == 2
     }
 
     /// g₂ and g₃.
@@ -169,10 +179,11 @@ impl Level {
     }
 }
 
-/// P around the mean of its roots, `[A₂, A₃, A₄]`, and that mean.
-fn pencil(b: Vec3<Dd>, n: Vec3<Dd>, nu: Vec3<Dd>) -> ([Dd; 3], Dd) {
+/// P around the mean of its roots, `[A₂, A₃, A₄]`, that mean, and the size of the terms of A₄.
+fn pencil(b: Vec3<Dd>, n: Vec3<Dd>, nu: Vec3<Dd>) -> ([Dd; 3], Dd, f64) {
     // of −P
     let mut c = [Dd::ZERO; 5];
+    let mut sizes = [0.0; 5];
     for k in 0..3 {
         let (j, l) = ((k + 1) % 3, (k + 2) % 3);
         let square = [nu[k] * nu[k], -(nu[k] * n[k]) * 2.0, n[k] * n[k]];
@@ -180,6 +191,7 @@ fn pencil(b: Vec3<Dd>, n: Vec3<Dd>, nu: Vec3<Dd>) -> ([Dd; 3], Dd) {
         for (x, first) in square.into_iter().enumerate() {
             for (y, second) in others.into_iter().enumerate() {
                 c[x + y] = c[x + y] + first * second;
+                sizes[x + y] += (first * second).magnitude();
             }
         }
     }
@@ -188,5 +200,7 @@ fn pencil(b: Vec3<Dd>, n: Vec3<Dd>, nu: Vec3<Dd>) -> ([Dd; 3], Dd) {
     let second = a2 + square;
     let third = a3 + a1 * (a2 * 3.0 + square * 2.0);
     let fourth = a4 + a1 * a3 * 4.0 + square * (a2 * 6.0 + square * 3.0);
-    ([second, third, fourth], a1)
+    let x = a1.magnitude();
+    let terms = sizes.iter().rev().fold(0.0, |sum, size| sum * x + size);
+    ([second, third, fourth], a1, terms)
 }

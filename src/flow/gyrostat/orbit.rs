@@ -21,6 +21,13 @@ const CHECKED: [f64; 3] = [0.21, 0.47, 0.83];
 /// Most by which a rate may miss, of the largest rate.
 const LARGEST_DEFECT: f64 = 1e-15;
 
+/// Ratios y/T below which the sums in `f64` cancel to less than 1e-15, of a straight and of a skew lattice.
+const LEAST_STRAIGHT: f64 = 0.36;
+const LEAST_SKEW: f64 = 0.13;
+
+/// The ratio y/T of a small oscillation about a stable spin is at least this; next to an unstable one it is below 1.
+const LEAST_OF_SMALL: f64 = 3.0;
+
 /// Constants of one motion, worked out once; then any time in O(1).
 #[derive(Clone, Debug)]
 pub(crate) struct GyrostatOrbit {
@@ -39,7 +46,8 @@ enum Kind {
 #[derive(Clone, Debug)]
 struct Moving {
     spinor: Spinor,
-    quick: Quick,
+    /// Where its sums do not cancel.
+    quick: Option<Quick>,
     frame: [Vec3<Dd>; 3],
     norm: Dd,
     /// τ/t.
@@ -82,23 +90,32 @@ impl GyrostatOrbit {
             }
             Course::Moving(level) => level,
         };
-        let lattice = Lattice::new(level.invariants());
-        let spinor = Spinor::new(&level, lattice);
+        let (spinor, apart, is_quick) = if level.is_elementary() {
+            (Spinor::elementary(&level), 1.0, true)
+        } else {
+            let lattice = Lattice::new(level.invariants(), level.terms);
+            let ratio = lattice.ratio().hi();
+            if Spinor::is_small(&level) && ratio < LEAST_OF_SMALL {
+                return Err(Reason::Saddle { speed: level.speed.hi() });
+            }
+            let least = if lattice.is_skew { LEAST_SKEW } else { LEAST_STRAIGHT };
+            (Spinor::new(&level, lattice), lattice.apart, ratio >= least)
+        };
         let defect = defect(&level, &spinor);
         if defect.is_nan() || defect > LARGEST_DEFECT {
-            return Err(Reason::Separatrix { defect, apart: lattice.apart });
+            return Err(Reason::Separatrix { defect, apart });
         }
         let norm = start.momentum_body.norm_of_any_size();
-        let quick = Quick::new(&level, &spinor, &start, norm);
+        let quick = is_quick.then(|| Quick::new(&level, &spinor, &start, norm));
         let moving = Moving {
             quick,
             frame: level.frame,
             norm,
             rate: level.rate,
-            period: lattice.period / level.rate,
+            period: Dd::TAU / (spinor.rate * level.rate),
             spinor,
         };
-        let reach = reach * lattice.apart;
+        let reach = reach * apart;
         Ok(GyrostatOrbit { start, kind: Kind::Moving(Box::new(moving)), reach })
     }
 
@@ -128,7 +145,7 @@ impl GyrostatOrbit {
                 let start = self.start.to_f64();
                 (start.attitude * turn, start.momentum_body)
             }),
-            Kind::Moving(moving) => moving.quick.at(pair(t)),
+            Kind::Moving(moving) => moving.quick.as_ref().and_then(|quick| quick.at(pair(t))),
         };
         match quick {
             Some((attitude, momentum_body)) => Point::new(attitude, momentum_body),

@@ -60,7 +60,7 @@ impl Spinor {
         let place = curve.argument(&level.return_of_zero());
         let difference = curve.argument(&level.infinity());
         let at_start = (level.along + level.common) * 0.5;
-        let is_small = level.speed.hi() < SMALL;
+        let is_small = Self::is_small(level);
         let mut terms = if is_small { small(level, rate) } else { powers(&lattice, place) };
         let mut log_rate = if is_small { first_rate(&terms) } else { log_rate(&terms, level, rate) };
         // the twist for either sign of v, with the share of its unit, half the rate, that the start leaves
@@ -86,6 +86,24 @@ impl Spinor {
             terms = fitted(terms, level, rate, log_rate);
         }
         Spinor { terms, rate, twist, disagreement }
+    }
+
+    /// Whether the start is so near to a steady spin that the linear theory serves.
+    pub(super) fn is_small(level: &Level) -> bool {
+        level.speed.hi() < SMALL
+    }
+
+    /// Where ν stays: the body turns by a_μ τ about n₀, then by |ν| τ about ν.
+    pub(super) fn elementary(level: &Level) -> Self {
+        let rate = (level.along * level.along + level.speed * level.speed).sqrt();
+        let (cos, sin) = (level.along / rate, level.speed / rate * 0.5);
+        let real = |x: Dd| Complex::new(x, Dd::ZERO);
+        let terms = vec![
+            [real(Dd::ZERO); 2],
+            [real((Dd::ONE - cos) * 0.5), real(-sin)],
+            [real((Dd::ONE + cos) * 0.5), real(sin)],
+        ];
+        Spinor { terms, rate, twist: (level.common - rate) * 0.5, disagreement: 0.0 }
     }
 
     /// Z and W after `turns` of X.

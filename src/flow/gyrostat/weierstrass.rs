@@ -88,8 +88,8 @@ impl Weierstrass {
         let lattice = &self.lattice;
         let apart = lattice.roots.map(|root| place.x - root);
         let size = |x: Complex<Dd>| x.norm_squared().sqrt();
-        let scale = size(apart[0]).magnitude().max(size(lattice.roots[0]).magnitude());
-        if size(apart[1]).magnitude().max(size(apart[2]).magnitude()) <= 1e-31 * scale {
+        // a circle that a symmetric body draws: u is half a period away, and where is of no matter
+        if size(apart[1]).magnitude().max(size(apart[2]).magnitude()) <= lattice.rounding {
             return Complex::new(lattice.period * 0.25, lattice.height * 0.5);
         }
         let rough = carlson(apart.map(|x| Complex::new(x.re.hi(), x.im.hi())));
@@ -131,7 +131,12 @@ fn odd(n: usize) -> f64 {
 }
 
 /// R_F of complex numbers, up to its sign and periods, which the branches of the roots leave open.
-fn carlson(mut z: [Complex<f64>; 3]) -> Complex<f64> {
+fn carlson(z: [Complex<f64>; 3]) -> Complex<f64> {
+    // turned so that the mean is positive, or the roots of nearly equal numbers might lie on different branches
+    let mean = z[0] + z[1] + z[2];
+    let size = mean.norm_squared().sqrt();
+    let turn = if size > 0.0 { mean.conjugate().scaled(1.0 / size) } else { Complex::new(1.0, 0.0) };
+    let mut z = z.map(|z| z * turn);
     for _ in 0..40 {
         let [a, b, c] = z.map(root);
         let shift = a * b + b * c + c * a;
@@ -141,7 +146,8 @@ fn carlson(mut z: [Complex<f64>; 3]) -> Complex<f64> {
             break;
         }
     }
-    root((z[0] + z[1] + z[2]).scaled(1.0 / 3.0)).inverse_conjugate().conjugate()
+    let mean = root((z[0] + z[1] + z[2]).scaled(1.0 / 3.0));
+    root(turn) * mean.inverse_conjugate().conjugate()
 }
 
 fn root(z: Complex<f64>) -> Complex<f64> {

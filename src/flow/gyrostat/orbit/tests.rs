@@ -73,3 +73,305 @@ fn fixtures_of_all_regimes() {
         println!("{scenario:40} {q:.1e} {m:.1e}   {q_dd:.1e} {m_dd:.1e}");
     }
 }
+
+struct Random(u64);
+
+impl Random {
+    fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
+    }
+
+    /// Between 10^low and 10^high.
+    fn decade(&mut self, low: f64, high: f64) -> f64 {
+        let place = 0.5 * (self.number() + 1.0);
+        libm::exp10(low + (high - low) * place)
+    }
+
+    fn vector(&mut self) -> Vec3<f64> {
+        Vec3([self.number(), self.number(), self.number()])
+    }
+
+    fn choice(&mut self, of: usize) -> usize {
+        ((0.5 * (self.number() + 1.0)) * of as f64) as usize
+    }
+
+    /// Moments, wheel and start of a body of one of the kinds, with its name.
+    fn gyrostat(&mut self) -> (&'static str, Vec3<Dd>, Vec3<Dd>, Point<Dd>) {
+        let mut moments = self.vector().map(|x| 1.5 + 0.5 * x);
+        let mut wheel = self.vector();
+        let mut momentum = self.vector();
+        let axis = self.choice(3);
+        let other = (axis + 1) % 3;
+        let kinds = [
+            "generic",
+            "weak",
+            "strong",
+            "axial",
+            "plane",
+            "symmetric",
+            "almost",
+            "ball",
+            "start",
+            "rod",
+            "near axial",
+            "free",
+        ];
+        let kind = kinds[self.choice(kinds.len())];
+        match kind {
+            "weak" => wheel = wheel * self.decade(-16.0, -1.0),
+            "strong" => {
+                let at = wheel * self.decade(0.0, 3.0);
+                (wheel, momentum) = (at, at + momentum);
+            }
+            "axial" => wheel = Vec3::unit(axis) * wheel[axis],
+            "plane" => wheel[axis] = 0.0,
+            "symmetric" => {
+                moments[axis] = moments[other];
+                if self.number() > 0.0 {
+                    (wheel[axis], wheel[other]) = (0.0, 0.0);
+                }
+            }
+            "almost" => moments[axis] = moments[other] * (1.0 + self.decade(-16.0, -1.0)),
+            "near axial" => {
+                let (one, two) = (self.decade(-20.0, -1.0), self.decade(-20.0, -1.0));
+                moments[axis] = moments[other] * (1.0 + self.decade(-16.0, -1.0));
+                (wheel[axis], wheel[other]) = (one, two);
+            }
+            "free" => wheel = Vec3::zero(),
+            "ball" => moments = Vec3([0, 1, 2].map(|_| 1.5 * (1.0 + 1e-3 * self.decade(-14.0, 0.0)))),
+            "start" => momentum[axis] = 0.0,
+            "rod" => moments[axis] = self.decade(-3.0, 0.0),
+            _ => {}
+        }
+        let q = Quat::from_components([self.number(), self.number(), self.number(), self.number()]);
+        let q = q.map(Dd::of).normalized();
+        (kind, moments.map(Dd::of), wheel.map(Dd::of), Point::new(q, momentum.map(Dd::of)))
+    }
+}
+
+fn many(count: usize, seed: u64) {
+    let mut random = Random(seed);
+    let mut worst: Vec<(&str, [f64; 4], usize, usize, [f64; 2])> = Vec::new();
+    for case in 0..count {
+        let (kind, moments, wheel, start) = random.gyrostat();
+        let place = worst.iter().position(|row| row.0 == kind).unwrap_or_else(|| {
+            worst.push((kind, [0.0; 4], 0, 0, [0.0; 2]));
+            worst.len() - 1
+        });
+        worst[place].2 += 1;
+        let orbit = match GyrostatOrbit::new(moments, wheel, start) {
+            Ok(orbit) => orbit,
+            Err(reason) => {
+                worst[place].3 += 1;
+                println!(
+                    "{case} {kind} {reason:?} {:?}",
+                    [moments, wheel, start.momentum_body].map(|v| v.map(Dd::hi))
+                );
+                continue;
+            }
+        };
+        let fast = (start.momentum_body.norm() + wheel.norm()).hi()
+            / moments.0.iter().map(|i| i.hi()).fold(9.0, f64::min);
+        let [one, two] = [(); 2].map(|()| random.number() * random.decade(-1.0, 3.0) / fast);
+        let far = random.number() * random.decade(0.0, 9.0) / fast;
+        let [q, m] = off(&orbit.point_after(Dd::of(far)).to_dd(), &orbit.point_at_dd(Dd::of(far)));
+        // the motion from a later start is the same motion
+        let later = match GyrostatOrbit::new(moments, wheel, orbit.point_at_dd(Dd::of(one))) {
+            Ok(orbit) => orbit,
+            Err(reason) => {
+                worst[place].3 += 1;
+                println!(
+                    "{case} {kind} later {reason:?} {:?}",
+                    [moments, wheel, start.momentum_body].map(|v| v.map(Dd::hi))
+                );
+                continue;
+            }
+        };
+        let [q_later, m_later] =
+            off(&later.point_at_dd(Dd::of(two)), &orbit.point_at_dd(Dd::of(one) + Dd::of(two)));
+        if let (Kind::Moving(a), Kind::Moving(b)) = (&orbit.kind, &later.kind) {
+            let rate = ((a.spinor.rate * a.rate - b.spinor.rate * b.rate).magnitude()) / fast;
+            let twists = (a.spinor.twist * a.rate - b.spinor.twist * b.rate) / (a.spinor.rate * a.rate * 0.5);
+            let twist = (twists - twists.round()).magnitude() * (a.spinor.rate * a.rate).hi() / fast;
+            if rate > worst[place].4[0] || twist > worst[place].4[1] {
+                println!("{case} {kind} rate {rate:.1e} twist {twist:.1e}");
+                worst[place].4 = [rate.max(worst[place].4[0]), twist.max(worst[place].4[1])];
+            }
+        }
+        if q > 3e-15 || q_later > worst[place].1[2] {
+            let Kind::Moving(moving) = &orbit.kind else { continue };
+            println!(
+                "{case} {kind} {q:.1e} {m:.1e} {q_later:.1e} terms {} {}",
+                moving.spinor.terms.len(),
+                moving.quick.as_ref().map_or(0, |quick| quick.terms.len())
+            );
+        }
+        for (x, new) in worst[place].1.iter_mut().zip([q, m, q_later, m_later]) {
+            *x = x.max(new);
+        }
+    }
+    for (kind, [q, m, q_later, m_later], all, refused, [rate, twist]) in worst {
+        println!(
+            "{kind:12} {all} refused {refused}  {q:.1e} {m:.1e}   {q_later:.1e} {m_later:.1e} rate {rate:.1e} {twist:.1e}"
+        );
+    }
+}
+
+#[test]
+fn doubles_and_later_starts_agree() {
+    many(3000, 1);
+}
+
+#[test]
+#[ignore = "takes seconds, `.ci/run` does it"]
+fn doubles_and_later_starts_agree_in_many_cases() {
+    many(100_000, 2);
+}
+
+#[test]
+#[ignore = "a measurement, which prints"]
+fn times() {
+    let mut random = Random(5);
+    let draws: Vec<_> = (0..2000).map(|_| random.gyrostat()).collect();
+    let clock = std::time::Instant::now();
+    let orbits: Vec<_> =
+        draws.iter().filter_map(|(_, i, h, x)| GyrostatOrbit::new(*i, *h, *x).ok()).collect();
+    println!("set-up {:?}", clock.elapsed() / 2000);
+    let clock = std::time::Instant::now();
+    let mut sum = 0.0;
+    for orbit in &orbits {
+        for n in 0..100 {
+            sum += orbit.point_after(Dd::of(f64::from(n) * 10.123)).attitude.w;
+        }
+    }
+    println!("double {:?} {sum}", clock.elapsed() / (100 * orbits.len() as u32));
+    let clock = std::time::Instant::now();
+    for orbit in &orbits {
+        for n in 0..10 {
+            sum += orbit.point_at_dd(Dd::of(f64::from(n) * 10.123)).attitude.w.hi();
+        }
+    }
+    println!("double-double {:?} {sum}", clock.elapsed() / (10 * orbits.len() as u32));
+}
+
+#[test]
+#[ignore = "prints"]
+fn scan() {
+    use crate::flow::gyrostat::steady_spins;
+    let mut random = Random(11);
+    for _ in 0..6 {
+        let moments = random.vector().map(|x| 1.5 + 0.5 * x).map(Dd::of);
+        let wheel = (random.vector() * 0.2).map(Dd::of);
+        let spins = steady_spins(moments, wheel, Dd::ONE);
+        let Some(saddle) = spins.iter().find(|spin| spin.growth_rate > 0.0) else { continue };
+        let along = random.vector();
+        println!("{saddle:?}");
+        for k in 1..=15 {
+            let m = saddle.momentum + along * libm::exp10(-f64::from(k));
+            let q = Quat::identity();
+            let start = Point::new(q, m.map(Dd::of));
+            let one = match GyrostatOrbit::new(moments, wheel, start) {
+                Ok(one) => one,
+                Err(e) => {
+                    println!("{k} {e}");
+                    continue;
+                }
+            };
+            let Kind::Moving(moving) = &one.kind else { continue };
+            let mut worst = [0.0_f64; 4];
+            for n in 0..20 {
+                let t = Dd::of(f64::from(n) * 10.0);
+                let later = match GyrostatOrbit::new(moments, wheel, one.point_at_dd(t)) {
+                    Ok(x) => x,
+                    Err(e) => {
+                        println!("later {e}");
+                        continue;
+                    }
+                };
+                let two = Dd::of(50.0);
+                let [a, b] = off(&later.point_at_dd(two), &one.point_at_dd(t + two));
+                let [c, d] = off(&one.point_after(t).to_dd(), &one.point_at_dd(t));
+                for (x, new) in worst.iter_mut().zip([a, b, c, d]) {
+                    *x = x.max(new);
+                }
+            }
+            let level = match Level::of(moments, wheel, start.momentum_body) {
+                Course::Moving(l) => l,
+                _ => continue,
+            };
+            let lattice = Lattice::new(level.invariants(), level.terms);
+            println!(
+                "{k} T {:.4} terms {} {} apart {:.1e} y/T {:.3} skew {} dis {:.1e} defect {:.1e} later {:.1e} {:.1e} f64 {:.1e} {:.1e}",
+                moving.period.hi(),
+                moving.spinor.terms.len(),
+                moving.quick.as_ref().map_or(0, |quick| quick.terms.len()),
+                lattice.apart,
+                lattice.ratio().hi(),
+                lattice.is_skew,
+                moving.spinor.disagreement,
+                defect(&level, &moving.spinor),
+                worst[0],
+                worst[1],
+                worst[2],
+                worst[3]
+            );
+        }
+    }
+}
+
+#[test]
+#[ignore = "prints"]
+fn debug() {
+    for (i, h, m) in [
+        (
+            [1.0237781125806442, 1.0237781125806442, 1.7467128174335618],
+            [0.0, 0.0, 0.4969599300382046],
+            [-0.6044126631192281, -0.9146730011048498, -0.6310129702771368],
+        ),
+        (
+            [1.1892793854780840, 1.189279385478084, 1.8717714864652208],
+            [0.0, 0.0, -0.20183411684696972],
+            [-0.8080820803695412, 0.8543446227978548, 0.33155988013558013],
+        ),
+        (
+            [1.2050493159702107, 1.2050493159702107, 1.9745702139612473],
+            [0.0, 0.0, -0.35648550735698126],
+            [-0.42336600179555783, 0.40898748630946535, 0.5175227546541421],
+        ),
+    ] {
+        let level = match Level::of(Vec3(i.map(Dd::of)), Vec3(h.map(Dd::of)), Vec3(m.map(Dd::of))) {
+            Course::Moving(l) => l,
+            _ => continue,
+        };
+        let lattice = Lattice::new(level.invariants(), level.terms);
+        let curve = crate::flow::gyrostat::weierstrass::Weierstrass::new(lattice);
+        let place = level.return_of_zero();
+        println!("roots {:?}", lattice.roots.map(|x| (x.re.hi(), x.im.hi())));
+        println!("x-e {:?}", lattice.roots.map(|x| ((place.x - x).re.hi(), (place.x - x).im.hi())));
+        println!("y {:?}", (place.y.re.hi(), place.y.im.hi()));
+        let d = curve.argument(&place);
+        let v = curve.argument(&level.infinity());
+        let t = lattice.period.hi();
+        println!(
+            "y/T {} skew {} d {:?} v {:?} xv {:?}",
+            lattice.ratio().hi(),
+            lattice.is_skew,
+            (d.re.hi() / t, d.im.hi() / t),
+            (v.re.hi() / t, v.im.hi() / t),
+            lattice.roots.map(|x| ((level.infinity().x - x).re.hi(), (level.infinity().x - x).im.hi()))
+        );
+        let spinor = Spinor::new(&level, lattice);
+        println!(
+            "dis {:e} defect {:e} terms {} {:?}",
+            spinor.disagreement,
+            defect(&level, &spinor),
+            spinor.terms.len(),
+            spinor
+                .terms
+                .iter()
+                .map(|t| (t[0].re.hi(), t[0].im.hi(), t[1].re.hi(), t[1].im.hi()))
+                .collect::<Vec<_>>()
+        );
+    }
+}
