@@ -3,11 +3,12 @@
 //! T is the real period and ω₂ = iy, or T/2 + iy where two of the roots e_k are no real numbers (*skew*); with the
 //! arithmetic-geometric mean M, `T = π/M(√(e₁ − e₃), √(e₁ − e₂))`, e₁ = ℘(T/2), and y likewise.
 
+use super::pencil::Pencil;
 use crate::num::complex::Complex;
 use crate::num::{Dd, Precise, Real};
 
-/// What rounding leaves of invariants, of the sizes of their terms.
-const ROUNDING: f64 = 1e-30;
+/// What rounding leaves of X, of the terms that it is a sum of.
+const ROUNDING: f64 = 1e-27;
 
 /// The difference that equal roots are given: the nome then is lost beside one.
 const EQUAL: f64 = 1e-36;
@@ -24,20 +25,16 @@ pub(super) struct Lattice {
     pub(super) is_skew: bool,
     /// What rounding leaves of X beside equal roots.
     pub(super) rounding: f64,
-    /// (e₁ − e₂)² over the terms it is a sum of, where T grows as it goes to zero, else 1: of the 106 bits T has lost as many as this is
-    /// below one.
-    pub(super) apart: f64,
 }
 
 impl Lattice {
-    /// Of invariants whose terms are of the size `terms`, that of g₂.
-    pub(super) fn new([g2, g3]: [Dd; 2], terms: f64) -> Self {
-        let is_low = g3 < Dd::ZERO;
-        let single = isolated(g2, g3);
-        let mut split = g2 - single * single * 3.0;
-        let square = single.magnitude() * single.magnitude();
-        if split.magnitude() < terms * ROUNDING {
-            split = Dd::of(square * EQUAL * EQUAL);
+    pub(super) fn new(pencil: &Pencil) -> Self {
+        let &Pencil { single, mut split, terms, .. } = pencil;
+        let is_low = single < Dd::ZERO;
+        let g2 = split + single * single * 3.0;
+        if split == Dd::ZERO {
+            let least = single * EQUAL;
+            split = least * least;
         }
         let half = split.abs().sqrt() * 0.5;
         let (middle, lift) = (single * -0.5, single.abs() * 1.5);
@@ -63,9 +60,7 @@ impl Lattice {
             roots = [real(single), Complex::new(middle, half), Complex::new(middle, -half)];
             (period, height) = if is_low { (long, short * 0.5) } else { (short, long * 0.5) };
         }
-        let apart = if is_low { (split.magnitude() / terms).min(1.0) } else { 1.0 };
-        let rounding = (terms * ROUNDING).sqrt() * 1e-12;
-        Lattice { roots, g2, period, height, is_skew, rounding, apart }
+        Lattice { roots, g2, period, height, is_skew, rounding: terms.sqrt() * ROUNDING }
     }
 
     /// y/T.
@@ -80,27 +75,6 @@ impl Lattice {
         let re = if self.is_skew { u.re - up * self.period * 0.5 } else { u.re };
         Complex::new(re - (re / self.period).round() * self.period, im)
     }
-}
-
-/// The root of 4x³ − g₂x − g₃ that is farther from the other two than these from each other, by Newton's method from outside.
-fn isolated(g2: Dd, g3: Dd) -> Dd {
-    let (h2, h3) = (g2.hi(), g3.hi().abs());
-    let value = |x: f64| (4.0 * x * x - h2) * x - h3;
-    let mut x = (0.5 * h2.max(0.0)).sqrt().max(libm::cbrt(0.5 * h3));
-    for _ in 0..200 {
-        let next = x - value(x) / (12.0 * x * x - h2);
-        if next.is_nan() || next >= x {
-            break;
-        }
-        x = next;
-    }
-    let mut root = Dd::of(x);
-    for _ in 0..3 {
-        let square = root * root;
-        let value = (square * 4.0 - g2) * root - g3.abs();
-        root = root - value / (square * 12.0 - g2);
-    }
-    if g3 < Dd::ZERO { -root } else { root }
 }
 
 fn mean(mut a: Dd, mut b: Dd) -> Dd {

@@ -18,6 +18,7 @@
 //!
 //! the determinant of the pencil of the two quadrics (energy and sphere), and dτ = dμ/√P on it.
 
+use super::pencil::{Pencil, WideCurve};
 use crate::num::complex::Complex;
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::Vec3;
@@ -40,11 +41,7 @@ pub(super) struct Level {
     beta: Complex<Dd>,
     r: Complex<Dd>,
     wheel_3: Dd,
-    /// P without its cubic term: `P(μ̄ + x) = −x⁴ + 6 A₂x² + 4 A₃x + A₄`, and μ̄.
-    depressed: [Dd; 3],
-    pub(super) centre: Dd,
-    /// The size of the terms of A₄.
-    pub(super) terms: f64,
+    pub(super) pencil: Pencil,
 }
 
 /// A point of the curve `Y² = 4X³ − g₂X − g₃`.
@@ -103,7 +100,12 @@ impl Level {
         let alpha = Complex::new(a(0, 2), -a(1, 2));
         let beta = Complex::new((a(0, 0) - a(1, 1)) * 0.5, -a(0, 1));
         let a33 = a(2, 2);
-        let (depressed, centre, terms) = pencil(spread, n, nu);
+        let exact = || {
+            let by_i = exponent(moments.magnitude());
+            let [moments, wheel] = [(moments, by_i), (wheel, by_g)].map(|(v, by)| v.map(|x| x.scaled(-by)));
+            WideCurve::new(moments, wheel, m, by_s + by_i)
+        };
+        let pencil = Pencil::of(spread, n, nu, exact);
         Course::Moving(Box::new(Level {
             frame,
             spread,
@@ -116,9 +118,7 @@ impl Level {
             beta,
             r: alpha + Complex::new(g[0], -g[1]),
             wheel_3: g[2],
-            depressed,
-            centre,
-            terms,
+            pencil,
         }))
     }
 
@@ -127,12 +127,6 @@ impl Level {
         let same = |k: usize| self.spread[k] == Dd::ZERO;
         let bare = |k: usize| same(k) && self.wheel[k] == Dd::ZERO;
         (0..3).all(same) || (0..3).filter(|&k| bare(k)).count() == 2
-    }
-
-    /// g₂ and g₃.
-    pub(super) fn invariants(&self) -> [Dd; 2] {
-        let [a2, a3, a4] = self.depressed;
-        [a2 * a2 * 3.0 - a4, a3 * a3 - a2 * (a4 + a2 * a2)]
     }
 
     /// ζ''/ζ' at the start, `i (κ − β̄)`.
@@ -164,12 +158,6 @@ impl Level {
         Place { x, y: Complex::new(-sum.im, sum.re) }
     }
 
-    /// Of the difference of the two points μ = ∞ of the curve y² = P(μ); Y is told up to its sign.
-    pub(super) fn infinity(&self) -> Place {
-        let [a2, a3, _] = self.depressed;
-        Place { x: Complex::new(-a2, Dd::ZERO), y: Complex::new(Dd::ZERO, a3) }
-    }
-
     /// ω over S G at n, along e₁, e₂, n₀.
     pub(super) fn omega(&self, n: [Dd; 3]) -> Vec3<Dd> {
         let [e1, e2, e3] = self.frame;
@@ -177,30 +165,4 @@ impl Level {
         let omega = self.spread.times(n) - self.wheel + n * self.common;
         Vec3(self.frame.map(|e| e.dot(omega)))
     }
-}
-
-/// P around the mean of its roots, `[A₂, A₃, A₄]`, that mean, and the size of the terms of A₄.
-fn pencil(b: Vec3<Dd>, n: Vec3<Dd>, nu: Vec3<Dd>) -> ([Dd; 3], Dd, f64) {
-    // of −P
-    let mut c = [Dd::ZERO; 5];
-    let mut sizes = [0.0; 5];
-    for k in 0..3 {
-        let (j, l) = ((k + 1) % 3, (k + 2) % 3);
-        let square = [nu[k] * nu[k], -(nu[k] * n[k]) * 2.0, n[k] * n[k]];
-        let others = [b[j] * b[l], -(b[j] + b[l]), Dd::ONE];
-        for (x, first) in square.into_iter().enumerate() {
-            for (y, second) in others.into_iter().enumerate() {
-                c[x + y] = c[x + y] + first * second;
-                sizes[x + y] += (first * second).magnitude();
-            }
-        }
-    }
-    let (a4, a3, a2, a1) = (-c[0], -c[1] * 0.25, -c[2] / 6.0, -c[3] * 0.25);
-    let square = a1 * a1;
-    let second = a2 + square;
-    let third = a3 + a1 * (a2 * 3.0 + square * 2.0);
-    let fourth = a4 + a1 * a3 * 4.0 + square * (a2 * 6.0 + square * 3.0);
-    let x = a1.magnitude();
-    let terms = sizes.iter().rev().fold(0.0, |sum, size| sum * x + size);
-    ([second, third, fourth], a1, terms)
 }

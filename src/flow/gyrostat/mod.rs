@@ -3,6 +3,7 @@
 mod lattice;
 mod level;
 mod orbit;
+mod pencil;
 mod reason;
 mod spinor;
 mod steady;

@@ -21,6 +21,10 @@ const CHECKED: [f64; 3] = [0.21, 0.47, 0.83];
 /// Most by which a rate may miss, of the largest rate.
 const LARGEST_DEFECT: f64 = 1e-15;
 
+/// The same where (e₁ − e₂)² is less than this share of its terms: errors at the start grow until the motion has left the saddle, some 10⁵ times.
+const LARGEST_NEAR: f64 = 1e-21;
+const NEAR: f64 = 1e-4;
+
 /// Ratios y/T below which the sums in `f64` cancel to less than 1e-15, of a straight and of a skew lattice.
 const LEAST_STRAIGHT: f64 = 0.36;
 const LEAST_SKEW: f64 = 0.13;
@@ -93,16 +97,17 @@ impl GyrostatOrbit {
         let (spinor, apart, is_quick) = if level.is_elementary() {
             (Spinor::elementary(&level), 1.0, true)
         } else {
-            let lattice = Lattice::new(level.invariants(), level.terms);
+            let lattice = Lattice::new(&level.pencil);
             let ratio = lattice.ratio().hi();
             if Spinor::is_small(&level) && ratio < LEAST_OF_SMALL {
                 return Err(Reason::Saddle { speed: level.speed.hi() });
             }
             let least = if lattice.is_skew { LEAST_SKEW } else { LEAST_STRAIGHT };
-            (Spinor::new(&level, lattice), lattice.apart, ratio >= least)
+            (Spinor::new(&level, lattice), level.pencil.apart, ratio >= least)
         };
         let defect = defect(&level, &spinor);
-        if defect.is_nan() || defect > LARGEST_DEFECT {
+        let most = if apart < NEAR { LARGEST_NEAR } else { LARGEST_DEFECT };
+        if defect.is_nan() || defect > most {
             return Err(Reason::Separatrix { defect, apart });
         }
         let norm = start.momentum_body.norm_of_any_size();
@@ -115,7 +120,6 @@ impl GyrostatOrbit {
             period: Dd::TAU / (spinor.rate * level.rate),
             spinor,
         };
-        let reach = reach * apart;
         Ok(GyrostatOrbit { start, kind: Kind::Moving(Box::new(moving)), reach })
     }
 

@@ -23,6 +23,7 @@
 
 use super::lattice::Lattice;
 use super::level::Level;
+use super::pencil::Pencil;
 use super::weierstrass::Weierstrass;
 use crate::num::complex::Complex;
 use crate::num::{Dd, Precise, Real};
@@ -58,22 +59,22 @@ impl Spinor {
         let curve = Weierstrass::new(lattice);
         let rate = Dd::TAU / lattice.period;
         let place = curve.argument(&level.return_of_zero());
-        let difference = curve.argument(&level.infinity());
+        let difference = poles(level, &curve);
         let at_start = (level.along + level.common) * 0.5;
         let is_small = Self::is_small(level);
         let mut terms = if is_small { small(level, rate) } else { powers(&lattice, place) };
         let mut log_rate = if is_small { first_rate(&terms) } else { log_rate(&terms, level, rate) };
         // the twist for either sign of v, with the share of its unit, half the rate, that the start leaves
         let twist = |sign: f64| {
-            let mean = (level.common + level.centre + curve.logarithmic(difference).im * sign) * 0.5;
+            let mean = (level.common + level.pencil.centre + curve.logarithmic(difference).im * sign) * 0.5;
             let multiples = (at_start - log_rate.im * rate - mean) / (rate * 0.5);
             let whole = multiples.round();
             (mean + whole * rate * 0.5, (multiples - whole).magnitude())
         };
         let [plus, minus] = [1.0, -1.0].map(twist);
         // d tells the sign, but on a circle that a symmetric body draws it is lost
-        let poles = Complex::new(Dd::ZERO, place.im * 2.0);
-        let distance = |u: Complex<Dd>| lattice.reduced(u - poles).norm_squared();
+        let told = Complex::new(Dd::ZERO, place.im * 2.0);
+        let distance = |u: Complex<Dd>| lattice.reduced(u - told).norm_squared();
         let is_plus = if is_small {
             distance(difference) <= distance(Complex::new(-difference.re, -difference.im))
         } else {
@@ -143,6 +144,14 @@ impl Spinor {
         let across = (w * z.conjugate()).scaled(Dd::of(2.0));
         [across.re, across.im, zz - ww].map(|x| x / (zz + ww))
     }
+}
+
+/// The difference of the two points μ = ∞ of the curve, up to its sign.
+fn poles(level: &Level, curve: &Weierstrass) -> Complex<Dd> {
+    let Pencil { single, third, above, .. } = level.pencil;
+    // −A₂ beside the single root is told apart from it, and the other two are far from that
+    let apart = curve.lattice.roots.map(|root| Complex::new(above + (single - root.re), -root.im));
+    curve.argument_apart(apart, Complex::new(Dd::ZERO, third))
 }
 
 /// q^{n²/2} Eⁿ for n = −N, …, N.

@@ -85,8 +85,13 @@ impl Weierstrass {
 
     /// u, next to zero in the lattice.
     pub(super) fn argument(&self, place: &Place) -> Complex<Dd> {
+        let apart = self.lattice.roots.map(|root| place.x - root);
+        self.argument_apart(apart, place.y)
+    }
+
+    /// The same from X − e₁, X − e₂, X − e₃ and Y.
+    pub(super) fn argument_apart(&self, apart: [Complex<Dd>; 3], y: Complex<Dd>) -> Complex<Dd> {
         let lattice = &self.lattice;
-        let apart = lattice.roots.map(|root| place.x - root);
         let size = |x: Complex<Dd>| x.norm_squared().sqrt();
         // a circle that a symmetric body draws: u is half a period away, and where is of no matter
         if size(apart[1]).magnitude().max(size(apart[2]).magnitude()) <= lattice.rounding {
@@ -99,13 +104,13 @@ impl Weierstrass {
             let quotient = self.quotient(u);
             let above = (quotient.value * quotient.value).scaled(self.factor);
             let mut slope = (quotient.value * quotient.derivative).scaled(self.factor * 2.0);
-            if step == 0 && (slope + place.y).norm_squared() < (slope - place.y).norm_squared() {
+            if step == 0 && (slope + y).norm_squared() < (slope - y).norm_squared() {
                 u = Complex::new(-u.re, -u.im);
                 slope = Complex::new(-slope.re, -slope.im);
             }
             let x = above + lattice.roots[0];
             let bend = (x * x).scaled(Dd::of(6.0)) - Complex::new(lattice.g2 * 0.5, Dd::ZERO);
-            let (off_x, off_y) = (apart[0] - above, place.y - slope);
+            let (off_x, off_y) = (apart[0] - above, y - slope);
             let sum = (slope.conjugate() * off_x).scaled(unit) + bend.conjugate() * off_y;
             let by = slope.norm_squared() * unit + bend.norm_squared();
             let correction = sum.scaled(Dd::ONE / by);

@@ -300,13 +300,13 @@ fn scan() {
                 Course::Moving(l) => l,
                 _ => continue,
             };
-            let lattice = Lattice::new(level.invariants(), level.terms);
+            let lattice = Lattice::new(&level.pencil);
             println!(
                 "{k} T {:.4} terms {} {} apart {:.1e} y/T {:.3} skew {} dis {:.1e} defect {:.1e} later {:.1e} {:.1e} f64 {:.1e} {:.1e}",
                 moving.period.hi(),
                 moving.spinor.terms.len(),
                 moving.quick.as_ref().map_or(0, |quick| quick.terms.len()),
-                lattice.apart,
+                level.pencil.apart,
                 lattice.ratio().hi(),
                 lattice.is_skew,
                 moving.spinor.disagreement,
@@ -317,61 +317,5 @@ fn scan() {
                 worst[3]
             );
         }
-    }
-}
-
-#[test]
-#[ignore = "prints"]
-fn debug() {
-    for (i, h, m) in [
-        (
-            [1.0237781125806442, 1.0237781125806442, 1.7467128174335618],
-            [0.0, 0.0, 0.4969599300382046],
-            [-0.6044126631192281, -0.9146730011048498, -0.6310129702771368],
-        ),
-        (
-            [1.1892793854780840, 1.189279385478084, 1.8717714864652208],
-            [0.0, 0.0, -0.20183411684696972],
-            [-0.8080820803695412, 0.8543446227978548, 0.33155988013558013],
-        ),
-        (
-            [1.2050493159702107, 1.2050493159702107, 1.9745702139612473],
-            [0.0, 0.0, -0.35648550735698126],
-            [-0.42336600179555783, 0.40898748630946535, 0.5175227546541421],
-        ),
-    ] {
-        let level = match Level::of(Vec3(i.map(Dd::of)), Vec3(h.map(Dd::of)), Vec3(m.map(Dd::of))) {
-            Course::Moving(l) => l,
-            _ => continue,
-        };
-        let lattice = Lattice::new(level.invariants(), level.terms);
-        let curve = crate::flow::gyrostat::weierstrass::Weierstrass::new(lattice);
-        let place = level.return_of_zero();
-        println!("roots {:?}", lattice.roots.map(|x| (x.re.hi(), x.im.hi())));
-        println!("x-e {:?}", lattice.roots.map(|x| ((place.x - x).re.hi(), (place.x - x).im.hi())));
-        println!("y {:?}", (place.y.re.hi(), place.y.im.hi()));
-        let d = curve.argument(&place);
-        let v = curve.argument(&level.infinity());
-        let t = lattice.period.hi();
-        println!(
-            "y/T {} skew {} d {:?} v {:?} xv {:?}",
-            lattice.ratio().hi(),
-            lattice.is_skew,
-            (d.re.hi() / t, d.im.hi() / t),
-            (v.re.hi() / t, v.im.hi() / t),
-            lattice.roots.map(|x| ((level.infinity().x - x).re.hi(), (level.infinity().x - x).im.hi()))
-        );
-        let spinor = Spinor::new(&level, lattice);
-        println!(
-            "dis {:e} defect {:e} terms {} {:?}",
-            spinor.disagreement,
-            defect(&level, &spinor),
-            spinor.terms.len(),
-            spinor
-                .terms
-                .iter()
-                .map(|t| (t[0].re.hi(), t[0].im.hi(), t[1].re.hi(), t[1].im.hi()))
-                .collect::<Vec<_>>()
-        );
     }
 }
