@@ -16,7 +16,7 @@ use crate::rotation::{Quat, Vec3};
 const NEGLIGIBLE: f64 = 1e-19;
 
 /// Turns of X at which the equation of motion is checked.
-const CHECKED: [f64; 3] = [0.21, 0.47, 0.83];
+const CHECKED: [f64; 2] = [0.29, 0.68];
 
 /// Most by which a rate may miss, of the largest rate.
 const LARGEST_DEFECT: f64 = 1e-15;
@@ -99,7 +99,7 @@ impl GyrostatOrbit {
         } else {
             let lattice = Lattice::new(&level.pencil);
             let ratio = lattice.ratio().hi();
-            if Spinor::is_small(&level) && ratio < LEAST_OF_SMALL {
+            if Spinor::is_small(&level, &lattice) && ratio < LEAST_OF_SMALL {
                 return Err(Reason::Saddle { speed: level.speed.hi() });
             }
             let least = if lattice.is_skew { LEAST_SKEW } else { LEAST_STRAIGHT };

@@ -12,11 +12,14 @@
 
 use core::ops::{Add, Mul, Sub};
 
-use crate::num::{Dd, Expansion, Precise, Real};
+use crate::num::{Dd, Expansion, Real};
 use crate::rotation::Vec3;
 
 /// Below this share of digits left the wide form is taken.
 const LOST: f64 = 1e-5;
+
+/// Square of a difference of roots, of the terms, where it is next to lost beside the larger ones.
+const EQUAL: f64 = 1e-15;
 
 /// Of equal roots, the square of their difference in the terms that it is a sum of: rounding of both forms.
 const ROUNDING: f64 = 1e-30;
@@ -179,11 +182,7 @@ impl Pencil {
         let invariants = Invariants::of(minus);
         let root = isolated(invariants.i, invariants.j);
         let mut pencil = invariants.pencil(root, |x| x, Dd::ONE);
-        // sizes of the terms
-        let size = |v: Vec3<Dd>| v.map(|x| Dd::of(x.magnitude()));
-        let sizes = coefficients(size(b).0.map(|x| -x), size(n).0, size(nu).0.map(|x| -x));
-        let centre = pencil.centre.magnitude();
-        pencil.terms = sizes.iter().rev().fold(0.0, |sum, size| sum * centre + size.hi());
+        pencil.terms = terms(b, n, nu, pencil.centre.magnitude());
         let (single, second) = (pencil.single.magnitude(), pencil.second.magnitude());
         let kept = single * single * single / (pencil.terms * (second + single));
         let apart = |pencil: &Pencil| {
@@ -191,7 +190,8 @@ impl Pencil {
             if is_low { (pencil.split.magnitude() / pencil.terms).min(1.0) } else { 1.0 }
         };
         let mut rounding = ROUNDING;
-        let left = kept.min(apart(&pencil));
+        // of roots that are all but equal the difference is told by the wide form
+        let left = kept.min(apart(&pencil)).min(pencil.split.magnitude() / pencil.terms / EQUAL);
         if left < LOST || left.is_nan() {
             let exact = exact();
             let scale = exact.invariants.leading.rounded() * exact.unit * exact.unit;
@@ -232,6 +232,17 @@ impl WideCurve {
         let invariants = Invariants::of(coefficients(b, m.0.map(Wide::of), nu));
         WideCurve { invariants, unit: whole.scaled(unit) }
     }
+}
+
+/// The size of the terms of g₂ around the mean root `centre`.
+fn terms(b: Vec3<Dd>, n: Vec3<Dd>, nu: Vec3<Dd>, centre: f64) -> f64 {
+    let [b, n, nu] = [b, n, nu].map(|v| v.0.map(Dd::magnitude));
+    (0..3)
+        .map(|k| {
+            let root = nu[k] + n[k] * centre;
+            root * root * (b[(k + 1) % 3] + centre) * (b[(k + 2) % 3] + centre)
+        })
+        .sum()
 }
 
 /// The root of w³ − 3Iw − J that is farther from the other two than these from each other, by Newton's method from outside.

@@ -32,9 +32,9 @@ use crate::rotation::Quat;
 /// Most terms on either side.
 const MOST_TERMS: usize = 60;
 
-/// Speeds |ν × n|, of the largest rate, below which the motion is a small oscillation about a steady spin: what the linear
-/// theory leaves out is the square of it.
-const SMALL: f64 = 1e-8;
+/// Lengths p T of an oscillation about a steady spin below which it is a small one: what the linear theory leaves out is some
+/// hundredth of the square of it.
+const SMALL: f64 = 2e-8;
 
 /// Z and W with their phases.
 #[derive(Clone, Debug)]
@@ -60,13 +60,14 @@ impl Spinor {
         let rate = Dd::TAU / lattice.period;
         let place = curve.argument(&level.return_of_zero());
         let difference = poles(level, &curve);
+        let logarithmic = curve.logarithmic(difference).im;
         let at_start = (level.along + level.common) * 0.5;
-        let is_small = Self::is_small(level);
+        let is_small = Self::is_small(level, &lattice);
         let mut terms = if is_small { small(level, rate) } else { powers(&lattice, place) };
         let mut log_rate = if is_small { first_rate(&terms) } else { log_rate(&terms, level, rate) };
         // the twist for either sign of v, with the share of its unit, half the rate, that the start leaves
         let twist = |sign: f64| {
-            let mean = (level.common + level.pencil.centre + curve.logarithmic(difference).im * sign) * 0.5;
+            let mean = (level.common + level.pencil.centre + logarithmic * sign) * 0.5;
             let multiples = (at_start - log_rate.im * rate - mean) / (rate * 0.5);
             let whole = multiples.round();
             (mean + whole * rate * 0.5, (multiples - whole).magnitude())
@@ -90,8 +91,8 @@ impl Spinor {
     }
 
     /// Whether the start is so near to a steady spin that the linear theory serves.
-    pub(super) fn is_small(level: &Level) -> bool {
-        level.speed.hi() < SMALL
+    pub(super) fn is_small(level: &Level, lattice: &Lattice) -> bool {
+        (level.speed * lattice.period).hi() < SMALL
     }
 
     /// Where ν stays: the body turns by a_μ τ about n₀, then by |ν| τ about ν.
@@ -109,28 +110,27 @@ impl Spinor {
 
     /// Z and W after `turns` of X.
     pub(super) fn at(&self, turns: Dd) -> [Complex<Dd>; 2] {
+        self.sum(turns, |term, _| term)
+    }
+
+    /// The same with derivatives.
+    pub(super) fn with_rates(&self, turns: Dd) -> Value {
+        let rates = self.sum(turns, |term, n| Complex::new(-(term.im * n), term.re * n));
+        Value { functions: self.at(turns), rates: rates.map(|sum| sum.scaled(self.rate)) }
+    }
+
+    fn sum(&self, turns: Dd, of: impl Fn(Complex<Dd>, f64) -> Complex<Dd>) -> [Complex<Dd>; 2] {
         let x = Complex::phase((turns - turns.round()) * Dd::TAU);
         let half = self.terms.len() / 2;
         let zero = Complex::new(Dd::ZERO, Dd::ZERO);
         [0, 1].map(|k| {
             let (mut up, mut down) = (zero, zero);
             for n in (1..=half).rev() {
-                up = (up + self.terms[half + n][k]) * x;
-                down = (down + self.terms[half - n][k]) * x.conjugate();
+                up = (up + of(self.terms[half + n][k], n as f64)) * x;
+                down = (down + of(self.terms[half - n][k], -(n as f64))) * x.conjugate();
             }
-            up + down + self.terms[half][k]
+            up + down + of(self.terms[half][k], 0.0)
         })
-    }
-
-    /// The same with derivatives.
-    pub(super) fn with_rates(&self, turns: Dd) -> Value {
-        let mut rates = self.clone();
-        let half = (self.terms.len() / 2) as f64;
-        for (n, terms) in rates.terms.iter_mut().enumerate() {
-            let factor = self.rate * (n as f64 - half);
-            *terms = terms.map(|term| Complex::new(-(term.im * factor), term.re * factor));
-        }
-        Value { functions: self.at(turns), rates: rates.at(turns) }
     }
 
     /// e^{iρτ} (A, B) as the quaternion of the turn, along w, e₁, e₂, n₀, unnormalised.

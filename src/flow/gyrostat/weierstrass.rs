@@ -143,7 +143,11 @@ fn carlson(z: [Complex<f64>; 3]) -> Complex<f64> {
     let turn = if size > 0.0 { mean.conjugate().scaled(1.0 / size) } else { Complex::new(1.0, 0.0) };
     let mut z = z.map(|z| z * turn);
     for _ in 0..40 {
-        let [a, b, c] = z.map(root);
+        let [a, b, mut c] = z.map(root);
+        // those of e₂ and e₃ on one branch: a half period between two all but equal roots is far away, and f64 would not find back
+        if (b * c.conjugate()).re < 0.0 {
+            c = c.scaled(-1.0);
+        }
         let shift = a * b + b * c + c * a;
         z = z.map(|z| (z + shift).scaled(0.25));
         let mean = (z[0] + z[1] + z[2]).scaled(1.0 / 3.0);
