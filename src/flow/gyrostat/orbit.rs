@@ -1,11 +1,13 @@
 //! The motion of one gyrostat from one start, in the solver frame.
 
+use super::character::GyrostatCharacter;
+use super::error::GyrostatError;
 use super::lattice::Lattice;
 use super::level::{Course, Level};
-use super::reason::Reason;
 use super::spinor::Spinor;
+use super::steady::steady_spins;
 use crate::body::Point;
-use crate::flow::free::{Pair, Phase, Spin, TOO_FAR, pair, reduce};
+use crate::flow::free::{Pair, Phase, Spin, Stability, TOO_FAR, pair, reduce};
 use crate::flow::reach::MOST_RADIANS;
 use crate::num::complex::Complex;
 use crate::num::trig::{nearest, sin_cos_turns};
@@ -15,14 +17,17 @@ use crate::rotation::{Quat, Vec3};
 /// Terms of this share of the largest are left out in `f64`.
 const NEGLIGIBLE: f64 = 1e-19;
 
-/// Turns of X at which the equation of motion is checked.
-const CHECKED: [f64; 2] = [0.29, 0.68];
+/// Places of a period at which the equation of motion is checked; next to a separatrix most of them lie at the saddle.
+const FEW: u32 = 2;
+const MANY: u32 = 24;
 
 /// Most by which a rate may miss, of the largest rate.
 const LARGEST_DEFECT: f64 = 1e-15;
 
-/// The same where (e₁ − e₂)² is less than this share of its terms: errors at the start grow until the motion has left the saddle, some 10⁵ times.
+/// The same next to a separatrix, where errors at the start grow until the motion has left the saddle, some 10⁵ times.
 const LARGEST_NEAR: f64 = 1e-21;
+
+/// It is next to a separatrix where (e₁ − e₂)² is less than this share of its terms.
 const NEAR: f64 = 1e-4;
 
 /// Ratios y/T below which the sums in `f64` cancel to less than 1e-15, of a straight and of a skew lattice.
@@ -33,8 +38,14 @@ const LEAST_SKEW: f64 = 0.13;
 const LEAST_OF_SMALL: f64 = 3.0;
 
 /// Constants of one motion, worked out once; then any time in O(1).
+///
+/// In `f64` attitude and momentum are right to 1e-15 (rad, |m|) at any time up to 10⁹ of the shortest radians and, with the
+/// double-double phases, beyond; next to a separatrix the sums are taken in double-double, which takes longer. Where the digits
+/// do not suffice [`new`](Self::new) refuses: every motion is checked against the equation of motion before it is answered.
 #[derive(Clone, Debug)]
 pub(crate) struct GyrostatOrbit {
+    moments: Vec3<Dd>,
+    wheel: Vec3<Dd>,
     start: Point<Dd>,
     kind: Kind,
     reach: f64,
@@ -76,7 +87,7 @@ struct Quick {
 impl GyrostatOrbit {
     /// Of a body with the principal `moments` and the `wheel` momentum h along the principal axes, from `start`, whose momentum
     /// is the total one, at t = 0.
-    pub(crate) fn new(moments: Vec3<Dd>, wheel: Vec3<Dd>, start: Point<Dd>) -> Result<Self, Reason> {
+    pub(crate) fn new(moments: Vec3<Dd>, wheel: Vec3<Dd>, start: Point<Dd>) -> Result<Self, GyrostatError> {
         let fastest = {
             let size = start.momentum_body.norm_of_any_size() + wheel.norm_of_any_size();
             (size / moments[moments.ascending()[0]]).hi()
@@ -86,11 +97,8 @@ impl GyrostatOrbit {
             Course::Empty(omega) | Course::Steady(omega) => {
                 let rate = omega.norm_of_any_size();
                 let axis = if rate == Dd::ZERO { Vec3::unit(0) } else { omega * (Dd::ONE / rate) };
-                return Ok(GyrostatOrbit {
-                    start,
-                    kind: Kind::Steady(Box::new(Spin::new(axis, rate))),
-                    reach,
-                });
+                let kind = Kind::Steady(Box::new(Spin::new(axis, rate)));
+                return Ok(GyrostatOrbit { moments, wheel, start, kind, reach });
             }
             Course::Moving(level) => level,
         };
@@ -100,15 +108,19 @@ impl GyrostatOrbit {
             let lattice = Lattice::new(&level.pencil);
             let ratio = lattice.ratio().hi();
             if Spinor::is_small(&level, &lattice) && ratio < LEAST_OF_SMALL {
-                return Err(Reason::Saddle { speed: level.speed.hi() });
+                return Err(GyrostatError::Saddle { length: (level.speed * lattice.period).hi() });
             }
             let least = if lattice.is_skew { LEAST_SKEW } else { LEAST_STRAIGHT };
             (Spinor::new(&level, lattice), level.pencil.apart, ratio >= least)
         };
-        let defect = defect(&level, &spinor);
-        let most = if apart < NEAR { LARGEST_NEAR } else { LARGEST_DEFECT };
-        if defect.is_nan() || defect > most {
-            return Err(Reason::Separatrix { defect, apart });
+        let is_near = apart < NEAR;
+        let defect = defect(&level, &spinor, if is_near { MANY } else { FEW });
+        if defect.is_nan() || defect > if is_near { LARGEST_NEAR } else { LARGEST_DEFECT } {
+            return Err(if is_near {
+                GyrostatError::Separatrix { apart, defect }
+            } else {
+                GyrostatError::Digits { defect }
+            });
         }
         let norm = start.momentum_body.norm_of_any_size();
         let quick = is_quick.then(|| Quick::new(&level, &spinor, &start, norm));
@@ -120,7 +132,7 @@ impl GyrostatOrbit {
             period: Dd::TAU / (spinor.rate * level.rate),
             spinor,
         };
-        Ok(GyrostatOrbit { start, kind: Kind::Moving(Box::new(moving)), reach })
+        Ok(GyrostatOrbit { moments, wheel, start, kind: Kind::Moving(Box::new(moving)), reach })
     }
 
     /// The largest |t| (s) at which the phases still have digits.
@@ -128,11 +140,27 @@ impl GyrostatOrbit {
         self.reach
     }
 
-    /// The period of the momentum in the body, s; `None` where it stays.
-    pub(crate) fn period(&self) -> Option<f64> {
-        match &self.kind {
-            Kind::Steady(_) => None,
-            Kind::Moving(moving) => Some(moving.period.hi()),
+    /// Period, energy and separatrices.
+    pub(crate) fn character(&self) -> GyrostatCharacter {
+        let m = self.start.momentum_body;
+        let energy = (0..3).fold(Dd::ZERO, |sum, k| {
+            let own = m[k] - self.wheel[k];
+            sum + own * own / self.moments[k] * 0.5
+        });
+        let spins = steady_spins(self.moments, self.wheel, m.norm_of_any_size());
+        let saddles = spins.iter().filter(|spin| spin.stability == Stability::Unstable);
+        let (period, turn) = match &self.kind {
+            Kind::Steady(_) => (None, None),
+            Kind::Moving(moving) => {
+                let turn = moving.spinor.twist / moving.spinor.rate * Dd::TAU * 2.0;
+                (Some(moving.period.hi()), Some(reduce(turn, Dd::TAU).hi()))
+            }
+        };
+        GyrostatCharacter {
+            period,
+            turn_per_period: turn,
+            energy: energy.hi(),
+            separatrix_energies: saddles.map(|spin| spin.energy).collect(),
         }
     }
 
@@ -242,11 +270,11 @@ impl Quick {
     }
 }
 
-/// The largest defect of p' = ½ p ω, of the largest rate, at some phases.
-fn defect(level: &Level, spinor: &Spinor) -> f64 {
+/// The largest defect of p' = ½ p ω, of the largest rate, at some places of a period.
+fn defect(level: &Level, spinor: &Spinor, places: u32) -> f64 {
     let mut largest = 0.0_f64;
-    for turns in CHECKED {
-        let value = spinor.with_rates(Dd::of(turns));
+    for n in 0..places {
+        let value = spinor.with_rates(Dd::of((f64::from(n) + 0.58) / f64::from(places)));
         let [z, w] = value.functions;
         let square = z.norm_squared() + w.norm_squared();
         let growth = {

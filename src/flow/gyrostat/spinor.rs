@@ -44,8 +44,6 @@ pub(super) struct Spinor {
     /// 2π/T and ρ, for τ.
     pub(super) rate: Dd,
     pub(super) twist: Dd,
-    /// Share of 2π/T by which the twist of the start and that of the periods disagree.
-    pub(super) disagreement: f64,
 }
 
 /// Z, W and their derivatives by τ.
@@ -81,13 +79,13 @@ impl Spinor {
         } else {
             plus.1 <= minus.1
         };
-        let (twist, disagreement) = if is_plus { plus } else { minus };
+        let twist = if is_plus { plus.0 } else { minus.0 };
         if !is_small {
             // next to a steady spin the one of the start has fewer digits
             log_rate.im = (at_start - twist) / rate;
             terms = fitted(terms, level, rate, log_rate);
         }
-        Spinor { terms, rate, twist, disagreement }
+        Spinor { terms, rate, twist }
     }
 
     /// Whether the start is so near to a steady spin that the linear theory serves.
@@ -105,22 +103,23 @@ impl Spinor {
             [real((Dd::ONE - cos) * 0.5), real(-sin)],
             [real((Dd::ONE + cos) * 0.5), real(sin)],
         ];
-        Spinor { terms, rate, twist: (level.common - rate) * 0.5, disagreement: 0.0 }
+        Spinor { terms, rate, twist: (level.common - rate) * 0.5 }
     }
 
     /// Z and W after `turns` of X.
     pub(super) fn at(&self, turns: Dd) -> [Complex<Dd>; 2] {
-        self.sum(turns, |term, _| term)
+        let x = Complex::phase((turns - turns.round()) * Dd::TAU);
+        self.sum(x, |term, _| term)
     }
 
     /// The same with derivatives.
     pub(super) fn with_rates(&self, turns: Dd) -> Value {
-        let rates = self.sum(turns, |term, n| Complex::new(-(term.im * n), term.re * n));
-        Value { functions: self.at(turns), rates: rates.map(|sum| sum.scaled(self.rate)) }
+        let x = Complex::phase((turns - turns.round()) * Dd::TAU);
+        let rates = self.sum(x, |term, n| Complex::new(-(term.im * n), term.re * n));
+        Value { functions: self.sum(x, |term, _| term), rates: rates.map(|sum| sum.scaled(self.rate)) }
     }
 
-    fn sum(&self, turns: Dd, of: impl Fn(Complex<Dd>, f64) -> Complex<Dd>) -> [Complex<Dd>; 2] {
-        let x = Complex::phase((turns - turns.round()) * Dd::TAU);
+    fn sum(&self, x: Complex<Dd>, of: impl Fn(Complex<Dd>, f64) -> Complex<Dd>) -> [Complex<Dd>; 2] {
         let half = self.terms.len() / 2;
         let zero = Complex::new(Dd::ZERO, Dd::ZERO);
         [0, 1].map(|k| {
