@@ -31,7 +31,7 @@ pub use free_body::FreeBody;
 pub use free_flow::FreeFlow;
 pub use motion::FreeMotion;
 pub(crate) use orbit::FreeOrbit;
-pub(super) use phase::{Pair, Phase, TOO_FAR, pair, reduce};
+pub(super) use phase::{Pair, Phase, Spin, TOO_FAR, pair, reduce};
 pub use pure_spin::{PureSpin, Stability};
 pub use symmetric_top::SymmetricTop;
 pub(super) use theta::{Family, LEAST_TERMS, Powers, T, U, V_MINUS, V_PLUS, least_value, polynomial};

@@ -68,7 +68,7 @@ impl Spin {
     }
 
     /// The turn since the start, in double-double.
-    pub(super) fn precise(&self, t: Dd) -> Quat<Dd> {
+    pub(in crate::flow) fn precise(&self, t: Dd) -> Quat<Dd> {
         rotation(self.axis, self.rate * t)
     }
 }
