@@ -57,6 +57,25 @@ fn toutatis_and_apophis_go_to_omega_and_back() {
     assert!((energy_ratio - 1.024).abs() < 0.013, "{energy_ratio}");
 }
 
+/// Harbison, Thomas and Nicholson, Celest. Mech. Dyn. Astr. 110 (2011) 1: Lyapunov's time is on the order of 100 days.
+#[test]
+fn neighbours_of_hyperion_part_in_the_time_that_is_published() {
+    let hyperion = catalogue::body("hyperion").unwrap();
+    let (body, days) = (hyperion.body().unwrap(), 1200.0);
+    let [w, x, y, z] = hyperion.attitude;
+    let attitude = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z));
+    let apart = 1e-11;
+    let [one, other] = [0.0, apart].map(|angle| {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angle);
+        let start = body.state(attitude * turn, hyperion.omega_body.into()).unwrap();
+        let mut run = crate::motions::run("taylor", &(body.clone(), start), days * DAY);
+        run.advance_to(1).unwrap().point.to_dd().attitude
+    });
+    let parted = polhode::rotation::rotation_angle(one, other).hi();
+    let time = days / (parted / apart).ln();
+    assert!(time > 50.0 && time < 200.0, "{time} d, {parted} rad");
+}
+
 #[test]
 fn the_elements_of_any_motion_are_its_own() {
     let mut seed = 11_u64;

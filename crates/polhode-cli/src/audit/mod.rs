@@ -140,8 +140,11 @@ impl Audit {
     fn outcomes(&self, path: &Path, name: &str) -> Result<Vec<Outcome>, Error> {
         let golden = self.against.as_deref().map(Golden::read).transpose()?;
         let body = match (&golden, &self.body) {
-            (Some(golden), _) => Some(self.forces.act_on(golden.body.clone())?),
-            (None, Some(body)) => Some(self.forces.act_on(body.heavy(self.forces.weight_moment)?)?),
+            (Some(golden), _) => Some(self.forces.act_on(golden.body.clone(), None)?),
+            (None, Some(body)) => {
+                let own = body.own_orbit().map(|(orbit, _)| orbit);
+                Some(self.forces.act_on(body.heavy(self.forces.weight_moment)?, own)?)
+            }
             (None, None) => None,
         };
         if body.is_none() && self.forces.is_any() {

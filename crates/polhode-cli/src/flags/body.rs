@@ -2,11 +2,11 @@
 
 use clap::Args;
 use nalgebra::Matrix3;
-use polhode::body::Body;
+use polhode::body::{Body, Orbit};
 use polhode::catalogue::{self, Orientation};
 use polhode::inertia::Inertia;
 use polhode_files::bodies;
-use polhode_files::error::Error;
+use polhode_files::error::{Error, tell};
 use polhode_files::numbers::{list, numbers};
 use polhode_files::text::visible;
 
@@ -43,11 +43,13 @@ pub(crate) struct Described {
     pub(crate) inertia: Inertia,
     /// N m, body axes; zero of a body without a fixed point.
     pub(crate) weight_moment: [f64; 3],
+    /// Whose gravity gradient turns it.
+    pub(crate) orbit: Option<Orbit>,
 }
 
 impl Described {
-    fn alone(inertia: Inertia) -> Self {
-        Self { inertia, weight_moment: [0.0; 3] }
+    pub(crate) fn alone(inertia: Inertia) -> Self {
+        Self { inertia, weight_moment: [0.0; 3], orbit: None }
     }
 }
 
@@ -59,7 +61,11 @@ pub(crate) fn described(text: &str) -> Result<Described, Error> {
 /// The same of another flag.
 pub(crate) fn named(flag: &str, text: &str) -> Result<Described, Error> {
     if let Some(found) = catalogue::body(text).or_else(|| catalogue::top(text)) {
-        return Ok(Described { inertia: found.inertia, weight_moment: found.weight_moment });
+        return Ok(Described {
+            inertia: found.inertia,
+            weight_moment: found.weight_moment,
+            orbit: found.orbit.map(|named| named.orbit),
+        });
     }
     if let Some(inertia) = bodies::inertia(flag, text)? {
         return Ok(Described::alone(inertia));
@@ -76,7 +82,7 @@ pub(crate) fn named(flag: &str, text: &str) -> Result<Described, Error> {
 impl BodyArguments {
     /// The body that the flags describe, with the catalogue's weight moment or `weight_moment` in its place.
     pub(crate) fn heavy(&self, weight_moment: Option<[f64; 3]>) -> Result<Body, Error> {
-        let Described { inertia, weight_moment: own } = self.described()?;
+        let Described { inertia, weight_moment: own, .. } = self.described()?;
         let moment = weight_moment.unwrap_or(own);
         if moment == [0.0; 3] {
             return Ok(Body::free(inertia));
@@ -86,7 +92,7 @@ impl BodyArguments {
 
     /// The same for what only free bodies do.
     pub(crate) fn free(&self) -> Result<Body, Error> {
-        let Described { inertia, weight_moment } = self.described()?;
+        let Described { inertia, weight_moment, .. } = self.described()?;
         if weight_moment != [0.0; 3] {
             let name = self.body.as_deref().unwrap_or_default();
             return Err(Error::input(
@@ -96,7 +102,16 @@ impl BodyArguments {
                 "name a free body, or give its --moments to leave the weight out",
             ));
         }
+        if let Some((_, primary)) = self.own_orbit() {
+            tell("note", &format!("free motion: the gravity gradient of {primary} is left out"));
+        }
         Ok(Body::free(inertia))
+    }
+
+    /// The orbit that the catalogue has with its body, and what it goes round.
+    pub(crate) fn own_orbit(&self) -> Option<(Orbit, &'static str)> {
+        let named = catalogue::body(self.body.as_deref()?)?.orbit?;
+        Some((named.orbit, named.primary))
     }
 
     /// The catalogue's name or the file that `--body` names.
