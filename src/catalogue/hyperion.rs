@@ -1,6 +1,6 @@
 //! Hyperion at the four flybys that saw it turn.
 
-use nalgebra::{Quaternion, UnitQuaternion};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::{Entry, NamedOrbit, Orientation, RATIO};
 use crate::body::Orbit;
@@ -86,7 +86,9 @@ fn mean_motion() -> f64 {
 
 pub(super) fn entries() -> impl Iterator<Item = Entry> {
     FLYBYS.into_iter().map(|flyby| {
-        let [across, up, along] = flyby.direction.map(|part| part * flyby.rate * mean_motion());
+        // three digits of a direction are no unit vector
+        let direction = Vector3::from(flyby.direction).normalize() * (flyby.rate * mean_motion());
+        let [across, up, along] = direction.into();
         Entry {
             name: flyby.name,
             summary: flyby.summary,
@@ -125,6 +127,7 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
 
     use super::super::{NamedBody, body};
+    use super::FLYBYS;
     use crate::flow::{FreeMotion, Mode};
     use crate::rotation::EulerSequence;
 
@@ -147,6 +150,15 @@ mod tests {
         let per_day = omega.norm().to_degrees() * 86_400.0;
         assert!((per_day - 72.0).abs() < 0.05, "{per_day}");
         assert!((omega.normalize() - Vector3::new(0.902, 0.133, 0.411)).amax() < 1e-3);
+    }
+
+    #[test]
+    fn rates_are_those_of_the_table() {
+        for flyby in FLYBYS {
+            let named = body(flyby.name).unwrap();
+            let rate = Vector3::from(named.omega_body).norm() / named.orbit.unwrap().mean_motion;
+            assert!((rate / flyby.rate - 1.0).abs() < 1e-14, "{}: {rate}", flyby.name);
+        }
     }
 
     /// Harbison and others (2011): in 2005 4.2 to 4.5 times the rate of the orbit, about an axis some 30 degrees off the long one, which
