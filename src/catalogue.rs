@@ -6,10 +6,12 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use crate::body::{Body, StateError};
+use crate::body::{Body, Force, Orbit, StateError};
 use crate::flow::{Mode, TumblingElements};
 use crate::inertia::{Amount, Inertia, MassError, MassProperties, Solid};
 use crate::rotation::EulerSequence;
+
+mod hyperion;
 
 /// A catalogued body.
 #[derive(Clone, Debug)]
@@ -34,6 +36,26 @@ pub struct NamedBody {
     pub orientation: Option<Orientation>,
     /// Angular velocity of the reference motion, body axes, rad/s.
     pub omega_body: [f64; 3],
+    /// The orbit whose gravity gradient turns it, of a body that has no free motion.
+    pub orbit: Option<NamedOrbit>,
+}
+
+/// The orbit of a catalogued body.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct NamedOrbit {
+    /// What it goes round.
+    pub primary: &'static str,
+    /// Mean motion, rad/s.
+    pub mean_motion: f64,
+    /// Eccentricity.
+    pub eccentricity: f64,
+    /// Mean anomaly at the start of the reference motion, rad.
+    pub mean_anomaly: f64,
+    /// Where they come from.
+    pub source: &'static str,
+    /// The orbit in the axes of space of the attitude, from t = 0 at that start.
+    pub orbit: Orbit,
 }
 
 /// What the attitude of a catalogued body refers to.
@@ -67,12 +89,16 @@ impl NamedBody {
         }
     }
 
-    /// The body with its weight.
+    /// The body with its weight and the gravity gradient of its orbit.
     ///
     /// # Errors
     /// None of the catalogue's.
     pub fn body(&self) -> Result<Body, StateError> {
-        Body::heavy(self.inertia.clone(), self.weight_moment.into())
+        let body = Body::heavy(self.inertia.clone(), self.weight_moment.into())?;
+        Ok(match &self.orbit {
+            Some(named) => body.with(Force::gravity_gradient_on(named.orbit.clone())),
+            None => body,
+        })
     }
 }
 
@@ -96,7 +122,7 @@ struct Top {
 const SI: &str = "kg m^2";
 const RATIO: &str = "ratio";
 
-/// All free bodies, real ones first.
+/// All bodies without a fixed point, real ones first.
 ///
 /// ```
 /// let names: Vec<_> = polhode::catalogue::bodies().iter().map(|body| body.name).collect();
@@ -124,7 +150,7 @@ pub fn top(name: &str) -> Option<NamedBody> {
     top_entries().into_iter().find(|top| top.entry.name == name).and_then(Top::build)
 }
 
-/// The free body called `name`.
+/// The body without a fixed point called `name`.
 pub fn body(name: &str) -> Option<NamedBody> {
     entries().into_iter().find(|entry| entry.name == name).and_then(Entry::build)
 }
@@ -146,6 +172,7 @@ impl Entry {
             attitude,
             orientation,
             omega_body,
+            orbit: hyperion::orbit(name),
         })
     }
 }
@@ -159,7 +186,7 @@ impl Top {
 
 fn entries() -> Vec<Entry> {
     let mut all = Vec::from(states());
-    all.splice(1..1, tumblers());
+    all.splice(1..1, tumblers().chain(hyperion::entries()));
     all
 }
 
@@ -177,7 +204,10 @@ fn tumblers() -> impl Iterator<Item = Entry> {
     let [a, b, c] = [14.9 * 14.9, 8.0 * 8.0, 6.2 * 6.2];
     let tc4_moments = [(b + c) / (a + b), (a + c) / (a + b), 1.0];
     let tc4 = TumblingElements::new(Mode::LongAxis, [12.25 * MINUTE, 8.47 * MINUTE]);
-    let apophis_source = "Pravec et al., Icarus 233 (2014) 48: pole 250, -75, phases 152, 14 degrees, light time taken off; periods 27.38 and 263 h";
+    // of a uniform ellipsoid of 6 by 1 by 1
+    let oumuamua_moments = [2.0 / 37.0, 1.0, 1.0];
+    let oumuamua = TumblingElements::new(Mode::LongAxis, [8.67 * HOUR, 54.48 * HOUR]);
+    let apophis_source = "Pravec et al., Icarus 233 (2014) 48: pole 250, -75, phases 152, 14 degrees, light time taken off; periods 27.38 and 263 h (3 sigma: 0.07 and 6 h, pole within 27 by 14 degrees)";
     let listed = [
         (
             "apophis",
@@ -194,7 +224,7 @@ fn tumblers() -> impl Iterator<Item = Entry> {
         (
             "2012-tc4",
             "asteroid 2012 TC4, tumbling in long-axis mode; ratios of moments, pole and phases unknown",
-            "Urakawa et al., arXiv:1903.05687: precession 12.25 and rotation 8.47 min, axes 14.9, 8.0 and 6.2 m; as an ellipsoid of uniform density",
+            "Urakawa et al., arXiv:1903.05687: precession 12.25 and rotation 8.47 min, both +- 0.01 min, axes 14.9, 8.0 and 6.2 m; as an ellipsoid of uniform density",
             tc4_moments,
             tc4,
             None,
@@ -205,6 +235,14 @@ fn tumblers() -> impl Iterator<Item = Entry> {
             "Belton et al., Icarus 93 (1991) 183: periods 3.69 and 7.1 d, long axis 66 degrees from the angular momentum; as a symmetric body, whose ratio follows from these",
             [1.0, 2.278, 2.278],
             halley,
+            None,
+        ),
+        (
+            "oumuamua",
+            "interstellar object 1I/'Oumuamua, the likeliest of its long-axis modes; ratios of moments, pole and phases unknown",
+            "Belton et al., arXiv:1804.03471: long axis round the angular momentum in 8.67 +- 0.34 h, body round it in 54.48 h; as an ellipsoid of uniform density, 6 +- 1 : 1 : 1 of McNeill, Trilling and Mommert, arXiv:1803.09864",
+            oumuamua_moments,
+            oumuamua,
             None,
         ),
     ];
@@ -503,6 +541,12 @@ mod tests {
         assert_eq!(tc4.mode, Mode::LongAxis);
         assert!((tc4.precession_period / 60.0 - 12.25).abs() < 1e-6);
         assert!((tc4.rotation_period / 60.0 - 8.47).abs() < 1e-6);
+        // the frequencies of the light curve, 2.77 +- 0.11 and 6.42 +- 0.18 cycles a day: the long axis once round L, and either end of
+        // the turning body
+        let oumuamua = motion("oumuamua").tumbling().unwrap();
+        assert_eq!(oumuamua.mode, Mode::LongAxis);
+        assert!((86_400.0 / oumuamua.precession_period - 2.77).abs() < 0.005);
+        assert!((2.0 * 86_400.0 / oumuamua.combined_period() - 6.42).abs() < 0.005);
         let halley = motion("halley");
         let [least, most] = halley.tilt_range().unwrap().map(f64::to_degrees);
         assert!((least - 66.0).abs() < 0.5 && (most - 66.0).abs() < 0.5, "{least} {most}");

@@ -57,6 +57,25 @@ fn toutatis_and_apophis_go_to_omega_and_back() {
     assert!((energy_ratio - 1.024).abs() < 0.013, "{energy_ratio}");
 }
 
+/// Harbison, Thomas and Nicholson, Celest. Mech. Dyn. Astr. 110 (2011) 1: Lyapunov's time is on the order of 100 days.
+#[test]
+fn neighbours_of_hyperion_part_in_the_time_that_is_published() {
+    let hyperion = catalogue::body("hyperion").unwrap();
+    let (body, days) = (hyperion.body().unwrap(), 1200.0);
+    let [w, x, y, z] = hyperion.attitude;
+    let attitude = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z));
+    let apart = 1e-11;
+    let [one, other] = [0.0, apart].map(|angle| {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angle);
+        let start = body.state(attitude * turn, hyperion.omega_body.into()).unwrap();
+        let mut run = crate::motions::run("taylor", &(body.clone(), start), days * DAY);
+        run.advance_to(1).unwrap().point.to_dd().attitude
+    });
+    let parted = polhode::rotation::rotation_angle(one, other).hi();
+    let time = days / libm::log(parted / apart);
+    assert!(time > 50.0 && time < 200.0, "{time} d, {parted} rad");
+}
+
 #[test]
 fn the_elements_of_any_motion_are_its_own() {
     let mut seed = 11_u64;
@@ -244,4 +263,69 @@ fn members_of_solutions_have_their_elements() {
     assert!(matches!(refused(vec![]), NoTumbler::Weight { .. }));
     assert!(matches!(refused(vec![(f64::NAN, solution(263.0, deviations))]), NoTumbler::Weight { .. }));
     assert!(matches!(refused(vec![(1.0, solution(150.0, deviations))]), NoTumbler::Drawn { draws: 0, .. }));
+}
+
+/// Where deviations are small, attitude and sub-observer point of the members spread as the derivative of the motion by the elements says, here by
+/// differences; of Apophis with a hundredth of what is published. 100 000 members agree to 0.3 %.
+#[test]
+fn narrow_bands_are_those_of_the_first_order() {
+    use polhode::flow::{TumblingPopulation, TumblingSolution};
+    use polhode::num::Covariance;
+
+    const MEMBERS: u32 = 200;
+    let degrees = |angles: [f64; 2]| angles.map(|angle| angle * PI / 180.0);
+    let state = |x: [f64; 8]| {
+        let inertia = Inertia::from_moments([x[6], x[7], 1.0]).unwrap();
+        let elements = TumblingElements::new(Mode::ShortAxis, [x[0], x[1]])
+            .with_pole(degrees([x[2], x[3]]))
+            .with_angles(degrees([x[4], x[5]]));
+        (inertia, elements)
+    };
+    let nominal = [27.38 * 3600.0, 263.0 * 3600.0, 250.0, -75.0, 152.0, 14.0, 0.61, 0.965];
+    let deviations = [0.8, 72.0, 0.35, 0.047, 0.4, 0.09, 3e-4, 4e-5];
+    let observer = Vector3::new(-0.86, -0.5, 0.09).normalize();
+    let (inertia, elements) = state(nominal);
+    let mut in_rad = deviations;
+    in_rad[2..6].iter_mut().for_each(|angle| *angle *= PI / 180.0);
+    let covariance = Covariance::independent(in_rad).unwrap();
+    let population =
+        TumblingPopulation::new(vec![(1.0, TumblingSolution::new(inertia, elements, covariance))]);
+    let population = population.unwrap();
+    let members: Vec<FreeMotion> = (0..MEMBERS)
+        .map(|k| {
+            let member = population.member(11, k.into()).unwrap();
+            let omega = member.omega_body.into();
+            FreeMotion::from_omega(&member.inertia, member.attitude.into(), omega).unwrap()
+        })
+        .collect();
+    for days in [0.0, 39.8, 100.0] {
+        let at = |motion: &FreeMotion| motion.at(days * DAY).unwrap().rotation();
+        let of = |x: [f64; 8]| {
+            let (inertia, elements) = state(x);
+            at(&FreeMotion::from_point(&inertia, elements.point(&inertia).unwrap()))
+        };
+        let middle = of(nominal);
+        // squares of the turn from the nominal attitude, in space, and of that of the observer in the sky of the body
+        let squares = |turn: Vector3<f64>| [turn.norm_squared(), turn.cross(&observer).norm_squared()];
+        let mut first_order = [0.0; 2];
+        for k in 0..8 {
+            let [low, high] = [-0.5, 0.5].map(|half| {
+                let mut x = nominal;
+                x[k] += half * deviations[k];
+                of(x)
+            });
+            let parts = squares((high / low).scaled_axis());
+            first_order = [0, 1].map(|q| first_order[q] + parts[q]);
+        }
+        let mut spread = [0.0; 2];
+        for motion in &members {
+            let parts = squares((at(motion) / middle).scaled_axis());
+            spread = [0, 1].map(|q| spread[q] + parts[q] / f64::from(MEMBERS));
+        }
+        for q in 0..2 {
+            let ratio = (spread[q] / first_order[q]).sqrt();
+            // 200 members know a standard deviation to 5 %
+            assert!((ratio - 1.0).abs() < 0.2, "{days} d, {q}: {spread:?} {first_order:?}");
+        }
+    }
 }

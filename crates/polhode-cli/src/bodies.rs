@@ -11,6 +11,7 @@ use polhode_pages::table::{Cell, Column, Format, Table, row};
 const EXAMPLES: &str = "Examples:
   polhode bodies
   polhode bodies toutatis
+  polhode bodies hyperion
   polhode bodies --format json";
 
 /// List the catalogue of bodies: moments, spin at the start, source
@@ -60,13 +61,18 @@ fn quantities(body: &NamedBody) -> Vec<(&'static str, &'static str, Cell)> {
     all.extend(vector(["omega_body_x", "omega_body_y", "omega_body_z"], "rad/s", body.omega_body));
     all.extend(["q_w", "q_x", "q_y", "q_z"].into_iter().zip(body.attitude).map(|(n, x)| (n, "", x.into())));
     all.extend(vector(["weight_moment_x", "weight_moment_y", "weight_moment_z"], "N m", body.weight_moment));
-    let orientation = body.orientation;
+    let (orientation, orbit) = (body.orientation, body.orbit.as_ref());
     all.extend([
         ("frame", "", orientation.map_or("unknown", |found| found.frame).into()),
         ("epoch", "", orientation.and_then(|found| found.epoch).into()),
         ("summary", "", body.summary.into()),
         ("source", "", body.source.into()),
         ("attitude_source", "", orientation.map(|found| found.source).into()),
+        ("primary", "", orbit.map(|found| found.primary).into()),
+        ("mean_motion", "rad/s", orbit.map(|found| found.mean_motion).into()),
+        ("eccentricity", "", orbit.map(|found| found.eccentricity).into()),
+        ("mean_anomaly", "rad", orbit.map(|found| found.mean_anomaly).into()),
+        ("orbit_source", "", orbit.map(|found| found.source).into()),
     ]);
     all
 }
@@ -95,12 +101,21 @@ fn sheet(body: &NamedBody) -> String {
     ];
     let mut table = Table::new("body", "A body of the catalogue.", columns);
     for (name, unit, value) in quantities(body) {
-        if !matches!(name, "summary" | "source" | "frame" | "epoch" | "attitude_source") {
+        let told_below = name.ends_with("source") || matches!(name, "summary" | "frame" | "epoch");
+        if !told_below && value != Cell::Empty {
             let unit = if name.starts_with("moment") { body.unit } else { unit };
             table.push(row![name, value, unit]);
         }
     }
     let of_attitude = body.orientation.map_or(String::new(), |found| format!(" ({})", found.source));
     let attitude = body.attitude_known();
-    format!("{}\n{}\nsource: {}\n{attitude}{of_attitude}\n", table.terminal(), body.summary, body.source)
+    let orbit = body.orbit.as_ref().map_or(String::new(), |found| {
+        format!("turned by the gravity gradient of {} ({})\n", found.primary, found.source)
+    });
+    format!(
+        "{}\n{}\nsource: {}\n{attitude}{of_attitude}\n{orbit}",
+        table.terminal(),
+        body.summary,
+        body.source
+    )
 }

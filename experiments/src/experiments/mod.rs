@@ -28,6 +28,7 @@ mod scoreboard;
 mod separatrix;
 mod splitting_order;
 mod strapdown;
+mod tumblers;
 mod work_precision;
 
 pub(crate) use work_precision::Which;
@@ -149,6 +150,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "dissipation",
         question: "how a tumbling body with inner friction comes to a steady spin, and what the splitting keeps on the way",
         run: dissipation::run,
+    },
+    Experiment {
+        name: "tumblers",
+        question: "whether the tumbling bodies of the catalogue have the figures of their papers",
+        run: tumblers::run,
     },
     Experiment {
         name: "flyby",

@@ -50,7 +50,7 @@ pub(super) fn smoothed(
     start: UnitQuaternion<f64>,
     sensor: Sensor,
 ) -> Result<Vec<Estimate>, Error> {
-    let Described { inertia, weight_moment, wheels } = described(body)?;
+    let Described { inertia, weight_moment, wheels, .. } = described(body)?;
     let refused = |rule: &str, remedy: &str| Err(Error::input("--body", body, rule, remedy));
     if weight_moment != [0.0; 3] {
         return refused("is a top under gravity, and a flight is that of a free body", "name a free body");

@@ -143,10 +143,11 @@ impl Audit {
     fn outcomes(&self, path: &Path, name: &str) -> Result<Vec<Outcome>, Error> {
         let golden = self.against.as_deref().map(Golden::read).transpose()?;
         let body = match (&golden, &self.body) {
-            (Some(golden), _) => Some(self.forces.act_on(golden.body.clone())?),
+            (Some(golden), _) => Some(self.forces.act_on(golden.body.clone(), None)?),
             (None, Some(body)) => {
+                let own = body.own_orbit().map(|(orbit, _)| orbit);
                 let (body, wheels) = body.heavy(self.forces.weight_moment)?;
-                Some(self.wheels.held(self.forces.act_on(body)?, wheels)?)
+                Some(self.wheels.held(self.forces.act_on(body, own)?, wheels)?)
             }
             (None, None) => None,
         };

@@ -2,11 +2,11 @@
 
 use clap::Args;
 use nalgebra::Matrix3;
-use polhode::body::Body;
+use polhode::body::{Body, Orbit};
 use polhode::catalogue::{self, Orientation};
 use polhode::inertia::Inertia;
 use polhode_files::bodies;
-use polhode_files::error::Error;
+use polhode_files::error::{Error, tell};
 use polhode_files::numbers::{list, numbers};
 use polhode_files::text::visible;
 use polhode_files::wheel::GivenWheel;
@@ -45,11 +45,13 @@ pub(crate) struct Described {
     /// N m, body axes; zero of a body without a fixed point.
     pub(crate) weight_moment: [f64; 3],
     pub(crate) wheels: Vec<GivenWheel>,
+    /// Whose gravity gradient turns it.
+    pub(crate) orbit: Option<Orbit>,
 }
 
 impl Described {
-    fn alone(inertia: Inertia) -> Self {
-        Self { inertia, weight_moment: [0.0; 3], wheels: Vec::new() }
+    pub(crate) fn alone(inertia: Inertia) -> Self {
+        Self { inertia, weight_moment: [0.0; 3], wheels: Vec::new(), orbit: None }
     }
 }
 
@@ -61,7 +63,11 @@ pub(crate) fn described(text: &str) -> Result<Described, Error> {
 /// The same of another flag.
 pub(crate) fn named(flag: &str, text: &str) -> Result<Described, Error> {
     if let Some(found) = catalogue::body(text).or_else(|| catalogue::top(text)) {
-        return Ok(Described { weight_moment: found.weight_moment, ..Described::alone(found.inertia) });
+        return Ok(Described {
+            weight_moment: found.weight_moment,
+            orbit: found.orbit.map(|named| named.orbit),
+            ..Described::alone(found.inertia)
+        });
     }
     if let Some((inertia, wheels)) = bodies::inertia(flag, text)? {
         return Ok(Described { wheels, ..Described::alone(inertia) });
@@ -79,7 +85,7 @@ impl BodyArguments {
     /// The body that the flags describe, with the catalogue's weight moment or `weight_moment` in its place, and the wheels that its
     /// file names.
     pub(crate) fn heavy(&self, weight_moment: Option<[f64; 3]>) -> Result<(Body, Vec<GivenWheel>), Error> {
-        let Described { inertia, weight_moment: own, wheels } = self.described()?;
+        let Described { inertia, weight_moment: own, wheels, .. } = self.described()?;
         let moment = weight_moment.unwrap_or(own);
         if moment == [0.0; 3] {
             return Ok((Body::free(inertia), wheels));
@@ -90,7 +96,7 @@ impl BodyArguments {
 
     /// The same for what only free bodies do.
     pub(crate) fn free(&self) -> Result<(Body, Vec<GivenWheel>), Error> {
-        let Described { inertia, weight_moment, wheels } = self.described()?;
+        let Described { inertia, weight_moment, wheels, .. } = self.described()?;
         if weight_moment != [0.0; 3] {
             let name = self.body.as_deref().unwrap_or_default();
             return Err(Error::input(
@@ -100,7 +106,16 @@ impl BodyArguments {
                 "name a free body, or give its --moments to leave the weight out",
             ));
         }
+        if let Some((_, primary)) = self.own_orbit() {
+            tell("note", &format!("free motion: the gravity gradient of {primary} is left out"));
+        }
         Ok((Body::free(inertia), wheels))
+    }
+
+    /// The orbit that the catalogue has with its body, and what it goes round.
+    pub(crate) fn own_orbit(&self) -> Option<(Orbit, &'static str)> {
+        let named = catalogue::body(self.body.as_deref()?)?.orbit?;
+        Some((named.orbit, named.primary))
     }
 
     /// The catalogue's name or the file that `--body` names.

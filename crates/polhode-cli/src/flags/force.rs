@@ -124,8 +124,8 @@ pub(crate) struct Forces {
     pub(crate) gravity_gradient: Option<[f64; 2]>,
     /// GM, m^3/s^2, least distance, m, eccentricity, and the time of the least distance, s.
     pub(crate) orbit: Option<[f64; 4]>,
-    /// By a table of places.
-    pub(crate) table: Option<Orbit>,
+    /// By a table of places, or that of the catalogue's body.
+    pub(crate) placed: Option<Orbit>,
     /// Of either orbit: node, inclination and argument of the periapsis, rad.
     pub(crate) orbit_plane: Option<[f64; 3]>,
     /// N m, body axes.
@@ -149,7 +149,7 @@ impl Forces {
             let orbit = Orbit::conic(gm, periapsis, eccentricity).and_then(|orbit| orbit.passing_at(time));
             orbit.map_err(|error| ("orbit", error))
         });
-        if let Some(orbit) = ellipse.or(conic).or(self.table.clone().map(Ok)).transpose()? {
+        if let Some(orbit) = ellipse.or(conic).or(self.placed.clone().map(Ok)).transpose()? {
             let turned = match self.orbit_plane {
                 None => Ok(orbit),
                 Some(angles) => orbit.in_plane(angles),
@@ -188,8 +188,13 @@ impl ForceArguments {
             || self.drag.is_some()
     }
 
-    /// `body` with the forces besides its weight.
-    pub(crate) fn act_on(&self, body: Body) -> Result<Body, Error> {
+    /// Whether a flag names an orbit.
+    pub(crate) fn has_orbit(&self) -> bool {
+        self.gravity_gradient.is_some() || self.orbit.is_some() || self.orbit_table.is_some()
+    }
+
+    /// `body` with the forces besides its weight; `own` is the orbit that it has where no flag names one.
+    pub(crate) fn act_on(&self, body: Body, own: Option<Orbit>) -> Result<Body, Error> {
         if self.orbit_plane.is_some() && self.gravity_gradient.is_none() && self.orbit.is_none() {
             return Err(Error::Input(format!(
                 "--orbit-plane: {NO_ORBIT}; add --orbit or --gravity-gradient"
@@ -197,13 +202,13 @@ impl ForceArguments {
         }
         let table = match (&self.orbit_table, self.gm) {
             (Some(file), Some(gm)) => Some(table(file, gm)?),
-            _ => None,
+            _ => own.filter(|_| !self.has_orbit()),
         };
         let pair = |typed: Option<OneOrTwo>| typed.map(|OneOrTwo(pair)| pair);
         let forces = Forces {
             gravity_gradient: pair(self.gravity_gradient),
             orbit: self.orbit.map(|ThreeOrFour(numbers)| numbers),
-            table,
+            placed: table,
             orbit_plane: self.orbit_plane,
             torque_body: self.torque_body,
             torque_space: self.torque_space,

@@ -3,7 +3,7 @@
 use clap::Args;
 use polhode::body::{Body, Point};
 use polhode::num::Dd;
-use polhode_files::error::Error;
+use polhode_files::error::{Error, tell};
 
 use crate::flags::body::BodyArguments;
 use crate::flags::force::ForceArguments;
@@ -30,8 +30,9 @@ impl MotionArguments {
             let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
             return Err(Error::input("--body", file, rule, remedy));
         }
+        let own = self.body.own_orbit().map(|(orbit, _)| orbit);
         let (body, of_file) = self.body.heavy(self.forces.weight_moment)?;
-        let body = self.forces.act_on(body)?;
+        let body = self.forces.act_on(body, own)?;
         self.wheels.carried(body, of_file, |held| self.start(held))
     }
 
@@ -43,5 +44,11 @@ impl MotionArguments {
     /// Says what the attitude at the start refers to where it is that of the catalogue.
     pub(crate) fn note(&self) {
         self.start.note(&self.body);
+        if let (Some((_, primary)), false) = (self.body.own_orbit(), self.forces.has_orbit()) {
+            tell(
+                "note",
+                &format!("the gravity gradient of {primary} acts, on the orbit that the catalogue has"),
+            );
+        }
     }
 }

@@ -55,6 +55,43 @@ fn motions_under_forces_are_the_golden_ones() {
     golden("drag.csv", &line("--drag 0.1,0.2 --torque-space 0.1,0,0", "implicit-midpoint"));
 }
 
+/// Hyperion moves on the orbit that the catalogue has with it: the same conic by its least distance, in units of the semi-major axis, and
+/// the time of that.
+#[test]
+fn a_body_of_the_catalogue_is_turned_on_its_orbit() {
+    let sheet = output("bodies hyperion --format csv");
+    let row: Vec<f64> = ["mean_motion", "eccentricity", "mean_anomaly"]
+        .map(|name| {
+            let at = columns(&sheet).iter().position(|column| *column == name).unwrap();
+            // the columns of an orbit are the last ones, behind texts with commas
+            let behind = columns(&sheet).len() - at;
+            sheet.lines().last().unwrap().rsplit(',').nth(behind - 1).unwrap().parse().unwrap()
+        })
+        .into();
+    let [n, e, anomaly] = row[..] else { panic!("{row:?}") };
+    let of = |forces: &str| {
+        let line = format!("propagate --body hyperion {forces} --times 20d --fields q --method taylor");
+        let text = output(&line);
+        let last: Vec<f64> = text.lines().last().unwrap().split(',').map(|x| x.parse().unwrap()).collect();
+        last
+    };
+    let own = of("");
+    let typed = of(&format!("--orbit {:e},{:e},{e},{:e}", n * n, 1.0 - e, -anomaly / n));
+    let apart = |other: &[f64]| own.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart(&typed) < 1e-10, "{own:?} {typed:?}");
+    // another orbit takes its place
+    assert!(apart(&of(&format!("--gravity-gradient {n:e},{e}"))) > 1e-3);
+    let free = output("propagate --moments 0.314,0.474,0.542 --omega 1e-5,2e-6,6e-6 --times 20d --fields q");
+    let without = output(
+        "propagate --body hyperion --omega 1e-5,2e-6,6e-6 --attitude 1,0,0,0 --gravity-gradient 0 --times 20d --fields q --method taylor",
+    );
+    for (a, b) in free.lines().last().unwrap().split(',').zip(without.lines().last().unwrap().split(',')) {
+        assert!((a.parse::<f64>().unwrap() - b.parse::<f64>().unwrap()).abs() < 1e-12, "{free} {without}");
+    }
+    let refused = run("propagate --body hyperion --times 20d");
+    assert!(refused.err.contains("gravity gradient acts on the body"), "{}", refused.err);
+}
+
 #[test]
 fn schemes_are_listed() {
     golden("schemes.csv", &output("methods --schemes"));

@@ -58,9 +58,10 @@ pub(crate) fn polhode(arguments: &[&str], folder: &Path) -> Answer {
     let done =
         Command::new(env!("CARGO_BIN_EXE_polhode")).args(arguments).current_dir(folder).output().unwrap();
     let told = String::from_utf8(done.stderr).unwrap();
-    let (notes, err) = told
-        .split_inclusive('\n')
-        .partition(|line| line.starts_with("note: ") && line.contains(": attitude "));
+    let (notes, err) = told.split_inclusive('\n').partition(|line| {
+        line.starts_with("note: ")
+            && (line.contains(": attitude ") || line.contains(": the gravity gradient of"))
+    });
     let out = String::from_utf8(done.stdout).unwrap();
     let answer = Answer { code: done.status.code().unwrap(), out, err, notes };
     for text in [&answer.out, &answer.err] {

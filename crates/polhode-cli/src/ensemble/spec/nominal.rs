@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Matrix3;
-use polhode::body::{Body, Wheel};
+use polhode::body::{Body, Orbit, Wheel};
 use polhode::catalogue;
 use polhode::flow::TumblingElements;
 use polhode::inertia::Inertia;
@@ -115,11 +115,12 @@ impl Nominal {
         }
         let own = found.as_ref().map_or([0.0; 3], |found| found.weight_moment);
         let wheels = wheels(body, found.as_ref())?;
+        let orbit = found.as_ref().and_then(|found| found.orbit.clone());
         let nominal = Self {
             inertia: found.map(|found| found.inertia),
             attitude: Quat::from_components(attitude),
             omega: omega.map(Vec3),
-            acting: Acting { wheels, ..acting(force, own)? },
+            acting: Acting { wheels, ..acting(force, own, orbit)? },
             units,
             elements,
             epoch,
@@ -169,13 +170,12 @@ fn epoch(start: &Section<'_>) -> Result<Option<Epoch>, Error> {
 
 fn inertia(body: &Section<'_>, key: &str) -> Result<Described, Error> {
     let refused = |error: &dyn std::fmt::Display| body.at(key, &error.to_string());
-    let alone = |inertia| Described { inertia, weight_moment: [0.0; 3], wheels: Vec::new() };
     if let Some(moments) = body.numbers::<3>("moments")? {
-        return Inertia::from_moments(moments).map(alone).map_err(|error| refused(&error));
+        return Inertia::from_moments(moments).map(Described::alone).map_err(|error| refused(&error));
     }
     if let Some([xx, yy, zz, xy, xz, yz]) = body.numbers::<6>("inertia")? {
         let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        return Inertia::from_tensor(tensor).map(alone).map_err(|error| refused(&error));
+        return Inertia::from_tensor(tensor).map(Described::alone).map_err(|error| refused(&error));
     }
     let name = body.text("body")?.unwrap_or_default();
     // a file is looked for beside the specification
@@ -204,8 +204,8 @@ fn wheels(body: &Section<'_>, found: Option<&Described>) -> Result<Vec<Wheel>, E
     }
 }
 
-/// What acts, by `[force]` or, of the weight, by the catalogue.
-fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
+/// What acts, by `[force]` or, of the weight and the orbit, by the catalogue.
+fn acting(force: &Section<'_>, own: [f64; 3], own_orbit: Option<Orbit>) -> Result<Acting, Error> {
     force.only(
         "[force]",
         &[
@@ -228,7 +228,7 @@ fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
             Some(found) => Err(force.at(key, &format!("{} given, 1 or 2 needed", found.len()))),
         }
     };
-    let forces = Forces {
+    let mut forces = Forces {
         gravity_gradient: one_or_two("gravity_gradient")?,
         orbit: match force.list("orbit")? {
             None => None,
@@ -238,7 +238,7 @@ fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
             None => None,
             Some(angles) => Some(plane(angles).map_err(|error| force.at("orbit_plane", &error))?),
         },
-        table: match (force.text("orbit_table")?, force.positive("gm")?) {
+        placed: match (force.text("orbit_table")?, force.positive("gm")?) {
             (None, None) => None,
             (Some(name), Some(gm)) => {
                 Some(table(&force.file.path.parent().unwrap_or(Path::new("")).join(name), gm)?)
@@ -250,7 +250,7 @@ fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
         torque_space: force.numbers("torque_space")?,
         drag: one_or_two("drag")?,
     };
-    if forces.table.is_some()
+    if forces.placed.is_some()
         && let Some(key) =
             ["gravity_gradient", "orbit", "orbit_plane"].into_iter().find(|key| force.value(key).is_some())
     {
@@ -263,6 +263,7 @@ fn acting(force: &Section<'_>, own: [f64; 3]) -> Result<Acting, Error> {
         (None, None, Some(_)) => {
             return Err(force.at("orbit_plane", &format!("{NO_ORBIT}; add orbit or gravity_gradient")));
         }
+        (None, None, None) if forces.placed.is_none() => forces.placed = own_orbit,
         _ => {}
     }
     Ok(Acting { weight_moment: force.numbers("weight_moment")?.unwrap_or(own), forces, wheels: Vec::new() })
