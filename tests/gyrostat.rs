@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::{Body, Conserved, Force, Problem, State, Wheel, WheelError};
+use polhode::flow::{FreeMotion, GyrostatMotion, NoClosedForm};
 use polhode::inertia::Inertia;
 use polhode::method::{Claimed, StepError, catalogue, method};
 use polhode::run::Run;
@@ -276,4 +277,98 @@ fn a_power_of_two_of_the_mass_changes_no_bit() {
         ends
     };
     assert_eq!(end(1.0), end(0.5_f64.powi(40)));
+}
+
+/// The closed form beside Taylor series of another formulation, wheels as a torque on the carrier: held, free, both, and none.
+#[test]
+fn the_closed_form_is_the_motion_that_taylor_series_follow() {
+    let spun = wheel([1.0, 2.0, -2.0], 0.05, 60.0);
+    let still = wheel([0.0, 0.0, 1.0], 0.1, -25.0);
+    for wheels in [
+        vec![spun],
+        vec![spun, still],
+        vec![spun.free(OMEGA), still],
+        vec![spun.free(OMEGA), still.free(OMEGA)],
+    ] {
+        let body = body(&wheels);
+        let motion = GyrostatMotion::new(&body, &start(&body)).unwrap();
+        let mut run = Run::new(&method("taylor").unwrap(), &body, &start(&body), 5.0).unwrap();
+        for steps in [1, 20, 200] {
+            let (there, t) = (run.advance_to(steps).unwrap(), 5.0 * steps as f64);
+            let here = motion.at(t).unwrap();
+            // the run walks by rounding
+            assert!(here.rotation().angle_to(&there.state.rotation()) < 1e-15 * (20.0 + t), "{t}");
+            assert!((body.omega_body(&here) - there.omega_body).norm() < 1e-15 * (20.0 + t), "{t}");
+        }
+        // and after a period the angular velocity is what it was
+        let character = motion.character();
+        let period = character.period.unwrap();
+        let later = motion.at(period).unwrap();
+        assert!((body.omega_body(&later) - OMEGA).norm() < 1e-14);
+        let (turned, l) =
+            (later.rotation() * start(&body).rotation().inverse(), body.momentum_space(0.0, &start(&body)));
+        let about_l = turned.axis_angle().map_or(0.0, |(axis, angle)| angle * axis.dot(&l).signum());
+        let off = (about_l - character.turn_per_period.unwrap()) / std::f64::consts::TAU;
+        assert!((off - off.round()).abs() < 1e-14);
+        assert!((character.energy - body.energy(&start(&body))).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn without_momentum_of_wheels_the_closed_form_is_that_of_the_free_body() {
+    let bare = body(&[]);
+    let free = FreeMotion::from_state(bare.inertia(), &start(&bare)).unwrap();
+    for speed in [1e-3, 1e-8, 1e-13] {
+        let body = body(&[wheel([1.0, 2.0, -2.0], 1.0, speed)]);
+        let motion = GyrostatMotion::new(&body, &start(&body)).unwrap();
+        for t in [0.3, 20.0, 400.0] {
+            let off = motion.at(t).unwrap().rotation().angle_to(&free.at(t).unwrap().rotation());
+            assert!(off < speed * (1.0 + t) + 2e-15, "{speed:e} at {t}: {off:e}");
+        }
+    }
+}
+
+/// Each spin stays one under the method that knows nothing of it, and an unstable one is left at its rate.
+#[test]
+fn steady_spins_are_steady_and_unstable_ones_are_left_at_their_rate() {
+    let body = body(&[wheel([1.0, 0.3, -0.2], 0.05, 8.0)]);
+    let spins = GyrostatMotion::new(&body, &start(&body)).unwrap().steady_spins();
+    assert_eq!(spins.len(), 6);
+    let l = body.momentum_space(0.0, &start(&body)).norm();
+    for spin in &spins {
+        let from = |omega| body.state(UnitQuaternion::identity(), omega).unwrap();
+        let state = from(spin.omega_body);
+        let momentum = body.momentum_space(0.0, &state);
+        assert!((momentum.norm() - l).abs() < 1e-13 * l);
+        assert!((spin.omega_body - momentum / l * spin.rate).norm() < 1e-14);
+        assert!((body.energy(&state) - spin.energy).abs() < 1e-13);
+        let after = |start: &State, t: f64| {
+            Run::new(&method("taylor").unwrap(), &body, start, t).unwrap().advance_to(1).unwrap().omega_body
+        };
+        let nudged = from(spin.omega_body + spin.omega_body.cross(&Vector3::new(0.3, 0.5, -0.7)) * 1e-7);
+        let off = |t: f64| (after(&nudged, t) - spin.omega_body).norm();
+        if spin.growth_rate > 0.0 {
+            let (early, late) = (6.0 / spin.growth_rate, 8.0 / spin.growth_rate);
+            let growth = (off(late) / off(early)).ln() / (late - early);
+            assert!((growth / spin.growth_rate - 1.0).abs() < 1e-3, "{growth} for {}", spin.growth_rate);
+        } else {
+            let period = std::f64::consts::TAU / spin.frequency;
+            assert!(
+                (after(&nudged, period) - after(&nudged, 0.001 * period)).norm()
+                    < 1e-2 * off(0.5 * period) + 1e-12
+            );
+            assert!(off(20.3 * period) < 1e-6);
+        }
+    }
+    assert_eq!(spins.iter().filter(|spin| spin.growth_rate > 0.0).count(), 2);
+}
+
+#[test]
+fn what_has_no_closed_form_with_wheels_says_why() {
+    let refused = |body: &Body| GyrostatMotion::new(body, &start(body)).unwrap_err();
+    let driven = body(&[wheel([0.0, 0.0, 1.0], 0.1, 5.0).driven(0.4, [0.0, f64::INFINITY], OMEGA).unwrap()]);
+    assert!(matches!(refused(&driven), NoClosedForm::Motor { torque: 0.4, .. }));
+    let dragged = held().with(Force::drag(0.1, 0.0).unwrap());
+    assert!(refused(&dragged).to_string().starts_with("drag acts on the body; a closed form is known here"));
+    assert!(matches!(refused(&body(&[])), NoClosedForm::Forced { .. }));
 }

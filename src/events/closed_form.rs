@@ -2,8 +2,7 @@
 
 use super::along::{Rates, Search, intervals};
 use super::{Event, EventError, Events};
-use crate::body::Body;
-use crate::body::Point;
+use crate::body::{Body, Point, Time};
 use crate::flow::{ExactMotion, FreeMotion};
 use crate::num::Dd;
 
@@ -29,11 +28,16 @@ impl ExactMotion {
     pub fn events(&self, events: &[Event], from: f64, to: f64, spacing: f64) -> Result<Events, EventError> {
         match self {
             ExactMotion::Free(motion) => motion.events(events, from, to, spacing),
-            ExactMotion::Lagrange(top) => {
-                self.check_time(from).and_then(|()| self.check_time(to))?;
-                look(top.body(), events, [from, to, spacing], |t| self.point_at(t))
-            }
+            ExactMotion::Lagrange(top) => self.look(top.body(), events, [from, to, spacing]),
+            ExactMotion::Gyrostat(motion) => self.look(motion.body(), events, [from, to, spacing]),
         }
+    }
+}
+
+impl ExactMotion {
+    fn look(&self, body: &Body, events: &[Event], span: [f64; 3]) -> Result<Events, EventError> {
+        self.check_time(span[0]).and_then(|()| self.check_time(span[1]))?;
+        look(body, events, span, |t| self.point_at(t))
     }
 }
 
@@ -59,7 +63,7 @@ fn look(
     Ok(search.finish(spacing))
 }
 
-/// What a body with the energy of the point `x` turns by and accelerates by at most, without or with uniform gravity.
+/// What a body with the energy of the point `x` turns by and accelerates by at most, without or with uniform gravity or wheels.
 fn rates(body: &Body, x: &Point<f64>) -> Rates {
     let inverse = body.rotor().inverse_moments::<f64>();
     let (largest, least) =
@@ -68,8 +72,15 @@ fn rates(body: &Body, x: &Point<f64>) -> Rates {
     let weight = body.linear_potential::<f64>().map_or(0.0, |linear| linear.moment.norm());
     // |m|²/2 times the least of 1/I is at most T, and T at most what it is now and what gravity gives
     let kinetic = 0.5 * m.times(inverse).dot(m) + 2.0 * weight;
-    let momentum = if weight == 0.0 { m.norm() } else { (2.0 * kinetic / least).sqrt() };
-    let speed = if weight == 0.0 { momentum * largest } else { (2.0 * kinetic * largest).sqrt() };
+    let wheels = body.momentum_of_wheels().map(|wheels| wheels.at(Time::from_seconds(0.0)).map(Dd::hi));
+    let momentum = match wheels {
+        // that of body and wheels, which is constant, and I ω' = m × ω
+        Some(wheels) => (m + wheels).norm(),
+        None if weight == 0.0 => m.norm(),
+        None => (2.0 * kinetic / least).sqrt(),
+    };
+    let moves_freely = weight == 0.0 && wheels.is_none();
+    let speed = if moves_freely { momentum * largest } else { (2.0 * kinetic * largest).sqrt() };
     // bounds, not estimates: with room for rounding
     let room = 1.0 + 1e-9;
     Rates { speed: speed * room, acceleration: (momentum * speed + weight) * largest * room }

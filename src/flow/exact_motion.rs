@@ -2,11 +2,11 @@
 
 use thiserror::Error;
 
-use super::{FreeMotion, LagrangeError, LagrangeTop, TimeError};
+use super::{FreeMotion, GyrostatError, GyrostatMotion, LagrangeError, LagrangeTop, TimeError};
 use crate::body::{Body, Point, Problem, State, StateError};
-use crate::num::Dd;
+use crate::num::{Dd, Shown};
 
-/// The motion of a body from one start in closed form: of a free body, or of a symmetric top under gravity.
+/// The motion of a body from one start in closed form: of a free body, of a body with wheels, or of a symmetric top under gravity.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -27,6 +27,8 @@ pub enum ExactMotion {
     Free(Box<FreeMotion>),
     /// A symmetric body under gravity, its weight on the axis.
     Lagrange(Box<LagrangeTop>),
+    /// A body with wheels, and nothing else acts.
+    Gyrostat(Box<GyrostatMotion>),
 }
 
 /// Why a motion has no closed form here.
@@ -36,9 +38,26 @@ pub enum NoClosedForm {
     /// The body is heavy and no Lagrange top.
     #[error(transparent)]
     Lagrange(#[from] LagrangeError),
+    /// The motion of a body with wheels has too few digits in closed form.
+    #[error(transparent)]
+    Gyrostat(#[from] GyrostatError),
+    /// The motor of a wheel works.
+    #[error(
+        "the motor of a wheel works with {} N m from {} s to {} s; a closed form is known while no motor works: take taylor, or begin again \
+         where it ends", Shown(*torque), Shown(*from), Shown(*to)
+    )]
+    Motor {
+        /// N m.
+        torque: f64,
+        /// When it begins, s.
+        from: f64,
+        /// When it ends, s; infinite without end.
+        to: f64,
+    },
     /// A force acts that leaves no closed form.
     #[error(
-        "{force} acts on the body; a closed form is known here for free bodies and for symmetric tops under gravity"
+        "{force} acts on the body; a closed form is known here for bodies on which nothing acts, with wheels or without, and for symmetric \
+         tops under gravity"
     )]
     Forced {
         /// Name of the force.
@@ -64,7 +83,7 @@ impl ExactMotion {
     /// As [`new`](Self::new).
     pub fn from_point(body: &Body, start: Point<Dd>) -> Result<Self, NoClosedForm> {
         if !body.wheels().is_empty() {
-            return Err(NoClosedForm::Forced { force: "momentum of wheels".into() });
+            return Ok(Self::Gyrostat(Box::new(GyrostatMotion::from_point(body, start)?)));
         }
         match (body.problem(), body.remainder().next()) {
             (Problem::Free, _) => Ok(Self::Free(Box::new(FreeMotion::from_point(body.inertia(), start)))),
@@ -81,6 +100,7 @@ impl ExactMotion {
         match self {
             Self::Free(motion) => motion.at(t),
             Self::Lagrange(top) => top.at(t),
+            Self::Gyrostat(motion) => motion.at(t),
         }
     }
 
@@ -90,6 +110,7 @@ impl ExactMotion {
         match self {
             Self::Free(motion) => motion.reach(),
             Self::Lagrange(top) => top.reach(),
+            Self::Gyrostat(motion) => motion.reach(),
         }
     }
 
@@ -119,6 +140,7 @@ impl ExactMotion {
         match self {
             Self::Free(motion) => motion.point_after(t),
             Self::Lagrange(top) => top.point_after(t),
+            Self::Gyrostat(motion) => motion.point_after(t),
         }
     }
 
@@ -127,6 +149,7 @@ impl ExactMotion {
         match self {
             Self::Free(motion) => motion.point_at_dd(t),
             Self::Lagrange(top) => top.point_at_dd(t),
+            Self::Gyrostat(motion) => motion.point_at_dd(t),
         }
     }
 }

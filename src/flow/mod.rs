@@ -36,6 +36,7 @@ pub use free::{
 };
 #[cfg(any(test, feature = "random"))]
 pub use free::{NoElements, NoTumbler, TumblingPopulation, TumblingSolution};
+pub use gyrostat::{GyrostatCharacter, GyrostatError, GyrostatMotion, SteadySpin};
 pub use kick::Kick;
 pub use lagrange::{LagrangeError, LagrangeTop, TopDerivative};
 pub use reach::TimeError;

@@ -16,13 +16,14 @@ mod character;
 mod error;
 mod lattice;
 mod level;
+mod motion;
 mod orbit;
 mod pencil;
 mod spinor;
 mod steady;
 mod weierstrass;
 
-pub(crate) use character::GyrostatCharacter;
 pub use error::GyrostatError;
-pub(crate) use orbit::GyrostatOrbit;
-pub(crate) use steady::{SteadySpin, steady_spins};
+pub use motion::{GyrostatCharacter, GyrostatMotion, SteadySpin};
+use orbit::GyrostatOrbit;
+use steady::steady_spins;

@@ -140,6 +140,11 @@ impl GyrostatOrbit {
         self.reach
     }
 
+    /// |m|, that of body and wheels.
+    pub(crate) fn momentum_norm(&self) -> Dd {
+        self.start.momentum_body.norm_of_any_size()
+    }
+
     /// Period, energy and separatrices.
     pub(crate) fn character(&self) -> GyrostatCharacter {
         let m = self.start.momentum_body;

@@ -157,7 +157,7 @@ impl LagrangeTop {
             return Err(LagrangeError::Forced { force: force.name().into() });
         }
         if !body.wheels().is_empty() {
-            return Err(LagrangeError::Forced { force: "momentum of wheels".into() });
+            return Err(LagrangeError::Forced { force: "the momentum of wheels".into() });
         }
         let weight_moment = body.linear_potential::<Dd>().ok_or(LagrangeError::Free)?.moment;
         let (axis, transverse, axial) = symmetry_axis(body, weight_moment)?;
