@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::flow::FreeMotion;
+use polhode::body::Point;
+use polhode::flow::{FreeMotion, GyrostatMotion};
+use polhode::num::Dd;
 use polhode_files::error::Error;
-use polhode_pages::character::{Quantity, quantities};
+use polhode_pages::character::{Quantity, quantities, steady_spins, with_wheels};
 use polhode_pages::output::emit;
 use polhode_pages::table::{Cell, Column, Format, Table, row};
 
@@ -24,7 +26,9 @@ const EXAMPLES: &str = "Examples:
   polhode motion --moments 1,2,3 --omega 0,1,0 --format json
   polhode motion --moments 0.61,0.965,1 --periods 27.38h,263h --mode sam \\
     --pole 250,-75 --phases 152,14 --angle-unit deg
-  polhode motion --body toutatis --to-frame icrf";
+  polhode motion --body toutatis --to-frame icrf
+  polhode motion --moments 10,12,15 --wheel 0,0,1,0.05@3000rpm \
+    --omega 0.1,0.02,0.3";
 
 /// Mode, periods, stability and distance to the separatrix of torque-free motion
 ///
@@ -53,6 +57,14 @@ const EXAMPLES: &str = "Examples:
 ///                        (unknown: its attitude at the start is the identity),
 ///                        and the date of its start
 ///
+/// Of a body with wheels the table has instead:
+///
+///   period               after which the angular velocity is what it was
+///   turn_per_period      of the body about L after that
+///   energy               1/2 w.I w, and that of the unstable steady spins with
+///                        the same |L|: a motion of theirs is on a separatrix
+///   steady_spins         how many have this |L|; --steady lists them
+///
 /// csv and json have angles in rad and times in s. A start with a known frame is
 /// turned to another by --to-frame.
 #[derive(Args, Clone, Debug)]
@@ -64,6 +76,9 @@ pub(crate) struct Motion {
     wheels: WheelArguments,
     #[command(flatten)]
     pub(crate) start: StartArguments,
+    /// With wheels: list the steady spins with the |L| of the start, their energy and stability, alone
+    #[arg(long, help_heading = "Output")]
+    steady: bool,
     /// How the quantities are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
@@ -80,6 +95,24 @@ impl Motion {
             .carried(body, of_file, |held| self.start.inside(held, self.body.published_start()))?;
         let published = self.body.published_start();
         let start = self.start.inside(&body, published.clone())?;
+        let format = Format::of(self.format, self.out.as_deref())?;
+        if !body.wheels().is_empty() {
+            let motion = GyrostatMotion::from_point(&body, start);
+            return self.of_wheels(
+                &motion.map_err(|error| Error::Input(format!("--wheel: {error}")))?,
+                &start,
+                format,
+            );
+        }
+        if self.steady {
+            let rule = "lists the steady spins of a body with wheels";
+            return Err(Error::input(
+                "--steady",
+                "",
+                rule,
+                "without wheels these are the spins about the principal axes",
+            ));
+        }
         let motion = FreeMotion::from_point(body.inertia(), start);
         let quantities = quantities(&body, &start, &motion);
         let mut quantities = quantities.map_err(|error| Error::Input(format!("--omega: {error}")))?;
@@ -91,8 +124,21 @@ impl Motion {
         let epoch = published.and_then(|found| found.orientation?.epoch);
         quantities.push(("frame", "", "", "axes of space", frame.into()));
         quantities.push(("epoch", "", "", "of the start", epoch.into()));
-        let format = Format::of(self.format, self.out.as_deref())?;
         let text = if format == Format::Table { sheet(quantities) } else { format.write(&wide(quantities)) };
+        emit(&text, self.out.as_deref())
+    }
+}
+
+impl Motion {
+    /// The quantities of a motion with wheels, or its steady spins; on a terminal both.
+    fn of_wheels(&self, motion: &GyrostatMotion, start: &Point<Dd>, format: Format) -> Result<(), Error> {
+        let (quantities, spins) = (with_wheels(motion, start), steady_spins(&motion.steady_spins()));
+        let text = match (format, self.steady) {
+            (Format::Table, true) => spins.terminal(),
+            (Format::Table, false) => format!("{}\n{}", sheet(quantities), spins.terminal()),
+            (_, true) => format.write(&spins),
+            (_, false) => format.write(&wide(quantities)),
+        };
         emit(&text, self.out.as_deref())
     }
 }

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 use polhode::body::{Body, Point};
-use polhode::flow::{AtRest, Character, FreeMotion, Mode, Stability};
+use polhode::flow::{AtRest, Character, FreeMotion, GyrostatMotion, Mode, Stability, SteadySpin};
 use polhode::num::Dd;
 
-use crate::table::Cell;
+use crate::table::{Cell, Column, Table, row};
 
 /// Name, symbol of the field, unit, meaning and value of a quantity.
 pub type Quantity = (&'static str, &'static str, &'static str, &'static str, Cell);
@@ -119,6 +119,87 @@ pub fn quantities(body: &Body, start: &Point<Dd>, motion: &FreeMotion) -> Result
         ("omega_body_y", "", "rad/s", "", omega.y.into()),
         ("omega_body_z", "", "rad/s", "", omega.z.into()),
     ])
+}
+
+/// What is to be known of the `motion` of a body with wheels from `start`; empty where the motion does not have it.
+#[must_use]
+pub fn with_wheels(motion: &GyrostatMotion, start: &Point<Dd>) -> Vec<Quantity> {
+    let (body, character) = (motion.body(), motion.character());
+    let state = body.leave(start);
+    let momentum = body.momentum_space(0.0, &state);
+    let (omega, of_wheels) = (body.omega_of(start), body.momentum_of_wheels_at(0.0));
+    let separatrices = character.separatrix_energies;
+    let energy_of = |k: usize| Cell::from(separatrices.get(k).copied());
+    let spins = motion.steady_spins();
+    let stable = spins.iter().filter(|spin| spin.growth_rate == 0.0).count();
+    let mode = if character.period.is_some() { "tumbling" } else { "steady" };
+    let q = state.attitude.components();
+    vec![
+        ("mode", "", "", "tumbling or steady", mode.into()),
+        ("period", "", "s", "of the angular velocity in the body", character.period.into()),
+        (
+            "turn_per_period",
+            "",
+            "rad",
+            "about L in a period, less whole turns",
+            character.turn_per_period.into(),
+        ),
+        ("energy", "T", "J", "1/2 w.I w, which wheels leave constant", character.energy.into()),
+        ("separatrix_energy_1", "", "J", "of an unstable steady spin with the same |L|", energy_of(0)),
+        ("separatrix_energy_2", "", "J", "of the other one", energy_of(1)),
+        ("steady_spins", "", "", "with the same |L|; --steady lists them", (spins.len() as u64).into()),
+        ("stable_spins", "", "", "of them", (stable as u64).into()),
+        ("momentum", "|L|", "kg m^2/s", "of body and wheels", momentum.norm().into()),
+        ("momentum_x", "L_x", "kg m^2/s", "in space", momentum.x.into()),
+        ("momentum_y", "L_y", "kg m^2/s", "", momentum.y.into()),
+        ("momentum_z", "L_z", "kg m^2/s", "", momentum.z.into()),
+        ("wheels_x", "h_x", "kg m^2/s", "momentum of the wheels, body axes", of_wheels.x.into()),
+        ("wheels_y", "h_y", "kg m^2/s", "", of_wheels.y.into()),
+        ("wheels_z", "h_z", "kg m^2/s", "", of_wheels.z.into()),
+        ("q_w", "", "", "attitude at the start, body to space", q[0].into()),
+        ("q_x", "", "", "", q[1].into()),
+        ("q_y", "", "", "", q[2].into()),
+        ("q_z", "", "", "", q[3].into()),
+        ("omega_body_x", "", "rad/s", "angular velocity at the start", omega.x.into()),
+        ("omega_body_y", "", "rad/s", "", omega.y.into()),
+        ("omega_body_z", "", "rad/s", "", omega.z.into()),
+    ]
+}
+
+/// The steady spins of a body with wheels that have the |L| of a motion, by rising energy.
+#[must_use]
+pub fn steady_spins(spins: &[SteadySpin]) -> Table {
+    let columns = vec![
+        Column::new("omega_body_x", "rad/s", "angular velocity, body axes").digits(6),
+        Column::new("omega_body_y", "rad/s", "").digits(6),
+        Column::new("omega_body_z", "rad/s", "").digits(6),
+        Column::new("rate", "rad/s", "about L, negative against it").digits(6),
+        Column::new("energy", "J", "1/2 w.I w").digits(6),
+        Column::new("stability", "", "stable, unstable or neutral"),
+        Column::new("frequency", "rad/s", "of small oscillations of a stable one").digits(6),
+        Column::new("growth_rate", "1/s", "of deviations of an unstable one").digits(6),
+    ];
+    let mut table = Table::new("steady", "Steady spins with the |L| of the start.", columns);
+    let some = |rate: f64| Some(rate).filter(|rate| *rate > 0.0);
+    for spin in spins {
+        let [x, y, z]: [f64; 3] = spin.omega_body.into();
+        let stability = match spin.stability {
+            _ if spin.growth_rate > 0.0 => "unstable",
+            Stability::Neutral => "neutral",
+            _ => "stable",
+        };
+        table.push(row![
+            x,
+            y,
+            z,
+            spin.rate,
+            spin.energy,
+            stability,
+            some(spin.frequency),
+            some(spin.growth_rate)
+        ]);
+    }
+    table
 }
 
 /// The axis of the mode or of a steady spin by its place among the moments, and its direction in body axes.
