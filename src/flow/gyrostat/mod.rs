@@ -9,15 +9,18 @@
 //! | `pencil` | the elliptic curve behind it, by the pencil of the two quadrics |
 //! | `lattice`, `weierstrass` | its periods; the argument of a point on it |
 //! | `spinor` | attitude and momentum by two theta functions of the second degree and one phase |
+//! | `quick`, `dual` | both in `f64`, and next to a separatrix |
 //! | `orbit` | the motion from a start |
 //! | `steady` | the two, four or six spins at which m stays in the body |
 
 mod character;
+mod dual;
 mod error;
 mod lattice;
 mod level;
 mod orbit;
 mod pencil;
+mod quick;
 mod spinor;
 mod steady;
 mod weierstrass;
