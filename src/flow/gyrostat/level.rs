@@ -88,7 +88,9 @@ impl Level {
         let by_s = exponent(spread.magnitude().max(nu.magnitude()));
         let unit = |v: Vec3<Dd>| v.map(|x| x.scaled(-by_s));
         let (spread, turning, nu) = (unit(spread), unit(turning), unit(nu));
-        let across = n.cross(nu);
+        // ω differs by a_μ n: of the two the smaller has the smaller rounding, and at rest none
+        let own = omega.map(|x| (x / norm).scaled(-by_g - by_s));
+        let across = n.cross(if own.magnitude() < nu.magnitude() { own } else { nu });
         let speed = across.norm();
         if speed == Dd::ZERO {
             return Course::Steady(omega);
