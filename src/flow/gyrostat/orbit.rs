@@ -100,7 +100,7 @@ impl GyrostatOrbit {
             });
         }
         let norm = start.momentum_body.norm_of_any_size();
-        let quick = Quick::new(&level, &spinor, &start, norm);
+        let quick = Quick::new(&level, &spinor, [moments, wheel], &start, norm);
         let moving = Moving {
             quick,
             frame: level.frame,

@@ -1,6 +1,7 @@
 //! Attitude and momentum in `f64`, with phases in double-double.
 
 use super::dual::Dual;
+use super::least::Least;
 use super::level::Level;
 use super::spinor::Spinor;
 use crate::body::Point;
@@ -38,15 +39,23 @@ struct Direct {
     constant: [Complex<f64>; 2],
     /// Coefficients of Xⁿ and X⁻ⁿ in Z, and in W, from n = N down.
     terms: Vec<[Complex<f64>; 4]>,
+    /// Where a moment is small.
+    least: Option<Least>,
 }
 
 impl Quick {
     /// From the attitude of `start`, where m has the size `norm`.
-    pub(super) fn new(level: &Level, spinor: &Spinor, start: &Point<Dd>, norm: Dd) -> Self {
+    pub(super) fn new(
+        level: &Level,
+        spinor: &Spinor,
+        [moments, wheel]: [Vec3<Dd>; 2],
+        start: &Point<Dd>,
+        norm: Dd,
+    ) -> Self {
         let dual = spinor.basis.as_ref().and_then(|basis| Dual::new(basis, level.rate));
         let form = match dual {
             Some(dual) => Form::Dual(Box::new(dual)),
-            None => Form::Direct(Direct::new(level, spinor)),
+            None => Form::Direct(Direct::new(level, spinor, Least::new(level, spinor, moments, wheel, norm))),
         };
         let q0 = start.attitude;
         let along = |e: Vec3<Dd>| (q0 * Quat::new(Dd::ZERO, e)).map(Dd::hi);
@@ -72,9 +81,15 @@ impl Quick {
         if twist.is_nan() || twist.abs() >= TOO_FAR {
             return None;
         }
-        let ([z, w], tilt) = match &self.form {
-            Form::Direct(direct) => (direct.at(t)?, 0.0),
-            Form::Dual(dual) => dual.at(t)?,
+        let ([z, w], tilt, least) = match &self.form {
+            Form::Direct(direct) => {
+                let (functions, x) = direct.at(t)?;
+                (functions, 0.0, direct.least.as_ref().map(|least| (least, x)))
+            }
+            Form::Dual(dual) => {
+                let (functions, tilt) = dual.at(t)?;
+                (functions, tilt, None)
+            }
         };
         let (zz, ww) = (z.norm_squared(), w.norm_squared());
         let r = 1.0 / (zz + ww).sqrt();
@@ -86,13 +101,16 @@ impl Quick {
         let attitude = q0 * a.re + q1 * b.im - q2 * b.re + q3 * a.im;
         let across = (w * z.conjugate()).scaled(2.0 * r * r);
         let [e1, e2, e3] = self.frame;
-        let momentum = e1 * across.re + e2 * across.im + e3 * ((zz - ww) * (r * r));
+        let mut momentum = e1 * across.re + e2 * across.im + e3 * ((zz - ww) * (r * r));
+        if let Some((least, x)) = least {
+            least.replace(&mut momentum, x, r * r);
+        }
         Some((attitude, momentum))
     }
 }
 
 impl Direct {
-    fn new(level: &Level, spinor: &Spinor) -> Self {
+    fn new(level: &Level, spinor: &Spinor, least: Option<Least>) -> Self {
         let round = |c: Complex<Dd>| Complex::new(c.re.hi(), c.im.hi());
         let half = spinor.terms.len() / 2;
         let each = |n: usize| {
@@ -101,17 +119,18 @@ impl Direct {
         };
         let size = |terms: &[Complex<f64>; 4]| terms.iter().map(|c| c.norm_squared()).fold(0.0, f64::max);
         let largest = (0..=half).map(|n| size(&each(n))).fold(0.0, f64::max);
-        let least = largest * NEGLIGIBLE * NEGLIGIBLE;
-        let terms = (1..=half).rev().map(each).skip_while(|terms| size(terms) < least).collect();
+        let lowest = largest * NEGLIGIBLE * NEGLIGIBLE;
+        let terms = (1..=half).rev().map(each).skip_while(|terms| size(terms) < lowest).collect();
         Direct {
             phase: Phase::new(spinor.rate * level.rate / Dd::TAU, Dd::ZERO),
             constant: spinor.terms[half].map(round),
             terms,
+            least,
         }
     }
 
     #[inline]
-    fn at(&self, t: Pair) -> Option<[Complex<f64>; 2]> {
+    fn at(&self, t: Pair) -> Option<([Complex<f64>; 2], Complex<f64>)> {
         let (phase, low) = self.phase.at(t);
         if phase.is_nan() || phase.abs() >= TOO_FAR {
             return None;
@@ -125,6 +144,7 @@ impl Direct {
             sums[2] = (sums[2] + terms[2]) * up;
             sums[3] = (sums[3] + terms[3]) * down;
         }
-        Some([self.constant[0] + (sums[0] + sums[1]), self.constant[1] + (sums[2] + sums[3])])
+        let functions = [self.constant[0] + (sums[0] + sums[1]), self.constant[1] + (sums[2] + sums[3])];
+        Some((functions, up))
     }
 }

@@ -271,6 +271,42 @@ fn moments_that_meet() {
     }
 }
 
+/// ω = (m − h)/I of slender bodies, to the digits of ω.
+#[test]
+fn rates_of_slender_bodies() {
+    let mut random = Random(29);
+    let (mut worst, mut replaced) = ([0.0_f64; 2], 0);
+    for _ in 0..300 {
+        let axis = random.choice(3);
+        let mut moments = random.vector().map(|x| 1.5 + 0.5 * x);
+        moments[axis] = random.decade(-5.0, -1.0);
+        let moments = moments.map(Dd::of);
+        let omega = random.vector().map(Dd::of);
+        // a wheel as strong as the body along its axis
+        let mut wheel = Vec3::zero();
+        wheel[axis] = moments[axis] * random.number();
+        let start = Point::new(Quat::identity(), moments.times(omega) + wheel);
+        let orbit = GyrostatOrbit::new(moments, wheel, start).unwrap();
+        let Kind::Moving(moving) = &orbit.kind else { continue };
+        let is_dual = moving.quick.is_dual();
+        replaced += usize::from(!is_dual);
+        // transverse energy may become that of a much faster spin
+        let (mut off, mut fastest) = (0.0_f64, omega.norm().hi());
+        for _ in 0..20 {
+            let t = Dd::of(random.number() * 1e3);
+            let (quick, exact) = (orbit.point_after(t).to_dd(), orbit.point_at_dd(t));
+            let rate = |m: Vec3<Dd>| (m[axis] - wheel[axis]) / moments[axis];
+            fastest = fastest.max(rate(exact.momentum_body).magnitude());
+            off = off.max((rate(quick.momentum_body) - rate(exact.momentum_body)).magnitude());
+        }
+        let place = usize::from(is_dual);
+        worst[place] = worst[place].max(off / fastest);
+    }
+    println!("{worst:?} {replaced}");
+    assert!(worst[0] < 4e-15, "{worst:?}");
+    assert!(replaced > 200, "{replaced}");
+}
+
 /// Bodies about to leave an unstable spin, in both lattices: the passage from saddle to saddle takes a small part of the time.
 #[test]
 fn passages_from_saddle_to_saddle() {
