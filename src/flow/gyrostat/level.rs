@@ -23,6 +23,9 @@ use crate::num::complex::Complex;
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::Vec3;
 
+/// Differences of the inverse moments, of the largest rate, that no digit of a phase tells from zero.
+const NEGLIGIBLE: f64 = 1e-33;
+
 /// A level with the start on it.
 #[derive(Clone, Debug)]
 pub(super) struct Level {
@@ -85,7 +88,9 @@ impl Level {
         let by_s = exponent(spread.magnitude().max(nu.magnitude()));
         let unit = |v: Vec3<Dd>| v.map(|x| x.scaled(-by_s));
         let (spread, turning, nu) = (unit(spread), unit(turning), unit(nu));
-        let across = n.cross(nu);
+        // ω differs by a_μ n: of the two the smaller has the smaller rounding, and at rest none
+        let own = omega.map(|x| (x / norm).scaled(-by_g - by_s));
+        let across = n.cross(if own.magnitude() < nu.magnitude() { own } else { nu });
         let speed = across.norm();
         if speed == Dd::ZERO {
             return Course::Steady(omega);
@@ -101,9 +106,12 @@ impl Level {
         let beta = Complex::new((a(0, 0) - a(1, 1)) * 0.5, -a(0, 1));
         let a33 = a(2, 2);
         let exact = || {
+            if is_elementary(spread, turning) {
+                return None;
+            }
             let by_i = exponent(moments.magnitude());
             let [moments, wheel] = [(moments, by_i), (wheel, by_g)].map(|(v, by)| v.map(|x| x.scaled(-by)));
-            WideCurve::new(moments, wheel, m, by_s + by_i)
+            Some(WideCurve::new(moments, wheel, m, by_s + by_i))
         };
         let pencil = Pencil::of(spread, n, nu, exact);
         Course::Moving(Box::new(Level {
@@ -122,11 +130,9 @@ impl Level {
         }))
     }
 
-    /// Whether ν stays: a ball, and a symmetric carrier with the wheel along its axis. The motion then is that of two turns.
+    /// Whether ν stays: a ball, for which a strong wheel makes any body that has hardly any momentum, and a symmetric carrier with the wheel along its axis. The motion then is that of two turns.
     pub(super) fn is_elementary(&self) -> bool {
-        let same = |k: usize| self.spread[k] == Dd::ZERO;
-        let bare = |k: usize| same(k) && self.wheel[k] == Dd::ZERO;
-        (0..3).all(same) || (0..3).filter(|&k| bare(k)).count() == 2
+        is_elementary(self.spread, self.wheel)
     }
 
     /// ζ''/ζ' at the start, `i (κ − β̄)`.
@@ -165,4 +171,9 @@ impl Level {
         let omega = self.spread.times(n) - self.wheel + n * self.common;
         Vec3(self.frame.map(|e| e.dot(omega)))
     }
+}
+
+fn is_elementary(spread: Vec3<Dd>, wheel: Vec3<Dd>) -> bool {
+    let same = |k: usize| spread[k] == Dd::ZERO;
+    spread.magnitude() < NEGLIGIBLE || (0..3).filter(|&k| same(k) && wheel[k] == Dd::ZERO).count() == 2
 }

@@ -9,16 +9,20 @@
 //! | `pencil` | the elliptic curve behind it, by the pencil of the two quadrics |
 //! | `lattice`, `weierstrass` | its periods; the argument of a point on it |
 //! | `spinor` | attitude and momentum by two theta functions of the second degree and one phase |
+//! | `quick`, `dual`, `least` | both in `f64`, next to a separatrix, and m along the axis of a small moment |
 //! | `orbit` | the motion from a start |
 //! | `steady` | the two, four or six spins at which m stays in the body |
 
 mod character;
+mod dual;
 mod error;
 mod lattice;
+mod least;
 mod level;
 mod motion;
 mod orbit;
 mod pencil;
+mod quick;
 mod spinor;
 mod steady;
 mod weierstrass;

@@ -4,18 +4,15 @@ use super::character::GyrostatCharacter;
 use super::error::GyrostatError;
 use super::lattice::Lattice;
 use super::level::{Course, Level};
+use super::quick::Quick;
 use super::spinor::Spinor;
 use super::steady::steady_spins;
 use crate::body::Point;
-use crate::flow::free::{Pair, Phase, Spin, Stability, TOO_FAR, pair, reduce};
+use crate::flow::free::{Spin, Stability, pair, reduce};
 use crate::flow::reach::MOST_RADIANS;
 use crate::num::complex::Complex;
-use crate::num::trig::{nearest, sin_cos_turns};
 use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
-
-/// Terms of this share of the largest are left out in `f64`.
-const NEGLIGIBLE: f64 = 1e-19;
 
 /// Places of a period at which the equation of motion is checked; next to a separatrix most of them lie at the saddle.
 const FEW: u32 = 2;
@@ -30,17 +27,13 @@ const LARGEST_NEAR: f64 = 1e-21;
 /// It is next to a separatrix where (e₁ − e₂)² is less than this share of its terms.
 const NEAR: f64 = 1e-4;
 
-/// Ratios y/T below which the sums in `f64` cancel to less than 1e-15, of a straight and of a skew lattice.
-const LEAST_STRAIGHT: f64 = 0.36;
-const LEAST_SKEW: f64 = 0.13;
-
 /// The ratio y/T of a small oscillation about a stable spin is at least this; next to an unstable one it is below 1.
 const LEAST_OF_SMALL: f64 = 3.0;
 
 /// Constants of one motion, worked out once; then any time in O(1).
 ///
 /// In `f64` attitude and momentum are right to 1e-15 (rad, |m|) at any time up to 10⁹ of the shortest radians and, with the
-/// double-double phases, beyond; next to a separatrix the sums are taken in double-double, which takes longer. Where the digits
+/// double-double phases, beyond; next to a separatrix by a dual form. Where the digits
 /// do not suffice [`new`](Self::new) refuses: every motion is checked against the equation of motion before it is answered.
 #[derive(Clone, Debug)]
 pub(crate) struct GyrostatOrbit {
@@ -61,27 +54,12 @@ enum Kind {
 #[derive(Clone, Debug)]
 struct Moving {
     spinor: Spinor,
-    /// Where its sums do not cancel.
-    quick: Option<Quick>,
+    quick: Quick,
     frame: [Vec3<Dd>; 3],
     norm: Dd,
     /// τ/t.
     rate: Dd,
     period: Dd,
-}
-
-/// The form in `f64`.
-#[derive(Clone, Debug)]
-struct Quick {
-    phase: Phase, // turns of X
-    twist: Phase, // turns of e^{iρτ}
-    constant: [Complex<f64>; 2],
-    /// Coefficients of Xⁿ and X⁻ⁿ in Z, and in W, from n = N down.
-    terms: Vec<[Complex<f64>; 4]>,
-    /// q0 and q0 ∘ (0, e) of the three axes.
-    attitudes: [Quat<f64>; 4],
-    /// G e of the three axes.
-    frame: [Vec3<f64>; 3],
 }
 
 impl GyrostatOrbit {
@@ -102,16 +80,15 @@ impl GyrostatOrbit {
             }
             Course::Moving(level) => level,
         };
-        let (spinor, apart, is_quick) = if level.is_elementary() {
-            (Spinor::elementary(&level), 1.0, true)
+        let (spinor, apart) = if level.is_elementary() {
+            (Spinor::elementary(&level), 1.0)
         } else {
             let lattice = Lattice::new(&level.pencil);
             let ratio = lattice.ratio().hi();
             if Spinor::is_small(&level, &lattice) && ratio < LEAST_OF_SMALL {
                 return Err(GyrostatError::Saddle { length: (level.speed * lattice.period).hi() });
             }
-            let least = if lattice.is_skew { LEAST_SKEW } else { LEAST_STRAIGHT };
-            (Spinor::new(&level, lattice), level.pencil.apart, ratio >= least)
+            (Spinor::new(&level, lattice), level.pencil.apart)
         };
         let is_near = apart < NEAR;
         let defect = defect(&level, &spinor, if is_near { MANY } else { FEW });
@@ -123,7 +100,7 @@ impl GyrostatOrbit {
             });
         }
         let norm = start.momentum_body.norm_of_any_size();
-        let quick = is_quick.then(|| Quick::new(&level, &spinor, &start, norm));
+        let quick = Quick::new(&level, &spinor, [moments, wheel], &start, norm);
         let moving = Moving {
             quick,
             frame: level.frame,
@@ -182,7 +159,7 @@ impl GyrostatOrbit {
                 let start = self.start.to_f64();
                 (start.attitude * turn, start.momentum_body)
             }),
-            Kind::Moving(moving) => moving.quick.as_ref().and_then(|quick| quick.at(pair(t))),
+            Kind::Moving(moving) => moving.quick.at(pair(t)),
         };
         match quick {
             Some((attitude, momentum_body)) => Point::new(attitude, momentum_body),
@@ -214,64 +191,6 @@ impl Moving {
         let Quat { w, v } = Spinor::turn(functions.map(|f| f * phase)).normalized();
         let body = |v: [Dd; 3]| self.frame[0] * v[0] + self.frame[1] * v[1] + self.frame[2] * v[2];
         (Quat::new(w, body(v.0)), body(Spinor::direction(functions)) * self.norm)
-    }
-}
-
-impl Quick {
-    fn new(level: &Level, spinor: &Spinor, start: &Point<Dd>, norm: Dd) -> Self {
-        let round = |c: Complex<Dd>| Complex::new(c.re.hi(), c.im.hi());
-        let half = spinor.terms.len() / 2;
-        let each = |n: usize| {
-            let [up, down] = [spinor.terms[half + n], spinor.terms[half - n]];
-            [up[0], down[0], up[1], down[1]].map(round)
-        };
-        let size = |terms: &[Complex<f64>; 4]| terms.iter().map(|c| c.norm_squared()).fold(0.0, f64::max);
-        let largest = (0..=half).map(|n| size(&each(n))).fold(0.0, f64::max);
-        let least = largest * NEGLIGIBLE * NEGLIGIBLE;
-        let terms = (1..=half).rev().map(each).skip_while(|terms| size(terms) < least).collect();
-        let q0 = start.attitude;
-        let along = |e: Vec3<Dd>| (q0 * Quat::new(Dd::ZERO, e)).map(Dd::hi);
-        let [e1, e2, e3] = level.frame;
-        let per_second = |rate: Dd| Phase::new(rate * level.rate / Dd::TAU, Dd::ZERO);
-        Quick {
-            phase: per_second(spinor.rate),
-            twist: per_second(spinor.twist),
-            constant: spinor.terms[half].map(round),
-            terms,
-            attitudes: [q0.map(Dd::hi), along(e1), along(e2), along(e3)],
-            frame: level.frame.map(|e| (e * norm).map(Dd::hi)),
-        }
-    }
-
-    #[inline]
-    fn at(&self, t: Pair) -> Option<(Quat<f64>, Vec3<f64>)> {
-        let (phase, phase_low) = self.phase.at(t);
-        let (twist, twist_low) = self.twist.at(t);
-        if !(phase.abs() < TOO_FAR && twist.abs() < TOO_FAR) {
-            return None;
-        }
-        let (sin, cos) = sin_cos_turns(phase - nearest(phase), phase_low);
-        let (up, down) = (Complex::new(cos, sin), Complex::new(cos, -sin));
-        let mut sums = [Complex::new(0.0, 0.0); 4];
-        for terms in &self.terms {
-            sums[0] = (sums[0] + terms[0]) * up;
-            sums[1] = (sums[1] + terms[1]) * down;
-            sums[2] = (sums[2] + terms[2]) * up;
-            sums[3] = (sums[3] + terms[3]) * down;
-        }
-        let z = self.constant[0] + (sums[0] + sums[1]);
-        let w = self.constant[1] + (sums[2] + sums[3]);
-        let (zz, ww) = (z.norm_squared(), w.norm_squared());
-        let r = 1.0 / (zz + ww).sqrt();
-        let (sin, cos) = sin_cos_turns(twist - nearest(twist), twist_low);
-        let a = z * Complex::new(cos * r, sin * r);
-        let b = w * Complex::new(cos * r, sin * r);
-        let [q0, q1, q2, q3] = self.attitudes;
-        let attitude = q0 * a.re + q1 * b.im - q2 * b.re + q3 * a.im;
-        let across = (w * z.conjugate()).scaled(2.0 * r * r);
-        let [e1, e2, e3] = self.frame;
-        let momentum = e1 * across.re + e2 * across.im + e3 * ((zz - ww) * (r * r));
-        Some((attitude, momentum))
     }
 }
 

@@ -176,8 +176,13 @@ impl<T: Number> Invariants<T> {
 }
 
 impl Pencil {
-    /// In units of S, from n, b and ν.
-    pub(super) fn of(b: Vec3<Dd>, n: Vec3<Dd>, nu: Vec3<Dd>, exact: impl FnOnce() -> WideCurve) -> Self {
+    /// In units of S, from n, b and ν; `exact` is asked where they have too few digits.
+    pub(super) fn of(
+        b: Vec3<Dd>,
+        n: Vec3<Dd>,
+        nu: Vec3<Dd>,
+        exact: impl FnOnce() -> Option<WideCurve>,
+    ) -> Self {
         let minus = coefficients(b.0, n.0, nu.0);
         let invariants = Invariants::of(minus);
         let root = isolated(invariants.i, invariants.j);
@@ -192,8 +197,8 @@ impl Pencil {
         let mut rounding = ROUNDING;
         // of roots that are all but equal the difference is told by the wide form
         let left = kept.min(apart(&pencil)).min(pencil.split.magnitude() / pencil.terms / EQUAL);
-        if left < LOST || left.is_nan() {
-            let exact = exact();
+        let exact = if left < LOST || left.is_nan() { exact() } else { None };
+        if let Some(exact) = exact {
             let scale = exact.invariants.leading.rounded() * exact.unit * exact.unit;
             let start = -(scale * pencil.single * 12.0);
             let terms = pencil.terms;

@@ -44,6 +44,18 @@ pub(super) struct Spinor {
     /// 2π/T and ρ, for τ.
     pub(super) rate: Dd,
     pub(super) twist: Dd,
+    /// What the dual form is made from; `None` where the sums have two or three terms.
+    pub(super) basis: Option<Basis>,
+}
+
+/// Z and W as combinations of the sums over even and over odd n.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Basis {
+    pub(super) lattice: Lattice,
+    /// d.
+    pub(super) place: Complex<Dd>,
+    /// What multiplies the even terms in Z and W, and the odd ones.
+    pub(super) factors: [[Complex<Dd>; 2]; 2],
 }
 
 /// Z, W and their derivatives by τ.
@@ -80,12 +92,19 @@ impl Spinor {
             plus.1 <= minus.1
         };
         let twist = if is_plus { plus.0 } else { minus.0 };
+        let mut basis = None;
         if !is_small {
             // next to a steady spin the one of the start has fewer digits
             log_rate.im = (at_start - twist) / rate;
-            terms = fitted(terms, level, rate, log_rate);
+            let factors = fitted(&terms, level, rate, log_rate);
+            let half = terms.len() / 2;
+            for (k, term) in terms.iter_mut().enumerate() {
+                let [z, w] = factors[(k + half) % 2];
+                *term = [term[0] * z, term[1] * w];
+            }
+            basis = Some(Basis { lattice, place, factors });
         }
-        Spinor { terms, rate, twist }
+        Spinor { terms, rate, twist, basis }
     }
 
     /// Whether the start is so near to a steady spin that the linear theory serves.
@@ -103,7 +122,7 @@ impl Spinor {
             [real((Dd::ONE - cos) * 0.5), real(-sin)],
             [real((Dd::ONE + cos) * 0.5), real(sin)],
         ];
-        Spinor { terms, rate, twist: (level.common - rate) * 0.5 }
+        Spinor { terms, rate, twist: (level.common - rate) * 0.5, basis: None }
     }
 
     /// Z and W after `turns` of X.
@@ -211,30 +230,23 @@ fn log_rate(terms: &[[Complex<Dd>; 2]], level: &Level, rate: Dd) -> Complex<Dd> 
     (ratio - level.bend().scaled(Dd::ONE / rate)).scaled(Dd::of(0.5))
 }
 
-/// Coefficients of Z and W.
+/// What the even and the odd terms of Z and W are multiplied by.
 fn fitted(
-    mut terms: Vec<[Complex<Dd>; 2]>,
+    terms: &[[Complex<Dd>; 2]],
     level: &Level,
     rate: Dd,
     log_rate: Complex<Dd>,
-) -> Vec<[Complex<Dd>; 2]> {
-    let [a, b, _] = sums(&terms);
+) -> [[Complex<Dd>; 2]; 2] {
+    let [a, b, _] = sums(terms);
     let inverse = (a[0] * b[1] - a[1] * b[0]).inverse_conjugate().conjugate();
     let z = [(b[1] - a[1] * log_rate) * inverse, (a[0] * log_rate - b[0]) * inverse];
     // ζ'(0) = ½ i p
     let speed = level.speed * 0.5 / rate;
     let scale = Complex::new(inverse.im * speed, -(inverse.re * speed));
-    let minus = Complex::new(-scale.re, -scale.im);
-    let w = [a[1] * scale, a[0] * minus];
-    let half = terms.len() / 2;
-    for (k, term) in terms.iter_mut().enumerate() {
-        let parity = (k + half) % 2;
-        *term = [term[0] * z[parity], term[1] * w[parity]];
-    }
-    terms
+    [[z[0], a[1] * scale], [z[1], a[0] * scale.scaled(-Dd::ONE)]]
 }
 
-/// Those of a small oscillation, to the first order: W = c₊ (X − 1) + c₋ (1/X − 1) with `W'(0) = ½ i p` and
+/// Coefficients of a small oscillation, to the first order: W = c₊ (X − 1) + c₋ (1/X − 1) with `W'(0) = ½ i p` and
 /// `W''(0) = ½ i p ζ''/ζ'`; then `Z'/Z = i Re (αW)` less its mean.
 fn small(level: &Level, rate: Dd) -> Vec<[Complex<Dd>; 2]> {
     let speed = Complex::new(level.speed * 0.25 / rate, Dd::ZERO);

@@ -197,9 +197,6 @@ fn many(count: usize, seed: u64) {
             worst.push((kind, [0.0; 6], 0));
             worst.len() - 1
         });
-        if found[2] > worst[place].1[2] && found[2] > 1e-22 {
-            println!("{kind} {found:?} {moments:?} {wheel:?} {start:?}");
-        }
         raise(&mut worst[place].1, found);
         worst[place].2 += 1;
     }
@@ -208,6 +205,9 @@ fn many(count: usize, seed: u64) {
             "{kind:12} {all:6} f64 {q:.1e} {m:.1e} later {q_later:.1e} {m_later:.1e} rate {rate:.1e} twist {twist:.1e}"
         );
         assert!(q < 2e-15 && m < 2e-15, "{kind} {q:e} {m:e}");
+        assert!(q_later < 1e-20 && m_later < 1e-20, "{kind} {q_later:e} {m_later:e}");
+        // what a phase then misses after 10⁹ rad; of "near axial" the later start itself is off by as much
+        assert!(rate < 1e-22 && twist < 1e-22, "{kind} {rate:e} {twist:e}");
     }
 }
 
@@ -271,6 +271,72 @@ fn moments_that_meet() {
     }
 }
 
+/// ω = (m − h)/I of slender bodies, to the digits of ω.
+#[test]
+fn rates_of_slender_bodies() {
+    let mut random = Random(29);
+    let (mut worst, mut replaced) = ([0.0_f64; 2], 0);
+    for _ in 0..300 {
+        let axis = random.choice(3);
+        let mut moments = random.vector().map(|x| 1.5 + 0.5 * x);
+        moments[axis] = random.decade(-5.0, -1.0);
+        let moments = moments.map(Dd::of);
+        let omega = random.vector().map(Dd::of);
+        // a wheel as strong as the body along its axis
+        let mut wheel = Vec3::zero();
+        wheel[axis] = moments[axis] * random.number();
+        let start = Point::new(Quat::identity(), moments.times(omega) + wheel);
+        let orbit = GyrostatOrbit::new(moments, wheel, start).unwrap();
+        let Kind::Moving(moving) = &orbit.kind else { continue };
+        let is_dual = moving.quick.is_dual();
+        replaced += usize::from(!is_dual);
+        // transverse energy may become that of a much faster spin
+        let (mut off, mut fastest) = (0.0_f64, omega.norm().hi());
+        for _ in 0..20 {
+            let t = Dd::of(random.number() * 1e3);
+            let (quick, exact) = (orbit.point_after(t).to_dd(), orbit.point_at_dd(t));
+            let rate = |m: Vec3<Dd>| (m[axis] - wheel[axis]) / moments[axis];
+            fastest = fastest.max(rate(exact.momentum_body).magnitude());
+            off = off.max((rate(quick.momentum_body) - rate(exact.momentum_body)).magnitude());
+        }
+        let place = usize::from(is_dual);
+        worst[place] = worst[place].max(off / fastest);
+    }
+    println!("{worst:?} {replaced}");
+    assert!(worst[0] < 4e-15, "{worst:?}");
+    assert!(replaced > 200, "{replaced}");
+}
+
+/// Bodies about to leave an unstable spin, in both lattices: the passage from saddle to saddle takes a small part of the time.
+#[test]
+fn passages_from_saddle_to_saddle() {
+    let mut random = Random(17);
+    let (mut worst, mut duals) = ([0.0_f64; 2], [0; 2]);
+    for _ in 0..100 {
+        let moments = random.vector().map(|x| 1.5 + 0.5 * x).map(Dd::of);
+        let wheel = (random.vector() * 0.2).map(Dd::of);
+        let along = random.vector();
+        let spins = steady_spins(moments, wheel, Dd::ONE);
+        for spin in spins.iter().filter(|spin| spin.growth_rate > 0.0) {
+            let size = random.decade(-6.0, -0.3);
+            let start = Point::new(Quat::identity(), (spin.momentum + along * size).map(Dd::of));
+            let orbit = GyrostatOrbit::new(moments, wheel, start).unwrap();
+            let Kind::Moving(moving) = &orbit.kind else { continue };
+            if let Some(basis) = moving.quick.is_dual().then_some(moving.spinor.basis).flatten() {
+                duals[usize::from(basis.lattice.is_skew)] += 1;
+            }
+            for n in -100..100 {
+                let t = moving.period * (f64::from(n) * 0.017 + 0.003);
+                let [q, m] = off(&orbit.point_after(t).to_dd(), &orbit.point_at_dd(t));
+                raise(&mut worst, [q, m]);
+            }
+        }
+    }
+    // on a loop that ends at the saddle where it began the two Gaussians partly cancel
+    assert!(worst[0] < 3e-15 && worst[1] < 3e-15, "{worst:?}");
+    assert!(duals[0] > 20 && duals[1] > 20, "{duals:?}");
+}
+
 #[test]
 fn towards_steady_spins() {
     let mut random = Random(11);
@@ -284,7 +350,7 @@ fn towards_steady_spins() {
                 let size = libm::exp10(-0.5 * f64::from(half_decades));
                 let start = Point::new(Quat::identity(), (spin.momentum + along * size).map(Dd::of));
                 match compare(moments, wheel, start, &mut random) {
-                    Ok([q, m, q_later, m_later, rate, twist]) => {
+                    Ok([q, m, q_later, m_later, ..]) => {
                         assert!(q < 3e-15 && m < 3e-15, "{size:e} {q:e} {m:e} {spin:?}");
                         // the second order of the linear theory
                         let most = if size < 1e-6 && is_stable { 1e-15 } else { 1e-17 };
@@ -292,19 +358,98 @@ fn towards_steady_spins() {
                             q_later < most && m_later < most,
                             "{size:e} {q_later:e} {m_later:e} {spin:?}"
                         );
-                        let _ = (rate, twist);
-                        println!(
-                            "{is_stable} {size:.1e} {q:.1e} {m:.1e} {q_later:.1e} {m_later:.1e} {rate:.1e} {twist:.1e}"
-                        );
                     }
                     Err(reason) => {
-                        println!("{is_stable} {size:.1e} {reason:?}");
                         assert!(!is_stable && size < 1e-5, "{size:e} {reason} {spin:?}");
                     }
                 }
             }
         }
     }
+}
+
+#[test]
+fn a_power_of_two_changes_no_bit() {
+    let mut random = Random(31);
+    for _ in 0..200 {
+        let (_, moments, wheel, start) = random.gyrostat();
+        let orbit = GyrostatOrbit::new(moments, wheel, start).unwrap();
+        let scaled = |v: Vec3<Dd>, by: i32| v.map(|x| x.scaled(by));
+        let other_start = Point::new(start.attitude, scaled(start.momentum_body, -80));
+        let other = GyrostatOrbit::new(scaled(moments, -120), scaled(wheel, -80), other_start).unwrap();
+        let t = Dd::of(random.number() * 100.0);
+        let (one, two) = (orbit.point_at_dd(t), other.point_at_dd(t.scaled(-40)));
+        assert_eq!(one.attitude, two.attitude);
+        assert_eq!(scaled(one.momentum_body, -80), two.momentum_body);
+        let (one, two) = (orbit.point_after(t), other.point_after(t.scaled(-40)));
+        assert_eq!(one.attitude, two.attitude);
+    }
+}
+
+#[test]
+fn readings_of_a_motion() {
+    let moments = Vec3([1.0, 1.75, 2.25].map(Dd::of));
+    let wheel = Vec3([0.02, -0.04, 0.01].map(Dd::of));
+    let start = Point::new(Quat::identity(), Vec3([0.4, 1.0, -0.3].map(Dd::of)));
+    let orbit = GyrostatOrbit::new(moments, wheel, start).unwrap();
+    let character = orbit.character();
+    let period = character.period.unwrap();
+    let later = orbit.point_at_dd(Dd::of(period));
+    assert!((later.momentum_body - start.momentum_body).magnitude() < 1e-14);
+    // half of the turn about L, up to whole turns
+    let along = start.momentum_body.norm();
+    let sine = later.attitude.v.dot(start.momentum_body * (Dd::ONE / along));
+    let angle = 2.0 * sine.atan2(later.attitude.w).hi();
+    let off = (angle - character.turn_per_period.unwrap()) / core::f64::consts::TAU;
+    assert!((off - off.round()).abs() < 1e-14, "{off}");
+    let [lowest, .., highest] = steady_spins(moments, wheel, along)[..] else { panic!("six spins") };
+    assert!(lowest.energy < character.energy && character.energy < highest.energy);
+    assert!(character.separatrix_energies.windows(2).all(|pair| pair[0] <= pair[1]));
+    assert_eq!(character.separatrix_energies.len(), 2);
+    let rest = GyrostatOrbit::new(moments, wheel, Point::new(Quat::identity(), wheel)).unwrap();
+    assert_eq!((rest.character().period, rest.character().energy), (None, 0.0));
+}
+
+/// Numbers of any size: an answer keeps L and the energy, and everything else is refused.
+#[test]
+fn numbers_of_any_size() {
+    let mut random = Random(23);
+    let (mut answered, mut refused) = (0, 0);
+    for _ in 0..3000 {
+        let width = random.decade(-1.0, 2.0);
+        let ratio = random.decade(-1.0, 1.0);
+        let size = |random: &mut Random, width: f64| {
+            let sign = random.number();
+            if sign.abs() < 0.1 { 0.0 } else { sign * random.decade(-width, width) }
+        };
+        let moments = Vec3([0, 1, 2].map(|_| Dd::of(random.decade(-ratio, ratio))));
+        let wheel = Vec3([0, 1, 2].map(|_| Dd::of(size(&mut random, width))));
+        let momentum = Vec3([0, 1, 2].map(|_| Dd::of(size(&mut random, width))));
+        let start = Point::new(Quat::identity(), momentum);
+        let Ok(orbit) = GyrostatOrbit::new(moments, wheel, start) else {
+            refused += 1;
+            continue;
+        };
+        answered += 1;
+        let fastest = fastest(moments, wheel, &start);
+        let energy = |m: Vec3<Dd>| {
+            let own = m - wheel;
+            (0..3).fold(Dd::ZERO, |sum, k| sum + own[k] * own[k] / moments[k] * 0.5)
+        };
+        let norm = momentum.norm().hi();
+        for _ in 0..3 {
+            let t = Dd::of(random.number() * random.decade(-1.0, 4.0) / fastest.max(f64::MIN_POSITIVE));
+            for x in [orbit.point_after(t).to_dd(), orbit.point_at_dd(t)] {
+                assert!(x.is_finite(), "{moments:?} {wheel:?} {momentum:?} {t:?}");
+                let turned = (x.momentum_space() - momentum).norm().hi();
+                let kept = (energy(x.momentum_body) - energy(momentum)).magnitude();
+                assert!(turned <= 1e-14 * norm, "{moments:?} {wheel:?} {momentum:?} {t:?} {turned:e}");
+                let rounding = 1e-14 * norm + 1e-28 * wheel.norm().hi();
+                assert!(kept <= rounding * fastest, "{moments:?} {wheel:?} {momentum:?} {t:?} {kept:e}");
+            }
+        }
+    }
+    assert!(answered > 2000, "{answered} answered, {refused} refused");
 }
 
 /// The shortest time of some passes of `count` calls, s a call.
