@@ -6,7 +6,7 @@ use super::{Entry, NamedOrbit, Orientation, RATIO};
 use crate::body::Orbit;
 use crate::rotation::EulerSequence;
 
-/// Once round Saturn, d: NASA's fact sheet of the satellites of Saturn.
+/// Once round Saturn, d: as published programs have it.
 const PERIOD: f64 = 21.276_609;
 
 /// About the long, the middle and the short axis, over M R²: as a public program of the rotation of Hyperion has them, beside the spin of

@@ -1,7 +1,7 @@
 //! A body, its start and what acts on it: what every command that moves a body is told.
 
 use clap::Args;
-use polhode::body::{Body, Point};
+use polhode::body::{Body, Point, Problem};
 use polhode::num::Dd;
 use polhode_files::error::{Error, tell};
 
@@ -9,6 +9,15 @@ use crate::flags::body::BodyArguments;
 use crate::flags::force::ForceArguments;
 use crate::flags::start::StartArguments;
 use crate::flags::wheel::WheelArguments;
+
+/// A method of steps for a motion without closed form.
+pub(crate) fn stepping_method(body: &Body) -> &'static str {
+    match body.problem() {
+        Problem::Torque => "rk4",
+        Problem::Gyrostat | Problem::GyrostatPotential => "taylor",
+        _ => "kick-drift@srkn-6b",
+    }
+}
 
 #[derive(Args, Clone, Debug)]
 pub(crate) struct MotionArguments {

@@ -32,7 +32,12 @@ pub(crate) fn track(course: &Course, looks: &Looks, upright: UnitQuaternion<f64>
         times: looks.times.clone(),
         attitudes: looks.states.iter().map(|state| upright * state.rotation()).collect(),
         omegas: looks.omegas.clone(),
-        momenta: looks.states.iter().map(|state| upright * state.momentum_space()).collect(),
+        momenta: looks
+            .states
+            .iter()
+            .zip(looks.momenta())
+            .map(|(state, m)| upright * (state.rotation() * m))
+            .collect(),
         flips: looks.flips.as_ref().map(|flips| Flips { count: flips.count, times: flips.times.clone() }),
         ..Track::default()
     }

@@ -1,7 +1,7 @@
 //! A motion as it is drawn: states at equal times, by the closed form or by a method.
 
 use nalgebra::Vector3;
-use polhode::body::{Body, Clock, Point, Problem, State};
+use polhode::body::{Body, Clock, Conserved, Point, State};
 use polhode::flow::{ExactMotion, FreeMotion, LagrangeTop};
 use polhode::method::Claimed;
 use polhode::num::Dd;
@@ -12,7 +12,7 @@ use polhode_files::error::{Error, warn};
 use polhode_files::text::short;
 
 use crate::cost;
-use crate::flags::motion::MotionArguments;
+use crate::flags::motion::{MotionArguments, stepping_method};
 use crate::methods::{Unusable, adaptive, at_tolerance, moving, not_taken, unknown};
 
 /// Points of a curve: at least so many, and at most.
@@ -108,8 +108,7 @@ impl Looks {
         };
         if course.method == "exact" {
             let exact = exact.map_err(|error| {
-                let method =
-                    if looks.body.problem() == Problem::Torque { "rk4" } else { "kick-drift@srkn-6b" };
+                let method = stepping_method(&looks.body);
                 Error::Input(format!("--method exact: {error}; use --method {method} with a --step"))
             })?;
             looks.exact = Some(exact.clone());
@@ -283,10 +282,32 @@ impl Looks {
         momenta.into_iter().any(|m| m.dot(&axis).abs() > core::f64::consts::FRAC_1_SQRT_2 * m.norm())
     }
 
-    /// What acts on the body, as part of a title.
+    /// The wheels of the body and what acts on it, as part of a title.
     pub(crate) fn forces(&self) -> String {
         let names = self.body.forces().iter().map(|force| force.name()).collect::<Vec<_>>();
-        if names.is_empty() { String::new() } else { format!(" under {}", names.join(", ")) }
+        let wheels = match self.body.wheels().len() {
+            0 => String::new(),
+            1 => " with a wheel".into(),
+            n => format!(" with {n} wheels"),
+        };
+        if names.is_empty() { wheels } else { format!("{wheels} under {}", names.join(", ")) }
+    }
+
+    /// The angular momentum of body and wheels in body axes, kg m^2/s, at each look.
+    pub(crate) fn momenta(&self) -> impl Iterator<Item = Vector3<f64>> {
+        let each = self.times.iter().zip(&self.states);
+        each.map(|(t, state)| state.momentum() + self.body.momentum_of_wheels_at(*t))
+    }
+
+    /// L in space at the start, kg m^2/s; zero without a look.
+    pub(crate) fn momentum_at_start(&self) -> Vector3<f64> {
+        let first = self.times.first().zip(self.states.first());
+        first.map_or(Vector3::zeros(), |(t, state)| self.body.momentum_space(*t, state))
+    }
+
+    /// Whether L is constant: nothing but wheels acts.
+    pub(crate) fn keeps_momentum(&self) -> bool {
+        self.body.conserved().contains(&Conserved::Momentum)
     }
 }
 
@@ -311,8 +332,12 @@ fn without_tolerance(course: &Course, tolerance: f64) -> Error {
     Error::input("--tolerance", &format!("{tolerance:e}"), &rule, &remedy)
 }
 
-/// Unit vector along the axis of the middle moment in body axes; `None` where two moments agree, as there is none.
+/// Unit vector along the axis of the middle moment in body axes; `None` where two moments agree, as there is none, and with wheels, as
+/// a body with them does not turn over about it.
 pub(crate) fn middle_axis(body: &Body) -> Option<Vector3<f64>> {
+    if !body.wheels().is_empty() {
+        return None;
+    }
     let [least, middle, most] = body.inertia().principal_moments();
     (least < middle && middle < most).then(|| body.inertia().principal_axes() * Vector3::y())
 }

@@ -41,11 +41,11 @@ impl Looks {
     /// # Errors
     /// A body that is at rest, at some time or always.
     fn must_turn(&self, kind: &str) -> Result<(), Error> {
-        let rests = |state: &polhode::body::State| state.momentum().norm() == 0.0;
-        if !self.states.iter().any(rests) {
+        let rests = |momentum: V| momentum.norm() == 0.0;
+        if !self.momenta().any(rests) {
             return Ok(());
         }
-        let when = if self.states.iter().all(rests) { "" } else { " at some time" };
+        let when = if self.momenta().all(rests) { "" } else { " at some time" };
         Err(Error::Input(format!(
             "--omega: the body is at rest{when}, and a {kind} needs a direction; give another start, or plot omega"
         )))
@@ -116,14 +116,16 @@ fn dot(page: &mut Canvas, view: &View, at: V, radius: f64, hidden: bool) {
 /// Directions of the angular momentum in the body.
 pub(super) fn polhode(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
     looks.must_turn("polhode")?;
-    let path: Vec<V> = looks.states.iter().map(|state| state.momentum().normalize()).collect();
+    let path: Vec<V> = looks.momenta().map(|momentum| momentum.normalize()).collect();
     let mut title = plot.title("Polhode", looks) + &looks.remark();
     if looks.free().is_some_and(|motion| motion.pure_spin().is_some()) {
         title += "; the polhode is a point";
     }
     let inertia = looks.body.inertia();
     let frame = inertia.principal_axes();
-    let context = context(inertia.principal_moments());
+    // with wheels the curves are others
+    let is_bare = looks.body.wheels().is_empty();
+    let context = if is_bare { context(inertia.principal_moments()) } else { Vec::new() };
     if context.iter().any(|curve| curve.separatrix) {
         title += "; orange: the separatrix";
     }
@@ -230,8 +232,7 @@ pub(super) fn trace(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
         });
     }
     draw_path(&mut page, &view, &path, looks.is_resolved());
-    let momentum = looks.free().and(looks.states.first()).map(|state| state.momentum_space());
-    let momentum = momentum.and_then(|momentum| momentum.try_normalize(0.0));
+    let momentum = looks.momentum_at_start().try_normalize(0.0).filter(|_| looks.keeps_momentum());
     // next to an axis the two share one name
     let beside = |axis: &V| momentum.is_some_and(|momentum| momentum.dot(axis) > BESIDE);
     for (axis, name) in [(V::x(), "X"), (V::y(), "Y"), (V::z(), "Z")] {
@@ -247,10 +248,12 @@ pub(super) fn trace(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
 /// ω in the plane across the angular momentum; under forces, across the Z axis.
 pub(super) fn herpolhode(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
     looks.must_turn("herpolhode")?;
-    let momentum = looks.states.first().map_or(V::z(), |state| state.momentum_space());
-    let is_free = looks.body.problem() == polhode::body::Problem::Free;
-    let (normal, plane) =
-        if is_free { (momentum.normalize(), "L") } else { (V::z(), "the Z axis, as L is not constant") };
+    let momentum = looks.momentum_at_start();
+    let (normal, plane) = if looks.keeps_momentum() {
+        (momentum.normalize(), "L")
+    } else {
+        (V::z(), "the Z axis, as L is not constant")
+    };
     let least = normal.iamin();
     let right = normal.cross(&V::ith(least, 1.0)).normalize();
     let up = normal.cross(&right);
@@ -277,7 +280,7 @@ pub(super) fn herpolhode(plot: &Plot, looks: &Looks) -> Result<Canvas, Error> {
         figure.series.push(Curve::new("", vec![(0.0, 0.0)]));
     } else {
         figure.series.push(Curve::new("", points.first().copied().into_iter().collect()));
-        if is_free {
+        if looks.keeps_momentum() {
             let round = (outer - inner) <= 1e-6 * outer;
             title += if round { "; a circle" } else { "; grey: the circles that it touches" };
             for radius in if round { vec![] } else { vec![inner, outer] } {

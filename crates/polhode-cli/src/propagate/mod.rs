@@ -7,7 +7,7 @@ mod through;
 use std::path::PathBuf;
 
 use clap::Args;
-use polhode::body::{Body, Clock, Point, Problem, Time};
+use polhode::body::{Body, Clock, Point, Time};
 use polhode::flow::ExactMotion;
 use polhode::method::{AnyMethod, Claimed, StepError};
 use polhode::num::{Dd, Real};
@@ -21,7 +21,7 @@ use polhode_pages::table::{Format, RowWriter};
 
 use crate::cost;
 use crate::flags::event::{TypedEvent, event};
-use crate::flags::motion::MotionArguments;
+use crate::flags::motion::{MotionArguments, stepping_method};
 use crate::flags::times::{OutputTimes, TimeArguments};
 use crate::flags::tumbling::latitude;
 use crate::methods::{Unusable, adaptive, at_tolerance, moving, not_taken, unknown};
@@ -163,7 +163,7 @@ impl Propagate {
             return Err(self.without_tolerance(tolerance));
         }
         ExactMotion::from_point(body, start).map_err(|error| {
-            let method = if body.problem() == Problem::Torque { "rk4" } else { "kick-drift@srkn-6b" };
+            let method = stepping_method(body);
             Error::Input(format!("--method exact: {error}; use --method {method} with a --step"))
         })
     }

@@ -1,7 +1,7 @@
 //! How long a motion is shown where no end is given.
 
 use polhode::body::{Body, Point, Problem};
-use polhode::flow::FreeMotion;
+use polhode::flow::{FreeMotion, GyrostatMotion};
 use polhode::num::Dd;
 use polhode_files::error::Error;
 
@@ -30,6 +30,10 @@ pub(super) fn span(body: &Body, start: &Point<Dd>) -> Result<f64, Error> {
         return Err(Error::input("--until", "", rule, "give the end, s"));
     }
     let turn = core::f64::consts::TAU / rate;
+    if let Ok(motion) = GyrostatMotion::from_point(body, *start) {
+        let period = motion.character().period.unwrap_or(turn);
+        return Ok(rounded((ROUNDS * period).max(TURNS[0] * turn)));
+    }
     let [least, most] = TURNS.map(|turns| turns * turn);
     if !is_free {
         return Ok(rounded(TURNS_OF_A_TOP * turn));
