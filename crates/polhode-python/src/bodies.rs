@@ -6,6 +6,7 @@ use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
 use polhode::{body, catalogue};
 use polhode_files::bodies;
+use polhode_files::wheel::GivenWheel;
 use polhode_pages::table::to_digits;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
@@ -16,8 +17,9 @@ use crate::files::heard;
 use crate::forces::{Force, Raised};
 use crate::links::Link;
 use crate::masses::MassProperties;
+use crate::wheels::Wheel;
 
-/// A rigid body: inertia in body axes, kg m^2, and the forces that act on it.
+/// A rigid body: inertia in body axes, kg m^2, the forces that act on it, and the wheels that it carries.
 ///
 /// `inertia` is three principal moments, the k-th of the k-th body axis; a tensor of shape (3, 3), entries I_xy = -int x y dm; mass
 /// properties or a link of a model, of which it takes the tensor about the centre of mass; or the text that `body` takes.
@@ -84,7 +86,8 @@ impl Body {
         match (given.omega, given.momentum) {
             (Some(_), Some(_)) => Err(refused("omega, momentum: give one of the two")),
             (None, Some(momentum)) => {
-                let momentum_body = Vec3(Numbers::of("momentum", momentum)?.fixed()?);
+                let momentum = Vec3(Numbers::of("momentum", momentum)?.fixed()?);
+                let momentum_body = momentum - self.body.momentum_of_wheels_at(0.0).into();
                 self.body.enter(&State { attitude, momentum_body }).map_err(refused)
             }
             (omega, None) => {
@@ -123,9 +126,16 @@ pub(crate) struct Start<'a, 'py> {
 #[pymethods]
 impl Body {
     #[new]
-    #[pyo3(signature = (inertia, forces = None))]
-    fn new(inertia: &Bound<'_, PyAny>, forces: Option<Vec<Force>>) -> PyResult<Self> {
+    #[pyo3(signature = (inertia, forces = None, *, wheels = None))]
+    fn new(
+        inertia: &Bound<'_, PyAny>,
+        forces: Option<Vec<Force>>,
+        wheels: Option<Vec<Wheel>>,
+    ) -> PyResult<Self> {
         let Body { mut body, named, mut raised } = Body::of("inertia", inertia)?;
+        for Wheel(wheel) in wheels.unwrap_or_default() {
+            body = body.with_wheel(wheel).map_err(of("wheels"))?;
+        }
         for Force { force, raised: own } in forces.unwrap_or_default() {
             body = body.with(force);
             raised.extend(own);
@@ -133,16 +143,22 @@ impl Body {
         Ok(Body { body, named, raised })
     }
 
-    /// The inertia tensor, body axes, kg m^2.
+    /// The inertia tensor, with that of wheels at rest on the body, body axes, kg m^2.
     #[getter]
     fn tensor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        matrix(py, &self.body.inertia().tensor())
+        matrix(py, &self.body.locked_inertia().tensor())
     }
 
-    /// Principal moments, ascending, kg m^2.
+    /// Principal moments of that tensor, ascending, kg m^2.
     #[getter]
     fn principal_moments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, self.body.inertia().principal_moments().to_vec(), &[3])
+        array(py, self.body.locked_inertia().principal_moments().to_vec(), &[3])
+    }
+
+    /// The wheels that it carries.
+    #[getter]
+    fn wheels(&self) -> Vec<Wheel> {
+        self.body.wheels().iter().copied().map(Wheel).collect()
     }
 
     /// Names of the forces that act on it.
@@ -182,13 +198,17 @@ impl Body {
     }
 
     fn __repr__(&self) -> String {
-        let [a, b, c] = self.body.inertia().principal_moments().map(|moment| to_digits(moment, 6));
+        let [a, b, c] = self.body.locked_inertia().principal_moments().map(|moment| to_digits(moment, 6));
         let of = self.named.as_ref().map_or(String::new(), |named| format!("{}; ", named.name));
         let forces = match self.forces().as_slice() {
             [] => String::new(),
             forces => format!("; forces: {}", forces.join(", ")),
         };
-        format!("Body({of}principal moments {a}, {b}, {c}{forces})")
+        let wheels = match self.body.wheels().len() {
+            0 => String::new(),
+            wheels => format!("; wheels: {wheels}"),
+        };
+        format!("Body({of}principal moments {a}, {b}, {c}{wheels}{forces})")
     }
 }
 
@@ -211,8 +231,17 @@ fn by_name(py: Python<'_>, text: &str) -> PyResult<Body> {
         let body = named.body().map_err(refused)?;
         return Ok(Body { body, named: Some(Box::new(named)), raised: Vec::new() });
     }
-    if let Some(inertia) = heard(py, || bodies::inertia("body", text))? {
-        return Ok(Body::from(inertia));
+    if let Some((inertia, wheels)) = heard(py, || bodies::inertia("body", text))? {
+        if !wheels.iter().all(GivenWheel::is_held) {
+            return Err(refused(format!(
+                "body: '{text}': the momentum of a wheel that is free or driven depends on the start; give it as Wheel(...).free(omega)"
+            )));
+        }
+        let Body { mut body, named, raised } = Body::from(inertia);
+        for wheel in &wheels {
+            body = body.with_wheel(wheel.held()).map_err(of("body"))?;
+        }
+        return Ok(Body { body, named, raised });
     }
     if text.contains(['.', '/']) {
         let rule = "no such file, and no such body in the catalogue";

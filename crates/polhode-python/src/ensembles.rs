@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
-use polhode::body::{Clock, State};
+use polhode::body::{Clock, State, WheelError};
 use polhode::inertia::Inertia;
 use polhode::rotation::Vec3;
 use polhode::run::{self, EnsembleError, Rows};
@@ -53,7 +53,7 @@ impl Ensemble {
         let order = Order::of(order)?;
         let body = body.map(|body| Body::of("body", body)).transpose()?;
         let inertias: Vec<Inertia> = match (&body, moments, tensors) {
-            (Some(body), None, None) => vec![body.body.inertia().clone()],
+            (Some(body), None, None) => vec![body.body.locked_inertia().clone()],
             (None, Some(moments), None) => {
                 let rows = Numbers::of("moments", moments)?.rows::<3>(None)?;
                 rows.into_iter()
@@ -94,6 +94,15 @@ impl Ensemble {
                 "inertia of {inertias} members, {name} of {rotations}, attitude of {attitudes}: each must be of all members, or of 1"
             )));
         }
+        let wheels = body.as_ref().map(|body| body.body.wheels()).unwrap_or_default();
+        if !wheels.iter().all(polhode::body::Wheel::is_held) {
+            return Err(refused(
+                "body: the momentum of a wheel that is free or driven depends on the start, which differs from member to member; give wheels \
+                 whose speed is held",
+            ));
+        }
+        let of_wheels: Vec3<f64> =
+            body.as_ref().map_or(Vec3::zero(), |body| body.body.momentum_of_wheels_at(0.0).into());
         let mut members = run::Ensemble::with_capacity(n).threads(threads);
         for k in 0..n {
             let inertia = &inertias[k % inertias.len()];
@@ -105,14 +114,16 @@ impl Ensemble {
                 let attitude = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
                 members.push_omega(inertia, attitude, rotation.0.into());
             } else {
-                members.push(inertia, &State { attitude, momentum_body: rotation });
+                members.push(inertia, &State { attitude, momentum_body: rotation - of_wheels });
             }
         }
-        if let Some(acting) = body.as_ref().filter(|body| !body.body.forces().is_empty()) {
-            let forces = acting.body.forces().to_vec();
+        let acts = |body: &&Body| !(body.body.forces().is_empty() && body.body.wheels().is_empty());
+        if let Some(acting) = body.as_ref().filter(acts) {
+            let (forces, wheels) = (acting.body.forces().to_vec(), acting.body.wheels().to_vec());
             members = members.acted_on(move |inertia| {
                 let free = polhode::Body::free(inertia.clone());
-                Ok(forces.iter().fold(free, |body, force| body.with(force.clone())))
+                let carrier = wheels.iter().try_fold(free, |body, wheel| body.with_wheel(*wheel))?;
+                Ok::<_, WheelError>(forces.iter().fold(carrier, |body, force| body.with(force.clone())))
             });
         }
         Ok(Ensemble { members: Arc::new(members), body, order })

@@ -31,6 +31,7 @@ mod tables;
 mod through;
 mod tops;
 mod units;
+mod wheels;
 
 use pyo3::prelude::*;
 
@@ -84,4 +85,6 @@ mod _polhode {
     use super::through::{FittedMotion, Interpolation, Passage};
     #[pymodule_export]
     use super::tops::LagrangeTop;
+    #[pymodule_export]
+    use super::wheels::{GyrostatMotion, SteadySpin, Wheel};
 }

@@ -178,6 +178,9 @@ pub(crate) fn free(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Ine
 
 /// Refuses a body that forces act on.
 pub(crate) fn unforced(name: &'static str, body: &Body) -> PyResult<()> {
+    if !body.body.wheels().is_empty() {
+        return Err(refused(format!("{name}: the body carries wheels; take GyrostatMotion, or run")));
+    }
     match body.body.forces().first() {
         None => Ok(()),
         Some(force) => Err(refused(format!(

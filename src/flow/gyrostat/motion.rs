@@ -114,14 +114,19 @@ impl GyrostatMotion {
         self.orbit.reach()
     }
 
-    /// The point of the solver frame `t` s after the start, in `f64`, with the momentum I ω of the carrier.
+    /// The point of the solver frame at the time `t`, s, finite and within reach.
+    pub fn point_at(&self, t: f64) -> Point<f64> {
+        self.point_after(Dd::from(t))
+    }
+
+    /// The same `t` s after the start, in `f64`, with the momentum I ω of the carrier.
     pub(crate) fn point_after(&self, t: Dd) -> Point<f64> {
         let whole = self.orbit.point_after(t);
         Point::new(whole.attitude, whole.momentum_body - self.wheels.map(Dd::hi))
     }
 
     /// The same in double-double.
-    pub(crate) fn point_at_dd(&self, t: Dd) -> Point<Dd> {
+    pub fn point_at_dd(&self, t: Dd) -> Point<Dd> {
         let whole = self.orbit.point_at_dd(t);
         Point::new(whole.attitude, whole.momentum_body - self.wheels)
     }

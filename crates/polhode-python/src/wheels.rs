@@ -1,0 +1,213 @@
+//! Wheels on a body, and its motion with them.
+
+use nalgebra::Vector3;
+use polhode::body::{self, Point, State};
+use polhode::flow::{self, TimeError};
+use polhode::num::Dd;
+use pyo3::prelude::*;
+
+use crate::arrays::{Numbers, Order, array};
+use crate::bodies::{Body, Start};
+use crate::error::{of, refused};
+use crate::motions::Motion;
+use crate::states::States;
+
+/// A wheel, symmetric about its axis, that a body carries: `Body(inertia, wheels=[...])`. The inertia of the body includes it, at rest on
+/// the body.
+///
+/// `axis` is in body axes, of any length; `inertia` about it in kg m^2; `speed` against the body in rad/s, held unless `free` or
+/// `driven` makes another wheel of it.
+///
+/// >>> from polhode import Body, Wheel
+/// >>> wheel = Wheel([0, 0, 1], 0.05, 300)
+/// >>> Body([10, 12, 15], wheels=[wheel])
+/// Body(principal moments 10, 12, 15; wheels: 1)
+#[pyclass(frozen, module = "polhode", from_py_object)]
+#[derive(Clone)]
+pub(crate) struct Wheel(pub(crate) body::Wheel);
+
+fn vector(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>> {
+    Numbers::of(name, value)?.vector()
+}
+
+#[pymethods]
+impl Wheel {
+    #[new]
+    fn new(axis: &Bound<'_, PyAny>, inertia: f64, speed: f64) -> PyResult<Self> {
+        body::Wheel::new(vector("axis", axis)?, inertia, speed).map(Wheel).map_err(refused)
+    }
+
+    /// The same wheel turning without friction: it has its speed where the body turns at `omega`, rad/s, body axes.
+    fn free(&self, omega: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Wheel(self.0.free(vector("omega", omega)?)))
+    }
+
+    /// The same wheel with a motor that turns it by `torque`, N m, against the body from the time `begin` to `end`, s; before and after
+    /// it turns freely. It has its speed where the body turns at `omega`, rad/s, body axes, before the motor begins.
+    #[pyo3(signature = (torque, omega, *, begin = 0.0, end = f64::INFINITY))]
+    fn driven(&self, torque: f64, omega: &Bound<'_, PyAny>, begin: f64, end: f64) -> PyResult<Self> {
+        self.0.driven(torque, [begin, end], vector("omega", omega)?).map(Wheel).map_err(refused)
+    }
+
+    /// Its speed against the body at the time `t`, s, where the body turns at `omega`, rad/s, body axes.
+    fn speed(&self, t: f64, omega: &Bound<'_, PyAny>) -> PyResult<f64> {
+        Ok(self.0.speed(t, vector("omega", omega)?))
+    }
+
+    /// Its axis, of length 1, body axes.
+    #[getter]
+    fn axis<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.0.axis().as_slice().to_vec(), &[3])
+    }
+
+    /// Its moment of inertia about the axis, kg m^2.
+    #[getter]
+    fn inertia(&self) -> f64 {
+        self.0.inertia()
+    }
+}
+
+/// The motion of a body with wheels that are held or free from one start: its exact attitude and angular velocity at any time.
+///
+/// `body` is one with wheels; the start is that of `FreeMotion`, and `momentum` that of body and wheels together.
+///
+/// >>> from polhode import Body, GyrostatMotion, Wheel
+/// >>> body = Body([10, 12, 15], wheels=[Wheel([0, 1, 1], 0.01, 300)])
+/// >>> motion = GyrostatMotion(body, [0.1, -0.05, 0.2])
+/// >>> motion.at([0, 1e6]).omega.shape
+/// (2, 3)
+/// >>> [spin.stability for spin in motion.steady_spins]
+/// ['stable', 'stable']
+#[pyclass(frozen, module = "polhode")]
+pub(crate) struct GyrostatMotion {
+    motion: flow::GyrostatMotion,
+    order: Order,
+}
+
+impl Motion for flow::GyrostatMotion {
+    fn each_at(&self, times: &[f64], mut each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError> {
+        times.iter().try_for_each(|&t| {
+            let state = self.at(t)?;
+            each(state, flow::GyrostatMotion::body(self).omega_body(&state));
+            Ok(())
+        })
+    }
+    fn point_at(&self, t: f64) -> Point<f64> {
+        flow::GyrostatMotion::point_at(self, t)
+    }
+    fn reach(&self) -> f64 {
+        flow::GyrostatMotion::reach(self)
+    }
+    fn body(&self) -> &polhode::Body {
+        flow::GyrostatMotion::body(self)
+    }
+}
+
+#[pymethods]
+impl GyrostatMotion {
+    #[new]
+    #[pyo3(signature = (body, omega = None, attitude = None, *, momentum = None, order = "wxyz"))]
+    fn new(
+        body: &Bound<'_, PyAny>,
+        omega: Option<&Bound<'_, PyAny>>,
+        attitude: Option<&Bound<'_, PyAny>>,
+        momentum: Option<&Bound<'_, PyAny>>,
+        order: &str,
+    ) -> PyResult<Self> {
+        let order = Order::of(order)?;
+        let body = Body::of("body", body)?;
+        let start = body.start(&Start { omega, attitude, momentum, order })?;
+        let motion = flow::GyrostatMotion::from_point(&body.body, start).map_err(of("body"))?;
+        Ok(GyrostatMotion { motion, order })
+    }
+
+    /// Attitudes and angular velocities at the time `t`, s, of either sign: a number, or an array of any shape.
+    #[pyo3(signature = (t, *, order = None))]
+    fn at(&self, t: &Bound<'_, PyAny>, order: Option<&str>) -> PyResult<States> {
+        self.motion.states(t, order.map_or(Ok(self.order), Order::of)?)
+    }
+
+    /// The largest |t| at which the phases still have digits, s.
+    #[getter]
+    fn reach(&self) -> f64 {
+        self.motion.reach()
+    }
+
+    /// After which the angular velocity is what it was in the body, s; `None` where it stays so.
+    #[getter]
+    fn period(&self) -> Option<f64> {
+        self.motion.character().period
+    }
+
+    /// By how much the body has turned about L after that, rad, less whole turns.
+    #[getter]
+    fn turn_per_period(&self) -> Option<f64> {
+        self.motion.character().turn_per_period
+    }
+
+    /// The angular momentum of body and wheels in space, kg m^2/s.
+    #[getter]
+    fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let start = self.motion.body().leave(&self.motion.point_at_dd(Dd::ZERO));
+        array(py, self.motion.body().momentum_space(0.0, &start).as_slice().to_vec(), &[3])
+    }
+
+    /// The steady spins with the same |L|, by rising energy.
+    #[getter]
+    fn steady_spins(&self) -> Vec<SteadySpin> {
+        self.motion.steady_spins().into_iter().map(SteadySpin).collect()
+    }
+
+    fn __repr__(&self) -> String {
+        let period = self.period().map_or("none".into(), polhode_files::text::short);
+        format!("GyrostatMotion(period {period} s)")
+    }
+}
+
+/// A steady spin of a body with wheels.
+#[pyclass(frozen, module = "polhode")]
+pub(crate) struct SteadySpin(flow::SteadySpin);
+
+#[pymethods]
+impl SteadySpin {
+    /// Angular velocity, rad/s, body axes.
+    #[getter]
+    fn omega<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.0.omega_body.as_slice().to_vec(), &[3])
+    }
+
+    /// The same about L, rad/s: negative where the body turns against it.
+    #[getter]
+    fn rate(&self) -> f64 {
+        self.0.rate
+    }
+
+    /// stable, unstable or neutral.
+    #[getter]
+    fn stability(&self) -> &'static str {
+        self.0.stability.name()
+    }
+
+    /// Of small oscillations in the body, rad/s; 0 unless it is stable.
+    #[getter]
+    fn frequency(&self) -> f64 {
+        self.0.frequency
+    }
+
+    /// At which a small deviation grows, 1/s; 0 unless it is unstable.
+    #[getter]
+    fn growth_rate(&self) -> f64 {
+        self.0.growth_rate
+    }
+
+    /// 1/2 omega . I omega, J.
+    #[getter]
+    fn energy(&self) -> f64 {
+        self.0.energy
+    }
+
+    fn __repr__(&self) -> String {
+        let rate = polhode_files::text::short(self.0.rate);
+        format!("SteadySpin({}, {rate} rad/s about L)", self.0.stability.name())
+    }
+}
