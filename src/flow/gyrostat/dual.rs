@@ -1,12 +1,13 @@
 //! The dual form of the two theta functions: next to a separatrix, where the trigonometric sums cancel.
 //!
-//! With s = (2τ − d)/T and ε = y/T Jacobi's imaginary transformation makes a sum of Gaussians of the sums over even and over odd n,
-//! up to a common factor, on a straight lattice
+//! With s = (2τ − d)/T and ε = y/T Jacobi's imaginary transformation makes sums of Gaussians of those over even and over odd
+//! n, up to a common factor, on a straight lattice
 //!
 //! `Θ_e = Σ_k e^{−π(s + k)²/2ε}`, `Θ_o = Σ_k (−1)^k e^{−π(s + k)²/2ε}`,
 //!
-//! and on a skew one Θ_e at s + ½, and Θ_o times e^{iπ/4}: Gaussians at all multiples of σ = 1 or ½, with factors that repeat after
-//! four. Where two of them meet, m passes from one saddle to the next. From there, at s = −σ(L + ½) + x + i s₂, the common Gaussian goes and
+//! and on a skew one Θ_e at s + ½, and Θ_o times e^{iπ/4}: Gaussians at all multiples of σ = 1 or ½, with factors κ that repeat
+//! after four. Where two of them meet, m passes from one saddle to the next. From there, at s = −σ(L + ½) + x + i s₂, and
+//! without the Gaussian that all terms share,
 //!
 //! `f = e^{−iπ s₂x/ε} Σ_{i odd} κ_{L + (i + 1)/2} e^{−πσ²i²/8ε − iπ s₂σi/2ε} gⁱ`, `g = e^{−πσx/2ε}`.
 

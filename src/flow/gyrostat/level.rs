@@ -130,7 +130,8 @@ impl Level {
         }))
     }
 
-    /// Whether ν stays: a ball, for which a strong wheel makes any body that has hardly any momentum, and a symmetric carrier with the wheel along its axis. The motion then is that of two turns.
+    /// Whether ν stays: of a symmetric carrier with the wheel along its axis, and of a ball, which beside a strong wheel any body
+    /// is that has hardly any momentum. The motion then is that of two turns.
     pub(super) fn is_elementary(&self) -> bool {
         is_elementary(self.spread, self.wheel)
     }

@@ -1,7 +1,7 @@
 //! The gyrostat: a rigid body with wheels at constant relative momentum h, its motion at any time (Volterra 1899).
 //!
-//! m = Iω + h is the total momentum in the body, `H = ½ (m − h)·I⁻¹(m − h)`, `m' = m × ω`, L = q m q* is constant. A wheel that spins
-//! freely about the axis a with the axial momentum l is the same problem with I − I_w a aᵀ and h = l a.
+//! m = Iω + h is the total momentum in the body, `H = ½ (m − h)·I⁻¹(m − h)`, `m' = m × ω`, L = q m q* is constant. A wheel that
+//! spins freely about the axis a with the axial momentum l is the same problem with I − I_w a aᵀ and h = l a.
 //!
 //! | file | what it works out |
 //! |---|---|

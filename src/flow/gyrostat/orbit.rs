@@ -32,9 +32,10 @@ const LEAST_OF_SMALL: f64 = 3.0;
 
 /// Constants of one motion, worked out once; then any time in O(1).
 ///
-/// In `f64` attitude and momentum are right to 1e-15 (rad, |m|) at any time up to 10⁹ of the shortest radians and, with the
-/// double-double phases, beyond; next to a separatrix by a dual form. Where the digits
-/// do not suffice [`new`](Self::new) refuses: every motion is checked against the equation of motion before it is answered.
+/// In `f64` attitude and momentum are right to 1e-15 (rad, of |m|), next to a separatrix to 3e-15, at any time up to 10⁹ rad of
+/// the fastest rate and beyond; in double-double to 1e-20 near the start, but for small oscillations about a steady spin, of which
+/// the second order is left out: 1e-15. Where the digits do not suffice [`new`](Self::new) refuses: every motion that moves is
+/// compared with the equation of motion before it is answered.
 #[derive(Clone, Debug)]
 pub(crate) struct GyrostatOrbit {
     moments: Vec3<Dd>,

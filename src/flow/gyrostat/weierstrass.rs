@@ -144,7 +144,8 @@ fn carlson(z: [Complex<f64>; 3]) -> Complex<f64> {
     let mut z = z.map(|z| z * turn);
     for _ in 0..40 {
         let [a, b, mut c] = z.map(root);
-        // those of e₂ and e₃ on one branch: a half period between two all but equal roots is far away, and f64 would not find back
+        // those of e₂ and e₃ on one branch: the half period between two all but equal roots is so far away that f64 would
+        // not find back
         if (b * c.conjugate()).re < 0.0 {
             c = c.scaled(-1.0);
         }
