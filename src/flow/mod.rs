@@ -16,7 +16,6 @@ mod derivative;
 mod dissipation;
 mod exact_motion;
 mod free;
-#[allow(dead_code, unused_imports, unreachable_pub)] // until `Body` builds a motion of it
 mod gyrostat;
 mod kick;
 mod lagrange;

@@ -20,7 +20,7 @@
 
 use super::pencil::{Pencil, WideCurve};
 use crate::num::complex::Complex;
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
 /// Differences of the inverse moments, of the largest rate, that no digit of a phase tells from zero.

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::{GyrostatError, GyrostatOrbit, steady_spins};
+use super::{GyrostatOrbit, steady_spins};
 use crate::body::{Body, Exit, Point, Problem, State, Time};
 use crate::flow::NoClosedForm;
 use crate::flow::free::Stability;
 use crate::flow::reach::TimeError;
-use crate::num::{Dd, Real};
+use crate::num::Dd;
 use crate::rotation::Vec3;
 
 /// The motion of one body with [wheels](crate::body::Wheel) that are held or turn freely, from one start: constants worked out once, then any

@@ -11,7 +11,7 @@ use crate::body::Point;
 use crate::flow::free::{Spin, Stability, pair, reduce};
 use crate::flow::reach::MOST_RADIANS;
 use crate::num::complex::Complex;
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
 
 /// Places of a period at which the equation of motion is checked; next to a separatrix most of them lie at the saddle.

@@ -8,7 +8,7 @@ use crate::body::Point;
 use crate::flow::free::{Pair, Phase, TOO_FAR};
 use crate::num::complex::Complex;
 use crate::num::trig::{nearest, sin_cos_turns};
-use crate::num::{Dd, Precise};
+use crate::num::Dd;
 use crate::rotation::{Quat, Vec3};
 
 /// Terms of this share of the largest are left out.
