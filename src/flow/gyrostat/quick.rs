@@ -6,9 +6,9 @@ use super::level::Level;
 use super::spinor::Spinor;
 use crate::body::Point;
 use crate::flow::free::{Pair, Phase, TOO_FAR};
+use crate::num::Dd;
 use crate::num::complex::Complex;
 use crate::num::trig::{nearest, sin_cos_turns};
-use crate::num::Dd;
 use crate::rotation::{Quat, Vec3};
 
 /// Terms of this share of the largest are left out.

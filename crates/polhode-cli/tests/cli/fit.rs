@@ -41,7 +41,7 @@ fn a_simulated_instrument_is_the_golden_one() {
     let found = output(&format!(
         "{SIMULATE} --until 0.1 --noise 0.01 --hidden-jitter 0.5 --tosses 2 --pause 1 --scatter 0.1 --seed 3 \
          --relative-drag 0.2 --drag 0.1,0.2,0.3 --torque 0,0.01,0 --known-torque 0.5,0,0 --torque-noise 0.01 \
-         --wheel 0,0,1 --wheel-rate 1,0,0 --offset 0.01,0,-0.02 --offset-walk 0.001 --scale-error 0.01 \
+         --wheel-momentum 0,0,1 --wheel-rate 1,0,0 --offset 0.01,0,-0.02 --offset-walk 0.001 --scale-error 0.01 \
          --axis-scale-errors 0,0.02,0 --misalignment 0.01,0,0 --quantum 0.001 --skew 0,0.001,0.002 \
          --spikes 0.2,5"
     ));
@@ -367,7 +367,7 @@ fn wheels_and_torques_are_columns() {
         (0..3).map(|k| inertia[k][k].as_f64().unwrap()).sum::<f64>()
     };
     let record = path("momenta.csv");
-    output(&format!("{SIMULATE} --until 30 --noise 1e-3 --wheel 0.2,-0.3,0.4 --out {record}"));
+    output(&format!("{SIMULATE} --until 30 --noise 1e-3 --wheel-momentum 0.2,-0.3,0.4 --out {record}"));
     let by_momenta = trace(&json(&format!("fit {record}")));
     assert!((by_momenta - 5.6).abs() < 0.05, "{by_momenta}");
     output(&format!("{SIMULATE} --until 30 --noise 1e-3 --known-torque 0.05,0.02,-0.03 --out {record}"));
@@ -375,7 +375,7 @@ fn wheels_and_torques_are_columns() {
     assert!((by_torques - 5.6).abs() < 0.1, "{by_torques}");
 
     // the speed of one wheel about z: 0.4 N m s are 40 rad/s of 0.01 kg m²
-    output(&format!("{SIMULATE} --until 30 --noise 1e-3 --wheel 0,0,0.4 --out {record}"));
+    output(&format!("{SIMULATE} --until 30 --noise 1e-3 --wheel-momentum 0,0,0.4 --out {record}"));
     let text = fs::read_to_string(&record).unwrap();
     let with_speed = |header: &str, speed: &str| {
         let rows = text.lines().skip(1).map(|row| {

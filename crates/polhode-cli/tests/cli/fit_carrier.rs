@@ -103,7 +103,7 @@ fn carrier_and_object_are_absolute_by_a_proof_body() {
 #[test]
 fn a_wheel_is_found_with_carrier_and_object() {
     let scratch = Scratch::new("fit-carrier-wheel");
-    let momenta = tumbles(&scratch, "--wheel 0,0,0.04");
+    let momenta = tumbles(&scratch, "--wheel-momentum 0,0,0.04");
     let known = json(&format!("fit {} --carrier {}", momenta[2], momenta[0]));
     agrees(&known["object"], "0.007,0.009,0.0138,0.0024,0.0012,-0.0002");
     assert_eq!(known["sizes"][0]["source"], "wheels or torques");

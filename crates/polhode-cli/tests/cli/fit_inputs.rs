@@ -65,7 +65,7 @@ fn a_wheel_is_calibrated_by_a_body_that_is_known() {
     let (momenta, record) = (path("momenta.csv"), path("proof.csv"));
     let body = path("body.json");
     output(&format!("inertia tensor 1,2,2.6,0,0,0 --mass 30 --format json --out {body}"));
-    output(&format!("{SIMULATE} --until 20 --noise 1e-3 --wheel 0,0,0.4 --out {momenta}"));
+    output(&format!("{SIMULATE} --until 20 --noise 1e-3 --wheel-momentum 0,0,0.4 --out {momenta}"));
     let text = std::fs::read_to_string(&momenta).unwrap();
     let rows = text.lines().skip(1).map(|row| {
         let cells: Vec<&str> = row.split(',').take(4).collect();

@@ -44,3 +44,4 @@ mod show;
 mod tables;
 mod through;
 mod times;
+mod wheels;

@@ -1,0 +1,172 @@
+//! Bodies with wheels, in every command that takes a body.
+
+use serde_json::Value;
+
+use crate::harness::{Scratch, output, polhode, words};
+
+const MOTION: &str = "--omega 0.1,0.02,0.3 --attitude 0.5,0.1,-0.7,0.3";
+const MOMENTS: &str = "--moments 10,12,15";
+const WHEELS: &str = "--wheel 0,1,1,0.05@600rpm --wheel 1,0,0,0.1@-20,free";
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+/// By flags, by TOML and by JSON: the same rows; the closed form is what is taken where no method is named.
+#[test]
+fn wheels_by_flag_and_by_file_are_the_same() {
+    let scratch = Scratch::new("wheels-files");
+    let times = "--times 0,10,1e6 --format csv";
+    let by_flag = output(&format!("propagate {MOMENTS} {WHEELS} {MOTION} {times}"));
+    assert_eq!(by_flag.lines().count(), 4);
+    let toml = scratch.file(
+        "craft.toml",
+        "wheels = [{axis = [0, 1, 1], inertia = 0.05, speed = \"600rpm\"}]\n\
+         [[part]]\nshape = \"tensor\"\nmass = 1\ninertia = [10, 12, 15, 0, 0, 0]\n",
+    );
+    let json = scratch.file(
+        "craft.json",
+        r#"{"inertia": [[10,0,0],[0,12,0],[0,0,15]], "wheels": [
+            {"axis": [0,1,1], "inertia": 0.05, "speed": 600, "speed_unit": "rpm"},
+            {"axis": [1,0,0], "inertia": 0.1, "speed": "-20rad/s", "free": true}]}"#,
+    );
+    for body in [format!("--body {toml} --wheel 1,0,0,0.1@-20,free"), format!("--body {json}")] {
+        let rows = output(&format!("propagate {body} {MOTION} {times}"));
+        for (here, there) in rows.lines().zip(by_flag.lines()).skip(1) {
+            let numbers =
+                |line: &str| line.split(',').take(8).map(|x| x.parse().unwrap()).collect::<Vec<f64>>();
+            let off = numbers(here)
+                .iter()
+                .zip(numbers(there))
+                .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            // the axes of a tensor are worked out, those of typed moments are not
+            assert!(off < 1e-9, "{body}: {off:e}");
+        }
+    }
+}
+
+#[test]
+fn an_audit_knows_the_wheels_and_misses_them_where_they_are_not_told() {
+    let scratch = Scratch::new("wheels-audit");
+    let wheel = "--wheel 0,1,1,0.05@600rpm";
+    let run = output(&format!(
+        "propagate {MOMENTS} {wheel} {MOTION} --until 100 --every 0.5 --fields t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z"
+    ));
+    let file = scratch.file("run.csv", run);
+    let verdict = |body: &str| {
+        let answer = polhode(&words(&format!("audit {file} {body} --format json")), &scratch.0);
+        let found = json(&answer.out);
+        let error = found["momentum_vector_error"].as_f64();
+        (answer.code, found["verdict"].as_str().unwrap_or_default().to_owned(), error)
+    };
+    let (code, said, error) = verdict(&format!("{MOMENTS} {wheel}"));
+    assert_eq!((code, said.as_str()), (0, "right"));
+    assert!(error.is_some_and(|error| error < 1e-14));
+    for wrong in [
+        MOMENTS.to_owned(),
+        format!("{MOMENTS} --wheel 0,1,1,0.05@630rpm"),
+        format!("{MOMENTS} --wheel 0,1,-1,0.05@600rpm"),
+    ] {
+        let (code, said, _) = verdict(&wrong);
+        assert_eq!((code, said.as_str()), (1, "wrong"), "{wrong}");
+    }
+}
+
+#[test]
+fn motion_names_period_separatrices_and_steady_spins() {
+    let line = format!("motion {MOMENTS} --wheel 1,0.3,-0.2,0.05@8rad/s --omega 0.3,-0.2,0.5");
+    let found = json(&output(&format!("{line} --format json")));
+    let found = &found[0];
+    assert_eq!((found["mode"].as_str(), found["steady_spins"].as_u64()), (Some("tumbling"), Some(6)));
+    assert!(found["period"].as_f64().is_some_and(|period| period > 1.0));
+    let spins = json(&output(&format!("{line} --steady --format json")));
+    let spins = spins.as_array().unwrap();
+    let unstable: Vec<f64> = spins
+        .iter()
+        .filter(|spin| spin["stability"] == "unstable")
+        .map(|spin| spin["energy"].as_f64().unwrap())
+        .collect();
+    let separatrices =
+        ["separatrix_energy_1", "separatrix_energy_2"].map(|name| found[name].as_f64().unwrap());
+    assert_eq!((spins.len(), unstable), (6, separatrices.to_vec()));
+}
+
+/// Momenta of held wheels are written beside the rates, and `fit` makes the tensor absolute by them.
+#[test]
+fn a_simulated_record_tells_the_momentum_of_its_wheels() {
+    let scratch = Scratch::new("wheels-fit");
+    let record = scratch.file("record.csv", "");
+    output(&format!(
+        "simulate --moments 1,2,2.6 --wheel 2,-3,4,0.01@50rad/s --omega 1,2,0.5 --until 30 --every 0.02 --noise 1e-3 --out {record}"
+    ));
+    let answer = json(&output(&format!("fit {record} --format json")));
+    let trace: f64 = (0..3).map(|k| answer["inertia"][k][k].as_f64().unwrap()).sum();
+    assert!((trace - 5.6).abs() < 0.05, "{trace}");
+}
+
+#[test]
+fn members_of_an_ensemble_carry_held_wheels() {
+    let scratch = Scratch::new("wheels-ensemble");
+    let spec = |wheel: &str, method: &str| {
+        format!(
+            "[body]\nmoments = [10, 12, 15]\nwheels = [{{axis = [0, 1, 1], inertia = 0.05, {wheel}}}]\n[start]\nomega = [0.1, 0.02, 0.3]\n\
+             [spread]\nomega = [0.01]\n[run]\nmembers = 20\nseed = 3\n{method}\ntimes = [40]\n"
+        )
+    };
+    let summary = |name: &str, method: &str| {
+        let file = scratch.file(&format!("{name}.toml"), spec("speed = \"600rpm\"", method));
+        let folder = scratch.0.join(name).display().to_string();
+        output(&format!("ensemble {file} --out {folder}"));
+        let text = std::fs::read_to_string(scratch.0.join(name).join("summary.csv")).unwrap();
+        text.lines().last().unwrap().split(',').map(|x| x.parse().unwrap_or(0.0)).collect::<Vec<f64>>()
+    };
+    let exact = summary("exact", "method = \"exact\"");
+    let steps = summary("steps", "method = \"two-turn@suzuki-4\"\nstep = 0.02");
+    assert!(
+        exact.iter().zip(&steps).skip(1).take(6).all(|(a, b)| (a - b).abs() < 1e-6),
+        "{exact:?} {steps:?}"
+    );
+    let free = scratch.file("free.toml", spec("speed = \"600rpm\", free = true", "method = \"exact\""));
+    let answer = polhode(&words(&format!("ensemble {free} --out none")), &scratch.0);
+    assert_eq!(answer.code, 2);
+    assert!(answer.err.contains("carry wheels whose speed is held"), "{}", answer.err);
+}
+
+#[test]
+fn wheels_that_are_wrong_are_refused_with_the_rule() {
+    let scratch = Scratch::new("wheels-refused");
+    let number = scratch.file(
+        "number.toml",
+        "wheels = [{axis = [0, 1, 1], inertia = 0.05, speed = 600}]\n[[part]]\nshape = \"sphere\"\nsize = [1]\nmass = 3\n",
+    );
+    for (line, said) in [
+        (format!("propagate {MOMENTS} --wheel 0,0,0,0.1@3 {MOTION} --times 1"), "no direction"),
+        (
+            format!("propagate {MOMENTS} --wheel 1,0,0,8@3 {MOTION} --times 1"),
+            "does not fit into that of body and wheels",
+        ),
+        (format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3Hz {MOTION} --times 1"), "no unit of rates"),
+        (format!("propagate --body {number} --omega 1,0,0 --times 1"), "600.0 has no unit"),
+        (
+            format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3,torque=0.1 {MOTION} --times 1"),
+            "a closed form is known while no motor works",
+        ),
+        (
+            format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3 {MOTION} --method dmv:10 --step 0.1 --times 1"),
+            "cannot take wheels",
+        ),
+        (
+            format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3 --periods 2h,3h --mode lam --times 1"),
+            "body without wheels",
+        ),
+        (format!("motion {MOMENTS} --omega 1,0,0 --steady"), "body with wheels"),
+        (
+            format!("simulate {MOMENTS} --wheel 1,0,0,0.1@3,free --omega 1,0,0 --until 1 --every 0.1"),
+            "give wheels whose speed is held",
+        ),
+    ] {
+        let answer = polhode(&words(&line), &scratch.0);
+        assert_eq!(answer.code, 2, "{line}: {}", answer.err);
+        assert!(answer.err.contains(said), "{line}: {}", answer.err);
+    }
+}
