@@ -324,3 +324,50 @@ def test_an_ensemble_tells_its_progress_and_ends_where_that_raises():
 
     with pytest.raises(RuntimeError, match="enough"):
         many.run("rk4", times=np.arange(1, 200), step=0.01, progress=enough)
+
+
+def test_a_body_with_wheels_moves_as_its_equations_say():
+    axis, inertia, speed = np.array([0.0, 0.6, 0.8]), 0.05, 60.0
+    tensor, omega = np.diag([10.0, 12.0, 15.0]), np.array([0.1, 0.02, 0.3])
+    held = polhode.Wheel(axis, inertia, speed)
+    for wheel in (held, held.free(omega)):
+        body = polhode.Body(tensor, wheels=[wheel])
+        motion = polhode.GyrostatMotion(body, omega)
+        # I w' + J a W' = -w x (I w + J W a); W' = -a.w' of a free wheel, 0 of one that is held
+        is_free = wheel is not held
+        left = tensor - inertia * np.outer(axis, axis) if is_free else tensor
+
+        def rate(state):
+            turn, w, spin = state[:4], state[4:7], state[7]
+            momentum = tensor @ w + inertia * spin * axis
+            acceleration = np.linalg.solve(left, -np.cross(w, momentum))
+            product = np.array(
+                [
+                    -turn[1:] @ w,
+                    *(turn[0] * w + np.cross(turn[1:], w)),
+                ]
+            )
+            return np.concatenate([product / 2, acceleration, [-axis @ acceleration if is_free else 0.0]])
+
+        state, h = np.concatenate([[1, 0, 0, 0], omega, [speed]]), 0.01
+        for _ in range(2000):
+            k1 = rate(state)
+            k2 = rate(state + h / 2 * k1)
+            k3 = rate(state + h / 2 * k2)
+            k4 = rate(state + h * k3)
+            state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        there = motion.at(20.0)
+        assert abs(abs(there.attitude @ state[:4]) - 1) < 1e-9
+        np.testing.assert_allclose(there.omega, state[4:7], atol=1e-8)
+        assert abs(wheel.speed(20.0, there.omega) - state[7]) < 1e-6
+        run = polhode.run("lie-poisson", body, omega, until=20.0, step=0.001)
+        np.testing.assert_allclose(run.omega[-1], there.omega, atol=1e-5)
+        np.testing.assert_allclose(
+            np.linalg.norm(motion.momentum), np.linalg.norm(tensor @ omega + inertia * speed * axis), rtol=1e-14
+        )
+    with pytest.raises(polhode.PolhodeError, match="GyrostatMotion"):
+        polhode.FreeMotion(body, omega)
+    with pytest.raises(polhode.PolhodeError, match="does not fit"):
+        polhode.Body([1, 2, 2.5], wheels=[polhode.Wheel([1, 0, 0], 0.6, 1)])
+    with pytest.raises(polhode.PolhodeError, match="works with"):
+        polhode.GyrostatMotion(polhode.Body(tensor, wheels=[held.driven(0.1, omega)]), omega)
