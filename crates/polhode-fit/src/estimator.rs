@@ -13,6 +13,7 @@ use crate::columns::effect::Class;
 use crate::columns::input::Input;
 use crate::columns::sets::sensor_columns;
 use crate::error::FitError;
+use crate::models::equations::Equations;
 use crate::models::weighed::spread;
 use crate::physical::coordinates::Form;
 use crate::physical::failure::SolverFailure;
@@ -22,6 +23,7 @@ use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::report::parts::scatter;
+use crate::report::systematic::errors;
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::noise;
@@ -126,11 +128,13 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         .into_iter()
         .chain(input.map(|_| Column::new(Input, None)))
         .collect();
+    let errors = errors(&columns, &stretches, rms);
     let demand = Demand {
         radius: settings.radius.map(|r| r * rms),
         torque: settings.torque,
         noise: noise_of(settings, rms, variance),
         columns: &columns,
+        errors: &errors,
     };
     // wheels and torques of the record are in units of their own
     let motion = if input.is_none() { Motion::new(&stretches, variance) } else { None };
@@ -155,6 +159,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         Verdict::Undetermined(what) => return Err(FitError::Unidentifiable(Box::new(what))),
         Verdict::Completed(supported, by) => {
             let Completed { weak, chi2, .. } = *by;
+            chosen.equations = Equations::new(&stretches, &weak, &errors, &columns, variance);
             chosen.weak = weak;
             (supported, Some(Agreement { chi2, dof: 5 }))
         }

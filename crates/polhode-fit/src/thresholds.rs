@@ -72,6 +72,8 @@ thresholds! {
         STANDS: f64 = 0.1, "relative change of a misfit from one round to the next that no longer matters", UNMEASURED;
         SIGNIFICANT_GAIN: f64 = 50.0,
             "fall of chi squared that no wobble of noise brings: a chance of exp(-25) for each frequency", DERIVED;
+        CLEAR: f64 = 10.0,
+            "times that gain in a part of a long record, beyond which the rest is not asked", "long_records_go_on_from_a_part_of_them";
         FALL: f64 = 0.03, "share of its torque noise that a round of a descent leaves at least", UNMEASURED;
         DESCENT: usize = 30, "rounds of a descent from boundless torque noise", UNMEASURED;
         SAME: f64 = 0.05, "relative change of a level of torque noise that no longer matters", UNMEASURED;
@@ -133,6 +135,12 @@ thresholds! {
         DENSE: f64 = 0.9,
             "equations over samples beyond which their covariance is all but singular", "a_radius_without_room_is_refused";
         PILOT_SAMPLES: usize = 8_000, "samples on which the radius is chosen: more would not change it", UNMEASURED;
+        LONG: usize = 100_000,
+            "samples from which a descent begins at where that of a part has ended", "long_records_go_on_from_a_part_of_them";
+        SPARED: f64 = 1.01,
+            "predicted variance over the least that a longer radius of a long record may have: it has fewer equations",
+            "long_records_go_on_from_a_part_of_them";
+        PART: usize = 30_000, "samples of that part", "long_records_go_on_from_a_part_of_them";
     }
     walk: "columns of a random walk of the offsets" {
         SHORTEST: f64 = 0.5, "shortest of them, rad of the motion", UNMEASURED;
