@@ -13,6 +13,7 @@ use crate::columns::effect::Class;
 use crate::columns::input::Input;
 use crate::columns::sets::sensor_columns;
 use crate::error::FitError;
+use crate::likelihood::bend::beyond;
 use crate::models::equations::Equations;
 use crate::models::weighed::spread;
 use crate::physical::coordinates::Form;
@@ -36,6 +37,7 @@ use crate::solve::rounds::Noise;
 use crate::solve::weak_estimate::WeakEstimate;
 use crate::sparse::{is_sparse, likeliest};
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
+use crate::thresholds::warnings::UNCERTAIN;
 use crate::units::Motion;
 use crate::verdict::driven::check_driven;
 use crate::verdict::units::open_units;
@@ -177,6 +179,11 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         TorqueModel::Auto => spread(&chosen.models, chosen.model),
         _ => Form::zeros(),
     };
+    // of a free body alone the exact motion says how far the linear equations hold
+    let is_free = weak.columns.is_empty() && !weak.has_torque_noise() && settings.prior.is_none();
+    let is_vague = |factor: Form| factor.norm() * deviation > UNCERTAIN;
+    let bends = is_free && weak.root.try_inverse().is_some_and(is_vague);
+    let spread = if bends { spread + beyond(&stretches, weak.x(), variance) } else { spread };
     let joint = Joint::new(weak, kept, deviation).ok_or_else(information)?;
     let joint = joint.widened(&spread).ok_or_else(information)?;
     let dissipation = dissipation(&weak.columns, &joint.kept);

@@ -172,12 +172,14 @@ thresholds! {
         HALVES: f64 = 35.888_186_879_672_87,
             "chi squared of 5 degrees of freedom with a chance of 1e-6: two parts of a record contradict each other", DERIVED;
         CUTS: usize = 8, "parts of a record at whose borders it is cut in two", UNMEASURED;
+        OPEN: f64 = 1e-12,
+            "singular value over the largest, below which it is rounding and a part of the record leaves the number open", DERIVED;
         SCATTERED: f64 = 4.264_890_793_922_825,
             "standard normal deviate with a chance of 1e-5: the parts of a record scatter by more than their noise", DERIVED;
         NOISY: f64 = 4.0,
             "mean square residual of a segment over that of the median segment that is worth one", UNMEASURED;
         UNCERTAIN: f64 = 5e-3,
-            "deviation of the tensor, over the trace, beyond which the covariance is only approximate", UNMEASURED;
+            "deviation of the tensor, over the trace, beyond which the covariance is only approximate", "deviations_next_to_a_steady_spin_hold";
         APART: f64 = 3.0, "standard deviations that two moments must be apart to have axes of their own", UNMEASURED;
         UNEXPLAINED: f64 = 0.01,
             "share of the squared derivative of the rates from which torques at random are worth a warning", UNMEASURED;
@@ -312,6 +314,11 @@ thresholds! {
             "median turn from one sample to the next, rad, from which on rates are sparse: a tenth of a turn", "sparse_telemetry_goes_to_the_likelihood";
         LINEAR: f64 = 0.1,
             "largest turn by a constant torque, rad, up to which it is reckoned with to first order", UNMEASURED;
+        ALIKE: f64 = 0.25, "turn within the samples of one mean where the profile of a weak estimate is asked for, rad", UNMEASURED;
+        MEANS: usize = 200, "fewest such means, where there are as many samples", UNMEASURED;
+        MOST: usize = 3_000, "most of them", UNMEASURED;
+        SEARCHES: usize = 4,
+            "searches one after the other for its likeliest tensor, along a path that bends", "deviations_next_to_a_steady_spin_hold";
         SURE: f64 = 5e-3, "deviation of the tensor, over the trace, from which on a second search starts from the sphere", UNMEASURED;
         NARROW: f64 = 2e-3, "deviation along an axis of the ellipsoid, over the trace, up to which the likelihood is taken for quadratic", UNMEASURED;
         END: f64 = 4.529_349_363_035_798,

@@ -139,7 +139,7 @@ fn least_covariance(
         }
         traces.push((trace, judged.radius));
     }
-    let alike = traces.iter().filter(|(trace, _)| *trace <= spared * best.0);
+    let alike = traces.iter().filter(|(trace, _)| trace.is_finite() && *trace <= spared * best.0);
     alike.fold(best.1, |longest, (_, radius)| longest.max(*radius))
 }
 

@@ -72,6 +72,11 @@ impl Stacked {
         (self.squares / variance / self.rows.saturating_sub(5).max(1) as f64).max(1.0)
     }
 
+    /// z of |R (x − origin) + z|².
+    pub(crate) fn left(&self) -> Coordinates {
+        self.z
+    }
+
     pub(crate) fn information(&self) -> Form {
         self.root.transpose() * self.root
     }
