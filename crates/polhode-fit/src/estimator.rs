@@ -13,6 +13,8 @@ use crate::columns::effect::Class;
 use crate::columns::input::Input;
 use crate::columns::sets::sensor_columns;
 use crate::error::FitError;
+use crate::likelihood::bend::beyond;
+use crate::models::equations::Equations;
 use crate::models::weighed::spread;
 use crate::physical::coordinates::Form;
 use crate::physical::failure::SolverFailure;
@@ -22,6 +24,7 @@ use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::report::parts::scatter;
+use crate::report::systematic::errors;
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::noise;
@@ -34,6 +37,7 @@ use crate::solve::rounds::Noise;
 use crate::solve::weak_estimate::WeakEstimate;
 use crate::sparse::{is_sparse, likeliest};
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
+use crate::thresholds::warnings::UNCERTAIN;
 use crate::units::Motion;
 use crate::verdict::driven::check_driven;
 use crate::verdict::units::open_units;
@@ -126,11 +130,13 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         .into_iter()
         .chain(input.map(|_| Column::new(Input, None)))
         .collect();
+    let errors = errors(&columns, &stretches, rms);
     let demand = Demand {
         radius: settings.radius.map(|r| r * rms),
         torque: settings.torque,
         noise: noise_of(settings, rms, variance),
         columns: &columns,
+        errors: &errors,
     };
     // wheels and torques of the record are in units of their own
     let motion = if input.is_none() { Motion::new(&stretches, variance) } else { None };
@@ -155,6 +161,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         Verdict::Undetermined(what) => return Err(FitError::Unidentifiable(Box::new(what))),
         Verdict::Completed(supported, by) => {
             let Completed { weak, chi2, .. } = *by;
+            chosen.equations = Equations::new(&stretches, &weak, &errors, &columns, variance);
             chosen.weak = weak;
             (supported, Some(Agreement { chi2, dof: 5 }))
         }
@@ -172,6 +179,11 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         TorqueModel::Auto => spread(&chosen.models, chosen.model),
         _ => Form::zeros(),
     };
+    // of a free body alone the exact motion says how far the linear equations hold
+    let is_free = weak.columns.is_empty() && !weak.has_torque_noise() && settings.prior.is_none();
+    let is_vague = |factor: Form| factor.norm() * deviation > UNCERTAIN;
+    let bends = is_free && weak.root.try_inverse().is_some_and(is_vague);
+    let spread = if bends { spread + beyond(&stretches, weak.x(), variance) } else { spread };
     let joint = Joint::new(weak, kept, deviation).ok_or_else(information)?;
     let joint = joint.widened(&spread).ok_or_else(information)?;
     let dissipation = dissipation(&weak.columns, &joint.kept);

@@ -72,6 +72,8 @@ thresholds! {
         STANDS: f64 = 0.1, "relative change of a misfit from one round to the next that no longer matters", UNMEASURED;
         SIGNIFICANT_GAIN: f64 = 50.0,
             "fall of chi squared that no wobble of noise brings: a chance of exp(-25) for each frequency", DERIVED;
+        CLEAR: f64 = 10.0,
+            "times that gain in a part of a long record, beyond which the rest is not asked", "long_records_go_on_from_a_part_of_them";
         FALL: f64 = 0.03, "share of its torque noise that a round of a descent leaves at least", UNMEASURED;
         DESCENT: usize = 30, "rounds of a descent from boundless torque noise", UNMEASURED;
         SAME: f64 = 0.05, "relative change of a level of torque noise that no longer matters", UNMEASURED;
@@ -133,6 +135,12 @@ thresholds! {
         DENSE: f64 = 0.9,
             "equations over samples beyond which their covariance is all but singular", "a_radius_without_room_is_refused";
         PILOT_SAMPLES: usize = 8_000, "samples on which the radius is chosen: more would not change it", UNMEASURED;
+        LONG: usize = 100_000,
+            "samples from which a descent begins at where that of a part has ended", "long_records_go_on_from_a_part_of_them";
+        SPARED: f64 = 1.01,
+            "predicted variance over the least that a longer radius of a long record may have: it has fewer equations",
+            "long_records_go_on_from_a_part_of_them";
+        PART: usize = 30_000, "samples of that part", "long_records_go_on_from_a_part_of_them";
     }
     walk: "columns of a random walk of the offsets" {
         SHORTEST: f64 = 0.5, "shortest of them, rad of the motion", UNMEASURED;
@@ -164,12 +172,14 @@ thresholds! {
         HALVES: f64 = 35.888_186_879_672_87,
             "chi squared of 5 degrees of freedom with a chance of 1e-6: two parts of a record contradict each other", DERIVED;
         CUTS: usize = 8, "parts of a record at whose borders it is cut in two", UNMEASURED;
+        OPEN: f64 = 1e-12,
+            "singular value over the largest, below which it is rounding and a part of the record leaves the number open", DERIVED;
         SCATTERED: f64 = 4.264_890_793_922_825,
             "standard normal deviate with a chance of 1e-5: the parts of a record scatter by more than their noise", DERIVED;
         NOISY: f64 = 4.0,
             "mean square residual of a segment over that of the median segment that is worth one", UNMEASURED;
         UNCERTAIN: f64 = 5e-3,
-            "deviation of the tensor, over the trace, beyond which the covariance is only approximate", UNMEASURED;
+            "deviation of the tensor, over the trace, beyond which the covariance is only approximate", "deviations_next_to_a_steady_spin_hold";
         APART: f64 = 3.0, "standard deviations that two moments must be apart to have axes of their own", UNMEASURED;
         UNEXPLAINED: f64 = 0.01,
             "share of the squared derivative of the rates from which torques at random are worth a warning", UNMEASURED;
@@ -304,6 +314,11 @@ thresholds! {
             "median turn from one sample to the next, rad, from which on rates are sparse: a tenth of a turn", "sparse_telemetry_goes_to_the_likelihood";
         LINEAR: f64 = 0.1,
             "largest turn by a constant torque, rad, up to which it is reckoned with to first order", UNMEASURED;
+        ALIKE: f64 = 0.25, "turn within the samples of one mean where the profile of a weak estimate is asked for, rad", UNMEASURED;
+        MEANS: usize = 200, "fewest such means, where there are as many samples", UNMEASURED;
+        MOST: usize = 3_000, "most of them", UNMEASURED;
+        SEARCHES: usize = 4,
+            "searches one after the other for its likeliest tensor, along a path that bends", "deviations_next_to_a_steady_spin_hold";
         SURE: f64 = 5e-3, "deviation of the tensor, over the trace, from which on a second search starts from the sphere", UNMEASURED;
         NARROW: f64 = 2e-3, "deviation along an axis of the ellipsoid, over the trace, up to which the likelihood is taken for quadratic", UNMEASURED;
         END: f64 = 4.529_349_363_035_798,

@@ -29,7 +29,7 @@ pub enum Rival {
     MomentumWithAttitude,
     /// Weak form with errors in variables, the radius being the best of several at each noise.
     Wendy,
-    /// The largest likelihood of the same equations, with the radius of the test functions in the middle.
+    /// The largest likelihood of the same equations, the radius being the best of several at each noise.
     WendyLikelihood,
     /// Extended Kalman filter of rate and tensor, three runs, its prior being the best of several at each noise.
     Kalman,
@@ -55,11 +55,13 @@ pub const RIVALS: [Rival; 9] = [
 /// Samples of a Savitzky–Golay window.
 const WINDOWS: [usize; 7] = [51, 101, 151, 201, 301, 401, 601];
 /// Half widths of the test functions of WENDy, in radians of the motion.
-const RADII: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
-/// The one of the likelihood.
-const MIDDLE: f64 = RADII[2];
+const RADII: [f64; 6] = [0.375, 0.75, 1.5, 3.0, 6.0, 12.0];
+/// Those of the likelihood, each of which costs ten times as much.
+const OF_LIKELIHOOD: [f64; 4] = [0.75, 1.5, 3.0, 6.0];
 /// Standard deviations of a coordinate of the tensor before a filter runs, shares of the trace.
-const PRIORS: [f64; 3] = [0.01, 0.03, 0.1];
+const PRIORS: [f64; 4] = [0.003, 0.01, 0.03, WIDE];
+/// That of the smoother: the widest, which adds least to the record.
+const WIDE: f64 = 0.1;
 /// Window of the start of those that need one.
 const START: usize = 101;
 
@@ -106,7 +108,7 @@ impl Rival {
             Self::Momentum => "momentum",
             Self::MomentumWithAttitude => "momentum with attitude",
             Self::Wendy => "WENDy, tuned",
-            Self::WendyLikelihood => "WENDy-MLE",
+            Self::WendyLikelihood => "WENDy-MLE, tuned",
             Self::Kalman => "extended Kalman filter, tuned",
             Self::Smoother => "iterated Kalman smoother",
             Self::OutputError => "maximum likelihood",
@@ -118,6 +120,7 @@ impl Rival {
         match self {
             Self::SavitzkyGolay => WINDOWS.len(),
             Self::Wendy => RADII.len(),
+            Self::WendyLikelihood => OF_LIKELIHOOD.len(),
             Self::Kalman => PRIORS.len(),
             _ => 1,
         }
@@ -128,6 +131,7 @@ impl Rival {
         match self {
             Self::SavitzkyGolay => format!("window {}", WINDOWS[k]),
             Self::Wendy => format!("radius {} rad", RADII[k]),
+            Self::WendyLikelihood => format!("radius {} rad", OF_LIKELIHOOD[k]),
             Self::Kalman => format!("prior {}", PRIORS[k]),
             _ => String::new(),
         }
@@ -157,9 +161,9 @@ impl Rival {
                 momentum::measured(stretches.first()?, attitudes, start()?, sigma, ATTITUDE_NOISE)
             }
             Self::Wendy => wendy::answer(&stretches, RADII[k], sigma),
-            Self::WendyLikelihood => wendy::likeliest(&stretches, MIDDLE, sigma),
+            Self::WendyLikelihood => wendy::likeliest(&stretches, OF_LIKELIHOOD[k], sigma),
             Self::Kalman => kalman::filtered(&stretches, start()?, PRIORS[k], sigma),
-            Self::Smoother => kalman::smoothed(&stretches, start()?, PRIORS[2], sigma),
+            Self::Smoother => kalman::smoothed(&stretches, start()?, WIDE, sigma),
             Self::OutputError => output_error::answer(&stretches, start()?, sigma),
         }
     }

@@ -161,6 +161,8 @@ fn equations(s: &Stretch, tests: &[Test]) -> Vec<[f64; 6]> {
 fn covariance(s: &Stretch, tests: &[Test], x: &Vector5<f64>) -> Banded {
     let j = tensor(x);
     let crossed: Vec<Matrix3<f64>> = s.rates.iter().map(|w| cross_derivative(&j, w)).collect();
+    let squares: Vec<Matrix3<f64>> = crossed.iter().map(|k| k * k.transpose()).collect();
+    let own = j * j;
     let reach = (0..tests.len())
         .map(|m| {
             let last = tests[m].first + tests[m].values.len();
@@ -172,15 +174,21 @@ fn covariance(s: &Stretch, tests: &[Test], x: &Vector5<f64>) -> Banded {
     for (m, test) in tests.iter().enumerate() {
         let last = test.first + test.values.len();
         for (l, other) in tests.iter().enumerate().skip(m).take_while(|(_, other)| other.first < last) {
-            let mut block = Matrix3::zeros();
             let range = other.first..last.min(other.first + other.values.len());
             let shift = other.first - test.first;
             let one = test.values[shift..].iter().zip(&test.slopes[shift..]);
             let two = other.values.iter().zip(&other.slopes);
-            for ((k, one), two) in crossed[range].iter().zip(one).zip(two) {
-                let of = |(value, slope): (&f64, &f64)| k * *value - j * *slope;
-                block += of(one) * of(two).transpose();
+            // Σ (φ K − φ' J) (ψ K − ψ' J)ᵀ by its four parts
+            let (mut kk, mut kj, mut jk) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());
+            let mut jj = 0.0;
+            let each = crossed[range.clone()].iter().zip(&squares[range]).zip(one).zip(two);
+            for (((k, square), (value, slope)), (other_value, other_slope)) in each {
+                kk += square * (value * other_value);
+                kj += k * (value * other_slope);
+                jk += k * (slope * other_value);
+                jj += slope * other_slope;
             }
+            let block = kk - kj * j - j * jk.transpose() + own * jj;
             for p in 0..3 {
                 for q in 0..3 {
                     sum.add(3 * l + q, 3 * m + p, block[(p, q)]);

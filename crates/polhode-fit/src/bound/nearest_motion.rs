@@ -104,6 +104,7 @@ pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Optio
     let components = 3.0 * s.rates.len() as f64;
     let noise = variance * components;
     let slack = SURE * variance * (2.0 * components).sqrt();
+    let most = noise + LEFT * (variation - noise).max(0.0) + slack;
     STARTS.iter().find_map(|&(share, first)| {
         let at = (share * s.times.len() as f64) as usize;
         let mut start = Start { time: s.times[at], rate: local_cubic(s, at, first)? };
@@ -111,7 +112,12 @@ pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Optio
         loop {
             let range = coarse.around(start.time, radius);
             if range.len() >= 4 {
-                start = descend(euler, &coarse, range, start, variance)?.0;
+                let left;
+                (start, left) = descend(euler, &coarse, range, start, variance)?;
+                // what is left of all is no less
+                if left > most {
+                    return None;
+                }
             }
             if radius >= s.duration() || radius.is_infinite() {
                 break;
@@ -119,7 +125,7 @@ pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Optio
             radius *= 2.0;
         }
         let (start, left) = descend(euler, &samples, 0..s.times.len(), start, variance)?;
-        (left - noise <= LEFT * (variation - noise).max(0.0) + slack).then_some(start)
+        (left <= most).then_some(start)
     })
 }
 

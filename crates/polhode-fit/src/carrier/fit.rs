@@ -7,19 +7,19 @@ use crate::carrier::error::CarrierError;
 use crate::carrier::estimate::CarrierEstimate;
 use crate::carrier::law::{bodies, is_held, is_physical};
 use crate::carrier::least::least;
-use crate::carrier::records::{Attached, CarrierRecords};
+use crate::carrier::records::CarrierRecords;
 use crate::carrier::report::Report;
 use crate::carrier::start::{Alone, Start, start};
 use crate::carrier::system::{Part, System};
 use crate::carrier::told::Told;
 use crate::carrier::warning::{CarrierWarning, contradiction, light};
 use crate::carrier::wheels::check_wheels;
+use crate::columns::column::Column;
 use crate::columns::sets::sensor_columns;
 use crate::error::FitError;
 use crate::estimator::{Drawn, Fitted, fitted};
 use crate::physical::failure::SolverFailure;
 use crate::physical::truncated::spread_within;
-use crate::report::estimate::Estimate;
 use crate::report::nuisance::Agreement;
 use crate::settings::Settings;
 use crate::thresholds::noise::SURE;
@@ -64,33 +64,30 @@ pub fn fit_carrier(records: &CarrierRecords, settings: &Settings) -> Result<Carr
         return Err(CarrierError::Beforehand { name });
     }
     check_wheels(records)?;
-    let mut estimates: Vec<(Attached, Estimate)> = Vec::new();
-    let (mut parts, mut alone) = (Vec::new(), Vec::new());
     let sensor = sensor_columns(&settings.sensor, 1.0);
-    let priors: Vec<f64> = sensor.iter().filter_map(|column| column.prior).collect();
+    let (mut estimates, mut drawn) = (Vec::new(), Vec::new());
     for tumble in &records.tumbles {
         let attached = tumble.attached;
         let of_record = |error: FitError| CarrierError::Record { attached, error: Box::new(error) };
-        let Fitted { mut estimate, drawn } = fitted(&tumble.record, settings).map_err(of_record)?;
-        let drawn: Drawn = drawn.ok_or(CarrierError::Sparse { attached })?;
-        let told = Told::new(&drawn).ok_or(SolverFailure::Information)?;
-        let own = told.alone(&priors).ok_or(SolverFailure::Information)?;
-        alone.push(Alone { attached, proof: tumble.proof, told: own });
+        let Fitted { mut estimate, drawn: of_this } = fitted(&tumble.record, settings).map_err(of_record)?;
+        drawn.push(of_this.ok_or(CarrierError::Sparse { attached })?);
         if records.finds_wheel {
             (estimate.inertia, estimate.inertia_covariance) = (None, None);
         }
         estimates.push((attached, estimate));
-        let deviations = tumble.proof.map(|proof| proof.deviations()).transpose()?.flatten();
-        parts.push(Part {
-            told,
-            has_object: attached.has_object(),
-            added: tumble.proof.map_or(Matrix3::zeros(), |proof| proof.added()),
-            uncertain: deviations.map(|sigmas| (0, sigmas)),
-        });
     }
-    let start: Start = start(&alone, records.finds_wheel)?;
-    let (system, z) = System::new(parts, priors, &start);
-    let (best, normal) = least(&system, z, None)?;
+    // drag that would give energy is held at zero, as in the fit of one record
+    let mut held = vec![Vec::new(); drawn.len()];
+    let (start, system, best, normal) = loop {
+        let (start, system, z) = system(records, &drawn, &held, &sensor)?;
+        let (best, normal) = least(&system, z, None)?;
+        let gains = |part: &Part| Some(part.told.gains(&system.readings(part, &best)?));
+        let more = system.parts.iter().map(gains).collect::<Option<Vec<_>>>().unwrap_or_default();
+        if more.iter().all(Vec::is_empty) {
+            break (start, system, best, normal);
+        }
+        held.iter_mut().zip(more).for_each(|(held, more)| held.extend(more));
+    };
     let terms = bodies(&system, records);
     let (answer, pull) = match terms.iter().all(|body| is_physical(body, &best)) {
         true => (best.clone(), 0.0),
@@ -136,4 +133,30 @@ pub fn fit_carrier(records: &CarrierRecords, settings: &Settings) -> Result<Carr
         records: estimates,
         warnings: warnings.into_iter().flatten().chain(held).collect(),
     })
+}
+
+/// The equations of all records, the columns `held` of each at zero, with where they start.
+fn system(
+    records: &CarrierRecords,
+    drawn: &[Drawn],
+    held: &[Vec<usize>],
+    sensor: &[Column],
+) -> Result<(Start, System, DVector<f64>), CarrierError> {
+    let priors: Vec<f64> = sensor.iter().filter_map(|column| column.prior).collect();
+    let (mut parts, mut alone) = (Vec::new(), Vec::new());
+    for ((tumble, drawn), held) in records.tumbles.iter().zip(drawn).zip(held) {
+        let told = Told::new(drawn, held).ok_or(SolverFailure::Information)?;
+        let own = told.alone(&priors).ok_or(SolverFailure::Information)?;
+        alone.push(Alone { attached: tumble.attached, proof: tumble.proof, told: own });
+        let deviations = tumble.proof.map(|proof| proof.deviations()).transpose()?.flatten();
+        parts.push(Part {
+            told,
+            has_object: tumble.attached.has_object(),
+            added: tumble.proof.map_or(Matrix3::zeros(), |proof| proof.added()),
+            uncertain: deviations.map(|sigmas| (0, sigmas)),
+        });
+    }
+    let start: Start = start(&alone, records.finds_wheel)?;
+    let (system, z) = System::new(parts, priors, &start);
+    Ok((start, system, z))
 }

@@ -75,7 +75,7 @@ impl System {
     }
 
     /// The readings of a record at `z`; `None` where nothing has such a tensor.
-    fn readings(&self, part: &Part, z: &DVector<f64>) -> Option<DVector<f64>> {
+    pub(super) fn readings(&self, part: &Part, z: &DVector<f64>) -> Option<DVector<f64>> {
         let tensor = self.tensor(part, z);
         let trace = tensor.trace();
         if !(trace > 0.0 && trace.is_finite()) {

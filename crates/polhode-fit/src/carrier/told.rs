@@ -17,10 +17,22 @@ pub(super) struct Told {
     pub(super) root: DMatrix<f64>,
     pub(super) right: DVector<f64>,
     pub(super) has_input: bool,
+    drags: Drags,
+}
+
+/// How the drag of a record follows from the readings.
+struct Drags {
+    /// Triangle of all torques of the record, and of what the choice of one adds; how they depend on the readings, and their right-hand side.
+    own: DMatrix<f64>,
+    shared: DMatrix<f64>,
+    right: DVector<f64>,
+    /// Places among them that are drag, and their columns.
+    places: Vec<(usize, usize)>,
 }
 
 impl Told {
-    pub(super) fn new(drawn: &Drawn) -> Option<Told> {
+    /// With the columns `held` at zero: drag that takes no energy.
+    pub(super) fn new(drawn: &Drawn, held: &[usize]) -> Option<Told> {
         let Drawn { weak, deviation, spread, rms, input } = drawn;
         let origin = &weak.stacked.as_ref()?.origin;
         // priors of what records share would count once for each
@@ -33,7 +45,8 @@ impl Told {
         };
         let shared = of_class(|class| class == Class::Sensor);
         let inputs = of_class(|class| class == Class::Input);
-        let own = of_class(|class| !matches!(class, Class::Sensor | Class::Input));
+        let mut own = of_class(|class| !matches!(class, Class::Sensor | Class::Input));
+        own.retain(|k| !held.contains(k));
         // x of the record is off by F e, e standard normal, F Fᵀ being what the choice of a torque adds
         let wider = if *spread == Form::zeros() { 0 } else { 5 };
         let (more, first) = (factor(spread), columns.len());
@@ -54,7 +67,21 @@ impl Told {
         let root = r.view((behind, behind), (size, size)).into_owned();
         let right = r.view((behind, width - 1), (size, 1)).column(0).into_owned();
         let finite = root.iter().chain(&right).all(|v| v.is_finite());
-        finite.then_some(Told { root, right, has_input: !inputs.is_empty() })
+        let is_drag = |(_, k): &(usize, &usize)| columns[**k].class() == Class::Drag;
+        let drags = Drags {
+            own: r.view((0, 0), (behind, behind)).into_owned(),
+            shared: r.view((0, behind), (behind, size)).into_owned(),
+            right: r.view((0, width - 1), (behind, 1)).column(0).into_owned(),
+            places: own.iter().enumerate().filter(is_drag).map(|(place, k)| (place, *k)).collect(),
+        };
+        finite.then_some(Told { root, right, has_input: !inputs.is_empty(), drags })
+    }
+
+    /// The columns of drag that are negative where the readings are `m` and all else is at its best.
+    pub(super) fn gains(&self, m: &DVector<f64>) -> Vec<usize> {
+        let Drags { own, shared, right, places } = &self.drags;
+        let Some(values) = own.solve_upper_triangular(&-(right + shared * m)) else { return Vec::new() };
+        places.iter().filter(|(place, _)| values[*place] < 0.0).map(|(_, column)| *column).collect()
     }
 
     /// What it tells by itself of one over the trace and the shape, the errors of the sensor having these priors.

@@ -34,7 +34,9 @@ impl Squared {
             return None;
         }
         let none = || vec![Vector3::zeros(); tests.count];
-        let of_sensor = |column: &Column| column.effect().change_of_rate(&Vector3::zeros()).is_some();
+        // where there is none of this drag, errors of the rates change nothing of it
+        let acts = terms.quadratic != 0.0;
+        let of_sensor = |column: &Column| acts && column.effect().change_of_rate(&Vector3::zeros()).is_some();
         let mut sums = Squared {
             motion: none(),
             readings: none(),
@@ -47,6 +49,7 @@ impl Squared {
             let linear = value + slope * (terms.sensor * n);
             let changes: Vec<Option<Vector3<f64>>> = columns
                 .iter()
+                .take(if acts { columns.len() } else { 0 })
                 .map(|column| column.effect().change_of_rate(&reading).map(|change| slope * change))
                 .collect();
             for (m, _, by) in Seen::new(tests, stretch.times[i]).each() {

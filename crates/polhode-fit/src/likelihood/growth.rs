@@ -62,7 +62,7 @@ pub(crate) fn follow(
 }
 
 /// The same from that tensor alone.
-fn search(
+pub(crate) fn search(
     tracks: &[Track],
     x: Coordinates,
     alignment: Quat<f64>,

@@ -20,6 +20,7 @@
 
 pub(crate) mod alignment;
 pub(crate) mod alternatives;
+pub(crate) mod bend;
 pub(crate) mod choice;
 pub(crate) mod descent;
 pub(crate) mod growth;

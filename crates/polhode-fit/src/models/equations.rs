@@ -1,5 +1,5 @@
-//! The equations of a weak estimate with the columns of every torque: a triangle for each segment, in which each model is a choice of
-//! columns.
+//! The equations of a weak estimate with the columns of every torque and every error of the sensor: a triangle for each segment, in which
+//! each model is a choice of columns.
 
 use crate::columns::column::{Column, Unknowns};
 use crate::columns::sets::torque_columns;
@@ -7,14 +7,15 @@ use crate::models::MODELS;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::solve::linearised::residuals;
-use crate::solve::stacked::Stacked;
+use crate::solve::stacked::{Stacked, small_triangle};
 use crate::solve::triangle::Triangle;
 use crate::solve::weak_estimate::WeakEstimate;
 
 /// The equations of an estimate, linearised where it stands, with its noise as it was estimated.
 pub(crate) struct Equations {
-    /// Those of every torque, then those that every model has.
+    /// Errors of the sensor that the fit takes to be zero, then every torque, then those that every model has.
     columns: Vec<Column>,
+    errors: usize,
     torques: usize,
     origin: Unknowns,
     segments: Vec<Segment>,
@@ -38,15 +39,18 @@ pub(crate) struct OfModel {
 }
 
 impl Equations {
-    /// Of an estimate whose last columns are `common`, which every model has; `variance` is that of the noise.
+    /// Of an estimate whose last columns are `common`, which every model has, and that takes `errors` to be zero; `variance` is that of the
+    /// noise.
     pub(crate) fn new(
         stretches: &[Stretch],
         weak: &WeakEstimate,
+        errors: &[Column],
         common: &[Column],
         variance: f64,
     ) -> Option<Self> {
         let torques = MODELS.into_iter().flat_map(torque_columns);
-        let columns: Vec<Column> = torques.chain(common.iter().copied()).collect();
+        let columns: Vec<Column> =
+            errors.iter().copied().chain(torques).chain(common.iter().copied()).collect();
         let value = |column: &Column| {
             let own = weak.columns.iter().position(|own| own.is_alike(column));
             own.map_or(0.0, |k| weak.at.c[k])
@@ -55,19 +59,46 @@ impl Equations {
         let width = columns.len() + 6;
         let each = weak.parts.iter().map(|part| {
             let rows = part.with_columns(&stretches[part.stretch], &columns, &origin)?;
-            Some(Segment { equations: rows.len() / width, rows: triangle(&[&rows], width) })
+            Some(Segment { equations: rows.len() / width, rows: small_triangle(&rows, width) })
         });
         let segments = each.collect::<Option<Vec<Segment>>>()?;
-        let torques = columns.len() - common.len();
-        Some(Equations { columns, torques, origin, segments, deviation: variance.sqrt() })
+        let (errors, torques) = (errors.len(), columns.len() - errors.len() - common.len());
+        Some(Equations { columns, errors, torques, origin, segments, deviation: variance.sqrt() })
     }
 
-    /// Those of one model: the torques that it has not are zero.
+    /// The errors that are taken to be zero.
+    pub(crate) fn errors(&self) -> &[Column] {
+        &self.columns[..self.errors]
+    }
+
+    /// Rows that stand for those of each segment, with the columns of the errors and then `own`, the columns of the estimate.
+    pub(crate) fn with_errors(&self, own: &[Column]) -> Option<Vec<Vec<f64>>> {
+        let place = |column: &Column| {
+            let torques_on = self.columns.iter().enumerate().skip(self.errors);
+            torques_on.filter(|(_, other)| other.is_alike(column)).map(|(k, _)| k).next()
+        };
+        let own = own.iter().map(place).collect::<Option<Vec<usize>>>()?;
+        let last = self.columns.len()..self.columns.len() + 6;
+        let kept: Vec<usize> = (0..self.errors).chain(own).chain(last.clone()).collect();
+        let rows = |segment: &Segment| {
+            let rows = segment.rows.chunks_exact(last.end);
+            rows.flat_map(|row| kept.iter().map(|&k| row[k])).collect()
+        };
+        Some(self.segments.iter().map(rows).collect())
+    }
+
+    /// Those of one model: the torques that it has not, and the errors of the sensor, are zero.
     pub(crate) fn of(&self, model: TorqueModel) -> OfModel {
-        let own = torque_columns(model);
+        self.of_all(&[model])
+    }
+
+    /// Those of several models together.
+    pub(crate) fn of_all(&self, models: &[TorqueModel]) -> OfModel {
+        let own: Vec<Column> = models.iter().copied().flat_map(torque_columns).collect();
         let is_own = |k: usize| own.iter().any(|column| column.is_alike(&self.columns[k]));
+        let common = self.errors + self.torques;
         let (kept, left): (Vec<usize>, Vec<usize>) =
-            (0..self.columns.len()).partition(|&k| k >= self.torques || is_own(k));
+            (0..self.columns.len()).partition(|&k| k >= common || (k >= self.errors && is_own(k)));
         let width = self.columns.len() + 6;
         let row = |row: &[f64]| {
             let gone: f64 = left.iter().map(|&k| row[k] * self.origin.c[k]).sum();

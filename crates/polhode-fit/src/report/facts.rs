@@ -9,6 +9,7 @@ use crate::bound::motions::Motions;
 use crate::columns::column::Unknowns;
 use crate::columns::effect::Class;
 use crate::error::FitError;
+use crate::models::equations::Equations;
 use crate::physical::constraint::{ActiveConstraint, Constraint};
 use crate::physical::coordinates::{ENTRIES, Form, eigen, entries_of_coordinates, tensor};
 use crate::physical::dissipation::Dissipation;
@@ -103,7 +104,10 @@ impl Facts<'_> {
         let residuals = self.residuals(&at);
         let (torques, sensor) = self.nuisances(&at, &held);
         let pull = nearest.pull;
-        let (lines, suspect) = systematic(weak, self.stretches, &v, &moments.into(), self.variance, self.rms);
+        let systematic = |equations: &Equations| {
+            systematic(weak, equations, self.stretches, &v, &moments.into(), self.variance, self.rms)
+        };
+        let (lines, suspect) = self.chosen.equations.as_ref().map(systematic).unwrap_or_default();
         let mut estimate = Estimate {
             principal: [moments[0], moments[1], moments[2]],
             sigma_principal,

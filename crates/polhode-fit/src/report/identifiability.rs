@@ -13,13 +13,18 @@ use crate::physical::coordinates::{Coordinates, Form, eigen, trace_free};
 pub struct PrincipalAxis {
     /// Unit vector in sensor axes, of either sign.
     pub axis: Vector3<f64>,
-    /// Its number among the axes that [`Undetermined`] speaks of, from 1.
-    pub number: usize,
+    /// Its number among the axes that [`Undetermined`] speaks of, from 1; of the axis of a pure spin, which needs none, `None`.
+    pub number: Option<usize>,
 }
 
 impl fmt::Display for PrincipalAxis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} is a principal axis, numbered {} here", direction(&self.axis), self.number)
+        let named = named(&self.axis).map_or(String::new(), |name| format!(", {name} of the sensor"));
+        let axis = direction(&self.axis);
+        match self.number {
+            Some(number) => write!(f, "{axis}{named} is a principal axis, numbered {number} here"),
+            None => write!(f, "{axis}{named}, about which the body spins, is a principal axis"),
+        }
     }
 }
 
@@ -29,11 +34,11 @@ impl fmt::Display for PrincipalAxis {
 pub enum Undetermined {
     /// All ratios and axes: the motion cannot be told from its noise.
     Everything,
-    /// I₂/I₃ of a pure spin about axis 1.
+    /// The ratio of the two moments across the axis of a pure spin.
     TransverseRatio,
-    /// I₁/I₂ of a pure spin about axis 1.
+    /// The ratio of the moment about that axis to the others.
     SpinRatio,
-    /// The directions of axes 2 and 3 of a pure spin about axis 1.
+    /// The directions of the principal axes across it.
     TransverseAxes,
     /// Both ratios of a record of pure spins about several principal axes.
     Ratios,
@@ -59,11 +64,13 @@ impl fmt::Display for Undetermined {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Everything => "no ratio and no axis is determined: the motion cannot be told from its noise",
-            Self::TransverseRatio => "the ratio I2/I3 is undetermined: the record is a pure spin about axis 1",
-            Self::SpinRatio => {
-                "the ratio I1/I2 is undetermined: nothing compares the spin axis with the other two"
+            Self::TransverseRatio => {
+                "the ratio of the two moments across the axis of spin is undetermined: the record is a pure spin"
             }
-            Self::TransverseAxes => "the directions of axes 2 and 3 are undetermined",
+            Self::SpinRatio => {
+                "the ratio of the moment about the axis of spin to the other two is undetermined: nothing compares them"
+            }
+            Self::TransverseAxes => "the directions of the principal axes across the axis of spin are undetermined",
             Self::Ratios => {
                 "the ratios I1/I2 and I2/I3 are undetermined: the record holds only pure spins about principal axes"
             }
@@ -129,8 +136,16 @@ fn joined<T: fmt::Display>(facts: &[T]) -> String {
 
 /// A unit vector of either sign, the largest component positive.
 pub(crate) fn direction(v: &Vector3<f64>) -> String {
-    let v = v * v[v.iamax()].signum();
+    // what is zero to the digits shown has no sign
+    let v = (v * v[v.iamax()].signum()).map(|part| if part.abs() < 5e-5 { 0.0 } else { part });
     format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z)
+}
+
+/// The axis of the sensor that a unit vector is, to the digits shown.
+fn named(v: &Vector3<f64>) -> Option<&'static str> {
+    let across = v.iter().enumerate().filter(|(k, _)| *k != v.iamax());
+    let is_one = across.map(|(_, part)| part.abs()).all(|part| part < 5e-4);
+    is_one.then(|| ["x", "y", "z"][v.iamax()])
 }
 
 fn unknowns(
@@ -152,14 +167,14 @@ fn unknowns(
     if rank <= 2 && spread[1] <= PURE * spread[2] {
         return (
             vec![Undetermined::TransverseRatio, Undetermined::SpinRatio, Undetermined::TransverseAxes],
-            vec![PrincipalAxis { axis: main, number: 1 }],
+            vec![PrincipalAxis { axis: main, number: None }],
         );
     }
     let known = (0..3)
         .map(|k| frame.column(k).into_owned())
         .enumerate()
         .filter(|(_, v)| null.iter().all(|t| (t * v - v * v.dot(&(t * v))).norm() < PRINCIPAL))
-        .map(|(k, axis)| PrincipalAxis { axis, number: k + 1 })
+        .map(|(k, axis)| PrincipalAxis { axis, number: Some(k + 1) })
         .collect();
     if common.is_some() && rank == 3 {
         return (vec![Undetermined::Ratios], known);

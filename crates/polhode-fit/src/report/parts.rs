@@ -3,7 +3,8 @@
 use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::WeakEstimate;
-use crate::thresholds::warnings::{CUTS, HALVES, SCATTERED};
+use crate::thresholds::stacked::ITERATIONS;
+use crate::thresholds::warnings::{CUTS, HALVES, OPEN, SCATTERED};
 
 /// Two tensors of one record that contradict each other, cut where they do so most.
 #[non_exhaustive]
@@ -30,7 +31,7 @@ pub(crate) fn halves(weak: &WeakEstimate, variance: f64) -> Option<Halves> {
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scatter {
-    /// Parts of the same number of equations.
+    /// Parts of the same number of equations that tell anything of the tensor.
     pub parts: usize,
     /// Square of their distances from their weighted mean, in standard deviations.
     pub chi2: f64,
@@ -47,14 +48,31 @@ impl Scatter {
 
 /// How the tensors of all parts scatter, where that is more than chance brings; `variance` as above.
 pub(crate) fn scatter(weak: &WeakEstimate, variance: f64) -> Option<Scatter> {
-    let each = (0..CUTS).map(|k| solved(weak, variance, [k, k + 1].map(|k| k as f64 / CUTS as f64)));
-    let each = each.collect::<Option<Vec<(Coordinates, Form)>>>()?;
-    let total = each.iter().fold(Form::zeros(), |sum, (_, information)| sum + information);
-    let weighted = each.iter().fold(Coordinates::zeros(), |sum, (x, information)| sum + information * x);
-    let mean = total.cholesky()?.solve(&weighted);
-    let chi2 = each.iter().map(|(x, information)| (x - mean).dot(&(information * (x - mean)))).sum::<f64>();
-    let dof = 5 * (CUTS - 1);
-    (chi2 > quantile(dof as f64, SCATTERED)).then_some(Scatter { parts: CUTS, chi2, dof })
+    let each = (0..CUTS).map(|k| stacked(weak, variance, [k, k + 1].map(|k| k as f64 / CUTS as f64)));
+    let each = each.collect::<Option<Vec<Stacked>>>()?;
+    let each: Vec<(Form, Coordinates)> = each.iter().map(|part| (part.root, part.left())).collect();
+    let scatter = scattered(&each, variance)?;
+    (scatter.chi2 > quantile(scatter.dof as f64, SCATTERED)).then_some(scatter)
+}
+
+/// How parts |R x + z|² scatter about the x that is best for all. Of a part that leaves numbers open the others count.
+fn scattered(parts: &[(Form, Coordinates)], variance: f64) -> Option<Scatter> {
+    let total: Form = parts.iter().map(|(root, _)| root.transpose() * root).sum();
+    let right: Coordinates = parts.iter().map(|(root, z)| root.transpose() * z).sum();
+    let step = total.cholesky()?.solve(&-right);
+    let (mut scatter, mut numbers) = (Scatter { parts: 0, chi2: 0.0, dof: 0 }, 0);
+    for (root, z) in parts {
+        let svd = root.try_svd(true, false, f64::EPSILON, ITERATIONS)?;
+        // what is left outside of the range of R no x removes
+        let (left, u, most) = (root * step + z, svd.u?, svd.singular_values.max());
+        let told = (0..5).filter(|&k| svd.singular_values[k] > OPEN * most);
+        let squares: Vec<f64> = told.map(|k| u.column(k).dot(&left)).map(|part| part * part).collect();
+        scatter.chi2 += squares.iter().sum::<f64>() / variance;
+        scatter.parts += usize::from(!squares.is_empty());
+        numbers += squares.len();
+    }
+    scatter.dof = numbers.checked_sub(5).filter(|dof| *dof > 0)?;
+    Some(scatter)
 }
 
 /// The value that chi squared exceeds as rarely as a normal deviate exceeds `z` standard deviations.
@@ -79,6 +97,12 @@ fn parts(weak: &WeakEstimate, variance: f64, share: f64) -> Option<Halves> {
 
 /// The tensor by the equations between two shares of them, and its information.
 fn solved(weak: &WeakEstimate, variance: f64, shares: [f64; 2]) -> Option<(Coordinates, Form)> {
+    let part = stacked(weak, variance, shares)?;
+    Some((part.minimiser()?.x, part.information() / variance))
+}
+
+/// The equations between two shares of them.
+fn stacked(weak: &WeakEstimate, variance: f64, shares: [f64; 2]) -> Option<Stacked> {
     let stacked = weak.stacked.as_ref()?;
     let width = 3 * (weak.columns.len() + 6);
     let equations: usize = weak.parts.iter().map(|part| part.rows.len() / width).sum();
@@ -90,13 +114,31 @@ fn solved(weak: &WeakEstimate, variance: f64, shares: [f64; 2]) -> Option<(Coord
         rows.push(&part.rows[from..to]);
         first = last;
     }
-    let part = Stacked::new(&rows, &weak.columns, &stacked.origin, variance.sqrt());
-    Some((part.minimiser()?.x, part.information() / variance))
+    Some(Stacked::new(&rows, &weak.columns, &stacked.origin, variance.sqrt()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A part that tells one number counts for that one, and a part that tells none for nothing.
+    #[test]
+    fn parts_that_leave_numbers_open_say_what_they_know() {
+        let whole = Form::identity() * 2.0;
+        let at = |x: f64| (whole, Coordinates::repeat(-2.0 * x));
+        let both = scattered(&[at(0.1), at(0.3)], 0.01).unwrap();
+        // each of five numbers is 0.1 from the mean, and known to 0.1/2
+        assert!((both.chi2 - 40.0).abs() < 1e-12 && (both.parts, both.dof) == (2, 5), "{both:?}");
+        let nothing = (Form::zeros(), Coordinates::repeat(7.0));
+        assert_eq!(scattered(&[at(0.1), nothing, at(0.3)], 0.01), Some(both));
+        let mut one = Form::zeros();
+        one[(0, 0)] = 2.0;
+        let with = scattered(&[at(0.2), at(0.2), (one, Coordinates::repeat(-1.0))], 0.01).unwrap();
+        // 0.2, 0.2 and 0.5: the mean is 0.3; what rows of zeros leave is no contradiction
+        assert!((with.chi2 - (0.04 + 0.04 + 0.16) / 0.01).abs() < 1e-11, "{with:?}");
+        assert_eq!((with.parts, with.dof), (3, 6));
+        assert_eq!(scattered(&[at(0.1)], 0.01), None);
+    }
 
     /// Chances of 1e-6 and 1e-5, by the incomplete gamma function.
     #[test]

@@ -1,11 +1,12 @@
 //! What errors of the sensor, and a wheel inside the body, that a fit takes to be zero would do to the moments.
 
 use crate::thresholds::errors::{MOST, WALK, WALK_STEPS, WHEEL};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::columns::column::Column;
 use crate::columns::rotor::Rotor;
 use crate::columns::sets::{reported_errors, walk_columns};
+use crate::models::equations::Equations;
 use crate::physical::coordinates::{pair, tensor};
 use crate::report::nuisance::Systematic;
 use crate::report::sensor::{Suspect, suspect};
@@ -21,19 +22,25 @@ struct Line {
     columns: Vec<(Column, f64)>,
 }
 
-/// The errors that a fit with `weak.columns` takes to be zero, in the units of the fit.
-fn lines(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Line> {
+/// The columns of the errors that a fit with columns `own` takes to be zero; `rms` is the unit rate, rad/s.
+pub(crate) fn errors(own: &[Column], stretches: &[Stretch], rms: f64) -> Vec<Column> {
+    // of momenta the sizes alone depend on the tensor
+    let lines = lines(own, &Matrix3::identity(), stretches, rms);
+    lines.iter().flat_map(|line| &line.columns).map(|(column, _)| *column).collect()
+}
+
+/// These errors in the units of the fit, with the sizes that a report speaks of for a body of the tensor `j`.
+fn lines(own: &[Column], j: &Matrix3<f64>, stretches: &[Stretch], rms: f64) -> Vec<Line> {
     let alone = |column: Column, size: f64, factor: f64| {
         let label = column.label();
         Line { name: label.name, unit: label.unit, size, columns: vec![(column, size * factor)] }
     };
-    let estimated = |column: &Column| weak.columns.iter().any(|own| own.is_alike(column));
+    let estimated = |column: &Column| own.iter().any(|own| own.is_alike(column));
     let sensor = reported_errors().into_iter().filter(|column| !estimated(column));
     let line = |column: Column| {
         Some(alone(column, column.effect().reported_size()?, 1.0 / column.label().factor(rms)))
     };
     let mut lines: Vec<Line> = sensor.filter_map(line).collect();
-    let j = tensor(&weak.x());
     let (mut squares, mut count) = (0.0, 0.0);
     for rate in stretches.iter().flat_map(|stretch| &stretch.rates) {
         squares += (j * rate).norm_squared();
@@ -55,20 +62,18 @@ fn lines(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Line> {
 /// With g the derivative of the equations with respect to an error, the estimate moves by what makes |G δ − g| least.
 pub(crate) fn systematic(
     weak: &WeakEstimate,
+    equations: &Equations,
     stretches: &[Stretch],
     axes: &[Vector3<f64>; 3],
     moments: &[f64; 3],
     variance: f64,
     rms: f64,
 ) -> (Vec<Systematic>, Option<Suspect>) {
-    let lines = lines(weak, stretches, rms);
-    let first = lines.iter().flat_map(|line| &line.columns).map(|(column, _)| *column);
-    let columns: Vec<Column> = first.chain(weak.columns.iter().copied()).collect();
-    let errors = columns.len() - weak.columns.len();
-    let mut at = weak.at.clone();
-    at.c = vec![0.0; errors].into_iter().chain(at.c).collect();
-    let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], &columns, &at));
-    let Some(whitened) = parts.collect::<Option<Vec<Vec<f64>>>>() else { return (Vec::new(), None) };
+    let lines = lines(&weak.columns, &tensor(&weak.x()), stretches, rms);
+    let errors = equations.errors().len();
+    let columns: Vec<Column> =
+        equations.errors().iter().copied().chain(weak.columns.iter().copied()).collect();
+    let Some(whitened) = equations.with_errors(&weak.columns) else { return (Vec::new(), None) };
     let suspect = suspect(weak, &columns, errors, &whitened, variance);
     let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
     let Some(steps) = responses(&rows, &columns, errors, variance.sqrt()) else {

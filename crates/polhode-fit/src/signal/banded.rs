@@ -53,6 +53,13 @@ impl Banded {
         &mut self.columns[j * self.pitch..][..self.pitch]
     }
 
+    /// Its columns before one and those from there on, each set from its own first.
+    pub(crate) fn split_mut(&mut self, column: usize) -> [Columns<'_>; 2] {
+        let (before, after) = self.columns.split_at_mut(column * self.pitch);
+        let own = |columns, first| Columns { first, pitch: self.pitch, columns };
+        [own(before, 0), own(after, column)]
+    }
+
     /// Replaces the matrix by its Cholesky factor; false where it is not positive.
     pub(crate) fn factor(&mut self) -> bool {
         factor(&mut self.columns, self.pitch, self.band)
@@ -104,6 +111,21 @@ impl Banded {
     }
 }
 
+/// Some columns of a matrix one beside the other.
+pub(crate) struct Columns<'a> {
+    first: usize,
+    pitch: usize,
+    columns: &'a mut [f64],
+}
+
+impl Columns<'_> {
+    /// Column j of the matrix from its diagonal down, padded with zeros.
+    #[inline]
+    pub(crate) fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.columns[(j - self.first) * self.pitch..][..self.pitch]
+    }
+}
+
 /// Room for a column: the band in whole registers.
 const fn pitch(band: usize) -> usize {
     (band + 1).div_ceil(REGISTER) * REGISTER
@@ -114,33 +136,37 @@ const fn pitch(band: usize) -> usize {
 /// What is at work is as long as the band, so that nothing of the size of the matrix is kept.
 pub(crate) fn likelihood(band: usize, e: &[f64], column: impl Fn(usize, &mut [f64])) -> Option<(f64, f64)> {
     let pitch = pitch(band);
-    // as many columns as a pivot reaches are at work; they move to the front when the room behind them is used up
-    let room = (8 * (band + 1)).min(e.len().max(1));
+    // as many columns as pivots reach are at work; they move to the front when the room behind them is used up
+    let room = (8 * (band + PIVOTS)).min(e.len().max(1));
     let mut columns = vec![0.0; room * pitch];
     let mut rest: Vec<f64> = e.to_vec();
     let (mut determinant, mut squares) = (Product::ONE, 0.0);
     let (mut first, mut loaded) = (0, 0);
-    for j in 0..e.len() {
-        if j - first + band >= room {
+    for j in (0..e.len()).step_by(PIVOTS) {
+        let pivots = PIVOTS.min(e.len() - j);
+        let end = (j + pivots + band).min(e.len());
+        if end - first > room {
             columns.copy_within((j - first) * pitch..(loaded - first) * pitch, 0);
             first = j;
         }
-        while loaded < e.len() && loaded <= j + band {
+        while loaded < end {
             let own = &mut columns[(loaded - first) * pitch..][..pitch];
             own.fill(0.0);
             column(loaded, own);
             loaded += 1;
         }
-        let (own, others) = columns[(j - first) * pitch..(loaded - first) * pitch].split_at_mut(pitch);
-        if !eliminate(own, others, band) {
+        let reached = &mut columns[(j - first) * pitch..(end - first) * pitch];
+        if !eliminate(reached, pitch, pivots, band) {
             return None;
         }
-        let value = rest[j] / own[0];
-        for (sum, l) in rest[j + 1..].iter_mut().zip(&own[1..=band]) {
-            *sum -= l * value;
+        for (k, own) in reached.chunks_exact(pitch).take(pivots).enumerate() {
+            let value = rest[j + k] / own[0];
+            for (sum, l) in rest[j + k + 1..].iter_mut().zip(&own[1..=band]) {
+                *sum -= l * value;
+            }
+            squares += value * value;
+            determinant.multiply(own[0]);
         }
-        squares += value * value;
-        determinant.multiply(own[0]);
     }
     Some((2.0 * determinant.log(), squares))
 }
@@ -171,41 +197,64 @@ impl Product {
 
 fn factor(columns: &mut [f64], pitch: usize, band: usize) -> bool {
     let size = columns.len() / pitch;
-    for j in 0..size {
-        let end = (j + band + 1).min(size);
-        let (own, others) = columns[j * pitch..end * pitch].split_at_mut(pitch);
-        if !eliminate(own, others, band) {
-            return false;
-        }
-    }
-    true
+    (0..size).step_by(PIVOTS).all(|j| {
+        let pivots = PIVOTS.min(size - j);
+        let end = (j + pivots + band).min(size);
+        eliminate(&mut columns[j * pitch..end * pitch], pitch, pivots, band)
+    })
 }
 
-/// Makes a column one of the factor, and takes its part off the columns after it; false where the pivot is not positive.
+/// Pivots that are taken off the columns after them at once.
+const PIVOTS: usize = 3;
+
+/// Makes the first `pivots` columns those of the factor, and takes their parts off the columns after them; false where a pivot is not
+/// positive.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn eliminate(own: &mut [f64], others: &mut [f64], band: usize) -> bool {
-    let pitch = own.len();
-    let pivot = own[0];
-    // nor is one that is no number
-    let is_positive = pivot > 0.0;
-    if !is_positive {
-        return false;
+fn eliminate(columns: &mut [f64], pitch: usize, pivots: usize, band: usize) -> bool {
+    let (own, others) = columns.split_at_mut(pivots * pitch);
+    // the columns of the factor with zeros behind them
+    let mut padded = [[0.0; WIDEST + 2 * REGISTER]; PIVOTS];
+    for (k, padded) in padded.iter_mut().enumerate().take(pivots) {
+        let (column, later) = own[k * pitch..].split_at_mut(pitch);
+        let pivot = column[0];
+        // nor is one that is no number
+        let is_positive = pivot > 0.0;
+        if !is_positive {
+            return false;
+        }
+        let root = pivot.sqrt();
+        let inverse = 1.0 / root;
+        for (entry, padded) in column.iter_mut().zip(padded.iter_mut()) {
+            *entry *= inverse;
+            *padded = *entry;
+        }
+        column[0] = root;
+        for (apart, other) in (1..=band).zip(later.chunks_exact_mut(pitch)) {
+            let l = padded[apart];
+            for (sum, source) in other.iter_mut().zip(&padded[apart..]) {
+                *sum -= l * source;
+            }
+        }
     }
-    let root = pivot.sqrt();
-    let inverse = 1.0 / root;
-    // the column with zeros behind it
-    let mut padded = [0.0; WIDEST + REGISTER];
-    for (entry, padded) in own.iter_mut().zip(&mut padded) {
-        *entry *= inverse;
-        *padded = *entry;
-    }
-    own[0] = root;
+    // a column at a time with all pivots, in their order; what is not there is zero
     for (k, other) in others.chunks_exact_mut(pitch).enumerate() {
-        let (l, used) = (padded[k + 1], (band - k).div_ceil(REGISTER) * REGISTER);
-        let sources = padded[k + 1..k + 1 + used].chunks_exact(REGISTER);
-        for (sums, source) in other[..used].chunks_exact_mut(REGISTER).zip(sources) {
+        let used = (band - k).div_ceil(REGISTER) * REGISTER;
+        // no closures: they would not be compiled for wide registers
+        let apart = [k + pivots, k + pivots - 1.min(pivots), k + pivots - 2.min(pivots)];
+        let first = &padded[0][apart[0]..apart[0] + used];
+        let second = &padded[1][apart[1]..apart[1] + used];
+        let third = &padded[2][apart[2]..apart[2] + used];
+        let l = [first[0], second[0], third[0]];
+        let (first, second, third) =
+            (first.chunks_exact(REGISTER), second.chunks_exact(REGISTER), third.chunks_exact(REGISTER));
+        let each = other[..used].chunks_exact_mut(REGISTER).zip(first).zip(second).zip(third);
+        for (((sums, first), second), third) in each {
             for lane in 0..REGISTER {
-                sums[lane] -= l * source[lane];
+                let mut sum = sums[lane];
+                sum -= l[0] * first[lane];
+                sum -= l[1] * second[lane];
+                sum -= l[2] * third[lane];
+                sums[lane] = sum;
             }
         }
     }

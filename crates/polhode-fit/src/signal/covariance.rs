@@ -4,11 +4,13 @@ use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::physical::coordinates::ENTRIES;
-use crate::signal::banded::{Banded, REGISTER, likelihood};
-use crate::signal::moments::{Group, groups};
+use crate::signal::banded::{Banded, Columns, REGISTER, likelihood};
+use crate::signal::both::both;
+use crate::signal::moments::{Group, group, ranges};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative};
 use crate::signal::test_functions::{Seen, TestFunctions};
+use crate::thresholds::radius::LONG;
 
 /// Variances of the noise of the rates and of the torque noise, over the variance of the noise of the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +58,7 @@ impl Covariance {
         terms: &Terms,
         tests: &TestFunctions,
     ) -> Self {
-        let noise = of_rates(groups(stretch, noise, tests.radius), terms, tests);
+        let noise = of_rates(stretch, noise, terms, tests);
         Covariance { tests: tests.clone(), j: terms.j, noise }
     }
 
@@ -122,29 +124,40 @@ impl Covariance {
 const BLOCKS: usize = 64;
 
 /// Σ A Aᵀ with A = −φ' J + φ K by pairs of tests.
-fn of_rates(groups: impl Iterator<Item = Group>, terms: &Terms, tests: &TestFunctions) -> Banded {
+fn of_rates(stretch: &Stretch, noise: &[Vector3<f64>], terms: &Terms, tests: &TestFunctions) -> Banded {
     let mut sum = Banded::zeros(3 * tests.count, 3 * tests.reach + 2);
-    let jj = terms.j * terms.j;
-    // K is linear in the rate
-    let per_rate: [Matrix3<f64>; 3] =
-        core::array::from_fn(|a| cross_derivative(&terms.j, &terms.sensor.column(a).into_owned()));
-    let pairs: [Matrix3<f64>; 6] = core::array::from_fn(|entry| {
-        let (a, b) = ENTRIES[entry];
-        let product = per_rate[a] * per_rate[b].transpose();
-        if a == b { product } else { product + product.transpose() }
-    });
-    for group in groups {
-        let k = terms.by_rate(&terms.rate(&group.reading), &group.wheel);
-        let mut kk = k * k.transpose();
-        for (pair, (a, b)) in pairs.iter().zip(ENTRIES) {
-            kk += pair * group.scatter[(a, b)];
+    let maker = Maker::new(terms);
+    // the halves of a long stretch side by side, whatever the machine is; from a group on where the second begins
+    let (count, long) = (noise.len(), noise.len() > LONG);
+    let ranges = |from: usize| ranges(stretch, tests.radius, from);
+    let first_of_second =
+        long.then(|| ranges(0).find(|range| range.start >= count / 2)).flatten().map(|range| range.start);
+    let middle = first_of_second.unwrap_or(0);
+    let split = first_of_second.map_or(0, |sample| tests.at(stretch.times[sample]).start);
+    let [mut before, mut after] = sum.split_mut(3 * split);
+    let first = || {
+        let mut beyond = Vec::new();
+        for range in ranges(0).take_while(|range| range.end <= middle) {
+            let own = group(stretch, noise, range.clone());
+            if tests.at(own.time).end > split {
+                beyond.push(range);
+            } else {
+                add_pairs(&mut before, tests, own.time, &maker.products(&own));
+            }
         }
-        let products = Products {
-            jj: jj * group.square,
-            jk: terms.j * k.transpose() * group.square,
-            kk: kk * group.square,
-        };
-        add_pairs(&mut sum, tests, group.time, &products);
+        beyond
+    };
+    let second = || {
+        for range in ranges(middle) {
+            let own = group(stretch, noise, range);
+            add_pairs(&mut after, tests, own.time, &maker.products(&own));
+        }
+    };
+    let (beyond, ()) = both(long, first, second);
+    let [mut all, _] = sum.split_mut(3 * tests.count);
+    for range in beyond {
+        let own = group(stretch, noise, range);
+        add_pairs(&mut all, tests, own.time, &maker.products(&own));
     }
     sum
 }
@@ -156,9 +169,55 @@ struct Products {
     kk: Matrix3<f64>,
 }
 
+/// What they are made of beside the groups.
+struct Maker<'a> {
+    terms: &'a Terms,
+    jj: Matrix3<f64>,
+    pairs: [Matrix3<f64>; 6],
+}
+
+impl<'a> Maker<'a> {
+    fn new(terms: &'a Terms) -> Self {
+        // K is linear in the rate
+        let per_rate: [Matrix3<f64>; 3] =
+            core::array::from_fn(|a| cross_derivative(&terms.j, &terms.sensor.column(a).into_owned()));
+        let pairs = core::array::from_fn(|entry| {
+            let (a, b) = ENTRIES[entry];
+            let product = per_rate[a] * per_rate[b].transpose();
+            if a == b { product } else { product + product.transpose() }
+        });
+        Maker { terms, jj: terms.j * terms.j, pairs }
+    }
+
+    fn products(&self, group: &Group) -> Products {
+        let k = self.terms.by_rate(&self.terms.rate(&group.reading), &group.wheel);
+        let mut kk = k * k.transpose();
+        for (pair, (a, b)) in self.pairs.iter().zip(ENTRIES) {
+            kk += pair * group.scatter[(a, b)];
+        }
+        Products {
+            jj: self.jj * group.square,
+            jk: self.terms.j * k.transpose() * group.square,
+            kk: kk * group.square,
+        }
+    }
+}
+
+/// A column of a matrix again and again, for all tests of a column of blocks.
+// no closure: one would not be compiled for wide registers
+#[inline(always)]
+fn repeated(m: &Matrix3<f64>, column: usize) -> [f64; BLOCKS / 2] {
+    let three = [m[(0, column)], m[(1, column)], m[(2, column)]];
+    let mut all = [0.0; BLOCKS / 2];
+    for (k, entry) in all.iter_mut().enumerate().take(BLOCKS / 2 - 2) {
+        *entry = three[k % 3];
+    }
+    all
+}
+
 /// Adds A Aᵀ of a group of samples at `time`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn add_pairs(sum: &mut Banded, tests: &TestFunctions, time: f64, products: &Products) {
+fn add_pairs(sum: &mut Columns<'_>, tests: &TestFunctions, time: f64, products: &Products) {
     let Products { jj, jk, kk } = products;
     let kj = jk.transpose();
     let seen = Seen::new(tests, time);
@@ -170,15 +229,8 @@ fn add_pairs(sum: &mut Banded, tests: &TestFunctions, time: f64, products: &Prod
     }
     let (mut by_slope, mut by_value) = ([[0.0; BLOCKS]; 3], [[0.0; BLOCKS]; 3]);
     for q in 0..3 {
-        let column = |m: &Matrix3<f64>| {
-            let (x, y, z) = (m[(0, q)], m[(1, q)], m[(2, q)]);
-            let mut column = [0.0; BLOCKS / 2];
-            for three in column.chunks_exact_mut(3) {
-                three.copy_from_slice(&[x, y, z]);
-            }
-            column
-        };
-        let (jj, kj, jk, kk) = (column(jj), column(&kj), column(jk), column(kk));
+        let (jj, kj) = (repeated(jj, q), repeated(&kj, q));
+        let (jk, kk) = (repeated(jk, q), repeated(kk, q));
         for k in 0..BLOCKS / 2 {
             by_slope[q][k] = kj[k] * values[k] - jj[k] * slopes[k];
             by_value[q][k] = kk[k] * values[k] - jk[k] * slopes[k];

@@ -1,6 +1,7 @@
 //! Samples, test functions and their sums, and the covariance of the noise in them.
 
 pub(crate) mod banded;
+pub(crate) mod both;
 pub(crate) mod covariance;
 pub(crate) mod moments;
 pub(crate) mod noise;

@@ -2,11 +2,13 @@
 //! tensor, the torque and the errors of the sensor are.
 
 use crate::thresholds::groups::{GROUPS, LONGEST};
+use crate::thresholds::radius::LONG;
 use core::ops::Range;
 
 use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
 
+use crate::signal::both::both;
 use crate::signal::stretch::{KnownInputs, Stretch};
 use crate::signal::test_functions::{LANES, Seen, TestFunctions};
 
@@ -63,17 +65,47 @@ type Running = [Vec<f64>; WITH_SLOPE + WITH_VALUE];
 #[repr(align(64))]
 struct Near([f64; LANES]);
 
+/// Samples that are added together, so that each sum is fetched once for all of them.
+const TOGETHER: usize = 4;
+
+/// Samples that wait to be added: they see the same tests.
+struct Waiting {
+    count: usize,
+    slopes: [[f64; LANES]; TOGETHER],
+    values: [[f64; LANES]; TOGETHER],
+    with_slope: [[f64; WITH_SLOPE]; TOGETHER],
+    with_value: [[f64; WITH_VALUE]; TOGETHER],
+}
+
+impl Waiting {
+    const NONE: Waiting = Waiting {
+        count: 0,
+        slopes: [[0.0; LANES]; TOGETHER],
+        values: [[0.0; LANES]; TOGETHER],
+        with_slope: [[0.0; WITH_SLOPE]; TOGETHER],
+        with_value: [[0.0; WITH_VALUE]; TOGETHER],
+    };
+}
+
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn add(stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions, sums: &mut Running) {
+fn add(
+    stretch: &Stretch,
+    noise: &[Vector3<f64>],
+    samples: Range<usize>,
+    tests: &TestFunctions,
+    sums: &mut Running,
+) {
     // each at a place of its own, so that the compiler adds test to test and not kind to kind
     let mut near: [Box<Near>; WITH_SLOPE + WITH_VALUE] =
         core::array::from_fn(|_| Box::new(Near([0.0; LANES])));
+    let mut waiting = Waiting::NONE;
     let mut first = 0;
-    for (i, n) in noise.iter().enumerate() {
-        let (y, weight) = (stretch.rates[i], stretch.weights[i]);
+    for i in samples {
+        let (y, n, weight) = (stretch.rates[i], &noise[i], stretch.weights[i]);
         let w = y - n;
         let seen = Seen::new(tests, stretch.times[i]);
         if seen.first != first {
+            add_waiting(&mut near, &mut waiting);
             hand_over(&mut near, first, sums);
             first = seen.first;
         }
@@ -89,18 +121,44 @@ fn add(stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions, sums: &
             value[7 + k] *= of_readings[k] - of_noise[k];
             value[13 + k] *= of_motion[k];
         }
-        for (near, number) in near[..WITH_SLOPE].iter_mut().zip(&slope) {
-            for k in 0..LANES {
-                near.0[k] += seen.slope[k] * number;
-            }
-        }
-        for (near, number) in near[WITH_SLOPE..].iter_mut().zip(&value) {
-            for k in 0..LANES {
-                near.0[k] += seen.value[k] * number;
-            }
+        let place = waiting.count;
+        (waiting.slopes[place], waiting.values[place]) = (seen.slope, seen.value);
+        (waiting.with_slope[place], waiting.with_value[place]) = (slope, value);
+        waiting.count += 1;
+        if waiting.count == TOGETHER {
+            add_waiting(&mut near, &mut waiting);
         }
     }
+    add_waiting(&mut near, &mut waiting);
     hand_over(&mut near, first, sums);
+}
+
+/// Adds the samples that wait, in their order.
+#[inline(always)]
+fn add_waiting(near: &mut [Box<Near>; WITH_SLOPE + WITH_VALUE], waiting: &mut Waiting) {
+    let (with_slope, with_value) = near.split_at_mut(WITH_SLOPE);
+    // what does not wait adds nothing
+    for place in waiting.count..TOGETHER {
+        waiting.with_slope[place] = [0.0; WITH_SLOPE];
+        waiting.with_value[place] = [0.0; WITH_VALUE];
+    }
+    let [a, b, c, d] = &waiting.slopes;
+    let [of_a, of_b, of_c, of_d] = &waiting.with_slope;
+    for (kind, near) in with_slope.iter_mut().enumerate() {
+        let (p, q, r, s) = (of_a[kind], of_b[kind], of_c[kind], of_d[kind]);
+        for k in 0..LANES {
+            near.0[k] = near.0[k] + a[k] * p + b[k] * q + c[k] * r + d[k] * s;
+        }
+    }
+    let [a, b, c, d] = &waiting.values;
+    let [of_a, of_b, of_c, of_d] = &waiting.with_value;
+    for (kind, near) in with_value.iter_mut().enumerate() {
+        let (p, q, r, s) = (of_a[kind], of_b[kind], of_c[kind], of_d[kind]);
+        for k in 0..LANES {
+            near.0[k] = near.0[k] + a[k] * p + b[k] * q + c[k] * r + d[k] * s;
+        }
+    }
+    waiting.count = 0;
 }
 
 /// Moves the sums of the tests from `first` on to those of all.
@@ -115,8 +173,18 @@ fn hand_over(near: &mut [Box<Near>], first: usize, sums: &mut Running) {
 
 impl Moments {
     pub(crate) fn new(stretch: &Stretch, noise: &[Vector3<f64>], tests: &TestFunctions) -> Moments {
-        let mut sums: Running = core::array::from_fn(|_| tests.room());
-        add(stretch, noise, tests, &mut sums);
+        // the halves of a long stretch side by side, whatever the machine is
+        let (count, long) = (noise.len(), noise.len() > LONG);
+        let middle = if long { count / 2 } else { 0 };
+        let of = |samples: Range<usize>| {
+            let mut sums: Running = core::array::from_fn(|_| tests.room());
+            add(stretch, noise, samples, tests, &mut sums);
+            sums
+        };
+        let (mut sums, first) = both(long, || of(middle..count), || long.then(|| of(0..middle)));
+        for (sum, first) in sums.iter_mut().zip(first.iter().flatten()) {
+            sum.iter_mut().zip(first).for_each(|(sum, first)| *sum += first);
+        }
         let mut moments = Moments { sums, inputs: Vec::new(), mixed: Vec::new() };
         moments.add_inputs(stretch, noise, tests);
         moments
@@ -186,18 +254,22 @@ pub(crate) struct Group {
 
 /// Groups of a stretch for test functions of half width `radius`.
 pub(crate) fn groups(stretch: &Stretch, noise: &[Vector3<f64>], radius: f64) -> impl Iterator<Item = Group> {
+    ranges(stretch, radius, 0).map(move |range| group(stretch, noise, range))
+}
+
+/// Samples of the groups from sample `low` on, where one begins.
+pub(crate) fn ranges(stretch: &Stretch, radius: f64, mut low: usize) -> impl Iterator<Item = Range<usize>> {
     let width = (radius / GROUPS).min(LONGEST);
-    let mut low = 0;
     core::iter::from_fn(move || {
         let end = stretch.times.get(low)? + width;
         let range = low..low + stretch.times[low..].iter().take_while(|t| **t < end).count().max(1);
         low = range.end;
-        Some(group(stretch, noise, range))
+        Some(range)
     })
 }
 
 /// The samples of a range as one.
-fn group(stretch: &Stretch, noise: &[Vector3<f64>], range: Range<usize>) -> Group {
+pub(crate) fn group(stretch: &Stretch, noise: &[Vector3<f64>], range: Range<usize>) -> Group {
     let share = 1.0 / range.len() as f64;
     let first = stretch.times[range.start];
     let (mut time, mut weight, mut square) = (0.0, 0.0, 0.0);

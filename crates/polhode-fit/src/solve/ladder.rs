@@ -10,9 +10,8 @@ use crate::settings::torque::TorqueModel;
 use crate::signal::covariance::Levels;
 use crate::signal::stretch::Stretch;
 use crate::solve::levels::{Choice, likeliest};
-use crate::solve::radius::{Ends, Failure, descended, estimate};
-use crate::solve::rounds::Noise;
-use crate::solve::stacked::Stacked;
+use crate::solve::radius::{Ends, Failure, descended, estimate, is_long};
+use crate::solve::rounds::{Noise, Reached};
 use crate::solve::weak_estimate::{Convergence, WeakEstimate};
 use crate::thresholds::ladder::{FIRST, FURTHER, HOPE};
 
@@ -26,6 +25,8 @@ pub(crate) struct Chosen {
     pub(crate) without: Option<Coordinates>,
     /// What every model makes of the record; empty where the rounds did not settle.
     pub(crate) models: Vec<Weighed>,
+    /// Its equations with every torque and error of the sensor; `None` where the rounds did not settle.
+    pub(crate) equations: Option<Equations>,
 }
 
 /// What a fit is asked to reckon with.
@@ -36,6 +37,8 @@ pub(crate) struct Demand<'a> {
     pub(crate) noise: Noise,
     /// Columns that every model has.
     pub(crate) columns: &'a [Column],
+    /// Errors of the sensor that are taken to be zero.
+    pub(crate) errors: &'a [Column],
 }
 
 impl Demand<'_> {
@@ -48,13 +51,16 @@ impl Demand<'_> {
 pub(crate) fn climb(stretches: &[Stretch], demand: Demand<'_>, variance: f64) -> Result<Chosen, Failure> {
     let ladder = Ladder { stretches, demand, variance };
     let mut chosen = ladder.choose()?;
+    if chosen.equations.is_none() && chosen.weak.has_settled() {
+        chosen.equations = ladder.equations(&chosen.weak);
+    }
     chosen.models = ladder.weigh(&chosen);
     Ok(chosen)
 }
 
 /// A weak estimate of one model, compared with no other.
 fn plain(weak: WeakEstimate, model: TorqueModel) -> Chosen {
-    Chosen { weak, model, gain: None, without: None, models: Vec::new() }
+    Chosen { weak, model, gain: None, without: None, models: Vec::new(), equations: None }
 }
 
 /// A model that was fitted by itself.
@@ -63,6 +69,8 @@ struct Rung {
     weak: WeakEstimate,
     /// Its log-likelihood.
     likelihood: f64,
+    /// Its equations with every torque, where they were asked for.
+    equations: Option<Equations>,
 }
 
 impl Rung {
@@ -98,13 +106,18 @@ impl Ladder<'_> {
         let mut quick = first(Ends::Torques)?;
         let explained = |weak: &WeakEstimate| weak.misfit(self.variance) <= weak.expected_misfit();
         let is_explained = quick.as_ref().is_some_and(explained);
-        if let Some(weak) =
-            quick.take_if(|weak| is_explained && (!weak.has_settled() || self.is_enough(weak)))
+        let mut equations = None;
+        if let Some(weak) = quick
+            .take_if(|weak| is_explained && (!weak.has_settled() || self.is_enough(weak, &mut equations)))
         {
-            return Ok(plain(weak, base));
+            return Ok(Chosen { equations, ..plain(weak, base) });
         }
-        let best =
-            if is_auto { self.highest()? } else { plain(self.descent(base, demand.radius, None)?, base) };
+        drop(equations);
+        let best = if is_auto {
+            self.highest(quick.take_if(|weak| is_long(self.stretches) && weak.has_settled()))?
+        } else {
+            plain(self.descent(base, demand.radius, None)?, base)
+        };
         // what a descent did not settle, plain rounds may have
         let is_plain =
             is_auto && is_explained && best.model == TorqueModel::None && !best.weak.has_torque_noise();
@@ -123,38 +136,57 @@ impl Ladder<'_> {
         &self,
         model: TorqueModel,
         radius: Option<f64>,
-        near: Option<&WeakEstimate>,
+        near: Option<Reached>,
     ) -> Result<WeakEstimate, Failure> {
         let columns = self.demand.columns(model);
         descended(self.stretches, radius, &columns, self.variance, self.demand.noise, near)
     }
 
-    /// Whether an estimate that noise explains asks for neither torque nor torque noise.
-    fn is_enough(&self, first: &WeakEstimate) -> bool {
+    /// Whether an estimate that noise explains asks for neither torque nor torque noise, with its equations where these say so.
+    fn is_enough(&self, first: &WeakEstimate, equations: &mut Option<Equations>) -> bool {
         let demand = &self.demand;
-        let asks =
-            |model| gain_of(self.stretches, first, &demand.columns(model), self.variance) > asked(model);
         match demand.noise {
             Noise::Given(_) => return false,
             Noise::Fitted if has_torque_noise(self.stretches, first, self.variance) => return false,
             Noise::White | Noise::Fitted => {}
         }
-        demand.torque != TorqueModel::Auto
-            || ![TorqueModel::Drag, TorqueModel::Constant].into_iter().any(asks)
+        if demand.torque != TorqueModel::Auto {
+            return true;
+        }
+        *equations = self.equations(first);
+        let Some(equations) = equations else { return true };
+        let squares = |model| equations.of(model).stacked().squares;
+        let gain = |model| 0.5 * (first.squares - squares(model)) / self.variance;
+        ![TorqueModel::Drag, TorqueModel::Constant].into_iter().any(|model| gain(model) > asked(model))
     }
 
-    /// The first rung that the next one does not surpass.
-    fn highest(&self) -> Result<Chosen, Failure> {
+    /// The equations of an estimate with every torque and error of the sensor.
+    fn equations(&self, weak: &WeakEstimate) -> Option<Equations> {
+        Equations::new(self.stretches, weak, self.demand.errors, self.demand.columns, self.variance)
+    }
+
+    /// The first rung that the next one does not surpass; it goes on from `quick` where there is
+    /// one.
+    fn highest(&self, quick: Option<WeakEstimate>) -> Result<Chosen, Failure> {
         let (stretches, demand, variance) = (self.stretches, &self.demand, self.variance);
         // one radius for all, so that their likelihoods are those of the same equations
-        let drag = self.descent(TorqueModel::Drag, demand.radius, None)?;
+        let drag = self.descent(TorqueModel::Drag, demand.radius, quick.map(Reached::of_former))?;
         let radius = Some(drag.radius);
-        let none = self.rung(TorqueModel::None, self.descent(TorqueModel::None, radius, None)?);
-        let gain = gain_of(stretches, &none.weak, &demand.columns(TorqueModel::Constant), variance);
-        let may_be_constant = !none.weak.has_settled() || gain > HOPE * asked(TorqueModel::Constant);
-        let constant = may_be_constant.then(|| self.descent(TorqueModel::Constant, radius, Some(&none.weak)));
-        let without = none.weak.has_settled().then(|| none.weak.x());
+        let drag = self.rung(TorqueModel::Drag, drag);
+        // a long record goes on from where it stands
+        let near = (is_long(stretches) && drag.weak.has_settled()).then(|| Reached::of(&drag.weak));
+        let mut none = self.rung(TorqueModel::None, self.descent(TorqueModel::None, radius, near)?);
+        none.equations = self.equations(&none.weak);
+        let gain = gain_of(&none, &[TorqueModel::Constant], variance);
         let floor = none.likelihood;
+        // what is hopeless beside a drag is not tried in a long record
+        let beside =
+            if is_long(stretches) && drag.weak.has_settled() { drag.likelihood - floor } else { 0.0 };
+        let may_be_constant =
+            !none.weak.has_settled() || gain > HOPE * asked(TorqueModel::Constant).max(beside);
+        let constant = may_be_constant
+            .then(|| self.descent(TorqueModel::Constant, radius, Some(Reached::of(&none.weak))));
+        let without = none.weak.has_settled().then(|| none.weak.x());
         let mut fitted = vec![none.fitted(floor, variance)];
         let mut climb = |best: Rung, next: Rung| {
             fitted.push(next.fitted(floor, variance));
@@ -164,13 +196,16 @@ impl Ladder<'_> {
             let surpasses = !best.weak.has_settled() || next.likelihood - best.likelihood > asked;
             if next.weak.has_settled() && surpasses { next } else { best }
         };
-        let mut best = climb(none, self.rung(TorqueModel::Drag, drag));
+        let mut best = climb(none, drag);
         if let Some(Ok(constant)) = constant {
             best = climb(best, self.rung(TorqueModel::Constant, constant));
         }
+        if best.model == TorqueModel::Drag {
+            best.equations = self.equations(&best.weak);
+        }
         if best.model == TorqueModel::Drag
-            && may_be_drag3(stretches, &best.weak, demand, variance)
-            && let Ok(drag3) = self.descent(TorqueModel::Drag3, radius, Some(&best.weak))
+            && may_be_drag3(&best, variance)
+            && let Ok(drag3) = self.descent(TorqueModel::Drag3, radius, Some(Reached::of(&best.weak)))
         {
             best = climb(best, self.rung(TorqueModel::Drag3, drag3));
         }
@@ -179,21 +214,21 @@ impl Ladder<'_> {
             gain: Some(best.likelihood - floor).filter(|gain| !is_none && gain.is_finite()),
             without: without.filter(|_| !is_none),
             models: fitted.into_iter().flatten().collect(),
+            equations: best.equations.filter(|_| best.weak.has_settled()),
             ..plain(best.weak, best.model)
         })
     }
 
     fn rung(&self, model: TorqueModel, weak: WeakEstimate) -> Rung {
         let likelihood = likelihood(self.stretches, &weak, self.variance);
-        Rung { model, weak, likelihood }
+        Rung { model, weak, likelihood, equations: None }
     }
 
     /// What every model makes of the record. Of one that was not fitted by itself the equations of the chosen one say it, to first
     /// order, as they say what each predicts of a segment from the others.
     fn weigh(&self, chosen: &Chosen) -> Vec<Weighed> {
-        let (weak, variance, common) = (&chosen.weak, self.variance, self.demand.columns);
-        let equations = weak.has_settled().then(|| Equations::new(self.stretches, weak, common, variance));
-        let Some(equations) = equations.flatten() else { return Vec::new() };
+        let (weak, variance) = (&chosen.weak, self.variance);
+        let Some(equations) = &chosen.equations else { return Vec::new() };
         let fitted = |model| chosen.models.iter().find(|one| one.model == model).cloned();
         let own = equations.of(chosen.model).stacked().squares;
         let none = equations.of(TorqueModel::None).stacked().squares;
@@ -224,7 +259,7 @@ pub(crate) fn threshold(coefficients: usize) -> f64 {
 /// that both shrink with the tensor tell nothing.
 fn likelihood(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> f64 {
     let mut sum = weak.squares / variance;
-    for part in &weak.parts {
+    for part in weak.parts.iter().filter(|part| part.levels != Levels::WHITE) {
         let white = part.covariance(&stretches[part.stretch]).into_factor(Levels::WHITE);
         let Some(white) = white else { return f64::NEG_INFINITY };
         sum += part.log_determinant - white.log_determinant();
@@ -243,31 +278,16 @@ fn has_torque_noise(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -
     })
 }
 
-/// Gain of log-likelihood that `columns` would bring to the equations of an estimate that has only the last of them.
-fn gain_of(stretches: &[Stretch], weak: &WeakEstimate, columns: &[Column], variance: f64) -> f64 {
-    let with = with_columns(stretches, weak, columns, variance);
-    with.map_or(0.0, |with| 0.5 * (weak.squares - with.squares) / variance)
+/// Gain of log-likelihood that the torques of `models` would bring to the equations of a rung.
+fn gain_of(rung: &Rung, models: &[TorqueModel], variance: f64) -> f64 {
+    let squares = rung.equations.as_ref().map(|equations| equations.of_all(models).stacked().squares);
+    squares.map_or(0.0, |squares| 0.5 * (rung.weak.squares - squares) / variance)
 }
 
 /// Whether drag about three axes may be worth a fit beside the drag of an estimate.
-fn may_be_drag3(stretches: &[Stretch], weak: &WeakEstimate, demand: &Demand<'_>, variance: f64) -> bool {
-    let three = torque_columns(TorqueModel::Drag3);
-    let more = three.len().saturating_sub(torque_columns(TorqueModel::Drag).len());
-    let both: Vec<Column> = three.into_iter().chain(demand.columns(TorqueModel::Drag)).collect();
-    !weak.has_settled() || gain_of(stretches, weak, &both, variance) > HOPE * threshold(more)
-}
-
-/// The equations of an estimate with further columns, which come first and are zero where it stands.
-fn with_columns(
-    stretches: &[Stretch],
-    weak: &WeakEstimate,
-    columns: &[Column],
-    variance: f64,
-) -> Option<Stacked> {
-    let mut at = weak.at.clone();
-    at.c = vec![0.0; columns.len() - at.c.len()].into_iter().chain(at.c).collect();
-    let parts = weak.parts.iter().map(|part| part.with_columns(&stretches[part.stretch], columns, &at));
-    let whitened: Vec<Vec<f64>> = parts.collect::<Option<_>>()?;
-    let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
-    Some(Stacked::new(&rows, columns, &at, variance.sqrt()))
+fn may_be_drag3(drag: &Rung, variance: f64) -> bool {
+    let count = |model| torque_columns(model).len();
+    let more = count(TorqueModel::Drag3).saturating_sub(count(TorqueModel::Drag));
+    let both = [TorqueModel::Drag3, TorqueModel::Drag];
+    !drag.weak.has_settled() || gain_of(drag, &both, variance) > HOPE * threshold(more)
 }

@@ -1,7 +1,9 @@
 //! The torque noise of a stretch, and the noise of its rates, by restricted likelihood.
 
+use crate::signal::both::both;
 use crate::signal::covariance::{Covariance, Levels, Shape};
 use crate::thresholds::levels::{BETWEEN, DECADES, FIRST_DECADE, GAIN, RESHAPED, SECTIONS, STEP};
+use crate::thresholds::radius::LONG;
 
 /// What may be fitted of the noise of a stretch.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +29,9 @@ pub(crate) fn likeliest(
     // the shape of before first
     let first = near.map_or(Shape::Moments, |last| last.shape);
     let second = if first == Shape::Moments { Shape::Alike } else { Shape::Moments };
-    for shape in [first, second] {
-        let Some(found) = search(shape).most_likely(near, none.as_ref()) else { continue };
+    let of = |shape| search(shape).most_likely(near, none.as_ref());
+    let (first, second) = both(e.len() > LONG / 3, || of(first), || of(second));
+    for found in [first, second].into_iter().flatten() {
         if best.as_ref().is_none_or(|b| found.cost < b.cost - RESHAPED) {
             best = Some(found);
         }

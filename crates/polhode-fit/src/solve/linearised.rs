@@ -7,12 +7,14 @@ use nalgebra::{Matrix3, Vector3};
 use crate::columns::column::{Column, Unknowns, terms_of};
 use crate::physical::coordinates::{Form, basis};
 use crate::signal::banded::Banded;
+use crate::signal::both::both;
 use crate::signal::covariance::{Covariance, Levels};
 use crate::signal::moments::groups;
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative, slope};
 use crate::signal::test_functions::{Seen, TestFunctions};
 use crate::solve::driven::take_out;
+use crate::thresholds::radius::LONG;
 
 /// The weak equations of one stretch, linearised at samples `rates` − `noise`, a tensor and values of the columns.
 ///
@@ -125,24 +127,35 @@ impl Whitened {
             own.iter_mut().zip(multipliers.iter().skip(axis).step_by(3)).for_each(|(own, l)| *own = *l);
             own
         });
-        carry(part, stretch, noise, &by_axis, self.levels.white * share, 1.0 - share);
+        // the halves of a long stretch side by side, whatever the machine is
+        let long = noise.len() > LONG;
+        let (before, after) = noise.split_at_mut(if long { noise.len() / 2 } else { 0 });
+        let (middle, new, kept) = (before.len(), self.levels.white * share, 1.0 - share);
+        both(
+            long,
+            || carry(part, stretch, before, 0, &by_axis, new, kept),
+            || carry(part, stretch, after, middle, &by_axis, new, kept),
+        );
     }
 }
 
-/// The noise times `kept` and w Aᵀ λ times `share`, λ being the multipliers about each axis.
+/// The noise of the samples from `first` on times `kept`, and w Aᵀ λ times `share`, λ being the multipliers about each axis.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn carry(
     part: &Linearised,
     stretch: &Stretch,
     noise: &mut [Vector3<f64>],
+    first: usize,
     multipliers: &[Vec<f64>; 3],
     share: f64,
     kept: f64,
 ) {
     let terms = &part.terms;
-    for (i, n) in noise.iter_mut().enumerate() {
+    for (k, n) in noise.iter_mut().enumerate() {
+        let i = first + k;
         let seen = Seen::new(&part.tests, stretch.times[i]);
-        let [x, y, z] = [0, 1, 2].map(|axis| seen.dot(&multipliers[axis]));
+        // no closure: one would not be compiled for wide registers
+        let (x, y, z) = (seen.dot(&multipliers[0]), seen.dot(&multipliers[1]), seen.dot(&multipliers[2]));
         let (slopes, values) = (Vector3::new(x.0, y.0, z.0), Vector3::new(x.1, y.1, z.1));
         let w = terms.rate(&(stretch.rates[i] - *n));
         // Kᵀ of the values

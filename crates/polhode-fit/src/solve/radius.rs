@@ -7,7 +7,9 @@ use crate::signal::test_functions::TestFunctions;
 use crate::solve::linearised::{Linearised, Whitened};
 use crate::solve::rounds::{Noise, Reached, Rounds};
 use crate::solve::weak_estimate::{Convergence, WeakEstimate};
-use crate::thresholds::radius::{CANDIDATES, COMPARED, DENSE, OF_SHORT, PILOT_SAMPLES, ROOM, SHORTEST};
+use crate::thresholds::radius::{
+    CANDIDATES, COMPARED, DENSE, LONG, OF_SHORT, PART, PILOT_SAMPLES, ROOM, SHORTEST, SPARED,
+};
 use crate::thresholds::rounds::{RESTLESS, STANDS, TORQUES};
 use crate::thresholds::test_functions::{ROUNDED, SAMPLES_PER_TEST};
 
@@ -111,29 +113,34 @@ impl<'a> Judged<'a> {
     }
 }
 
-/// The radius of least predicted covariance where `compared` stands.
+/// The radius of least predicted covariance where `compared` stands; the longest of those whose covariance is at most `spared` times as
+/// large.
 fn least_covariance(
     stretches: &[Stretch],
     radii: &[f64],
     columns: &[Column],
     variance: f64,
     compared: &Rounds<'_>,
+    spared: f64,
 ) -> f64 {
     let each = radii.iter().filter_map(|&radius| Judged::new(stretches, radius, columns, variance, compared));
     let mut judged: Vec<Judged<'_>> = each.collect();
     judged.sort_by(|a, b| a.least().total_cmp(&b.least()));
+    let mut traces: Vec<(f64, f64)> = Vec::new();
     let mut best = (f64::INFINITY, radii[radii.len() / 2]);
     for judged in judged {
         // what the noise in G adds is dear, and not asked for where the rest is too much already
-        if judged.least() >= best.0 {
+        if judged.least() >= spared * best.0 {
             break;
         }
         let trace = judged.trace(&judged.rounds.inflation(&judged.parts, &judged.whitened));
         if trace < best.0 {
             best = (trace, judged.radius);
         }
+        traces.push((trace, judged.radius));
     }
-    best.1
+    let alike = traces.iter().filter(|(trace, _)| trace.is_finite() && *trace <= spared * best.0);
+    alike.fold(best.1, |longest, (_, radius)| longest.max(*radius))
 }
 
 /// The radius of least predicted covariance, and the unknowns it was judged at.
@@ -142,10 +149,11 @@ fn choose_radius(
     columns: &[Column],
     variance: f64,
     noise: Option<Noise>,
+    spared: f64,
 ) -> Option<(f64, Unknowns)> {
     let radii = candidates(stretches);
     let compared = compared_at(stretches, &radii, columns, variance, noise)?;
-    let radius = least_covariance(stretches, &radii, columns, variance, &compared);
+    let radius = least_covariance(stretches, &radii, columns, variance, &compared, spared);
     Some((radius, compared.at))
 }
 
@@ -183,10 +191,18 @@ pub(crate) fn estimate(
         }
         None => {
             let pilot = pilot(stretches);
-            let (radius, start) = choose_radius(&pilot, columns, variance, None).ok_or(Failure::TooShort)?;
+            let chosen = choose_radius(&pilot, columns, variance, None, spared(stretches));
+            let (radius, start) = chosen.ok_or(Failure::TooShort)?;
             (radius, start, candidates(&pilot).into_iter().fold(radius, f64::max))
         }
     };
+    // torques that stand in a part of a long record stand in all of it
+    if ends == Ends::Torques && is_long(stretches) {
+        let part = longest(stretches, PART);
+        if let Ok(None) = estimate(&part, Some(first), columns, variance, ends) {
+            return Ok(None);
+        }
+    }
     // a weak wobble in strong noise may need longer test functions than its information alone asks for
     let mut radius = first;
     let mut best: Option<WeakEstimate> = None;
@@ -226,27 +242,29 @@ pub(crate) fn descended(
     columns: &[Column],
     variance: f64,
     noise: Noise,
-    near: Option<&WeakEstimate>,
+    near: Option<Reached>,
 ) -> Result<WeakEstimate, Failure> {
     let (radii, near) = match radius {
         Some(radius) => {
             check_radius(stretches, radius)?;
-            (vec![radius], near.map(Reached::of))
+            (vec![radius], near)
         }
         None => {
             let pilot = pilot(stretches);
-            let (first, _) =
-                choose_radius(&pilot, columns, variance, Some(noise)).ok_or(Failure::TooShort)?;
+            let chosen = choose_radius(&pilot, columns, variance, Some(noise), spared(stretches));
+            let (first, _) = chosen.ok_or(Failure::TooShort)?;
             let all = candidates(&pilot);
             let longer = all.iter().copied().filter(|r| *r > first * (1.0 + ROUNDED));
             let shorter = all.iter().rev().copied().filter(|r| *r < first * (1.0 - ROUNDED));
-            (core::iter::once(first).chain(longer).chain(shorter).collect(), None)
+            (core::iter::once(first).chain(longer).chain(shorter).collect(), near)
         }
     };
     let origin = Unknowns::at(Coordinates::zeros(), columns);
     let new = |radius: f64| Rounds::new(stretches, radius, columns, origin.clone());
+    let of_part = || of_part(stretches, *radii.first()?, columns, variance, noise);
+    let near = near.or_else(of_part);
     // from near by where that settles, and else as if nothing were known
-    let resumed = || radii.first().copied().and_then(new)?.resumed(near.as_ref()?);
+    let resumed = || radii.first().copied().and_then(new)?.resumed(near?);
     let each = core::iter::once_with(resumed).flatten().chain(radii.iter().filter_map(|radius| new(*radius)));
     let mut best: Option<WeakEstimate> = None;
     for mut rounds in each {
@@ -263,6 +281,30 @@ pub(crate) fn descended(
     }
     let sphere = || new(*radii.first()?)?.at_sphere(variance);
     best.or_else(sphere).ok_or(Failure::Singular)
+}
+
+/// Whether a record has so many samples that time is worth more than the last per cent of its information.
+pub(crate) fn is_long(stretches: &[Stretch]) -> bool {
+    stretches.iter().map(|s| s.times.len()).sum::<usize>() > LONG
+}
+
+/// How much of the covariance is given for fewer equations.
+fn spared(stretches: &[Stretch]) -> f64 {
+    if is_long(stretches) { SPARED } else { 1.0 }
+}
+
+/// Where the descent of a part of a long record ends: from there that of the whole has few rounds to go.
+fn of_part(
+    stretches: &[Stretch],
+    radius: f64,
+    columns: &[Column],
+    variance: f64,
+    noise: Noise,
+) -> Option<Reached> {
+    let part = is_long(stretches).then(|| longest(stretches, PART))?;
+    let mut rounds = Rounds::new(&part, radius, columns, Unknowns::at(Coordinates::zeros(), columns))?;
+    let moved = rounds.descend(variance, noise)?;
+    (moved <= RESTLESS).then(|| Reached::of_part(&rounds))
 }
 
 /// The longest stretches, up to the samples of a pilot, in their order.
@@ -283,4 +325,55 @@ pub(crate) fn longest(stretches: &[Stretch], samples: usize) -> Vec<Stretch> {
     let part =
         |(s, &count): (&Stretch, &usize)| if count < s.times.len() { s.head(count) } else { s.clone() };
     stretches.iter().zip(&counts).filter(|(_, count)| **count > 3).map(part).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::sets::torque_columns;
+    use crate::settings::torque::TorqueModel;
+    use crate::signal::normalised::{Normalised, normalised};
+    use crate::simulate::{Disturbances, Gyroscope, simulate_with};
+    use nalgebra::Vector3;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+    use polhode::record::Record;
+
+    /// A body under drag of so many samples, with torque noise where it is asked for.
+    fn record(samples: usize, torque_noise: f64) -> (Vec<Stretch>, f64) {
+        let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+        let times: Vec<f64> = (0..samples).map(|k| 0.02 * k as f64).collect();
+        let disturbances = Disturbances { relative_drag: 2e-5, torque_noise, ..Disturbances::default() };
+        let (start, gyroscope) = (Vector3::new(0.3, 0.9, 0.5), Gyroscope::default().with_noise(1e-2));
+        let rates = simulate_with(&body, start, &times, &disturbances, &gyroscope, &mut Random::new(3));
+        let record = Record::from_samples(&times, &rates.unwrap()).unwrap();
+        let Normalised { stretches, rms, .. } = normalised(&record).unwrap();
+        (stretches, (1e-2 / rms) * (1e-2 / rms))
+    }
+
+    #[test]
+    fn long_records_go_on_from_a_part_of_them() {
+        let columns = torque_columns(TorqueModel::Drag);
+        let (stretches, variance) = record(LONG + 10, 2e-2);
+        let radius = 4.0;
+        let long = descended(&stretches, Some(radius), &columns, variance, Noise::Fitted, None);
+        let origin = Unknowns::at(Coordinates::zeros(), &columns);
+        let mut rounds = Rounds::new(&stretches, radius, &columns, origin).unwrap();
+        let moved = rounds.descend(variance, Noise::Fitted).unwrap();
+        let (long, whole) = (long.ok().unwrap(), rounds.finish(variance, moved).unwrap());
+        let apart = (whole.root * (long.x() - whole.x())).norm() / variance.sqrt();
+        assert!(apart < 0.02, "{apart} deviations");
+        assert!(long.has_torque_noise());
+        assert!((long.root.norm() / whole.root.norm() - 1.0).abs() < 1e-3);
+        // it stands out in a part already
+        assert_eq!(long.doubt, Form::zeros());
+    }
+
+    #[test]
+    fn a_long_record_takes_the_longest_of_radii_that_tell_as_much() {
+        let (stretches, variance) = record(8_000, 0.0);
+        let radius = |spared| choose_radius(&stretches, &[], variance, None, spared).unwrap().0;
+        let (best, longer) = (radius(1.0), radius(SPARED));
+        assert!(longer >= best && radius(1e3) > longer, "{best} {longer}");
+    }
 }

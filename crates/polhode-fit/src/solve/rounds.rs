@@ -1,7 +1,8 @@
 //! Rounds of the weak equations at samples that each round moves further onto them.
 
+use crate::thresholds::radius::{LONG, PART};
 use crate::thresholds::rounds::{
-    BOUNDLESS, DESCENT, FALL, FULL_ROUNDS, KEPT, NEGLIGIBLE, REACHED, RELAXED, ROUNDS, SAME, SHARES,
+    BOUNDLESS, CLEAR, DESCENT, FALL, FULL_ROUNDS, KEPT, NEGLIGIBLE, REACHED, RELAXED, ROUNDS, SAME, SHARES,
     SIGNIFICANT_GAIN, STILL, TORQUES,
 };
 use nalgebra::Vector3;
@@ -45,15 +46,52 @@ fn whitened_rows(
 pub(crate) struct Reached {
     columns: Vec<Column>,
     at: Unknowns,
-    /// Stretches with the levels of their noise, and the noise of their samples.
-    stretches: Vec<(usize, Levels, Vec<Vector3<f64>>)>,
+    stretches: Vec<ReachedBy>,
+    driven: bool,
+}
+
+/// Where they have ended for one stretch.
+struct ReachedBy {
+    /// Its number.
+    stretch: usize,
+    levels: Levels,
+    /// The noise of its samples, which a part of the record does not tell.
+    noise: Option<Vec<Vector3<f64>>>,
 }
 
 impl Reached {
-    /// Where an estimate of `weak` ended.
+    /// Where an estimate ended.
     pub(crate) fn of(weak: &WeakEstimate) -> Self {
-        let each = weak.parts.iter().map(|part| (part.stretch, part.levels, part.noise.clone()));
-        Reached { columns: weak.columns.clone(), at: weak.at.clone(), stretches: each.collect() }
+        let each = weak.parts.iter().map(|part| ReachedBy {
+            stretch: part.stretch,
+            levels: part.levels,
+            noise: Some(part.noise.clone()),
+        });
+        let (columns, at) = (weak.columns.clone(), weak.at.clone());
+        Reached { columns, at, stretches: each.collect(), driven: false }
+    }
+
+    /// The same of one that is not needed any more.
+    pub(crate) fn of_former(weak: WeakEstimate) -> Self {
+        let each = weak.parts.into_iter().map(|part| ReachedBy {
+            stretch: part.stretch,
+            levels: part.levels,
+            noise: Some(part.noise),
+        });
+        Reached { columns: weak.columns, at: weak.at, stretches: each.collect(), driven: false }
+    }
+
+    /// Where rounds of a part of the record have ended, whose stretches keep their numbers.
+    pub(crate) fn of_part(rounds: &Rounds<'_>) -> Self {
+        let each = rounds.used.iter().zip(&rounds.levels);
+        let each =
+            each.map(|((_, s, _), levels)| ReachedBy { stretch: s.index, levels: *levels, noise: None });
+        Reached {
+            columns: rounds.columns.to_vec(),
+            at: rounds.at.clone(),
+            stretches: each.collect(),
+            driven: rounds.driven,
+        }
     }
 }
 
@@ -98,15 +136,24 @@ impl<'a> Rounds<'a> {
 
     /// From where others of the same stretches have ended; `None` where they had not all of these. Columns that those had not
     /// are zero.
-    pub(crate) fn resumed(mut self, from: &Reached) -> Option<Self> {
+    pub(crate) fn resumed(mut self, mut from: Reached) -> Option<Self> {
         for ((k, stretch, _), (levels, noise)) in
             self.used.iter().zip(self.levels.iter_mut().zip(&mut self.noise))
         {
-            let (_, own, of_samples) = from.stretches.iter().find(|(other, ..)| other == k)?;
-            if of_samples.len() != stretch.times.len() {
-                return None;
+            // those beyond a part of the record are like the first of it
+            let first =
+                from.stretches.first().filter(|first| first.noise.is_none()).map(|first| first.levels);
+            let Some(own) = from.stretches.iter_mut().find(|own| own.stretch == *k) else {
+                *levels = first?;
+                continue;
+            };
+            *levels = own.levels;
+            if let Some(of_samples) = own.noise.take() {
+                if of_samples.len() != stretch.times.len() {
+                    return None;
+                }
+                *noise = of_samples;
             }
-            (*levels, *noise) = (*own, of_samples.clone());
         }
         self.at.x = from.at.x;
         for (c, column) in self.at.c.iter_mut().zip(self.columns) {
@@ -114,6 +161,7 @@ impl<'a> Rounds<'a> {
             *c = alike.map_or(*c, |k| from.at.c[k]);
         }
         self.resumed = true;
+        self.driven = from.driven;
         Some(self)
     }
 
@@ -288,7 +336,6 @@ impl<'a> Rounds<'a> {
     }
 
     pub(crate) fn finish(self, variance: f64, moved: f64) -> Option<WeakEstimate> {
-        let of_sphere = self.squares_of_sphere(variance)?;
         let parts = self.linearise();
         let whitened = self.whiten(&parts)?;
         let stacked = self.stack(&whitened, variance);
@@ -296,12 +343,12 @@ impl<'a> Rounds<'a> {
         let at = best.unwrap_or_else(|| self.at.clone());
         // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
         // stands out of the noise by far, they add nothing; where it does not, they would pass for a motion
-        let gain = (of_sphere - stacked.squares) / (variance * stacked.excess(variance));
-        let (root, doubt) = if gain > SIGNIFICANT_GAIN {
-            (stacked.root, Form::zeros())
-        } else {
-            self.constant_rates(variance)?
-        };
+        let unit = variance * stacked.excess(variance);
+        let is_clear = self.gain_of_part(&whitened, variance) > CLEAR * SIGNIFICANT_GAIN * unit;
+        let stands_out = is_clear
+            || self.squares_of_sphere(&self.used, variance)? - stacked.squares > SIGNIFICANT_GAIN * unit;
+        let (root, doubt) =
+            if stands_out { (stacked.root, Form::zeros()) } else { self.constant_rates(variance)? };
         let radius = self.used.first()?.2.radius;
         let each = self.used.into_iter().zip(parts).zip(whitened).zip(self.noise);
         Some(WeakEstimate {
@@ -330,7 +377,8 @@ impl<'a> Rounds<'a> {
     /// What can be said without any tensor to go by: the information of constant rates, weighted as for a sphere.
     pub(crate) fn at_sphere(mut self, variance: f64) -> Option<WeakEstimate> {
         self.at = Unknowns::at(Coordinates::zeros(), self.columns);
-        let ((root, doubt), squares) = (self.constant_rates(variance)?, self.squares_of_sphere(variance)?);
+        let ((root, doubt), squares) =
+            (self.constant_rates(variance)?, self.squares_of_sphere(&self.used, variance)?);
         let rows = self.used.iter().map(|(_, _, tests)| 3 * tests.count).sum();
         Some(WeakEstimate {
             radius: self.used.first()?.2.radius,
@@ -346,14 +394,31 @@ impl<'a> Rounds<'a> {
         })
     }
 
-    /// What the weak equations of the sphere leave, whose rates are constant but for the columns.
-    fn squares_of_sphere(&self, variance: f64) -> Option<f64> {
+    /// By how much the sphere leaves more of the first equations of a long stretch than the tensor does; zero of short ones.
+    fn gain_of_part(&self, whitened: &[Whitened], variance: f64) -> f64 {
+        let longest = self.used.iter().zip(whitened).max_by_key(|((_, s, _), _)| s.times.len());
+        let Some(((k, stretch, tests), own)) = longest.filter(|((_, s, _), _)| s.times.len() > LONG) else {
+            return 0.0;
+        };
+        let head = stretch.head(PART);
+        let Some(tests) = TestFunctions::new(&head, tests.radius) else { return 0.0 };
+        let part = 3 * tests.count;
+        let of_sphere = self.squares_of_sphere(&[(*k, &head, tests)], variance);
+        // rows are whitened by those before them alone
+        let rows = own.rows.chunks_exact(own.width).take(part);
+        let of_tensor: f64 = rows.map(|row| row[own.width - 1] * row[own.width - 1]).sum();
+        of_sphere.map_or(0.0, |of_sphere| of_sphere - of_tensor)
+    }
+
+    /// What the weak equations of the sphere leave of stretches, whose rates are constant but for the columns.
+    fn squares_of_sphere(&self, used: &[(usize, &Stretch, TestFunctions)], variance: f64) -> Option<f64> {
         let origin = Unknowns { x: Coordinates::zeros(), c: self.at.c.clone() };
         let mut all = Vec::new();
-        for ((_, s, tests), levels) in self.used.iter().zip(&self.levels) {
+        for (k, s, tests) in used {
+            let levels = self.used.iter().position(|(own, ..)| own == k).map(|place| self.levels[place])?;
             let raw = vec![Vector3::zeros(); s.times.len()];
             let part = Linearised::new(s, &raw, self.columns, origin.clone(), tests.clone());
-            all.push(whitened_rows(s, &raw, part, *levels)?);
+            all.push(whitened_rows(s, &raw, part, levels)?);
         }
         let rows: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
         Some(Stacked::new(&rows, self.columns, &origin, variance.sqrt()).squares_at(&origin.x))

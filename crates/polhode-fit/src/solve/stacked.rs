@@ -72,6 +72,11 @@ impl Stacked {
         (self.squares / variance / self.rows.saturating_sub(5).max(1) as f64).max(1.0)
     }
 
+    /// z of |R (x − origin) + z|².
+    pub(crate) fn left(&self) -> Coordinates {
+        self.z
+    }
+
     pub(crate) fn information(&self) -> Form {
         self.root.transpose() * self.root
     }
@@ -167,11 +172,11 @@ pub(crate) fn responses(
 /// The triangle of each stretch, where some have columns of their own: those of the others then cost nothing.
 fn triangles(rows: &[&[f64]], columns: &[Column], width: usize) -> Option<Vec<Vec<f64>>> {
     let alone = columns.iter().any(|column| column.segment.is_some()) && rows.len() > 1;
-    alone.then(|| rows.iter().map(|rows| triangle(rows, width)).collect())
+    alone.then(|| rows.iter().map(|rows| small_triangle(rows, width)).collect())
 }
 
 /// Rows of `width` numbers as the rows of their triangle: the columns that are zero in all of them are left out of it.
-fn triangle(rows: &[f64], width: usize) -> Vec<f64> {
+pub(crate) fn small_triangle(rows: &[f64], width: usize) -> Vec<f64> {
     let used: Vec<usize> =
         (0..width).filter(|&k| rows.chunks_exact(width).any(|row| row[k] != 0.0)).collect();
     if rows.len() / width <= used.len() {

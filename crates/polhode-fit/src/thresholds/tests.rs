@@ -7,6 +7,7 @@ use std::path::Path;
 const NO_THRESHOLDS: &[&str] = &[
     "alternatives FURTHER",
     "alternatives WIDTH",
+    "banded PIVOTS",
     "banded REGISTER",
     "banded WIDEST",
     "coordinates HALF_ROOT",
@@ -20,6 +21,7 @@ const NO_THRESHOLDS: &[&str] = &[
     "invariants ROOT",
     "law LARGEST_SHARE",
     "levels SHARE",
+    "moments TOGETHER",
     "moments WITH_SLOPE",
     "moments WITH_VALUE",
     "product DEGREE",

@@ -556,3 +556,31 @@ fn what_is_no_proof_body_is_refused() {
     let added = ProofBody::attached(&point, 3.0).unwrap().added();
     assert!((added - Matrix3::from_diagonal(&Vector3::new(0.0, 0.75, 0.75))).amax() < 1e-15, "{added}");
 }
+
+/// Drag takes energy in the joint fit too: where records of a body without drag ask for a negative one, the answer is that without drag.
+#[test]
+fn drag_that_would_give_energy_is_held_at_zero() {
+    let (mut held, mut free) = (Vec::new(), Vec::new());
+    for seed in 0..6 {
+        let mut random = Random::new(7_000 + seed);
+        let bench = Bench::new(&[Nothing, Proof], 0.0, &mut random);
+        let records = bench.records(0.0, &mut random);
+        let with = |torque| {
+            let settings = Settings::default().with_torque(torque).with_radius(0.4);
+            fit_carrier(&records, &settings).unwrap_or_else(|error| panic!("{seed}: {error}"))
+        };
+        let (drag, none) = (with(TorqueModel::Drag), with(TorqueModel::None));
+        let is_held = |e: &CarrierEstimate| {
+            e.records.iter().all(|(_, record)| record.torque.coefficients.iter().all(|c| c.value == 0.0))
+        };
+        let apart = (0..3).map(|k| {
+            (drag.carrier.principal[k] - none.carrier.principal[k]).abs() / none.carrier.sigma_principal[k]
+        });
+        let apart = apart.fold(0.0, f64::max);
+        println!("{seed}: held {}, {apart:.4} deviations from the answer without drag", is_held(&drag));
+        if is_held(&drag) { held.push(apart) } else { free.push(apart) }
+    }
+    let most = |of: &[f64]| of.iter().copied().fold(0.0, f64::max);
+    assert!(!held.is_empty() && most(&held) < 0.02, "{held:?}");
+    assert!(most(&free) > 10.0 * most(&held), "{held:?} {free:?}");
+}

@@ -373,3 +373,23 @@ fn settings_out_of_range_are_refused_with_their_rule() {
     let message = with(Settings::default().with_radius(0.0401));
     assert!(message.contains("nearly as many equations as there are samples"), "{message}");
 }
+
+/// A degree off the largest axis bodies of other moments follow the samples nearly as well, along a path that bends.
+#[test]
+#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
+fn deviations_next_to_a_steady_spin_hold() {
+    let (mut random, times, mut covered) = (Random::new(311), sampled(50, 60), 0);
+    let count = 60;
+    for trial in 0..count {
+        let r = random_rotation(&mut random);
+        let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &r);
+        let omega = r * Vector3::new(0.017_452, 0.0, 0.999_848);
+        let record = record(&j, omega, &times, 0.01, &mut random);
+        let estimate = fit(&record, &Settings::default()).unwrap_or_else(|error| panic!("{trial}: {error}"));
+        let square = distance(&entries(&(estimate.shape.tensor() - j)), &estimate.free_covariance);
+        covered += usize::from(square < 11.070_497_693_516_35);
+    }
+    println!("{covered} of {count} covered");
+    // 57 are expected, and without what the profile adds three quarters of them are covered
+    assert!(covered >= 53, "{covered} of {count}");
+}

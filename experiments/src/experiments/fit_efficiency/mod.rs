@@ -42,7 +42,7 @@ struct Trial {
 }
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let trials = context.scale.pick(2, 3, 200);
+    let trials = context.scale.pick(2, 3, 170);
     let seconds = context.scale.pick(10, 60, 60);
     let cells: Vec<(usize, usize)> =
         (0..BODIES.len()).flat_map(|body| (0..NOISES.len()).map(move |noise| (body, noise))).collect();
