@@ -24,7 +24,7 @@ use crate::rotation::{Quat, Vec3};
 pub struct State {
     /// Unit quaternion, scalar first, active, body → space.
     pub attitude: Quat<f64>,
-    /// Angular momentum `m = I ω` in body axes, kg m²/s.
+    /// Angular momentum `m = I ω` in body axes, kg m²/s, without that of [wheels](super::Wheel).
     pub momentum_body: Vec3<f64>,
 }
 
@@ -41,7 +41,8 @@ impl State {
         self.momentum_body.into()
     }
 
-    /// Angular momentum in space, `L = q m q*` with q of norm 1, kg m²/s.
+    /// Angular momentum in space, `L = q m q*` with q of norm 1, kg m²/s; [`Body::momentum_space`](super::Body::momentum_space) adds that of
+    /// wheels.
     #[must_use]
     pub fn momentum_space(&self) -> Vector3<f64> {
         self.rotation() * self.momentum()

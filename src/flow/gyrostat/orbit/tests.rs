@@ -5,6 +5,7 @@ use super::*;
 use crate::flow::FreeMotion;
 use crate::flow::gyrostat::steady_spins;
 use crate::inertia::Inertia;
+use crate::num::Precise;
 use crate::rotation::rotation_angle;
 
 struct Case {
