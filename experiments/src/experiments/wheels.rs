@@ -299,7 +299,7 @@ fn turns(context: &Context, report: &mut Report) -> Result<f64, Error> {
             left = turn.late.to_degrees();
             let is_last = turn.duration == FASTEST * f64::from(1_u32 << (doublings - 1));
             if turn.duration == FASTEST || is_last {
-                figure.series.push(Curve::new(format!("{:.2} N m", turn.torque), turn.drawn).plain());
+                figure.series.push(Curve::new(format!("{} N m", turn.torque), turn.drawn).plain());
             }
             if is_last {
                 figure.series.push(Curve::new("steady spin", turn.predicted).dots());
