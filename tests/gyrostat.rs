@@ -269,14 +269,13 @@ fn a_power_of_two_of_the_mass_changes_no_bit() {
         let wheel = |axis: [f64; 3], inertia: f64, speed| wheel(axis, inertia * factor, speed);
         let body = Body::free(inertia).with_wheel(wheel([1.0, 2.0, -2.0], 0.05, 60.0).free(OMEGA)).unwrap();
         let body = body.with_wheel(wheel([0.0, 0.0, 1.0], 0.1, -25.0)).unwrap();
-        let ends = ["rk4", "taylor", "two-turn", "kick-drift"].map(|name| {
+        ["rk4", "taylor", "two-turn", "kick-drift"].map(|name| {
             let run =
                 Run::new(&method(name).unwrap(), &body, &start(&body), 0.1).unwrap().advance_to(100).unwrap();
             run.state.attitude.components().map(f64::to_bits)
-        });
-        ends
+        })
     };
-    assert_eq!(end(1.0), end(0.5_f64.powi(40)));
+    assert_eq!(end(1.0), end(libm::scalbn(1.0, -40)));
 }
 
 /// The closed form beside Taylor series of another formulation, wheels as a torque on the carrier: held, free, both, and none.
@@ -349,7 +348,7 @@ fn steady_spins_are_steady_and_unstable_ones_are_left_at_their_rate() {
         let off = |t: f64| (after(&nudged, t) - spin.omega_body).norm();
         if spin.growth_rate > 0.0 {
             let (early, late) = (6.0 / spin.growth_rate, 8.0 / spin.growth_rate);
-            let growth = (off(late) / off(early)).ln() / (late - early);
+            let growth = libm::log(off(late) / off(early)) / (late - early);
             assert!((growth / spin.growth_rate - 1.0).abs() < 1e-3, "{growth} for {}", spin.growth_rate);
         } else {
             let period = std::f64::consts::TAU / spin.frequency;

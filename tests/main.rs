@@ -24,6 +24,7 @@ mod fixtures;
 mod forces;
 #[cfg(feature = "random")]
 mod gyrostat;
+mod gyrostat_programs;
 mod hostile;
 mod inertia;
 mod laws;

@@ -29,6 +29,7 @@ mod separatrix;
 mod splitting_order;
 mod strapdown;
 mod tumblers;
+mod wheels;
 mod work_precision;
 
 pub(crate) use work_precision::Which;
@@ -155,6 +156,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "tumblers",
         question: "whether the tumbling bodies of the catalogue have the figures of their papers",
         run: tumblers::run,
+    },
+    Experiment {
+        name: "wheels",
+        question: "how a wheel takes up the spin of a spacecraft, whether the closed form with wheels holds between switchings, and which method follows wheels best",
+        run: wheels::run,
     },
     Experiment {
         name: "flyby",
