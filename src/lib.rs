@@ -116,6 +116,9 @@ pub mod guide {
     #[doc = include_str!("../docs/tumbling.md")]
     #[allow(rustdoc::broken_intra_doc_links, reason = "its tables name units in brackets")]
     pub mod tumbling {}
+    #[doc = include_str!("../docs/wheels.md")]
+    #[allow(rustdoc::broken_intra_doc_links, reason = "its tables name units in brackets")]
+    pub mod wheels {}
 }
 
 pub use body::{Body, State};

@@ -168,7 +168,7 @@ pub(super) fn word_of(problem: Problem) -> &'static str {
         Problem::Potential => "potential",
         Problem::Torque => "torque",
         Problem::Gyrostat => "wheels",
-        Problem::GyrostatPotential => "wheels-potential",
+        Problem::GyrostatPotential => "wheels+U",
     }
 }
 
