@@ -27,7 +27,7 @@ const EXAMPLES: &str = "Examples:
   polhode motion --moments 0.61,0.965,1 --periods 27.38h,263h --mode sam \\
     --pole 250,-75 --phases 152,14 --angle-unit deg
   polhode motion --body toutatis --to-frame icrf
-  polhode motion --moments 10,12,15 --wheel 0,0,1,0.05@3000rpm \
+  polhode motion --moments 10,12,15 --wheel 0,0,1,0.05@3000rpm \\
     --omega 0.1,0.02,0.3";
 
 /// Mode, periods, stability and distance to the separatrix of torque-free motion

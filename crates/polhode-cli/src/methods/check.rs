@@ -77,7 +77,7 @@ pub(super) fn written(report: &Report, format: Format) -> String {
 fn table(report: &Report) -> Table {
     let columns = vec![
         Column::new("method", "", "name of the method"),
-        Column::new("motion", "", "free, gravity, potential, torque, wheels or wheels-potential"),
+        Column::new("motion", "", "free, gravity, potential, torque, wheels or wheels+U"),
         Column::new("law", "", "what is measured"),
         Column::new("quantity", "", "of what"),
         Column::new("claim", "", "what the method claims"),
