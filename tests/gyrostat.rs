@@ -261,6 +261,27 @@ fn wheels_that_no_body_can_carry_are_refused_with_the_law() {
     );
 }
 
+/// Balls, symmetric bodies, wheels that stand still or lie along an axis: turns with nothing to turn.
+#[test]
+fn bodies_with_equal_moments_take_wheels_too() {
+    for moments in [[2.0, 2.0, 2.0], [1.0, 1.0, 1.5], [1.5, 1.0, 1.0], [1.0, 1.5, 1.0]] {
+        for (axis, speed) in
+            [([1.0, 0.0, 0.0], 0.0), ([1.0, 0.0, 0.0], 5.0), ([0.0, 0.0, 1.0], -4.0), ([1.0, 1.0, 0.0], 3.0)]
+        {
+            let body = Body::free(Inertia::from_moments(moments).unwrap());
+            let body = body.with_wheel(wheel(axis, 0.1, speed)).unwrap();
+            let truth = GyrostatMotion::new(&body, &start(&body)).unwrap().at(4.0).unwrap();
+            for name in ["lie-poisson", "two-turn", "two-turn@suzuki-4", "kick-drift", "rattle", "taylor"] {
+                let run = Run::new(&method(name).unwrap(), &body, &start(&body), 1.0 / 256.0)
+                    .unwrap()
+                    .advance_to(1024);
+                let off = run.unwrap().state.rotation().angle_to(&truth.rotation());
+                assert!(off < 1e-4, "{name}: {moments:?}, {axis:?} at {speed}: {off:e}");
+            }
+        }
+    }
+}
+
 /// Moments and wheels times a power of two: the same bits.
 #[test]
 fn a_power_of_two_of_the_mass_changes_no_bit() {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{GyrostatOrbit, steady_spins};
-use crate::body::{Body, Exit, Point, Problem, State, Time};
+use crate::body::{Body, Exit, Point, Problem, State, StateError, Time};
 use crate::flow::NoClosedForm;
 use crate::flow::free::Stability;
 use crate::flow::reach::TimeError;
@@ -164,13 +164,25 @@ impl GyrostatMotion {
     }
 }
 
+/// Momenta of wheels stay below this, in units in which the largest moment is about 1.
+const LARGEST: f64 = 1e60;
+
 /// The momentum of the wheels of a body on which nothing else acts.
 fn constant(body: &Body) -> Result<Vec3<Dd>, NoClosedForm> {
     if let Some((torque, [from, to])) = body.wheels().iter().find_map(|wheel| wheel.motor()) {
         return Err(NoClosedForm::Motor { torque, from, to });
     }
     match (body.problem(), body.momentum_of_wheels()) {
-        (Problem::Gyrostat, Some(wheels)) => Ok(wheels.at(Time::from_seconds(0.0))),
+        (Problem::Gyrostat, Some(wheels)) => {
+            let wheels = wheels.at(Time::from_seconds(0.0));
+            let value = body.momentum_of_wheels_at(0.0).amax();
+            // fourth powers of it are taken
+            if wheels.magnitude() < LARGEST {
+                Ok(wheels)
+            } else {
+                Err(StateError::OutOfRange { quantity: "momentum of wheels", value, unit: "kg m^2/s" }.into())
+            }
+        }
         _ => Err(NoClosedForm::Forced { force: body.acts().unwrap_or_else(|| "no wheel".into()) }),
     }
 }

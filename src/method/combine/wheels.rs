@@ -179,10 +179,10 @@ impl<S: Precise> Turns<S> {
         };
         let of = |t: Dd| match split {
             WheelSplit::Around => vec![constant(rates, t)],
-            // without a part of h along it there is nothing to turn
-            WheelSplit::Turns { axes, .. } => {
-                let left = axes.iter().filter(|(axis, kappa)| *kappa != Dd::ZERO || h[*axis] != Dd::ZERO);
-                left.map(|&one| turn(one, t)).collect()
+            WheelSplit::Turns { axes: [first, second, third], .. } => {
+                // without a part of h along it there is nothing to turn; two are left in any case
+                let turns = first.1 != Dd::ZERO || h[first.0] != Dd::ZERO;
+                turns.then_some(first).into_iter().chain([second, third]).map(|&one| turn(one, t)).collect()
             }
         };
         let (mut halves, mut whole) = (of(length * 0.5), of(length));

@@ -160,6 +160,7 @@ fn wheels_that_are_wrong_are_refused_with_the_rule() {
             "body without wheels",
         ),
         (format!("motion {MOMENTS} --omega 1,0,0 --steady"), "body with wheels"),
+        (format!("motion {MOMENTS} --omega 1,0,0 --wheel 0,0,1,0.1@1e300"), "outside the range of a double"),
         (
             format!("simulate {MOMENTS} --wheel 1,0,0,0.1@3,free --omega 1,0,0 --until 1 --every 0.1"),
             "give wheels whose speed is held",
