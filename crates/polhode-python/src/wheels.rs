@@ -42,11 +42,12 @@ impl Wheel {
         Ok(Wheel(self.0.free(vector("omega", omega)?)))
     }
 
-    /// The same wheel with a motor that turns it by `torque`, N m, against the body from the time `begin` to `end`, s; before and after
+    /// The same wheel with a motor that turns it by `torque`, N m, against the body from the time `begin` to `end`, s, or on without end; before and after
     /// it turns freely. It has its speed where the body turns at `omega`, rad/s, body axes, before the motor begins.
-    #[pyo3(signature = (torque, omega, *, begin = 0.0, end = f64::INFINITY))]
-    fn driven(&self, torque: f64, omega: &Bound<'_, PyAny>, begin: f64, end: f64) -> PyResult<Self> {
-        self.0.driven(torque, [begin, end], vector("omega", omega)?).map(Wheel).map_err(refused)
+    #[pyo3(signature = (torque, omega, *, begin = 0.0, end = None))]
+    fn driven(&self, torque: f64, omega: &Bound<'_, PyAny>, begin: f64, end: Option<f64>) -> PyResult<Self> {
+        let works = [begin, end.unwrap_or(f64::INFINITY)];
+        self.0.driven(torque, works, vector("omega", omega)?).map(Wheel).map_err(refused)
     }
 
     /// Its speed against the body at the time `t`, s, where the body turns at `omega`, rad/s, body axes.

@@ -53,7 +53,7 @@ def test_what_people_call_has_an_example():
     without = [name for name in NAMES if callable(getattr(polhode, name)) and ">>>" not in getattr(polhode, name).__doc__]
     # results and what needs no more than its name
     assert set(without) <= {
-        "Advice", "Attitudes", "CarrierEstimate", "Estimate", "FittedMotion", "Force", "Link", "Links", "MeasuredBody", "Passage", "PolhodeError", "PolhodeWarning", "Record", "Samples", "States", "Trajectory",
+        "Advice", "Attitudes", "CarrierEstimate", "Estimate", "FittedMotion", "Force", "Link", "Links", "MeasuredBody", "Passage", "PolhodeError", "PolhodeWarning", "Record", "Samples", "States", "SteadySpin", "Trajectory",
         "Verdict", "bodies", "drag", "gravity_gradient", "methods", "torque_body", "torque_space",
     }
 

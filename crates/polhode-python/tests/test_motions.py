@@ -360,7 +360,7 @@ def test_a_body_with_wheels_moves_as_its_equations_say():
         assert abs(abs(there.attitude @ state[:4]) - 1) < 1e-9
         np.testing.assert_allclose(there.omega, state[4:7], atol=1e-8)
         assert abs(wheel.speed(20.0, there.omega) - state[7]) < 1e-6
-        run = polhode.run("lie-poisson", body, omega, until=20.0, step=0.001)
+        run = polhode.run("lie-poisson", body, omega, times=[20.0], step=0.001)
         np.testing.assert_allclose(run.omega[-1], there.omega, atol=1e-5)
         np.testing.assert_allclose(
             np.linalg.norm(motion.momentum), np.linalg.norm(tensor @ omega + inertia * speed * axis), rtol=1e-14
