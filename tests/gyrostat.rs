@@ -282,6 +282,24 @@ fn bodies_with_equal_moments_take_wheels_too() {
     }
 }
 
+/// A run that is written down and resumed has the bits of one that was not, and is refused with another wheel.
+#[test]
+fn a_run_with_wheels_is_resumed_with_the_same_bits() {
+    let (body, other) =
+        (held(), body(&[wheel([1.0, 2.0, -2.0], 0.05, 61.0), wheel([0.0, 0.0, 1.0], 0.1, -25.0)]));
+    for name in ["rk4", "lie-poisson", "two-turn", "kick-drift", "rattle", "two-turn@suzuki-4", "taylor"] {
+        let method = method(name).unwrap();
+        let new = || Run::new(&method, &body, &start(&body), 0.1).unwrap();
+        let whole = new().advance_to(400).unwrap().state;
+        let mut half = new();
+        half.advance_to(170).unwrap();
+        let text = half.checkpoint().to_string();
+        let mut resumed = Run::resume(&method, &body, &text.parse().unwrap()).unwrap();
+        assert_eq!(resumed.advance_to(400).unwrap().state, whole, "{name}");
+        assert!(Run::resume(&method, &other, &text.parse().unwrap()).is_err(), "{name}");
+    }
+}
+
 /// Moments and wheels times a power of two: the same bits.
 #[test]
 fn a_power_of_two_of_the_mass_changes_no_bit() {

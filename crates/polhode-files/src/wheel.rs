@@ -25,6 +25,9 @@ enum Drive {
     Motor(f64, [f64; 2]),
 }
 
+/// Of a wheel in a file.
+const KEYS: [&str; 8] = ["axis", "inertia", "speed", "speed_unit", "free", "torque", "from", "until"];
+
 /// What a text has to look like.
 const FORM: &str = "write it as ax,ay,az,I@3000rpm, with ,free or ,torque=T[,from=t][,until=t] behind it";
 
@@ -115,7 +118,6 @@ impl GivenWheel {
     /// # Errors
     /// A key that is unknown or missing, with its line, or what is wrong with the wheel.
     pub fn of_toml(section: &Section<'_>) -> Result<Self, Error> {
-        const KEYS: [&str; 8] = ["axis", "inertia", "speed", "speed_unit", "free", "torque", "from", "until"];
         section.only("a wheel", &KEYS)?;
         let one = |key: &str| Ok::<_, Error>(section.numbers::<1>(key)?.map(|[number]| number));
         let missing = |key: &str, remedy: &str| {
@@ -145,6 +147,10 @@ impl GivenWheel {
     /// # Errors
     /// What is wrong with it.
     pub fn of_json(object: &Value) -> Result<Self, String> {
+        let keys = object.as_object().ok_or("a wheel is no object of JSON")?;
+        if let Some(unknown) = keys.keys().find(|key| !KEYS.contains(&key.as_str())) {
+            return Err(format!("\"{unknown}\" is unknown in a wheel; known: {}", KEYS.join(", ")));
+        }
         let number = |key: &str| match &object[key] {
             Value::Null => Ok(None),
             value => value.as_f64().map(Some).ok_or_else(|| format!("\"{key}\" of a wheel is no number")),
@@ -158,7 +164,11 @@ impl GivenWheel {
             _ => Speed::Number(number("speed")?.ok_or_else(|| needed("speed"))?),
         };
         let speed = told.in_unit(object["speed_unit"].as_str())?;
-        let free = object["free"].as_bool().unwrap_or(false);
+        let free = match &object["free"] {
+            Value::Null => false,
+            Value::Bool(free) => *free,
+            _ => return Err("\"free\" of a wheel is neither true nor false".into()),
+        };
         let [torque, from, until] = [number("torque")?, number("from")?, number("until")?];
         Self::new(axis, inertia, speed, Told { free, torque, from, until })
     }
@@ -273,5 +283,8 @@ mod tests {
         let json = |text: &str| GivenWheel::of_json(&serde_json::from_str(text).unwrap()).unwrap_err();
         assert!(json(r#"{"axis":[1,0,0],"inertia":0.1,"speed":3}"#).starts_with("3.0 has no unit"));
         assert!(json(r#"{"axis":[1,0],"inertia":0.1,"speed":"3rpm"}"#).starts_with("\"axis\" of a wheel"));
+        let more = |keys: &str| json(&format!(r#"{{"axis":[1,0,0],"inertia":0.1,"speed":"3rpm",{keys}}}"#));
+        assert!(more(r#""free":"yes""#).starts_with("\"free\" of a wheel is neither"));
+        assert!(more(r#""torqe":1"#).starts_with("\"torqe\" is unknown in a wheel"));
     }
 }

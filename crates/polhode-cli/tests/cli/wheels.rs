@@ -130,6 +130,15 @@ fn members_of_an_ensemble_carry_held_wheels() {
     let answer = polhode(&words(&format!("ensemble {free} --out none")), &scratch.0);
     assert_eq!(answer.code, 2);
     assert!(answer.err.contains("carry wheels whose speed is held"), "{}", answer.err);
+    let tumbling = spec("speed = \"600rpm\"", "method = \"exact\"");
+    let elements = "periods = [27.38, 263]\nmode = \"sam\"";
+    let tumbling = tumbling
+        .replace("omega = [0.1, 0.02, 0.3]", elements)
+        .replace("omega = [0.01]", "periods = [0.1, 1]");
+    let tumbling = scratch.file("tumbling.toml", tumbling);
+    let answer = polhode(&words(&format!("ensemble {tumbling} --out none")), &scratch.0);
+    assert_eq!(answer.code, 2);
+    assert!(answer.err.contains("a body without wheels"), "{}", answer.err);
 }
 
 #[test]

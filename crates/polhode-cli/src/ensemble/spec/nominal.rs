@@ -115,6 +115,11 @@ impl Nominal {
         }
         let own = found.as_ref().map_or([0.0; 3], |found| found.weight_moment);
         let wheels = wheels(body, found.as_ref())?;
+        if elements.is_some() && !wheels.is_empty() {
+            return Err(
+                start.at("periods", "elements are those of the motion of a body without wheels; give omega")
+            );
+        }
         let orbit = found.as_ref().and_then(|found| found.orbit.clone());
         let nominal = Self {
             inertia: found.map(|found| found.inertia),
