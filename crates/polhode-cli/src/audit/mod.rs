@@ -151,6 +151,15 @@ impl Audit {
             }
             (None, None) => None,
         };
+        if self.wheels.is_any() && self.body.is_none() {
+            let remedy = "give --moments, --inertia or --body too";
+            return Err(Error::input(
+                "--wheel",
+                "",
+                "a wheel is one of a body that is told by a flag",
+                remedy,
+            ));
+        }
         if body.is_none() && self.forces.is_any() {
             let remedy = "give --moments, --inertia or --body too";
             return Err(Error::input(

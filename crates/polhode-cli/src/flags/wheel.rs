@@ -19,6 +19,11 @@ pub(crate) struct WheelArguments {
 }
 
 impl WheelArguments {
+    /// Whether the flag names a wheel.
+    pub(crate) fn is_any(&self) -> bool {
+        !self.wheels.is_empty()
+    }
+
     /// `body` with the wheels of its file and of the flag. `start` is asked for the start of the body with all of them held, where the
     /// momentum of one that is not depends on it.
     pub(crate) fn carried(

@@ -168,6 +168,7 @@ fn wheels_that_are_wrong_are_refused_with_the_rule() {
             format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3 --periods 2h,3h --mode lam --times 1"),
             "body without wheels",
         ),
+        (format!("audit {number} --wheel 1,0,0,0.1@3"), "a wheel is one of a body that is told by a flag"),
         (format!("motion {MOMENTS} --omega 1,0,0 --steady"), "body with wheels"),
         (format!("motion {MOMENTS} --omega 1,0,0 --wheel 0,0,1,0.1@1e300"), "outside the range of a double"),
         (
