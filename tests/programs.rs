@@ -40,10 +40,10 @@ fn figures(name: &str) -> Figures {
     }
 }
 
-/// What a program gives, of experiments/data/programs.csv: energy, momentum, attitude.
+/// What a program gives, of data/programs.csv: energy, momentum, attitude.
 fn of_program(program: &str, scheme: &str) -> [f64; 3] {
     let start = format!("{program},");
-    let lines = include_str!("../experiments/data/programs.csv").lines();
+    let lines = include_str!("data/programs.csv").lines();
     let line =
         lines.filter(|line| line.starts_with(&start)).find(|line| line.split(',').nth(2) == Some(scheme));
     let fields: Vec<&str> = line.unwrap().split(',').collect();

@@ -1,4 +1,4 @@
-//! The article names only files that exist, and no result is typed into it.
+//! The articles name only files that exist, and no result is typed into them.
 
 #![allow(clippy::unwrap_used)]
 
@@ -9,12 +9,12 @@ fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
-/// The sources of the article, with comments taken out.
+/// The sources of the articles, with comments taken out.
 fn sources() -> Vec<(String, String)> {
     let paper = root().join("paper");
     let mut found = Vec::new();
-    for folder in [paper.clone(), paper.join("sections")] {
-        let Ok(entries) = fs::read_dir(folder) else { continue };
+    for folder in ["", "exact", "phase", "tensor"] {
+        let Ok(entries) = fs::read_dir(paper.join(folder)) else { continue };
         for path in entries.map(|entry| entry.unwrap().path()) {
             if path.extension().is_some_and(|ending| ending == "tex") {
                 let text = fs::read_to_string(&path).unwrap();

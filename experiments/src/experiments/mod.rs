@@ -22,7 +22,6 @@ mod long_run;
 mod modified_energy;
 mod order;
 mod phase;
-mod programs;
 mod round_off;
 mod scoreboard;
 mod separatrix;
@@ -166,11 +165,6 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "flyby",
         question: "what the Earth does to the spin of Apophis on 13 April 2029, from published spin states",
         run: flyby::run,
-    },
-    Experiment {
-        name: "programs",
-        question: "how programs that people run compare with the methods here, at equal step and at equal error",
-        run: programs::run,
     },
     Experiment {
         name: "audit",

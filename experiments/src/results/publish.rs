@@ -2,8 +2,8 @@
 //!
 //! The committed results are CSVs with a `run.toml` beside them. A block in README.md or a page of `docs` between
 //! `<!-- begin generated: experiment/table -->` and `<!-- end generated -->` is replaced by that table in Markdown, and
-//! every `generated/experiment-table` that the article names is made: a LaTeX table, a CSV, or the experiment, commit and
-//! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both, in the article without sources;
+//! every `generated/experiment-table` that an article names is made: a LaTeX table, a CSV, or the experiment, commit and
+//! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both, in articles without sources;
 //! `work-precision/which` the quickest methods by kind of problem, `work-precision/claim` whether any is quicker than the
 //! general-purpose ones everywhere, and `generated/work-precision-curves.csv` cost against accuracy. `generated/style` is the
 //! style of figures for LaTeX. The page docs/methods.md is the catalogue with what was measured of each method.
@@ -48,8 +48,8 @@ pub(super) fn run(root: &Path, from: Option<&Path>) -> Result<(), Error> {
     if methods.is_file() {
         files.insert(within(root, methods)?, page(&results)?);
     }
-    for name in named_by_article(root)? {
-        let (file, text) = for_article(&name, &results)?;
+    for name in named_by_articles(root)? {
+        let (file, text) = for_articles(&name, &results)?;
         files.insert(within(root, generated.join(file))?, text);
     }
     // all is known before the first file is touched
@@ -101,13 +101,12 @@ fn take_over(root: &Path, from: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// Every `generated/name` in braces in the article's sources, without the folder.
-fn named_by_article(root: &Path) -> Result<BTreeSet<String>, Error> {
+/// Every `generated/name` in braces in the articles' sources, without the folder.
+fn named_by_articles(root: &Path) -> Result<BTreeSet<String>, Error> {
     let mut names = BTreeSet::new();
-    for folder in ["paper", "paper/sections"].map(|folder| root.join(folder)) {
-        if !folder.is_dir() {
-            continue;
-        }
+    let paper = root.join("paper");
+    let articles = if paper.is_dir() { folders(&within(root, paper.clone())?)? } else { Vec::new() };
+    for folder in articles.into_iter().chain(paper.is_dir().then_some(paper)) {
         for path in sorted_entries(&within(root, folder)?)? {
             if path.extension().is_some_and(|ending| ending == "tex") {
                 let text = read_own(&within(root, path)?, "name a text file")?;
@@ -124,8 +123,8 @@ fn without_comment(line: &str) -> &str {
     comment.map_or(line, |(at, _)| &line[..at])
 }
 
-/// The file that the article names as `generated/name`, and its text.
-fn for_article(name: &str, results: &[Results]) -> Result<(String, String), Error> {
+/// The file that an article names as `generated/name`, and its text.
+fn for_articles(name: &str, results: &[Results]) -> Result<(String, String), Error> {
     let stem = name.strip_suffix(".tex").unwrap_or(name);
     if stem == METHODS {
         let head = format!("% catalogue of methods, version {}\n", env!("CARGO_PKG_VERSION"));
@@ -251,15 +250,15 @@ mod tests {
         write_results(&root.join(RESULTS).join("drift"), "drift");
         write_results(&root.join(RESULTS).join("drift-long"), "drift-long");
         std::fs::write(root.join("README.md"), "text\n").unwrap();
-        std::fs::create_dir_all(root.join("paper/sections")).unwrap();
-        let main = root.join("paper/main.tex");
+        std::fs::create_dir_all(root.join("paper/exact")).unwrap();
+        let main = root.join("paper/style.tex");
         std::fs::write(
             &main,
             "\\input{generated/drift-long-best} 5\\% {generated/methods} % {generated/no}\n",
         )
         .unwrap();
         let section = "table {generated/drift-errors.csv}; \\input{generated/drift-origin}\n";
-        std::fs::write(root.join("paper/sections/results.tex"), section).unwrap();
+        std::fs::write(root.join("paper/exact/results.tex"), section).unwrap();
         run(root, None).unwrap();
         let generated = root.join("paper/generated");
         let mut names: Vec<_> = sorted_entries(&generated)
@@ -327,7 +326,7 @@ mod tests {
         refused("'evil': is not the name of its folder");
         write_results(&results, "drift");
         std::fs::create_dir_all(root.join("paper")).unwrap();
-        std::fs::write(root.join("paper/main.tex"), "\\input{generated/drift-origin}\n").unwrap();
+        std::fs::write(root.join("paper/style.tex"), "\\input{generated/drift-origin}\n").unwrap();
         let generated = root.join("paper/generated");
         std::os::unix::fs::symlink(scratch.path(), &generated).unwrap();
         refused("leads out");
@@ -338,7 +337,7 @@ mod tests {
         std::os::unix::fs::symlink(scratch.path().join("new"), generated.join("drift-origin.tex")).unwrap();
         refused("leads out");
         std::fs::remove_file(generated.join("drift-origin.tex")).unwrap();
-        std::fs::write(root.join("paper/main.tex"), "\\input{generated/drift-errors.csv}\n").unwrap();
+        std::fs::write(root.join("paper/style.tex"), "\\input{generated/drift-errors.csv}\n").unwrap();
         std::fs::remove_file(results.join("errors.csv")).unwrap();
         std::os::unix::fs::symlink(scratch.path().join("secret.csv"), results.join("errors.csv")).unwrap();
         refused("leads out");
