@@ -13,7 +13,6 @@ use crate::columns::column::{Column, Unknowns, terms_of};
 use crate::columns::effect::Class;
 use crate::physical::coordinates::{eigen, tensor};
 use crate::signal::stretch::Stretch;
-use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::{Part, WeakEstimate};
 use crate::thresholds::likelihood::{
     CHANGE, CONSTANT, DAMPING, DIFFERENCE, FIRST, LIGHT, MOST_DAMPING, SAMPLES, STEPS, STILL, TOGETHER,
@@ -34,7 +33,7 @@ pub(crate) struct Likeliest {
 /// The likeliest unknowns next to `weak`; `None` where something else acts than wheels of constant momentum, where the motion has no closed form,
 /// where more is left than noise, and where they lie apart from the weak ones.
 pub(crate) fn likeliest(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> Option<Likeliest> {
-    let stacked = weak.stacked.as_ref()?;
+    let root = weak.stacked.as_ref()?.whole();
     let told = |column: &Column| match column.class() {
         Class::Input => true,
         Class::Sensor => column.effect().change_of_rate(&Vector3::zeros()).is_some(),
@@ -49,7 +48,7 @@ pub(crate) fn likeliest(stretches: &[Stretch], weak: &WeakEstimate, variance: f6
         Track::new(stretch, part, weak, variance)
     });
     let tracks = tracks.collect::<Option<Vec<Track<'_>>>>()?;
-    let problem = Problem { tracks, weak, variance, pull: stacked.information_of_all() };
+    let problem = Problem { tracks, weak, variance, pull: root.transpose() * root };
     let model = problem.grow()?;
     let sums = problem.sums(&model, f64::INFINITY)?;
     let components = 3 * sums.iter().map(|sums| sums.samples).sum::<usize>();
@@ -114,6 +113,8 @@ struct Track<'a> {
     /// Of the wheels, in units of the column.
     wheel: Vector3<f64>,
     start: Vector3<f64>,
+    /// One over the variance of its noise, in that of all.
+    weight: f64,
 }
 
 impl<'a> Track<'a> {
@@ -124,7 +125,8 @@ impl<'a> Track<'a> {
         let wheel = inputs.wheel.iter().sum::<Vector3<f64>>() / count as f64;
         let terms = terms_of(&weak.columns, &weak.at, stretch);
         let change = inputs.wheel.iter().map(|h| (h - wheel).norm()).fold(0.0, f64::max);
-        let moves = change * terms.input.abs() * (count as f64 / variance).sqrt();
+        let weight = 1.0 / part.levels.white;
+        let moves = change * terms.input.abs() * (count as f64 * weight / variance).sqrt();
         if inputs.torque.iter().any(|torque| *torque != Vector3::zeros())
             || moves > CONSTANT * eigen(terms.j).0[0]
         {
@@ -133,7 +135,7 @@ impl<'a> Track<'a> {
         let middle = 0.5 * (stretch.times.first()? + stretch.times.last()?);
         let nearest = stretch.times.partition_point(|t| *t < middle).min(count - 1);
         let start = terms.rate(&(stretch.rates[nearest] - part.noise[nearest]));
-        Some(Track { stretch, middle, wheel, start })
+        Some(Track { stretch, middle, wheel, start, weight })
     }
 
     fn within(&self, radius: f64) -> impl Iterator<Item = usize> {
@@ -353,6 +355,9 @@ impl Problem<'_> {
             sums.samples += 1;
         }
         sums.matrix.fill_lower_triangle_with_upper_triangle();
+        sums.matrix *= track.weight;
+        sums.gradient *= track.weight;
+        sums.squares *= track.weight;
         sums.squares.is_finite().then_some(sums)
     }
 }
@@ -388,13 +393,6 @@ impl WeakEstimate {
         self.at = likeliest.at.clone();
         self.stacked = Some(stacked);
         Some(())
-    }
-}
-
-impl Stacked {
-    fn information_of_all(&self) -> DMatrix<f64> {
-        let root = self.whole();
-        root.transpose() * root
     }
 }
 

@@ -75,13 +75,13 @@ impl Case {
         });
         let columns: Vec<Vec<Vector3<f64>>> = columns.collect();
         let mut information = SMatrix::<f64, 12, 12>::zeros();
-        for sample in 0..self.times.len() {
+        (0..self.times.len()).for_each(|sample| {
             let rows = SMatrix::<f64, 3, 12>::from_fn(|i, k| match k {
                 0..9 => columns[k][sample][i],
                 _ => f64::from(u8::from(offset.is_some() && k - 9 == i)),
             });
             information += rows.tr_mul(&rows) / (noise * noise);
-        }
+        });
         for k in 9..12 {
             information[(k, k)] += offset.map_or(1.0, |sigma| 1.0 / (sigma * sigma));
         }
@@ -118,7 +118,7 @@ fn trials(
                 offset.map_or_else(SensorPriors::default, |s| SensorPriors::default().with_offset(s));
             let e = match fit(&record, &plain().with_sensor(sensor)) {
                 Ok(e) if e.inertia.is_some() => e,
-                Ok(_) | Err(FitError::Unidentifiable(_)) => {
+                Ok(_) | Err(FitError::Unidentifiable(_) | FitError::Unsettled { .. }) => {
                     refused += 1;
                     continue;
                 }
